@@ -1,0 +1,74 @@
+"""Agents: the contestants (T3A, M3A, ASURADA), the yardsticks (oracle, human), and strategies that must fail."""
+
+from __future__ import annotations
+
+if __name__ != "automotive_cosim.agents":
+    raise ImportError(f"import this package as automotive_cosim.agents, not as {__name__}")
+
+from collections.abc import Callable, Mapping
+
+from automotive_cosim.agents.base import Agent, Learner, Privileged, Stage, StageName, Thinker
+from automotive_cosim.agents.guest import load
+from automotive_cosim.agents.human import Human
+from automotive_cosim.agents.model_agent import ModelAgent
+from automotive_cosim.agents.oracle import Oracle
+from automotive_cosim.agents.settings import PROFILES, AgentSettings, Part
+from automotive_cosim.agents.trivial import AlwaysAlert, NoOp, PressEverything, Random
+from automotive_cosim.errors import UnknownNameError
+from automotive_cosim.models import make_model
+
+__all__ = [
+    "AGENTS",
+    "PROFILES",
+    "Agent",
+    "AgentSettings",
+    "AlwaysAlert",
+    "Human",
+    "Learner",
+    "ModelAgent",
+    "NoOp",
+    "Oracle",
+    "Part",
+    "PressEverything",
+    "Privileged",
+    "Random",
+    "Stage",
+    "StageName",
+    "Thinker",
+    "make_agent",
+]
+
+SIMPLE: Mapping[str, Callable[[AgentSettings], Agent]] = {
+    "always-alert": lambda settings: AlwaysAlert(),
+    "human": lambda settings: Human(),
+    "no-op": lambda settings: NoOp(),
+    "oracle": lambda settings: Oracle(),
+    "press-everything": lambda settings: PressEverything(),
+    "random": lambda settings: Random(settings.seed),
+}
+"""Those without a model."""
+
+AGENTS = tuple(sorted([*SIMPLE, *PROFILES]))
+"""Names of all agents; ``package.module:Class`` names one of your own."""
+
+
+def make_agent(name: str, model: str = "rules", settings: AgentSettings = AgentSettings()) -> Agent:  # noqa: B008, frozen
+    """An agent by name.
+
+    Args:
+        name: one of ``AGENTS``, or ``package.module:Class``.
+        model: a model's name (``models.make_model``), for the agents that have one.
+        settings: how it is to be run.
+
+    Raises:
+        UnknownNameError: no agent or model of that name.
+        UserError: a class of your own that is no agent, or a memory that cannot be used.
+        SetupError: the model's package, key or address is missing.
+    """
+    if ":" in name:
+        return load(name)
+    if name in PROFILES:
+        return ModelAgent(PROFILES[name], make_model(model), settings)
+    if name not in SIMPLE:
+        raise UnknownNameError("agent", name, AGENTS, "automotive-cosim agents list")
+    return SIMPLE[name](settings)

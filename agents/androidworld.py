@@ -1,0 +1,265 @@
+"""AndroidWorld's agents, unchanged: ``Class(env)``, ``step(goal)``, and an ``env`` they read and act on.
+
+Such an agent calls the environment; here the environment calls the agent. So it runs on a thread of its own, which
+stands still between its actions: ``act`` lets it go on until it executes the next one.
+
+    agent thread   step(goal) -> env.get_state() ... env.execute_action(action) | waits
+    this thread    act(observation) -------------------------------------------> Action
+"""
+
+from __future__ import annotations
+
+import queue
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from automotive_cosim.actions import FIELDS, parse
+from automotive_cosim.contracts import Action, ActionType, BoundingBox, Element, GoalStatus, Observation
+from automotive_cosim.errors import ActionError
+from automotive_cosim.observe import Channel
+
+SCREEN_PX = (1280, 720)
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """A box in pixels, with what AndroidWorld's agents ask of one."""
+
+    x_min: int
+    x_max: int
+    y_min: int
+    y_max: int
+
+    @property
+    def center(self) -> tuple[float, float]:
+        """Its middle."""
+        return (self.x_min + self.x_max) / 2, (self.y_min + self.y_max) / 2
+
+    @property
+    def width(self) -> int:
+        """In pixels."""
+        return self.x_max - self.x_min
+
+    @property
+    def height(self) -> int:
+        """In pixels."""
+        return self.y_max - self.y_min
+
+    @property
+    def area(self) -> int:
+        """In square pixels."""
+        return self.width * self.height
+
+
+@dataclass
+class UIElement:
+    """An element in AndroidWorld's fields."""
+
+    text: str | None
+    content_description: str | None
+    class_name: str
+    bbox_pixels: Bounds
+    hint_text: str | None
+    is_checked: bool
+    is_checkable: bool
+    is_clickable: bool
+    is_editable: bool
+    is_enabled: bool
+    is_focused: bool
+    is_focusable: bool
+    is_long_clickable: bool
+    is_scrollable: bool
+    is_selected: bool
+    is_visible: bool
+    package_name: str
+    resource_name: str
+    resource_id: str
+    bbox: Bounds | None = None
+    tooltip: str | None = None
+
+
+@dataclass
+class State:
+    """What ``get_state`` returns."""
+
+    pixels: npt.NDArray[np.uint8]
+    ui_elements: list[UIElement]
+    forest: None = None
+    auxiliaries: None = None
+
+
+class _EpisodeOverError(BaseException):
+    """Ends an agent's thread at its next call; no ``except Exception`` of the agent catches it."""
+
+
+@dataclass(frozen=True)
+class _Over:
+    """The agent came back from ``step`` without an action, or says that it is done."""
+
+    declared: bool
+    data: Any
+
+
+class _Environment:
+    """What an AndroidWorld agent takes for its environment. All its methods are called on the agent's thread."""
+
+    logical_screen_size = SCREEN_PX
+    device_screen_size = SCREEN_PX
+    orientation = 0
+    physical_frame_boundary = (0, 0, *SCREEN_PX)
+    foreground_activity_name = "org.automotive_cosim.cockpit"
+
+    def __init__(self) -> None:
+        self.interaction_cache = ""
+        self.seen: queue.Queue[Observation | None] = queue.Queue()
+        self.done: queue.Queue[Action | _Over | Exception] = queue.Queue()
+        self.acted = False
+        self._now: Observation | None = None
+
+    def get_state(self, wait_to_stabilize: bool = False) -> State:
+        """The screen as it is now."""
+        now = self.now()
+        pixels = np.zeros((SCREEN_PX[1], SCREEN_PX[0], 3), np.uint8) if now.screenshot is None else now.screenshot
+        return State(np.array(pixels), [_ui_element(element) for element in now.elements or ()])
+
+    def reset(self, go_home: bool = False) -> State:
+        """The screen as it is now: an episode begins where it begins."""
+        return self.get_state()
+
+    def execute_action(self, action: Any) -> None:
+        """Hands the action over and waits until its time has passed."""
+        known = translated(action)
+        self.acted = True
+        self.done.put(known)
+        self.wait()
+
+    def hide_automation_ui(self) -> None:
+        """There is none."""
+
+    def display_message(self, message: str, header: str = "") -> None:
+        """There is nobody to read it."""
+
+    def wait(self) -> None:
+        """Until there is a new observation."""
+        self._now = None
+        self.now()
+
+    def now(self) -> Observation:
+        """The present observation; ends the thread when the episode is over."""
+        if self._now is None:
+            self._now = self.seen.get()
+        if self._now is None:
+            raise _EpisodeOverError
+        return self._now
+
+
+class AndroidWorldAgent:
+    """Runs an AndroidWorld agent as one of ours."""
+
+    model = "own"
+    channels = frozenset({Channel.ELEMENTS, Channel.SCREENSHOT})
+
+    def __init__(self, make: Callable[..., Any]) -> None:
+        """Takes what makes the agent.
+
+        Args:
+            make: called with an environment, e.g. the agent's class; returns an object with ``step(goal)``.
+        """
+        self._make = make
+        self.name = getattr(make, "__name__", "androidworld")
+        self._env: _Environment | None = None
+
+    def reset(self, goal: str) -> None:
+        """Makes the agent anew; the thread of the episode before comes to its end."""
+        if self._env is not None:
+            self._env.seen.put(None)
+        self._env = _Environment()
+        threading.Thread(target=self._live, args=(self._env, goal), daemon=True).start()
+
+    def act(self, observation: Observation) -> Action:
+        """Lets the agent go on until its next action, or the end of a ``step`` without one.
+
+        Raises:
+            ActionError: it raised, took no action in a step, or one that does not exist here.
+        """
+        assert self._env is not None
+        self._env.seen.put(observation)
+        done = self._env.done.get()
+        if isinstance(done, Action):
+            return done
+        if isinstance(done, ActionError):
+            raise done
+        if isinstance(done, Exception):
+            raise ActionError(f"agent {self.name!r} raised {type(done).__name__}: {done}") from done
+        if not done.declared:
+            raise ActionError(f"agent {self.name!r} took no action in this step")
+        return Action(ActionType.STATUS, goal_status=_declared(done.data))
+
+    def _live(self, env: _Environment, goal: str) -> None:
+        agent = None
+        try:
+            env.now()
+            while True:
+                env.acted = False
+                outcome: _Over | Exception
+                try:
+                    agent = agent or self._make(env)
+                    result = agent.step(goal)
+                    outcome = _Over(bool(getattr(result, "done", False)), getattr(result, "data", None))
+                except Exception as error:
+                    outcome = error
+                handed_over = isinstance(outcome, _Over) and env.acted and not outcome.declared
+                if not handed_over:
+                    env.done.put(outcome)
+                    env.wait()
+        except _EpisodeOverError:
+            return
+
+
+def translated(action: Any) -> Action:
+    """An AndroidWorld ``JSONAction``, or anything with its attributes, as one of ours.
+
+    Raises:
+        ActionError: there is no such action here.
+    """
+    names = {field.name for field in fields(Action)} - {"action_type"}
+    given = {name: value for name in names if (value := getattr(action, name, None)) is not None}
+    kind = str(getattr(action, "action_type", ""))
+    takes = FIELDS.get(ActionType(kind)) if kind in set(ActionType) else None
+    if takes is not None:
+        known = (*takes.required, *takes.optional, *(("index", "x", "y") if takes.target else ()))
+        given = {name: value for name, value in given.items() if name in known}
+        if takes.target and not {"index", "x", "y"} & set(given):
+            given |= {"x": SCREEN_PX[0] // 2, "y": SCREEN_PX[1] // 2}
+    for name in ("x", "y", "index"):
+        if isinstance(given.get(name), float):
+            given[name] = round(given[name])
+    return parse({"action_type": kind, **given})
+
+
+def _declared(data: Any) -> GoalStatus:
+    """The status among a step's data, where AndroidWorld's agents leave it; ``complete`` without one."""
+    values = list(data.values()) if isinstance(data, dict) else []
+    for value in values:
+        status = getattr(value, "goal_status", None)
+        if status in set(GoalStatus):
+            return GoalStatus(status)
+    return GoalStatus.COMPLETE
+
+
+def _ui_element(element: Element) -> UIElement:
+    shared = {field.name for field in fields(Element)} & {field.name for field in fields(UIElement)}
+    values = {name: getattr(element, name) for name in shared}
+    texts = {name: values[name] or None for name in ("text", "content_description", "hint_text")}
+    return UIElement(
+        **(values | texts | {"bbox_pixels": _bounds(element.bbox_pixels), "resource_name": element.resource_id})
+    )
+
+
+def _bounds(box: BoundingBox) -> Bounds:
+    return Bounds(box.x_min, box.x_max, box.y_min, box.y_max)

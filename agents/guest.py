@@ -1,0 +1,139 @@
+"""Agents of your own: a class with ``reset(goal)`` and ``act(observation)``, named ``package.module:Class``.
+
+``name``, ``model`` and ``channels`` may be given as attributes; without them the agent is called by its class and
+gets every channel. What ``act`` returns may be an ``Action``, a JSON object or its text. A class with ``step`` in
+place of ``act`` is taken for an AndroidWorld agent (``androidworld.py``).
+"""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from automotive_cosim.actions import check, parse
+from automotive_cosim.agents.androidworld import AndroidWorldAgent
+from automotive_cosim.agents.base import Agent
+from automotive_cosim.contracts import Action, Observation
+from automotive_cosim.errors import ActionError, CosimError, UserError
+from automotive_cosim.observe import ALL, Channel
+
+FORM = "package.module:Class"
+
+
+class Guest:
+    """Somebody's agent behind this project's protocol. An error of its own costs it the step, and is told."""
+
+    def __init__(self, agent: Any) -> None:
+        """Takes an object that has ``reset`` and ``act``.
+
+        Raises:
+            UserError: its ``channels`` are none.
+        """
+        self._agent = agent
+        self.name = str(getattr(agent, "name", type(agent).__name__))
+        self.model = str(getattr(agent, "model", "none"))
+        try:
+            self.channels = frozenset(Channel(name) for name in getattr(agent, "channels", ALL))
+        except (TypeError, ValueError) as error:
+            raise UserError(f"agent {self.name!r}: {error}; its channels are of {', '.join(ALL)}") from error
+
+    def reset(self, goal: str) -> None:
+        """Passes it on.
+
+        Raises:
+            UserError: the agent raised.
+        """
+        try:
+            self._agent.reset(goal)
+        except CosimError:
+            raise
+        except Exception as error:
+            raise UserError(f"agent {self.name!r} raised {_told(error)} in reset") from error
+
+    def act(self, observation: Observation) -> Action:
+        """Passes it on.
+
+        Raises:
+            ActionError: the agent raised, or returned no action.
+        """
+        try:
+            returned = self._agent.act(observation)
+        except CosimError:
+            raise
+        except Exception as error:
+            raise ActionError(f"agent {self.name!r} raised {_told(error)}") from error
+        if isinstance(returned, Action):
+            return check(returned)
+        if isinstance(returned, dict | str):
+            return parse(returned)
+        raise ActionError(f"agent {self.name!r} returned {type(returned).__name__}; act has to return an Action")
+
+
+def load(spec: str) -> Agent:
+    """The agent of a class named ``package.module:Class``, sought in the working folder too.
+
+    Raises:
+        UserError: the module or class does not exist or cannot be made, or what it lacks to be an agent.
+    """
+    module_name, _, class_name = spec.partition(":")
+    if not module_name or not class_name:
+        raise UserError(f"agent {spec!r} has not the form {FORM}")
+    made = _found(spec, module_name, class_name)
+    if not inspect.isclass(made):
+        raise UserError(f"agent {spec!r} is {type(made).__name__}; {FORM} has to name a class")
+    if callable(getattr(made, "step", None)) and not hasattr(made, "act"):
+        return AndroidWorldAgent(made)
+    missing = [method for method in ("reset(goal)", "act(observation)") if not _has(made, method)]
+    if missing:
+        raise UserError(f"agent {spec!r} lacks {' and '.join(missing)}; an agent is a class with both")
+    for method, given in (("reset", 1), ("act", 1)):
+        _check_call(spec, getattr(made, method), method, given)
+    return Guest(_made(spec, made))
+
+
+def _found(spec: str, module_name: str, class_name: str) -> Any:
+    here = str(Path.cwd())
+    if here not in sys.path:
+        sys.path.insert(0, here)
+    try:
+        module = importlib.import_module(module_name)
+    except ImportError as error:
+        raise UserError(f"agent {spec!r}: cannot import {module_name}: {error}") from error
+    except Exception as error:
+        raise UserError(f"agent {spec!r}: importing {module_name} raised {_told(error)}") from error
+    try:
+        return getattr(module, class_name)
+    except AttributeError:
+        classes = sorted(name for name, value in vars(module).items() if inspect.isclass(value))
+        raise UserError(f"agent {spec!r}: {module_name} has no {class_name}; it has {', '.join(classes)}") from None
+
+
+def _has(made: type, method: str) -> bool:
+    return callable(getattr(made, method.partition("(")[0], None))
+
+
+def _check_call(spec: str, method: Callable[..., Any], name: str, given: int) -> None:
+    try:
+        inspect.signature(method).bind(None, *[None] * given)
+    except TypeError as error:
+        argument = "goal" if name == "reset" else "observation"
+        raise UserError(f"agent {spec!r}: {name} cannot be called as {name}({argument}): {error}") from error
+    except ValueError:  # no signature to be had, e.g. of a class written in C
+        return
+
+
+def _made(spec: str, made: type) -> Any:
+    try:
+        return made()
+    except Exception as error:
+        raise UserError(
+            f"agent {spec!r}: {made.__name__}() raised {_told(error)}; it is made without arguments"
+        ) from error
+
+
+def _told(error: Exception) -> str:
+    return f"{type(error).__name__}: {' '.join(str(error).split())[:200]}"

@@ -1,0 +1,200 @@
+"""Agents behind which a model thinks: T3A, M3A and ASURADA, one cycle over different inputs.
+
+reflect on the last action -> remember -> perceive -> interpret -> plan -> act
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from automotive_cosim.agents import answer, prompt
+from automotive_cosim.agents.base import Stage, StageName
+from automotive_cosim.agents.marks import marked, png
+from automotive_cosim.agents.memory import Memory, Strategy, where, why
+from automotive_cosim.agents.settings import AgentSettings, Profile
+from automotive_cosim.contracts import Action, Observation
+from automotive_cosim.errors import ActionError, OutOfBudgetError
+from automotive_cosim.models.base import ChatModel, Message, Reply, digest
+from automotive_cosim.observe import Channel
+
+LONGEST_LESSON, LONGEST_PLAN = 300, 2000
+"""Characters of its own words that it carries on to the next turn."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Turn:
+    """What was seen and done in a turn."""
+
+    seen: Observation
+    action: Action | None
+    """None if the answer could not be read."""
+    plan: str
+
+
+class ModelAgent:
+    """Asks its model twice a turn: what came of the last action, and what to do now.
+
+    ``stages`` tells how the last turn went.
+    """
+
+    def __init__(self, profile: Profile, chat_model: ChatModel, settings: AgentSettings = AgentSettings()) -> None:  # noqa: B008, frozen
+        """Takes its parts.
+
+        Args:
+            profile: which agent.
+            chat_model: what thinks for it.
+            settings: what is taken away from the profile, the budget, and the memory's file.
+
+        Raises:
+            UserError: the memory's file cannot be used.
+        """
+        self._profile = profile.under(settings)
+        self._chat_model = chat_model
+        self._settings = settings
+        self._memory = Memory(settings.memory) if self._profile.remembers and settings.memory else None
+        self.stages: list[Stage] = []
+        self.reset("")
+
+    @property
+    def name(self) -> str:
+        """The profile's name."""
+        return self._profile.name
+
+    @property
+    def model(self) -> str:
+        """The model's name."""
+        return self._chat_model.name
+
+    @property
+    def channels(self) -> frozenset[Channel]:
+        """The profile's channels, less what the settings take away."""
+        return self._profile.channels
+
+    def reset(self, goal: str) -> None:
+        """Forgets the episode before, but for what the memory keeps."""
+        self.stages.clear()
+        self._history: list[str] = []
+        self._done: list[str] = []
+        self._recalled: tuple[str, ...] = ()
+        self._first: Observation | None = None
+        self._last: _Turn | None = None
+        self._tokens = 0
+        self._seconds = 0.0
+
+    def act(self, observation: Observation) -> Action:
+        """One turn of the cycle.
+
+        Raises:
+            ActionError: the answer holds no action, a malformed one, or one that this agent does not have.
+            OutOfBudgetError: the episode's tokens or seconds are spent.
+            ModelError: the model does not answer.
+        """
+        self.stages.clear()
+        if self._last is None:
+            self._begin(observation)
+        else:
+            self._look_back(self._last, observation)
+        plan = "" if self._last is None else self._last.plan
+        self._last = _Turn(observation, None, plan)
+        action, plan = self._decide(observation, plan)
+        self._last = _Turn(observation, action, plan)
+        return action
+
+    def learn(self, success: bool) -> None:
+        """Keeps what was done in this episode and whether it worked, if it has a memory."""
+        if self._memory is None or self._first is None or self._last is None:
+            return
+        steps = [*self._done, prompt.action_words(self._last.action, self._last.seen)]
+        self._memory.keep(
+            Strategy(where(self._first), prompt.one_line(self._first.goal), why(self._first), " > ".join(steps)),
+            worked=success,
+        )
+
+    # --- the stages ---------------------------------------------------------------------------------------
+
+    def _begin(self, observation: Observation) -> None:
+        self._first = observation
+        if self._memory is None:
+            return
+        recalled = self._memory.recall(where(observation), prompt.one_line(observation.goal))
+        self._recalled = tuple(strategy.words for strategy in recalled)
+        self._note(StageName.REMEMBER, observation, "\n".join(self._recalled) or "nothing of this place")
+
+    def _look_back(self, last: _Turn, now: Observation) -> None:
+        lesson = self._reflect(last, now) if self._profile.reflects else ""
+        done = prompt.action_words(last.action, last.seen)
+        line = prompt.summary(
+            len(self._history) + 1, last.action, now.feedback, prompt.target(last.action, last.seen), lesson
+        )
+        self._done.append(done)
+        self._history.append(line)
+        self._note(StageName.REMEMBER, now, line)
+
+    def _reflect(self, last: _Turn, now: Observation) -> str:
+        screens = [_marked(last.seen), _marked(now)] if self._sees else []
+        pictures = tuple(screen for screen in screens if screen is not None)
+        text = prompt.look_back(last.seen, last.action, now, last.plan, bool(pictures))
+        reply, asked = self._ask(text, pictures)
+        lesson = prompt.one_line(answer.labelled(reply.text, "lesson") or reply.text)[:LONGEST_LESSON]
+        self._note(StageName.REFLECT, now, lesson, reply, asked, len(pictures))
+        return lesson
+
+    def _decide(self, seen: Observation, plan: str) -> tuple[Action, str]:
+        pictures: tuple[bytes, ...] = ()
+        if self._sees and seen.screenshot is not None:
+            with_marks = _marked(seen)
+            pictures = (png(seen.screenshot), *([] if with_marks is None else [with_marks]))
+        text = prompt.turn(self._profile, seen, self._history, plan, self._recalled, bool(pictures))
+        self._note(StageName.PERCEIVE, seen, text)
+        reply, asked = self._ask(text, pictures)
+        try:
+            understood = answer.read(reply.text)
+            if understood.action.action_type not in self._profile.actions:
+                raise ActionError(
+                    f"this agent has no action {understood.action.action_type}; choose one of the list"
+                )
+        except ActionError as error:
+            cut = "; the answer was cut off at its longest" if reply.finish == "length" else ""
+            self._note(StageName.ACT, seen, f"{error}{cut}", reply, asked, len(pictures))
+            raise ActionError(f"{error}{cut}") from None
+        self._note(StageName.INTERPRET, seen, understood.situation, reply, asked, len(pictures))
+        self._note(StageName.PLAN, seen, understood.plan)
+        form = "" if understood.strict else " (read forgivingly)"
+        self._note(StageName.ACT, seen, prompt.action_words(understood.action, seen) + form)
+        return understood.action, understood.plan[:LONGEST_PLAN]
+
+    @property
+    def _sees(self) -> bool:
+        return Channel.SCREENSHOT in self.channels and self._chat_model.sees_pictures
+
+    def _ask(self, text: str, pictures: Sequence[bytes]) -> tuple[Reply, str]:
+        settings = self._settings
+        if self._tokens >= settings.most_tokens or self._seconds >= settings.most_seconds:
+            raise OutOfBudgetError(
+                f"the episode's budget is spent: {self._tokens} of {settings.most_tokens} tokens, "
+                f"{self._seconds:.0f} of {settings.most_seconds:g} s"
+            )
+        messages = [Message("user", text, tuple(pictures))]
+        reply = self._chat_model.chat(messages)
+        self._tokens += reply.tokens_in + reply.tokens_out
+        self._seconds += reply.seconds
+        return reply, digest(messages)
+
+    def _note(
+        self,
+        name: StageName,
+        seen: Observation,
+        text: str,
+        reply: Reply | None = None,
+        asked: str = "",
+        pictures: int = 0,
+    ) -> None:
+        self.stages.append(Stage(name, text, seen.time_s, reply, asked, pictures))
+
+
+def _marked(seen: Observation) -> bytes | None:
+    """The screen with its marks; None without a screen or without elements to mark."""
+    if seen.screenshot is None or seen.elements is None:
+        return None
+    return png(marked(seen.screenshot, seen.elements))

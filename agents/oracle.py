@@ -1,0 +1,150 @@
+"""The oracle: knows the task's expert way and walks it by public actions on what it observes."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+
+from automotive_cosim.contracts import (
+    Action,
+    ActionType,
+    Direction,
+    Element,
+    FeedbackCode,
+    GoalStatus,
+    Observation,
+)
+from automotive_cosim.errors import ActionError
+from automotive_cosim.observe import Channel
+from automotive_cosim.suite import Do, Instance, Move, Open, Slide, Tap, TapUntil, Type, Warn
+
+SLIDER_MARGIN_PX = 20
+"""A slider's range begins so far inside its element."""
+LIST = "ListView"
+"""What scrolls row by row, by class name."""
+
+
+class Oracle:
+    """Proves that a task can be solved by public actions alone; see ``suite.Half.moves``."""
+
+    name = "oracle"
+    model = "none"
+    channels = frozenset({Channel.ELEMENTS})
+
+    def __init__(self) -> None:
+        self._moves: deque[Move] = deque()
+        self._end = Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE)
+        self._pressed = 0
+        self._from_s = 0.0
+        self._lists_seen: set[str] = set()
+        self._list = ""
+
+    def reset(self, goal: str) -> None:
+        """Forgets the episode before."""
+        self._moves.clear()
+        self._pressed = 0
+        self._lists_seen.clear()
+        self._list = ""
+
+    def brief(self, instance: Instance, moves: Sequence[Move] | None = None) -> None:
+        """Takes the expert's way of the instance, or another of its ways, each tap by itself."""
+        self._moves.clear()
+        self._from_s = instance.trigger_after_s
+        for move in instance.moves if moves is None else moves:
+            repeats = move.times if isinstance(move, Tap) else 1
+            self._moves.extend([move] * repeats)
+        reason = min(instance.half.reasons, default=None)
+        self._end = Action(ActionType.STATUS, goal_status=instance.half.declares, reason=reason)
+
+    def act(self, observation: Observation) -> Action:
+        """The next move, or the declaration after the last."""
+        if observation.time_s < self._from_s:
+            return Action(ActionType.WAIT, seconds=1)
+        elements = observation.elements or ()
+        while self._moves and _is_reached(self._moves[0], elements):
+            self._moves.popleft()
+            self._pressed = 0
+        if not self._moves:
+            return self._end
+        match self._moves[0]:
+            case Tap(resource_id, _, text):
+                return self._touch(observation, resource_id, text) or self._search(observation, resource_id or text)
+            case TapUntil(resource_id, shown, text, at_most):
+                if self._pressed >= at_most:
+                    raise ActionError(f"{shown} does not read {text!r} after {at_most} taps on {resource_id}")
+                self._pressed += 1
+                index = _index(elements, resource_id, "")
+                return _click(index) if index is not None else self._search(observation, resource_id)
+            case Slide(resource_id, value, low, high):
+                index = _index(elements, resource_id, "")
+                if index is None:
+                    return self._search(observation, resource_id)
+                self._moves.popleft()
+                return _slide(elements[index], (value - low) / (high - low))
+            case Type(resource_id, text, enter):
+                index = _index(elements, resource_id, "")
+                if index is None:
+                    return self._search(observation, resource_id)
+                self._moves.popleft()
+                if enter:
+                    self._moves.appendleft(Do(Action(ActionType.KEYBOARD_ENTER)))
+                return Action(ActionType.INPUT_TEXT, index=index, text=text, clear_text=True)
+            case Open(app):
+                self._moves.popleft()
+                return Action(ActionType.OPEN_APP, app_name=app)
+            case Warn(kind, severity, speed_kmh):
+                self._moves.popleft()
+                return Action(ActionType.SHOW_ALERT, kind=kind, severity=severity, speed_kmh=speed_kmh)
+            case Do(action):
+                self._moves.popleft()
+                return action
+
+    def _touch(self, observation: Observation, resource_id: str, text: str) -> Action | None:
+        index = _index(observation.elements or (), resource_id, text)
+        if index is None:
+            return None
+        self._moves.popleft()
+        self._lists_seen.clear()
+        self._list = ""
+        return _click(index)
+
+    def _search(self, observation: Observation, wanted: str) -> Action:
+        """Scrolls the lists on the screen down to their ends, one after the other."""
+        if self._list and observation.feedback.code is not FeedbackCode.OK:
+            self._lists_seen.add(self._list)
+            self._list = ""
+        for index, element in enumerate(observation.elements or ()):
+            if element.is_scrollable and element.class_name == LIST and element.resource_id not in self._lists_seen:
+                self._list = element.resource_id
+                return Action(ActionType.SCROLL, direction=Direction.DOWN, index=index)
+        raise ActionError(f"{wanted} is not on the screen, and no list that could be scrolled holds it")
+
+
+def _is_reached(move: Move, elements: Sequence[Element]) -> bool:
+    """Whether a repeated tap has done its work."""
+    if not isinstance(move, TapUntil):
+        return False
+    return any(element.resource_id == move.shown and _reads(element, move.text) for element in elements)
+
+
+def _index(elements: Sequence[Element], resource_id: str, text: str) -> int | None:
+    for index, element in enumerate(elements):
+        if not element.is_visible or (resource_id and element.resource_id != resource_id):
+            continue
+        if not text or (element.is_clickable and _reads(element, text)):
+            return index
+    return None
+
+
+def _reads(element: Element, text: str) -> bool:
+    return text in (element.text, element.text.partition("\n")[0], element.content_description)
+
+
+def _click(index: int) -> Action:
+    return Action(ActionType.CLICK, index=index)
+
+
+def _slide(element: Element, share: float) -> Action:
+    box = element.bbox_pixels
+    x = box.x_min + SLIDER_MARGIN_PX + share * (box.x_max - box.x_min - 2 * SLIDER_MARGIN_PX)
+    return Action(ActionType.CLICK, x=round(x), y=(box.y_min + box.y_max) // 2)

@@ -1,0 +1,193 @@
+"""Observations as text: what an agent's model reads.
+
+A prompt is a Markdown file with ``$slots``. A section (``## ...``) with a slot that has no value is left out as a
+whole, heading and all: what an agent is not given does not occur. Whatever comes from outside stands on one line,
+so that no name of a street or a contact can begin a section of its own.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from importlib.resources import files
+from string import Template
+
+from automotive_cosim.actions import grammar, to_json
+from automotive_cosim.agents.marks import listed
+from automotive_cosim.agents.settings import Profile
+from automotive_cosim.contracts import Action, Element, Feedback, GpsFix, Observation, VehicleState
+from automotive_cosim.observe import Channel
+
+SHOWN_FLAGS = ("is_checked", "is_selected", "is_editable", "is_scrollable")
+SLIDERS = ("SeekBar",)
+"""Elements whose bounds are told, because it matters where they are touched."""
+
+
+def fill(name: str, slots: Mapping[str, str | None]) -> str:
+    """The prompt file of that name with its slots filled.
+
+    Args:
+        name: of the file, without its suffix.
+        slots: the value of each slot; None leaves its section out.
+    """
+    text = files("automotive_cosim.agents").joinpath("prompts", f"{name}.md").read_text("utf-8")
+    sections = re.split(r"^(?=## )", text, flags=re.MULTILINE)
+    kept = [section for section in sections if all(slots[slot] is not None for slot in _slots(section))]
+    return Template("".join(kept)).substitute({slot: value or "" for slot, value in slots.items()})
+
+
+def turn(
+    profile: Profile,
+    observation: Observation,
+    history: Sequence[str] = (),
+    plan: str = "",
+    recalled: Sequence[str] = (),
+    pictures: bool = False,
+) -> str:
+    """The prompt of one turn of an agent.
+
+    Args:
+        profile: which agent, with what.
+        observation: what it sees.
+        history: a line for each step so far.
+        plan: what it meant to do next when it acted last.
+        recalled: what it remembers of earlier episodes, a line each.
+        pictures: whether the screen and the marked screen go with it.
+    """
+    given = profile.channels
+    feedback = observation.feedback
+    return fill(
+        profile.name,
+        {
+            "grammar": grammar(profile.actions),
+            "goal": one_line(observation.goal),
+            "history": "\n".join(map(one_line, history)) or "nothing yet",
+            "plan": one_line(plan) or None,
+            "feedback": f"{feedback.code}: {one_line(feedback.text)}".rstrip(": "),
+            "elements": elements(observation) if Channel.ELEMENTS in given else None,
+            "pictures": PICTURES if pictures else None,
+            "vehicle": _vehicle(observation.vehicle) if Channel.VEHICLE in given else None,
+            "connectivity": _connectivity(observation) if Channel.CONNECTIVITY in given else None,
+            "gps": _gps(observation.gps) if Channel.GPS in given else None,
+            "context": _lines(observation.context or "unknown") if Channel.CONTEXT in given else None,
+            "memory": "\n".join(map(one_line, recalled)) or None,
+        },
+    )
+
+
+PICTURES = (
+    "Two pictures come with this text: the screen as it is, and the same with each element framed and numbered. "
+    "The numbers are the indices below."
+)
+BEFORE_AND_AFTER = "Two pictures come with this text: the marked screen before the action and after it."
+
+
+def look_back(
+    before: Observation, action: Action | None, after: Observation, plan: str = "", pictures: bool = False
+) -> str:
+    """The prompt that asks what came of an action; without one, of an answer that could not be read."""
+    feedback = after.feedback
+    return fill(
+        "reflect",
+        {
+            "goal": one_line(before.goal),
+            "action": "an answer that could not be read" if action is None else json.dumps(to_json(action)),
+            "plan": one_line(plan) or None,
+            "feedback": f"{feedback.code}: {one_line(feedback.text)}".rstrip(": "),
+            "before": elements(before) if before.elements is not None else None,
+            "after": elements(after) if after.elements is not None else None,
+            "pictures": BEFORE_AND_AFTER if pictures else None,
+        },
+    )
+
+
+def summary(number: int, action: Action | None, feedback: Feedback, target: str, lesson: str = "") -> str:
+    """One line of history: what was done, what came of it, and what was learnt from that."""
+    done = json.dumps(to_json(action)) if action else "unreadable answer"
+    kind = action.action_type if action else "none"
+    on = f" on {one_line(target)}" if target else ""
+    learnt = f"; {one_line(lesson)}" if lesson else ""
+    return f"Step {number}: {kind} {done}{on} -> {feedback.code} {one_line(feedback.text)}".rstrip() + learnt
+
+
+def elements(observation: Observation) -> str:
+    """The elements that can be seen, a JSON object a line, by their indices."""
+    return "\n".join(_element(index, element) for index, element in listed(observation.elements or ()))
+
+
+def one_line(text: str) -> str:
+    """The text without line breaks, of whatever kind, and without a heading's mark at its start."""
+    return re.sub(r"^(#+ )+", "", " ".join(text.split()))
+
+
+def _slots(section: str) -> set[str]:
+    return set(re.findall(r"\$([a-z]+)", section))
+
+
+def _lines(text: str) -> str:
+    """Lines that begin no section."""
+    return "\n".join(one_line(line) for line in text.split("\n"))
+
+
+def _element(index: int, element: Element) -> str:
+    entry: dict[str, object] = {"index": index, "kind": element.class_name}
+    if element.text:
+        entry["text"] = one_line(element.text)
+    if element.content_description:
+        entry["description"] = one_line(element.content_description)
+    if element.resource_id:
+        entry["id"] = one_line(element.resource_id)
+    if element.class_name in SLIDERS:
+        box = element.bbox_pixels
+        entry["bounds"] = [box.x_min, box.y_min, box.x_max, box.y_max]
+    if element.is_clickable:
+        entry["clickable"] = True
+    if not element.is_enabled:
+        entry["disabled"] = True
+    entry |= {flag.removeprefix("is_"): True for flag in SHOWN_FLAGS if getattr(element, flag)}
+    return json.dumps(entry, ensure_ascii=False)
+
+
+def _vehicle(vehicle: VehicleState | None) -> str:
+    if vehicle is None:
+        return "unknown"
+    shown = {name: value for name, value in asdict(vehicle).items() if value is not None}
+    return "\n".join(
+        f"{name}: {round(value, 1) if isinstance(value, float) else value}" for name, value in shown.items()
+    )
+
+
+def _connectivity(observation: Observation) -> str:
+    link = observation.connectivity
+    return "unknown" if link is None else f"{'online' if link.online else 'offline'}, {link.kind}"
+
+
+def _gps(fix: GpsFix | None) -> str:
+    if fix is None:
+        return "no receiver"
+    where = f"{fix.lat_deg:.5f}, {fix.lon_deg:.5f}"
+    heading = f"heading {fix.heading_deg:.0f} degrees"
+    if fix.has_fix:
+        return f"{where} (accurate to {fix.accuracy_m:.0f} m), {heading}"
+    return f"{where} (no fix for {fix.age_s:.0f} s), {heading}. GPS is out; `estimate_position` is for that."
+
+
+def target(action: Action | None, seen: Observation) -> str:
+    """The id of the element an action is about; empty if it is about none."""
+    elements = seen.elements or ()
+    if action is None or action.index is None or not 0 <= action.index < len(elements):
+        return ""
+    return elements[action.index].resource_id
+
+
+def action_words(action: Action | None, seen: Observation) -> str:
+    """An action on one line, with the id of its element in place of the index."""
+    if action is None:
+        return "unreadable answer"
+    fields = to_json(action)
+    kind, on = fields.pop("action_type"), target(action, seen)
+    if on:
+        fields["index"] = on
+    return " ".join([str(kind), *(f"{name}={one_line(str(value))}" for name, value in fields.items())])

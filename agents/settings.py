@@ -1,0 +1,119 @@
+"""What the agents with a model consist of, as data, and the switches that take parts of it away."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from pathlib import Path
+
+from automotive_cosim.contracts import ActionType
+from automotive_cosim.controls import GeoInput
+from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.observe import Channel
+
+
+class Part(StrEnum):
+    """What can be switched off, to see what it is worth."""
+
+    GPS = "gps"
+    CONTEXT = "context"
+    QUERIES = "queries"
+    SCREEN = "screen"
+    """The screenshots; the list of elements stays."""
+    REFLECTION = "reflection"
+    MEMORY = "memory"
+
+
+def parts(names: Iterable[str]) -> frozenset[Part]:
+    """Parts by name.
+
+    Raises:
+        UnknownNameError: there is no such part.
+    """
+    chosen = list(names)
+    for name in chosen:
+        if name not in set(Part):
+            raise UnknownNameError("part of an agent", name, Part)
+    return frozenset(map(Part, chosen))
+
+
+def geo_input(name: str) -> GeoInput:
+    """A geo control by name.
+
+    Raises:
+        UnknownNameError: there is no such control.
+    """
+    if name not in set(GeoInput):
+        raise UnknownNameError("geo control", name, GeoInput)
+    return GeoInput(name)
+
+
+@dataclass(frozen=True, slots=True)
+class AgentSettings:
+    """How an agent is to be run. What an agent has no use for it ignores."""
+
+    geo: GeoInput = GeoInput.FULL
+    without: frozenset[Part] = frozenset()
+    memory: Path | None = None
+    """SQLite file with what worked in earlier episodes; None, the default, keeps episodes independent."""
+    seed: int = 0
+    """Of an agent that acts at random."""
+    most_tokens: int = 2_000_000
+    """An episode's budget, questions and answers together."""
+    most_seconds: float = 1800.0
+    """An episode's budget of waiting for the model."""
+
+    def __post_init__(self) -> None:
+        if self.most_tokens <= 0 or self.most_seconds <= 0:
+            raise UserError(
+                f"an agent's budget is {self.most_tokens} tokens and {self.most_seconds:g} s; give both above 0"
+            )
+
+
+SCREEN_ALONE = frozenset(ActionType) - {ActionType.QUERY, ActionType.ESTIMATE_POSITION}
+
+
+@dataclass(frozen=True, slots=True)
+class Profile:
+    """One way through the common cycle."""
+
+    name: str
+    """Of the agent and of its prompt."""
+    channels: frozenset[Channel]
+    actions: frozenset[ActionType] = SCREEN_ALONE
+    """What its prompt offers; anything else is refused."""
+    reflects: bool = True
+    remembers: bool = False
+    """Whether it can keep what worked from one episode to the next."""
+
+    def under(self, settings: AgentSettings) -> Profile:
+        """The profile with what the settings take away gone."""
+        without = settings.without
+        lost = set(settings.geo.withheld)
+        lost |= {channel for part, channel in _CHANNELS.items() if part in without}
+        channels = self.channels - lost
+        actions = set(self.actions)
+        if Part.QUERIES in without or not settings.geo.answers or Channel.CONTEXT not in channels:
+            actions.discard(ActionType.QUERY)
+        if Channel.GPS not in channels:
+            actions.discard(ActionType.ESTIMATE_POSITION)
+        return replace(
+            self,
+            channels=channels,
+            actions=frozenset(actions),
+            reflects=self.reflects and Part.REFLECTION not in without,
+            remembers=self.remembers and Part.MEMORY not in without and settings.memory is not None,
+        )
+
+
+_CHANNELS = {Part.GPS: Channel.GPS, Part.CONTEXT: Channel.CONTEXT, Part.SCREEN: Channel.SCREENSHOT}
+
+_TEXT = frozenset({Channel.ELEMENTS, Channel.VEHICLE, Channel.CONNECTIVITY})
+T3A = Profile("t3a", _TEXT)
+"""Reads the elements (after AndroidWorld's T3A)."""
+M3A = Profile("m3a", _TEXT | {Channel.SCREENSHOT})
+"""Sees the screen too, raw and with numbered marks (after AndroidWorld's M3A)."""
+ASURADA = Profile("asurada", frozenset(Channel), frozenset(ActionType), remembers=True)
+"""Knows where it is, too, and asks for what holds there (after the paper's ASURADA)."""
+PROFILES = {profile.name: profile for profile in (T3A, M3A, ASURADA)}

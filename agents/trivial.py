@@ -1,0 +1,139 @@
+"""Strategies without a thought, which no task may reward: they show that nothing is free."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from automotive_cosim.actions import FIELDS, SECONDS_LIMIT, check
+from automotive_cosim.contracts import (
+    Action,
+    ActionType,
+    AlertKind,
+    Direction,
+    Element,
+    GoalStatus,
+    Observation,
+    Reason,
+    Severity,
+)
+from automotive_cosim.observe import Channel
+from automotive_cosim.spaces import APPS
+
+
+class NoOp:
+    """Waits, and never declares anything."""
+
+    name = "no-op"
+    model = "none"
+    channels: frozenset[Channel] = frozenset()
+
+    def reset(self, goal: str) -> None:
+        """Nothing to forget."""
+
+    def act(self, observation: Observation) -> Action:
+        """Waits a second."""
+        return Action(ActionType.WAIT, seconds=1)
+
+
+class AlwaysAlert:
+    """Warns of speed at once, whatever happens, and calls it done."""
+
+    name = "always-alert"
+    model = "none"
+    channels: frozenset[Channel] = frozenset()
+
+    def __init__(self, kind: AlertKind = AlertKind.SPEED) -> None:
+        self._kind = kind
+        self._warned = False
+
+    def reset(self, goal: str) -> None:
+        """Forgets the episode before."""
+        self._warned = False
+
+    def act(self, observation: Observation) -> Action:
+        """The alert, then ``complete``."""
+        if self._warned:
+            return Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE)
+        self._warned = True
+        return Action(ActionType.SHOW_ALERT, kind=self._kind)
+
+
+class Random:
+    """Any action that is well formed, each type as likely as the next; taps fall on elements that listen."""
+
+    name = "random"
+    model = "none"
+    channels = frozenset({Channel.ELEMENTS})
+
+    def __init__(self, seed: int = 0) -> None:
+        self._seed = seed
+        self._rng = np.random.default_rng(seed)
+
+    def reset(self, goal: str) -> None:
+        """Starts over from its seed, so that an episode does not hang on those before."""
+        self._rng = np.random.default_rng(self._seed)
+
+    def act(self, observation: Observation) -> Action:
+        """The next draw."""
+        kind = tuple(ActionType)[int(self._rng.integers(len(ActionType)))]
+        takes = FIELDS[kind]
+        names = takes.required + (("index",) if takes.target else ())
+        names += tuple(name for name in takes.optional if name != "index" and self._rng.random() < 0.5)
+        return check(Action(kind, **{name: self._draw(name, observation) for name in names}))  # type: ignore[arg-type]
+
+    def _draw(self, name: str, observation: Observation) -> object:
+        rng = self._rng
+        choices: dict[str, tuple[object, ...]] = {
+            "index": tuple(_touchable(observation)) or (0,),
+            "app_name": APPS,
+            "direction": tuple(Direction),
+            "distance_px": (50, 100, 200, 400),
+            "goal_status": tuple(GoalStatus),
+            "reason": tuple(Reason),
+            "kind": tuple(AlertKind),
+            "severity": tuple(Severity),
+            "seconds": tuple(range(1, SECONDS_LIMIT + 1)),
+            "speed_kmh": tuple(float(speed) for speed in range(0, 140, 10)),
+            "on": (True, False),
+            "clear_text": (True, False),
+            "text": ("weather", "rules", "2.35,48.86", "hello"),
+            "destination": ("",),
+        }
+        drawn = choices[name]
+        return drawn[int(rng.integers(len(drawn)))]
+
+
+class PressEverything:
+    """Each control that comes in sight once, then ``complete``."""
+
+    name = "press-everything"
+    model = "none"
+    channels = frozenset({Channel.ELEMENTS})
+
+    def __init__(self) -> None:
+        self._pressed: set[str] = set()
+
+    def reset(self, goal: str) -> None:
+        """Forgets what it has pressed."""
+        self._pressed.clear()
+
+    def act(self, observation: Observation) -> Action:
+        """The next control, or the declaration."""
+        elements = observation.elements or ()
+        for index in _touchable(observation):
+            if (key := _key(elements[index])) not in self._pressed:
+                self._pressed.add(key)
+                return Action(ActionType.CLICK, index=index)
+        return Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE)
+
+
+def _touchable(observation: Observation) -> list[int]:
+    return [
+        index
+        for index, element in enumerate(observation.elements or ())
+        if element.is_clickable and element.is_enabled and element.is_visible
+    ]
+
+
+def _key(element: Element) -> str:
+    return element.resource_id or f"{element.text} {element.bbox_pixels}"

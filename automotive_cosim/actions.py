@@ -1,0 +1,308 @@
+"""Actions: read from JSON, checked field by field, carried out on the cockpit.
+
+The vocabulary is AndroidWorld's JSON action plus the car's safety calls. ``FIELDS`` says what each type takes; the
+prompt a model gets is generated from it (``grammar``), so the two cannot drift apart.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Collection, Mapping
+from dataclasses import asdict, dataclass
+from dataclasses import fields as dataclass_fields
+from enum import StrEnum
+from typing import TYPE_CHECKING, Any
+
+from automotive_cosim.contracts import (
+    Action,
+    ActionType,
+    Alert,
+    AlertKind,
+    Direction,
+    Element,
+    Feedback,
+    FeedbackCode,
+    GoalStatus,
+    Json,
+    PullOver,
+    Reason,
+    Reroute,
+    Severity,
+    SlowDown,
+)
+from automotive_cosim.errors import ActionError, UnknownNameError
+
+if TYPE_CHECKING:
+    from automotive_cosim.cockpit.cockpit import Cockpit
+
+TEXT_LIMIT = 120
+"""Longest text of an action; CarUxRestrictions allow 120 characters while driving."""
+DISTANCE_LIMIT_PX = 8192
+"""Longest drag of a finger: beyond any screen."""
+SECONDS_LIMIT = 10
+"""Longest ``wait``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Takes:
+    """The fields of one action type. With ``target`` it needs an ``index``, or ``x`` and ``y``, never both."""
+
+    about: str
+    target: bool = False
+    required: tuple[str, ...] = ()
+    optional: tuple[str, ...] = ()
+
+
+FIELDS: Mapping[ActionType, Takes] = {
+    ActionType.CLICK: Takes("tap an element or a point", target=True),
+    ActionType.DOUBLE_TAP: Takes("tap it twice", target=True),
+    ActionType.LONG_PRESS: Takes("press and hold it", target=True),
+    ActionType.INPUT_TEXT: Takes(
+        "type into a text field", target=True, required=("text",), optional=("clear_text",)
+    ),
+    ActionType.SCROLL: Takes(
+        "show what lies in that direction, on the screen or in one list",
+        required=("direction",),
+        optional=("index",),
+    ),
+    ActionType.SWIPE: Takes(
+        "drag a finger from there; a slider takes the value where it is let go",
+        target=True,
+        required=("direction",),
+        optional=("distance_px",),
+    ),
+    ActionType.KEYBOARD_ENTER: Takes("press enter"),
+    ActionType.NAVIGATE_HOME: Takes("go to the home screen"),
+    ActionType.NAVIGATE_BACK: Takes("go back one screen"),
+    ActionType.OPEN_APP: Takes("open a screen by its name", required=("app_name",)),
+    ActionType.WAIT: Takes("let time pass", optional=("seconds",)),
+    ActionType.ANSWER: Takes("say something to the driver", required=("text",)),
+    ActionType.STATUS: Takes(
+        "declare that you are done: complete; or that you decline: infeasible or not_needed, with a reason",
+        required=("goal_status",),
+        optional=("reason",),
+    ),
+    ActionType.SHOW_ALERT: Takes("warn the driver", required=("kind",), optional=("severity", "text", "speed_kmh")),
+    ActionType.HAZARD_LIGHTS: Takes("switch the hazard lights", required=("on",)),
+    ActionType.EMERGENCY_CALL: Takes("call the emergency services"),
+    ActionType.REQUEST_SLOW_DOWN: Takes("ask for a lower speed", required=("speed_kmh",)),
+    ActionType.REQUEST_REROUTE: Takes("ask for another route", optional=("destination",)),
+    ActionType.PULL_OVER: Takes("ask the driver to stop at the side"),
+    ActionType.QUERY: Takes("ask for facts about place, rules, weather or traffic", required=("text",)),
+    ActionType.ESTIMATE_POSITION: Takes(
+        'say where the car is, as "LON,LAT" in degrees, while GPS is out', required=("text",)
+    ),
+}
+
+_ENUMS: Mapping[str, type[StrEnum]] = {
+    "direction": Direction,
+    "goal_status": GoalStatus,
+    "reason": Reason,
+    "kind": AlertKind,
+    "severity": Severity,
+}
+_TYPES: Mapping[str, type] = {
+    "index": int,
+    "x": int,
+    "y": int,
+    "distance_px": int,
+    "seconds": int,
+    "text": str,
+    "app_name": str,
+    "destination": str,
+    "speed_kmh": float,
+    "clear_text": bool,
+    "on": bool,
+}
+
+
+def parse(value: str | Json) -> Action:
+    """Reads one action from a JSON object or its text.
+
+    Raises:
+        ActionError: not JSON, no object, an unknown type or value, a missing, surplus or ill-typed field.
+    """
+    if isinstance(value, str):
+        try:
+            value = json.loads(value)
+        except (ValueError, RecursionError) as error:
+            raise ActionError(f"the action is not JSON ({error}); send one JSON object") from error
+    if not isinstance(value, dict):
+        raise ActionError(f"the action is {_kind(value)}; send a JSON object with an action_type")
+    given = {str(name): entry for name, entry in value.items() if entry is not None}
+    if "action_type" not in given:
+        raise ActionError("the action lacks action_type; it is one of " + ", ".join(ActionType))
+    action_type = _enum(ActionType, "action_type", given.pop("action_type"))
+    return check(Action(action_type, **{name: _field(name, entry) for name, entry in given.items()}))
+
+
+def check(action: Action) -> Action:
+    """The action itself, if its fields fit its type.
+
+    Raises:
+        ActionError: naming the field that is missing, surplus or out of range.
+    """
+    takes = FIELDS[action.action_type]
+    given = {field.name for field in dataclass_fields(action) if getattr(action, field.name) is not None} - {
+        "action_type"
+    }
+    name = f"action {action.action_type!s}"
+    if takes.target:
+        by_index, by_point = "index" in given, {"x", "y"} & given
+        if by_index and by_point:
+            raise ActionError(f"{name} has both index and x, y; give one of them")
+        if not by_index and by_point != {"x", "y"}:
+            raise ActionError(f"{name} lacks its target; give index, or x and y")
+        given -= {"index", "x", "y"}
+    for field in takes.required:
+        if field not in given:
+            raise ActionError(f"{name} lacks {field}; {takes.about} needs it")
+    surplus = given - set(takes.required) - set(takes.optional)
+    if surplus:
+        allowed = (("index or x, y",) if takes.target else ()) + takes.required + takes.optional
+        raise ActionError(
+            f"{name} takes no {', '.join(sorted(surplus))}; it takes {', '.join(allowed) or 'no fields'}"
+        )
+    if action.text is not None and len(action.text) > TEXT_LIMIT:
+        raise ActionError(f"{name}: text has {len(action.text)} characters; at most {TEXT_LIMIT} are allowed")
+    if action.seconds is not None and not 1 <= action.seconds <= SECONDS_LIMIT:
+        raise ActionError(f"{name}: seconds is {action.seconds}; it goes from 1 to {SECONDS_LIMIT}")
+    if action.distance_px is not None and not 1 <= action.distance_px <= DISTANCE_LIMIT_PX:
+        raise ActionError(f"{name}: distance_px is {action.distance_px}; it goes from 1 to {DISTANCE_LIMIT_PX}")
+    if action.speed_kmh is not None and not 0 <= action.speed_kmh <= 300:
+        raise ActionError(f"{name}: speed_kmh is {action.speed_kmh:g}; it goes from 0 to 300")
+    return action
+
+
+def to_json(action: Action) -> Json:
+    """The action as a JSON object, without the fields it does not have."""
+    return {name: value for name, value in asdict(action).items() if value is not None}
+
+
+def grammar(kinds: Collection[ActionType] = tuple(ActionType)) -> str:
+    """The actions of these kinds, each as one line of JSON with its meaning, for a prompt."""
+    return "\n".join(f"- {takes.about}: {_example(kind, takes)}" for kind, takes in FIELDS.items() if kind in kinds)
+
+
+def position(text: str) -> tuple[float, float] | None:
+    """Longitude and latitude in degrees from ``"LON,LAT"``; None if it is no place on earth."""
+    parts = text.split(",")
+    try:
+        lon_deg, lat_deg = map(float, parts)
+    except ValueError:
+        return None
+    return (lon_deg, lat_deg) if abs(lon_deg) <= 180 and abs(lat_deg) <= 90 else None
+
+
+def perform(action: Action, cockpit: Cockpit, elements: tuple[Element, ...]) -> Feedback:
+    """Carries out an action on the cockpit.
+
+    Args:
+        action: a checked action.
+        cockpit: where it acts; it decides what is possible and says why not.
+        elements: the list the agent saw; an index means an entry of this list.
+
+    Returns:
+        What came of it. A wrong action changes nothing.
+    """
+    kind = action.action_type
+    if action.index is not None and not 0 <= action.index < len(elements):
+        return Feedback(
+            FeedbackCode.NO_SUCH_ELEMENT,
+            f"there is no element {action.index}; the list goes from 0 to {len(elements) - 1}",
+        )
+    if FIELDS[kind].target:
+        x, y = _point(action, elements)
+        return _touch(action, cockpit, x, y)
+    match kind:
+        case ActionType.SCROLL:
+            target = None if action.index is None else elements[action.index]
+            return cockpit.scroll(target.resource_id if target else None, action.direction or Direction.DOWN)
+        case ActionType.KEYBOARD_ENTER:
+            return cockpit.key_enter()
+        case ActionType.NAVIGATE_HOME:
+            return cockpit.home()
+        case ActionType.NAVIGATE_BACK:
+            return cockpit.back()
+        case ActionType.OPEN_APP:
+            return cockpit.open_app(action.app_name or "")
+        case ActionType.SHOW_ALERT:
+            assert action.kind is not None
+            severity = action.severity or Severity.WARNING
+            return cockpit.alert(Alert(action.kind, severity, action.text or "", action.speed_kmh))
+        case ActionType.HAZARD_LIGHTS:
+            return cockpit.hazards(bool(action.on))
+        case ActionType.EMERGENCY_CALL:
+            return cockpit.emergency_call()
+        case ActionType.REQUEST_SLOW_DOWN:
+            assert action.speed_kmh is not None
+            return cockpit.ask_road(SlowDown(action.speed_kmh))
+        case ActionType.REQUEST_REROUTE:
+            return cockpit.ask_road(Reroute(action.destination or ""))
+        case ActionType.PULL_OVER:
+            return cockpit.ask_road(PullOver())
+        case ActionType.ESTIMATE_POSITION if position(action.text or "") is None:
+            return Feedback(FeedbackCode.REFUSED, 'no position; give "LON,LAT" in degrees, e.g. "2.3522,48.8566"')
+        case _:  # wait, answer, status, query, estimate_position: nothing in the cockpit moves
+            return Feedback(FeedbackCode.OK, "")
+
+
+def _touch(action: Action, cockpit: Cockpit, x: int, y: int) -> Feedback:
+    match action.action_type:
+        case ActionType.CLICK:
+            return cockpit.tap(x, y)
+        case ActionType.DOUBLE_TAP:
+            return cockpit.double_tap(x, y)
+        case ActionType.LONG_PRESS:
+            return cockpit.long_press(x, y)
+        case ActionType.SWIPE:
+            return cockpit.swipe(x, y, action.direction or Direction.UP, action.distance_px)
+        case _:
+            focused = cockpit.tap(x, y)
+            if focused.code not in (FeedbackCode.OK, FeedbackCode.NO_EFFECT):
+                return focused
+            return cockpit.type_text(action.text or "", clear=bool(action.clear_text))
+
+
+def _point(action: Action, elements: tuple[Element, ...]) -> tuple[int, int]:
+    if action.index is None:
+        return action.x or 0, action.y or 0
+    box = elements[action.index].bbox_pixels
+    return (box.x_min + box.x_max) // 2, (box.y_min + box.y_max) // 2
+
+
+def _example(kind: ActionType, takes: Takes) -> str:
+    names = (("index",) if takes.target else ()) + takes.required + takes.optional
+    parts = [f'"action_type": "{kind}"']
+    for name in names:
+        if name in _ENUMS:
+            parts.append(f'"{name}": "<{"|".join(_ENUMS[name])}>"')
+        else:
+            parts.append(f'"{name}": <{_TYPES[name].__name__}>')
+    point = ' (or "x", "y" in place of "index")' if takes.target else ""
+    optional = f" ({', '.join(takes.optional)} may be left out)" if takes.optional else ""
+    return "{" + ", ".join(parts) + "}" + point + optional
+
+
+def _field(name: str, value: Any) -> Any:
+    if name in _ENUMS:
+        return _enum(_ENUMS[name], name, value)
+    if name not in _TYPES:
+        raise ActionError(str(UnknownNameError("action field", name, [*_TYPES, *_ENUMS])))
+    expected = _TYPES[name]
+    if expected is float and type(value) is int:
+        return float(value)
+    if type(value) is not expected or (expected is float and value != value):
+        raise ActionError(f"{name} is {_kind(value)}; it must be {expected.__name__}")
+    return value
+
+
+def _enum(kind: type[StrEnum], name: str, value: Any) -> Any:
+    if isinstance(value, str) and value in set(kind):
+        return kind(value)
+    raise ActionError(str(UnknownNameError(name, str(value)[:40], kind)))
+
+
+def _kind(value: object) -> str:
+    text = repr(value)
+    return f"{type(value).__name__} {text if len(text) <= 40 else text[:37] + '...'}"

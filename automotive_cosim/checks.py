@@ -1,0 +1,377 @@
+"""Checks: what a goal asks of the state. Pure questions, no effects.
+
+A ``Check`` looks at what became of the situation that a trigger (``triggers``) began. Each is a frozen dataclass,
+so that it can be compared and stored; ``str`` says it in words. Values may be parameters until they are bound.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from automotive_cosim.cockpit.signals import Signal
+from automotive_cosim.contracts import AlertKind
+from automotive_cosim.cosim import Moment
+
+
+class Check(Protocol):
+    """A goal: a pure predicate over the start, now and what lay between."""
+
+    @property
+    def writes(self) -> frozenset[str]:
+        """Keys of ``Moment.commands`` that reaching the goal changes of itself."""
+        ...
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        """Whether the goal is reached. ``trace`` runs from the start to now, both included."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class SignalIs:
+    """A signal has one of these values."""
+
+    signal: Signal[Any]
+    values: tuple[Any, ...]
+
+    @property
+    def writes(self) -> frozenset[str]:
+        """The signal itself."""
+        return frozenset({self.signal.path})
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        """Compares the value now."""
+        return now.signals[self.signal.path] in self.values
+
+    def __str__(self) -> str:
+        return f"{self.signal.path} is {_either(self.values)}"
+
+
+@dataclass(frozen=True, slots=True)
+class SignalRaised:
+    """A numeric signal stands at least ``by`` above its value at the start."""
+
+    signal: Signal[float]
+    by: float
+
+    @property
+    def writes(self) -> frozenset[str]:
+        """The signal itself."""
+        return frozenset({self.signal.path})
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        """Compares now with the start."""
+        return float(now.signals[self.signal.path]) - float(start.signals[self.signal.path]) >= self.by
+
+    def __str__(self) -> str:
+        return f"{self.signal.path} raised by {self.by:g} or more"
+
+
+@dataclass(frozen=True, slots=True)
+class SignalLowered:
+    """A numeric signal stands at least ``by`` below its value at the start."""
+
+    signal: Signal[float]
+    by: float
+
+    @property
+    def writes(self) -> frozenset[str]:
+        """The signal itself."""
+        return frozenset({self.signal.path})
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        """Compares now with the start."""
+        return float(start.signals[self.signal.path]) - float(now.signals[self.signal.path]) >= self.by
+
+    def __str__(self) -> str:
+        return f"{self.signal.path} lowered by {self.by:g} or more"
+
+
+@dataclass(frozen=True, slots=True)
+class SignalWithin:
+    """A numeric signal lies between two values, both included."""
+
+    signal: Signal[float]
+    low: float
+    high: float
+
+    @property
+    def writes(self) -> frozenset[str]:
+        """The signal itself."""
+        return frozenset({self.signal.path})
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        """Compares the value now."""
+        return self.low - 1e-9 <= float(now.signals[self.signal.path]) <= self.high + 1e-9
+
+    def __str__(self) -> str:
+        return f"{self.signal.path} from {self.low:g} to {self.high:g}"
+
+
+@dataclass(frozen=True, slots=True)
+class SignalChanged:
+    """A signal has another value than at the start, whichever."""
+
+    signal: Signal[Any]
+
+    @property
+    def writes(self) -> frozenset[str]:
+        """The signal itself."""
+        return frozenset({self.signal.path})
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        """Compares now with the start."""
+        return bool(now.signals[self.signal.path] != start.signals[self.signal.path])
+
+    def __str__(self) -> str:
+        return f"{self.signal.path} is no longer what it was"
+
+
+@dataclass(frozen=True, slots=True)
+class AppDataIs:
+    """An entry of the apps' data (``State.commands``) has one of these values."""
+
+    key: str
+    values: tuple[Any, ...]
+
+    @property
+    def writes(self) -> frozenset[str]:
+        """The entry itself."""
+        return frozenset({self.key})
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        """Compares the value now."""
+        return now.commands[self.key] in self.values
+
+    def __str__(self) -> str:
+        return f"{self.key} is {_either(self.values)}"
+
+
+@dataclass(frozen=True, slots=True)
+class AppDataHas:
+    """A list of the apps' data holds that entry, or no longer does; the rest of it is as it was."""
+
+    key: str
+    entry: Any
+    there: bool = True
+
+    @property
+    def writes(self) -> frozenset[str]:
+        """The list itself."""
+        return frozenset({self.key})
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        """Compares the lists without the entry, then looks for it."""
+        before, after = start.commands[self.key], now.commands[self.key]
+        same = [entry for entry in before if entry != self.entry] == [
+            entry for entry in after if entry != self.entry
+        ]
+        return same and (self.entry in after) is self.there
+
+    def __str__(self) -> str:
+        return f"{self.entry!r} {'among' if self.there else 'no longer among'} {self.key}"
+
+
+@dataclass(frozen=True, slots=True)
+class Filed:
+    """One of several lists by name (playlists) holds that entry, or no longer does; the others are as they were."""
+
+    key: str
+    name: str
+    entry: Any
+    there: bool = True
+
+    @property
+    def writes(self) -> frozenset[str]:
+        """The lists."""
+        return frozenset({self.key})
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        """Compares the lists without the entry, then looks for it."""
+        before, after = dict(start.commands[self.key]), dict(now.commands[self.key])
+        was, is_now = before.pop(self.name, []), after.pop(self.name, [])
+        same = [entry for entry in was if entry != self.entry] == [entry for entry in is_now if entry != self.entry]
+        return before == after and same and (self.entry in is_now) is self.there
+
+    def __str__(self) -> str:
+        return f"{self.entry!r} {'among' if self.there else 'no longer among'} {self.key} {self.name}"
+
+
+@dataclass(frozen=True, slots=True)
+class Entered:
+    """Exactly one entry was added to a list that only grows (messages sent, calls, payments, memos), and with
+    ``entry`` it is that one. Of an entry that is a mapping only the fields named in ``entry`` count."""
+
+    key: str
+    entry: Any = None
+
+    @property
+    def writes(self) -> frozenset[str]:
+        """The list itself."""
+        return frozenset({self.key})
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        """Looks at what came in since the start."""
+        added = now.commands[self.key][len(start.commands[self.key]) :]
+        if len(added) != 1 or self.entry is None:
+            return len(added) == 1
+        if isinstance(self.entry, dict):
+            return all(added[0].get(name) == value for name, value in self.entry.items())
+        return bool(added[0] == self.entry)
+
+    def __str__(self) -> str:
+        return f"one entry added to {self.key}" + ("" if self.entry is None else f": {self.entry!r}")
+
+
+@dataclass(frozen=True, slots=True)
+class EnteredOf:
+    """Exactly one entry was added to a list that only grows: what a signal said at the start, e.g. who rang."""
+
+    key: str
+    signal: Signal[str]
+
+    @property
+    def writes(self) -> frozenset[str]:
+        """The list itself."""
+        return frozenset({self.key})
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        """Looks at what came in since the start."""
+        added = now.commands[self.key][len(start.commands[self.key]) :]
+        return bool(added == [start.signals[self.signal.path]])
+
+    def __str__(self) -> str:
+        return f"{self.signal.path}, as it was, added to {self.key}"
+
+
+@dataclass(frozen=True, slots=True)
+class Counted:
+    """A counter (horn, washer, trip.resets) stands so much higher than at the start."""
+
+    key: str
+    by: int = 1
+
+    @property
+    def writes(self) -> frozenset[str]:
+        """The counter itself."""
+        return frozenset({self.key})
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        """Subtracts."""
+        return bool(now.commands[self.key] - start.commands[self.key] == self.by)
+
+    def __str__(self) -> str:
+        return f"{self.key} {self.by} higher"
+
+
+@dataclass(frozen=True, slots=True)
+class RoadAsked:
+    """The road was asked for one thing that can't be taken back: ``Reroute``, ``PullOver``, ``SlowDown``."""
+
+    request: str
+    """Name of its class."""
+    containing: str = ""
+    """Text that stands in it, e.g. an edge of the way that was chosen."""
+
+    @property
+    def writes(self) -> frozenset[str]:
+        """The list of requests."""
+        return frozenset({"requests"})
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        """Looks at the requests since the start."""
+        asked = now.commands["requests"][len(start.commands["requests"]) :]
+        return len(asked) == 1 and asked[0].startswith(f"{self.request}(") and self.containing in asked[0]
+
+    def __str__(self) -> str:
+        return f"the road asked once for {self.request}" + (f" ({self.containing})" if self.containing else "")
+
+
+@dataclass(frozen=True, slots=True)
+class AllOf:
+    """Every one of the checks holds."""
+
+    checks: tuple[Check, ...]
+
+    @property
+    def writes(self) -> frozenset[str]:
+        """Those of all of them."""
+        return frozenset().union(*(check.writes for check in self.checks))
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        """Asks each."""
+        return all(check.holds(start, now, trace) for check in self.checks)
+
+    def __str__(self) -> str:
+        return ", and ".join(map(str, self.checks))
+
+
+@dataclass(frozen=True, slots=True)
+class AlertGiven:
+    """The driver was alerted of ``kind`` once; an advised speed, if any, is the one named, to 1 km/h."""
+
+    kind: AlertKind
+    speed_kmh: float | None = None
+    must_advise: bool = False
+    """Whether the speed has to be said, because it is none that signs post."""
+
+    @property
+    def writes(self) -> frozenset[str]:
+        """The list of alerts given, and the request that goes to the driver with it."""
+        return frozenset({"alerts", "requests"})
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        """Looks at the alerts since the start: exactly one, of this kind."""
+        given = now.commands["alerts"][len(start.commands["alerts"]) :]
+        return len(given) == 1 and given[0]["kind"] == self.kind and self._advises(given[0]["speed_kmh"])
+
+    def _advises(self, speed_kmh: float | None) -> bool:
+        if speed_kmh is None or self.speed_kmh is None:
+            return speed_kmh is None and not self.must_advise
+        return abs(speed_kmh - self.speed_kmh) < 1.0
+
+    def __str__(self) -> str:
+        speed = "" if self.speed_kmh is None else f", to {self.speed_kmh:g} km/h"
+        return f"the driver alerted once of {self.kind}{speed}"
+
+
+@dataclass(frozen=True, slots=True)
+class AnyOf:
+    """At least one of the checks holds: several end states are right."""
+
+    checks: tuple[Check, ...]
+
+    @property
+    def writes(self) -> frozenset[str]:
+        """Those of all of them."""
+        return frozenset().union(*(check.writes for check in self.checks))
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        """Asks each."""
+        return any(check.holds(start, now, trace) for check in self.checks)
+
+    def __str__(self) -> str:
+        return ", or ".join(map(str, self.checks))
+
+
+@dataclass(frozen=True, slots=True)
+class NothingDone:
+    """The right act is to leave everything as it is; that nothing else changed is the verdict's *clean* part."""
+
+    @property
+    def writes(self) -> frozenset[str]:
+        """Nothing."""
+        return frozenset()
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        """Always: there is nothing to reach."""
+        return True
+
+    def __str__(self) -> str:
+        return "nothing to do"
+
+
+def _either(values: object) -> str:
+    """Values that are all right; before they are bound they may be one parameter."""
+    return " or ".join(map(str, values)) if isinstance(values, tuple) else str(values)

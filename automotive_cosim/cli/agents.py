@@ -1,0 +1,39 @@
+"""``automotive-cosim agents``: who can be put at the cockpit."""
+
+from __future__ import annotations
+
+import typer
+
+app = typer.Typer(help="Who can be put at the cockpit.", invoke_without_command=True)
+
+
+@app.callback()
+def _default(context: typer.Context) -> None:
+    if context.invoked_subcommand is None:
+        list_agents()
+
+
+@app.command("list")
+def list_agents() -> None:
+    """List the agents and the models behind them."""
+    from automotive_cosim.agents import AGENTS
+    from automotive_cosim.models import MODELS
+
+    for name in AGENTS:
+        typer.echo(name)
+    typer.echo("package.module:Class (your own)")
+    typer.echo(f"models: {', '.join(MODELS)}")
+
+
+@app.command()
+def show(name: str) -> None:
+    """Show what an agent is given and what it can do, and the prompt of one that has a model."""
+    from importlib.resources import files
+
+    from automotive_cosim.agents import PROFILES, make_agent
+
+    agent = make_agent(name)
+    typer.echo(f"{agent.name}: gets {', '.join(sorted(agent.channels)) or 'nothing but the goal'}")
+    if name in PROFILES:
+        typer.echo(f"acts by {', '.join(sorted(PROFILES[name].actions))}\n")
+        typer.echo(files("automotive_cosim.agents").joinpath("prompts", f"{name}.md").read_text("utf-8"), nl=False)

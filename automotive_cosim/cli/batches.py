@@ -1,0 +1,85 @@
+"""What the commands share that run many things for a long time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from automotive_cosim.errors import UserError
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from automotive_cosim.run.batch import Progress
+
+
+class View:
+    """Tells how far the run is: a bar at a terminal, else a line now and then."""
+
+    EVERY_S = 15.0
+
+    def __init__(self, console: Console, what: str, said: Callable[[Progress], str]) -> None:
+        """What is being run, and what is said beside its count."""
+        from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
+        from rich.progress import Progress as Bar
+
+        self._console = console
+        self._what = what
+        self._words = said
+        columns = (BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[said]}"))
+        self._bar = Bar(*columns, console=console) if console.is_terminal else None
+        self._task = self._bar.add_task("", total=None, said="") if self._bar else None
+        self._said_s = -self.EVERY_S
+
+    def __enter__(self) -> View:
+        if self._bar:
+            self._bar.start()
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        if self._bar:
+            self._bar.stop()
+
+    def tell(self, progress: Progress) -> None:
+        """Shows a state."""
+        said = self._words(progress)
+        if self._bar and self._task is not None:
+            self._bar.update(self._task, total=progress.planned, completed=progress.done, said=said)
+        elif progress.seconds - self._said_s >= self.EVERY_S or progress.done == progress.planned:
+            self._said_s = progress.seconds
+            self._console.print(f"{progress.done} of {progress.planned} {self._what}; {said}")
+
+
+def words(name: str, text: str) -> list[str]:
+    """The words between commas.
+
+    Raises:
+        UserError: there is none.
+    """
+    found = [word.strip() for word in text.split(",") if word.strip()]
+    if not found:
+        raise UserError(f"--{name} is empty; leave it out to take the default")
+    return found
+
+
+def seeds_in(text: str) -> list[int]:
+    """Whole numbers and ranges of them between commas.
+
+    Raises:
+        UserError: something else came.
+    """
+    seeds: list[int] = []
+    for word in words("seeds", text):
+        first, dash, last = word.partition("-")
+        if not first.isdigit() or (dash and not (last.isdigit() and int(first) <= int(last) < int(first) + 10**6)):
+            raise UserError(f"--seeds has {word!r}; give numbers and ranges, as in 0-4 or 0,3,7")
+        seeds += range(int(first), int(last or first) + 1)
+    return seeds
+
+
+def time_left(progress: Progress) -> str:
+    """For example ``, 3:05 left``; empty where it is not known, or nothing is left."""
+    left_s = progress.left_s
+    if left_s is None or progress.done == progress.planned:
+        return ""
+    return f", {int(left_s) // 60}:{int(left_s) % 60:02d} left"

@@ -1,0 +1,75 @@
+"""``automotive-cosim bench``: what the coupling costs on this machine, beside bare SUMO."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from automotive_cosim.cli.options import whole_number
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from automotive_cosim.run.measure import Figures
+
+
+def bench(
+    scenario: Annotated[
+        str, typer.Option(help="A scenario's name or folder, any .sumocfg or .net.xml(.gz).")
+    ] = "paris_centre",
+    steps: Annotated[
+        int,
+        typer.Option(help="SUMO steps to measure after the warm-up.", metavar="N", parser=whole_number(100, 10**6)),
+    ] = 2000,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")] = False,
+) -> None:
+    """Time bare sumo, a libsumo loop and the environment side by side; resets and memory too."""
+    from rich.console import Console
+
+    from automotive_cosim.run.measure import measure
+
+    progress = Console(stderr=True, quiet=as_json, highlight=False)
+    figures = measure(scenario, steps, lambda what: progress.print(f"measuring: {what}"))
+    if as_json:
+        typer.echo(json.dumps(figures.as_json()))
+    else:
+        Console(highlight=False).print(_table(figures))
+
+
+def _table(figures: Figures) -> Table:
+    from rich.table import Table
+
+    what = f"{figures.vehicles} vehicles, {figures.steps} steps of {figures.step_length_s:g} s"
+    table = Table(title=f"{figures.scenario}: {what}", title_justify="left")
+    table.add_column("what")
+    table.add_column("figure", justify="right")
+    table.add_column("", style="dim")
+    bare = figures.bare_sumo_s_per_step
+
+    def per_step(seconds: float | None) -> tuple[str, str]:
+        if seconds is None:
+            return "none", figures.bare_sumo_missing or ""
+        ratio = f"{seconds / bare:.2f} of bare sumo" if bare else ""
+        return f"{seconds * 1000:.3f} ms", ratio
+
+    table.add_row("bare sumo, a step", *per_step(bare))
+    table.add_row("libsumo loop, a step", *per_step(figures.libsumo_s_per_step))
+    inside = f"{figures.in_process_ratio:.2f} of the bare steps of the same process"
+    table.add_row("driving states in one process, a step", f"{figures.in_process_s_per_step * 1000:.3f} ms", inside)
+    table.add_row("driving states, forked, ten steps a message", *per_step(figures.forked_s_per_step))
+    table.add_row("driving states, forked, one step a message", *per_step(figures.forked_single_s_per_step))
+    table.add_row("environment, a step", *per_step(figures.env_s_per_step))
+    table.add_row("environment with rendering, a step", *per_step(figures.env_rendered_s_per_step))
+    warm_up = f"{figures.warm_up_s:g} s of traffic before the ego departs"
+    table.add_row("reset by reload and warm-up", f"{figures.reset_reload_s:.2f} s", warm_up)
+    ratio = f"{figures.reset_reload_s / figures.reset_fork_s:.0f} times as fast"
+    table.add_row("reset by fork", f"{figures.reset_fork_s * 1000:.0f} ms", ratio)
+    table.add_row("memory of one environment", _megabytes(figures.rss_mb), "all its processes, shared pages once")
+    table.add_row("memory of each further one", _megabytes(figures.rss_per_extra_env_mb), "on the same traffic")
+    return table
+
+
+def _megabytes(value: float | None) -> str:
+    return "only on Linux" if value is None else f"{value:.0f} MB"

@@ -1,0 +1,39 @@
+"""``automotive-cosim compare``: two evaluations, for checks on every change."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from automotive_cosim.errors import UserError
+
+
+def compare(
+    before: Annotated[Path, typer.Argument(help="What `eval` left before the change.", show_default=False)],
+    after: Annotated[Path, typer.Argument(help="What it left after the change.", show_default=False)],
+    threshold: Annotated[
+        float, typer.Option(help="By how many percentage points success may fall.", metavar="POINTS")
+    ] = 0.0,
+    junit: Annotated[
+        Path | None, typer.Option(help="File for a JUnit report, a case an instance.", show_default=False)
+    ] = None,
+    markdown: Annotated[
+        Path | None, typer.Option(help="File for the summary that is printed.", show_default=False)
+    ] = None,
+) -> None:
+    """Compare two evaluations on the same instances; exit code 1 if success fell by more than the threshold."""
+    from automotive_cosim.report import regression
+    from automotive_cosim.run.record import write_whole
+
+    if not 0 <= threshold <= 100:
+        raise UserError(f"--threshold is {threshold:g}; give percentage points from 0 to 100")
+    found = regression.changes(before, after)
+    summary = regression.markdown(found, threshold / 100)
+    for path, text in ((junit, regression.junit(found)), (markdown, summary)):
+        if path is not None:
+            write_whole(path, text)
+    typer.echo(summary, nl=False)
+    if any(each.is_worse(threshold / 100) for each in found):
+        raise typer.Exit(1)

@@ -1,0 +1,219 @@
+"""``automotive-cosim context``: the geo-context anywhere on earth."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+from zoneinfo import ZoneInfo
+
+import typer
+
+from automotive_cosim.cli.options import number, whole_number
+from automotive_cosim.errors import UnknownNameError, UserError
+
+if TYPE_CHECKING:
+    from automotive_cosim.contracts import DrivingState, Json, Weather
+    from automotive_cosim.geo.context import AppliedRule, GeoContext
+
+FASTEST_KMH = 1000.0
+"""More is no car's speed."""
+
+OTHER_ROADS = frozenset(("service", "pedestrian", "track", "road", "busway"))
+"""OSM highway values that networks may have beside those that maps are imported with."""
+
+COMMAND_SETTINGS = {"ignore_unknown_options": True}
+"""Lets a negative number stand as a plain argument."""
+
+
+def context(
+    lat: Annotated[float, typer.Argument(help="Degrees north; negative is south.")],
+    lon: Annotated[float, typer.Argument(help="Degrees east; negative is west.")],
+    time: Annotated[
+        str, typer.Option(help="ISO date and time, in the place's own zone unless it names one; now by default.")
+    ] = "",
+    speed: Annotated[
+        float, typer.Option(parser=number(0, FASTEST_KMH), metavar="KMH", help="Of the car, in km/h.")
+    ] = 0.0,
+    heading: Annotated[
+        float,
+        typer.Option(parser=number(0, 360), metavar="DEG", help="Of the car, degrees clockwise from north."),
+    ] = 0.0,
+    weather: Annotated[int | None, typer.Option(help="WMO weather code as Open-Meteo uses it.")] = None,
+    visibility: Annotated[
+        float | None,
+        typer.Option(parser=number(0, 1e6), metavar="M", help="Metres, instead of the code's usual one."),
+    ] = None,
+    draw: Annotated[
+        int | None, typer.Option(metavar="SEED", help="Draw the weather from the climate of place and month.")
+    ] = None,
+    online: Annotated[
+        bool, typer.Option("--online", help="Ask Open-Meteo for the weather; the climate stands in for it.")
+    ] = False,
+    road: Annotated[str, typer.Option(help="OSM highway value, e.g. motorway, primary, residential.")] = "",
+    street: Annotated[str, typer.Option(help="Name of the street.")] = "",
+    rules: Annotated[
+        list[Path] | None, typer.Option(help="Folder with your own rule files, before the shipped ones.")
+    ] = None,
+    budget: Annotated[
+        int | None,
+        typer.Option(parser=whole_number(1, 10**6), metavar="N", help="At most so many tokens of text."),
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+) -> None:
+    """Print what traffic law, sky and climate say of a place."""
+    from automotive_cosim.contracts import GpsFix
+    from automotive_cosim.geo.context import Geo
+
+    _check(road, rules or ())
+    geo = Geo(rules or ())
+    place = geo.atlas.place(lon, lat)
+    local_time = _time(time, place.time_zone)
+    found = geo.locate(
+        _driving(road, street, speed, heading),
+        GpsFix(has_fix=True, lon_deg=lon, lat_deg=lat, accuracy_m=0.0, age_s=0.0, heading_deg=heading),
+        _weather(weather, visibility, lat, lon, local_time)
+        if draw is None and not online
+        else _report(weather, draw or 0, online, lat, lon, local_time),
+        local_time,
+    )
+    if as_json:
+        typer.echo(json.dumps(_json(found), ensure_ascii=False))
+    else:
+        typer.echo(found.text() if budget is None else found.text(budget))
+
+
+def _check(road: str, folders: Sequence[Path]) -> None:
+    from automotive_cosim.osm.extract import ROAD_CLASSES
+
+    if road and road not in ROAD_CLASSES | OTHER_ROADS:
+        raise UnknownNameError("road class", road, ROAD_CLASSES | OTHER_ROADS)
+    for folder in folders:
+        if folder.is_dir() and not any(folder.glob("*.toml")):
+            raise UserError(f"--rules {folder} holds no rule file; give a folder with files such as FR.toml")
+
+
+def _time(text: str, zone_name: str) -> datetime:
+    zone = ZoneInfo(zone_name)
+    if not text:
+        return datetime.now(zone)
+    try:
+        time = datetime.fromisoformat(text)
+        # There and back through UTC: a clock time that summer time skips becomes the one an hour later.
+        return time.replace(tzinfo=time.tzinfo or zone).astimezone(UTC).astimezone(zone)
+    except (ValueError, OverflowError) as error:
+        raise UserError(f"{text!r} is no date and time; give one like 2026-03-20T18:30") from error
+
+
+def _weather(
+    code: int | None, visibility_m: float | None, lat: float, lon: float, local_time: datetime
+) -> Weather | None:
+    from automotive_cosim.geo.climate import climate_norm
+    from automotive_cosim.geo.weather import typical_weather
+
+    if code is None:
+        if visibility_m is not None:
+            raise UserError("--visibility goes with a weather code; give --weather too, e.g. --weather 45 for fog")
+        return None
+    norm = climate_norm(lon, lat, local_time.month)
+    found = typical_weather(code, norm.temperature_c, norm.humidity_pct) if norm else typical_weather(code)
+    return found if visibility_m is None else replace(found, visibility=visibility_m)
+
+
+def _report(code: int | None, seed: int, online: bool, lat: float, lon: float, local_time: datetime) -> Weather:
+    from automotive_cosim.geo.forecast import Climate, OpenMeteo
+
+    if code is not None:
+        raise UserError("--weather states the weather; leave out --draw and --online")
+    if seed < 0:
+        raise UserError(f"--draw {seed} is no seed; give a whole number from 0 on")
+    source = OpenMeteo(Climate(seed)) if online else Climate(seed)
+    report = source.report(lon, lat, local_time)
+    if report.note:
+        typer.echo(report.note, err=True)
+    return report.weather
+
+
+def _driving(road_class: str, street: str, speed_kmh: float, heading_deg: float) -> DrivingState:
+    """A car alone on one lane without a sign."""
+    from automotive_cosim import contracts
+
+    road = contracts.RoadHere(
+        edge_id="",
+        lane_id="",
+        lane_index=0,
+        lane_count=1,
+        lane_position_m=0.0,
+        name=street,
+        road_class=road_class,
+        posted_limit_mps=None,
+        limit_source=contracts.LimitSource.ASSUMED,
+        in_tunnel=False,
+        lit=None,
+        built_up=None,
+        centre_line=None,
+        friction=1.0,
+    )
+    return contracts.DrivingState(
+        time_s=0.0,
+        x_m=0.0,
+        y_m=0.0,
+        lon_deg=None,
+        lat_deg=None,
+        heading_deg=heading_deg,
+        speed_mps=speed_kmh / contracts.KMH_PER_MPS,
+        acceleration_mps2=0.0,
+        standing_s=0.0,
+        distance_m=0.0,
+        road=road,
+        ahead=contracts.RoadAhead(0.0, 0.0, 0.0, 1.0, None, 0.0, None, None, None, None, None),
+        around=contracts.Around(None, None, None, None, 1.0),
+        hazard_lights=False,
+        vehicle_count=1,
+    )
+
+
+def _json(found: GeoContext) -> Json:
+    place, sun = found.place, found.sun
+    return {
+        "country": place.country or None,
+        "country_name": place.country_name or None,
+        "region": place.region or None,
+        "city": place.city or None,
+        "time_zone": place.time_zone,
+        "near_border_to": list(place.near_border_to),
+        "driving_side": place.law.driving_side if place.law else None,
+        "speed_unit": found.speed_unit,
+        "emergency": list(place.law.emergency) if place.law else [],
+        "local_time": found.local_time.isoformat(),
+        "built_up": found.built_up,
+        "built_up_source": found.built_up_source,
+        "default_limits": _rules(found.default_limits),
+        "reduced_limits": _rules(found.reduced_limits),
+        "rules": _rules(found.rules),
+        "sun": sun
+        and {"elevation_deg": sun.elevation_deg, "azimuth_deg": sun.azimuth_deg, "darkness": sun.darkness.value},
+        "weather": found.weather and asdict(found.weather),
+        "climate": found.climate and asdict(found.climate),
+        "lines": [{"text": line.text, "source": line.source} for line in found.lines],
+    }
+
+
+def _rules(found: Iterable[AppliedRule]) -> list[Json]:
+    return [
+        {
+            "id": applied.rule.id,
+            "topic": applied.rule.topic,
+            "text": applied.rule.text,
+            "value_now": applied.value,
+            "certain": applied.certain,
+            "unit": applied.rule.unit or None,
+            "law": applied.rule.law,
+            "as_of": applied.rule.as_of.isoformat(),
+            "status": applied.rule.status.value,
+        }
+        for applied in found
+    ]

@@ -1,0 +1,162 @@
+"""``automotive-cosim eval``: a plan of episodes, run in parallel, resumed by the same command."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from automotive_cosim.cli.batches import View, seeds_in, time_left, words
+from automotive_cosim.cli.options import TasksFrom, whole_number
+from automotive_cosim.errors import InfrastructureError
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from automotive_cosim.run.batch import Progress
+    from automotive_cosim.run.plan import Plan
+
+
+def evaluate(
+    plan_file: Annotated[
+        Path | None,
+        typer.Option("--plan", help="TOML file with the plan; options replace what it says.", show_default=False),
+    ] = None,
+    agents: Annotated[
+        str | None,
+        typer.Option(help="Who acts, with commas; package.module:Class is your own.", show_default=False),
+    ] = None,
+    models: Annotated[
+        str | None, typer.Option(help="Models behind them, with commas.", show_default="rules")
+    ] = None,
+    tasks: Annotated[
+        str | None,
+        typer.Option(
+            help="Ids, patterns, tags, modules, dimensions, general, safety, all; with commas.", show_default="all"
+        ),
+    ] = None,
+    scenarios: Annotated[
+        str | None, typer.Option(help="In place of the tasks' own, with commas.", show_default=False)
+    ] = None,
+    seeds: Annotated[str | None, typer.Option(help="As in 0-4 or 0,3,7.", show_default="0")] = None,
+    geo: Annotated[
+        str | None,
+        typer.Option(
+            help="Geo controls, with commas: full, gps, context, wrong, irrelevant, none.", show_default="full"
+        ),
+    ] = None,
+    modes: Annotated[
+        str | None,
+        typer.Option(help="When agents are called: prompted or monitoring, with commas.", show_default="prompted"),
+    ] = None,
+    repeats: Annotated[
+        int | None,
+        typer.Option(help="Runs of each episode.", metavar="N", parser=whole_number(1, 1000), show_default="1"),
+    ] = None,
+    workers: Annotated[int, typer.Option(help="Processes.", metavar="N", parser=whole_number(1, 256))] = 1,
+    retries: Annotated[
+        int,
+        typer.Option(
+            help="Further attempts after an error that is not the agent's.",
+            metavar="N",
+            parser=whole_number(0, 100),
+        ),
+    ] = 2,
+    pictures: Annotated[str, typer.Option(help="Keep the cockpit's pictures of: none, failures or all.")] = "none",
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder of the results; the same one goes on.", show_default="runs/eval-<digest of the plan>"
+        ),
+    ] = None,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Show the plan and end.")] = False,
+    tasks_from: TasksFrom = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")] = False,
+) -> None:
+    """Run agents over tasks, scenarios and seeds. The same command goes on where a run was stopped."""
+    from rich.console import Console
+
+    from automotive_cosim.errors import UnknownNameError
+    from automotive_cosim.run.batch import run_plan
+    from automotive_cosim.run.collect import Pictures
+    from automotive_cosim.run.plan import make_plan, read_plan
+    from automotive_cosim.run.store import megabytes, read_rows
+
+    if pictures not in set(Pictures):
+        raise UnknownNameError("choice of pictures", pictures, Pictures)
+    named = {"agents": agents, "models": models, "tasks": tasks, "scenarios": scenarios, "geo": geo, "modes": modes}
+    values: dict[str, Any] = read_plan(plan_file) if plan_file else {}
+    values |= {name: words(name, text) for name, text in named.items() if text is not None}
+    values |= {"seeds": seeds_in(seeds)} if seeds is not None else {}
+    values |= {"repeats": repeats} if repeats is not None else {}
+    plan = make_plan(values)
+    folder = out or _folder(plan)
+    console = Console(stderr=as_json, highlight=False)
+    plan.check()
+    jobs = plan.jobs()
+    _announce(console, plan, folder)
+    if dry_run:
+        return
+    with View(console, "episodes", _said) as view:
+        try:
+            end = run_plan(
+                plan, folder, workers=workers, retries=retries, pictures=Pictures(pictures), tell=view.tell
+            )
+        except KeyboardInterrupt:
+            typer.echo(f"what has ended is in {folder}; the same command goes on", err=True)
+            raise
+    rows = read_rows(folder)
+    errors = [rows[job.id] for job in jobs if rows[job.id]["success"] is None]
+    size = round(megabytes(folder), 1)
+    if as_json:
+        told = {"planned": end.planned, "judged": end.judged, "successes": end.successes, "errors": end.errors}
+        typer.echo(json.dumps(told | {"ran": end.ran, "megabytes": size, "out": str(folder)}))
+    else:
+        console.print(f"{end.successes} of {end.judged} judged episodes succeeded; {end.errors} errors")
+        for row in errors:
+            console.print(f"  error in {row['id']}: {row['error_kind']}: {row['error']}", soft_wrap=True)
+        console.print(
+            f"Results in {folder} ({size} MB); `automotive-cosim report {folder}` shows them", soft_wrap=True
+        )
+    if errors:
+        raise InfrastructureError(
+            f"{len(errors)} of {end.planned} episodes ended in an error; they are no failures of an agent"
+        )
+
+
+def _said(progress: Progress) -> str:
+    rate = f"{progress.successes / progress.judged:.0%} succeeded" if progress.judged else "none judged yet"
+    errors = f", {progress.errors} errors" if progress.errors else ""
+    return rate + errors + time_left(progress)
+
+
+def _announce(console: Console, plan: Plan, folder: Path) -> None:
+    from rich.table import Table
+
+    jobs = plan.jobs()
+    table = Table.grid(padding=(0, 2))
+    table.add_row("agents", ", ".join(sorted({f"{job.setup.agent} ({job.setup.model})" for job in jobs})))
+    table.add_row("tasks", f"{len({job.setup.task for job in jobs})}, pairs in both halves")
+    table.add_row("scenarios", ", ".join(sorted({job.scenario for job in jobs})))
+    table.add_row("seeds", ", ".join(map(str, plan.seeds)))
+    table.add_row("geo controls", ", ".join(plan.geo))
+    table.add_row("repeats", str(plan.repeats))
+    limits = plan.limits
+    table.add_row(
+        "at most",
+        f"{limits.steps} steps, {limits.sim_s:g} s simulated, {limits.wall_s:g} s real, {limits.tokens} tokens",
+    )
+    table.add_row("episodes", f"{len(jobs)} from {len({job.simulation for job in jobs})} warm simulations")
+    table.add_row("folder", str(folder))
+    console.print(table)
+    if any(job.setup.model == "rules" for job in jobs):
+        console.print("rules is a deterministic stand-in: its results say nothing about a language model.")
+
+
+def _folder(plan: Plan) -> Path:
+    from automotive_cosim.trace import canonical
+
+    return Path("runs") / f"eval-{hashlib.sha256(canonical(plan.as_json())).hexdigest()[:8]}"

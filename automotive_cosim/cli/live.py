@@ -1,0 +1,172 @@
+"""The live view of a run: a panel that changes in a terminal, plain lines anywhere else."""
+
+from __future__ import annotations
+
+import sys
+
+from rich.console import Console, RenderableType
+from rich.live import Live as Display
+from rich.panel import Panel
+from rich.progress_bar import ProgressBar
+from rich.table import Table
+from rich.text import Text
+
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.contracts import KMH_PER_MPS, ActionType
+from automotive_cosim.cosim import Moment
+from automotive_cosim.env import CockpitEnv
+from automotive_cosim.run.episode import EpisodeResult, Shot, Watcher
+from automotive_cosim.run.words import action_in_words, is_over, limit_kmh, road_in_words
+from automotive_cosim.scenarios import Scenario
+from automotive_cosim.traffic.options import read_configuration
+
+PLAIN_EVERY_S = 10.0
+"""Without a terminal, the drive is reported this often, in simulated seconds."""
+
+
+class Notes(Watcher):
+    """Says on the standard error what was assumed of a scenario, and nothing else."""
+
+    def loading(self, scenario: Scenario) -> None:
+        """As ``Watcher`` says."""
+        for note in scenario.notes:
+            print(f"note: {note}", file=sys.stderr)
+
+
+class Live(Watcher):
+    """Shows an episode as it runs, and at its end the verdict with what happened when."""
+
+    def __init__(self, console: Console | None = None) -> None:
+        self._console = console or Console(highlight=False)
+        self._display: Display | None = None
+        self._title = "starting"
+        self._goal = ""
+        self._action = ""
+        self._thought = ""
+        self._hand_over_s: float | None = None
+        self._said_s: float | None = None
+
+    def loading(self, scenario: Scenario) -> None:
+        """What is loaded, and what was assumed of it."""
+        for note in scenario.notes:
+            self._console.print(Text(f"note: {note}", style="yellow"), soft_wrap=True)
+        size_mb = read_configuration(scenario.config).net.stat().st_size / 1e6
+        what = f"loading the network ({size_mb:.1f} MB)"
+        if self._console.is_terminal:
+            row = Table.grid(padding=(0, 2))
+            row.add_row(what, ProgressBar(width=40, pulse=True))
+            self._show(Panel(row, title=scenario.title, title_align="left"))
+        else:
+            self._console.print(f"{scenario.title}: {what}", soft_wrap=True)
+
+    def warming(self, scenario: str, done_s: float, total_s: float) -> None:
+        """A bar; without a terminal a line at the start and at the end."""
+        if self._console.is_terminal:
+            bar = ProgressBar(total=total_s, completed=done_s, width=40)
+            row = Table.grid(padding=(0, 2))
+            row.add_row("warming up traffic", bar, f"{done_s:.0f} of {total_s:.0f} s")
+            self._show(Panel(row, title=scenario, title_align="left"))
+        elif done_s in (0, total_s):
+            self._console.print(f"{scenario}: {done_s:.0f} of {total_s:.0f} s of traffic warmed up")
+
+    def moved(self, moment: Moment, cockpit: Cockpit) -> None:
+        """The drive as it is now."""
+        if self._hand_over_s is None:
+            self._title = "drive up to the hand-over"
+        if self._console.is_terminal:
+            self._show(self._panel(moment))
+        elif self._said_s is None or moment.time_s - self._said_s >= PLAIN_EVERY_S:
+            self._said_s = moment.time_s
+            self._console.print(f"{self._clock(moment)}  {_drive(moment)}", soft_wrap=True)
+
+    def handed_over(self, env: CockpitEnv, shot: Shot) -> None:
+        """The driver's words."""
+        self._hand_over_s = shot.step.moment.time_s
+        self._title = "the agent is at work"
+        self._goal = env.instance.goal
+        if not self._console.is_terminal:
+            moment = shot.step.moment
+            self._console.print(f"{self._clock(moment)}  hand-over: {_drive(moment)}", soft_wrap=True)
+            self._console.print(f"         the driver says: “{self._goal}”", soft_wrap=True)
+
+    def stepped(self, shot: Shot) -> None:
+        """The last action and the agent's reason."""
+        step = shot.step
+        self._action = f"{step.number}  {action_in_words(step.action, shot.seen)}"
+        self._thought = shot.thought
+        if step.action is not None and step.action.action_type is ActionType.STATUS:
+            self._title = "after the end: how the drive goes on"
+        if self._console.is_terminal:
+            self._show(self._panel(step.moment))
+        else:
+            because = f" ({self._thought})" if self._thought else ""
+            self._console.print(f"{self._clock(step.moment)}  step {self._action}{because}", soft_wrap=True)
+
+    def finished(self, result: EpisodeResult) -> None:
+        """The verdict, and what happened when."""
+        if self._display is not None:
+            self._display.stop()
+        if result.steps or result.verdict:
+            self._console.print(_verdict(result), soft_wrap=True)
+
+    def _show(self, what: RenderableType) -> None:
+        if self._display is None:
+            self._display = Display(console=self._console, auto_refresh=False, transient=True)
+            self._display.start()
+        self._display.update(what, refresh=True)
+
+    def _panel(self, moment: Moment) -> Panel:
+        driving = moment.driving
+        limit = limit_kmh(driving.road)
+        speed_kmh = driving.speed_mps * KMH_PER_MPS
+        posted = "none posted" if limit is None else f"{limit:g} posted"
+        rows = Table.grid(padding=(0, 2))
+        rows.add_column(style="dim", justify="right")
+        rows.add_column()
+        rows.add_row("time", f"{moment.local_time:%H:%M:%S}  {self._clock(moment)}")
+        rows.add_row("road", road_in_words(driving.road) + (", in a tunnel" if driving.road.in_tunnel else ""))
+        style = "bold red" if is_over(speed_kmh, limit) else "bold green"
+        rows.add_row("speed", Text.assemble((f"{speed_kmh:.0f} km/h", style), f"  {posted}"))
+        rows.add_row("traffic", _traffic(moment))
+        if self._goal:
+            rows.add_row("driver", Text(f"“{self._goal}”", style="italic"))
+        rows.add_row("action", Text(self._action or "none yet"))
+        if self._thought:
+            rows.add_row("because", Text(self._thought, style="dim"))
+        return Panel(rows, title=self._title, title_align="left", width=min(self._console.width, 90))
+
+    def _clock(self, moment: Moment) -> str:
+        if self._hand_over_s is None:
+            return f"{moment.local_time:%H:%M:%S}"
+        return f"{moment.time_s - self._hand_over_s:+7.1f} s"
+
+
+def _drive(moment: Moment) -> str:
+    driving = moment.driving
+    limit = limit_kmh(driving.road)
+    posted = "no limit posted" if limit is None else f"{limit:g} posted"
+    return (
+        f"{driving.speed_mps * KMH_PER_MPS:3.0f} km/h, {posted}, {road_in_words(driving.road)}; {_traffic(moment)}"
+    )
+
+
+def _traffic(moment: Moment) -> str:
+    """Congestion here and ahead: mean speed over posted limit."""
+    driving = moment.driving
+    here = f"{driving.around.relative_speed:.0%} of free flow here, {driving.ahead.relative_speed:.0%} ahead"
+    jam_m = driving.ahead.jam_distance_m
+    return here + ("" if jam_m is None else f", jam in {jam_m:.0f} m") + f", {driving.vehicle_count} vehicles"
+
+
+def _verdict(result: EpisodeResult) -> Text:
+    if result.success is None:
+        lines = [Text(f"no verdict: {result.end}", style="bold yellow")]
+    else:
+        word, style = ("success", "bold green") if result.success else ("not solved", "bold red")
+        lines = [Text.assemble((word, style), f"  reward {result.reward:g}, {result.steps} steps")]
+    for name, part in (result.verdict["parts"] if result.verdict else {}).items():
+        mark = ("yes", "green") if part["ok"] else ("no ", "red")
+        lines.append(Text.assemble(f"  {name.replace('_', ' '):<9} ", mark, "  ", (part["why"], "dim")))
+    lines.append(Text())
+    lines += [Text.assemble((f"{entry.at_s:+8.1f} s", "dim"), f"  {entry.text}") for entry in result.timeline]
+    return Text("\n").join(lines)

@@ -1,0 +1,108 @@
+"""``automotive-cosim``: the commands, and what an error looks like.
+
+Exit codes: 0 done, 2 the user can mend it, 3 the machinery failed, 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import signal
+import sys
+from typing import Annotated
+
+import typer
+
+from automotive_cosim import __version__
+from automotive_cosim.cli import (
+    agents,
+    bench,
+    compare,
+    context,
+    evaluate,
+    memory,
+    playback,
+    results,
+    run,
+    scenarios,
+    screens,
+    signals,
+    study,
+    tasks,
+    validate,
+)
+from automotive_cosim.errors import InfrastructureError, UserError
+
+INTERRUPTED = 130
+"""What typer makes of Ctrl-C: 128 and the signal's number, as shells do."""
+
+app = typer.Typer(
+    name="automotive-cosim",
+    help="An agent at the cockpit of a car that drives through live SUMO traffic.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+app.command()(run.run)
+app.command()(validate.validate)
+app.command("eval")(evaluate.evaluate)
+app.command()(results.report)
+app.command()(compare.compare)
+app.command()(results.replay)
+app.command()(results.regrade)
+app.command()(bench.bench)
+app.command()(playback.playback)
+app.command()(screens.screens)
+app.command(context_settings=context.COMMAND_SETTINGS)(context.context)
+app.add_typer(study.app, name="study")
+app.add_typer(scenarios.app, name="scenarios")
+app.add_typer(tasks.app, name="tasks")
+app.add_typer(agents.app, name="agents")
+app.add_typer(memory.app, name="memory")
+app.add_typer(signals.app, name="signals")
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"automotive-cosim {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and end.")
+    ] = False,
+    debug: Annotated[
+        bool, typer.Option("--debug", envvar="AUTOMOTIVE_COSIM_DEBUG", help="Show the traceback of an error.")
+    ] = False,
+) -> None:
+    if debug:
+        os.environ["AUTOMOTIVE_COSIM_DEBUG"] = "1"
+
+
+def main() -> None:
+    """Runs the command line and ends the process; an error is one line on stderr."""
+    if signal.getsignal(signal.SIGINT) is signal.SIG_DFL:  # see the package's __init__
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):  # a street's name must not end a run where the locale is ASCII
+            stream.reconfigure(errors="replace")
+    try:
+        code = app(standalone_mode=False) or 0
+    except (UserError, InfrastructureError, typer.TyperException) as error:
+        if os.environ.get("AUTOMOTIVE_COSIM_DEBUG"):
+            raise
+        message = error.format_message() if isinstance(error, typer.TyperException) else str(error)
+        if message:  # the help that stands in for a missing command has been printed
+            print("error: " + " ".join(message.split()), file=sys.stderr)
+        code = 3 if isinstance(error, InfrastructureError) else 2
+    except OSError as error:
+        if os.environ.get("AUTOMOTIVE_COSIM_DEBUG"):
+            raise
+        print(f"error: {error.strerror or error}: {error.filename or 'standard output'}", file=sys.stderr)
+        code = 2
+    if code == INTERRUPTED:
+        print("error: interrupted", file=sys.stderr)
+    sys.exit(code)

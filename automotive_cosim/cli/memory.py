@@ -1,0 +1,36 @@
+"""``automotive-cosim memory``: what ASURADA has kept from earlier episodes."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from automotive_cosim.errors import UserError
+
+app = typer.Typer(help="What ASURADA has kept from earlier episodes.", no_args_is_help=True)
+
+
+@app.command()
+def show(
+    file: Annotated[Path, typer.Argument(help="The file given to `run --memory`.")],
+    place: Annotated[str, typer.Option(help="Only places whose name holds this.")] = "",
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON list.")] = False,
+) -> None:
+    """Show which strategy was tried where, at what, and how often it worked, the latest first."""
+    from automotive_cosim.agents.memory import Memory
+
+    if not file.is_file():
+        raise UserError(f"there is no memory in {file}; `automotive-cosim run --memory {file}` makes one")
+    kept = [strategy for strategy in Memory(file).all() if place.casefold() in strategy.place.casefold()]
+    if as_json:
+        typer.echo(json.dumps([strategy.as_json() for strategy in kept], ensure_ascii=False))
+        return
+    for strategy in kept:
+        typer.echo(f"{strategy.place}: “{strategy.goal}”")
+        typer.echo(f"  when    {strategy.trigger}")
+        typer.echo(f"  did     {strategy.steps}")
+        typer.echo(f"  worked  {strategy.worked} of {strategy.worked + strategy.failed}")
+    typer.echo(f"{len(kept)} strategies")

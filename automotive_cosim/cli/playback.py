@@ -1,0 +1,36 @@
+"""``automotive-cosim playback``: a recorded episode once more."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def playback(
+    folder: Annotated[Path, typer.Argument(help="What `run` left.", show_default=False)],
+    film: Annotated[Path | None, typer.Option(help="Writes the screens as an animation, .webp or .gif.")] = None,
+    speed: Annotated[float, typer.Option(help="Times as fast as it was.", min=0.1, max=1000)] = 4.0,
+    wait: Annotated[bool, typer.Option("--wait/--at-once", help="Keep the episode's time between steps.")] = True,
+) -> None:
+    """Tells a recorded episode step by step, at its own pace, or makes a film of its screens."""
+    from time import sleep
+
+    from automotive_cosim.errors import UserError
+    from automotive_cosim.report.playback import frames, write_film
+
+    if film is not None and film.suffix not in (".webp", ".gif"):
+        raise UserError(f"{film} is no animation; give --film a name ending in .webp or .gif")
+    shown = list(frames(folder))
+    if film is not None:
+        write_film(shown, film, speed)
+        typer.echo(f"{film} written, {len(shown)} steps")
+        return
+    before_s = 0.0
+    for frame in shown:
+        if wait:
+            sleep((frame.since_s - before_s) / speed)
+        before_s = frame.since_s
+        typer.echo(frame.words)
+        typer.echo(f"     {frame.picture}")

@@ -1,0 +1,61 @@
+"""``automotive-cosim report``, ``replay`` and ``regrade``: what is done with an evaluation's folder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from automotive_cosim.cli.options import TasksFrom
+
+Folder = Annotated[Path, typer.Argument(help="What `eval` left.", show_default=False)]
+
+
+def report(folder: Folder, tasks_from: TasksFrom = None) -> None:
+    """Write report.html, and the tables and plots as files, into the folder of an evaluation or a study."""
+    from automotive_cosim.report.evaluation import write_report
+    from automotive_cosim.run.store import read_manifest
+    from automotive_cosim.studies.page import write_study
+
+    page = write_study(folder) if "study" in read_manifest(folder)["plan"] else write_report(folder)
+    typer.echo(f"{page} written; tables in {folder / 'tables'}, plots in {folder / 'plots'}")
+
+
+def replay(
+    folder: Folder,
+    episode: Annotated[str, typer.Argument(help="Its id, or the beginning of it.", show_default=False)],
+    tasks_from: TasksFrom = None,
+) -> None:
+    """Run a stored episode's actions again and compare the trace step by step; exit code 1 if it differs."""
+    from automotive_cosim.run.rerun import rerun
+
+    compared = rerun(folder, episode)
+    for step in compared:
+        differs = f"differs in {', '.join(step.differs)}" if step.differs else "the same"
+        typer.echo(f"step {step.number:3d}  {step.sha256[:16]}  {differs}")
+    different = [step for step in compared if step.differs]
+    if different:
+        typer.echo(f"{len(different)} of {len(compared)} steps differ, from step {different[0].number} on")
+        raise typer.Exit(1)
+    typer.echo(f"all {len(compared)} steps are the same")
+
+
+def regrade(folder: Folder, tasks_from: TasksFrom = None) -> None:
+    """Judge the stored episodes by the present checks and print what changes; nothing is written."""
+    from automotive_cosim.run.regrade import regrade as judged_again
+
+    words = {True: "solved", False: "not solved", None: "not judged"}
+    count = differing = missing = 0
+    for each in judged_again(folder):
+        count += 1
+        if each.problem:
+            missing += 1
+            typer.echo(f"{each.episode}: cannot be judged: {each.problem}")
+        elif each.differs:
+            differing += 1
+            typer.echo(f"{each.episode}: {words[each.before]} before, {words[each.now]} now")
+            for change in each.changes:
+                typer.echo(f"    {change.part.replace('_', ' ')} {'yes' if change.now else 'no'}: {change.why}")
+    told = f", {missing} could not be judged" if missing else ""
+    typer.echo(f"{differing} of {count} verdicts change{told}")

@@ -1,0 +1,165 @@
+"""``automotive-cosim run``: one episode, shown, judged and recorded."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from automotive_cosim.cli.options import TasksFrom, lon_lat, whole_number
+from automotive_cosim.errors import InfrastructureError, UserError
+
+HEADLINE = (
+    "task",
+    "half",
+    "scenario",
+    "agent",
+    "model",
+    "seed",
+    "success",
+    "reward",
+    "steps",
+    "sim_seconds",
+    "trace_sha256",
+    "end",
+    "error",
+    "geo",
+    "tokens_in",
+    "tokens_out",
+    "cost_usd",
+)
+
+
+def run(
+    task: Annotated[str, typer.Option(help="Task id; `tasks list` names them.")] = "road_speed_80_in_50",
+    half: Annotated[str, typer.Option(help="Half of a pair: first or second.")] = "first",
+    agent: Annotated[
+        str, typer.Option(help="Who acts; `agents` names them; package.module:Class is your own.")
+    ] = "asurada",
+    model: Annotated[
+        str, typer.Option(help="The model behind the agent: rules, replay/FOLDER, openai/NAME or PROVIDER/NAME.")
+    ] = "rules",
+    tasks_from: TasksFrom = None,
+    mode: Annotated[
+        str, typer.Option(help="When it is called: prompted, at the trigger; monitoring, up to a minute before it.")
+    ] = "prompted",
+    geo: Annotated[
+        str, typer.Option(help="What it is told of the place: full, gps, context, wrong, irrelevant or none.")
+    ] = "full",
+    without: Annotated[
+        str,
+        typer.Option(
+            help="Parts of it to switch off, with commas: gps, context, queries, screen, reflection, memory."
+        ),
+    ] = "",
+    memory: Annotated[
+        Path | None,
+        typer.Option(help="File in which ASURADA keeps what worked, for later runs.", show_default=False),
+    ] = None,
+    most_tokens: Annotated[
+        int, typer.Option(help="The model's budget.", metavar="N", parser=whole_number(1, 10**9))
+    ] = 2_000_000,
+    most_seconds: Annotated[
+        int, typer.Option(help="How long to wait for the model in all.", metavar="N", parser=whole_number(1, 10**6))
+    ] = 1800,
+    scenario: Annotated[
+        str | None,
+        typer.Option(
+            help="A scenario's name or folder, any .sumocfg or .net.xml(.gz), in place of the task's own.",
+            show_default=False,
+        ),
+    ] = None,
+    from_place: Annotated[
+        str,
+        typer.Option("--from", help="Where the car's way begins: a street, an edge or LON,LAT.", metavar="PLACE"),
+    ] = "",
+    to_place: Annotated[str, typer.Option("--to", help="Where it ends; likewise.", metavar="PLACE")] = "",
+    origin: Annotated[
+        str,
+        typer.Option(
+            help="Puts the middle of the network there, with that place's law, clock and climate.",
+            metavar="LON,LAT",
+            show_default=False,
+        ),
+    ] = "",
+    no_gps: Annotated[
+        bool, typer.Option("--no-gps", help="No GPS: no place is known, and the network needs no projection.")
+    ] = False,
+    seed: Annotated[
+        int, typer.Option(help="Same seed, same trace.", metavar="N", parser=whole_number(0, 2**31 - 1))
+    ] = 0,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Folder for the record.", show_default="runs/<time>-<task>-<agent>-seed<seed>"),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace the record in --out.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")] = False,
+    actions: Annotated[
+        Path | None,
+        typer.Option(
+            help="Play a file of actions, one JSON object a line, in place of an agent.", show_default=False
+        ),
+    ] = None,
+) -> None:
+    """Run one episode: a task, an agent, a seed.
+
+    With no option: a car comes to drive 80 km/h where 50 is posted in Paris, and an agent is asked to watch.
+    """
+    from rich.console import Console
+
+    from automotive_cosim.agents import AgentSettings, make_agent
+    from automotive_cosim.agents.settings import geo_input, parts
+    from automotive_cosim.cli.live import Live, Notes
+    from automotive_cosim.report.film import Film
+    from automotive_cosim.report.page import write_page
+    from automotive_cosim.run.episode import EpisodeSetup, run_episode
+    from automotive_cosim.run.plan import STEPS, WATCH_STEPS
+    from automotive_cosim.run.record import Recorder, check_folder, default_folder
+    from automotive_cosim.run.script import read_script
+    from automotive_cosim.suite import Mode
+
+    if scenario == "":
+        raise UserError("--scenario is empty; name a scenario, or leave the option out to take the task's own")
+    off = parts(name.strip() for name in without.split(",") if name.strip())
+    settings = AgentSettings(geo_input(geo), off, memory, seed, most_tokens, float(most_seconds))
+    player = read_script(actions) if actions else make_agent(agent, model, settings)
+    setup = EpisodeSetup(
+        task,
+        half,
+        player.name,
+        player.model,
+        scenario,
+        origin=lon_lat(origin) if origin else None,
+        gps=not no_gps,
+        from_place=from_place,
+        to_place=to_place,
+        seed=seed,
+        geo=settings.geo,
+        mode=mode,
+        max_steps=STEPS + WATCH_STEPS if mode == Mode.MONITORING else STEPS,
+        without=tuple(sorted(off)),
+    )
+    folder = out or default_folder(setup)
+    check_folder(folder, force=force)
+    recorder = Recorder(folder, setup, {"actions": str(actions) if actions else None, "out": str(folder)})
+    # A panel that redraws itself and a person who types get in each other's way.
+    view = Live(Console(force_terminal=False, highlight=False)) if player.name == "human" else Live()
+    watchers = [recorder, Film(folder), Notes() if as_json else view]
+    try:
+        result = run_episode(setup, player, watchers)
+    except KeyboardInterrupt:
+        if recorder.begun:
+            write_page(folder)
+            typer.echo(f"what was recorded is in {folder}", err=True)
+        raise
+    if recorder.begun:
+        write_page(folder)
+    if as_json:
+        whole = result.as_json()
+        typer.echo(json.dumps({name: whole[name] for name in HEADLINE} | {"out": str(folder)}))
+    elif recorder.begun:
+        typer.echo(f"Recorded in {folder}; open {folder / 'summary.html'}")
+    if result.error is not None:
+        raise InfrastructureError(result.error)

@@ -1,0 +1,281 @@
+"""``automotive-cosim scenarios``: what there is, whether it holds, how it looks, and maps turned into more."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from automotive_cosim import scenarios
+from automotive_cosim.cli.options import number, whole_number
+from automotive_cosim.errors import UserError
+
+if TYPE_CHECKING:
+    from rich.text import Text
+
+    from automotive_cosim.osm import ImportReport
+    from automotive_cosim.osm.importer import Progress
+    from automotive_cosim.scenarios import Scenario
+    from automotive_cosim.scenery.check import Proof
+
+app = typer.Typer(help="The scenarios there are, and maps turned into more.", no_args_is_help=True)
+
+
+@app.command("list")
+def list_scenarios() -> None:
+    """List the scenarios that come with the package."""
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table("name", "country", "title", "ego trips", box=None, header_style="bold", pad_edge=False)
+    for name in scenarios.shipped():
+        scenario = scenarios.load(name)
+        table.add_row(name, scenario.country, scenario.title, ", ".join(trip.name for trip in scenario.ego.trips))
+    Console().print(table)
+
+
+WHICH = "A shipped scenario's name, a scenario's folder, any .sumocfg or .net.xml(.gz)"
+
+
+@app.command("show")
+def show(scenario: Annotated[str, typer.Argument(help=f"{WHICH}.")]) -> None:
+    """Show one scenario: its place, time, weather and ego trips."""
+    from automotive_cosim.scenery import open_scenario
+
+    found = open_scenario(scenario)
+    _print_notes(found)
+    typer.echo(f"{found.name}: {found.title}\n{found.about.strip()}\n")
+    for label, value in (
+        ("folder", found.folder),
+        ("country", found.country or "none known"),
+        ("starts", f"{found.start:%A %Y-%m-%d %H:%M %Z}"),
+        ("weather", _weather(found)),
+        ("steps", f"{found.sumo.step_length_s:g} s, after {found.sumo.warm_up_s:g} s of warm-up"),
+        ("demand", f"scale {found.sumo.scale:g}, {found.sumo.background_rerouting:.0%} reroute"),
+        ("driver", found.ego.driver),
+    ):
+        typer.echo(f"{label:<9}{value}")
+    for trip in found.ego.trips:
+        typer.echo(f"trip     {trip.name}: {trip.about or f'{trip.from_edge} to {trip.to_edge}'}")
+
+
+def _weather(scenario: Scenario) -> str:
+    if not scenario.weather:
+        return "drawn by seed from the climate of the place and month"
+    first = scenario.weather[0].weather
+    changes = f", {len(scenario.weather) - 1} changes to come" if len(scenario.weather) > 1 else ""
+    return f"{first.temperature_2m:g} C, {first.precipitation:g} mm/h, {first.visibility:g} m visible{changes}"
+
+
+def _print_notes(scenario: Scenario) -> None:
+    for note in scenario.notes:
+        typer.echo(f"note: {note}", err=True)
+
+
+Names = Annotated[
+    list[str] | None,
+    typer.Argument(help=f"{WHICH}; by default all that are shipped.", metavar="[SCENARIO]...", show_default=False),
+]
+
+
+@app.command("check")
+def check_scenarios(
+    names: Names = None,
+    quick: Annotated[bool, typer.Option("--quick", help="Leave out the hour of traffic.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")] = False,
+) -> None:
+    """Prove that scenarios do what they say; exit code 1 if one does not.
+
+    Each is loaded, warmed up and placed, held to the streets and limits that it names, every trip of the ego is
+    driven to its goal, its situations are met, and its traffic flows for an hour.
+    """
+    from automotive_cosim.scenery import open_scenario
+    from automotive_cosim.scenery.check import check
+
+    proofs = []
+    for scenario in [open_scenario(name) for name in names or scenarios.shipped()]:
+        _print_notes(scenario)
+        with _progress() as tell:
+            proofs.append(check(scenario, quick=quick, tell=tell))
+        if not as_json:
+            _print_proof(proofs[-1])
+    ok = all(proof.ok for proof in proofs)
+    if as_json:
+        typer.echo(json.dumps({"ok": ok, "scenarios": [proof.as_json() for proof in proofs]}, ensure_ascii=False))
+    if not ok:
+        raise typer.Exit(1)
+
+
+def _print_proof(proof: Proof) -> None:
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=None, show_header=False, pad_edge=False)
+    for item in proof.items:
+        table.add_row("", _yes_or_no(item.ok), Text(item.name), Text(item.detail))
+    console = Console(highlight=False)
+    console.print(Text.assemble((proof.scenario, "bold"), " holds: ", _yes_or_no(proof.ok)))
+    console.print(table)
+
+
+def _yes_or_no(ok: bool) -> Text:
+    from rich.text import Text
+
+    return Text("yes", "green") if ok else Text("no", "bold red")
+
+
+@app.command("render")
+def render(
+    names: Names = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="A .png or .webp file, or a folder for several.", show_default="NAME.webp right here"),
+    ] = None,
+) -> None:
+    """Draw scenarios from above: road classes, names, limits, tunnels and the ego's trips."""
+    from automotive_cosim.scenery import open_scenario
+    from automotive_cosim.scenery.picture import ENDINGS, save_picture
+
+    found = [open_scenario(name) for name in names or scenarios.shipped()]
+    to_file = out is not None and not out.is_dir() and bool(out.suffix)
+    if out and to_file and (out.suffix.lower() not in ENDINGS or len(found) > 1):
+        wanted = "a folder" if len(found) > 1 else f"a file that ends in {' or '.join(ENDINGS)}"
+        raise UserError(f"--out {out} will not do here; give {wanted}")
+    for scenario in found:
+        target = out if out and to_file else (out or Path()) / f"{scenario.name}.webp"
+        save_picture(scenario, target)
+        typer.echo(str(target))
+
+
+@app.command("import")
+def import_scenario(
+    file: Annotated[Path, typer.Argument(help="OSM extract: .osm, .osm.gz, .osm.bz2 or .osm.pbf.")],
+    out: Annotated[Path | None, typer.Option(help="Folder to make; by default the scenario's name.")] = None,
+    name: Annotated[str, typer.Option(help="The scenario's name; by default the file's.")] = "",
+    country: Annotated[
+        str, typer.Option(help="ISO 3166-1 code such as FR; by default found from the map's position.")
+    ] = "",
+    bbox: Annotated[
+        str, typer.Option(metavar="W,S,E,N", help="Take only what lies within, in degrees.", show_default="all")
+    ] = "",
+    density: Annotated[
+        float, typer.Option(help="Vehicles at a time per km of lane if all drove freely, before scaling down.")
+    ] = 1.0,
+    seed: Annotated[
+        int, typer.Option(parser=whole_number(0, 2**31 - 2), metavar="N", help="Of the traffic and the ego trips.")
+    ] = 0,
+    force: Annotated[bool, typer.Option("--force", help="Replace the scenario in --out.")] = False,
+) -> None:
+    """Turn an OpenStreetMap extract into a scenario.
+
+    The traffic is scaled down until it flows for an hour after its warm-up. Reading the map, building the network
+    and trying the traffic takes one to three minutes for a district of a city.
+    """
+    from automotive_cosim.osm import Area, ImportOptions, import_map
+    from automotive_cosim.osm.importer import scenario_name
+
+    options = ImportOptions(
+        name=name,
+        country=country,
+        area=Area.parse(bbox) if bbox else None,
+        density_per_km=density,
+        seed=seed,
+        replace=force,
+    )
+    folder = out or Path(name or scenario_name(file))
+    started_s = time.monotonic()
+    with _progress() as tell:
+        report = import_map(file, folder, options, tell)
+    _print_report(report, folder, time.monotonic() - started_s)
+
+
+@app.command("download")
+def download_map(
+    bbox: Annotated[str, typer.Option(metavar="W,S,E,N", help="West, south, east and north, in degrees.")],
+    endpoint: Annotated[
+        str,
+        typer.Option(
+            envvar="AUTOMOTIVE_COSIM_OVERPASS",
+            metavar="URL",
+            help="An Overpass server's interpreter; whoever runs it sets the rules of its use.",
+        ),
+    ],
+    out: Annotated[Path, typer.Option(help="File to make, for `scenarios import`.")] = Path("map.osm"),
+    timeout: Annotated[
+        float, typer.Option(parser=number(1, 3600), metavar="S", help="Seconds of silence after which to give up.")
+    ] = 180.0,
+    tries: Annotated[
+        int, typer.Option(parser=whole_number(1, 20), metavar="N", help="How often a busy server is asked.")
+    ] = 4,
+    max_mb: Annotated[
+        float, typer.Option(parser=number(0.001, 10_000), metavar="MB", help="The largest map that is taken.")
+    ] = 500.0,
+) -> None:
+    """Fetch the roads of an area from an Overpass server of your choice."""
+    from automotive_cosim.osm import Area
+    from automotive_cosim.osm.folder import ATTRIBUTION
+    from automotive_cosim.osm.overpass import Limits, download
+
+    with _progress() as tell:
+        limits = Limits(timeout_s=timeout, tries=tries, size_mb=max_mb)
+        found = download(endpoint, Area.parse(bbox), out, limits, tell=tell)
+    dated = f", as of {found.map_date}" if found.map_date else ""
+    typer.echo(f"{out}: {found.size_mb:.2f} MB{dated}\n{ATTRIBUTION}")
+    if found.note:
+        typer.echo(found.note)
+    typer.echo(f"turn it into a scenario: automotive-cosim scenarios import {out}")
+
+
+@contextmanager
+def _progress() -> Iterator[Progress]:
+    """A line on stderr that says what is being done; nothing but its last state where stderr is no terminal."""
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("", total=None)
+
+        def tell(stage: str, share: float | None) -> None:
+            bar.update(task, description=stage, total=None if share is None else 1.0, completed=share or 0.0)
+
+        yield tell
+
+
+def _print_report(report: ImportReport, folder: Path, took_s: float) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    size_mb = sum(path.stat().st_size for path in folder.iterdir()) / 1e6
+    flow = report.stability
+    table = Table(box=None, show_header=False, pad_edge=False)
+    for label, value in (
+        ("scenario", str(folder)),
+        *([("within", ",".join(f"{side:g}" for side in report.bbox))] if report.bbox else []),
+        ("country", report.country + (", driving on the left" if report.left_hand else "")),
+        ("edges", f"{report.edges} ({report.road_km:.1f} km)"),
+        ("posted limit", f"{report.posted_share:.2%} of the length"),
+        ("derestricted", f"{report.derestricted_km:.1f} km"),
+        ("signals", f"{report.signals}, roundabouts {report.roundabouts}"),
+        ("tunnels", f"{report.tunnels} edges ({report.tunnel_km:.1f} km)"),
+        ("lamps", f"known for {report.lit_known_share:.0%} of the length"),
+        ("built-up", f"or not: known for {report.built_up_known_share:.0%} of the length"),
+        ("schools", f"{report.school_zone_km:.1f} km; limits by the clock on {report.timed_limit_km:.1f} km"),
+        ("bus lanes", f"{report.bus_lane_km:.1f} km, speed cameras {report.speed_cameras}"),
+        ("traffic", f"{report.vehicles_per_hour:.0f} vehicles per hour, about {flow.vehicles_mean:.0f} at a time"),
+        ("scale", f"{report.scale:g} of the density asked for"),
+        ("halted", f"{flow.halted_share_mean:.1%} on average, {flow.halted_share_max:.1%} in the worst minute"),
+        ("teleports", f"{flow.teleports} in {flow.observed_s / 60:.0f} min"),
+        ("took", f"{took_s:.0f} s, {size_mb:.2f} MB"),
+        *(("guessed" if index == 0 else "", text) for index, text in enumerate(report.guessed)),
+        ("drive it", f"automotive-cosim run --scenario {folder}"),
+        ("map", report.attribution),
+    ):
+        table.add_row(label, value)
+    Console().print(table)

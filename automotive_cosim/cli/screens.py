@@ -1,0 +1,62 @@
+"""``automotive-cosim screens``: every screen of the cockpit on one picture."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from automotive_cosim.cockpit.cockpit import Cockpit
+    from automotive_cosim.cosim import Moment
+    from automotive_cosim.scenarios import Scenario
+
+
+class _Driver:
+    """Hears of the drive, and keeps the cockpit."""
+
+    cockpit: Cockpit
+
+    def loading(self, scenario: Scenario) -> None:
+        """Nothing to do."""
+
+    def warming(self, scenario: str, done_s: float, total_s: float) -> None:
+        """Nothing to do."""
+
+    def moved(self, moment: Moment, cockpit: Cockpit) -> None:
+        """Takes the cockpit."""
+        self.cockpit = cockpit
+
+
+def screens(
+    out: Annotated[Path, typer.Option(help="Picture to write: .webp, .png or .jpg.")] = Path("screens.webp"),
+    scenario: Annotated[str, typer.Option(help="Where the car drives.")] = "paris_centre",
+    language: Annotated[str, typer.Option(help="Of the screens: en, fr, de or ja.")] = "en",
+    width: Annotated[int, typer.Option(help="Of each screen, in pixels.", min=160, max=1280)] = 400,
+    each: Annotated[
+        Path | None, typer.Option(help="Folder for every screen as a picture of its own at full size.")
+    ] = None,
+) -> None:
+    """Draws every screen by day and by night, as it is at the start of a drive."""
+    from automotive_cosim.cockpit.signals import HMI
+    from automotive_cosim.env import CockpitEnv
+    from automotive_cosim.errors import UserError
+    from automotive_cosim.report.contactsheet import contact_sheet, pictures
+
+    if out.suffix not in (".webp", ".png", ".jpg"):
+        raise UserError(f"{out} is no picture that can be written; give --out a name ending in .webp, .png or .jpg")
+    driver = _Driver()
+    env = CockpitEnv(scenario=scenario, listener=driver)
+    try:
+        env.reset(seed=0)
+        cockpit = driver.cockpit.copy()
+        cockpit.inject(HMI.LANGUAGE.path, language)
+        contact_sheet(cockpit, width).save(out, quality=80)
+        if each is not None:
+            each.mkdir(parents=True, exist_ok=True)
+            for name, picture in pictures(cockpit):
+                picture.save(each / f"{name.replace(', ', '_')}.png")
+    finally:
+        env.close()
+    typer.echo(f"{out} written")

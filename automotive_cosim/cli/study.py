@@ -1,0 +1,228 @@
+"""``automotive-cosim study``: what rerouting gains, from futures that leave the very same traffic."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from automotive_cosim.cli.batches import View, seeds_in, time_left, words
+from automotive_cosim.cli.options import whole_number
+from automotive_cosim.errors import InfrastructureError, UserError
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from automotive_cosim.run.batch import Progress
+    from automotive_cosim.studies.plan import StudyPlan
+    from automotive_cosim.studies.results import Study
+
+app = typer.Typer(help="Studies: what rerouting gains in the very same traffic.", no_args_is_help=True)
+
+
+@app.command()
+def reroute(
+    scenario: Annotated[str, typer.Option(help="Name or folder; `scenarios list` names them.")] = "paris_centre",
+    departures: Annotated[
+        str | None,
+        typer.Option(
+            help="When the ego sets out: seconds after the warm-up, or clock times, with commas.",
+            show_default="0,300,600,900",
+        ),
+    ] = None,
+    trips: Annotated[
+        str | None, typer.Option(help="Ego trips of the scenario, with commas.", show_default="all")
+    ] = None,
+    seeds: Annotated[
+        str, typer.Option(help="Of the traffic, as in 0-9; 10 for an interval, 30 to publish.")
+    ] = "0-9",
+    shares: Annotated[
+        str | None,
+        typer.Option(help="Shares of the other cars that reroute, 0 to 1, with commas.", show_default="scenario's"),
+    ] = None,
+    ages: Annotated[str, typer.Option(help="Ages of the traffic news in seconds, with commas.")] = "0",
+    compliance: Annotated[float, typer.Option(help="Probability that the driver does as told.")] = 1.0,
+    policies: Annotated[
+        str,
+        typer.Option(
+            help="Who decides, with commas: never, always, delay:SECONDS, sumo, best, agent:NAME[/MODEL]."
+        ),
+    ] = "never,always,delay:60,sumo,best",
+    driver: Annotated[str, typer.Option(help="Driver profile of the ego.", show_default="scenario's")] = "",
+    delay: Annotated[float, typer.Option(help="Expected delay in seconds from which on a decision is due.")] = 30.0,
+    every: Annotated[float, typer.Option(help="Seconds between two decisions of a drive.")] = 60.0,
+    per_drive: Annotated[
+        int, typer.Option(help="Decisions of a drive at most.", metavar="N", parser=whole_number(1, 50))
+    ] = 5,
+    placebo_every: Annotated[
+        int,
+        typer.Option(help="One placebo in so many drives; 0 for none.", metavar="N", parser=whole_number(0, 10**6)),
+    ] = 1,
+    scale: Annotated[float | None, typer.Option(help="Multiplies the demand.", show_default="scenario's")] = None,
+    step: Annotated[float, typer.Option(help="SUMO's step length in seconds.")] = 1.0,
+    equilibrium_gap: Annotated[
+        float | None,
+        typer.Option(help="Declares demand from duaIterate, with this relative gap.", show_default=False),
+    ] = None,
+    until: Annotated[
+        float | None,
+        typer.Option(
+            help="Stop adding seeds once the mean gain is known to +- so many seconds.", show_default=False
+        ),
+    ] = None,
+    workers: Annotated[int, typer.Option(help="Processes.", metavar="N", parser=whole_number(1, 256))] = 1,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder of the results; the same one goes on.", show_default="runs/study-<digest of the plan>"
+        ),
+    ] = None,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Show the plan and end.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")] = False,
+) -> None:
+    """Fork the running traffic at every decision to reroute and drive both futures.
+
+    The same command goes on where a study was stopped.
+    """
+    from rich.console import Console
+
+    from automotive_cosim.run.store import read_rows
+    from automotive_cosim.studies.batch import run_study
+    from automotive_cosim.studies.page import write_study
+    from automotive_cosim.studies.plan import StudyPlan
+    from automotive_cosim.studies.results import all_decisions, read_study
+
+    values: dict[str, Any] = {
+        "seeds": tuple(seeds_in(seeds)),
+        "ages_s": tuple(_numbers("ages", ages)),
+        "policies": tuple(words("policies", policies)),
+        "per_drive": per_drive,
+        "placebo_every": placebo_every,
+    }
+    values |= {"departures_s": _departures(scenario, departures)} if departures is not None else {}
+    values |= {"trips": tuple(words("trips", trips))} if trips is not None else {}
+    values |= {"shares": tuple(_numbers("shares", shares))} if shares is not None else {}
+    plan = StudyPlan(
+        scenario,
+        compliance=compliance,
+        driver=driver,
+        least_delay_s=delay,
+        every_s=every,
+        scale=scale,
+        step_s=step,
+        equilibrium_gap=equilibrium_gap,
+        half_width_s=until,
+        **values,
+    )
+    plan.check()
+    folder = out or _folder(plan)
+    console = Console(stderr=as_json, highlight=False)
+    _announce(console, plan, folder)
+    if dry_run:
+        return
+
+    def said(progress: Progress) -> str:
+        count = sum(1 for _ in all_decisions(read_rows(folder).values()))
+        errors = f", {progress.errors} errors" if progress.errors else ""
+        return f"{count} decisions{errors}{time_left(progress)}"
+
+    with View(console, "drives", said) as view:
+        try:
+            run_study(plan, folder, workers=workers, tell=view.tell)
+        except KeyboardInterrupt:
+            typer.echo(f"what has ended is in {folder}; the same command goes on", err=True)
+            raise
+    page = write_study(folder)
+    _tell(console, read_study(folder), page, as_json=as_json)
+
+
+@app.command()
+def report(folder: Annotated[Path, typer.Argument(help="What a study left.", show_default=False)]) -> None:
+    """Write report.html, choices.csv and the tables and plots as files into a study's folder."""
+    from automotive_cosim.studies.page import write_study
+
+    page = write_study(folder)
+    typer.echo(f"{page} written; data in {folder / 'choices.csv'}, tables in {folder / 'tables'}")
+
+
+def _tell(console: Console, study: Study, page: Path, *, as_json: bool) -> None:
+    """Says what came out; raises where that is nothing."""
+    from automotive_cosim.studies.page import cost_s, warnings
+    from automotive_cosim.studies.tables import excluded, policies
+
+    count, errors = len(study.decisions), study.errors
+    kept_out = {f"{what}: {reason}": number for (what, reason), number in sorted(study.excluded.items())}
+    if as_json:
+        told = {"drives": len(study.rows), "decisions": count, "excluded": kept_out, "errors": len(errors)}
+        typer.echo(json.dumps(told | {"seconds_a_decision": cost_s(study), "out": str(study.folder)}))
+    else:
+        for table in (policies(study), excluded(study)):
+            if table.rows:
+                console.print(table.markdown(), soft_wrap=True)
+        for warning in warnings(study):
+            console.print(warning, soft_wrap=True)
+        console.print(f"{count} decisions count; the report is {page}", soft_wrap=True)
+    if errors:
+        first = errors[0]
+        raise InfrastructureError(
+            f"{len(errors)} of {len(study.rows)} drives ended in an error, the first one {first['id']}: "
+            f"{first['error_kind']}: {first['error']}; the same command runs them again"
+        )
+    if not count:
+        told_why = ", ".join(f"{number} {name}" for name, number in kept_out.items())
+        raise UserError(
+            f"no decision counts ({told_why}): choose other trips or departures, lower --delay, or change --scale"
+        )
+
+
+def _announce(console: Console, plan: StudyPlan, folder: Path) -> None:
+    from rich.table import Table
+
+    jobs = plan.jobs()
+    table = Table.grid(padding=(0, 2))
+    table.add_row("scenario", plan.scenario)
+    table.add_row("trips", ", ".join(dict.fromkeys(job.trip.name for job in jobs)))
+    table.add_row("departures", ", ".join(f"{each:g}" for each in plan.departures_s) + " s after the warm-up")
+    table.add_row("seeds", f"{len(plan.seeds)}")
+    table.add_row("policies", ", ".join(plan.policies))
+    table.add_row("demand", plan.demand())
+    table.add_row("drives", f"{len(jobs)} from {len({job.simulation for job in jobs})} warm simulations")
+    table.add_row("folder", str(folder))
+    console.print(table)
+
+
+def _departures(scenario: str, text: str) -> tuple[float, ...]:
+    """Seconds after the warm-up; clock times count from the scenario's."""
+    from automotive_cosim.scenarios import load
+
+    found = []
+    for word in words("departures", text):
+        hours, colon, minutes = word.partition(":")
+        if not colon:
+            found += _numbers("departures", word)
+        elif hours.isdigit() and minutes.isdigit() and int(hours) < 24 and int(minutes) < 60:
+            start = load(scenario).start
+            at = start.replace(hour=int(hours), minute=int(minutes), second=0)
+            found.append((at - start).total_seconds())
+        else:
+            raise UserError(f"--departures has {word!r}; give seconds such as 300, or clock times such as 8:20")
+    return tuple(found)
+
+
+def _numbers(name: str, text: str) -> list[float]:
+    found = []
+    for word in words(name, text):
+        try:
+            found.append(float(word))
+        except ValueError:
+            raise UserError(f"--{name} has {word!r}; give numbers with commas between them") from None
+    return found
+
+
+def _folder(plan: StudyPlan) -> Path:
+    from automotive_cosim.trace import canonical
+
+    return Path("runs") / f"study-{hashlib.sha256(canonical(plan.as_json())).hexdigest()[:8]}"

@@ -1,0 +1,184 @@
+"""``automotive-cosim tasks``: the catalogue."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections import Counter
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from automotive_cosim.cli.options import TasksFrom
+
+if TYPE_CHECKING:
+    from automotive_cosim.parameters import Choices
+    from automotive_cosim.suite import Half, Task
+
+app = typer.Typer(help="The tasks there are.", no_args_is_help=True)
+
+Words = Annotated[
+    str,
+    typer.Option("--tasks", help="Ids, patterns, tags, modules, dimensions, general, safety, all; with commas."),
+]
+
+
+@app.command("list")
+def list_(
+    tasks: Words = "all",
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON list and nothing else.")] = False,
+    tasks_from: TasksFrom = None,
+) -> None:
+    """One line a task, then how many there are of each kind."""
+    from automotive_cosim.suite import described
+
+    chosen = _chosen(tasks)
+    if as_json:
+        typer.echo(json.dumps([described(task) for task in chosen], ensure_ascii=False))
+        return
+    width = max(len(task.id) for task in chosen)
+    for task in chosen:
+        halves = "pair" if task.second else "single"
+        steps = f"{task.optimal_steps} steps"
+        typer.echo(f"{task.id:<{width}}  {halves:<6}  {task.dimension:<18}  {task.difficulty:<6}  {steps}")
+    typer.echo(f"\n{_cells(chosen)}\n{_instances(chosen)}")
+
+
+@app.command()
+def export(
+    path: Annotated[Path, typer.Argument(help="A .json or .csv file.", show_default=False)],
+    tasks: Words = "all",
+    tasks_from: TasksFrom = None,
+) -> None:
+    """Write the catalogue to a file, one row a task."""
+    from automotive_cosim.errors import UserError
+    from automotive_cosim.suite import described
+
+    rows = [described(task) for task in _chosen(tasks)]
+    if path.suffix == ".json":
+        text = json.dumps(rows, ensure_ascii=False, indent=1) + "\n"
+    elif path.suffix == ".csv":
+        lines = io.StringIO()
+        writer = csv.writer(lines, lineterminator="\n")
+        writer.writerow(rows[0])
+        writer.writerows(
+            [
+                value if isinstance(value, str | int) else json.dumps(value, ensure_ascii=False)
+                for value in row.values()
+            ]
+            for row in rows
+        )
+        text = lines.getvalue()
+    else:
+        raise UserError(f"{path} is neither .json nor .csv; name it by what it is to hold")
+    try:
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise UserError(f"cannot write {path}: {error.strerror}") from error
+    typer.echo(f"{len(rows)} tasks in {path}")
+
+
+@app.command()
+def show(
+    task: Annotated[str, typer.Argument(help="Its id.", show_default=False)], tasks_from: TasksFrom = None
+) -> None:
+    """What a task says, when it starts, and what is right in it."""
+    from automotive_cosim.tasks import CATALOGUE
+
+    entry = CATALOGUE[task]
+    typer.echo(f"{entry.id}  ({entry.module}, {entry.dimension}, {entry.difficulty}, {entry.optimal_steps} steps)")
+    for words in entry.templates:
+        typer.echo(f"  “{words}”")
+    for name, choices in entry.parameters.items():
+        said = _choices(choices)
+        typer.echo(f"  {{{name}}}: {said}")
+    typer.echo(f"skills      {', '.join(sorted(entry.skills)) or 'none'}")
+    typer.echo(f"tags        {', '.join(sorted(entry.tags)) or 'none'}")
+    typer.echo(f"scenarios   {', '.join(entry.runs_in)}")
+    for name in entry.halves:
+        typer.echo(f"\n{name} half")
+        for line in _half(entry.half(name)):
+            typer.echo(f"  {line}")
+    if entry.difference:
+        typer.echo(f"\ndifference: {entry.difference}")
+
+
+def _choices(choices: Choices) -> str:
+    from automotive_cosim.parameters import FromCockpit
+
+    if isinstance(choices, FromCockpit):
+        return f"one of the cockpit's {choices.kind}"
+    return ", ".join(map(str, choices))
+
+
+def _half(half: Half) -> Iterable[str]:
+    start = half.start
+    yield f"where     {start.scenario}, trip {start.trip}" + (", parked" if start.parked else "")
+    if start.origin:
+        yield f"at        {start.origin[0]:g}, {start.origin[1]:g} (longitude, latitude)"
+    if start.start:
+        yield f"when      {start.start}"
+    yield f"trigger   {half.trigger.condition}, for {half.trigger.for_s:g} s"
+    yield f"goal      {half.goal}, then declares {half.declares}"
+    for number, way in enumerate((half.moves, *half.ways)):
+        yield f"expert    {'or ' if number else ''}{', '.join(map(_move, way)) or 'declares at once'}"
+    yield f"deadline  {half.deadline.seconds:g} s: {half.deadline.reason}"
+    yield f"basis     {half.basis}: {half.rule}" if half.rule else f"basis     {half.basis}"
+
+
+def _move(move: object) -> str:
+    from automotive_cosim.suite import Open, Slide, Tap, TapUntil, Type, Warn
+
+    match move:
+        case Open(name):
+            return f"open {name}"
+        case Tap(resource_id, times, text):
+            return f"tap {resource_id or repr(text)}" + (f" x{times}" if times != 1 else "")
+        case TapUntil(resource_id, shown, text):
+            return f"tap {resource_id} until {shown} reads {text!r}"
+        case Slide(resource_id, value):
+            return f"slide {resource_id} to {value}"
+        case Type(resource_id, text):
+            return f"type {text!r} into {resource_id}"
+        case Warn(kind):
+            return f"alert {kind}"
+        case _:
+            return str(getattr(getattr(move, "action", move), "action_type", move))
+
+
+def _chosen(words: str) -> list[Task]:
+    from automotive_cosim.run.plan import choose
+    from automotive_cosim.tasks import CATALOGUE
+
+    return [CATALOGUE[task_id] for task_id in choose(word.strip() for word in words.split(","))]
+
+
+def _cells(tasks: list[Task]) -> str:
+    """Modules by dimensions."""
+    from automotive_cosim.suite import Dimension, Module
+
+    counts = Counter((task.module, task.dimension) for task in tasks)
+    rows = [["", *(str(dimension).replace("_", " ") for dimension in Dimension), "all"]]
+    for module in Module:
+        own = [counts[module, dimension] for dimension in Dimension]
+        rows.append([str(module), *map(str, own), str(sum(own))])
+    sums = [sum(counts[module, dimension] for module in Module) for dimension in Dimension]
+    rows.append(["all", *map(str, sums), str(len(tasks))])
+    widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
+    return "\n".join(
+        "  ".join(
+            cell.rjust(width) if column else cell.ljust(width)
+            for column, (cell, width) in enumerate(zip(row, widths, strict=True))
+        )
+        for row in rows
+    )
+
+
+def _instances(tasks: list[Task]) -> str:
+    """How many different instances there are, a cockpit's content counted as it is drawn."""
+    from automotive_cosim.suite import instances
+
+    return f"{sum(map(instances, tasks)):,} instances by words, parameters and scenario"

@@ -1,0 +1,95 @@
+"""``automotive-cosim validate``: the proof of the tasks."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from automotive_cosim.cli.options import TasksFrom, whole_number
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rich.table import Table
+
+    from automotive_cosim.proof.prover import Proof
+
+FAILED = 1
+
+
+def validate(
+    tasks: Annotated[
+        str, typer.Option(help="Ids, patterns, tags, modules, dimensions, general, safety, all; with commas.")
+    ] = "all",
+    seeds: Annotated[
+        int,
+        typer.Option(help="How many seeds prove each task.", metavar="N", parser=whole_number(1, 1000)),
+    ] = 3,
+    first_seed: Annotated[
+        int, typer.Option(help="The first of them.", metavar="N", parser=whole_number(0, 10**6))
+    ] = 0,
+    gates: Annotated[
+        str, typer.Option(help="Gates to try, with commas; `all` or names as the table has them.")
+    ] = "all",
+    workers: Annotated[int, typer.Option(help="Processes.", metavar="N", parser=whole_number(1, 256))] = 1,
+    tasks_from: TasksFrom = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")] = False,
+) -> None:
+    """Prove tasks: solvable by public actions, free for nobody, clean, repeatable. Exit code 1 if a gate fails."""
+    from rich.console import Console
+
+    from automotive_cosim.errors import UnknownNameError
+    from automotive_cosim.proof.prover import GATES, prove
+    from automotive_cosim.proof.prover import as_json as json_of
+    from automotive_cosim.run.plan import choose
+
+    chosen = GATES if gates == "all" else tuple(word.strip() for word in gates.split(","))
+    for gate in chosen:
+        if gate not in GATES:
+            raise UnknownNameError("gate", gate, GATES)
+    task_ids = choose(word.strip() for word in tasks.split(","))
+    numbers = tuple(range(first_seed, first_seed + seeds))
+    console = Console(stderr=True)
+
+    def tell(proof: Proof, done: int, planned: int) -> None:
+        faults = [f"{gate}: {why}" for gate, found in proof.wrong.items() for why in found]
+        faults += [proof.error] if proof.error else []
+        mark = "[red]✗[/]" if faults else "[green]✓[/]"
+        console.print(f"{mark} {done}/{planned} {proof.task}, seed {proof.seed}", highlight=False)
+        for fault in faults:
+            console.print(f"    {fault}", highlight=False, markup=False, soft_wrap=True)
+
+    proofs = prove(task_ids, numbers, chosen, workers=workers, tell=tell)
+    result = json_of(proofs, task_ids, numbers)
+    if as_json:
+        typer.echo(json.dumps(result))
+    else:
+        Console().print(_table(proofs, chosen))
+        failed = sum(bool(entry["failed"]) for entry in result["gates"].values())
+        typer.echo(
+            f"{len(task_ids)} tasks, {len(numbers)} seeds: {failed} gates failed, {len(result['errors'])} errors"
+        )
+    if result["errors"] or any(entry["failed"] for entry in result["gates"].values()):
+        raise typer.Exit(FAILED)
+
+
+def _table(proofs: Sequence[Proof], gates: Sequence[str]) -> Table:
+    """Tasks by gates: how many seeds pass, of how many."""
+    from rich.table import Table
+
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 1, 0, 0))
+    table.add_column("task")
+    for gate in gates:
+        table.add_column(gate)
+    for task_id in dict.fromkeys(proof.task for proof in proofs):
+        own = [proof for proof in proofs if proof.task == task_id]
+        cells = []
+        for gate in gates:
+            tried = [proof.wrong[gate] for proof in own if gate in proof.wrong]
+            passed = sum(not wrong for wrong in tried)
+            colour = "green" if passed == len(tried) else "red"
+            cells.append(f"[{colour}]{passed}/{len(tried)}[/]" if tried else "[dim]-[/]")
+        table.add_row(task_id, *cells)
+    return table

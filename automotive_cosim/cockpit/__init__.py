@@ -1,0 +1,1 @@
+"""The car inside: signals, physics, widgets, screens, picture and accessibility tree."""

@@ -1,0 +1,110 @@
+"""The widget tree as a list of elements in AndroidWorld's fields: what can be read or touched, and no more."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import chain
+
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.widgets import Choice, Field, MapView, Row, Rows, Screen, Slider, Tile, Widget
+from automotive_cosim.contracts import BoundingBox, Element
+
+PACKAGE = "org.automotive_cosim.cockpit"
+
+
+@dataclass(frozen=True, slots=True)
+class Listing:
+    """The elements of a tree, by the widgets that lie on the screen itself."""
+
+    screen: Screen
+    parts: tuple[tuple[Element, ...], ...]
+
+    @property
+    def elements(self) -> tuple[Element, ...]:
+        """All of them, in drawing order."""
+        return tuple(chain.from_iterable(self.parts))
+
+
+def elements(screen: Screen, scale: float = 1.0) -> tuple[Element, ...]:
+    """All that has words, listens or scrolls, in drawing order.
+
+    Args:
+        screen: the tree.
+        scale: pixels per logical pixel.
+    """
+    return listing(screen, scale).elements
+
+
+def listing(screen: Screen, scale: float, before: Listing | None = None) -> Listing:
+    """The same, by parts; those of widgets that ``before``, of the same scale, has too are taken from there."""
+    known = {} if before is None else dict(zip(map(id, before.screen.children), before.parts, strict=True))
+    return Listing(
+        screen,
+        tuple(
+            known.get(id(child)) or tuple(_element(widget, scale) for widget in child.walk() if _listed(widget))
+            for child in screen.children
+        ),
+    )
+
+
+def _listed(widget: Widget) -> bool:
+    return bool(widget.text or widget.description) or widget.listens or isinstance(widget, Field)
+
+
+def _element(widget: Widget, scale: float) -> Element:
+    kind = type(widget)
+    rect, is_field = widget.rect, kind is Field
+    chosen = isinstance(widget, Choice | Row) and widget.selected
+    return Element(
+        text=_text(widget),
+        content_description=_description(widget),
+        class_name=widget.class_name,
+        bbox_pixels=_box(rect, scale),
+        resource_id=widget.key,
+        package_name=PACKAGE,
+        hint_text=widget.hint if isinstance(widget, Field) else "",
+        is_checked=(isinstance(widget, Tile) and widget.checked) or (kind is Choice and chosen),
+        is_checkable=kind is Tile or kind is Choice,
+        is_clickable=widget.listens,
+        is_editable=is_field,
+        is_enabled=widget.usable,
+        is_focused=isinstance(widget, Field) and widget.focused,
+        is_focusable=is_field,
+        is_scrollable=kind in _SCROLLING and _scrolls(widget),
+        is_selected=chosen,
+    )
+
+
+@lru_cache(maxsize=4096)
+def _box(rect: Rect, scale: float) -> BoundingBox:
+    return BoundingBox(*rect.edges(scale))
+
+
+_SCROLLING = frozenset((Rows, Slider, MapView))
+
+
+def _scrolls(widget: Widget) -> bool:
+    if isinstance(widget, Rows):
+        return widget.last_first > 0
+    return not isinstance(widget, MapView) or widget.pans
+
+
+def _text(widget: Widget) -> str:
+    if isinstance(widget, Tile) and widget.level:
+        return f"{widget.text}: {widget.level}" if widget.text else widget.level
+    return widget.text
+
+
+def _description(widget: Widget) -> str:
+    parts: tuple[str, ...]
+    if isinstance(widget, Row):
+        parts = (widget.description, widget.detail, widget.trail, widget.disabled, widget.locked)
+    elif isinstance(widget, MapView):
+        scale = f"{widget.scene.camera.metres_per_pixel:g} metres per pixel"
+        parts = (widget.description, scale, widget.disabled, widget.locked)
+    elif widget.disabled or widget.locked:
+        parts = (widget.description, widget.disabled, widget.locked)
+    else:
+        return widget.description
+    return ". ".join(part for part in parts if part)

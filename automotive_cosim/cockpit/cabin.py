@@ -1,0 +1,387 @@
+"""The air and the glass of the cabin: heat, moisture, fog inside, dew and rain outside.
+
+One node of air, one node per pane, first order:
+
+    air     C dT/dt = m_supply cp (T_supply - T) + UA (T_outside - T) + heat of the people
+    vapour  M dw/dt = people + wet clothes + m_supply (w_supply - w) + leaks (w_outside - w) - glass
+    glass   c dT/dt = h_in (T_near - T) + h_out (T_outside - T) + heater
+    dust    V dC/dt = (leaks + (1 - filter) fresh) C_outside - (leaks + fresh + filter round + purifier) C
+
+Glass fogs when the dew point of the air at it is above its surface temperature, and clears otherwise; the flux
+follows from the heat transfer coefficient (Lewis relation). Sources stand with the constants. What has none is a
+plain assumption, said so.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+from automotive_cosim.errors import UnknownNameError, UserError
+
+PRESSURE_HPA = 1013.25
+AIR_CP = 1006.0
+"""J/(kg K), dry air."""
+AIR_DENSITY = 1.2
+"""kg/m3, 20 °C at sea level."""
+CABIN_VOLUME_M3 = 3.0
+"""A mid-size car (Ott, Klepeis, Switzer 2008, J. Expo. Sci. Environ. Epidemiol. 18)."""
+CABIN_CAPACITY = 60_000.0
+"""J/K of the air and the skin of the lining, which follow within a minute or two: an assumption."""
+CABIN_LOSS = 70.0
+"""W/K through body and glass: an assumption in the range published for passenger cars (60 to 100)."""
+OCCUPANT_HEAT_W = 75.0
+OCCUPANT_VAPOUR = 60.0 / 3_600_000
+"""kg/s: seated, light work, 70 W sensible and 45 W latent, about 60 g/h (ASHRAE Fundamentals, chapter 18)."""
+WET_CLOTHES_VAPOUR = 100.0 / 3_600_000
+"""kg/s a person, clothes soaked by rain: an assumption."""
+BLOWER_FULL = 0.11
+"""kg/s at full speed, about 330 m3/h: typical of car blowers."""
+LEAK_PER_HOUR, LEAK_PER_HOUR_KMH = 0.5, 0.08
+"""Air changes an hour with everything shut, at rest and per km/h (Fruin et al. 2011, Atmos. Environ. 45)."""
+WINDOW_PER_HOUR, WINDOW_PER_HOUR_KMH = 10.0, 1.5
+"""Air changes an hour that one window adds when it is wholly open, at rest and per km/h: an assumption of the size
+measured in moving cars with windows open (Ott, Klepeis, Switzer 2008: tens of changes an hour at 30 km/h)."""
+CABIN_FILTER = 0.5
+"""Share of the fine dust that one pass through the cabin filter takes: an assumption."""
+PURIFIER_M3_H = 60.0
+"""Clean air that the purifier delivers: typical of built-in ones."""
+EVAPORATOR_C = 4.0
+"""Air leaves the evaporator saturated at this; the compressor stays off in frost."""
+COMPRESSOR_MINIMUM_C = 0.0
+SUPPLY_MAXIMUM_C = 55.0
+DEFROST_SUPPLY_C = 45.0
+SUPPLY_GAIN = 10.0
+"""Supply air is this many times as far from the set temperature as the cabin is, on the other side."""
+GLASS_CAPACITY_M2 = 10_000.0
+"""J/(m2 K): 5 mm of glass, 2500 kg/m3, 800 J/(kg K)."""
+GLASS_RESISTANCE = 0.005
+"""m2 K/W: 5 mm at 1 W/(m K)."""
+INSIDE_STILL = 8.0
+"""W/(m2 K): surface resistance 0.13 m2 K/W (ISO 6946)."""
+JET_FULL, JET_LEAST = 60.0, 10.0
+"""W/(m2 K) that the windshield outlet adds at full fan, and the least with the fan on: an assumption."""
+OUTSIDE_STILL, OUTSIDE_PER_MPS = 9.0, 4.0
+"""W/(m2 K): 4 + 4 v for wind plus 5 by radiation (ISO 6946)."""
+REAR_WIND = 0.3
+"""Share of the wind that reaches the rear window, in the wake: an assumption."""
+REAR_HEATER_W_M2 = 350.0
+"""About 200 W on 0.6 m2: typical of rear windows."""
+GLASS_AREA_M2 = 4.0
+"""All panes, which take moisture from the air alike."""
+FOG_OPAQUE = 2e-3
+"""kg/m2 of droplets that hide the road: a mean film of 2 µm, an assumption."""
+RAIN_OPAQUE = 30e-3
+"""kg/m2 of rain that hides the road: large drops hide less: an assumption."""
+RAIN_RUNS_OFF_S = 60.0
+WIPED_SHARE = 0.9
+"""Of the film, by one sweep."""
+SWEEPS_PER_MINUTE = {"OFF": 0.0, "INTERVAL": 12.0, "SLOW": 40.0, "MEDIUM": 50.0, "FAST": 65.0}
+"""FMVSS 104 asks for one speed of at least 45 and another of at least 20."""
+STEP_S = 0.5
+"""Longest step of the integration."""
+
+
+def saturation_hpa(temperature_c: float) -> float:
+    """Vapour pressure over water (Magnus formula, coefficients of Sonntag 1990, as WMO-No. 8 gives them)."""
+    return 6.112 * math.exp(17.62 * temperature_c / (243.12 + temperature_c))
+
+
+def humidity_ratio(temperature_c: float, humidity_pct: float) -> float:
+    """Kilograms of vapour per kilogram of dry air."""
+    vapour = humidity_pct / 100 * saturation_hpa(temperature_c)
+    return 0.622 * vapour / (PRESSURE_HPA - vapour)
+
+
+def relative_humidity_pct(temperature_c: float, ratio: float) -> float:
+    """Of air with that humidity ratio; at most 100."""
+    vapour = ratio * PRESSURE_HPA / (0.622 + ratio)
+    return min(100.0, 100 * vapour / saturation_hpa(temperature_c))
+
+
+def dew_point_c(temperature_c: float, humidity_pct: float) -> float:
+    """Where air of that temperature and humidity saturates (the Magnus formula solved for temperature)."""
+    logarithm = math.log(max(humidity_pct, 1e-6) / 100) + 17.62 * temperature_c / (243.12 + temperature_c)
+    return 243.12 * logarithm / (17.62 - logarithm)
+
+
+@dataclass(frozen=True, slots=True)
+class Pane:
+    """One window: heat and water on it."""
+
+    temperature_c: float
+    """Middle of the glass."""
+    inner_c: float
+    """Surface towards the cabin."""
+    outer_c: float
+    fog: float = 0.0
+    """Droplets inside, kg/m2."""
+    dew: float = 0.0
+    """Droplets outside, kg/m2."""
+    rain: float = 0.0
+    """Rain outside, kg/m2."""
+
+    @property
+    def fog_inside(self) -> float:
+        """0 clear to 1 opaque."""
+        return min(1.0, self.fog / FOG_OPAQUE)
+
+    @property
+    def film_outside(self) -> float:
+        """0 clear to 1 opaque, dew and rain together."""
+        dew, rain = min(1.0, self.dew / FOG_OPAQUE), min(1.0, self.rain / RAIN_OPAQUE)
+        return 1 - (1 - dew) * (1 - rain)
+
+
+@dataclass(frozen=True, slots=True)
+class Air:
+    """The weather as the car's skin meets it."""
+
+    temperature_c: float
+    humidity_pct: float
+    rain_mm_h: float
+    speed_mps: float
+    fine_dust: float = 0.0
+    """Particles under 2.5 micrometres, ug/m3."""
+
+
+@dataclass(frozen=True, slots=True)
+class Controls:
+    """What the driver has set."""
+
+    set_c: float
+    fan_pct: float
+    air_up: bool
+    air_conditioning: bool
+    recirculation: bool
+    front_defroster: bool
+    rear_defroster: bool
+    front_sweeps_per_minute: float
+    rear_sweeps_per_minute: float
+    purifier: bool = False
+    windows_open: float = 0.0
+    """Sum over windows and roof, 1 a window wholly open."""
+
+
+@dataclass(frozen=True, slots=True)
+class CabinStart:
+    """The cabin as an episode finds it."""
+
+    occupants: int = 1
+    wet_clothes: bool = False
+    temperature_c: float = 21.0
+    humidity_pct: float = 40.0
+    fine_dust: float = 4.0
+    """ug/m3: clean city air after the cabin filter."""
+
+    @classmethod
+    def read(cls, given: Mapping[str, Any]) -> CabinStart:
+        """From a mapping of field names.
+
+        Raises:
+            UnknownNameError: no such field.
+            UserError: a value is of the wrong type or beyond what a cabin can be.
+        """
+        known = [field.name for field in fields(cls)]
+        for name in given:
+            if name not in known:
+                raise UnknownNameError("initial condition of the cabin", name, known)
+        try:
+            start = replace(cls(), **given)
+            legal = (
+                0 <= start.occupants <= 5
+                and -40 <= start.temperature_c <= 80
+                and 0 < start.humidity_pct <= 100
+                and 0 <= start.fine_dust <= 2000
+            )
+        except TypeError as error:
+            raise UserError(f"initial conditions of the cabin: {error}") from error
+        if not legal:
+            raise UserError(
+                f"initial conditions of the cabin are {dict(given)}; expected 0 to 5 occupants, -40 to 80 °C, "
+                "0 to 100 % humidity, 0 to 2000 ug/m3 of fine dust"
+            )
+        return start
+
+
+@dataclass(frozen=True, slots=True)
+class Cabin:
+    """Air and glass at one instant; ``after`` gives the next."""
+
+    start: CabinStart
+    temperature_c: float
+    moisture: float
+    """Humidity ratio, kg/kg."""
+    windshield: Pane
+    rear_window: Pane
+    fine_dust: float = 0.0
+    """ug/m3."""
+
+    @classmethod
+    def at(cls, start: CabinStart, outside: Air) -> Cabin:
+        """With the glass at the temperature it would have after a while in this air."""
+        return cls(
+            start,
+            start.temperature_c,
+            humidity_ratio(start.temperature_c, start.humidity_pct),
+            _settled(start.temperature_c, outside, 1.0),
+            _settled(start.temperature_c, outside, REAR_WIND),
+            start.fine_dust,
+        )
+
+    @property
+    def humidity_pct(self) -> float:
+        """Relative humidity of the air."""
+        return relative_humidity_pct(self.temperature_c, self.moisture)
+
+    @property
+    def dew_point_c(self) -> float:
+        """Glass colder than this fogs."""
+        return dew_point_c(self.temperature_c, self.humidity_pct)
+
+    def after(self, duration_s: float, controls: Controls, outside: Air) -> Cabin:
+        """The cabin that much later, with controls and weather held."""
+        cabin = self
+        steps = math.ceil(duration_s / STEP_S - 1e-9)
+        for _ in range(steps):
+            cabin = cabin._step(duration_s / steps, controls, outside)
+        return cabin
+
+    def _step(self, dt_s: float, controls: Controls, outside: Air) -> Cabin:
+        blown = BLOWER_FULL * controls.fan_pct / 100
+        supply = self._supply(controls, outside)
+        leak = AIR_DENSITY * CABIN_VOLUME_M3 * _leaks_per_hour(controls, outside) / 3600
+        outside_ratio = humidity_ratio(outside.temperature_c, outside.humidity_pct)
+        people = self.start.occupants * (OCCUPANT_VAPOUR + (WET_CLOTHES_VAPOUR if self.start.wet_clothes else 0.0))
+        heat = (
+            blown * AIR_CP * (supply.temperature_c - self.temperature_c)
+            + (CABIN_LOSS + leak * AIR_CP) * (outside.temperature_c - self.temperature_c)
+            + self.start.occupants * OCCUPANT_HEAT_W
+        )
+        at_windshield = blown > 0 and (controls.air_up or controls.front_defroster)
+        windshield = self._pane(self.windshield, dt_s, outside, 1.0, supply if at_windshield else None, 0.0)
+        heater = REAR_HEATER_W_M2 if controls.rear_defroster else 0.0
+        rear = self._pane(self.rear_window, dt_s, outside, REAR_WIND, None, heater)
+        windshield = _wet(windshield, dt_s, outside, controls.front_sweeps_per_minute)
+        rear = _wet(rear, dt_s, outside, controls.rear_sweeps_per_minute)
+        on_glass = (rear.fog - self.rear_window.fog) / dt_s * GLASS_AREA_M2
+        vapour = people + leak * (outside_ratio - self.moisture) + blown * (supply.ratio - self.moisture) - on_glass
+        return Cabin(
+            self.start,
+            self.temperature_c + dt_s * heat / CABIN_CAPACITY,
+            max(1e-5, self.moisture + dt_s * vapour / (AIR_DENSITY * CABIN_VOLUME_M3)),
+            windshield,
+            rear,
+            self._dust_after(dt_s, blown / AIR_DENSITY, leak / AIR_DENSITY, controls, outside),
+        )
+
+    def _dust_after(self, dt_s: float, blown: float, leak: float, controls: Controls, outside: Air) -> float:
+        """Fine dust, with air flows in m3/s held, by the exact solution: it can't swing."""
+        purified = PURIFIER_M3_H / 3600 if controls.purifier else 0.0
+        fresh, circulated = (0.0, blown) if controls.recirculation else (blown, 0.0)
+        out = leak + fresh + CABIN_FILTER * circulated + purified
+        settled = (leak + (1 - CABIN_FILTER) * fresh) * outside.fine_dust / out
+        return settled + (self.fine_dust - settled) * math.exp(-out * dt_s / CABIN_VOLUME_M3)
+
+    def _supply(self, controls: Controls, outside: Air) -> _Supply:
+        """Air as it leaves the outlets: taken in, dried and cooled by the evaporator, then heated."""
+        if controls.recirculation:
+            taken_c, ratio = self.temperature_c, self.moisture
+        else:
+            taken_c = outside.temperature_c
+            ratio = humidity_ratio(outside.temperature_c, outside.humidity_pct)
+        if controls.air_conditioning and outside.temperature_c > COMPRESSOR_MINIMUM_C and controls.fan_pct:
+            taken_c = min(taken_c, EVAPORATOR_C)
+            ratio = min(ratio, humidity_ratio(EVAPORATOR_C, 100))
+        wanted = controls.set_c + SUPPLY_GAIN * (controls.set_c - self.temperature_c)
+        if controls.front_defroster:
+            wanted = max(wanted, DEFROST_SUPPLY_C)
+        return _Supply(max(taken_c, min(wanted, SUPPLY_MAXIMUM_C)), ratio, controls.fan_pct)
+
+    def _pane(
+        self, pane: Pane, dt_s: float, outside: Air, wind: float, jet: _Supply | None, heater_w_m2: float
+    ) -> Pane:
+        h_in, near_c, ratio = INSIDE_STILL, self.temperature_c, self.moisture
+        if jet is not None:
+            h_in += max(JET_LEAST, JET_FULL * jet.fan_pct / 100)
+            near_c, ratio = jet.temperature_c, jet.ratio
+        h_out = OUTSIDE_STILL + OUTSIDE_PER_MPS * wind * outside.speed_mps
+        flow_in = h_in * (near_c - pane.inner_c)
+        flow_out = h_out * (pane.outer_c - outside.temperature_c)
+        middle_c = pane.temperature_c + dt_s * (flow_in + heater_w_m2 - flow_out) / GLASS_CAPACITY_M2
+        inner_c = _surface(middle_c, near_c, h_in)
+        outer_c = _surface(middle_c, outside.temperature_c, h_out)
+        outside_ratio = humidity_ratio(outside.temperature_c, outside.humidity_pct)
+        condensing = h_in / AIR_CP * (ratio - humidity_ratio(inner_c, 100))
+        dewing = (h_out - 5.0) / AIR_CP * (outside_ratio - humidity_ratio(outer_c, 100))
+        return Pane(
+            middle_c,
+            inner_c,
+            outer_c,
+            fog=_film(pane.fog + dt_s * condensing),
+            dew=_film(pane.dew + dt_s * dewing),
+            rain=pane.rain,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class _Supply:
+    temperature_c: float
+    ratio: float
+    fan_pct: float
+
+
+def _leaks_per_hour(controls: Controls, outside: Air) -> float:
+    """Air changes through gaps and open windows."""
+    speed_kmh = outside.speed_mps * 3.6
+    return (
+        LEAK_PER_HOUR
+        + LEAK_PER_HOUR_KMH * speed_kmh
+        + controls.windows_open * (WINDOW_PER_HOUR + WINDOW_PER_HOUR_KMH * speed_kmh)
+    )
+
+
+def _film(mass: float) -> float:
+    """Drops run down beyond twice what hides the road."""
+    return min(max(0.0, mass), 2 * FOG_OPAQUE)
+
+
+def _surface(middle_c: float, air_c: float, h: float) -> float:
+    """Surface of a pane: half its resistance lies between the surface and its middle."""
+    conductance = 2 / GLASS_RESISTANCE
+    return (conductance * middle_c + h * air_c) / (conductance + h)
+
+
+def _settled(cabin_c: float, outside: Air, wind: float) -> Pane:
+    resistance_in = 1 / INSIDE_STILL + GLASS_RESISTANCE / 2
+    resistance_out = 1 / (OUTSIDE_STILL + OUTSIDE_PER_MPS * wind * outside.speed_mps) + GLASS_RESISTANCE / 2
+    middle_c = (cabin_c / resistance_in + outside.temperature_c / resistance_out) / (
+        1 / resistance_in + 1 / resistance_out
+    )
+    inner_c = _surface(middle_c, cabin_c, INSIDE_STILL)
+    outer_c = _surface(middle_c, outside.temperature_c, OUTSIDE_STILL + OUTSIDE_PER_MPS * wind * outside.speed_mps)
+    return Pane(middle_c, inner_c, outer_c)
+
+
+def _wet(pane: Pane, dt_s: float, outside: Air, sweeps_per_minute: float) -> Pane:
+    """Rain falls on it, runs off and is wiped away; dew only is wiped."""
+    wiped_per_s = -math.log(1 - WIPED_SHARE) * sweeps_per_minute / 60
+    lost_per_s = wiped_per_s + 1 / RAIN_RUNS_OFF_S
+    falling = outside.rain_mm_h / 3600 * (1 + outside.speed_mps / 10)
+    steady = falling / lost_per_s
+    return replace(
+        pane,
+        rain=min(steady + (pane.rain - steady) * math.exp(-lost_per_s * dt_s), 3 * RAIN_OPAQUE),
+        dew=pane.dew * math.exp(-wiped_per_s * dt_s),
+    )
+
+
+def sweeps_per_minute(mode: str, rain_mm_h: float) -> float:
+    """Of a wiper in a VSS mode; the rain sensor wipes from drizzle on, faster in heavier rain."""
+    if mode != "RAIN_SENSOR":
+        return SWEEPS_PER_MINUTE[mode]
+    if rain_mm_h < 0.1:
+        return 0.0
+    return min(SWEEPS_PER_MINUTE["FAST"], 15.0 + 10.0 * rain_mm_h)

@@ -1,0 +1,144 @@
+"""Calls and messages, going out and coming in: what the driver has the phone do, and what reaches it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from automotive_cosim.cockpit.arrivals import RINGS_S, Arrival
+from automotive_cosim.cockpit.people import OnCall, PastCall, Received, Ringing
+from automotive_cosim.cockpit.signals import CALL, LINK
+from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.theme import Icon
+from automotive_cosim.contracts import Feedback, FeedbackCode
+
+NOT_LINKED = "No phone is linked: switch Bluetooth on first"
+
+
+def dial(state: State, who: str) -> Feedback:
+    """Calls somebody, if the phone is linked."""
+    if not state.signals[LINK.BLUETOOTH]:
+        return state.refused(NOT_LINKED)
+    state.phone = state.phone.called(who, state.clock, state.time_s)
+    state.calls += (who,)
+    tell(state)
+    return state.said(f"Calling {who}", Icon.CALL_OUT)
+
+
+def hang_up(state: State) -> Feedback:
+    """Ends the call that is going on."""
+    if state.phone.on_call is None:
+        return Feedback(FeedbackCode.NO_EFFECT, "there is no call")
+    who = state.phone.on_call.who
+    state.phone = replace(state.phone, on_call=None)
+    tell(state)
+    return Feedback(FeedbackCode.OK, f"the call with {who} is over")
+
+
+def answer(state: State) -> Feedback:
+    """Takes the call that rings."""
+    ringing = state.phone.ringing
+    if ringing is None:
+        return Feedback(FeedbackCode.NO_EFFECT, "nobody is calling")
+    state.phone = replace(
+        state.phone.logged(PastCall(ringing.who, state.clock, "in")),
+        ringing=None,
+        on_call=OnCall(ringing.who, state.time_s),
+        taken=(*state.phone.taken, ringing.who),
+    )
+    tell(state)
+    return Feedback(FeedbackCode.OK, f"you are on the phone with {ringing.who}")
+
+
+def decline(state: State) -> Feedback:
+    """Lets the caller know that the driver does not answer."""
+    ringing = state.phone.ringing
+    if ringing is None:
+        return Feedback(FeedbackCode.NO_EFFECT, "nobody is calling")
+    state.phone = replace(
+        state.phone.logged(PastCall(ringing.who, state.clock, "missed")),
+        ringing=None,
+        declined=(*state.phone.declined, ringing.who),
+    )
+    tell(state)
+    return Feedback(FeedbackCode.OK, f"the call of {ringing.who} is declined")
+
+
+def reply(state: State, to: str, text: str) -> Feedback:
+    """Sends a message; to somebody who is calling, it declines the call."""
+    if not state.signals[LINK.BLUETOOTH]:
+        return state.refused(NOT_LINKED)
+    if state.phone.ringing is not None and state.phone.ringing.who == to:
+        decline(state)
+    state.phone = state.phone.answered(to, text)
+    tell(state)
+    return state.said(f"Sent to {to}: {text}", Icon.REPLY)
+
+
+def read(state: State, who: str) -> Feedback:
+    """Reads out, or opens, what somebody wrote."""
+    thread = state.directory.thread(who, state.phone)
+    state.phone = state.phone.opened(who)
+    tell(state)
+    words = " ".join(thread.lines) if thread else ""
+    return Feedback(FeedbackCode.OK, f"{who} wrote: {words}")
+
+
+def receive(state: State) -> None:
+    """Takes in what arrives now, and lets a call stop ringing whose time is over or whose phone is gone."""
+    ringing = state.phone.ringing
+    linked = state.signals[LINK.BLUETOOTH]
+    if ringing is not None and (state.time_s - ringing.since_s >= RINGS_S or not linked):
+        state.phone = replace(state.phone, ringing=None)
+        _missed(state, ringing.who)
+    waiting = []
+    for arrival in state.expected:
+        if arrival.at_s > state.time_s - state.departed_s:
+            waiting.append(arrival)
+        elif arrival.kind == "call":
+            _ring(state, arrival, linked)
+        elif linked and _covered(state):
+            _take_in(state, arrival)
+        else:
+            waiting.append(arrival)
+    state.expected = tuple(waiting)
+    tell(state)
+
+
+def tell(state: State) -> None:
+    """The phone's state as signals."""
+    phone, signals = state.phone, state.signals
+    signals[CALL.RINGING] = "" if phone.ringing is None else phone.ringing.who
+    signals[CALL.PARTNER] = "" if phone.on_call is None else phone.on_call.who
+    signals[CALL.UNREAD] = float(len(state.directory.unread(phone)))
+
+
+def _covered(state: State) -> bool:
+    return state.outside is not None and state.outside.connectivity.online
+
+
+def _ring(state: State, arrival: Arrival, linked: bool) -> None:
+    """A call rings, unless nobody can or wants to hear it. Out of coverage or unlinked it never reaches the car."""
+    if not (linked and _covered(state)):
+        return
+    phone = state.phone
+    if phone.do_not_disturb or phone.on_call is not None or phone.ringing is not None:
+        _missed(state, arrival.who)
+    else:
+        state.phone = replace(phone, ringing=Ringing(arrival.who, state.time_s))
+
+
+def _missed(state: State, who: str) -> None:
+    state.phone = state.phone.logged(PastCall(who, state.clock, "missed"))
+    state.notify(
+        f"Missed call from {who}", Icon.CALL_MISSED, seen=state.phone.do_not_disturb, opens=("contact", who)
+    )
+
+
+def _take_in(state: State, arrival: Arrival) -> None:
+    state.phone = state.phone.received_from(Received(arrival.who, state.clock, arrival.text))
+    state.notify(
+        f"New message from {arrival.who}",
+        Icon.MESSAGE,
+        seen=state.phone.do_not_disturb,
+        opens=("thread", arrival.who),
+    )

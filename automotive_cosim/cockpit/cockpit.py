@@ -1,0 +1,542 @@
+"""The cockpit: what happens to the car and its screen when it is touched, and as time passes outside.
+
+    cockpit.sense(surroundings, dt_s)      what is outside -> signals, air, glass, battery
+    cockpit.tap(x, y) ...                  a finger -> a widget's message -> signals, app data, requests to the road
+    cockpit.drain_requests()               what it asks of the road; answered() brings the reply
+    cockpit.screenshot(), elements()       the same widget tree, drawn and listed
+
+Every action answers with a ``Feedback`` and never raises; a wrong one changes nothing. All of it is determined by
+the calls made: time comes from ``sense`` alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from difflib import get_close_matches
+from typing import Any, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+from PIL import Image
+
+from automotive_cosim.cockpit import accessibility, desk, media, people, places, update, vhal
+from automotive_cosim.cockpit.arrivals import Arrival, timeline
+from automotive_cosim.cockpit.cabin import CabinStart
+from automotive_cosim.cockpit.drawing import pixels_of
+from automotive_cosim.cockpit.map import road_map
+from automotive_cosim.cockpit.messages import Message, Pan
+from automotive_cosim.cockpit.navigation import Navigation
+from automotive_cosim.cockpit.render import render, repaint
+from automotive_cosim.cockpit.restrictions import REASONS, Restriction
+from automotive_cosim.cockpit.screens import APPS, SCREENS, picture
+from automotive_cosim.cockpit.sensing import sense
+from automotive_cosim.cockpit.signals import (
+    ADAS,
+    BODY,
+    ENERGY,
+    HVAC,
+    LIGHTS,
+    MOTION,
+    OUTSIDE,
+    Kind,
+    Signals,
+    named,
+)
+from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.theme import SCREEN_HEIGHT, SCREEN_WIDTH
+from automotive_cosim.cockpit.vehicle import Vehicle
+from automotive_cosim.cockpit.widgets import Field, MapView, Rows, Screen, Slider, Widget
+from automotive_cosim.contracts import (
+    Alert,
+    Answer,
+    Direction,
+    Element,
+    Feedback,
+    FeedbackCode,
+    RoadNetwork,
+    RoadRequest,
+    Surroundings,
+    VehicleState,
+)
+from automotive_cosim.errors import SignalError, UnknownNameError
+
+W = TypeVar("W", bound=Widget)
+
+APP_ALIASES = {
+    "maps": "map",
+    "navigation": "map",
+    "hvac": "climate",
+    "safety centre": "safety",
+    "music": "media",
+    "radio": "media",
+    "weather": "outside",
+    "phenomenon": "outside",
+    "comms": "phone",
+    "messages": "phone",
+    "system": "settings",
+    "road": "vehicle",
+    "memos": "memo",
+}
+"""Other names by which an app opens."""
+
+
+OPPOSITE = {
+    Direction.UP: Direction.DOWN,
+    Direction.DOWN: Direction.UP,
+    Direction.LEFT: Direction.RIGHT,
+    Direction.RIGHT: Direction.LEFT,
+}
+"""Which way a swipe looks."""
+PAN_SHARE = 0.4
+"""Of the map's width and height, by one swipe."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Frame:
+    """A tree and its picture, which is never drawn on again."""
+
+    screen: Screen
+    picture: Image.Image
+    pixels: npt.NDArray[np.uint8]
+
+
+class Cockpit:
+    """One car's cockpit. Copies are independent and cheap: they share only what never changes."""
+
+    WIDTH, HEIGHT = SCREEN_WIDTH, SCREEN_HEIGHT
+
+    def __init__(
+        self,
+        network: RoadNetwork,
+        *,
+        rng: np.random.Generator,
+        cabin: Mapping[str, Any] | None = None,
+        signals: Mapping[str, Any] | None = None,
+        arrivals: Sequence[Arrival] = (),
+        sign_camera: bool = True,
+        width: int = SCREEN_WIDTH,
+    ) -> None:
+        """A cockpit that has not looked outside yet.
+
+        Args:
+            network: for the map.
+            rng: draws what there is to listen to, places, people and what the driver has stored.
+            cabin: fields of ``CabinStart``.
+            signals: VSS paths and values before departure; actuators take what hangs on them along, in the order
+                given.
+            arrivals: calls and messages that come in while driving.
+            sign_camera: reads limit signs; without it no sign stands in the status bar.
+            width: of the screenshot in pixels; the height follows, 16 to 9.
+
+        Raises:
+            UnknownNameError: no such signal or initial condition.
+            SignalError: an illegal value, or one the car refuses.
+            UserError: an arrival that cannot be.
+        """
+        roads = road_map(network)
+        library, atlas, directory = media.library(rng), places.atlas(roads, rng), people.directory(rng)
+        self._state = State(
+            Vehicle(Signals()),
+            roads,
+            library,
+            atlas,
+            directory,
+            Navigation(favourites=atlas.favourites),
+            media.Listening(library.playlists, library.favourites),
+            people.Phone(directory.favourites),
+            desk.desk(rng, atlas),
+            sign_camera,
+            CabinStart.read(cabin or {}),
+        )
+        self._state.expected = timeline(arrivals, directory, rng)
+        self._state.picked = {**self._state.picked, "media.show": library.shows[0]}
+        self._width = width
+        for path, value in (signals or {}).items():
+            self._set_up(path, value)
+        update.settle(self._state)
+        self._tree: Screen | None = None
+        self._frame: _Frame | None = None
+        self._listing: accessibility.Listing | None = None
+
+    def copy(self) -> Cockpit:
+        """An independent copy."""
+        twin = Cockpit.__new__(Cockpit)
+        twin._state = self._state.copy()
+        twin._width = self._width
+        twin._tree = self._tree
+        twin._frame = self._frame
+        twin._listing = self._listing
+        return twin
+
+    # --- the world ----------------------------------------------------------------------------------------
+
+    def sense(self, surroundings: Surroundings, dt_s: float) -> None:
+        """Lets ``dt_s`` seconds pass; the surroundings are those at their end."""
+        sense(self._state, surroundings, dt_s)
+        for path, value in self._state.injected.items():
+            self.signals[named(path)] = value
+        self._tree = None
+
+    def inject(self, path: str, value: Any) -> None:
+        """Puts a signal to a value, past switches and physics: a state that a test or a study needs.
+
+        An actuator can be commanded again afterwards; a sensor goes on reading the value.
+
+        Raises:
+            UnknownNameError: no such signal.
+            SignalError: the value is illegal.
+        """
+        signal = named(path)
+        self.signals[signal] = value
+        if signal.kind is not Kind.ACTUATOR:
+            self._state.injected = {**self._state.injected, path: self.signals[signal]}
+        self._tree = None
+
+    def get_property(self, name: str, area: int = vhal.GLOBAL) -> Any:
+        """A signal under its VHAL name, in VHAL's unit; raises as ``vhal.get_property``."""
+        return vhal.get_property(self.signals, name, area)
+
+    def set_property(self, name: str, value: Any, area: int = vhal.GLOBAL) -> Feedback:
+        """Commands an actuator under its VHAL name; raises as ``vhal.resolve``."""
+        self._tree = None
+        return update.command(self._state, *vhal.resolve(name, value, area))
+
+    def drain_requests(self) -> tuple[RoadRequest, ...]:
+        """What the cockpit asks of the road since the last call."""
+        pending, self._state.pending = self._state.pending, ()
+        return pending
+
+    def answered(self, request: RoadRequest, answer: Answer) -> None:
+        """The road's reply to one of them."""
+        update.answered(self._state, request, answer)
+        self._tree = None
+
+    # --- fingers ------------------------------------------------------------------------------------------
+
+    def tap(self, x: int, y: int) -> Feedback:
+        """A short touch at a pixel of the screenshot."""
+        logical = self._logical(x, y)
+        widget = self._screen.at(*logical)
+        if widget is None:
+            return Feedback(FeedbackCode.NO_EFFECT, f"nothing at ({x}, {y}) reacts to a tap")
+        if not widget.usable:
+            return self._unusable(widget)
+        if isinstance(widget, Slider):
+            return self._perform(widget.message_at(logical[0]))
+        assert widget.on_tap is not None
+        return self._perform(widget.on_tap)
+
+    def double_tap(self, x: int, y: int) -> Feedback:
+        """Zooms into the map; elsewhere two taps."""
+        widget = self._screen.at(*self._logical(x, y)) or self._under(x, y, MapView)
+        if isinstance(widget, MapView) and widget.on_double_tap is not None:
+            return self._perform(widget.on_double_tap)
+        first = self.tap(x, y)
+        return self.tap(x, y) if first.code is FeedbackCode.OK else first
+
+    def long_press(self, x: int, y: int) -> Feedback:
+        """Nothing here has a second meaning for a long touch."""
+        widget = self._screen.at(*self._logical(x, y))
+        if widget is not None and not widget.usable:
+            return self._unusable(widget)
+        return Feedback(FeedbackCode.NO_EFFECT, f"nothing at ({x}, {y}) reacts to a long press")
+
+    def swipe(self, x: int, y: int, direction: Direction, distance_px: int | None = None) -> Feedback:
+        """Drags what lies under the finger: a slider, a list or the map.
+
+        Args:
+            x: where the finger comes down, in pixels of the screenshot.
+            y: likewise.
+            direction: which way it goes.
+            distance_px: how far. A slider takes the value where the finger is let go, a list moves by the rows it
+                passes, the map with it. Without it: a tenth of the range, a page, a good third of the map.
+        """
+        far = None if distance_px is None else distance_px / self._scale
+        slider = self._under(x, y, Slider)
+        if slider is not None and direction in (Direction.LEFT, Direction.RIGHT):
+            if not slider.usable:
+                return self._unusable(slider)
+            way = 1 if direction is Direction.RIGHT else -1
+            if far is not None:
+                return self._perform(slider.message_at(x / self._scale + way * far))
+            tenth = max(1, round((slider.signal.high - slider.signal.low) / slider.signal.step / 10))
+            return self._perform(slider.message_by(way * tenth))
+        rows = self._under(x, y, Rows)
+        if rows is not None:
+            return self._scroll(rows, OPPOSITE[direction], far)
+        view = self._under(x, y, MapView)
+        if view is not None and view.pans:
+            return self._pan(view, OPPOSITE[direction], far)
+        return Feedback(FeedbackCode.NO_EFFECT, f"nothing at ({x}, {y}) moves {direction}")
+
+    def scroll(self, resource_id: str | None, direction: Direction) -> Feedback:
+        """Moves a list on by a page; ``down`` reveals what lies below.
+
+        Args:
+            resource_id: of the list or something in it; without one the first list on the screen.
+            direction: which way to look.
+        """
+        lists = [widget for widget in self._screen.walk() if isinstance(widget, Rows)]
+        if resource_id:
+            if all(widget.key != resource_id for widget in self._screen.walk()):
+                return Feedback(FeedbackCode.NO_SUCH_ELEMENT, f"{resource_id} is not on the screen")
+            view = next((w for w in self._screen.walk() if w.key == resource_id and isinstance(w, MapView)), None)
+            if view is not None and view.pans:
+                return self._pan(view, direction)
+            lists = [rows for rows in lists if any(widget.key == resource_id for widget in rows.walk())]
+        if not lists:
+            return Feedback(FeedbackCode.NO_EFFECT, "there is nothing to scroll here")
+        return self._scroll(lists[0], direction)
+
+    def type_text(self, text: str, clear: bool = False) -> Feedback:
+        """Text into the field that has the focus, all at once: the keyboard folds."""
+        field = next((widget for widget in self._screen.walk() if isinstance(widget, Field)), None)
+        if field is None or not field.focused:
+            return Feedback(FeedbackCode.NO_SUCH_ELEMENT, "no text field has the focus; tap one first")
+        if field.locked:
+            return self._unusable(field)
+        kept = "" if clear else field.text
+        update.write(self._state, field.key, kept + text)
+        self._state.keyboard = False
+        self._tree = None
+        return Feedback(FeedbackCode.OK, f"the field reads {self._state.typed[field.key]!r}")
+
+    def key_enter(self) -> Feedback:
+        """Does what the field with the focus is for, mostly with the first result."""
+        if Restriction.NO_KEYBOARD in self._state.restrictions:
+            return Feedback(FeedbackCode.RESTRICTED, REASONS[Restriction.NO_KEYBOARD])
+        field = next((widget for widget in self._screen.walk() if isinstance(widget, Field)), None)
+        if field is None or not field.focused:
+            return Feedback(FeedbackCode.NO_SUCH_ELEMENT, "no text field has the focus; tap one first")
+        if field.on_enter is None:
+            return Feedback(FeedbackCode.REFUSED, f"nothing fits {field.text!r}")
+        self._state.focus = ""
+        return self._perform(field.on_enter)
+
+    def home(self) -> Feedback:
+        """To the home screen."""
+        return self.open_app("home")
+
+    def back(self) -> Feedback:
+        """To the screen before."""
+        self._tree = None
+        return update.back(self._state)
+
+    def open_app(self, name: str) -> Feedback:
+        """To an app by its name."""
+        wanted = " ".join(name.casefold().split())
+        wanted = APP_ALIASES.get(wanted, wanted)
+        if wanted not in APPS:
+            close = get_close_matches(wanted, APPS, n=1)
+            hint = f"did you mean {close[0]!r}?" if close else "there are " + ", ".join(APPS)
+            return Feedback(FeedbackCode.NO_SUCH_ELEMENT, f"no app is called {name[:40]!r}: {hint}")
+        if wanted in desk.TOOLS and wanted not in self._state.desk.installed:
+            return Feedback(FeedbackCode.REFUSED, f"{wanted} is not installed; the store has it")
+        self._tree = None
+        return update.show(self._state, wanted)
+
+    def visit(self, screen: str) -> Feedback:
+        """To any screen by its name, past the widgets that lead there: for pictures and studies.
+
+        Raises:
+            UnknownNameError: no such screen.
+        """
+        if screen not in SCREENS:
+            raise UnknownNameError("screen", screen, SCREENS)
+        self._tree = None
+        return update.show(self._state, screen)
+
+    # --- safety calls, the same as the safety centre's buttons ----------------------------------------------
+
+    def alert(self, alert: Alert) -> Feedback:
+        """Tells the driver something."""
+        self._tree = None
+        return update.give_alert(self._state, alert)
+
+    def hazards(self, on: bool) -> Feedback:
+        """Hazard lights on or off."""
+        self._tree = None
+        return update.command(self._state, LIGHTS.HAZARD, on)
+
+    def emergency_call(self) -> Feedback:
+        """Calls the emergency services."""
+        self._tree = None
+        return update.call_emergency(self._state)
+
+    def ask_road(self, request: RoadRequest) -> Feedback:
+        """Asks the driver or the router for something."""
+        self._tree = None
+        return update.ask_road(self._state, request)
+
+    # --- what can be seen of it -----------------------------------------------------------------------------
+
+    @property
+    def screen(self) -> str:
+        """Name of the screen that is shown."""
+        return self._state.screen
+
+    @property
+    def signals(self) -> Signals:
+        """The vehicle's signals."""
+        return self._state.signals
+
+    @property
+    def tree(self) -> Screen:
+        """The widgets on the display."""
+        return self._screen
+
+    def elements(self) -> tuple[Element, ...]:
+        """The accessibility tree as a list."""
+        screen = self._screen
+        if self._listing is None or self._listing.screen is not screen:
+            self._listing = accessibility.listing(screen, self._scale, self._listing)
+        return self._listing.elements
+
+    def screenshot(self) -> npt.NDArray[np.uint8]:
+        """The display, (height, width, 3), RGB, read-only; the same array as long as nothing changes."""
+        screen = self._screen
+        if self._frame is None or self._frame.screen is not screen:
+            if self._frame is not None and self._frame.screen == screen:
+                self._frame = replace(self._frame, screen=screen)
+            else:
+                self._frame = self._drawn(screen)
+        return self._frame.pixels
+
+    @property
+    def content(self) -> dict[str, tuple[str, ...]]:
+        """Names of what this cockpit holds, by kind, for tasks that ask for one of them.
+
+        ``contacts``, ``favourite_contacts``, ``threads`` and ``unread`` (who wrote, and whose messages were not
+        read yet), ``places``, ``favourite_places``, ``streets`` (neither among these nor hidden behind another
+        when searched for), ``playlists``, ``tracks``, ``podcasts``, ``fm``, ``dab`` (stations).
+        """
+        state = self._state
+        entries = state.library.sources
+        return {
+            "contacts": tuple(contact.name for contact in state.directory.contacts),
+            "favourite_contacts": state.directory.favourites,
+            "threads": tuple(thread.who for thread in state.directory.threads),
+            "unread": state.directory.unread(state.phone),
+            "places": tuple(place.name for place in state.atlas.places),
+            "favourite_places": state.navigation.favourites,
+            "streets": self._found_streets(),
+            "playlists": tuple(playlist.name for playlist in state.library.playlists),
+            "tracks": tuple(entry.title for entry in entries["BLUETOOTH"]),
+            "podcasts": state.library.shows,
+            "fm": tuple(entry.title for entry in entries["FM"]),
+            "dab": tuple(entry.title for entry in entries["DAB"]),
+        }
+
+    def commands(self) -> dict[str, Any]:
+        """All that can be commanded: actuators by path, app data, and what was sent out."""
+        return self._state.commands()
+
+    def vehicle_state(self) -> VehicleState:
+        """What the car's sensors and switches say."""
+        now = self.signals
+        return VehicleState(
+            speed_kmh=now[MOTION.SPEED],
+            gear=now[MOTION.GEAR],
+            restrictions=int(self._state.restrictions),
+            ambient_temperature_c=now[OUTSIDE.TEMPERATURE],
+            cabin_temperature_c=now[HVAC.CABIN_TEMPERATURE],
+            cabin_humidity_pct=now[HVAC.CABIN_HUMIDITY],
+            rain_intensity_pct=now[BODY.RAIN_INTENSITY],
+            driver_temperature_set_c=now[HVAC.DRIVER_TEMPERATURE],
+            fan_speed_pct=now[HVAC.FAN_SPEED],
+            is_low_beam_on=now[LIGHTS.LOW_BEAM],
+            is_high_beam_on=now[LIGHTS.HIGH_BEAM],
+            is_front_fog_on=now[LIGHTS.FRONT_FOG],
+            is_rear_fog_on=now[LIGHTS.REAR_FOG],
+            is_hazard_on=now[LIGHTS.HAZARD],
+            energy_level_pct=now[ENERGY.LEVEL],
+            range_km=now[ENERGY.RANGE] / 1000,
+            speed_limit_sign_kmh=now[ADAS.LIMIT_SIGN],
+            leader_gap_m=now[ADAS.LEADER_DISTANCE],
+            leader_time_to_collision_s=now[ADAS.LEADER_TIME_TO_COLLISION],
+        )
+
+    # --- inside -------------------------------------------------------------------------------------------
+
+    @property
+    def _screen(self) -> Screen:
+        if self._tree is None:
+            self._tree = picture(self._state)
+        return self._tree
+
+    @property
+    def _scale(self) -> float:
+        return self._width / SCREEN_WIDTH
+
+    def _drawn(self, screen: Screen) -> _Frame:
+        """Anew, or where it differs from the last frame."""
+        if self._frame is None:
+            picture = render(screen, self._width, round(self._width * SCREEN_HEIGHT / SCREEN_WIDTH)).image
+            return _Frame(screen, picture, pixels_of(picture))
+        picture, boxes = repaint(self._frame.screen, self._frame.picture, screen)
+        pixels = self._frame.pixels.copy()
+        for box in boxes:
+            edges = box.edges(self._scale)
+            left, top, right, bottom = edges
+            pixels[top:bottom, left:right] = pixels_of(picture.crop(edges))
+        pixels.flags.writeable = False
+        return _Frame(screen, picture, pixels)
+
+    def _logical(self, x: int, y: int) -> tuple[float, float]:
+        return x / self._scale, y / self._scale
+
+    def _perform(self, message: Message) -> Feedback:
+        self._tree = None
+        return update.perform(self._state, message)
+
+    def _unusable(self, widget: Widget) -> Feedback:
+        if widget.locked:
+            return Feedback(FeedbackCode.RESTRICTED, widget.locked)
+        return Feedback(FeedbackCode.DISABLED, widget.disabled)
+
+    def _scroll(self, rows: Rows, direction: Direction, far: float | None = None) -> Feedback:
+        """By a page, or by the rows in so many logical pixels."""
+        by = max(1, rows.shown - 1 if far is None else round(far * rows.shown / rows.rect.height))
+        step = by * {Direction.DOWN: 1, Direction.UP: -1}.get(direction, 0)
+        first = min(rows.last_first, max(0, rows.first + step))
+        if first == rows.first:
+            return Feedback(FeedbackCode.NO_EFFECT, f"{rows.key} does not go further {direction}")
+        self._state.scrolled = {**self._state.scrolled, rows.key: first}
+        self._tree = None
+        return Feedback(
+            FeedbackCode.OK, f"{rows.key} shows rows {first + 1} to {first + rows.shown} of {rows.total}"
+        )
+
+    def _pan(self, view: MapView, direction: Direction, far: float | None = None) -> Feedback:
+        """Looks that way by so many logical pixels, or by a good third of what is in sight."""
+        across = {Direction.RIGHT: 1, Direction.LEFT: -1}.get(direction, 0)
+        down = {Direction.DOWN: 1, Direction.UP: -1}.get(direction, 0)
+        wide, high = (PAN_SHARE * view.rect.width, PAN_SHARE * view.rect.height) if far is None else (far, far)
+        return self._perform(Pan(across * wide, down * high))
+
+    def _under(self, x: int, y: int, kind: type[W]) -> W | None:
+        """The uppermost widget of a kind under a pixel."""
+        logical = self._logical(x, y)
+        found = [w for w in self._screen.walk() if isinstance(w, kind) and w.rect.contains(*logical)]
+        return found[-1] if found else None
+
+    def _found_streets(self) -> tuple[str, ...]:
+        """Streets that are the first thing found by their name, and not among the favourites."""
+        state = self._state
+        found = "\n".join(("", *(place.name for place in state.atlas.places), *state.roads.names, "")).casefold()
+        return tuple(
+            name
+            for name in state.roads.names
+            if name not in state.navigation.favourites
+            and found.find(name.casefold()) == found.find(f"\n{name.casefold()}\n") + 1
+        )
+
+    def _set_up(self, path: str, value: Any) -> None:
+        signal = named(path)
+        if signal.kind is not Kind.ACTUATOR:
+            self.signals[signal] = value
+            return
+        refusal = self._state.vehicle.command(signal, value)
+        if refusal:
+            raise SignalError(f"{path} can't start as {value!r}: {refusal}")

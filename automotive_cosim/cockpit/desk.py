@@ -1,0 +1,243 @@
+"""What the smaller apps keep: memos, parking tickets, times set, seats remembered; and what the manual says."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from automotive_cosim.cockpit.places import Atlas, Kind
+from automotive_cosim.cockpit.signals import HMI, HVAC, MIRROR, SEAT, Signal, Signals
+from automotive_cosim.cockpit.theme import Icon
+
+TOOLS: Mapping[str, tuple[str, Icon, str]] = {
+    "charging": ("Charging", Icon.CHARGING, "Charge limit, times and stations nearby"),
+    "parking": ("Parking", Icon.TICKET, "Pay for a parking space from the car"),
+    "manual": ("Manual", Icon.MANUAL, "The owner's handbook, to search in"),
+    "memo": ("Memos", Icon.MEMO, "Spoken notes"),
+    "trip": ("Trip", Icon.TRIP, "Distance, time and consumption"),
+    "calendar": ("Calendar", Icon.CALENDAR, "Today's appointments and how to get there"),
+}
+"""Apps that can be installed: title, icon and what each is for."""
+PREINSTALLED = ("charging", "parking", "manual", "memo", "trip")
+REMEMBERED: tuple[Signal[float], ...] = (
+    SEAT.DRIVER_POSITION,
+    SEAT.DRIVER_HEIGHT,
+    SEAT.DRIVER_RECLINE,
+    SEAT.DRIVER_LUMBAR,
+    MIRROR.DRIVER_PAN,
+    MIRROR.DRIVER_TILT,
+    MIRROR.PASSENGER_PAN,
+    MIRROR.PASSENGER_TILT,
+)
+"""What a place of the seat's memory holds."""
+PROFILES = ("Driver 1", "Driver 2", "Guest")
+NETWORKS = ("Home-5G", "CityFree", "Garage", "Coffee-Guest")
+DEVICES = ("Driver's phone", "Second phone", "Tablet")
+MANUAL: tuple[tuple[str, Icon, str], ...] = (
+    (
+        "Windows are fogged",
+        Icon.DEFROST_FRONT,
+        "Fog inside: blow dry air at the windshield with the front defroster, and switch recirculation off. Fog "
+        "outside: use the wipers. The rear window has a heater of its own.",
+    ),
+    (
+        "Fog lamps",
+        Icon.REAR_FOG,
+        "Front fog lamps work with position lamps or low beam, the rear one with low beam or front fog lamps. "
+        "When they may be lit is a matter of local law: the rear fog lamp dazzles those behind.",
+    ),
+    (
+        "Tyre pressures",
+        Icon.TYRE,
+        "Check them cold. The pressure falls by about a tenth of a bar for every ten degrees that it gets colder. "
+        "Add air when a tyre is a fifth below the value on the door frame.",
+    ),
+    (
+        "Cruise control",
+        Icon.CRUISE,
+        "It holds the set speed and, when adaptive, the chosen gap to the car in front. The limiter lets you "
+        "accelerate up to its speed but not beyond. Only one of them is active at a time.",
+    ),
+    (
+        "Saving range",
+        Icon.BATTERY,
+        "Drive slower, use economy mode, and warm the seats rather than the air: a seat takes a tenth of it.",
+    ),
+    (
+        "Driving on ice",
+        Icon.SLIPPERY,
+        "Snow mode softens the throttle. Keep stability control on, leave a gap several times as long as usual, "
+        "and brake early and gently.",
+    ),
+    (
+        "Child safety",
+        Icon.CHILD,
+        "Child locks keep the rear doors from being opened from inside; the window lock blocks the rear switches.",
+    ),
+    (
+        "After a crash",
+        Icon.PHONE_ALERT,
+        "Switch the hazard lights on, call for help from the safety centre, which sends the position, and wait "
+        "beyond the barrier.",
+    ),
+    (
+        "Charging",
+        Icon.CHARGING,
+        "For daily driving charge to 80 %. Above that the battery takes power ever more slowly.",
+    ),
+    (
+        "Mirrors and seats",
+        Icon.SEAT,
+        "Set the seat first, then the mirrors. Up to three positions can be stored and recalled while parked.",
+    ),
+)
+"""Topic, icon and text."""
+APPOINTMENTS = 4
+_OCCASIONS = (
+    ("Check-up", Kind.HOSPITAL),
+    ("Team meeting", Kind.WORK),
+    ("A meal with Nora", Kind.RESTAURANT),
+    ("Parents' evening", Kind.SCHOOL),
+    ("Training", Kind.GYM),
+    ("Groceries", Kind.SHOP),
+    ("Meet the visitors", Kind.STATION),
+)
+ZONES = ("Zone A", "Zone B", "Zone C")
+PRICES = {"Zone A": 4.0, "Zone B": 2.5, "Zone C": 1.2}
+"""Of an hour."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ticket:
+    """A parking space that was paid for; money does not come back."""
+
+    zone: str
+    minutes: int
+    price: float
+    until: str
+
+
+@dataclass(frozen=True, slots=True)
+class Timer:
+    """A time of day at which something is to happen."""
+
+    on: bool = False
+    minute: int = 7 * 60
+    """Of the day."""
+
+    @property
+    def shown(self) -> str:
+        """Hours and minutes."""
+        return f"{self.minute // 60:02d}:{self.minute % 60:02d}"
+
+    def moved(self, minutes: int) -> Timer:
+        """Set to another time of the day."""
+        return replace(self, minute=(self.minute + minutes) % 1440)
+
+
+@dataclass(frozen=True, slots=True)
+class Profile:
+    """What a driver likes: values of signals."""
+
+    name: str
+    values: tuple[tuple[Signal[Any], Any], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Appointment:
+    """An entry of the calendar."""
+
+    at: str
+    title: str
+    place: str
+
+
+@dataclass(frozen=True, slots=True)
+class Desk:
+    """Everything the driver has set or made in the smaller apps."""
+
+    memory: tuple[tuple[float, ...], ...]
+    """Values of ``REMEMBERED`` by place of the memory."""
+    profiles: tuple[Profile, ...]
+    agenda: tuple[Appointment, ...]
+    profile: str = PROFILES[0]
+    installed: tuple[str, ...] = PREINSTALLED
+    memos: tuple[str, ...] = ()
+    recording_since_s: float | None = None
+    zone: str = ZONES[0]
+    minutes: int = 60
+    tickets: tuple[Ticket, ...] = ()
+    climate_at: Timer = Timer()
+    charge_by: Timer = Timer()
+    network: str = ""
+    device: str = DEVICES[0]
+    resets: int = 0
+    trip_from: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Driven metres, time and battery when the trip computer was reset."""
+
+    def with_memory(self, slot: int, signals: Signals) -> Desk:
+        """The seat as it stands now, kept in a place of the memory."""
+        values = tuple(signals[signal] for signal in REMEMBERED)
+        return replace(self, memory=(*self.memory[:slot], values, *self.memory[slot + 1 :]))
+
+    def with_app(self, name: str, wanted: bool) -> Desk:
+        """With or without that app."""
+        return replace(
+            self, installed=tuple(app for app in TOOLS if (wanted if app == name else app in self.installed))
+        )
+
+    def commands(self) -> dict[str, Any]:
+        """What was set, made and paid."""
+        return {
+            "apps.installed": list(self.installed),
+            "apps.memos": list(self.memos),
+            "apps.recording": self.recording_since_s is not None,
+            "parking.zone": self.zone,
+            "parking.minutes": self.minutes,
+            "payments": [{"zone": t.zone, "minutes": t.minutes, "price": t.price} for t in self.tickets],
+            "climate.schedule": self.climate_at.shown if self.climate_at.on else "",
+            "charging.schedule": self.charge_by.shown if self.charge_by.on else "",
+            "seat.memory": [list(values) for values in self.memory],
+            "driver.profile": self.profile,
+            "wifi.network": self.network,
+            "bluetooth.device": self.device,
+            "trip.resets": self.resets,
+        }
+
+
+def desk(rng: np.random.Generator, atlas: Atlas) -> Desk:
+    """Draws what others have stored before, and the day's appointments at places of the network."""
+    memory = tuple(_seat(rng) for _ in range(3))
+    hours = np.sort(rng.choice(np.arange(8, 21), APPOINTMENTS, replace=False))
+    agenda = []
+    for hour, at in zip(hours, rng.permutation(len(_OCCASIONS))[:APPOINTMENTS], strict=True):
+        title, kind = _OCCASIONS[int(at)]
+        there = atlas.of(kind)
+        if there:
+            place = there[int(rng.integers(len(there)))].name
+            agenda.append(Appointment(f"{hour:02d}:{30 * int(rng.integers(2)):02d}", title, place))
+    profiles = tuple(_profile(name, values) for name, values in zip(PROFILES, memory, strict=True))
+    return Desk(memory, profiles, tuple(agenda))
+
+
+def _seat(rng: np.random.Generator) -> tuple[float, ...]:
+    def step(signal: Signal[float]) -> float:
+        steps = int(rng.integers(round((signal.high - signal.low) / signal.step) // 2 + 1))
+        return signal.low + (steps + round((signal.high - signal.low) / signal.step) // 4) * signal.step
+
+    return tuple(step(signal) for signal in REMEMBERED)
+
+
+def _profile(name: str, seat: tuple[float, ...]) -> Profile:
+    warmth = {"Driver 1": 21.0, "Driver 2": 22.5, "Guest": 20.0}[name]
+    return Profile(
+        name,
+        (
+            *zip(REMEMBERED, seat, strict=True),
+            (HVAC.DRIVER_TEMPERATURE, warmth),
+            (HMI.BRIGHTNESS, 80.0 if name == "Driver 2" else 70.0),
+        ),
+    )

@@ -1,0 +1,141 @@
+"""What the driver has the phone, the music and the smaller apps do."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from datetime import timedelta
+
+from automotive_cosim.cockpit import calls
+from automotive_cosim.cockpit.desk import PRICES, Ticket
+from automotive_cosim.cockpit.media import Entry, queue
+from automotive_cosim.cockpit.messages import (
+    Decline,
+    Dial,
+    HangUp,
+    Honk,
+    Message,
+    Pay,
+    Read,
+    Record,
+    Reply,
+    ResetTrip,
+    TakeCall,
+    Wash,
+)
+from automotive_cosim.cockpit.signals import BODY, DRIVE, ENERGY, LINK, MEDIA
+from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.theme import Icon
+from automotive_cosim.contracts import Feedback, FeedbackCode
+
+WASH_PCT = 2.0
+"""Of the washer's tank, a wash."""
+
+
+def run(state: State, message: Message) -> Feedback:
+    """Runs one errand."""
+    match message:
+        case Dial(who):
+            return calls.dial(state, who)
+        case HangUp():
+            return calls.hang_up(state)
+        case TakeCall():
+            return calls.answer(state)
+        case Decline():
+            return calls.decline(state)
+        case Reply(to, text):
+            return calls.reply(state, to, text)
+        case Read(who):
+            return calls.read(state, who)
+        case Pay():
+            return _pay(state)
+        case Record():
+            return _record(state)
+        case ResetTrip():
+            return _reset_trip(state)
+        case Honk():
+            state.horns += 1
+            state.signals[DRIVE.HORN] = True
+            return Feedback(FeedbackCode.OK, "the horn sounds")
+        case Wash():
+            return _wash(state)
+        case _:
+            raise TypeError(f"{message} is not known")
+
+
+def _pay(state: State) -> Feedback:
+    if not state.signals[LINK.ONLINE] or state.outside is None:
+        return state.refused("Paying needs a connection")
+    desk = state.desk
+    until = state.clock_at(state.outside.local_time + timedelta(minutes=desk.minutes))
+    ticket = Ticket(desk.zone, desk.minutes, price(desk.zone, desk.minutes), until)
+    state.desk = replace(desk, tickets=(*desk.tickets, ticket))
+    return state.said(f"Paid {ticket.price:.2f}: {desk.zone} until {until}", Icon.TICKET)
+
+
+def price(zone: str, minutes: int) -> float:
+    """Of a parking space."""
+    return round(PRICES[zone] * minutes / 60, 2)
+
+
+def _record(state: State) -> Feedback:
+    since = state.desk.recording_since_s
+    if since is None:
+        state.desk = replace(state.desk, recording_since_s=state.time_s)
+        return Feedback(FeedbackCode.OK, "the memo is being recorded")
+    seconds = int(state.time_s - since)
+    memo = f"Memo {len(state.desk.memos) + 1}, {state.clock}, {seconds // 60}:{seconds % 60:02d}"
+    state.desk = replace(state.desk, recording_since_s=None, memos=(*state.desk.memos, memo))
+    return Feedback(FeedbackCode.OK, f"{memo} is kept")
+
+
+def _reset_trip(state: State) -> Feedback:
+    state.desk = replace(state.desk, resets=state.desk.resets + 1, trip_from=odometer(state))
+    return Feedback(FeedbackCode.OK, "the trip computer counts from here")
+
+
+def odometer(state: State) -> tuple[float, float, float]:
+    """Driven metres, simulation time and battery level."""
+    driven_m = 0.0 if state.outside is None else state.outside.driving.distance_m
+    return driven_m, state.time_s, state.signals[ENERGY.LEVEL]
+
+
+def _wash(state: State) -> Feedback:
+    left = state.signals[BODY.WASHER_FLUID]
+    if left < WASH_PCT:
+        return state.refused("The washer's tank is empty")
+    state.signals[BODY.WASHER_FLUID] = left - WASH_PCT
+    state.washes += 1
+    return state.said("The windshield is washed", Icon.WASHER)
+
+
+# --- music ------------------------------------------------------------------------------------------------
+
+
+def start(state: State, entry: Entry) -> None:
+    """The entry plays from its beginning."""
+    signals = state.signals
+    state.played_s = 0.0
+    signals[MEDIA.PLAYED], signals[MEDIA.TRACK], signals[MEDIA.ARTIST] = entry.uri, entry.title, entry.by
+
+
+def skipped(state: State, by: int) -> str:
+    """Address of the entry so many places on in the queue."""
+    signals = state.signals
+    entries = queue(state.library, state.listening, signals[MEDIA.SOURCE], signals[MEDIA.SHUFFLE])
+    uris = [entry.uri for entry in entries]
+    now = uris.index(signals[MEDIA.PLAYED]) if signals[MEDIA.PLAYED] in uris else -by
+    return uris[(now + by) % len(uris)]
+
+
+def play_on(state: State, dt_s: float) -> None:
+    """The music goes on; at an entry's end comes the next, or the same again."""
+    signals = state.signals
+    entry = state.library.by_uri[signals[MEDIA.PLAYED]]
+    if signals[MEDIA.ACTION] != "PLAY" or entry.length_s is None:
+        return
+    state.played_s += dt_s
+    if state.played_s >= entry.length_s:
+        late_s = state.played_s - entry.length_s
+        uri = entry.uri if signals[MEDIA.REPEAT] else skipped(state, 1)
+        start(state, state.library.by_uri[uri])
+        state.played_s = late_s

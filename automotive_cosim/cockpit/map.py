@@ -1,0 +1,263 @@
+"""The network as the moving map sees it: what lies in sight of a camera, and which names fit."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+import numpy.typing as npt
+from shapely import Geometry, LineString, Polygon, STRtree, box
+
+from automotive_cosim.cockpit.drawing import text_width
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.theme import Type
+from automotive_cosim.contracts import Road, RoadNetwork
+
+MOTORWAYS = frozenset({"motorway", "trunk", "motorway_link", "trunk_link"})
+AVENUES = frozenset({"primary", "secondary", "primary_link", "secondary_link"})
+QUIET = frozenset({"service", "living_street", "track", "footway", "pedestrian"})
+ZOOMS_M_PER_PX = (0.5, 0.9, 1.6, 2.8, 5.0)
+NAMES_AT_MOST = 9
+SHARP_RAD = 0.2
+EGO_DOWN = 0.68
+"""The ego stands this far down the map, so that more lies ahead."""
+
+
+@dataclass(frozen=True, slots=True)
+class Camera:
+    """Where the map looks from."""
+
+    x_m: float
+    y_m: float
+    heading_deg: float
+    """What is up."""
+    metres_per_pixel: float
+    down: float = EGO_DOWN
+    """How far down the map its point lies, as a share of the height."""
+
+
+def whole_heading_deg(heading_deg: float) -> float:
+    """What a map that turns with the car has upwards: in steps of two degrees, so as to stay still."""
+    return round(heading_deg / 2) * 2.0 % 360
+
+
+def camera_of(
+    roads: RoadMap, ego: tuple[float, float, float] | None, metres_per_pixel: float, north_up: bool = False
+) -> Camera:
+    """Over the car (x, y and heading), or over the middle of the network while it is not known where the car is."""
+    x_min, y_min, x_max, y_max = roads.network.bounds_m
+    x_m, y_m, heading_deg = ego or ((x_min + x_max) / 2, (y_min + y_max) / 2, 0.0)
+    if north_up:
+        return Camera(round(x_m, 1), round(y_m, 1), 0.0, metres_per_pixel, 0.5)
+    return Camera(round(x_m, 1), round(y_m, 1), whole_heading_deg(heading_deg), metres_per_pixel)
+
+
+@dataclass(frozen=True, slots=True)
+class StreetName:
+    """A name on the map and where it stands on the screen."""
+
+    text: str
+    rect: Rect
+
+
+class RoadMap:
+    """The network, indexed for drawing. Built once; shared by all copies of a cockpit."""
+
+    def __init__(self, network: RoadNetwork) -> None:
+        """Indexes the roads; a tenth of a second for ten thousand."""
+        self.network = network
+        self.roads = tuple(road for road in network.roads if len(road.shape_m) > 1)
+        shapes = [np.asarray(road.shape_m, dtype=np.float64) for road in self.roads]
+        lines: list[Geometry] = [LineString(shape) for shape in shapes]
+        self._tree = STRtree(lines)
+        self._points = np.concatenate(shapes) if shapes else np.empty((0, 2))
+        self._starts = np.cumsum([0, *(len(shape) for shape in shapes)])
+        self._rounded = np.concatenate([_bends(shape) for shape in shapes]) if shapes else np.empty(0, dtype=bool)
+        self._middles = np.array([_middle(shape) for shape in shapes]).reshape(-1, 2)
+        self._named = np.array([bool(road.name) for road in self.roads], dtype=bool)
+        self._lengths = np.array([road.length_m for road in self.roads])
+        self._ranks = np.array([_rank(road) for road in self.roads], dtype=np.int64)
+        in_tunnel = np.array([road.in_tunnel for road in self.roads], dtype=bool)
+        self._depths = np.where(in_tunnel, -1, self._ranks)
+        self._index = {road.edge_id: i for i, road in enumerate(self.roads)}
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Street names, sorted."""
+        return tuple(sorted({road.name for road in self.roads if road.name}))
+
+    def find(self, edge_id: str) -> Road | None:
+        """The road of that edge."""
+        at = self._index.get(edge_id)
+        return None if at is None else self.roads[at]
+
+    def in_sight(self, view: View, width: float, height: float) -> list[Stroke]:
+        """What a picture of that size shows, the uppermost last: tunnels, then the lesser roads, then the greater.
+
+        From further away quiet roads are left out, then side streets.
+        """
+        found = self._tree.query(view.sight(width, height), predicate="intersects")
+        found = found[self._ranks[found] >= _least_rank(view.camera.metres_per_pixel)]
+        return self._strokes(found[np.lexsort((found, self._depths[found]))], view)
+
+    def strokes(self, edges: Iterable[str], view: View) -> list[Stroke]:
+        """Those of the edges that there are, in their order, in sight or not."""
+        found = [self._index[edge] for edge in edges if edge in self._index]
+        return self._strokes(np.array(found, dtype=np.int64), view)
+
+    def names_in_sight(self, area: Rect, camera: Camera, avoid: tuple[Rect, ...]) -> tuple[StreetName, ...]:
+        """Street names to write on a map that fills ``area``: the greatest roads first, none over another.
+
+        Args:
+            area: where the map is on the screen.
+            camera: what it shows.
+            avoid: boxes that must stay free.
+        """
+        view = View(camera, 1 / camera.metres_per_pixel, area.width / 2, area.height * camera.down)
+        found = self._tree.query(view.bounds(area.width, area.height))
+        middles = view.pixels(self._middles[found])
+        inside = np.all((middles > 0) & (middles < (area.width, area.height)), axis=1) & self._named[found]
+        found, middles = found[inside], middles[inside] + np.array((area.x, area.y))
+        order = np.lexsort((found, -self._lengths[found], -self._ranks[found]))
+        ego = Rect(area.x + area.width // 2, area.y + round(area.height * camera.down), 0, 0).inset(-34)
+        taken = [(box.x - 6, box.y - 6, box.right + 6, box.bottom + 6) for box in (*avoid, ego)]
+        names, room = dict[str, StreetName](), area.inset(4)
+        for road, (x, y) in zip(found[order].tolist(), middles[order].astype(int).tolist(), strict=True):
+            text = self.roads[road].name
+            if text in names:
+                continue
+            wide = _plate_width(text)
+            left, top = x + -wide // 2, y - 12
+            right, bottom = left + wide, top + 24
+            if left < room.x or top < room.y or right > room.right or bottom > room.bottom:
+                continue
+            if not any(left < t[2] and t[0] < right and top < t[3] and t[1] < bottom for t in taken):
+                taken.append((left - 6, top - 6, right + 6, bottom + 6))
+                names[text] = StreetName(text, Rect(left, top, wide, 24))
+            if len(names) == NAMES_AT_MOST:
+                break
+        return tuple(names.values())
+
+    def _strokes(self, found: npt.NDArray[np.int64], view: View) -> list[Stroke]:
+        starts, ends = self._starts[found], self._starts[found + 1]
+        picked = np.concatenate([np.arange(a, b) for a, b in zip(starts, ends, strict=True)] or [np.empty(0, int)])
+        flat = view.pixels(self._points[picked]).ravel().tolist()
+        rounded = self._rounded[picked].tolist()
+        strokes, at = [], 0
+        for i, count in zip(found.tolist(), (ends - starts).tolist(), strict=True):
+            line = flat[2 * at : 2 * (at + count)]
+            joints = [(line[2 * k], line[2 * k + 1]) for k in range(count) if rounded[at + k]]
+            strokes.append(Stroke(self.roads[i], int(self._ranks[i]), line, joints))
+            at += count
+        return strokes
+
+
+_recent: list[RoadMap] = []
+
+
+def road_map(network: RoadNetwork) -> RoadMap:
+    """The network's index, made once for the networks used last: every episode in a scenario has the same one."""
+    for known in _recent:
+        if known.network is network:
+            return known
+    _recent.insert(0, RoadMap(network))
+    del _recent[4:]
+    return _recent[0]
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """From metres of the network to pixels of a picture."""
+
+    camera: Camera
+    per_metre: float
+    x: float
+    """Where the camera's point lies, in pixels."""
+    y: float
+
+    def pixels(self, points_m: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+        """From metres of the network to pixels, the heading upwards."""
+        cos, sin = self._turn
+        dx, dy = points_m[:, 0] - self.camera.x_m, points_m[:, 1] - self.camera.y_m
+        return np.stack(
+            (self.x + self.per_metre * (dx * cos - dy * sin), self.y - self.per_metre * (dx * sin + dy * cos)),
+            axis=1,
+        )
+
+    def pixel(self, x_m: float, y_m: float) -> tuple[float, float]:
+        """The same for one point."""
+        cos, sin = self._turn
+        dx, dy = x_m - self.camera.x_m, y_m - self.camera.y_m
+        return self.x + self.per_metre * (dx * cos - dy * sin), self.y - self.per_metre * (dx * sin + dy * cos)
+
+    def metres(self, x: float, y: float) -> tuple[float, float]:
+        """Back from pixels of the picture to metres."""
+        cos, sin = self._turn
+        across, up = (x - self.x) / self.per_metre, (self.y - y) / self.per_metre
+        return self.camera.x_m + across * cos + up * sin, self.camera.y_m - across * sin + up * cos
+
+    def sight(self, width: float, height: float) -> Polygon:
+        """What a picture of that size shows, in metres of the network."""
+        return Polygon(self._corners(width, height))
+
+    def bounds(self, width: float, height: float) -> Polygon:
+        """The box around that along the network's axes."""
+        across, up = zip(*self._corners(width, height), strict=True)
+        around: Polygon = box(min(across), min(up), max(across), max(up))
+        return around
+
+    def _corners(self, width: float, height: float) -> list[tuple[float, float]]:
+        return [self.metres(x, y) for x, y in ((0, 0), (width, 0), (width, height), (0, height))]
+
+    @property
+    def _turn(self) -> tuple[float, float]:
+        angle = math.radians(self.camera.heading_deg)
+        return math.cos(angle), math.sin(angle)
+
+
+@dataclass(frozen=True, slots=True)
+class Stroke:
+    """One road in pixels."""
+
+    road: Road
+    rank: int
+    """0 quiet to 4 motorway."""
+    line: list[float]
+    """x, y, x, y, …"""
+    joints: list[tuple[float, float]]
+    """Ends and sharp bends, to be drawn round."""
+
+
+@lru_cache(maxsize=4096)
+def _plate_width(text: str) -> int:
+    return round(text_width(text, Type.SMALL)) + 16
+
+
+def _bends(shape: npt.NDArray[np.float64]) -> npt.NDArray[np.bool_]:
+    """Which points of a line need a round joint: its ends, and where it turns by more than that."""
+    steps = np.diff(shape, axis=0)
+    angles = np.unwrap(np.arctan2(steps[:, 1], steps[:, 0]))
+    sharp = np.abs(np.diff(angles)) > SHARP_RAD
+    return np.concatenate(([True], sharp, [True]))
+
+
+def _middle(shape: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    return np.asarray((shape[(len(shape) - 1) // 2] + shape[len(shape) // 2]) / 2)
+
+
+def _rank(road: Road) -> int:
+    """How great a road it is: the greater, the further up and the further away it is drawn."""
+    if road.road_class in MOTORWAYS:
+        return 4
+    if road.road_class in AVENUES:
+        return 3
+    return 1 if road.road_class in QUIET else 2
+
+
+def _least_rank(metres_per_pixel: float) -> int:
+    if metres_per_pixel < 1.5:
+        return 0
+    return 2 if metres_per_pixel < 4 else 3

@@ -1,0 +1,80 @@
+"""What the moving map shows now: where it looks, the ways, and marks of what lies ahead."""
+
+from __future__ import annotations
+
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.map import ZOOMS_M_PER_PX, Camera, RoadMap, View, camera_of
+from automotive_cosim.cockpit.mapdraw import Scene
+from automotive_cosim.cockpit.state import State
+
+Ego = tuple[float, float, float]
+"""x and y in metres, heading in degrees."""
+
+
+def ego(state: State) -> Ego | None:
+    """Where the car is; None before the first look outside."""
+    if state.outside is None:
+        return None
+    driving = state.outside.driving
+    return round(driving.x_m, 1), round(driving.y_m, 1), round(driving.heading_deg, 1)
+
+
+def map_camera(state: State) -> Camera:
+    """Of the map app: over the car, or where the driver has moved it, then with north up."""
+    metres_per_pixel = ZOOMS_M_PER_PX[state.zoom]
+    if state.panned is not None:
+        return Camera(round(state.panned[0], 1), round(state.panned[1], 1), 0.0, metres_per_pixel, 0.5)
+    return camera_of(state.roads, ego(state), metres_per_pixel, state.north_up)
+
+
+def panned(state: State, right: float, down: float) -> tuple[float, float]:
+    """Where the map looks after it was moved by so many logical pixels, at most to the network's edge."""
+    camera = map_camera(state)
+    x_m, y_m = View(camera, 1 / camera.metres_per_pixel, 0.0, 0.0).metres(right, down)
+    x_min, y_min, x_max, y_max = state.roads.network.bounds_m
+    return min(max(x_m, x_min), x_max), min(max(y_m, y_min), y_max)
+
+
+def scene(state: State, camera: Camera) -> Scene:
+    """All that is drawn beside the roads."""
+    if state.outside is None:
+        return Scene(camera)
+    ahead = state.outside.driving.ahead
+    others = tuple(other.edges for other in ahead.alternatives)
+    return Scene(camera, ego(state), ahead.route_edges, others, ahead.slow_edges)
+
+
+def jam(state: State) -> tuple[float, float] | None:
+    """Where the next jam on the route begins."""
+    if state.outside is None:
+        return None
+    road, ahead = state.outside.driving.road, state.outside.driving.ahead
+    if ahead.jam_distance_m is None:
+        return None
+    return _along(state.roads, ahead.route_edges, road.lane_position_m + ahead.jam_distance_m)
+
+
+def goal(state: State) -> tuple[float, float] | None:
+    """Where the route ends."""
+    route = () if state.outside is None else state.outside.driving.ahead.route_edges
+    last = state.roads.find(route[-1]) if route else None
+    return None if last is None else last.shape_m[-1]
+
+
+def box_of(camera: Camera, area: Rect, point_m: tuple[float, float], side: int) -> Rect:
+    """A box around a point of the network on a map that fills ``area``."""
+    view = View(camera, 1 / camera.metres_per_pixel, area.width / 2, area.height * camera.down)
+    x, y = view.pixel(*point_m)
+    return Rect(area.x + round(x) - side // 2, area.y + round(y) - side // 2, side, side)
+
+
+def _along(roads: RoadMap, route: tuple[str, ...], driven_m: float) -> tuple[float, float] | None:
+    """The point of a route so far from its start, at the nearest bend of the road."""
+    for road in map(roads.find, route):
+        if road is None:
+            continue
+        if driven_m < road.length_m:
+            at = round(driven_m / road.length_m * (len(road.shape_m) - 1))
+            return road.shape_m[at]
+        driven_m -= road.length_m
+    return None

@@ -1,0 +1,176 @@
+"""What there is to listen to: made up from a seed, the same in every episode of that seed."""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+_ADJECTIVES = """Amber Blue Broken Copper Distant Early Electric Faded First Golden Hidden Hollow Last Late Little
+    Long Lost Open Paper Quiet Restless Silver Slow Velvet"""
+_NOUNS = """Avenue Bridges Circles Coast Embers Fields Gravity Harbour Horizon Lanterns Letters Morning Orbit Parade
+    Rivers Rooftops Seasons Signal Skyline Station Tides Weekend Windows Winter"""
+_FIRST = "Ada Bruno Carla Dario Elif Femi Greta Hugo Ines Jonas Kaya Lena Milo Nora Otis Petra"
+_LAST = "Adler Bianchi Costa Duval Eklund Farrow Girard Holm Ibarra Jansen Keller Lindqvist"
+_STATIONS = """Antenne City Classique Coast Culture Ether Horizon Info Jazz Metro Nova Pop Swing Tempo Voyage Wave
+    Rock Folk Lounge Opera Retro Soul Talk Verve"""
+_PLAYLISTS = "Morning drive|Road trip|Focus|Sunday|Dance|Calm|Classics|New this week"
+_SHOWS = """The Long Way Round|Night Shift|Small Engines|City Walks|Science Over Coffee|Half Time|Kitchen Radio|
+    True Miles"""
+_TOPICS = """Borders Bridges Bread Comets Deserts Engines Forests Gardens Harbours Islands Jungles Kites Lighthouses
+    Maps Numbers Oceans Patents Quartz Rivers Storms Tunnels Umbrellas Volcanoes Winters"""
+PHONE_TRACKS, USB_TRACKS, STATIONS, EPISODES = 140, 80, 20, 6
+"""Stations of each kind of radio; episodes of each podcast."""
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A track, an episode or a station."""
+
+    uri: str
+    title: str
+    by: str
+    """Artist, show, or frequency."""
+    length_s: float | None = None
+    """None for a station."""
+
+
+@dataclass(frozen=True, slots=True)
+class Playlist:
+    """Tracks that belong together."""
+
+    name: str
+    uris: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Library:
+    """Entries by source, as VSS names sources: the phone is BLUETOOTH, podcasts come by INTERNET."""
+
+    sources: dict[str, tuple[Entry, ...]]
+    playlists: tuple[Playlist, ...]
+    favourites: tuple[str, ...]
+    by_uri: dict[str, Entry]
+
+    def of(self, source: str) -> tuple[Entry, ...]:
+        """What the source offers."""
+        return self.sources[source]
+
+    def find(self, source: str, uri: str) -> Entry:
+        """The entry of that address; the first of the source if it has none such."""
+        entry = self.by_uri.get(uri)
+        return entry if entry is not None and source_of(uri) == source else self.sources[source][0]
+
+    def named(self, words: str) -> tuple[Entry, ...]:
+        """Entries of every source whose title or artist holds the words."""
+        wanted = words.casefold().strip()
+        return tuple(
+            entry
+            for entry in self.by_uri.values()
+            if wanted in entry.title.casefold() or wanted in entry.by.casefold()
+        )
+
+    @property
+    def shows(self) -> tuple[str, ...]:
+        """Names of the podcasts."""
+        return tuple(dict.fromkeys(entry.by for entry in self.sources["INTERNET"]))
+
+
+@dataclass(frozen=True, slots=True)
+class Listening:
+    """What the driver has chosen beside source and entry."""
+
+    playlists: tuple[Playlist, ...]
+    favourites: tuple[str, ...]
+    """Addresses."""
+    playlist: str = ""
+    """The one that plays; empty for the whole source."""
+
+    def with_favourite(self, uri: str, wanted: bool) -> Listening:
+        """With or without that favourite, at the end of the list."""
+        rest = tuple(known for known in self.favourites if known != uri)
+        return replace(self, favourites=(*rest, uri) if wanted else rest)
+
+    def with_track(self, playlist: str, uri: str, wanted: bool) -> Listening:
+        """With or without a track in a playlist, at its end."""
+        changed = []
+        for known in self.playlists:
+            rest = tuple(track for track in known.uris if track != uri)
+            own = (*rest, uri) if wanted else rest
+            changed.append(Playlist(known.name, own) if known.name == playlist else known)
+        return replace(self, playlists=tuple(changed))
+
+    def tracks(self, playlist: str) -> tuple[str, ...]:
+        """Addresses in that playlist."""
+        return next((known.uris for known in self.playlists if known.name == playlist), ())
+
+    def commands(self) -> dict[str, Any]:
+        """What was chosen."""
+        return {
+            "media.favourites": list(self.favourites),
+            "media.playlists": {known.name: list(known.uris) for known in self.playlists},
+            "media.playlist": self.playlist,
+        }
+
+
+def source_of(uri: str) -> str:
+    """The source an address belongs to."""
+    return {"track": "BLUETOOTH", "usb": "USB", "fm": "FM", "dab": "DAB"}.get(uri.partition(":")[0], "INTERNET")
+
+
+def queue(library: Library, listening: Listening, source: str, shuffled: bool) -> tuple[Entry, ...]:
+    """What plays one after the other. Shuffled, each entry has a place of its own that chance seems to give."""
+    known = listening.tracks(listening.playlist) if source in ("BLUETOOTH", "USB") else ()
+    entries = tuple(library.by_uri[uri] for uri in known) or library.of(source)
+    return tuple(sorted(entries, key=lambda entry: zlib.crc32(entry.uri.encode()))) if shuffled else entries
+
+
+def library(rng: np.random.Generator) -> Library:
+    """Draws titles, artists, stations, episodes and playlists."""
+    total = PHONE_TRACKS + USB_TRACKS
+    titles = _pairs(rng, _ADJECTIVES, _NOUNS, total)
+    artists = _pairs(rng, _FIRST, _LAST, total // 4)
+    tracks = [
+        Entry("", title, artists[int(rng.integers(len(artists)))], float(rng.integers(140, 330)))
+        for title in titles
+    ]
+    phone = tuple(replace(entry, uri=f"track:{i}") for i, entry in enumerate(tracks[:PHONE_TRACKS]))
+    usb = tuple(replace(entry, uri=f"usb:{i}") for i, entry in enumerate(tracks[PHONE_TRACKS:]))
+    sources = {"BLUETOOTH": phone, "USB": usb, **_radio(rng), "INTERNET": _podcasts(rng)}
+    playlists = tuple(
+        Playlist(name, tuple(phone[int(i)].uri for i in rng.permutation(len(phone))[: rng.integers(12, 21)]))
+        for name in _PLAYLISTS.split("|")
+    )
+    by_uri = {entry.uri: entry for entries in sources.values() for entry in entries}
+    liked = (phone[int(i)].uri for i in rng.permutation(len(phone))[:8])
+    return Library(sources, playlists, (*liked, sources["FM"][3].uri, sources["DAB"][5].uri), by_uri)
+
+
+def _radio(rng: np.random.Generator) -> dict[str, tuple[Entry, ...]]:
+    names = _STATIONS.split()
+    fm = rng.choice(names, STATIONS, replace=False)
+    dab = rng.choice(names, STATIONS, replace=False)
+    steps = np.sort(rng.choice(np.arange(875, 1080, 3), STATIONS, replace=False))
+    return {
+        "FM": tuple(Entry(f"fm:{s}", f"{n} FM", f"{s / 10:.1f} MHz") for n, s in zip(fm, steps, strict=True)),
+        "DAB": tuple(Entry(f"dab:{i}", f"{n} Digital", "DAB+") for i, n in enumerate(dab)),
+    }
+
+
+def _podcasts(rng: np.random.Generator) -> tuple[Entry, ...]:
+    topics = _TOPICS.split()
+    return tuple(
+        Entry(
+            f"podcast:{s}:{e}", f"{EPISODES - e}. {topic}", " ".join(show.split()), float(rng.integers(900, 3600))
+        )
+        for s, show in enumerate(_SHOWS.split("|"))
+        for e, topic in enumerate(rng.choice(topics, EPISODES, replace=False))
+    )
+
+
+def _pairs(rng: np.random.Generator, words: str, more: str, count: int) -> list[str]:
+    first, second = words.split(), more.split()
+    chosen = rng.choice(len(first) * len(second), count, replace=False)
+    return [f"{first[int(i) // len(second)]} {second[int(i) % len(second)]}" for i in chosen]

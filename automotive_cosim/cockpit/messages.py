@@ -1,0 +1,265 @@
+"""What a touched widget says. A screen only says it; ``cockpit.Cockpit`` does it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from automotive_cosim.cockpit.signals import Signal
+from automotive_cosim.contracts import Alert
+
+BACKSPACE = "\b"
+"""The letter that takes one away."""
+
+
+@dataclass(frozen=True, slots=True)
+class Show:
+    """Go to a screen, and to one thing on it if there are several."""
+
+    screen: str
+    item: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Back:
+    """Return to the screen before."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pick:
+    """Look at another part of a screen: which of its choices is taken."""
+
+    key: str
+    value: str
+
+
+@dataclass(frozen=True, slots=True)
+class Set:
+    """Command a signal."""
+
+    signal: Signal[Any]
+    value: Any
+
+
+@dataclass(frozen=True, slots=True)
+class SetAll:
+    """Command several signals at once."""
+
+    values: tuple[tuple[Signal[Any], Any], ...]
+    said: str
+
+
+Book = Literal["draft", "navigation", "listening", "phone", "desk", "notices"]
+"""Parts of the state that are app data."""
+
+
+@dataclass(frozen=True, slots=True)
+class Put:
+    """Change app data: the book's new value, and what there is to say of it."""
+
+    book: Book
+    value: Any
+    said: str
+
+
+@dataclass(frozen=True, slots=True)
+class WarnDriver:
+    """Give an alert; without one, that which was put together."""
+
+    alert: Alert | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class AskSlowDown:
+    """Ask the driver to go no faster than the advised speed, or the limit sign."""
+
+
+@dataclass(frozen=True, slots=True)
+class AskPullOver:
+    """Ask the driver to stop at the side."""
+
+
+@dataclass(frozen=True, slots=True)
+class CallEmergency:
+    """Call the emergency services."""
+
+
+@dataclass(frozen=True, slots=True)
+class Guide:
+    """Ask for a route to a place or street; empty keeps the goal and looks for a faster way."""
+
+    place: str
+    onward: str = ""
+    """Where to go on afterwards."""
+
+
+@dataclass(frozen=True, slots=True)
+class Take:
+    """Ask for a route along these edges to the same goal."""
+
+    edges: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Focus:
+    """Put the cursor into a text field, with the keyboard below; empty folds the keyboard."""
+
+    field: str
+
+
+@dataclass(frozen=True, slots=True)
+class Key:
+    """Put letters into a text field by a key of the screen; a backspace takes one away."""
+
+    field: str
+    letters: str
+
+
+@dataclass(frozen=True, slots=True)
+class Enter:
+    """Be done with a text field, and do what it is for."""
+
+    then: Any
+    """A message; None while nothing fits what was typed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Zoom:
+    """Move the map closer (negative) or away."""
+
+    by: int
+
+
+@dataclass(frozen=True, slots=True)
+class Pan:
+    """Look at what lies elsewhere on the map, by so many logical pixels."""
+
+    right: float
+    down: float
+
+
+@dataclass(frozen=True, slots=True)
+class Follow:
+    """Let the map follow the car, turning with it or with north up."""
+
+    north_up: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Skip:
+    """Play another entry of the queue."""
+
+    by: int
+
+
+@dataclass(frozen=True, slots=True)
+class Play:
+    """Play an entry, of a playlist or of all there is."""
+
+    uri: str
+    playlist: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Dial:
+    """Call somebody: a contact's name or a number."""
+
+    who: str
+
+
+@dataclass(frozen=True, slots=True)
+class HangUp:
+    """End the call."""
+
+
+@dataclass(frozen=True, slots=True)
+class TakeCall:
+    """Answer the call that rings."""
+
+
+@dataclass(frozen=True, slots=True)
+class Decline:
+    """Turn down the call that rings."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reply:
+    """Send somebody a message."""
+
+    to: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Read:
+    """Have somebody's messages read out, or open them where that is allowed."""
+
+    who: str
+
+
+@dataclass(frozen=True, slots=True)
+class Pay:
+    """Pay for the parking space as it is set."""
+
+
+@dataclass(frozen=True, slots=True)
+class Drive:
+    """Let a profile take the wheel."""
+
+    profile: str
+
+
+@dataclass(frozen=True, slots=True)
+class Record:
+    """Begin or end a spoken memo."""
+
+
+@dataclass(frozen=True, slots=True)
+class ResetTrip:
+    """Count distance and time from here."""
+
+
+@dataclass(frozen=True, slots=True)
+class Honk:
+    """Sound the horn."""
+
+
+@dataclass(frozen=True, slots=True)
+class Wash:
+    """Wash the windshield."""
+
+
+Message = (
+    Show
+    | Back
+    | Pick
+    | Set
+    | SetAll
+    | Put
+    | WarnDriver
+    | AskSlowDown
+    | AskPullOver
+    | CallEmergency
+    | Guide
+    | Take
+    | Focus
+    | Key
+    | Enter
+    | Zoom
+    | Pan
+    | Follow
+    | Skip
+    | Play
+    | Dial
+    | HangUp
+    | TakeCall
+    | Decline
+    | Reply
+    | Read
+    | Pay
+    | Record
+    | Drive
+    | ResetTrip
+    | Honk
+    | Wash
+)

@@ -1,0 +1,223 @@
+"""Whom one can reach: contacts, calls and messages made up from a seed, and what the driver does with them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+CONTACTS = 60
+TEMPLATES = (
+    "On my way",
+    "I'm driving, I'll call later",
+    "I'll be 10 minutes late",
+    "Yes",
+    "No",
+    "Thank you",
+    "Where are you?",
+    "I've arrived",
+)
+"""Answers that one tap sends."""
+_FIRST = """Ada Bruno Carla Dario Elif Femi Greta Hugo Ines Jonas Kaya Lena Milo Nora Otis Petra Quinn Rosa Samir
+    Tilda"""
+_LAST = "Adler Bianchi Costa Duval Eklund Farrow Girard Holm Ibarra Jansen Keller Lindqvist Moreau Novak"
+SAID = (
+    "Are we still on for tonight?",
+    "Can you bring bread and milk?",
+    "The meeting starts half an hour earlier.",
+    "I'm at the station, take your time.",
+    "Call me when you have a minute.",
+    "The parcel is with the neighbours.",
+    "Happy birthday! See you on Sunday.",
+    "Practice ends at six today.",
+    "Could you pick me up on the way?",
+    "The doctor moved the appointment to Thursday.",
+    "I left the keys under the mat.",
+    "Dinner is at eight, don't be late!",
+)
+"""What people write."""
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """Somebody in the phone book."""
+
+    name: str
+    number: str
+
+
+@dataclass(frozen=True, slots=True)
+class PastCall:
+    """One line of the call list."""
+
+    who: str
+    """Name, or the number of somebody unknown."""
+    when: str
+    way: str
+    """``"in"``, ``"out"`` or ``"missed"``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Thread:
+    """What somebody wrote last."""
+
+    who: str
+    when: str
+    lines: tuple[str, ...]
+    unread: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Directory:
+    """What the phone brought into the car."""
+
+    contacts: tuple[Contact, ...]
+    """By name."""
+    calls: tuple[PastCall, ...]
+    """Newest first."""
+    threads: tuple[Thread, ...]
+    favourites: tuple[str, ...]
+
+    def number(self, who: str) -> str:
+        """Of that contact; what is no contact is a number itself."""
+        return next((contact.number for contact in self.contacts if contact.name == who), who)
+
+    def written(self, phone: Phone) -> tuple[Thread, ...]:
+        """All that was written, with what came in on this drive, the newest first."""
+        before = {thread.who: thread for thread in self.threads}
+        new: dict[str, Thread] = {}
+        for received in phone.received:
+            thread = new.pop(received.who, None) or before.get(received.who)
+            lines = (*(thread.lines if thread else ()), received.text)
+            new[received.who] = Thread(received.who, received.when, lines, unread=True)
+        return (*reversed(new.values()), *(thread for thread in self.threads if thread.who not in new))
+
+    def thread(self, who: str, phone: Phone) -> Thread | None:
+        """What that contact wrote."""
+        return next((thread for thread in self.written(phone) if thread.who == who), None)
+
+    def unread(self, phone: Phone) -> tuple[str, ...]:
+        """Whose messages were not read yet."""
+        return tuple(thread.who for thread in self.written(phone) if thread.unread and thread.who not in phone.read)
+
+
+@dataclass(frozen=True, slots=True)
+class OnCall:
+    """The call that is going on."""
+
+    who: str
+    since_s: float
+    muted: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Ringing:
+    """The call that wants to be answered."""
+
+    who: str
+    since_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Received:
+    """A message that came in on this drive."""
+
+    who: str
+    when: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Sent:
+    """A message that went out, which cannot be taken back."""
+
+    to: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Phone:
+    """What the driver has done with the phone."""
+
+    favourites: tuple[str, ...]
+    do_not_disturb: bool = False
+    read: tuple[str, ...] = ()
+    """Whose messages were opened."""
+    sent: tuple[Sent, ...] = ()
+    made: tuple[PastCall, ...] = ()
+    """Calls of this drive, newest first."""
+    on_call: OnCall | None = None
+    ringing: Ringing | None = None
+    taken: tuple[str, ...] = ()
+    """Whose calls were answered."""
+    declined: tuple[str, ...] = ()
+    """Whose calls were turned down."""
+    received: tuple[Received, ...] = ()
+
+    def called(self, who: str, when: str, time_s: float) -> Phone:
+        """A call goes out."""
+        return replace(self.logged(PastCall(who, when, "out")), on_call=OnCall(who, time_s))
+
+    def logged(self, call: PastCall) -> Phone:
+        """With one more line in the call list."""
+        return replace(self, made=(call, *self.made))
+
+    def received_from(self, message: Received) -> Phone:
+        """With one more message, which makes its sender's unread."""
+        read = tuple(who for who in self.read if who != message.who)
+        return replace(self, received=(*self.received, message), read=read)
+
+    def answered(self, who: str, text: str) -> Phone:
+        """A message goes out; the thread is read."""
+        return replace(self.opened(who), sent=(*self.sent, Sent(who, text)))
+
+    def opened(self, who: str) -> Phone:
+        """That contact's messages are read."""
+        return self if who in self.read else replace(self, read=(*self.read, who))
+
+    def with_favourite(self, who: str, wanted: bool) -> Phone:
+        """With or without that favourite, at the end of the list."""
+        rest = tuple(known for known in self.favourites if known != who)
+        return replace(self, favourites=(*rest, who) if wanted else rest)
+
+    def commands(self) -> dict[str, Any]:
+        """Calls stand with those to the emergency services; here is the rest."""
+        return {
+            "phone.favourites": list(self.favourites),
+            "phone.do_not_disturb": self.do_not_disturb,
+            "phone.on_call": "" if self.on_call is None else self.on_call.who,
+            "phone.muted": self.on_call is not None and self.on_call.muted,
+            "calls.answered": list(self.taken),
+            "calls.declined": list(self.declined),
+            "messages.read": sorted(self.read),
+            "messages.sent": [{"to": sent.to, "text": sent.text} for sent in self.sent],
+        }
+
+
+def directory(rng: np.random.Generator) -> Directory:
+    """Draws names, numbers, calls and messages."""
+    first, last = _FIRST.split(), _LAST.split()
+    chosen = rng.choice(len(first) * len(last), CONTACTS, replace=False)
+    names = sorted(f"{first[int(i) // len(last)]} {last[int(i) % len(last)]}" for i in chosen)
+    numbers = rng.choice(10_000, CONTACTS, replace=False)
+    contacts = tuple(
+        Contact(name, f"555 {n // 100:02d} {n % 100:02d}") for name, n in zip(names, numbers, strict=True)
+    )
+    order = [names[int(i)] for i in rng.permutation(CONTACTS)]
+    calls = tuple(
+        PastCall(who, when, str(rng.choice(["in", "out", "missed"])))
+        for who, when in zip(order[:12], _days(rng, 12), strict=True)
+    )
+    said = rng.permutation(len(SAID))
+    threads = tuple(
+        Thread(who, when, tuple(SAID[int(i)] for i in said[n::8][: 1 + n % 2]), bool(n < 3))
+        for n, (who, when) in enumerate(zip(order[12:20], _days(rng, 8), strict=True))
+    )
+    return Directory(contacts, calls, threads, tuple(order[20:26]))
+
+
+def _days(rng: np.random.Generator, count: int) -> list[str]:
+    """Times of day, going back day by day."""
+    back = ["Yesterday", "Yesterday", *(f"{days} days ago" for days in range(2, count))]
+    return [f"{day} {rng.integers(8, 22):02d}:{rng.integers(60):02d}" for day in back[:count]]

@@ -1,0 +1,189 @@
+"""Where one can go: places made up from a seed, on streets of the network."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import lru_cache
+
+import numpy as np
+
+from automotive_cosim.cockpit.map import MOTORWAYS, RoadMap
+from automotive_cosim.cockpit.theme import Icon
+
+PLACES = 80
+"""So many, or as many as the network has streets for."""
+FAVOURITE_STREETS = 6
+
+
+class Kind(StrEnum):
+    """What a place is."""
+
+    HOME = "home"
+    WORK = "work"
+    CHARGING = "charging"
+    PARKING = "parking"
+    RESTAURANT = "restaurant"
+    CAFE = "cafe"
+    SHOP = "shop"
+    HOSPITAL = "hospital"
+    PHARMACY = "pharmacy"
+    HOTEL = "hotel"
+    STATION = "station"
+    MUSEUM = "museum"
+    SCHOOL = "school"
+    PARK = "park"
+    GYM = "gym"
+
+
+@dataclass(frozen=True, slots=True)
+class Sort:
+    """How a kind of place is called, drawn and named."""
+
+    title: str
+    icon: Icon
+    count: int
+    pattern: str
+    words: str
+
+
+SORTS: Mapping[Kind, Sort] = {
+    Kind.HOME: Sort("Home", Icon.HOME, 1, "Home", "Home"),
+    Kind.WORK: Sort("Work", Icon.WORK, 1, "Work", "Work"),
+    Kind.CHARGING: Sort(
+        "Charging",
+        Icon.CHARGING,
+        10,
+        "{} Charging",
+        "Volta Lumen Amber Spark Pulse Helio Nova Plus Metro Ion Rapid",
+    ),
+    Kind.PARKING: Sort(
+        "Parking", Icon.PARKING, 8, "{} Car Park", "Central North South Market Station Theatre Garden Bridge"
+    ),
+    Kind.RESTAURANT: Sort(
+        "Restaurants",
+        Icon.RESTAURANT,
+        10,
+        "{} Kitchen",
+        "Olive Basil Saffron Anchor Lantern Corner Ginger Cedar Bay Fig",
+    ),
+    Kind.CAFE: Sort("Cafés", Icon.CAFE, 8, "Café {}", "Horizon Luna Aroma Paloma Bloom Tempo Verde Azur"),
+    Kind.SHOP: Sort("Shops", Icon.SHOP, 8, "{} Market", "Fresh Daily Green Family Golden Corner Union City"),
+    Kind.HOSPITAL: Sort("Hospitals", Icon.HOSPITAL, 3, "{} Hospital", "General University Children's"),
+    Kind.PHARMACY: Sort("Pharmacies", Icon.PHARMACY, 6, "{} Pharmacy", "Linden Crown Park Sun Eagle Bridge"),
+    Kind.HOTEL: Sort("Hotels", Icon.HOTEL, 6, "Hotel {}", "Aurora Central Bellevue Meridian Royal Astoria"),
+    Kind.STATION: Sort("Stations", Icon.STATION, 3, "{} Station", "Central East West"),
+    Kind.MUSEUM: Sort("Museums", Icon.MUSEUM, 4, "{} Museum", "City Science Modern Maritime"),
+    Kind.SCHOOL: Sort("Schools", Icon.SCHOOL, 4, "{} School", "Hill River Oak Meadow"),
+    Kind.PARK: Sort("Parks", Icon.PARK, 4, "{} Park", "Lake Rose Castle Maple"),
+    Kind.GYM: Sort("Gyms", Icon.GYM, 4, "{} Gym", "Iron Active Summit Pace"),
+}
+"""Counts add up to ``PLACES``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Somewhere to go."""
+
+    name: str
+    kind: Kind
+    street: str
+    edge_id: str
+    x_m: float
+    y_m: float
+    detail: str
+    """What one wants to know of such a place."""
+
+    @property
+    def icon(self) -> Icon:
+        """Of its kind."""
+        return SORTS[self.kind].icon
+
+    def away_m(self, x_m: float, y_m: float) -> float:
+        """As the crow flies."""
+        return math.hypot(self.x_m - x_m, self.y_m - y_m)
+
+
+@dataclass(frozen=True, slots=True)
+class Atlas:
+    """All places, and the streets that stand among the favourites from the start."""
+
+    places: tuple[Place, ...]
+    streets: tuple[str, ...]
+
+    def find(self, name: str) -> Place | None:
+        """The place of that name."""
+        return next((place for place in self.places if place.name == name), None)
+
+    def at(self, edge_id: str) -> Place | None:
+        """The place on that edge of the network."""
+        return next((place for place in self.places if place.edge_id == edge_id), None)
+
+    def of(self, kind: Kind) -> tuple[Place, ...]:
+        """All of one kind."""
+        return tuple(place for place in self.places if place.kind is kind)
+
+    @property
+    def favourites(self) -> tuple[str, ...]:
+        """Home, work and some streets: what the driver has saved."""
+        own = [place.name for place in self.places if place.kind in (Kind.HOME, Kind.WORK)]
+        return (*own, *self.streets)
+
+
+def atlas(roads: RoadMap, rng: np.random.Generator) -> Atlas:
+    """Draws the places of a network, each on a street of its own."""
+    streets = tuple(roads.names[int(i)] for i in rng.permutation(len(roads.names))[:FAVOURITE_STREETS])
+    addresses = _addresses(roads)
+    chosen = rng.permutation(len(addresses))[:PLACES]
+    names = _names(rng)[: len(chosen)]
+    return Atlas(
+        tuple(
+            _place(roads, addresses[int(at)], kind, name, rng)
+            for at, (kind, name) in zip(chosen, names, strict=True)
+        ),
+        streets,
+    )
+
+
+def _names(rng: np.random.Generator) -> list[tuple[Kind, str]]:
+    """One of each kind in turn, so that a small network has some of all."""
+    left = {
+        kind: [sort.pattern.format(word) for word in rng.permutation(sort.words.split())[: sort.count]]
+        for kind, sort in SORTS.items()
+    }
+    names: list[tuple[Kind, str]] = []
+    while any(left.values()):
+        names += [(kind, words.pop()) for kind, words in left.items() if words]
+    return names
+
+
+@lru_cache(maxsize=4)
+def _addresses(roads: RoadMap) -> tuple[int, ...]:
+    """Roads that a house can stand at: with a name, above ground, no motorways; else any."""
+    fit = [
+        i
+        for i, road in enumerate(roads.roads)
+        if road.name and not road.in_tunnel and road.road_class not in MOTORWAYS
+    ]
+    return tuple(fit or range(len(roads.roads)))
+
+
+def _place(roads: RoadMap, at: int, kind: Kind, name: str, rng: np.random.Generator) -> Place:
+    road = roads.roads[at]
+    x_m, y_m = road.shape_m[len(road.shape_m) // 2]
+    return Place(name, kind, road.name or "Unnamed road", road.edge_id, x_m, y_m, _detail(kind, rng))
+
+
+def _detail(kind: Kind, rng: np.random.Generator) -> str:
+    if kind is Kind.CHARGING:
+        plugs = int(rng.integers(2, 9))
+        return f"{rng.choice([22, 50, 150, 300])} kW, {rng.integers(0, plugs + 1)} of {plugs} free"
+    if kind is Kind.PARKING:
+        return f"{rng.integers(3, 240)} spaces free, {rng.integers(10, 45) / 10:.1f} an hour"
+    if kind in (Kind.HOME, Kind.WORK):
+        return "Your address"
+    if kind is Kind.HOSPITAL:
+        return "Emergency room, day and night"
+    return f"Open until {rng.integers(17, 24)}:00"

@@ -1,0 +1,63 @@
+"""What the driver may not do on the screen while driving: Android's ``CarUxRestrictions``.
+
+The bits and limits are those of ``android.car.drivingstate.CarUxRestrictions``
+(https://developer.android.com/reference/android/car/drivingstate/CarUxRestrictions).
+"""
+
+from __future__ import annotations
+
+from enum import IntFlag, StrEnum
+
+
+class Restriction(IntFlag):
+    """One bit per thing that is locked."""
+
+    BASELINE = 0
+    NO_DIALPAD = 1
+    NO_FILTERING = 2
+    LIMIT_STRING_LENGTH = 4
+    NO_KEYBOARD = 8
+    NO_VIDEO = 16
+    LIMIT_CONTENT = 32
+    NO_SETUP = 64
+    NO_TEXT_MESSAGE = 128
+    NO_VOICE_TRANSCRIPTION = 256
+    FULLY_RESTRICTED = 511
+
+
+REASONS = {
+    Restriction.NO_DIALPAD: "The keypad is locked while driving",
+    Restriction.NO_KEYBOARD: "Typing is locked while driving",
+    Restriction.NO_SETUP: "This is set up while parked",
+    Restriction.NO_TEXT_MESSAGE: "Messages are read out while driving",
+}
+"""What is said where a restriction locks something."""
+STANDING_KMH = 0.5
+"""Slower than this the car stands."""
+STRING_LIMIT = 120
+"""Characters of a text shown while ``LIMIT_STRING_LENGTH`` holds; the platform's default."""
+
+
+class Motion(StrEnum):
+    """Android's driving states."""
+
+    PARKED = "parked"
+    IDLING = "idling"
+    """Standing in gear."""
+    MOVING = "moving"
+
+
+def motion(gear: str, speed_kmh: float) -> Motion:
+    """The driving state."""
+    if gear == "P":
+        return Motion.PARKED
+    return Motion.IDLING if speed_kmh < STANDING_KMH else Motion.MOVING
+
+
+def restrictions(gear: str, speed_kmh: float) -> Restriction:
+    """Parked: none. Standing in gear: no video, no setup. Moving: all."""
+    return {
+        Motion.PARKED: Restriction.BASELINE,
+        Motion.IDLING: Restriction.NO_VIDEO | Restriction.NO_SETUP,
+        Motion.MOVING: Restriction.FULLY_RESTRICTED,
+    }[motion(gear, speed_kmh)]

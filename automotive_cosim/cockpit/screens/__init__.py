@@ -1,0 +1,82 @@
+"""The screens of the cockpit, one module each, and the whole picture made of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.language import translated
+from automotive_cosim.cockpit.screens import apps, body, settings, tools
+from automotive_cosim.cockpit.screens.climate import climate, comfort
+from automotive_cosim.cockpit.screens.frame import APPS, DOCK, PART_OF, dock, status_bar
+from automotive_cosim.cockpit.screens.home import home
+from automotive_cosim.cockpit.screens.keyboard import focused, keyboard, uncovered
+from automotive_cosim.cockpit.screens.map import map_screen
+from automotive_cosim.cockpit.screens.media import media, playlist
+from automotive_cosim.cockpit.screens.outside import outside
+from automotive_cosim.cockpit.screens.phone import contact, phone, thread
+from automotive_cosim.cockpit.screens.safety import emergency, safety
+from automotive_cosim.cockpit.screens.vehicle import assistance, vehicle
+from automotive_cosim.cockpit.screens.way import explore, place, route
+from automotive_cosim.cockpit.signals import HMI
+from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.theme import SCREEN_HEIGHT, SCREEN_WIDTH
+from automotive_cosim.cockpit.widgets import Screen, Widget
+
+SCREENS: dict[str, Callable[[State], tuple[Widget, ...]]] = {
+    "home": home,
+    "map": map_screen,
+    "explore": explore,
+    "place": place,
+    "route": route,
+    "climate": climate,
+    "comfort": comfort,
+    "safety": safety,
+    "emergency": emergency,
+    "vehicle": vehicle,
+    "assistance": assistance,
+    "driving": body.driving,
+    "doors": body.doors,
+    "seats": body.seats,
+    "mirrors": body.mirrors,
+    "outside": outside,
+    "media": media,
+    "playlist": playlist,
+    "phone": phone,
+    "contact": contact,
+    "thread": thread,
+    "apps": apps.apps,
+    "store": apps.store,
+    "charging": tools.charging,
+    "parking": tools.parking,
+    "manual": tools.manual,
+    "memo": tools.memo,
+    "trip": tools.trip,
+    "calendar": tools.calendar,
+    "notifications": apps.notifications,
+    "settings": settings.settings,
+    "sound": settings.sound,
+    "connections": settings.connections,
+    "language": settings.language,
+    "privacy": settings.privacy,
+    "profiles": settings.profiles,
+}
+"""Every screen by its name; those in ``APPS`` can be opened from anywhere."""
+
+
+def picture(state: State) -> Screen:
+    """The tree of everything on the display now."""
+    language = state.signals[HMI.LANGUAGE]
+    upper: tuple[Widget, ...] = (*status_bar(state), *SCREENS[state.screen](state))
+    lower = dock(state)
+    field = focused(upper) if state.is_typing else None
+    if field is not None:
+        upper, lower = tuple(uncovered(upper)), (keyboard(field, state),)
+    return Screen(
+        rect=Rect(0, 0, SCREEN_WIDTH, SCREEN_HEIGHT),
+        night=state.signals[HMI.DAY_NIGHT] == "NIGHT",
+        children=(*(translated(widget, language) for widget in upper), *lower),
+    )
+
+
+__all__ = ["APPS", "DOCK", "PART_OF", "SCREENS", "picture"]

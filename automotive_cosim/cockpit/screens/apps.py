@@ -1,0 +1,150 @@
+"""Apps: the launcher, the store, and the notifications."""
+
+from __future__ import annotations
+
+from automotive_cosim.cockpit.desk import TOOLS
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.messages import Put, Show
+from automotive_cosim.cockpit.restrictions import Restriction
+from automotive_cosim.cockpit.screens.body import LOW_KPA
+from automotive_cosim.cockpit.screens.frame import DOCK
+from automotive_cosim.cockpit.screens.parts import CONTENT, note, rows, title
+from automotive_cosim.cockpit.signals import ENERGY, GLASS, TYRE
+from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.theme import Icon, Type
+from automotive_cosim.cockpit.widgets import Button, Card, Choice, Row, Widget
+
+LOW_BATTERY_PCT = 15.0
+TYRES = (TYRE.FRONT_LEFT, TYRE.FRONT_RIGHT, TYRE.REAR_LEFT, TYRE.REAR_RIGHT)
+
+
+def apps(state: State) -> tuple[Widget, ...]:
+    """All apps that are installed, and the way to the store."""
+    offered: list[tuple[str, str, Icon]] = [
+        *((name, TOOLS[name][0], TOOLS[name][1]) for name in state.desk.installed),
+        ("store", "Store", Icon.STORE),
+        ("notifications", "Notices", Icon.BELL),
+        *((name, text, icon) for name, (text, icon) in DOCK.items() if name not in ("home", "apps")),
+    ]
+    return (
+        rows(
+            CONTENT,
+            "apps.all",
+            "Apps",
+            state,
+            len(offered),
+            lambda index, cell: Choice(
+                rect=cell,
+                key=f"apps.{offered[index][0]}",
+                text=offered[index][1],
+                icon=offered[index][2],
+                look="boxed",
+                stacked=True,
+                style=Type.STRONG,
+                on_tap=Show(offered[index][0]),
+            ),
+            columns=6,
+            height=170,
+            gap=16,
+        ),
+    )
+
+
+def store(state: State) -> tuple[Widget, ...]:
+    """What can be installed and removed, while parked."""
+    inner = CONTENT.inset(28, 20)
+    locked = state.locked(Restriction.NO_SETUP)
+    names = tuple(TOOLS)
+
+    def line(index: int, cell: Rect) -> Row:
+        name = names[index]
+        text, icon, about = TOOLS[name]
+        there = name in state.desk.installed
+        return Row(
+            rect=cell,
+            key=f"store.{name}",
+            raised=True,
+            text=text,
+            detail=about,
+            trail="Remove" if there else "Install",
+            icon=icon,
+            locked=locked,
+            on_tap=Put(
+                "desk", state.desk.with_app(name, not there), f"{text} is {'removed' if there else 'installed'}"
+            ),
+        )
+
+    return (
+        Card(
+            rect=CONTENT,
+            children=(
+                title(inner.top(40), Icon.STORE, "Store"),
+                rows(inner.below(56), "store.apps", "Apps", state, len(names), line, height=68, gap=8),
+            ),
+        ),
+    )
+
+
+def notifications(state: State) -> tuple[Widget, ...]:
+    """What wants attention now, and below it what was said in the status bar, the newest first."""
+    inner = CONTENT.inset(28, 20)
+    lines = [
+        *((text, "", icon, Show(screen, item)) for text, icon, screen, item in wanting(state)),
+        *(
+            (notice.text, notice.clock, notice.icon, Show(*notice.opens) if notice.opens else None)
+            for notice in reversed(state.notices)
+        ),
+    ]
+    return (
+        Card(
+            rect=CONTENT,
+            children=(
+                title(inner.top(56).left(600), Icon.BELL, "Notifications"),
+                Button(
+                    rect=inner.top(56).right_part(200),
+                    key="notifications.clear",
+                    text="Clear all",
+                    icon=Icon.DELETE,
+                    on_tap=Put("notices", (), "The notifications are cleared"),
+                    disabled="" if state.notices else "There is nothing to clear",
+                ),
+                rows(
+                    inner.below(72),
+                    "notifications.all",
+                    "Notifications",
+                    state,
+                    len(lines),
+                    lambda index, cell: Row(
+                        rect=cell,
+                        key=f"notifications.{index}",
+                        text=lines[index][0],
+                        trail=lines[index][1],
+                        icon=lines[index][2],
+                        tone="accent" if lines[index][3] is None else "warning",
+                        raised=True,
+                        on_tap=lines[index][3],
+                    ),
+                    height=60,
+                )
+                if lines
+                else note(inner.below(72), "notifications.empty", "No notifications"),
+            ),
+        ),
+    )
+
+
+def wanting(state: State) -> tuple[tuple[str, Icon, str, str], ...]:
+    """What wants attention: words, icon, and the screen where something can be done."""
+    signals = state.signals
+    low = [signal for signal in TYRES if signals[signal] < LOW_KPA]
+    count = len(state.directory.unread(state.phone))
+    return tuple(
+        (text, icon, screen, item)
+        for holds, text, icon, screen, item in (
+            (count, f"{count} unread message{'s' if count != 1 else ''}", Icon.MESSAGE, "phone", "messages"),
+            (bool(low), "Tyre pressure is low", Icon.TYRE, "driving", ""),
+            (signals[ENERGY.LEVEL] <= LOW_BATTERY_PCT, "Battery is low", Icon.BATTERY, "charging", ""),
+            (signals[GLASS.WINDSHIELD_FOG] >= 0.1, "Windshield is fogged", Icon.DEFROST_FRONT, "climate", ""),
+        )
+        if holds
+    )

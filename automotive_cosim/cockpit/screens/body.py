@@ -1,0 +1,446 @@
+"""Vehicle, further in: driving, doors and windows, seats, mirrors and the light inside."""
+
+from __future__ import annotations
+
+from automotive_cosim.cockpit.desk import REMEMBERED
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.messages import Honk, Message, Pick, Put, Set, SetAll
+from automotive_cosim.cockpit.screens.parts import (
+    choices,
+    fact,
+    heading,
+    levels,
+    pressure,
+    slider,
+    stepper,
+    switch,
+)
+from automotive_cosim.cockpit.screens.vehicle import car_card, right_side, tabs
+from automotive_cosim.cockpit.signals import BODY, CABIN, DRIVE, MIRROR, SEAT, TYRE, Signal
+from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.theme import GAP, Icon, Type
+from automotive_cosim.cockpit.vehicle import LOCKS, WINDOWS
+from automotive_cosim.cockpit.widgets import Button, Card, Choice, Label, Tile, Widget
+
+LOW_KPA = 200.0
+"""A fifth under the 250 kPa of the door frame: where UN R64 has a tyre warning come on."""
+MODES = {
+    "NORMAL": ("normal", "Normal"),
+    "ECONOMY": ("economy", "Economy"),
+    "SPORT": ("sport", "Sport"),
+    "SNOW": ("snow", "Snow"),
+    "RAIN": ("rain", "Rain"),
+}
+MASSAGE_LEVELS = ((0.0, "Off"), (50.0, "Low"), (100.0, "High"))
+COLOURS = {
+    "#FFE3B0": ("warm", "Warm"),
+    "#4FA8FF": ("blue", "Blue"),
+    "#45D18A": ("green", "Green"),
+    "#B57BFF": ("violet", "Violet"),
+    "#FF5C5C": ("red", "Red"),
+}
+
+
+def _page(state: State, *cards: Widget) -> tuple[Widget, ...]:
+    return car_card(state), tabs(state), *cards
+
+
+def _area() -> Rect:
+    return right_side().below(64 + GAP)
+
+
+# --- driving ----------------------------------------------------------------------------------------------
+
+
+def driving(state: State) -> tuple[Widget, ...]:
+    """How it drives, what holds it, and its tyres."""
+    signals = state.signals
+    area = _area()
+    mode, lower = area.top(132), area.below(132 + GAP)
+    left, right = lower.columns(2, GAP)
+    inner, hold = mode.inset(20, 14), left.inset(20, 16)
+    now = signals[DRIVE.MODE]
+    tiles = hold.below(36).rows(4, 10)
+    return _page(
+        state,
+        Card(
+            rect=mode,
+            children=(
+                heading(inner.top(28), "Drive mode"),
+                choices(
+                    inner.bottom_part(68),
+                    "drive.mode",
+                    [
+                        (key, text, None, now == value, Set(DRIVE.MODE, value))
+                        for value, (key, text) in MODES.items()
+                    ],
+                ),
+            ),
+        ),
+        Card(
+            rect=left,
+            children=(
+                heading(hold.top(28), "Brake and horn"),
+                switch(
+                    tiles[0],
+                    "drive.parking_brake",
+                    "Parking brake",
+                    Icon.PARKING_BRAKE,
+                    DRIVE.PARKING_BRAKE,
+                    signals,
+                    state.vehicle.held(DRIVE.PARKING_BRAKE),
+                ),
+                switch(
+                    tiles[1],
+                    "drive.parking_brake_auto",
+                    "Automatic parking brake",
+                    Icon.PARKING_BRAKE,
+                    DRIVE.PARKING_BRAKE_AUTO,
+                    signals,
+                ),
+                Button(rect=tiles[2], key="drive.horn", text="Horn", icon=Icon.WARN, on_tap=Honk()),
+                Card(
+                    rect=tiles[3],
+                    look="none",
+                    children=fact(tiles[3], "drive.washer", "Washer fluid", f"{signals[BODY.WASHER_FLUID]:.0f} %"),
+                ),
+            ),
+        ),
+        _tyres(right, state),
+    )
+
+
+def _tyres(rect: Rect, state: State) -> Widget:
+    inner = rect.inset(20, 16)
+    corners = (
+        ("front_left", "Front left", TYRE.FRONT_LEFT),
+        ("front_right", "Front right", TYRE.FRONT_RIGHT),
+        ("rear_left", "Rear left", TYRE.REAR_LEFT),
+        ("rear_right", "Rear right", TYRE.REAR_RIGHT),
+    )
+    cells = [cell for line in inner.below(36).rows(2, 12) for cell in line.columns(2, 12)]
+    children: list[Widget] = [heading(inner.top(28), "Tyre pressures")]
+    for cell, (key, name, signal) in zip(cells, corners, strict=True):
+        low = state.signals[signal] < LOW_KPA
+        children.append(
+            Card(
+                rect=cell,
+                look="raised",
+                children=(
+                    Label(
+                        rect=cell.inset(16, 12).top(26),
+                        text=f"{name}: low" if low else name,
+                        style=Type.LABEL,
+                        tone="text" if low else "muted",
+                    ),
+                    Label(
+                        rect=cell.inset(16, 12).bottom_part(48),
+                        key=f"tyre.{key}",
+                        text=pressure(state.signals, state.signals[signal]),
+                        description=f"{name} tyre",
+                        style=Type.TITLE,
+                    ),
+                ),
+            )
+        )
+    return Card(rect=rect, children=tuple(children))
+
+
+# --- doors, windows, roof -----------------------------------------------------------------------------------
+
+
+def doors(state: State) -> tuple[Widget, ...]:
+    """Locks, windows and the roof."""
+    signals = state.signals
+    area = _area()
+    upper, lower = area.top(176), area.below(176 + GAP)
+    inner = upper.inset(20, 14)
+    locked = all(signals[lock] for lock in LOCKS)
+    cells = [cell for line in inner.below(32).rows(2, 8) for cell in line.columns(4, 8)]
+    windows = lower.inset(20, 12)
+    return _page(
+        state,
+        Card(
+            rect=upper,
+            children=(
+                heading(inner.top(28), "Doors"),
+                Tile(
+                    rect=cells[0],
+                    key="door.all",
+                    text="Lock all",
+                    icon=Icon.LOCK if locked else Icon.UNLOCKED,
+                    checked=locked,
+                    on_tap=SetAll(
+                        tuple((lock, not locked) for lock in LOCKS),
+                        "all doors are unlocked" if locked else "all doors are locked",
+                    ),
+                ),
+                *(
+                    switch(cell, f"door.{key}", name, icon, signal, signals, state.vehicle.held(signal))
+                    for cell, (key, name, icon, signal) in zip(
+                        cells[1:],
+                        (
+                            ("driver", "Driver", Icon.DOOR, CABIN.DRIVER_LOCK),
+                            ("passenger", "Passenger", Icon.DOOR, CABIN.PASSENGER_LOCK),
+                            ("rear_left", "Rear left", Icon.DOOR, CABIN.REAR_LEFT_LOCK),
+                            ("rear_right", "Rear right", Icon.DOOR, CABIN.REAR_RIGHT_LOCK),
+                            ("child_left", "Child left", Icon.CHILD, CABIN.LEFT_CHILD_LOCK),
+                            ("child_right", "Child right", Icon.CHILD, CABIN.RIGHT_CHILD_LOCK),
+                            ("trunk", "Trunk", Icon.TRUNK, CABIN.TRUNK),
+                        ),
+                        strict=True,
+                    )
+                ),
+            ),
+        ),
+        Card(rect=lower, children=_windows(windows, state)),
+    )
+
+
+def _windows(rect: Rect, state: State) -> tuple[Widget, ...]:
+    signals = state.signals
+    lines = rect.top(rect.height - 64).rows(2, 4)
+    cells = (*lines[0].columns(3, 24), *lines[1].columns(3, 24))
+    panes = (
+        ("driver", "Driver", CABIN.DRIVER_WINDOW),
+        ("passenger", "Passenger", CABIN.PASSENGER_WINDOW),
+        ("sunroof", "Sunroof", CABIN.SUNROOF),
+        ("rear_left", "Rear left", CABIN.REAR_LEFT_WINDOW),
+        ("rear_right", "Rear right", CABIN.REAR_RIGHT_WINDOW),
+        ("shade", "Shade", CABIN.SUNROOF_SHADE),
+    )
+    closed = all(signals[window] == 0 for window in WINDOWS)
+    buttons = rect.bottom_part(56).columns(3, 24)
+    return (
+        *(
+            slider(cell, f"window.{key}", name, Icon.WINDOW, signal, signals)
+            for cell, (key, name, signal) in zip(cells, panes, strict=True)
+        ),
+        Button(
+            rect=buttons[0],
+            key="window.close_all",
+            text="Close all",
+            icon=Icon.WINDOW,
+            on_tap=SetAll(tuple((window, 0.0) for window in WINDOWS), "all windows are closed"),
+            disabled="All windows are closed" if closed else "",
+        ),
+        Button(
+            rect=buttons[1],
+            key="window.vent",
+            text="Open a little",
+            icon=Icon.WINDOW,
+            on_tap=SetAll(tuple((window, 20.0) for window in WINDOWS), "all windows are a little open"),
+            disabled="They are a little open" if all(signals[window] == 20 for window in WINDOWS) else "",
+        ),
+        switch(buttons[2], "window.lock", "Window lock", Icon.CHILD, CABIN.WINDOW_LOCK, signals),
+    )
+
+
+# --- seats ------------------------------------------------------------------------------------------------
+
+_SEATS: dict[str, tuple[tuple[str, str, Signal[float], str], ...]] = {
+    "driver": (
+        ("position", "Position", SEAT.DRIVER_POSITION, "mm"),
+        ("height", "Height", SEAT.DRIVER_HEIGHT, "mm"),
+        ("recline", "Backrest", SEAT.DRIVER_RECLINE, "°"),
+        ("lumbar", "Lumbar", SEAT.DRIVER_LUMBAR, "%"),
+    ),
+    "passenger": (
+        ("position", "Position", SEAT.PASSENGER_POSITION, "mm"),
+        ("height", "Height", SEAT.PASSENGER_HEIGHT, "mm"),
+        ("recline", "Backrest", SEAT.PASSENGER_RECLINE, "°"),
+        ("lumbar", "Lumbar", SEAT.PASSENGER_LUMBAR, "%"),
+    ),
+}
+
+
+def seats(state: State) -> tuple[Widget, ...]:
+    """Positions of the front seats, massage, and the driver's memory."""
+    signals = state.signals
+    area = _area()
+    who = state.picked["seats"]
+    left, right = area.left(540), area.right_part(area.width - 540 - GAP)
+    inner = left.inset(20, 16)
+    lines = inner.below(76).rows(5, 10)
+    massage = SEAT.DRIVER_MASSAGE if who == "driver" else SEAT.PASSENGER_MASSAGE
+    return _page(
+        state,
+        Card(
+            rect=left,
+            children=(
+                choices(
+                    inner.top(60),
+                    "seat.who",
+                    [
+                        (key, text, Icon.SEAT, who == key, Pick("seats", key))
+                        for key, text in (("driver", "Driver"), ("passenger", "Passenger"))
+                    ],
+                ),
+                *(
+                    part
+                    for line, (key, name, signal, unit) in zip(lines, _SEATS[who], strict=False)
+                    for part in _adjust(line, f"seat.{who}.{key}", name, signal, unit, state)
+                ),
+                levels(lines[4], f"seat.{who}.massage", "Massage", Icon.MASSAGE, massage, signals, MASSAGE_LEVELS),
+            ),
+        ),
+        _memory(right, state),
+    )
+
+
+def _adjust(rect: Rect, key: str, name: str, signal: Signal[float], unit: str, state: State) -> tuple[Widget, ...]:
+    value = state.signals[signal]
+    shown = f"{value:.0f}{unit}" if unit == "°" else f"{value:.0f} {unit}"
+    return (
+        Label(rect=rect.left(150), text=name, style=Type.LABEL, tone="muted"),
+        *stepper(
+            rect.right_part(rect.width - 160),
+            key,
+            name,
+            signal,
+            state.signals,
+            shown,
+            Type.STRONG,
+            state.vehicle.held(signal),
+        ),
+    )
+
+
+def _memory(rect: Rect, state: State) -> Widget:
+    inner = rect.inset(20, 16)
+    lines = inner.below(40).rows(3, 14)
+    held = state.vehicle.held(SEAT.DRIVER_POSITION)
+    now = tuple(state.signals[signal] for signal in REMEMBERED)
+    children: list[Widget] = [heading(inner.top(30), "Driver's memory")]
+    for slot, line in enumerate(lines):
+        recall: Message = SetAll(
+            tuple(zip(REMEMBERED, state.desk.memory[slot], strict=True)), f"seat and mirrors stand as in {slot + 1}"
+        )
+        same = state.desk.memory[slot] == now
+        children += [
+            Choice(
+                rect=line.left(line.width - 84),
+                key=f"seat.memory.{slot + 1}",
+                text=f"Recall {slot + 1}",
+                icon=Icon.SEAT,
+                selected=same,
+                look="boxed",
+                on_tap=recall,
+                locked=held,
+            ),
+            Button(
+                rect=line.right_part(72),
+                key=f"seat.store.{slot + 1}",
+                description=f"Store the seat in place {slot + 1}",
+                icon=Icon.SAVE,
+                on_tap=Put("desk", state.desk.with_memory(slot, state.signals), f"Place {slot + 1} is stored"),
+                disabled="The seat stands so already" if same else "",
+            ),
+        ]
+    return Card(rect=rect, children=tuple(children))
+
+
+# --- mirrors, light inside ----------------------------------------------------------------------------------
+
+
+def mirrors(state: State) -> tuple[Widget, ...]:
+    """Outside mirrors, and the light in the cabin."""
+    area = _area()
+    upper, lower = area.top(252), area.below(252 + GAP)
+    left, right = upper.columns(2, GAP)
+    return _page(
+        state,
+        _mirror(
+            left,
+            "driver",
+            "Driver's mirror",
+            (MIRROR.DRIVER_PAN, MIRROR.DRIVER_TILT),
+            (MIRROR.DRIVER_FOLDED, MIRROR.DRIVER_HEATING),
+            state,
+        ),
+        _mirror(
+            right,
+            "passenger",
+            "Passenger's mirror",
+            (MIRROR.PASSENGER_PAN, MIRROR.PASSENGER_TILT),
+            (MIRROR.PASSENGER_FOLDED, MIRROR.PASSENGER_HEATING),
+            state,
+        ),
+        _inside(lower, state),
+    )
+
+
+def _mirror(
+    rect: Rect,
+    who: str,
+    name: str,
+    angles: tuple[Signal[float], Signal[float]],
+    switches: tuple[Signal[bool], Signal[bool]],
+    state: State,
+) -> Widget:
+    signals = state.signals
+    inner = rect.inset(20, 12)
+    pan, tilt, last = inner.below(30).rows(3, 8)
+    fold, heat = last.columns(2, 10)
+    children: list[Widget] = [heading(inner.top(28), name)]
+    for line, key, text, signal in ((pan, "pan", "Sideways", angles[0]), (tilt, "tilt", "Up, down", angles[1])):
+        children += [
+            Label(rect=line.left(110), text=text, style=Type.LABEL, tone="muted"),
+            *stepper(
+                line.right_part(line.width - 116),
+                f"mirror.{who}.{key}",
+                f"{name} {text.lower()}",
+                signal,
+                signals,
+                f"{signals[signal]:+.0f}" if signals[signal] else "0",
+                Type.STRONG,
+            ),
+        ]
+    children += [
+        switch(
+            fold, f"mirror.{who}.fold", "Fold", Icon.MIRROR, switches[0], signals, state.vehicle.held(switches[0])
+        ),
+        switch(heat, f"mirror.{who}.heat", "Heat", Icon.HEAT, switches[1], signals),
+    ]
+    return Card(rect=rect, children=tuple(children))
+
+
+def _inside(rect: Rect, state: State) -> Widget:
+    signals = state.signals
+    inner = rect.inset(20, 12)
+    upper, lower = inner.below(32).rows(2, 10)
+    tiles = upper.columns(3, 10)
+    glow = lower.left(270)
+    colour = signals[CABIN.AMBIENT_COLOUR]
+    return Card(
+        rect=rect,
+        children=(
+            heading(inner.top(28), "Light inside"),
+            switch(tiles[0], "light.dome", "Dome light", Icon.DOME_LIGHT, CABIN.DOME_LIGHT, signals),
+            switch(
+                tiles[1],
+                "light.driver_reading",
+                "Driver reads",
+                Icon.READING_LIGHT,
+                CABIN.DRIVER_READING_LIGHT,
+                signals,
+            ),
+            switch(
+                tiles[2],
+                "light.passenger_reading",
+                "Passenger reads",
+                Icon.READING_LIGHT,
+                CABIN.PASSENGER_READING_LIGHT,
+                signals,
+            ),
+            slider(glow, "light.ambient", "Glow", Icon.PALETTE, CABIN.AMBIENT_LIGHT, signals),
+            choices(
+                lower.right_part(lower.width - 290),
+                "light.colour",
+                [
+                    (key, text, None, colour == value, Set(CABIN.AMBIENT_COLOUR, value))
+                    for value, (key, text) in COLOURS.items()
+                ],
+            ),
+        ),
+    )

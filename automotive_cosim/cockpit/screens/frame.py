@@ -1,0 +1,340 @@
+"""What every screen has: the status bar above, the dock below."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import lru_cache
+from typing import Any
+
+from automotive_cosim.cockpit.desk import TOOLS
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.language import translated
+from automotive_cosim.cockpit.messages import Back, Decline, Put, Show, TakeCall
+from automotive_cosim.cockpit.screens.parts import speed, speed_unit, stepper, switch, temperature
+from automotive_cosim.cockpit.signals import ADAS, ENERGY, HMI, HVAC, LIGHTS, LINK, MOTION, OUTSIDE, Signal, Signals
+from automotive_cosim.cockpit.state import Notice, State
+from automotive_cosim.cockpit.theme import (
+    DOCK_HEIGHT,
+    MARGIN,
+    SCREEN_HEIGHT,
+    SCREEN_WIDTH,
+    STATUS_HEIGHT,
+    Icon,
+    Type,
+)
+from automotive_cosim.cockpit.widgets import Button, Choice, Glyph, Label, LimitSign, Look, Pill, Tile, Widget
+
+DOCK: dict[str, tuple[str, Icon]] = {
+    "home": ("Home", Icon.HOME),
+    "map": ("Map", Icon.MAP),
+    "climate": ("Climate", Icon.CLIMATE),
+    "safety": ("Safety", Icon.SAFETY),
+    "vehicle": ("Vehicle", Icon.VEHICLE),
+    "outside": ("Outside", Icon.OUTSIDE),
+    "media": ("Media", Icon.MEDIA),
+    "phone": ("Phone", Icon.PHONE),
+    "apps": ("Apps", Icon.APPS),
+    "settings": ("Settings", Icon.SETTINGS),
+}
+"""The apps in the dock: name on screen and icon."""
+APPS = (*DOCK, *TOOLS, "store", "notifications")
+"""Everything that opens by its name."""
+PART_OF = {
+    "assistance": "vehicle",
+    "driving": "vehicle",
+    "doors": "vehicle",
+    "seats": "vehicle",
+    "mirrors": "vehicle",
+    "emergency": "safety",
+    "comfort": "climate",
+    "explore": "map",
+    "place": "map",
+    "route": "map",
+    "playlist": "media",
+    "contact": "phone",
+    "thread": "phone",
+    "sound": "settings",
+    "connections": "settings",
+    "language": "settings",
+    "privacy": "settings",
+    "profiles": "settings",
+    **dict.fromkeys((*TOOLS, "store"), "apps"),
+}
+"""Screens that belong to an app without being in the dock."""
+
+DOCKED: tuple[Signal[Any], ...] = (
+    HVAC.DRIVER_TEMPERATURE,
+    HVAC.PASSENGER_TEMPERATURE,
+    HVAC.FRONT_DEFROSTER,
+    HVAC.REAR_DEFROSTER,
+    HMI.TEMPERATURE_UNIT,
+    HMI.LANGUAGE,
+)
+"""All that the dock depends on, beside where one is."""
+NOTICE = Rect(372, 6, 472, 52)
+"""Where the status bar says what is new."""
+_SIGNAL = (Icon.SIGNAL_0, Icon.SIGNAL_1, Icon.SIGNAL_2, Icon.SIGNAL_3, Icon.SIGNAL_3)
+
+
+def status_bar(state: State) -> tuple[Widget, ...]:
+    """Clock, weather, notice, lamps, links, battery, gear, speed and, if the car has a camera, the limit sign."""
+    signals = state.signals
+    bar = Rect(0, 0, SCREEN_WIDTH, STATUS_HEIGHT)
+    widgets: list[Widget] = [
+        Label(
+            rect=Rect(MARGIN - 4, 0, 76, bar.height),
+            key="status.clock",
+            text=state.clock,
+            description="Local time",
+            style=Type.TITLE,
+        ),
+        Label(
+            rect=Rect(98, 0, 68, bar.height),
+            key="status.outside_temperature",
+            text=temperature(signals, signals[OUTSIDE.TEMPERATURE], 0),
+            description="Outside temperature",
+            style=Type.LABEL,
+            tone="muted",
+        ),
+        Button(
+            rect=Rect(164, 8, 48, 48),
+            key="status.notifications",
+            description=f"Notifications: {len(state.notices)}",
+            icon=Icon.BELL_OFF if state.phone.do_not_disturb else Icon.BELL,
+            icon_size=24,
+            look=Look.PLAIN,
+            on_tap=Back() if state.screen == "notifications" else Show("notifications"),
+        ),
+    ]
+    widgets += _lamps(state)
+    if state.phone.ringing is not None:
+        widgets += _incoming(NOTICE, state.phone.ringing.who, state)
+    elif state.notice is not None:
+        widgets.append(_pill(NOTICE, state.notice, state))
+    return (*widgets, *_links(state), *_motion(state))
+
+
+def _pill(rect: Rect, notice: Notice, state: State) -> Pill:
+    """The newest notice. A tap leads to what it is about, or takes it away."""
+    seen = Put("notices", (*state.notices[:-1], replace(notice, seen=True)), "The notice is taken away")
+    here = (state.screen, state.picked.get(state.screen, ""))
+    return Pill(
+        rect=rect,
+        key="status.notice",
+        text=notice.text,
+        icon=notice.icon,
+        severity=notice.tone,
+        on_tap=Show(*notice.opens) if notice.opens and notice.opens != here else seen,
+    )
+
+
+def _incoming(rect: Rect, who: str, state: State) -> tuple[Widget, ...]:
+    """Who is calling, and what can be done about it from every screen."""
+    answer, decline, message = rect.right_part(3 * 64).columns(3, 8)
+    return (
+        Glyph(rect=Rect(rect.x, rect.y, 40, rect.height), icon=Icon.CALL_IN, size=30, tone="good"),
+        Label(
+            rect=Rect(rect.x + 44, rect.y, answer.x - rect.x - 52, rect.height),
+            key="call.incoming",
+            text=who,
+            description="Incoming call",
+            style=Type.LABEL,
+            lines=2,
+        ),
+        Button(
+            rect=answer,
+            key="call.answer",
+            description="Answer the call",
+            icon=Icon.PHONE,
+            look=Look.ACCENT,
+            on_tap=TakeCall(),
+        ),
+        Button(
+            rect=decline,
+            key="call.decline",
+            description="Decline the call",
+            icon=Icon.HANG_UP,
+            look=Look.CRITICAL,
+            on_tap=Decline(),
+        ),
+        Button(
+            rect=message,
+            key="call.reply",
+            description="Answer with a message",
+            icon=Icon.MESSAGE,
+            on_tap=Show("thread", who),
+            disabled="Choose an answer below"
+            if (state.screen, state.picked.get("thread")) == ("thread", who)
+            else "",
+        ),
+    )
+
+
+def _lamps(state: State) -> list[Widget]:
+    """Tell-tales of the lamps that are lit."""
+    signals = state.signals
+    lit = (
+        ("low_beam", "Low beam is on", Icon.LOW_BEAM, signals[LIGHTS.LOW_BEAM] and not signals[LIGHTS.HIGH_BEAM]),
+        ("high_beam", "High beam is on", Icon.HIGH_BEAM, signals[LIGHTS.HIGH_BEAM]),
+        ("front_fog", "Front fog lamps are on", Icon.FRONT_FOG, signals[LIGHTS.FRONT_FOG]),
+        ("rear_fog", "Rear fog lamp is on", Icon.REAR_FOG, signals[LIGHTS.REAR_FOG]),
+        ("hazard", "Hazard lights are on", Icon.HAZARD, signals[LIGHTS.HAZARD]),
+    )
+    shown = [lamp for lamp in lit if lamp[3]]
+    return [
+        Glyph(
+            rect=Rect(216 + 31 * place, 18, 28, 28),
+            key=f"status.{key}",
+            description=words,
+            icon=icon,
+            size=26,
+            tone="accent" if key == "high_beam" else "good",
+        )
+        for place, (key, words, icon, _) in enumerate(shown)
+    ]
+
+
+def _links(state: State) -> tuple[Widget, ...]:
+    outside = state.outside
+    online = state.signals[LINK.ONLINE] and outside is not None
+    bars = outside.connectivity.signal_bars if outside is not None else 0
+    words = f"{outside.connectivity.kind.upper()}, {bars} bars" if outside and online else "Offline"
+    fix = outside is not None and outside.gps is not None and outside.gps.has_fix
+    level = state.signals[ENERGY.LEVEL]
+    return (
+        Glyph(
+            rect=Rect(856, 18, 28, 28),
+            key="status.connectivity",
+            description=words,
+            icon=_SIGNAL[bars] if online else Icon.SIGNAL_OFF,
+            size=24,
+            tone="text" if online else "muted",
+        ),
+        Glyph(
+            rect=Rect(892, 18, 28, 28),
+            key="status.gps",
+            description="GPS fix" if fix else "No GPS fix",
+            icon=Icon.GPS if fix else Icon.GPS_OFF,
+            size=24,
+            tone="text" if fix else "muted",
+        ),
+        Glyph(rect=Rect(928, 18, 28, 28), icon=Icon.BATTERY, size=24, tone="muted"),
+        Label(
+            rect=Rect(954, 0, 56, STATUS_HEIGHT),
+            key="status.battery",
+            text=f"{level:.0f} %",
+            description="Battery",
+            style=Type.LABEL,
+        ),
+    )
+
+
+def _motion(state: State) -> tuple[Widget, ...]:
+    signals = state.signals
+    limit = signals[ADAS.LIMIT_SIGN]
+    sign: tuple[Widget, ...] = ()
+    if state.sign_camera and limit is not None:
+        shown = speed(signals, limit)
+        sign = (
+            LimitSign(
+                rect=Rect(1206, 7, 50, 50), key="status.limit_sign", text=shown, description=f"Limit sign {shown}"
+            ),
+        )
+    return (
+        Label(
+            rect=Rect(1020, 14, 36, 36),
+            key="status.gear",
+            text=signals[MOTION.GEAR],
+            description="Gear",
+            style=Type.STRONG,
+            align="centre",
+            plate=True,
+        ),
+        Label(
+            rect=Rect(1062, 0, 76, STATUS_HEIGHT),
+            key="status.speed",
+            text=speed(signals, signals[MOTION.SPEED]),
+            description=f"Speed in {speed_unit(signals)}",
+            style=Type.HEADLINE,
+            align="right",
+        ),
+        Label(
+            rect=Rect(1146, 6, 52, STATUS_HEIGHT),
+            key="status.speed_unit",
+            text=speed_unit(signals),
+            style=Type.CAPTION,
+            tone="muted",
+        ),
+        *sign,
+    )
+
+
+def dock(state: State) -> tuple[Widget, ...]:
+    """The apps in the middle, the temperatures and defrosters within the front seats' reach.
+
+    It seldom changes, and is the same object as long as it does not. The driver's side is that of the traffic.
+    """
+    here = PART_OF.get(state.screen, state.screen)
+    values = tuple(state.signals[signal] for signal in DOCKED)
+    return _dock(here, values, state.roads.network.left_hand)
+
+
+@lru_cache(maxsize=256)
+def _dock(here: str, values: tuple[Any, ...], left_hand: bool) -> tuple[Widget, ...]:
+    signals = Signals({signal.path: value for signal, value in zip(DOCKED, values, strict=True)})
+    bar = Rect(0, SCREEN_HEIGHT - DOCK_HEIGHT, SCREEN_WIDTH, DOCK_HEIGHT)
+    cells = Rect(284, bar.y + 8, 712, 80).columns(len(DOCK), 4)
+    apps = tuple(
+        Choice(
+            rect=cell,
+            key=f"dock.{name}",
+            text=text,
+            icon=icon,
+            selected=name == here,
+            on_tap=Show(name),
+            look="quiet",
+            stacked=True,
+            style=Type.SMALL,
+        )
+        for cell, (name, (text, icon)) in zip(cells, DOCK.items(), strict=True)
+    )
+    left = Rect(MARGIN, bar.y + 22, 184, 52)
+    right = Rect(SCREEN_WIDTH - MARGIN - 184, bar.y + 22, 184, 52)
+    driver, passenger = signals[HVAC.DRIVER_TEMPERATURE], signals[HVAC.PASSENGER_TEMPERATURE]
+    whole = (
+        *stepper(
+            right if left_hand else left,
+            "dock.driver_temperature",
+            "Driver's temperature",
+            HVAC.DRIVER_TEMPERATURE,
+            signals,
+            temperature(signals, driver),
+            Type.LABEL,
+        ),
+        _quick(Rect(218, bar.y + 22, 58, 52), "front", Icon.DEFROST_FRONT, signals),
+        *apps,
+        _quick(Rect(1004, bar.y + 22, 58, 52), "rear", Icon.DEFROST_REAR, signals),
+        *stepper(
+            left if left_hand else right,
+            "dock.passenger_temperature",
+            "Passenger's temperature",
+            HVAC.PASSENGER_TEMPERATURE,
+            signals,
+            temperature(signals, passenger),
+            Type.LABEL,
+        ),
+    )
+    return tuple(translated(widget, signals[HMI.LANGUAGE]) for widget in whole)
+
+
+def _quick(rect: Rect, where: str, icon: Icon, signals: Signals) -> Tile:
+    signal = HVAC.FRONT_DEFROSTER if where == "front" else HVAC.REAR_DEFROSTER
+    tile = switch(rect, f"dock.{where}_defroster", "", icon, signal, signals)
+    return Tile(
+        rect=tile.rect,
+        key=tile.key,
+        description=f"{where.capitalize()} defroster",
+        icon=icon,
+        checked=tile.checked,
+        on_tap=tile.on_tap,
+    )

@@ -1,0 +1,95 @@
+"""The on-screen keyboard: it lies over the lower half of the screen while a field that was tapped takes letters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.language import translated
+from automotive_cosim.cockpit.messages import BACKSPACE, Enter, Focus, Key
+from automotive_cosim.cockpit.screens.parts import KEYBOARD
+from automotive_cosim.cockpit.signals import HMI
+from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.theme import MARGIN, Icon, Type
+from automotive_cosim.cockpit.widgets import Button, Card, Field, Look, MapView, Rows, Widget
+
+LETTERS = {
+    "en": ("qwertyuiop", "asdfghjkl", "zxcvbnm"),
+    "fr": ("azertyuiop", "qsdfghjklm", "wxcvbn"),
+    "de": ("qwertzuiop", "asdfghjkl", "yxcvbnm"),
+}
+"""Rows of letters as they lie in each language; Japanese names are looked up by those of English."""
+ACCENTS = {"fr": "éèàç", "de": "äöüß"}
+"""Further letters, beside the last row."""
+DIGITS = "1234567890"
+GAP = 6
+
+
+def focused(widgets: Iterable[Widget]) -> Field | None:
+    """The text field among them that has the focus."""
+    return next((w for one in widgets for w in one.walk() if isinstance(w, Field) and w.focused), None)
+
+
+def keyboard(field: Field, state: State) -> Card:
+    """The keys that write into a field."""
+    language = state.signals[HMI.LANGUAGE]
+    letters = list(LETTERS.get(language, LETTERS["en"]))
+    letters[-1] += ACCENTS.get(language, "'-")
+    lines = KEYBOARD.inset(MARGIN, 8).rows(5, GAP)
+    keys = [
+        Button(rect=cell, key=f"keyboard.{letter}", text=letter, style=Type.BODY, on_tap=Key(field.key, letter))
+        for line, row in zip(lines, (DIGITS, *letters), strict=False)
+        for cell, letter in zip(_centred(line, len(row)), row, strict=True)
+    ]
+    card = Card(rect=KEYBOARD, children=(*keys, *_lowest(lines[-1], field)))
+    return translated(card, language)
+
+
+def uncovered(widgets: Iterable[Widget]) -> Iterator[Widget]:
+    """The widgets without those that the keyboard would cover; what holds others together stays below it."""
+    for widget in widgets:
+        if not widget.rect.overlaps(KEYBOARD):
+            yield widget
+        elif isinstance(widget, Card | Rows | MapView):
+            yield replace(widget, children=tuple(uncovered(widget.children)))
+
+
+def _centred(line: Rect, count: int) -> tuple[Rect, ...]:
+    """Cells for so many keys, all rows' keys of one width unless a row has more."""
+    cells = max(len(DIGITS), count)
+    wide = (line.width + GAP) * count // cells - GAP
+    return Rect(line.x + (line.width - wide) // 2, line.y, wide, line.height).columns(count, GAP)
+
+
+def _lowest(line: Rect, field: Field) -> tuple[Widget, ...]:
+    hide, erase = line.left(160), Rect(line.x + 160 + GAP, line.y, 160, line.height)
+    enter = line.right_part(260)
+    space = Rect(erase.right + GAP, line.y, enter.x - erase.right - 2 * GAP, line.height)
+    return (
+        Button(
+            rect=hide,
+            key="keyboard.hide",
+            description="Hide the keyboard",
+            icon=Icon.KEYBOARD_CLOSE,
+            on_tap=Focus(""),
+        ),
+        Button(
+            rect=erase,
+            key="keyboard.backspace",
+            description="Take one away",
+            icon=Icon.ERASE,
+            on_tap=Key(field.key, BACKSPACE),
+            disabled="" if field.text else "There is nothing to take away",
+        ),
+        Button(rect=space, key="keyboard.space", text="Space", on_tap=Key(field.key, " ")),
+        Button(
+            rect=enter,
+            key="keyboard.enter",
+            description="Take the first result",
+            icon=Icon.CHECK,
+            look=Look.ACCENT,
+            on_tap=Enter(field.on_enter),
+            disabled="" if field.on_enter else "Nothing fits yet",
+        ),
+    )

@@ -1,0 +1,350 @@
+"""Map: the road around the car, the way ahead, and where to go."""
+
+from __future__ import annotations
+
+from datetime import timedelta
+
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.map import ZOOMS_M_PER_PX, Camera
+from automotive_cosim.cockpit.mapscene import box_of, goal, jam, map_camera, scene
+from automotive_cosim.cockpit.messages import Follow, Guide, Message, Pick, Set, Show, Zoom
+from automotive_cosim.cockpit.navigation import Turn, turns
+from automotive_cosim.cockpit.screens.parts import CONTENT, choices, distance, heading, rows, search
+from automotive_cosim.cockpit.signals import VOICE
+from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.theme import GAP, Icon, Type
+from automotive_cosim.cockpit.widgets import (
+    Badge,
+    Button,
+    Card,
+    Glyph,
+    Label,
+    Look,
+    MapView,
+    Row,
+    Widget,
+)
+
+_CLASSES = {"motorway": "Motorway", "trunk": "Expressway", "service": "Service road", "residential": "Side street"}
+PANEL = CONTENT.left(372)
+"""What stands beside the map."""
+RESULTS = 21
+
+
+def map_screen(state: State) -> tuple[Widget, ...]:
+    """Search, favourites and recent destinations beside the map."""
+    return *_panel(PANEL, state), sight(state)
+
+
+def sight(state: State) -> Widget:
+    """The map, with the next turn, the road and the buttons that lie over it."""
+    rect = CONTENT.right_part(CONTENT.width - PANEL.width - GAP)
+    turn, plate = Rect(rect.x + 20, rect.y + 20, 560, 72), Rect(rect.x + 20, rect.bottom - 76, 420, 56)
+    voice, closer, further = (Rect(rect.right - 84, rect.bottom - 236 + 76 * at, 64, 64) for at in range(3))
+    ahead = next_turn(state)
+    north = Rect(rect.right - 84, rect.y + 20, 64, 64)
+    closer_in = Zoom(-1) if state.zoom else None
+    over = (plate, voice, closer, further, north, *((turn,) if ahead else ()))
+    silent = state.signals[VOICE.GUIDANCE] == "MUTED"
+    return Card(
+        rect=rect,
+        look="none",
+        children=(
+            map_view(rect, "map.view", state, map_camera(state), over, None, closer_in, pans=True),
+            *((_turn_plate(turn, ahead, state),) if ahead else ()),
+            _street_plate(plate, state),
+            _orientation(north, state),
+            Button(
+                rect=voice,
+                key="map.voice",
+                description="Guidance is silent" if silent else "Guidance speaks",
+                icon=Icon.MUTE if silent else Icon.VOICE,
+                look=Look.FLOATING,
+                on_tap=Set(VOICE.GUIDANCE, "UNMUTED" if silent else "MUTED"),
+            ),
+            Button(
+                rect=closer,
+                key="map.zoom_in",
+                description="Zoom in",
+                icon=Icon.PLUS,
+                look=Look.FLOATING,
+                on_tap=Zoom(-1),
+                disabled="" if state.zoom > 0 else "This is as close as it gets",
+            ),
+            Button(
+                rect=further,
+                key="map.zoom_out",
+                description="Zoom out",
+                icon=Icon.MINUS,
+                look=Look.FLOATING,
+                on_tap=Zoom(1),
+                disabled="" if state.zoom < len(ZOOMS_M_PER_PX) - 1 else "This is as far as it gets",
+            ),
+        ),
+    )
+
+
+def _orientation(rect: Rect, state: State) -> Button:
+    """Back to the car if the map was moved away; otherwise turns the map."""
+    if state.panned is not None:
+        words, icon, message = "Back to the car", Icon.GPS, Follow(state.north_up)
+    elif state.north_up:
+        words, icon, message = "North is up", Icon.COMPASS, Follow(False)
+    else:
+        words, icon, message = "The map turns with the car", Icon.NAVIGATION, Follow(True)
+    return Button(
+        rect=rect, key="map.orientation", description=words, icon=icon, look=Look.FLOATING, on_tap=message
+    )
+
+
+def map_view(
+    rect: Rect,
+    key: str,
+    state: State,
+    camera: Camera,
+    avoid: tuple[Rect, ...],
+    on_tap: Message | None = None,
+    on_double_tap: Message | None = None,
+    pans: bool = False,
+) -> MapView:
+    """The moving map in a box, with the names of streets and the marks that fit beside what lies over it."""
+    marks = _marks(rect, state, camera, avoid)
+    names = state.roads.names_in_sight(rect, camera, (*avoid, *(mark.rect for mark in marks)))
+    return MapView(
+        rect=rect,
+        key=key,
+        description=f"Map around {street(state)}",
+        roads=state.roads,
+        scene=scene(state, camera),
+        on_tap=on_tap,
+        on_double_tap=on_double_tap,
+        pans=pans,
+        children=(
+            *(
+                Label(rect=name.rect, text=name.text, style=Type.SMALL, align="centre", plate=True)
+                for name in names
+            ),
+            *marks,
+        ),
+    )
+
+
+def _marks(rect: Rect, state: State, camera: Camera, avoid: tuple[Rect, ...]) -> tuple[Widget, ...]:
+    """Where a jam begins and where the route ends, as far as they are in sight."""
+    found: list[Widget] = []
+    for name, words, icon, point in (
+        ("jam", "A jam begins here", Icon.JAM, jam(state)),
+        ("goal", "The route ends here", Icon.GOAL, goal(state)),
+    ):
+        if point is None:
+            continue
+        box = box_of(camera, rect, point, 40)
+        taken = (*avoid, *(mark.rect for mark in found))
+        if rect.inset(4).encloses(box) and not any(box.overlaps(other) for other in taken):
+            found.append(Badge(rect=box, key=f"map.{name}", description=words, icon=icon))
+    return tuple(found)
+
+
+def street(state: State) -> str:
+    """What the road is called, or what kind it is."""
+    if state.outside is None:
+        return "Locating"
+    road = state.outside.driving.road
+    return road.name or _CLASSES.get(road.road_class, "Unnamed road")
+
+
+def turns_ahead(state: State) -> tuple[tuple[Turn, float], ...]:
+    """The turns of the route and how far each is, in metres."""
+    if state.outside is None:
+        return ()
+    driving = state.outside.driving
+    found = turns(state.roads, driving.ahead.route_edges)
+    return tuple((turn, max(0.0, turn.after_m - driving.road.lane_position_m)) for turn in found)
+
+
+def next_turn(state: State) -> tuple[Turn, float] | None:
+    """The next of them."""
+    return next(iter(turns_ahead(state)), None)
+
+
+def _turn_plate(rect: Rect, ahead: tuple[Turn, float], state: State) -> Widget:
+    turn, away_m = ahead
+    return Card(
+        rect=rect,
+        children=(
+            Glyph(rect=Rect(rect.x + 14, rect.y + 14, 44, 44), icon=turn.icon, size=42, tone="accent"),
+            Label(
+                rect=Rect(rect.x + 72, rect.y + 8, 116, 56),
+                key="map.next_turn.distance",
+                text=distance(state.signals, away_m),
+                description="Distance to the next turn",
+                style=Type.TITLE,
+            ),
+            Label(
+                rect=Rect(rect.x + 192, rect.y + 8, rect.width - 206, 56),
+                key="map.next_turn",
+                text=f"{turn.words}: {turn.street}",
+                description="Next turn",
+                style=Type.LABEL,
+                lines=2,
+            ),
+        ),
+    )
+
+
+def _street_plate(rect: Rect, state: State) -> Widget:
+    tunnel = state.outside is not None and state.outside.driving.road.in_tunnel
+    return Card(
+        rect=rect,
+        children=(
+            Glyph(
+                rect=Rect(rect.x + 16, rect.y + 14, 28, 28),
+                icon=Icon.TUNNEL if tunnel else Icon.MAP,
+                size=26,
+                tone="accent",
+                key="map.tunnel" if tunnel else "",
+                description="In a tunnel" if tunnel else "",
+            ),
+            Label(
+                rect=Rect(rect.x + 56, rect.y, rect.width - 76, rect.height),
+                key="map.street",
+                text=street(state),
+                description="Current road",
+                style=Type.STRONG,
+            ),
+        ),
+    )
+
+
+def _panel(rect: Rect, state: State) -> tuple[Widget, ...]:
+    found = matches(state)
+    typed = bool(state.typed.get("map.search")) or state.focus == "map.search"
+    shown = state.picked["map.list"]
+    names = found if typed else state.navigation.recents if shown == "recent" else state.navigation.favourites
+    lists = choices(
+        Rect(rect.x, rect.y + 64 + 12, rect.width, 56),
+        "map.list",
+        [
+            ("saved", "Saved", Icon.STAR, shown == "saved", Pick("map.list", "saved")),
+            ("recent", "Recent", Icon.HISTORY, shown == "recent", Pick("map.list", "recent")),
+            ("explore", "Near", Icon.PLACE, False, Show("explore", "all")),
+        ],
+    )
+    top = rect.y + 144
+    listed = Rect(rect.x, top, rect.width, rect.bottom - 184 - GAP - top)
+    empty = Label(
+        rect=listed.top(60),
+        key="map.places.empty",
+        text="No street or place is called so" if typed else "No destinations yet",
+        tone="muted",
+        style=Type.LABEL,
+        align="centre",
+    )
+    return (
+        search(
+            rect.top(64),
+            "map.search",
+            "Search for a place or street",
+            "Where to?",
+            state,
+            _first(found if typed else ()),
+        ),
+        heading(Rect(rect.x + 4, rect.y + 90, rect.width, 28), "Results", "map.results") if typed else lists,
+        rows(
+            listed,
+            "map.places",
+            "Destinations",
+            state,
+            len(names),
+            lambda index, cell: destination(cell, f"map.place.{index}", names[index], state),
+            height=60,
+            gap=6,
+        )
+        if names
+        else empty,
+        _way(rect.bottom_part(184), state),
+    )
+
+
+def _first(found: tuple[str, ...]) -> Message | None:
+    return Guide(found[0]) if found else None
+
+
+def destination(rect: Rect, key: str, name: str, state: State) -> Row:
+    """A line of a list of destinations."""
+    place = state.atlas.find(name)
+    return Row(
+        rect=rect,
+        key=key,
+        text=name,
+        detail=place.street if place else "Street",
+        trail=away(state, name),
+        icon=place.icon if place else Icon.ROUTE,
+        selected=name == state.navigation.destination,
+        on_tap=Show("place", name),
+    )
+
+
+def away(state: State, name: str) -> str:
+    """How far a place is, as the crow flies; empty for a street."""
+    place = state.atlas.find(name)
+    if place is None or state.outside is None:
+        return ""
+    driving = state.outside.driving
+    return distance(state.signals, place.away_m(driving.x_m, driving.y_m))
+
+
+def matches(state: State) -> tuple[str, ...]:
+    """Places and streets whose name holds what was typed."""
+    wanted = state.typed.get("map.search", "").casefold().strip()
+    if not wanted:
+        return ()
+    places = (place.name for place in state.atlas.places if wanted in place.name.casefold())
+    streets = (name for name in state.roads.names if wanted in name.casefold())
+    return (*places, *streets)[:RESULTS]
+
+
+def _way(rect: Rect, state: State) -> Widget:
+    inner = rect.inset(20, 14)
+    faster, details = inner.bottom_part(56).columns(2, 12)
+    goal = state.navigation.destination
+    return Card(
+        rect=rect,
+        children=(
+            heading(inner.top(28), f"To {goal}" if goal else "Arrival", "map.goal"),
+            *arrival(Rect(inner.x, inner.y + 30, inner.width, 50), "map", state),
+            Button(rect=faster, key="map.faster_route", text="Faster", icon=Icon.ROUTE, on_tap=Guide("")),
+            Button(rect=details, key="map.route", text="Route", icon=Icon.TURNS, on_tap=Show("route")),
+        ),
+    )
+
+
+def arrival(rect: Rect, key: str, state: State) -> tuple[Widget, ...]:
+    """When, how far and how late."""
+    ahead = None if state.outside is None else state.outside.driving.ahead
+    at, left, late = "--:--", "", ""
+    if state.outside is not None and ahead is not None:
+        at = state.clock_at(state.outside.local_time + timedelta(seconds=ahead.eta_s))
+        left = distance(state.signals, ahead.route_left_m)
+        late = f"{ahead.delay_s / 60:.0f} min delay" if ahead.delay_s >= 30 else "No delay"
+    cells = rect.columns(2, 12)
+    return (
+        Label(rect=cells[0], key=f"{key}.arrival", text=at, description="Arrival time", style=Type.HEADLINE),
+        Label(
+            rect=cells[1].top(26),
+            key=f"{key}.route_left",
+            text=left,
+            description="Distance left",
+            style=Type.LABEL,
+            align="right",
+        ),
+        Label(
+            rect=cells[1].bottom_part(24),
+            key=f"{key}.delay",
+            text=late,
+            description="Delay by traffic",
+            style=Type.CAPTION,
+            tone="muted",
+            align="right",
+        ),
+    )

@@ -1,0 +1,382 @@
+"""Media: what plays, the controls, and what else there is: tracks, playlists, stations, podcasts."""
+
+from __future__ import annotations
+
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.media import Entry
+from automotive_cosim.cockpit.messages import Message, Pick, Play, Put, Set, Show, Skip
+from automotive_cosim.cockpit.screens.parts import CONTENT, choices, rows, search, slider
+from automotive_cosim.cockpit.signals import LINK, MEDIA
+from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.theme import GAP, Icon, Type
+from automotive_cosim.cockpit.widgets import Bar, Button, Card, Glyph, Label, Look, Row, Tile, Widget
+
+SOURCES = (
+    ("bluetooth", "Phone", Icon.BLUETOOTH),
+    ("fm", "FM", Icon.RADIO),
+    ("dab", "DAB", Icon.RADIO_TOWER),
+    ("usb", "USB", Icon.USB),
+    ("internet", "Podcasts", Icon.PODCAST),
+)
+LEFT, RIGHT = CONTENT.left(480), CONTENT.right_part(CONTENT.width - 480 - GAP)
+FOUND = 21
+
+
+def media(state: State) -> tuple[Widget, ...]:
+    """The screen."""
+    source = state.signals[MEDIA.SOURCE]
+    typed = bool(state.typed.get("media.search")) or state.focus == "media.search"
+    found = state.library.named(state.typed.get("media.search", ""))[:FOUND] if typed else ()
+    bar = Rect(RIGHT.x, RIGHT.y + 64 + 12, RIGHT.width, 56)
+    wide = 280 if typed else RIGHT.width - 3 * 150 if source != "INTERNET" else RIGHT.width
+    body = RIGHT.below(64 + 12 + 56 + 12)
+    return (
+        _now(LEFT, state),
+        choices(
+            RIGHT.top(64),
+            "media.source",
+            [
+                (key, text, icon, source == key.upper(), Set(MEDIA.SOURCE, key.upper()))
+                for key, text, icon in SOURCES
+            ],
+        ),
+        search(
+            bar if typed else bar.left(wide),
+            "media.search",
+            "Search music, stations and podcasts",
+            "Search",
+            state,
+            Play(found[0].uri) if found else None,
+        ),
+        *(() if typed or source == "INTERNET" else (_filters(bar.right_part(3 * 150 - 12), state),)),
+        *(_entries(body, found, state) if typed else _browse(body, source, state)),
+    )
+
+
+def _filters(rect: Rect, state: State) -> Widget:
+    shown = state.picked["media.list"]
+    tracks = state.signals[MEDIA.SOURCE] in ("BLUETOOTH", "USB")
+    kinds = [("all", "All"), ("liked", "Liked"), *([("playlists", "Playlists")] if tracks else [])]
+    return choices(
+        rect, "media.list", [(key, text, None, shown == key, Pick("media.list", key)) for key, text in kinds]
+    )
+
+
+def _browse(rect: Rect, source: str, state: State) -> tuple[Widget, ...]:
+    shown = state.picked["media.list"]
+    if source == "INTERNET":
+        return _shows(rect, state)
+    if shown == "playlists" and source in ("BLUETOOTH", "USB"):
+        return _playlists(rect, state)
+    entries = state.library.of(source)
+    if shown == "liked":
+        entries = tuple(entry for entry in entries if entry.uri in state.listening.favourites)
+    return _entries(rect, entries, state)
+
+
+def _entries(rect: Rect, entries: tuple[Entry, ...], state: State) -> tuple[Widget, ...]:
+    if not entries:
+        return (
+            Label(
+                rect=rect.top(60),
+                key="media.empty",
+                text="Nothing here",
+                tone="muted",
+                style=Type.LABEL,
+                align="centre",
+            ),
+        )
+    return (
+        rows(
+            rect,
+            "media.entries",
+            "Tracks and stations",
+            state,
+            len(entries),
+            lambda index, cell: entry_row(
+                cell, f"media.entry.{index}", entries[index], state, Play(entries[index].uri)
+            ),
+            height=64,
+        ),
+    )
+
+
+def entry_row(rect: Rect, key: str, entry: Entry, state: State, on_tap: Message) -> Row:
+    """A line of a list of entries."""
+    liked = entry.uri in state.listening.favourites
+    return Row(
+        rect=rect,
+        key=key,
+        text=entry.title,
+        detail=entry.by,
+        trail=minutes(entry.length_s) if entry.length_s else "",
+        icon=Icon.STAR if liked else Icon.NOTE if entry.length_s else Icon.RADIO,
+        selected=entry.uri == state.signals[MEDIA.PLAYED],
+        on_tap=on_tap,
+    )
+
+
+def _playlists(rect: Rect, state: State) -> tuple[Widget, ...]:
+    lists = state.listening.playlists
+    return (
+        rows(
+            rect,
+            "media.playlists",
+            "Playlists",
+            state,
+            len(lists),
+            lambda index, cell: Row(
+                rect=cell,
+                key=f"media.playlist.{index}",
+                text=lists[index].name,
+                detail=f"{len(lists[index].uris)} tracks",
+                icon=Icon.PLAYLIST,
+                selected=lists[index].name == state.listening.playlist,
+                on_tap=Show("playlist", lists[index].name),
+            ),
+            height=64,
+        ),
+    )
+
+
+def _shows(rect: Rect, state: State) -> tuple[Widget, ...]:
+    """Podcasts on the left, episodes of the chosen one on the right."""
+    shows = state.library.shows
+    chosen = state.picked["media.show"]
+    offline = "" if state.signals[LINK.ONLINE] else "Podcasts need a connection"
+    episodes = tuple(entry for entry in state.library.of("INTERNET") if entry.by == chosen)
+    left, right = rect.left(300), rect.right_part(rect.width - 300 - 12)
+    return (
+        rows(
+            left,
+            "media.shows",
+            "Podcasts",
+            state,
+            len(shows),
+            lambda index, cell: Row(
+                rect=cell,
+                key=f"media.show.{index}",
+                text=shows[index],
+                icon=Icon.PODCAST,
+                selected=shows[index] == chosen,
+                on_tap=Pick("media.show", shows[index]),
+            ),
+            height=56,
+        ),
+        rows(
+            right,
+            "media.entries",
+            "Episodes",
+            state,
+            len(episodes),
+            lambda index, cell: Row(
+                rect=cell,
+                key=f"media.entry.{index}",
+                text=episodes[index].title,
+                detail=minutes(episodes[index].length_s or 0.0),
+                icon=Icon.PLAY,
+                selected=episodes[index].uri == state.signals[MEDIA.PLAYED],
+                on_tap=Play(episodes[index].uri),
+                disabled=offline,
+            ),
+            height=60,
+            gap=6,
+        ),
+    )
+
+
+def playlist(state: State) -> tuple[Widget, ...]:
+    """One playlist: its tracks, and the one that plays now to add or take out."""
+    name = state.picked.get("playlist") or state.listening.playlists[0].name
+    tracks = tuple(state.library.by_uri[uri] for uri in state.listening.tracks(name))
+    playing = state.library.by_uri[state.signals[MEDIA.PLAYED]]
+    inside = playing in tracks
+    bar = RIGHT.top(64)
+    right = bar.right_part(2 * 200 + 12).columns(2, 12)
+    fits = playing.length_s is not None and not playing.uri.startswith("podcast")
+    return (
+        _now(LEFT, state),
+        Button(
+            rect=bar.left(64), key="playlist.back", description="All music", icon=Icon.BACK, on_tap=Show("media")
+        ),
+        Label(rect=Rect(bar.x + 80, bar.y, 230, 64), key="playlist.name", text=name, style=Type.TITLE),
+        Button(
+            rect=right[0],
+            key="playlist.play",
+            text="Play all",
+            icon=Icon.PLAY,
+            look=Look.ACCENT,
+            on_tap=Play(tracks[0].uri if tracks else "", name),
+            disabled="" if tracks else "There is nothing in it",
+        ),
+        Button(
+            rect=right[1],
+            key="playlist.change",
+            text="Take out" if inside else "Add this",
+            description=f"{playing.title}: {'take it out' if inside else 'add it'}",
+            icon=Icon.PLAYLIST_REMOVE if inside else Icon.PLAYLIST_ADD,
+            on_tap=Put(
+                "listening",
+                state.listening.with_track(name, playing.uri, not inside),
+                f"{playing.title} is {'taken out of' if inside else 'added to'} {name}",
+            ),
+            disabled="" if fits else "Only tracks go into a playlist",
+        ),
+        rows(
+            RIGHT.below(64 + 12),
+            "playlist.tracks",
+            "Tracks",
+            state,
+            len(tracks),
+            lambda index, cell: entry_row(
+                cell, f"playlist.track.{index}", tracks[index], state, Play(tracks[index].uri, name)
+            ),
+            height=64,
+        ),
+    )
+
+
+def _now(rect: Rect, state: State) -> Widget:
+    signals = state.signals
+    inner = rect.inset(28, 20)
+    entry = state.library.by_uri[signals[MEDIA.PLAYED]]
+    playing = signals[MEDIA.ACTION] == "PLAY"
+    liked = entry.uri in state.listening.favourites
+    art = Rect(inner.x, inner.y, 132, 132)
+    words = Rect(art.right + 24, art.y + 16, inner.right - art.right - 24, 100)
+    middle = Rect(inner.x, inner.y + 220, inner.width, 88).middle(88, 88)
+    volume = inner.bottom_part(84)
+    extras = Rect(inner.x, inner.y + 328, inner.width, 60).columns(4, 12)
+    return Card(
+        rect=rect,
+        children=(
+            Card(
+                rect=art,
+                look="raised",
+                children=(Glyph(rect=art.middle(72, 72), icon=_art(entry), size=72, tone="accent"),),
+            ),
+            Label(
+                rect=words.top(64),
+                key="media.title",
+                text=entry.title,
+                description="Playing" if playing else "Paused",
+                style=Type.TITLE,
+                lines=2,
+            ),
+            Label(rect=words.bottom_part(32), key="media.artist", text=entry.by, description="By", tone="muted"),
+            *_progress(Rect(inner.x, inner.y + 152, inner.width, 40), state, entry.length_s),
+            Button(
+                rect=Rect(middle.x - 112, middle.y + 8, 72, 72),
+                key="media.previous",
+                description="Previous",
+                icon=Icon.PREVIOUS,
+                icon_size=40,
+                look=Look.PLAIN,
+                on_tap=Skip(-1),
+            ),
+            Button(
+                rect=middle,
+                key="media.play",
+                description="Pause" if playing else "Play",
+                icon=Icon.PAUSE if playing else Icon.PLAY,
+                icon_size=48,
+                look=Look.ACCENT,
+                on_tap=Set(MEDIA.ACTION, "STOP" if playing else "PLAY"),
+            ),
+            Button(
+                rect=Rect(middle.right + 40, middle.y + 8, 72, 72),
+                key="media.next",
+                description="Next",
+                icon=Icon.NEXT,
+                icon_size=40,
+                look=Look.PLAIN,
+                on_tap=Skip(1),
+            ),
+            _sign(
+                extras[0],
+                "media.shuffle",
+                "Shuffle",
+                Icon.SHUFFLE,
+                signals[MEDIA.SHUFFLE],
+                Set(MEDIA.SHUFFLE, not signals[MEDIA.SHUFFLE]),
+            ),
+            _sign(
+                extras[1],
+                "media.repeat",
+                "Repeat",
+                Icon.REPEAT,
+                signals[MEDIA.REPEAT],
+                Set(MEDIA.REPEAT, not signals[MEDIA.REPEAT]),
+            ),
+            _sign(
+                extras[2],
+                "media.like",
+                "Liked",
+                Icon.STAR if liked else Icon.STAR_OUTLINE,
+                liked,
+                Put(
+                    "listening",
+                    state.listening.with_favourite(entry.uri, not liked),
+                    f"{entry.title} is {'no longer' if liked else 'now'} liked",
+                ),
+            ),
+            Button(
+                rect=extras[3], key="media.sound", description="Sound", icon=Icon.EQUALIZER, on_tap=Show("sound")
+            ),
+            slider(
+                volume.left(volume.width - 84),
+                "media.volume",
+                "Volume",
+                Icon.VOLUME,
+                MEDIA.VOLUME,
+                signals,
+            ),
+            _sign(
+                volume.right_part(68).middle(68, 60),
+                "media.mute",
+                "Mute",
+                Icon.MUTE,
+                signals[MEDIA.MUTED],
+                Set(MEDIA.MUTED, not signals[MEDIA.MUTED]),
+            ),
+        ),
+    )
+
+
+def _sign(rect: Rect, key: str, name: str, icon: Icon, on: bool, message: Message) -> Tile:
+    """A switch that is an icon alone."""
+    return Tile(rect=rect, key=key, description=name, icon=icon, checked=on, on_tap=message)
+
+
+def _art(entry: Entry) -> Icon:
+    if entry.length_s is None:
+        return Icon.RADIO
+    return Icon.PODCAST if entry.uri.startswith("podcast") else Icon.NOTE
+
+
+def _progress(rect: Rect, state: State, length_s: float | None) -> tuple[Widget, ...]:
+    if length_s is None:
+        return (Label(rect=rect, key="media.live", text="Live", style=Type.LABEL, tone="accent"),)
+    return (
+        Bar(rect=rect.top(8), share=round(state.played_s / length_s, 3)),
+        Label(
+            rect=rect.bottom_part(26).left(100),
+            key="media.elapsed",
+            text=minutes(state.played_s),
+            style=Type.CAPTION,
+            tone="muted",
+        ),
+        Label(
+            rect=rect.bottom_part(26).right_part(100),
+            key="media.length",
+            text=minutes(length_s),
+            style=Type.CAPTION,
+            tone="muted",
+            align="right",
+        ),
+    )
+
+
+def minutes(seconds: float) -> str:
+    """Minutes and seconds."""
+    return f"{int(seconds) // 60}:{int(seconds) % 60:02d}"

@@ -1,0 +1,314 @@
+"""Outside: what the car senses of rain, fog, ice, glare, dust and air, and what can be done about each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.messages import Message, Pick, Set, WarnDriver, Wash
+from automotive_cosim.cockpit.screens.climate import glass_words
+from automotive_cosim.cockpit.screens.parts import CONTENT, distance, heading, speed, speed_unit, temperature
+from automotive_cosim.cockpit.signals import (
+    ADAS,
+    BODY,
+    DRIVE,
+    GLASS,
+    HMI,
+    HVAC,
+    LIGHTS,
+    MIRROR,
+    OUTSIDE,
+    Signal,
+    Signals,
+)
+from automotive_cosim.cockpit.sky import air_grade, is_dusty
+from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.theme import GAP, Icon, Type
+from automotive_cosim.cockpit.widgets import Bar, Button, Card, Glyph, Label, Look, Row, Tile, Widget
+from automotive_cosim.contracts import Alert, AlertKind
+
+LEFT, RIGHT = CONTENT.left(400), CONTENT.right_part(CONTENT.width - 400 - GAP)
+FOG_M, MIST_M = 1000.0, 5000.0
+"""Fog and mist by the WMO's definitions."""
+ICE_C = 3.0
+"""Cars warn of ice from here down: the road can be colder than the air."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """What is felt of one phenomenon."""
+
+    word: str
+    value: str
+    share: float
+    """How bad, 0 to 1."""
+
+
+@dataclass(frozen=True, slots=True)
+class Act:
+    """Something to do about it: a setting, on or off."""
+
+    key: str
+    text: str
+    icon: Icon
+    signal: Signal[Any]
+    on: Any
+    off: Any
+
+
+@dataclass(frozen=True, slots=True)
+class Phenomenon:
+    """One of what the car senses."""
+
+    title: str
+    icon: Icon
+    about: str
+    read: Callable[[State], Reading]
+    acts: tuple[Act, ...]
+    alert: AlertKind
+
+
+def _switch(key: str, text: str, icon: Icon, signal: Signal[bool]) -> Act:
+    return Act(key, text, icon, signal, True, False)
+
+
+def _rain(state: State) -> Reading:
+    rate = 0.0 if state.outside is None else state.outside.weather.precipitation
+    word = "No rain" if rate < 0.1 else "Light" if rate < 2.5 else "Moderate" if rate < 10 else "Heavy"
+    return Reading(word, f"{rate:.1f} mm/h", state.signals[BODY.RAIN_INTENSITY] / 100)
+
+
+def _fog(state: State) -> Reading:
+    sight = state.signals[OUTSIDE.VISIBILITY]
+    word = "Clear" if sight >= MIST_M else "Mist" if sight >= FOG_M else "Fog" if sight >= 200 else "Dense fog"
+    return Reading(word, f"Visibility {distance(state.signals, sight)}", 1 - min(1.0, sight / MIST_M))
+
+
+def _ice(state: State) -> Reading:
+    signals = state.signals
+    grip, air = signals[ADAS.ROAD_FRICTION], signals[OUTSIDE.TEMPERATURE]
+    word = "Slippery" if grip < 50 else "Ice possible" if air <= ICE_C else "Wet" if grip < 90 else "Good grip"
+    return Reading(word, f"{temperature(signals, air, 0)}, grip {grip:.0f} %", 1 - grip / 100)
+
+
+def _glare(state: State) -> Reading:
+    share = state.signals[OUTSIDE.GLARE] / 100
+    word = "No glare" if share < 0.1 else "Low sun ahead" if share < 0.5 else "Strong"
+    return Reading(word, f"{100 * share:.0f} %", share)
+
+
+def _dust(state: State) -> Reading:
+    dusty = state.outside is not None and is_dusty(state.outside.weather)
+    sight = state.signals[OUTSIDE.VISIBILITY]
+    word = "No dust" if not dusty else "Blowing dust" if sight >= FOG_M else "Dust storm"
+    return Reading(
+        word, f"Visibility {distance(state.signals, sight)}", 1 - min(1.0, sight / MIST_M) if dusty else 0.0
+    )
+
+
+def _air(state: State) -> Reading:
+    fine = state.signals[OUTSIDE.FINE_DUST]
+    inside = state.signals[HVAC.CABIN_FINE_DUST]
+    return Reading(
+        air_grade(fine), f"Outside {fine:.0f} µg/m³, in the cabin {inside:.0f} µg/m³", min(1.0, fine / 140)
+    )
+
+
+def _wind(state: State) -> Reading:
+    wind = state.signals[OUTSIDE.WIND]
+    word = "Calm" if wind < 20 else "Breeze" if wind < 50 else "Strong" if wind < 75 else "Storm"
+    return Reading(word, f"{speed(state.signals, wind)} {speed_unit(state.signals)}", min(1.0, wind / 100))
+
+
+def _glass(state: State) -> Reading:
+    signals: Signals = state.signals
+    fog, film = signals[GLASS.WINDSHIELD_FOG], signals[GLASS.WINDSHIELD_FILM]
+    word = glass_words(fog, film).capitalize()
+    clear = (1 - fog) * (1 - film)
+    return Reading(word, f"Windshield {100 * clear:.0f} % clear", 1 - clear)
+
+
+_LOW_BEAM = _switch("low_beam", "Low beam", Icon.LOW_BEAM, LIGHTS.LOW_BEAM)
+_RECIRCULATION = _switch("recirculation", "Recirculate", Icon.RECIRCULATION, HVAC.RECIRCULATION)
+_PURIFIER = _switch("purifier", "Purifier", Icon.PURIFIER, HVAC.PURIFIER)
+_FRONT_DEFROST = _switch("front_defroster", "Front defrost", Icon.DEFROST_FRONT, HVAC.FRONT_DEFROSTER)
+_REAR_DEFROST = _switch("rear_defroster", "Rear defrost", Icon.DEFROST_REAR, HVAC.REAR_DEFROSTER)
+
+
+def _mode(key: str, text: str, value: str) -> Act:
+    return Act(key, text, Icon.DRIVE_MODE, DRIVE.MODE, value, "NORMAL")
+
+
+PHENOMENA: dict[str, Phenomenon] = {
+    "rain": Phenomenon(
+        "Rain",
+        Icon.RAIN,
+        "The rain sensor sees the drops on the windshield.",
+        _rain,
+        (
+            Act("wipers", "Wipers auto", Icon.WASHER, BODY.FRONT_WIPER, "RAIN_SENSOR", "OFF"),
+            _LOW_BEAM,
+            _mode("rain_mode", "Rain mode", "RAIN"),
+            _REAR_DEFROST,
+        ),
+        AlertKind.WEATHER,
+    ),
+    "fog": Phenomenon(
+        "Fog",
+        Icon.REAR_FOG,
+        "Visibility as the forward camera estimates it. Whether fog lamps may be lit depends on local law.",
+        _fog,
+        (
+            _LOW_BEAM,
+            _switch("front_fog", "Front fog", Icon.FRONT_FOG, LIGHTS.FRONT_FOG),
+            _switch("rear_fog", "Rear fog", Icon.REAR_FOG, LIGHTS.REAR_FOG),
+            _switch("hazard", "Hazards", Icon.HAZARD, LIGHTS.HAZARD),
+        ),
+        AlertKind.VISIBILITY,
+    ),
+    "ice": Phenomenon(
+        "Ice and grip",
+        Icon.SLIPPERY,
+        "Grip as the stability control estimates it, beside a dry road.",
+        _ice,
+        (
+            _mode("snow_mode", "Snow mode", "SNOW"),
+            _switch("mirrors", "Mirror heat", Icon.MIRROR, MIRROR.DRIVER_HEATING),
+            _REAR_DEFROST,
+            _switch("max_defrost", "Max defrost", Icon.DEFROST_FRONT, HVAC.MAX_DEFROST),
+        ),
+        AlertKind.SLIPPERY,
+    ),
+    "glare": Phenomenon(
+        "Glare",
+        Icon.DAY,
+        "A low sun ahead, as the light sensor at the mirror sees it. A clean windshield scatters less.",
+        _glare,
+        (
+            Act("brightness", "Bright screen", Icon.BRIGHTNESS, HMI.BRIGHTNESS, 100.0, 70.0),
+            _LOW_BEAM,
+        ),
+        AlertKind.VISIBILITY,
+    ),
+    "dust": Phenomenon(
+        "Dust",
+        Icon.DUST,
+        "Dust and sand in the air ahead.",
+        _dust,
+        (_RECIRCULATION, _PURIFIER, _LOW_BEAM),
+        AlertKind.VISIBILITY,
+    ),
+    "air": Phenomenon(
+        "Air quality",
+        Icon.AIR_QUALITY,
+        "Fine dust at the air intake, graded by the European Air Quality Index.",
+        _air,
+        (_RECIRCULATION, _PURIFIER),
+        AlertKind.WEATHER,
+    ),
+    "wind": Phenomenon(
+        "Wind",
+        Icon.AIR_MIDDLE,
+        "Wind from the weather service and the stability control.",
+        _wind,
+        (
+            _switch("stability", "Stability", Icon.STABILITY, ADAS.STABILITY_CONTROL),
+            _switch("lane_keeping", "Lane keeping", Icon.STEERING, ADAS.LANE_KEEPING),
+        ),
+        AlertKind.WEATHER,
+    ),
+    "glass": Phenomenon(
+        "Windows",
+        Icon.AIR_UP,
+        "Fog inside clears with dry air, drops outside with the wipers.",
+        _glass,
+        (
+            _FRONT_DEFROST,
+            _REAR_DEFROST,
+            _switch("air_conditioning", "A/C", Icon.SNOWFLAKE, HVAC.AIR_CONDITIONING),
+            _RECIRCULATION,
+        ),
+        AlertKind.VISIBILITY,
+    ),
+}
+
+
+def outside(state: State) -> tuple[Widget, ...]:
+    """The screen."""
+    chosen = state.picked["outside"]
+    lines = LEFT.rows(len(PHENOMENA), 8)
+    return (
+        *(
+            Row(
+                rect=line,
+                key=f"outside.{name}",
+                text=known.title,
+                detail=known.read(state).word,
+                icon=known.icon,
+                tone="warning" if known.read(state).share >= 0.5 else "accent",
+                selected=name == chosen,
+                on_tap=Pick("outside", name),
+            )
+            for line, (name, known) in zip(lines, PHENOMENA.items(), strict=True)
+        ),
+        _detail(PHENOMENA[chosen], state),
+    )
+
+
+def _detail(known: Phenomenon, state: State) -> Widget:
+    inner = RIGHT.inset(32, 28)
+    reading = known.read(state)
+    words = Rect(inner.x + 128, inner.y, inner.width - 128, 96)
+    tiles = Rect(inner.x, inner.y + 272, inner.width, 104).columns(4, 12)
+    warn, wash = inner.bottom_part(72).columns(2, 12)
+    return Card(
+        rect=RIGHT,
+        children=(
+            Glyph(
+                rect=Rect(inner.x, inner.y, 96, 96),
+                icon=known.icon,
+                size=88,
+                tone="warning" if reading.share >= 0.5 else "accent",
+            ),
+            Label(
+                rect=words.top(52),
+                key="outside.word",
+                text=reading.word,
+                description=known.title,
+                style=Type.HEADLINE,
+            ),
+            Label(rect=words.bottom_part(36), key="outside.value", text=reading.value, tone="muted"),
+            Bar(
+                rect=Rect(inner.x, inner.y + 124, inner.width, 12),
+                share=round(reading.share, 2),
+                tone="warning" if reading.share >= 0.5 else "good",
+            ),
+            Label(
+                rect=Rect(inner.x, inner.y + 152, inner.width, 56),
+                key="outside.about",
+                text=known.about,
+                style=Type.LABEL,
+                tone="muted",
+                lines=2,
+            ),
+            heading(Rect(inner.x, inner.y + 232, inner.width, 28), "What to do"),
+            *(_act(cell, act, state) for cell, act in zip(tiles, known.acts, strict=False)),
+            Button(
+                rect=warn,
+                key="outside.warn",
+                text="Warn the driver",
+                icon=Icon.WARN,
+                look=Look.ACCENT,
+                on_tap=WarnDriver(Alert(known.alert)),
+            ),
+            Button(rect=wash, key="outside.wash", text="Wash the windshield", icon=Icon.WASHER, on_tap=Wash()),
+        ),
+    )
+
+
+def _act(rect: Rect, act: Act, state: State) -> Tile:
+    on = state.signals[act.signal] == act.on
+    message: Message = Set(act.signal, act.off if on else act.on)
+    return Tile(rect=rect, key=f"outside.act.{act.key}", text=act.text, icon=act.icon, checked=on, on_tap=message)

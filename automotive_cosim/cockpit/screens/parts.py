@@ -1,0 +1,361 @@
+"""Pieces that several screens are made of, and how values read."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from automotive_cosim.cockpit.desk import Timer
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.messages import Focus, Message, Put, Set, Show
+from automotive_cosim.cockpit.restrictions import Restriction
+from automotive_cosim.cockpit.signals import HMI, Signal, Signals
+from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.theme import (
+    DOCK_HEIGHT,
+    MARGIN,
+    SCREEN_HEIGHT,
+    SCREEN_WIDTH,
+    STATUS_HEIGHT,
+    Icon,
+    Type,
+)
+from automotive_cosim.cockpit.widgets import (
+    Button,
+    Card,
+    Choice,
+    Field,
+    Glyph,
+    Label,
+    Row,
+    Rows,
+    Slider,
+    Tile,
+    Widget,
+)
+
+CONTENT = Rect(
+    MARGIN,
+    STATUS_HEIGHT + 8,
+    SCREEN_WIDTH - 2 * MARGIN,
+    SCREEN_HEIGHT - STATUS_HEIGHT - DOCK_HEIGHT - 16,
+)
+"""Where a screen may draw."""
+KEYBOARD = Rect(0, 416, SCREEN_WIDTH, SCREEN_HEIGHT - 416)
+"""Where the on-screen keyboard lies while it is shown."""
+MILE_KM, PSI_KPA = 1.609344, 6.894757
+
+
+def temperature(signals: Signals, celsius: float, digits: int = 1) -> str:
+    """In the unit of the display."""
+    if signals[HMI.TEMPERATURE_UNIT] == "F":
+        return f"{celsius * 1.8 + 32:.0f} °F"
+    return f"{celsius:.{digits}f} °C".replace("-0 ", "0 ").replace("-0.0", "0.0")
+
+
+def speed(signals: Signals, kmh: float) -> str:
+    """The number alone, in the unit of the display."""
+    return f"{kmh / MILE_KM if signals[HMI.DISTANCE_UNIT] == 'MILES' else kmh:.0f}"
+
+
+def speed_unit(signals: Signals) -> str:
+    """Of ``speed``."""
+    return "mph" if signals[HMI.DISTANCE_UNIT] == "MILES" else "km/h"
+
+
+def distance(signals: Signals, metres: float) -> str:
+    """Rounded as signs are."""
+    if signals[HMI.DISTANCE_UNIT] == "MILES":
+        miles = metres / 1000 / MILE_KM
+        return f"{miles:.1f} mi" if miles < 100 else f"{miles:.0f} mi"
+    if metres < 1000:
+        return f"{round(metres, -1):.0f} m"
+    return f"{metres / 1000:.1f} km" if metres < 100_000 else f"{metres / 1000:.0f} km"
+
+
+def pressure(signals: Signals, kpa: float) -> str:
+    """In the unit of the display."""
+    unit = signals[HMI.PRESSURE_UNIT]
+    if unit == "PSI":
+        return f"{kpa / PSI_KPA:.0f} psi"
+    return f"{kpa / 100:.1f} bar" if unit == "BAR" else f"{kpa:.0f} kPa"
+
+
+def heading(rect: Rect, text: str, key: str = "") -> Label:
+    """The title of a card."""
+    return Label(rect=rect, key=key, text=text, style=Type.LABEL, tone="muted")
+
+
+def stepper(
+    rect: Rect,
+    key: str,
+    name: str,
+    signal: Signal[float],
+    signals: Signals,
+    shown: str,
+    style: Type = Type.TITLE,
+    locked: str = "",
+) -> tuple[Widget, ...]:
+    """Minus, the value, plus."""
+    value = signals[signal]
+    side = min(rect.height, 64)
+    less, more = max(signal.low, value - signal.step), min(signal.high, value + signal.step)
+    left = Rect(rect.x, rect.y + (rect.height - side) // 2, side, side)
+    right = Rect(rect.right - side, left.y, side, side)
+    return (
+        Button(
+            rect=left,
+            key=f"{key}.decrease",
+            description=f"{name} lower",
+            icon=Icon.MINUS,
+            on_tap=Set(signal, less),
+            disabled="It is at its lowest" if less == value else "",
+            locked=locked,
+        ),
+        Label(
+            rect=Rect(left.right, rect.y, right.x - left.right, rect.height),
+            key=f"{key}.value",
+            text=shown,
+            description=name,
+            style=style,
+            align="centre",
+        ),
+        Button(
+            rect=right,
+            key=f"{key}.increase",
+            description=f"{name} higher",
+            icon=Icon.PLUS,
+            on_tap=Set(signal, more),
+            disabled="It is at its highest" if more == value else "",
+            locked=locked,
+        ),
+    )
+
+
+def switch(
+    rect: Rect, key: str, name: str, icon: Icon, signal: Signal[bool], signals: Signals, locked: str = ""
+) -> Tile:
+    """A tile that turns a signal on and off."""
+    on = signals[signal]
+    return Tile(rect=rect, key=key, text=name, icon=icon, checked=on, on_tap=Set(signal, not on), locked=locked)
+
+
+def levels(
+    rect: Rect,
+    key: str,
+    name: str,
+    icon: Icon,
+    signal: Signal[float],
+    signals: Signals,
+    steps: Sequence[tuple[float, str]],
+) -> Tile:
+    """A tile that goes round its levels; a value that is none of them counts as the first."""
+    values = [value for value, _ in steps]
+    now = signals[signal]
+    at = values.index(now) if now in values else 0
+    following = values[(at + 1) % len(values)]
+    return Tile(
+        rect=rect,
+        key=key,
+        text=name,
+        icon=icon,
+        checked=at > 0,
+        level=steps[at][1],
+        on_tap=Set(signal, following),
+    )
+
+
+def choices(
+    rect: Rect,
+    key: str,
+    options: Sequence[tuple[str, str, Icon | None, bool, Message]],
+    *,
+    stacked: bool = False,
+) -> Card:
+    """A row of options of which one is selected; each (key, text, icon, selected, message)."""
+    cells = rect.inset(4).columns(len(options), 4)
+    return Card(
+        rect=rect,
+        look="raised",
+        children=tuple(
+            Choice(
+                rect=cell,
+                key=f"{key}.{name}",
+                text=text,
+                icon=icon,
+                selected=selected,
+                on_tap=message,
+                stacked=stacked,
+            )
+            for cell, (name, text, icon, selected, message) in zip(cells, options, strict=True)
+        ),
+    )
+
+
+def slider(
+    rect: Rect,
+    key: str,
+    name: str,
+    icon: Icon,
+    signal: Signal[float],
+    signals: Signals,
+    shown: str = "",
+    locked: str = "",
+) -> Slider:
+    """A number; a percentage if nothing else is to be shown."""
+    return Slider(
+        rect=rect,
+        key=key,
+        description=name,
+        text=shown or f"{signals[signal]:.0f} %",
+        icon=icon,
+        signal=signal,
+        value=signals[signal],
+        locked=locked,
+    )
+
+
+def search(
+    rect: Rect, key: str, name: str, hint: str, state: State, on_enter: Message | None, icon: Icon = Icon.SEARCH
+) -> Field:
+    """A text field; typing is locked while driving."""
+    return Field(
+        rect=rect,
+        key=key,
+        text=state.typed.get(key, ""),
+        description=name,
+        hint=hint,
+        icon=icon,
+        focused=state.focus == key,
+        on_tap=Focus(key),
+        on_enter=on_enter,
+        locked=state.locked(Restriction.NO_KEYBOARD),
+    )
+
+
+def title(rect: Rect, icon: Icon, text: str, key: str = "") -> Card:
+    """The head of a page: an icon and its name."""
+    return Card(
+        rect=rect,
+        look="none",
+        children=(
+            Glyph(rect=Rect(rect.x, rect.y, 32, rect.height), icon=icon, size=28, tone="accent"),
+            Label(
+                rect=Rect(rect.x + 44, rect.y, rect.width - 44, rect.height), key=key, text=text, style=Type.TITLE
+            ),
+        ),
+    )
+
+
+def note(rect: Rect, key: str, text: str) -> Label:
+    """What stands where a list is empty."""
+    return Label(rect=rect.top(60), key=key, text=text, tone="muted", style=Type.LABEL, align="centre")
+
+
+def fact(rect: Rect, key: str, name: str, value: str) -> tuple[Widget, ...]:
+    """A line with a name and what it is."""
+    half = rect.width // 2
+    return (
+        Label(rect=rect.left(half), text=name, style=Type.LABEL, tone="muted"),
+        Label(
+            rect=rect.right_part(rect.width - half - 8),
+            key=key,
+            text=value,
+            description=name,
+            style=Type.LABEL,
+            align="right",
+        ),
+    )
+
+
+def menu(rect: Rect, key: str, pages: Sequence[tuple[str, str, Icon]], state: State) -> Card:
+    """The pages of an app, one above the other; each (screen, text, icon)."""
+    inner = rect.inset(12)
+    return Card(
+        rect=rect,
+        children=tuple(
+            Row(
+                rect=Rect(inner.x, inner.y + at * 64, inner.width, 56),
+                key=f"{key}.{screen}",
+                text=text,
+                icon=icon,
+                selected=state.screen == screen,
+                on_tap=Show(screen),
+            )
+            for at, (screen, text, icon) in enumerate(pages)
+        ),
+    )
+
+
+def rows(
+    rect: Rect,
+    key: str,
+    name: str,
+    state: State,
+    total: int,
+    row: Callable[[int, Rect], Widget],
+    *,
+    columns: int = 1,
+    height: int = 64,
+    gap: int = 8,
+) -> Rows:
+    """A scrolling list or grid of ``total`` entries, cut at whole rows.
+
+    Args:
+        rect: where it is; the rightmost 16 pixels are left to the scroll bar.
+        key: its resource id, under which the state remembers how far it is scrolled.
+        name: what it lists.
+        state: of the cockpit.
+        total: number of entries.
+        row: makes the entry of that index in that box.
+        columns: entries side by side.
+        height: of one row.
+        gap: between rows and columns.
+    """
+    if state.is_typing:  # above the keyboard, but for a row at least
+        rect = rect.top(min(rect.height, max(height, KEYBOARD.y - gap - rect.y)))
+    lines = -(-total // columns)
+    shown = max(1, (rect.height + gap) // (height + gap))
+    first = min(state.scrolled.get(key, 0), max(0, lines - shown))
+    room = Rect(rect.x, rect.y, rect.width - (16 if lines > shown else 0), rect.height)
+    cells = room.top(height).columns(columns, gap)
+    return Rows(
+        rect=rect,
+        key=key,
+        description=name,
+        first=first,
+        shown=shown,
+        total=lines,
+        children=tuple(
+            row(index, cells[index % columns].moved(0, (index // columns - first) * (height + gap)))
+            for index in range(first * columns, min(total, (first + shown) * columns))
+        ),
+    )
+
+
+def time_setter(rect: Rect, key: str, timer: Timer, put: Callable[[Timer], Put]) -> tuple[Widget, ...]:
+    """A time of day, earlier and later by half an hour; ``put`` keeps the one that was set."""
+    side = 72
+    return (
+        Button(
+            rect=rect.left(side),
+            key=f"{key}.earlier",
+            description="Half an hour earlier",
+            icon=Icon.MINUS,
+            on_tap=put(timer.moved(-30)),
+        ),
+        Label(
+            rect=Rect(rect.x + side, rect.y, rect.width - 2 * side, rect.height),
+            key=f"{key}.time",
+            text=timer.shown,
+            description="Time",
+            style=Type.HEADLINE,
+            align="centre",
+        ),
+        Button(
+            rect=rect.right_part(side),
+            key=f"{key}.later",
+            description="Half an hour later",
+            icon=Icon.PLUS,
+            on_tap=put(timer.moved(30)),
+        ),
+    )

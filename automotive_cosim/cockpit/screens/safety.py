@@ -1,0 +1,299 @@
+"""Safety centre: warn the driver, ask the car to slow down or stop, call for help; and what was given so far."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.messages import (
+    AskPullOver,
+    AskSlowDown,
+    Back,
+    CallEmergency,
+    Put,
+    Show,
+    WarnDriver,
+)
+from automotive_cosim.cockpit.screens.parts import CONTENT, choices, heading, rows, speed, speed_unit, switch
+from automotive_cosim.cockpit.signals import ADAS, LIGHTS, MOTION
+from automotive_cosim.cockpit.state import AlertDraft, State
+from automotive_cosim.cockpit.theme import GAP, Icon, Type
+from automotive_cosim.cockpit.widgets import Button, Card, Choice, Glyph, Label, Look, Row, Widget
+from automotive_cosim.contracts import AlertKind, Severity
+
+KINDS: dict[AlertKind, tuple[str, Icon]] = {
+    AlertKind.SPEED: ("Speed", Icon.SPEED),
+    AlertKind.DISTANCE: ("Distance", Icon.DISTANCE),
+    AlertKind.COLLISION: ("Collision", Icon.COLLISION),
+    AlertKind.LANE: ("Lane", Icon.LANE),
+    AlertKind.FATIGUE: ("Fatigue", Icon.FATIGUE),
+    AlertKind.DISTRACTION: ("Distraction", Icon.DISTRACTION),
+    AlertKind.SEAT_BELT: ("Seat belt", Icon.SEAT_BELT),
+    AlertKind.VISIBILITY: ("Visibility", Icon.REAR_FOG),
+    AlertKind.SLIPPERY: ("Slippery road", Icon.SLIPPERY),
+    AlertKind.WEATHER: ("Weather", Icon.WEATHER),
+    AlertKind.TRAFFIC: ("Traffic", Icon.TRAFFIC),
+    AlertKind.CORRIDOR: ("Rescue lane", Icon.CORRIDOR),
+    AlertKind.YIELD: ("Give way", Icon.AMBULANCE),
+    AlertKind.MOVE_OVER: ("Move over", Icon.MOVE_OVER),
+    AlertKind.SCHOOL: ("School", Icon.SCHOOL),
+    AlertKind.TUNNEL: ("Tunnel", Icon.TUNNEL),
+    AlertKind.VEHICLE: ("Vehicle", Icon.VEHICLE_FAULT),
+}
+"""Name on screen and icon of every kind of alert."""
+SEVERITIES: dict[Severity, tuple[str, Icon]] = {
+    Severity.INFO: ("Info", Icon.INFO),
+    Severity.WARNING: ("Warning", Icon.WARNING),
+    Severity.CRITICAL: ("Critical", Icon.CRITICAL),
+}
+SLOWEST_KMH, FASTEST_KMH, STEP_KMH = 10.0, 180.0, 10.0
+
+
+def safety(state: State) -> tuple[Widget, ...]:
+    """The screen."""
+    left = CONTENT.left(556)
+    middle = Rect(left.right + GAP, CONTENT.y, 344, CONTENT.height)
+    right = CONTENT.right_part(CONTENT.width - 556 - 344 - 2 * GAP)
+    return _kinds(left, state), _draft(middle, state), *_help(right, state)
+
+
+def _put(draft: AlertDraft) -> Put:
+    return Put("draft", draft, "The alert is not given yet")
+
+
+def _kinds(rect: Rect, state: State) -> Widget:
+    inner = rect.inset(20, 16)
+    kinds = tuple(KINDS)
+
+    def cell(index: int, box: Rect) -> Widget:
+        kind = kinds[index]
+        name, icon = KINDS[kind]
+        return Choice(
+            rect=box,
+            key=f"safety.kind.{kind}",
+            text=name,
+            icon=icon,
+            selected=state.draft.kind is kind,
+            look="boxed",
+            stacked=True,
+            on_tap=_put(replace(state.draft, kind=kind)),
+        )
+
+    return Card(
+        rect=rect,
+        children=(
+            heading(inner.top(30), "Warn the driver about"),
+            rows(
+                inner.below(36),
+                "safety.kinds",
+                "Kinds of alert",
+                state,
+                len(kinds),
+                cell,
+                columns=4,
+                height=86,
+                gap=10,
+            ),
+        ),
+    )
+
+
+def _draft(rect: Rect, state: State) -> Widget:
+    inner = rect.inset(20, 16)
+    draft = state.draft
+    title = "Choose a kind" if draft.kind is None else KINDS[draft.kind][0]
+    return Card(
+        rect=rect,
+        children=(
+            heading(inner.top(30), "Alert"),
+            Label(
+                rect=Rect(inner.x, inner.y + 34, inner.width, 44),
+                key="safety.draft",
+                text=title,
+                description="Alert to give",
+                style=Type.TITLE,
+            ),
+            choices(
+                Rect(inner.x, inner.y + 92, inner.width, 92),
+                "safety.severity",
+                [
+                    (
+                        str(severity),
+                        name,
+                        icon,
+                        draft.severity is severity,
+                        _put(replace(draft, severity=severity)),
+                    )
+                    for severity, (name, icon) in SEVERITIES.items()
+                ],
+                stacked=True,
+            ),
+            *_advice(Rect(inner.x, inner.y + 204, inner.width, 180), state),
+            Button(
+                rect=inner.bottom_part(88),
+                key="safety.warn",
+                text="Warn driver",
+                icon=Icon.WARN,
+                icon_size=34,
+                style=Type.TITLE,
+                look=Look.ACCENT,
+                on_tap=WarnDriver(),
+                disabled="Choose what to warn about first" if draft.kind is None else "",
+            ),
+        ),
+    )
+
+
+def _advice(rect: Rect, state: State) -> tuple[Widget, ...]:
+    """Advised speed: left to the posted limit, or a number."""
+    signals, draft = state.signals, state.draft
+    advised = draft.speed_kmh
+    start = signals[ADAS.LIMIT_SIGN] or signals[MOTION.SPEED]
+    start = min(FASTEST_KMH, max(SLOWEST_KMH, start // STEP_KMH * STEP_KMH))
+    less = start if advised is None else max(SLOWEST_KMH, advised - STEP_KMH)
+    more = start if advised is None else min(FASTEST_KMH, advised + STEP_KMH)
+    shown = "Posted limit" if advised is None else f"{speed(signals, advised)} {speed_unit(signals)}"
+    line = Rect(rect.x, rect.y + 40, rect.width, 64)
+    return (
+        heading(rect.top(28), "Advised speed"),
+        Button(
+            rect=line.left(64),
+            key="safety.speed.decrease",
+            description="Advised speed lower",
+            icon=Icon.MINUS,
+            on_tap=_put(replace(draft, speed_kmh=less)),
+            disabled="It is at its lowest" if advised == less else "",
+        ),
+        Label(
+            rect=Rect(line.x + 64, line.y, line.width - 128, 64),
+            key="safety.speed.value",
+            text=shown,
+            description="Advised speed",
+            style=Type.STRONG,
+            align="centre",
+        ),
+        Button(
+            rect=line.right_part(64),
+            key="safety.speed.increase",
+            description="Advised speed higher",
+            icon=Icon.PLUS,
+            on_tap=_put(replace(draft, speed_kmh=more)),
+            disabled="It is at its highest" if advised == more else "",
+        ),
+        Choice(
+            rect=Rect(rect.x, rect.y + 116, rect.width, 52),
+            key="safety.speed.posted",
+            text="Leave it to the signs",
+            selected=advised is None,
+            look="boxed",
+            on_tap=_put(replace(draft, speed_kmh=None)),
+        ),
+    )
+
+
+def _help(rect: Rect, state: State) -> tuple[Widget, ...]:
+    first = rect.top(204)
+    upper, lower = first.rows(2, 12)
+    hazard, slow = upper.columns(2, 12)
+    stop, call = lower.columns(2, 12)
+    return (
+        switch(hazard, "safety.hazard_lights", "Hazards", Icon.HAZARD, LIGHTS.HAZARD, state.signals),
+        Button(
+            rect=slow,
+            key="safety.slow_down",
+            text="Slow down",
+            icon=Icon.SLOWER,
+            stacked=True,
+            on_tap=AskSlowDown(),
+        ),
+        Button(
+            rect=stop,
+            key="safety.pull_over",
+            text="Pull over",
+            icon=Icon.PULL_OVER,
+            stacked=True,
+            on_tap=AskPullOver(),
+        ),
+        Button(
+            rect=call,
+            key="safety.emergency_call",
+            text="SOS call",
+            icon=Icon.PHONE_ALERT,
+            stacked=True,
+            look=Look.CRITICAL,
+            on_tap=Show("emergency"),
+        ),
+        _history(rect.below(204 + GAP), state),
+    )
+
+
+def _history(rect: Rect, state: State) -> Widget:
+    inner = rect.inset(16, 14)
+    given = tuple(reversed(state.alerts))
+
+    def line(index: int, box: Rect) -> Widget:
+        entry = given[index]
+        name, icon = KINDS[entry.alert.kind]
+        return Row(
+            rect=box,
+            key=f"safety.history.{index}",
+            text=f"{name}, {SEVERITIES[entry.alert.severity][0].lower()}",
+            detail=f"{entry.clock} {entry.answer}".strip(),
+            icon=icon,
+        )
+
+    empty = Label(
+        rect=inner.below(34).top(40), key="safety.history.empty", text="Nothing yet", tone="muted", style=Type.LABEL
+    )
+    listed = rows(inner.below(34), "safety.history", "Alerts given", state, len(given), line, height=84, gap=6)
+    return Card(rect=rect, children=(heading(inner.top(28), "History"), listed if given else empty))
+
+
+def emergency(state: State) -> tuple[Widget, ...]:
+    """Asks once more before it calls."""
+    card = CONTENT.middle(640, 400)
+    inner = card.inset(40, 36)
+    cancel, call = inner.bottom_part(88).columns(2, GAP)
+    made = "emergency" in state.calls
+    return (
+        Card(
+            rect=card,
+            children=(
+                Glyph(rect=Rect(inner.x, inner.y, inner.width, 72), icon=Icon.PHONE_ALERT, size=64, tone="accent"),
+                Label(
+                    rect=Rect(inner.x, inner.y + 88, inner.width, 48),
+                    key="emergency.title",
+                    text="Call the emergency services?",
+                    style=Type.TITLE,
+                    align="centre",
+                ),
+                Label(
+                    rect=Rect(inner.x, inner.y + 142, inner.width, 72),
+                    key="emergency.about",
+                    text="A call was made. They have the car's position."
+                    if made
+                    else "They get the car's position. A call can't be taken back.",
+                    tone="muted",
+                    align="centre",
+                    lines=2,
+                ),
+                Button(
+                    rect=cancel,
+                    key="emergency.cancel",
+                    text="Back",
+                    look=Look.TONAL,
+                    style=Type.STRONG,
+                    on_tap=Back(),
+                ),
+                Button(
+                    rect=call,
+                    key="emergency.call",
+                    text="Call now",
+                    icon=Icon.PHONE,
+                    look=Look.CRITICAL,
+                    style=Type.STRONG,
+                    on_tap=CallEmergency(),
+                ),
+            ),
+        ),
+    )

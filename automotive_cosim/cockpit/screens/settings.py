@@ -1,0 +1,444 @@
+"""Settings: display and units, sound, connections, language and time, privacy, profiles."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from automotive_cosim.cockpit.desk import DEVICES, NETWORKS
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.messages import Drive, Put, Set, SetAll
+from automotive_cosim.cockpit.restrictions import Restriction
+from automotive_cosim.cockpit.screens.parts import (
+    CONTENT,
+    choices,
+    fact,
+    heading,
+    menu,
+    slider,
+    switch,
+    title,
+)
+from automotive_cosim.cockpit.signals import HMI, LINK, MEDIA, VOICE, Signal
+from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.theme import GAP, Icon, Type
+from automotive_cosim.cockpit.widgets import Button, Card, Label, Row, Widget
+
+PAGES = (
+    ("settings", "Display, units", Icon.BRIGHTNESS),
+    ("sound", "Sound", Icon.VOLUME),
+    ("connections", "Connections", Icon.WIFI),
+    ("language", "Language, time", Icon.LANGUAGE),
+    ("privacy", "Privacy", Icon.PRIVACY),
+    ("profiles", "Profiles", Icon.PROFILE),
+)
+LANGUAGES = {"en": "English", "fr": "Français", "de": "Deutsch", "ja": "日本語"}
+MENU, PAGE = CONTENT.left(264), CONTENT.right_part(CONTENT.width - 264 - GAP)
+
+
+def _page(state: State, *cards: Widget) -> tuple[Widget, ...]:
+    return menu(MENU, "settings.page", PAGES, state), *cards
+
+
+# --- display, units -----------------------------------------------------------------------------------------
+
+
+def settings(state: State) -> tuple[Widget, ...]:
+    """The display, and the units it speaks in."""
+    left, right = PAGE.columns(2, GAP)
+    return _page(state, _display(left, state), _units(right, state))
+
+
+def _display(rect: Rect, state: State) -> Widget:
+    signals = state.signals
+    inner = rect.inset(28, 24)
+    by_itself, mode = signals[HMI.DAY_NIGHT_AUTO], signals[HMI.DAY_NIGHT]
+    return Card(
+        rect=rect,
+        children=(
+            title(inner.top(40), Icon.BRIGHTNESS, "Display"),
+            slider(
+                Rect(inner.x, inner.y + 64, inner.width, 92),
+                "settings.brightness",
+                "Brightness",
+                Icon.BRIGHTNESS,
+                HMI.BRIGHTNESS,
+                signals,
+            ),
+            heading(Rect(inner.x, inner.y + 180, inner.width, 28), "Appearance"),
+            choices(
+                Rect(inner.x, inner.y + 216, inner.width, 112),
+                "settings.appearance",
+                [
+                    ("auto", "Auto", Icon.DAY_NIGHT, by_itself, Set(HMI.DAY_NIGHT_AUTO, True)),
+                    ("day", "Day", Icon.DAY, not by_itself and mode == "DAY", Set(HMI.DAY_NIGHT, "DAY")),
+                    ("night", "Night", Icon.NIGHT, not by_itself and mode == "NIGHT", Set(HMI.DAY_NIGHT, "NIGHT")),
+                ],
+                stacked=True,
+            ),
+            Label(
+                rect=Rect(inner.x, inner.y + 340, inner.width, 56),
+                key="settings.appearance.about",
+                text="Auto follows the light outside: night after sunset and in tunnels.",
+                style=Type.CAPTION,
+                tone="muted",
+                lines=2,
+            ),
+            switch(
+                inner.bottom_part(64),
+                "settings.touch_sounds",
+                "Touch sounds",
+                Icon.VOLUME,
+                VOICE.TOUCH_SOUNDS,
+                signals,
+            ),
+        ),
+    )
+
+
+def _units(rect: Rect, state: State) -> Widget:
+    signals = state.signals
+    inner = rect.inset(28, 24)
+    groups: tuple[tuple[str, str, Signal[str], tuple[tuple[str, str, str], ...]], ...] = (
+        (
+            "distance",
+            "Distance and speed",
+            HMI.DISTANCE_UNIT,
+            (("kilometres", "Kilometres", "KILOMETERS"), ("miles", "Miles", "MILES")),
+        ),
+        (
+            "temperature",
+            "Temperature",
+            HMI.TEMPERATURE_UNIT,
+            (("celsius", "Celsius", "C"), ("fahrenheit", "Fahrenheit", "F")),
+        ),
+        (
+            "pressure",
+            "Tyre pressure",
+            HMI.PRESSURE_UNIT,
+            (("bar", "bar", "BAR"), ("kpa", "kPa", "KPA"), ("psi", "psi", "PSI")),
+        ),
+    )
+    lines = Rect(inner.x, inner.y + 60, inner.width, 3 * 106).rows(3, 10)
+    children: list[Widget] = [title(inner.top(40), Icon.UNITS, "Units")]
+    for line, (key, name, signal, options) in zip(lines, groups, strict=True):
+        now = signals[signal]
+        children += [
+            heading(line.top(28), name),
+            choices(
+                line.bottom_part(64),
+                f"settings.{key}",
+                [(unit, text, None, now == value, Set(signal, value)) for unit, text, value in options],
+            ),
+        ]
+    gps = "Not fitted" if state.outside is None or state.outside.gps is None else "Fitted"
+    camera = "Fitted" if state.sign_camera else "Not fitted"
+    facts = Rect(inner.x, inner.bottom - 72, inner.width, 72).rows(2, 4)
+    children += fact(facts[0], "settings.sign_camera", "Sign camera", camera)
+    children += fact(facts[1], "settings.positioning", "Satellite positioning", gps)
+    return Card(rect=rect, children=tuple(children))
+
+
+# --- sound ------------------------------------------------------------------------------------------------
+
+
+def sound(state: State) -> tuple[Widget, ...]:
+    """Loudness of all that is heard, and the equaliser."""
+    signals = state.signals
+    left, right = PAGE.columns(2, GAP)
+    levels, tones = left.inset(28, 24), right.inset(28, 24)
+    volumes = (
+        ("sound.media", "Media", Icon.MEDIA, MEDIA.VOLUME),
+        ("sound.guidance", "Guidance", Icon.VOICE, VOICE.GUIDANCE_VOLUME),
+        ("sound.calls", "Calls", Icon.PHONE, VOICE.CALL_VOLUME),
+    )
+    bands = (
+        ("sound.bass", "Bass", MEDIA.BASS, "dB"),
+        ("sound.middle", "Middle", MEDIA.MIDDLE, "dB"),
+        ("sound.treble", "Treble", MEDIA.TREBLE, "dB"),
+        ("sound.balance", "Left, right", MEDIA.BALANCE, ""),
+        ("sound.fader", "Rear, front", MEDIA.FADER, ""),
+    )
+    flat = tuple((signal, 0.0) for _, _, signal, _ in bands)
+    even = all(signals[signal] == 0 for signal, _ in flat)
+    return _page(
+        state,
+        Card(
+            rect=left,
+            children=(
+                title(levels.top(40), Icon.VOLUME, "Volume"),
+                *(
+                    slider(line, key, name, icon, signal, signals)
+                    for line, (key, name, icon, signal) in zip(
+                        Rect(levels.x, levels.y + 60, levels.width, 288).rows(3, 12), volumes, strict=True
+                    )
+                ),
+                switch(levels.bottom_part(64), "sound.mute", "Mute media", Icon.MUTE, MEDIA.MUTED, signals),
+            ),
+        ),
+        Card(
+            rect=right,
+            children=(
+                title(tones.top(40), Icon.EQUALIZER, "Equaliser"),
+                *(
+                    slider(
+                        line,
+                        key,
+                        name,
+                        Icon.EQUALIZER,
+                        signal,
+                        signals,
+                        f"{signals[signal]:+.0f} {unit}".strip() if signals[signal] else "0",
+                    )
+                    for line, (key, name, signal, unit) in zip(
+                        Rect(tones.x, tones.y + 52, tones.width, 376).rows(5, 6), bands, strict=True
+                    )
+                ),
+                Button(
+                    rect=tones.bottom_part(56),
+                    key="sound.flat",
+                    text="All even",
+                    icon=Icon.EQUALIZER,
+                    on_tap=SetAll(flat, "the sound is even"),
+                    disabled="It is even already" if even else "",
+                ),
+            ),
+        ),
+    )
+
+
+# --- connections --------------------------------------------------------------------------------------------
+
+
+def connections(state: State) -> tuple[Widget, ...]:
+    """Networks and phones. They are paired while parked."""
+    signals = state.signals
+    left, right = PAGE.columns(2, GAP)
+    links, phones = left.inset(28, 24), right.inset(28, 24)
+    locked = state.locked(Restriction.NO_SETUP)
+    desk = state.desk
+    wifi_off = "" if signals[LINK.WIFI] else "Wi-Fi is off"
+    bluetooth_off = "" if signals[LINK.BLUETOOTH] else "Bluetooth is off"
+    return _page(
+        state,
+        Card(
+            rect=left,
+            children=(
+                title(links.top(40), Icon.WIFI, "Networks"),
+                *(
+                    switch(line, key, name, icon, signal, signals)
+                    for line, (key, name, icon, signal) in zip(
+                        Rect(links.x, links.y + 56, links.width, 192).rows(3, 8),
+                        (
+                            ("link.mobile", "Mobile data", Icon.MOBILE, LINK.MOBILE_DATA),
+                            ("link.wifi", "Wi-Fi", Icon.WIFI, LINK.WIFI),
+                            ("link.hotspot", "Hotspot", Icon.HOTSPOT, LINK.HOTSPOT),
+                        ),
+                        strict=True,
+                    )
+                ),
+                *(
+                    Row(
+                        rect=line,
+                        key=f"link.network.{at}",
+                        raised=True,
+                        text=name,
+                        trail="Joined" if name == desk.network else "",
+                        icon=Icon.WIFI,
+                        selected=name == desk.network,
+                        disabled=wifi_off,
+                        locked=locked,
+                        on_tap=Put("desk", replace(desk, network=name), f"{name} is joined"),
+                    )
+                    for at, (line, name) in enumerate(
+                        zip(Rect(links.x, links.y + 268, links.width, 228).rows(4, 6), NETWORKS, strict=True)
+                    )
+                ),
+            ),
+        ),
+        Card(
+            rect=right,
+            children=(
+                title(phones.top(40), Icon.BLUETOOTH, "Bluetooth"),
+                switch(
+                    Rect(phones.x, phones.y + 56, phones.width, 60),
+                    "link.bluetooth",
+                    "Bluetooth",
+                    Icon.BLUETOOTH,
+                    LINK.BLUETOOTH,
+                    signals,
+                ),
+                heading(Rect(phones.x, phones.y + 132, phones.width, 28), "Devices"),
+                *(
+                    Row(
+                        rect=line,
+                        key=f"link.device.{at}",
+                        raised=True,
+                        text=name,
+                        trail="Linked" if name == desk.device else "",
+                        icon=Icon.MOBILE,
+                        selected=name == desk.device,
+                        disabled=bluetooth_off,
+                        locked=locked,
+                        on_tap=Put("desk", replace(desk, device=name), f"{name} is linked"),
+                    )
+                    for at, (line, name) in enumerate(
+                        zip(Rect(phones.x, phones.y + 168, phones.width, 188).rows(3, 8), DEVICES, strict=True)
+                    )
+                ),
+                Label(
+                    rect=phones.bottom_part(64),
+                    key="link.about",
+                    text="Networks are joined and phones are linked while parked.",
+                    style=Type.CAPTION,
+                    tone="muted",
+                    lines=2,
+                ),
+            ),
+        ),
+    )
+
+
+# --- language, time -------------------------------------------------------------------------------------------
+
+
+def language(state: State) -> tuple[Widget, ...]:
+    """The language, and how times are written."""
+    signals = state.signals
+    left, right = PAGE.columns(2, GAP)
+    words, clock = left.inset(28, 24), right.inset(28, 24)
+    now, form = signals[HMI.LANGUAGE], signals[HMI.TIME_FORMAT]
+    date = "Not known yet" if state.outside is None else f"{state.outside.local_time:%Y-%m-%d}"
+    zone = "Not known yet" if state.outside is None else f"UTC{state.outside.local_time:%z}"
+    lines = Rect(clock.x, clock.y + 180, clock.width, 132).rows(3, 8)
+    return _page(
+        state,
+        Card(
+            rect=left,
+            children=(
+                title(words.top(40), Icon.LANGUAGE, "Language"),
+                *(
+                    Row(
+                        rect=line,
+                        key=f"language.{code}",
+                        raised=True,
+                        text=name,
+                        selected=code == now,
+                        on_tap=Set(HMI.LANGUAGE, code),
+                    )
+                    for line, (code, name) in zip(
+                        Rect(words.x, words.y + 60, words.width, 272).rows(4, 8), LANGUAGES.items(), strict=True
+                    )
+                ),
+            ),
+        ),
+        Card(
+            rect=right,
+            children=(
+                title(clock.top(40), Icon.CLOCK, "Date and time"),
+                heading(Rect(clock.x, clock.y + 56, clock.width, 28), "Time of day"),
+                choices(
+                    Rect(clock.x, clock.y + 92, clock.width, 68),
+                    "language.time",
+                    [
+                        ("24", "24 hours", None, form == "HR_24", Set(HMI.TIME_FORMAT, "HR_24")),
+                        ("12", "12 hours", None, form == "HR_12", Set(HMI.TIME_FORMAT, "HR_12")),
+                    ],
+                ),
+                *fact(lines[0], "language.clock", "Local time", state.clock),
+                *fact(lines[1], "language.date", "Date", date),
+                *fact(lines[2], "language.zone", "Time zone", zone),
+                Label(
+                    rect=clock.bottom_part(64),
+                    key="language.about",
+                    text="Clock and time zone are set by satellite.",
+                    style=Type.CAPTION,
+                    tone="muted",
+                    lines=2,
+                ),
+            ),
+        ),
+    )
+
+
+# --- privacy, profiles ----------------------------------------------------------------------------------------
+
+
+def privacy(state: State) -> tuple[Widget, ...]:
+    """What leaves the car, and who may listen."""
+    signals = state.signals
+    inner = PAGE.inset(28, 24)
+    options = (
+        (
+            "privacy.position",
+            "Share position",
+            Icon.GPS,
+            LINK.SHARE_POSITION,
+            "Apps get the car's position. Emergency calls send it in any case.",
+        ),
+        (
+            "privacy.driving",
+            "Share driving data",
+            Icon.CAR_BESIDE,
+            LINK.SHARE_DRIVING,
+            "Speed, braking and consumption go to the maker to improve the car.",
+        ),
+        (
+            "privacy.microphone",
+            "Voice assistant",
+            Icon.MICROPHONE,
+            LINK.VOICE_ASSISTANT,
+            "The microphone listens for spoken requests.",
+        ),
+    )
+    children: list[Widget] = [title(inner.top(40), Icon.PRIVACY, "Privacy")]
+    lines = Rect(inner.x, inner.y + 64, inner.width, 330).rows(3, 12)
+    for line, (key, name, icon, signal, about) in zip(lines, options, strict=True):
+        children += [
+            switch(line.top(64), key, name, icon, signal, signals),
+            Label(
+                rect=Rect(line.x + 16, line.y + 66, line.width - 32, 32),
+                text=about,
+                style=Type.CAPTION,
+                tone="muted",
+            ),
+        ]
+    return _page(state, Card(rect=PAGE, children=tuple(children)))
+
+
+def profiles(state: State) -> tuple[Widget, ...]:
+    """Who drives: seat, mirrors, temperature and brightness as they like it. They change while parked."""
+    inner = PAGE.inset(28, 24)
+    desk = state.desk
+    locked = state.locked(Restriction.NO_SETUP)
+    lines = Rect(inner.x, inner.y + 64, inner.width, 252).rows(len(desk.profiles), 12)
+    return _page(
+        state,
+        Card(
+            rect=PAGE,
+            children=(
+                title(inner.top(40), Icon.PROFILE, "Profiles"),
+                *(
+                    Row(
+                        rect=line,
+                        key=f"profile.{at}",
+                        raised=True,
+                        text=profile.name,
+                        trail="Drives now" if profile.name == desk.profile else "",
+                        icon=Icon.ACCOUNT,
+                        selected=profile.name == desk.profile,
+                        locked=locked,
+                        on_tap=Drive(profile.name),
+                    )
+                    for at, (line, profile) in enumerate(zip(lines, desk.profiles, strict=True))
+                ),
+                Label(
+                    rect=Rect(inner.x, inner.y + 336, inner.width, 64),
+                    key="profile.about",
+                    text="A profile brings its seat, mirrors, temperature and brightness along.",
+                    style=Type.CAPTION,
+                    tone="muted",
+                    lines=2,
+                ),
+            ),
+        ),
+    )

@@ -1,0 +1,396 @@
+"""The smaller apps: charging, parking, manual, memos, trip and calendar."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from automotive_cosim.cockpit.desk import MANUAL, ZONES
+from automotive_cosim.cockpit.errands import odometer, price
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.messages import Message, Pay, Pick, Put, Record, ResetTrip, Show
+from automotive_cosim.cockpit.places import Kind
+from automotive_cosim.cockpit.screens.map import destination
+from automotive_cosim.cockpit.screens.media import minutes
+from automotive_cosim.cockpit.screens.parts import (
+    CONTENT,
+    choices,
+    distance,
+    heading,
+    note,
+    rows,
+    search,
+    slider,
+    speed,
+    speed_unit,
+    switch,
+    time_setter,
+    title,
+)
+from automotive_cosim.cockpit.screens.way import nearest
+from automotive_cosim.cockpit.signals import ENERGY, HMI
+from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.theme import GAP, Icon, Type
+from automotive_cosim.cockpit.vehicle import BATTERY_KWH
+from automotive_cosim.cockpit.widgets import Bar, Button, Card, Glyph, Label, Look, Row, Tile, Widget
+
+STAYS = (30, 60, 120, 240)
+"""Minutes that one can pay for."""
+
+
+def charging(state: State) -> tuple[Widget, ...]:
+    """The battery, how far to charge it and when, and stations nearby."""
+    signals = state.signals
+    left, right = CONTENT.columns(2, GAP)
+    inner = left.inset(28, 20)
+    level, cable = signals[ENERGY.LEVEL], "cable in" if signals[ENERGY.CABLE] else "no cable"
+    stations = nearest(state, state.atlas.of(Kind.CHARGING))
+    desk = state.desk
+    timer = desk.charge_by
+    upper = Rect(inner.x, inner.y + 48, inner.width, 44)
+    return (
+        Card(
+            rect=left,
+            children=(
+                title(inner.top(40), Icon.CHARGING, "Charging"),
+                Label(
+                    rect=upper.left(150),
+                    key="charging.level",
+                    text=f"{level:.0f} %",
+                    description="Battery",
+                    style=Type.HEADLINE,
+                ),
+                Label(
+                    rect=upper.right_part(inner.width - 160),
+                    key="charging.range",
+                    text=f"{distance(signals, signals[ENERGY.RANGE])}, {cable}",
+                    description="Range and cable",
+                    tone="muted",
+                    style=Type.LABEL,
+                    align="right",
+                ),
+                Bar(
+                    rect=Rect(inner.x, inner.y + 100, inner.width, 12),
+                    share=round(level / 100, 2),
+                    tone="good" if level > 15 else "warning",
+                ),
+                slider(
+                    Rect(inner.x, inner.y + 126, inner.width, 84),
+                    "charging.limit",
+                    "Charge to",
+                    Icon.BATTERY,
+                    ENERGY.CHARGE_LIMIT,
+                    signals,
+                ),
+                switch(
+                    Rect(inner.x, inner.y + 226, inner.width, 60),
+                    "charging.flap",
+                    "Charging flap open",
+                    Icon.FLAP,
+                    ENERGY.CHARGE_FLAP,
+                    signals,
+                    state.vehicle.held(ENERGY.CHARGE_FLAP),
+                ),
+                Tile(
+                    rect=Rect(inner.x, inner.y + 298, inner.width, 60),
+                    key="charging.schedule",
+                    text="Ready at a set time",
+                    icon=Icon.CLOCK,
+                    checked=timer.on,
+                    on_tap=Put(
+                        "desk",
+                        replace(desk, charge_by=replace(timer, on=not timer.on)),
+                        "Charging starts at once" if timer.on else f"Charged by {timer.shown}",
+                    ),
+                ),
+                *time_setter(
+                    Rect(inner.x, inner.y + 374, inner.width, 72),
+                    "charging.schedule",
+                    timer,
+                    lambda moved: Put("desk", replace(desk, charge_by=moved), f"The time is {moved.shown}"),
+                ),
+            ),
+        ),
+        heading(right.top(32), "Stations nearby"),
+        rows(
+            right.below(44),
+            "charging.stations",
+            "Charging stations",
+            state,
+            len(stations),
+            lambda index, cell: replace(
+                destination(cell, f"charging.station.{index}", stations[index].name, state),
+                detail=stations[index].detail,
+            ),
+            height=64,
+        ),
+    )
+
+
+def parking(state: State) -> tuple[Widget, ...]:
+    """Pays for a parking space."""
+    left, right = CONTENT.left(700), CONTENT.right_part(CONTENT.width - 700 - GAP)
+    inner = left.inset(28, 20)
+    desk = state.desk
+    tickets = tuple(reversed(desk.tickets))
+    return (
+        Card(
+            rect=left,
+            children=(
+                title(inner.top(40), Icon.TICKET, "Pay for parking"),
+                heading(Rect(inner.x, inner.y + 64, inner.width, 28), "Zone"),
+                choices(
+                    Rect(inner.x, inner.y + 100, inner.width, 72),
+                    "parking.zone",
+                    [
+                        (
+                            zone[-1].lower(),
+                            zone,
+                            None,
+                            zone == desk.zone,
+                            Put("desk", replace(desk, zone=zone), f"{zone} is set"),
+                        )
+                        for zone in ZONES
+                    ],
+                ),
+                heading(Rect(inner.x, inner.y + 196, inner.width, 28), "How long"),
+                choices(
+                    Rect(inner.x, inner.y + 232, inner.width, 72),
+                    "parking.time",
+                    [
+                        (
+                            str(stay),
+                            f"{stay} min" if stay < 60 else f"{stay // 60} h",
+                            None,
+                            stay == desk.minutes,
+                            Put("desk", replace(desk, minutes=stay), f"{stay} minutes are set"),
+                        )
+                        for stay in STAYS
+                    ],
+                ),
+                Label(
+                    rect=Rect(inner.x, inner.y + 328, inner.width, 56),
+                    key="parking.price",
+                    text=f"Price {price(desk.zone, desk.minutes):.2f}",
+                    style=Type.HEADLINE,
+                ),
+                Button(
+                    rect=inner.bottom_part(88),
+                    key="parking.pay",
+                    text="Pay now",
+                    icon=Icon.TICKET,
+                    icon_size=34,
+                    style=Type.TITLE,
+                    look=Look.ACCENT,
+                    on_tap=Pay(),
+                ),
+            ),
+        ),
+        heading(right.top(32), "Tickets"),
+        rows(
+            right.below(44),
+            "parking.tickets",
+            "Tickets",
+            state,
+            len(tickets),
+            lambda index, cell: Row(
+                rect=cell,
+                key=f"parking.ticket.{index}",
+                text=f"{tickets[index].zone} until {tickets[index].until}",
+                detail=f"Paid {tickets[index].price:.2f}",
+                icon=Icon.TICKET,
+            ),
+            height=68,
+        )
+        if tickets
+        else note(right.below(44), "parking.tickets.empty", "No tickets yet"),
+    )
+
+
+def manual(state: State) -> tuple[Widget, ...]:
+    """Topics of the handbook and what it says of one."""
+    wanted = state.typed.get("manual.search", "").casefold().strip()
+    found = [
+        (at, topic)
+        for at, topic in enumerate(MANUAL)
+        if wanted in topic[0].casefold() or wanted in topic[2].casefold()
+    ]
+    chosen = int(state.picked["manual"])
+    name, icon, text = MANUAL[chosen]
+    left, right = CONTENT.left(420), CONTENT.right_part(CONTENT.width - 420 - GAP)
+    inner = right.inset(32, 28)
+    first: Message | None = Show("manual", str(found[0][0])) if found else None
+    return (
+        search(left.top(60), "manual.search", "Search the manual", "Search the manual", state, first),
+        rows(
+            left.below(72),
+            "manual.topics",
+            "Topics",
+            state,
+            len(found),
+            lambda index, cell: Row(
+                rect=cell,
+                key=f"manual.topic.{found[index][0]}",
+                text=found[index][1][0],
+                icon=found[index][1][1],
+                selected=found[index][0] == chosen,
+                on_tap=Pick("manual", str(found[index][0])),
+            ),
+            height=56,
+        )
+        if found
+        else note(left.below(72), "manual.empty", "The manual does not mention it"),
+        Card(
+            rect=right,
+            children=(
+                Glyph(rect=Rect(inner.x, inner.y, 72, 72), icon=icon, size=64, tone="accent"),
+                Label(
+                    rect=Rect(inner.x + 96, inner.y, inner.width - 96, 72),
+                    key="manual.title",
+                    text=name,
+                    style=Type.HEADLINE,
+                ),
+                Label(
+                    rect=Rect(inner.x, inner.y + 92, inner.width, 160),
+                    key="manual.text",
+                    text=text,
+                    style=Type.BODY,
+                    lines=5,
+                ),
+            ),
+        ),
+    )
+
+
+def memo(state: State) -> tuple[Widget, ...]:
+    """Records spoken notes."""
+    left, right = CONTENT.columns(2, GAP)
+    inner = left.inset(28, 20)
+    desk = state.desk
+    since = desk.recording_since_s
+    memos = desk.memos
+
+    def line(index: int, cell: Rect) -> Row:
+        rest = (*memos[:index], *memos[index + 1 :])
+        return Row(
+            rect=cell,
+            key=f"memo.{index}",
+            text=memos[index],
+            trail="Delete",
+            icon=Icon.MEMO,
+            on_tap=Put("desk", replace(desk, memos=rest), f"{memos[index]} is deleted"),
+        )
+
+    return (
+        Card(
+            rect=left,
+            children=(
+                title(inner.top(40), Icon.MEMO, "Memo"),
+                Glyph(
+                    rect=Rect(inner.x, inner.y + 90, inner.width, 128),
+                    icon=Icon.MICROPHONE,
+                    size=112,
+                    tone="warning" if since is not None else "muted",
+                ),
+                Label(
+                    rect=Rect(inner.x, inner.y + 240, inner.width, 52),
+                    key="memo.time",
+                    text=minutes(state.time_s - since) if since is not None else "Ready",
+                    description="Recording" if since is not None else "Memo",
+                    style=Type.HEADLINE,
+                    align="centre",
+                ),
+                Button(
+                    rect=inner.bottom_part(88),
+                    key="memo.record",
+                    text="Record" if since is None else "Stop",
+                    icon=Icon.RECORD if since is None else Icon.STOP,
+                    icon_size=34,
+                    style=Type.TITLE,
+                    look=Look.ACCENT if since is None else Look.CRITICAL,
+                    on_tap=Record(),
+                ),
+            ),
+        ),
+        heading(right.top(32), "Memos"),
+        rows(right.below(44), "memo.all", "Memos", state, len(memos), line, height=60)
+        if memos
+        else note(right.below(44), "memo.empty", "No memos yet"),
+    )
+
+
+def trip(state: State) -> tuple[Widget, ...]:
+    """Distance, time and consumption since the last reset."""
+    signals = state.signals
+    inner = CONTENT.inset(32, 24)
+    metres, seconds, level = odometer(state)
+    from_m, from_s, from_level = state.desk.trip_from
+    driven_m, took_s, used_pct = max(0.0, metres - from_m), seconds - from_s, max(0.0, from_level - level)
+    mean_kmh = 3.6 * driven_m / took_s if took_s > 0 else 0.0
+    used_kwh = used_pct / 100 * BATTERY_KWH
+    unit_m, unit = (1609.344, "mi") if signals[HMI.DISTANCE_UNIT] == "MILES" else (1000.0, "km")
+    per_100 = 100 * unit_m * used_kwh / driven_m if driven_m > 100 else 0.0
+    tiles = (
+        ("trip.distance", "Distance", distance(signals, driven_m), Icon.ROUTE),
+        ("trip.time", "Time", minutes(took_s), Icon.CLOCK),
+        ("trip.speed", "Mean speed", f"{speed(signals, mean_kmh)} {speed_unit(signals)}", Icon.SPEED),
+        ("trip.energy", "Energy", f"{used_kwh:.2f} kWh", Icon.BATTERY),
+        ("trip.consumption", "Consumption", f"{per_100:.1f} kWh/100 {unit}", Icon.CHARGING),
+        ("trip.range", "Range", distance(signals, signals[ENERGY.RANGE]), Icon.GOAL),
+    )
+    cells = [
+        cell for line in Rect(inner.x, inner.y + 60, inner.width, 312).rows(2, 16) for cell in line.columns(3, 16)
+    ]
+    children: list[Widget] = [title(inner.top(40), Icon.TRIP, "Trip computer")]
+    for cell, (key, name, value, icon) in zip(cells, tiles, strict=True):
+        box = cell.inset(20, 16)
+        children.append(
+            Card(
+                rect=cell,
+                look="raised",
+                children=(
+                    Glyph(rect=Rect(box.x, box.y, 32, 32), icon=icon, size=28, tone="accent"),
+                    Label(
+                        rect=Rect(box.x + 44, box.y, box.width - 44, 32), text=name, style=Type.LABEL, tone="muted"
+                    ),
+                    Label(rect=box.bottom_part(56), key=key, text=value, description=name, style=Type.HEADLINE),
+                ),
+            )
+        )
+    children.append(
+        Button(
+            rect=inner.bottom_part(72).left(320), key="trip.reset", text="Reset", icon=Icon.TRIP, on_tap=ResetTrip()
+        )
+    )
+    return (Card(rect=CONTENT, children=tuple(children)),)
+
+
+def calendar(state: State) -> tuple[Widget, ...]:
+    """The day's appointments; each leads to its place."""
+    inner = CONTENT.inset(28, 20)
+    agenda = state.desk.agenda
+    date = "Today" if state.outside is None else f"{state.outside.local_time:%Y-%m-%d}"
+
+    def line(index: int, cell: Rect) -> Row:
+        entry = agenda[index]
+        return Row(
+            rect=cell,
+            key=f"calendar.{index}",
+            raised=True,
+            text=f"{entry.at} {entry.title}",
+            detail=entry.place,
+            trail="Go there",
+            icon=Icon.CALENDAR,
+            on_tap=Show("place", entry.place),
+        )
+
+    return (
+        Card(
+            rect=CONTENT,
+            children=(
+                title(inner.top(40), Icon.CALENDAR, date, "calendar.date"),
+                rows(inner.below(56), "calendar.entries", "Appointments", state, len(agenda), line, height=76)
+                if agenda
+                else note(inner.below(56), "calendar.empty", "Nothing today"),
+            ),
+        ),
+    )

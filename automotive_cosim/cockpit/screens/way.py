@@ -1,0 +1,308 @@
+"""Map, further in: places by kind, one place before setting out, and the route with its turns and options."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.messages import Back, Guide, Pick, Put, Set, Show, Take
+from automotive_cosim.cockpit.navigation import AVOIDABLE
+from automotive_cosim.cockpit.places import SORTS, Kind, Place
+from automotive_cosim.cockpit.screens.map import PANEL, arrival, away, destination, sight, turns_ahead
+from automotive_cosim.cockpit.screens.parts import choices, distance, heading, note, rows
+from automotive_cosim.cockpit.signals import VOICE
+from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.theme import GAP, Icon, Type
+from automotive_cosim.cockpit.widgets import Button, Card, Choice, Glyph, Label, Look, Row, Tile, Widget
+
+_EVERYDAY = tuple(kind for kind in Kind if kind not in (Kind.HOME, Kind.WORK))
+
+
+def explore(state: State) -> tuple[Widget, ...]:
+    """Kinds of places, and those of the chosen kind, the nearest first."""
+    chosen = state.picked["explore"]
+    if chosen == "all":
+        return *_head(state, "Places nearby", Icon.PLACE, "explore"), _kinds(state), sight(state)
+    kind = Kind(chosen)
+    found = nearest(state, state.atlas.of(kind))
+    return (
+        *_head(state, SORTS[kind].title, SORTS[kind].icon, "explore"),
+        _places(state, found)
+        if found
+        else note(PANEL.below(72), "explore.empty", "None of this kind is known here"),
+        sight(state),
+    )
+
+
+def nearest(state: State, places: Sequence[Place]) -> tuple[Place, ...]:
+    """Places by distance from the car."""
+    if state.outside is None:
+        return tuple(places)
+    driving = state.outside.driving
+    return tuple(sorted(places, key=lambda place: (place.away_m(driving.x_m, driving.y_m), place.name)))
+
+
+def along(state: State, places: Sequence[Place]) -> tuple[Place, ...]:
+    """Places by how far they lie beside the route."""
+    route = () if state.outside is None else state.outside.driving.ahead.route_edges
+    ways = [road for road in map(state.roads.find, route) if road is not None]
+    if not ways:
+        return nearest(state, places)
+    ends = [road.shape_m[-1] for road in ways]
+    beside = {place: min(place.away_m(*end) for end in ends) for place in places}
+    return tuple(sorted(places, key=lambda place: (beside[place], place.name)))
+
+
+def _head(state: State, text: str, icon: Icon, key: str) -> tuple[Widget, ...]:
+    bar = PANEL.top(56)
+    return (
+        Button(rect=bar.left(56), key=f"{key}.back", description="Back", icon=Icon.BACK, on_tap=Back()),
+        Glyph(rect=Rect(bar.x + 72, bar.y + 12, 32, 32), icon=icon, size=28, tone="accent"),
+        Label(rect=Rect(bar.x + 112, bar.y, bar.width - 112, 56), key=f"{key}.title", text=text, style=Type.TITLE),
+    )
+
+
+def _kinds(state: State) -> Widget:
+    return rows(
+        PANEL.below(72),
+        "explore.kinds",
+        "Kinds of places",
+        state,
+        len(_EVERYDAY),
+        lambda index, cell: Choice(
+            rect=cell,
+            key=f"explore.kind.{_EVERYDAY[index]}",
+            text=SORTS[_EVERYDAY[index]].title,
+            icon=SORTS[_EVERYDAY[index]].icon,
+            look="boxed",
+            stacked=True,
+            on_tap=Show("explore", _EVERYDAY[index]),
+        ),
+        columns=2,
+        height=84,
+        gap=10,
+    )
+
+
+def _places(state: State, found: tuple[Place, ...]) -> Widget:
+    return rows(
+        PANEL.below(72),
+        "explore.places",
+        "Places",
+        state,
+        len(found),
+        lambda index, cell: destination(cell, f"explore.place.{index}", found[index].name, state),
+        height=64,
+    )
+
+
+def place(state: State) -> tuple[Widget, ...]:
+    """One destination, before setting out."""
+    name = state.picked.get("place") or next(iter(state.navigation.favourites), "")
+    known = state.atlas.find(name)
+    card = Rect(PANEL.x, PANEL.y + 72, PANEL.width, 200)
+    inner = card.inset(20, 16)
+    facts = (
+        (known.street if known else "Street in this area", "place.street", Type.STRONG, "text"),
+        (known.detail if known else "The nearest point of the street", "place.detail", Type.LABEL, "muted"),
+        (f"{away(state, name)} away" if known else "", "place.distance", Type.LABEL, "muted"),
+    )
+    lines = tuple(
+        Label(rect=line, key=key, text=text, style=style, tone="text" if tone == "text" else "muted", lines=2)
+        for line, (text, key, style, tone) in zip(inner.rows(3, 4), facts, strict=True)
+    )
+    return (
+        *_head(state, name, known.icon if known else Icon.ROUTE, "place"),
+        Card(rect=card, children=lines),
+        *_place_buttons(PANEL.below(72 + 200 + GAP), name, known, state),
+        sight(state),
+    )
+
+
+def _place_buttons(rect: Rect, name: str, known: Place | None, state: State) -> tuple[Widget, ...]:
+    navigation = state.navigation
+    saved = name in navigation.favourites
+    goal = navigation.destination
+    cells = tuple(Rect(rect.x, rect.y + at * 64, rect.width, 56) for at in range(4))
+    there = "You are already on the way there" if goal == name else ""
+    extra: tuple[Widget, ...] = ()
+    if known is not None and known.kind is Kind.PARKING and "parking" in state.desk.installed:
+        extra = (
+            Button(
+                rect=cells[3], key="place.pay", text="Pay for parking", icon=Icon.TICKET, on_tap=Show("parking")
+            ),
+        )
+    return (
+        Button(
+            rect=cells[0],
+            key="place.start",
+            text="Start guidance",
+            icon=Icon.ROUTE,
+            look=Look.ACCENT,
+            on_tap=Guide(name),
+            disabled=there,
+        ),
+        Button(
+            rect=cells[1],
+            key="place.stop",
+            text="Stop on the way",
+            icon=Icon.PLACE,
+            on_tap=Guide(name, goal),
+            disabled=there or ("" if goal else "There is no destination to go on to"),
+        ),
+        Button(
+            rect=cells[2],
+            key="place.save",
+            text="Remove from saved" if saved else "Save",
+            icon=Icon.STAR if saved else Icon.STAR_OUTLINE,
+            on_tap=Put(
+                "navigation",
+                navigation.with_favourite(name, not saved),
+                f"{name} is {'no longer' if saved else 'now'} saved",
+            ),
+        ),
+        *extra,
+    )
+
+
+def route(state: State) -> tuple[Widget, ...]:
+    """The way ahead: its turns, other ways, and what to keep away from."""
+    shown = state.picked["route"]
+    goal = state.navigation.destination or "Route"
+    summary = Rect(PANEL.x, PANEL.y + 64, PANEL.width, 72)
+    tabs = Rect(PANEL.x, PANEL.y + 148, PANEL.width, 56)
+    body = PANEL.below(216)
+    pages = {"turns": _turn_list, "ways": _ways, "options": _options}
+    return (
+        *_head(state, goal, Icon.TURNS, "route"),
+        Card(rect=summary, children=arrival(summary.inset(20, 10), "route", state)),
+        choices(
+            tabs,
+            "route.tab",
+            [
+                (name, text, None, shown == name, Pick("route", name))
+                for name, text in (("turns", "Turns"), ("ways", "Ways"), ("options", "Options"))
+            ],
+        ),
+        *pages[shown](body, state),
+        sight(state),
+    )
+
+
+def _turn_list(rect: Rect, state: State) -> tuple[Widget, ...]:
+    ahead = turns_ahead(state)
+    if not ahead:
+        return (note(rect, "route.turns.empty", "The route is not known yet"),)
+    return (
+        rows(
+            rect,
+            "route.turns",
+            "Turns",
+            state,
+            len(ahead),
+            lambda index, cell: Row(
+                rect=cell,
+                key=f"route.turn.{index}",
+                text=ahead[index][0].words,
+                detail=ahead[index][0].street,
+                trail=distance(state.signals, ahead[index][1]),
+                icon=ahead[index][0].icon,
+            ),
+            height=60,
+            gap=6,
+        ),
+    )
+
+
+def _ways(rect: Rect, state: State) -> tuple[Widget, ...]:
+    """The present way, others that the road offers, and places to charge on the way."""
+    ahead = None if state.outside is None else state.outside.driving.ahead
+    others = () if ahead is None else ahead.alternatives
+    chargers = along(state, state.atlas.of(Kind.CHARGING))
+    lines: list[tuple[str, str, str, Icon, Take | Guide | Show]] = [
+        (
+            f"Way {at + 2}",
+            f"{_more(other.eta_s, 0 if ahead is None else ahead.eta_s)}, {other.delay_s / 60:.0f} min delay",
+            distance(state.signals, other.length_m),
+            Icon.ROUTE,
+            Take(other.edges),
+        )
+        for at, other in enumerate(others)
+    ]
+    lines.append(("Look for a faster way", "With the traffic as it is now", "", Icon.ROUTE, Guide("")))
+    lines += [
+        (charger.name, charger.detail, away(state, charger.name), Icon.CHARGING, Show("place", charger.name))
+        for charger in chargers
+    ]
+    return (
+        rows(
+            rect,
+            "route.ways",
+            "Other ways and charging stops",
+            state,
+            len(lines),
+            lambda index, cell: Row(
+                rect=cell,
+                key=f"route.way.{index}",
+                text=lines[index][0],
+                detail=lines[index][1],
+                trail=lines[index][2],
+                icon=lines[index][3],
+                on_tap=lines[index][4],
+            ),
+            height=60,
+            gap=6,
+        ),
+    )
+
+
+def _more(eta_s: float, now_s: float) -> str:
+    minutes = round((eta_s - now_s) / 60)
+    return "As long" if minutes == 0 else f"{abs(minutes)} min {'longer' if minutes > 0 else 'shorter'}"
+
+
+def _options(rect: Rect, state: State) -> tuple[Widget, ...]:
+    navigation = state.navigation
+    tiles = Rect(rect.x, rect.y + 32, rect.width, 2 * 60 + 8)
+    cells = [cell for line in tiles.rows(2, 8) for cell in line.columns(2, 8)]
+    guidance = state.signals[VOICE.GUIDANCE]
+    onward = navigation.onward
+    return (
+        heading(rect.top(28), "Keep away from"),
+        *(
+            Tile(
+                rect=cell,
+                key=f"route.avoid.{name}",
+                text=text,
+                icon=icon,
+                checked=name in navigation.avoid,
+                on_tap=Put(
+                    "navigation",
+                    navigation.with_avoided(name, name not in navigation.avoid),
+                    f"{text} are {'welcome again' if name in navigation.avoid else 'avoided'}",
+                ),
+            )
+            for cell, (name, (text, icon)) in zip(cells, AVOIDABLE.items(), strict=True)
+        ),
+        heading(Rect(rect.x, tiles.bottom + 8, rect.width, 28), "Spoken guidance"),
+        choices(
+            Rect(rect.x, tiles.bottom + 40, rect.width, 56),
+            "route.voice",
+            [
+                (key, text, None, guidance == value, Set(VOICE.GUIDANCE, value))
+                for key, text, value in (
+                    ("all", "All", "UNMUTED"),
+                    ("alerts", "Alerts", "ALERT_ONLY"),
+                    ("off", "Off", "MUTED"),
+                )
+            ],
+        ),
+        Button(
+            rect=Rect(rect.x, tiles.bottom + 108, rect.width, 56),
+            key="route.onward",
+            text=f"Skip the stop: {onward}" if onward else "No stop on the way",
+            icon=Icon.GOAL,
+            on_tap=Guide(onward),
+            disabled="" if onward else "There is no stop on the way",
+        ),
+    )

@@ -1,0 +1,143 @@
+"""From what is outside to the car's signals, its air, its glass and its battery."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from datetime import datetime
+
+from automotive_cosim.cockpit.cabin import Air, Cabin
+from automotive_cosim.cockpit.calls import receive
+from automotive_cosim.cockpit.errands import odometer, play_on
+from automotive_cosim.cockpit.restrictions import Restriction
+from automotive_cosim.cockpit.signals import (
+    ADAS,
+    BODY,
+    DRIVE,
+    GLASS,
+    HMI,
+    HVAC,
+    LINK,
+    MOTION,
+    OUTSIDE,
+    SEAT,
+    TYRE,
+)
+from automotive_cosim.cockpit.sky import feel
+from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.theme import Icon
+from automotive_cosim.cockpit.tyres import Tyres
+from automotive_cosim.cockpit.vehicle import DARK_BELOW_DEG
+from automotive_cosim.cockpit.warmth import display_contrast, seat_after
+from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, LimitSource, OtherVehicle, Surroundings, Weather
+
+MOVING_MPS = 0.1
+RADAR_M = 150.0
+"""Reach of the forward radar; a typical long-range one."""
+TYRES = (TYRE.FRONT_LEFT, TYRE.FRONT_RIGHT, TYRE.REAR_LEFT, TYRE.REAR_RIGHT)
+RAIN_FULL_MM_H = 10.0
+"""Heavy rain (WMO: 10 mm/h and more is heavy) covers the rain sensor."""
+
+
+def sense(state: State, surroundings: Surroundings, dt_s: float) -> None:
+    """Lets ``dt_s`` seconds pass in these surroundings, which become the present ones."""
+    before, state.outside = state.outside, surroundings
+    driving, weather = surroundings.driving, surroundings.weather
+    _motion(state, surroundings)
+    _road(state, driving)
+    sun = surroundings.sun_elevation_deg
+    state.vehicle.follow_light(driving.road.in_tunnel or (sun is not None and sun < DARK_BELOW_DEG))
+    feel(state.signals, surroundings)
+    _climate(state, driving, weather, dt_s)
+    _bodies(state, weather.temperature_2m, dt_s)
+    play_on(state, dt_s)
+    if before is None:
+        state.departed_s = driving.time_s
+        state.desk = replace(state.desk, trip_from=odometer(state))
+    else:
+        _prepare_climate(state, before.local_time, surroundings.local_time)
+    receive(state)
+    state.signals[DRIVE.HORN] = False
+    if Restriction.NO_KEYBOARD in state.restrictions:
+        state.focus = ""
+
+
+def _motion(state: State, surroundings: Surroundings) -> None:
+    signals, driving, gps = state.signals, surroundings.driving, surroundings.gps
+    moving = driving.speed_mps > MOVING_MPS
+    signals[MOTION.SPEED] = max(0.0, driving.speed_mps * KMH_PER_MPS)
+    signals[MOTION.IS_MOVING] = moving
+    if moving:
+        signals[MOTION.GEAR] = "D"
+    signals[MOTION.HEADING] = driving.heading_deg % 360
+    signals[MOTION.LATITUDE] = None if gps is None else gps.lat_deg
+    signals[MOTION.LONGITUDE] = None if gps is None else gps.lon_deg
+    signals[LINK.ONLINE] = surroundings.connectivity.online and signals[LINK.MOBILE_DATA]
+
+
+def _road(state: State, driving: DrivingState) -> None:
+    signals, road = state.signals, driving.road
+    limit = road.posted_limit_mps if road.limit_source is LimitSource.POSTED else None
+    signals[ADAS.LIMIT_SIGN] = round(limit * KMH_PER_MPS, 1) if state.sign_camera and limit is not None else None
+    leader = _in_sight(driving.around.leader)
+    signals[ADAS.LEADER_DISTANCE] = None if leader is None else leader.gap_m
+    signals[ADAS.LEADER_TIME_TO_COLLISION] = None if leader is None else leader.time_to_collision_s
+
+
+def _in_sight(leader: OtherVehicle | None) -> OtherVehicle | None:
+    return leader if leader is not None and leader.gap_m <= RADAR_M else None
+
+
+def _bodies(state: State, air_c: float, dt_s: float) -> None:
+    """Tyres, seats and the display in the air and light they are in."""
+    signals = state.signals
+    if state.tyres is None:
+        cold = Tyres(tuple(signals[tyre] for tyre in TYRES), air_c)
+        state.tyres, cabin_c = cold, signals[HVAC.CABIN_TEMPERATURE]
+        signals[SEAT.DRIVER_TEMPERATURE] = signals[SEAT.PASSENGER_TEMPERATURE] = cabin_c
+    state.tyres = state.tyres.after(dt_s, air_c, signals[MOTION.SPEED])
+    for tyre, pressure_kpa in zip(TYRES, state.tyres.pressures_kpa, strict=True):
+        signals[tyre] = min(tyre.high, pressure_kpa)
+    for seat, level in (
+        (SEAT.DRIVER_TEMPERATURE, SEAT.DRIVER_HEATING),
+        (SEAT.PASSENGER_TEMPERATURE, SEAT.PASSENGER_HEATING),
+    ):
+        signals[seat] = seat_after(signals[seat], dt_s, signals[HVAC.CABIN_TEMPERATURE], signals[level])
+    signals[HMI.CONTRAST] = display_contrast(signals[HMI.BRIGHTNESS], signals[OUTSIDE.LIGHT])
+
+
+def _climate(state: State, driving: DrivingState, weather: Weather, dt_s: float) -> None:
+    signals = state.signals
+    rain = 0.0 if driving.road.in_tunnel else weather.precipitation
+    air = Air(
+        weather.temperature_2m,
+        weather.relative_humidity_2m,
+        rain,
+        driving.speed_mps,
+        signals[OUTSIDE.FINE_DUST],
+    )
+    cabin = state.cabin or Cabin.at(state.cabin_start, air)
+    state.cabin = cabin.after(dt_s, state.vehicle.controls(rain), air)
+    state.vehicle.use_energy(dt_s, air, state.cabin.temperature_c)
+    signals[OUTSIDE.TEMPERATURE] = weather.temperature_2m
+    signals[OUTSIDE.HUMIDITY] = weather.relative_humidity_2m
+    signals[BODY.RAIN_INTENSITY] = min(100.0, 100 * rain / RAIN_FULL_MM_H)
+    signals[HVAC.CABIN_TEMPERATURE] = state.cabin.temperature_c
+    signals[HVAC.CABIN_HUMIDITY] = state.cabin.humidity_pct
+    signals[HVAC.CABIN_FINE_DUST] = state.cabin.fine_dust
+    signals[GLASS.WINDSHIELD_FOG] = state.cabin.windshield.fog_inside
+    signals[GLASS.WINDSHIELD_FILM] = state.cabin.windshield.film_outside
+    signals[GLASS.REAR_FOG] = state.cabin.rear_window.fog_inside
+    signals[GLASS.REAR_FILM] = state.cabin.rear_window.film_outside
+
+
+def _prepare_climate(state: State, before: datetime, now: datetime) -> None:
+    """At the time that is set the climate control takes over."""
+    timer = state.desk.climate_at
+    if timer.on and _minute(before) < timer.minute <= _minute(now):
+        state.vehicle.command(HVAC.AUTO, True)
+        state.notify(f"The cabin is being prepared, as set for {timer.shown}", Icon.CLIMATE)
+
+
+def _minute(time: datetime) -> float:
+    """Of the day."""
+    return time.hour * 60 + time.minute + time.second / 60

@@ -1,0 +1,493 @@
+"""The car's signals: typed constants under COVESA VSS 6.0 paths, and the store that holds their values.
+
+    signals[HVAC.FAN_SPEED] = 60.0        # checked: type, range, allowed values
+    signals[LIGHTS.HIGH_BEAM]             # bool, to a type checker too
+
+Paths, units and allowed values are those of the Vehicle Signal Specification
+(https://github.com/COVESA/vehicle_signal_specification); ranges are narrowed to what this car's switches offer.
+What VSS lacks is marked ``overlay``, VSS's own word for a tree's additions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any, Generic, TypeVar, cast
+
+from automotive_cosim.errors import SignalError, UnknownNameError
+
+T = TypeVar("T")
+
+
+class Kind(StrEnum):
+    """VSS's kinds of leaf."""
+
+    ACTUATOR = "actuator"
+    """Can be commanded."""
+    SENSOR = "sensor"
+    """Is measured."""
+    ATTRIBUTE = "attribute"
+    """Does not change while driving."""
+
+
+@dataclass(frozen=True, slots=True)
+class Signal(Generic[T]):
+    """One leaf of the tree: what it is called and which values it takes."""
+
+    path: str
+    kind: Kind
+    default: T
+    unit: str = ""
+    """VSS's word for the unit."""
+    minimum: float | None = None
+    maximum: float | None = None
+    step: float = 1.0
+    """What one press of a button changes; any value in the range is legal."""
+    allowed: tuple[T, ...] = ()
+    optional: bool = False
+    """May be None: there is nothing to measure."""
+    overlay: bool = False
+    """Not in VSS 6.0."""
+
+    @property
+    def low(self) -> float:
+        """The smallest legal number."""
+        return 0.0 if self.minimum is None else self.minimum
+
+    @property
+    def high(self) -> float:
+        """The greatest legal number."""
+        return 0.0 if self.maximum is None else self.maximum
+
+    def check(self, value: object) -> T:
+        """The value as it is stored; an int becomes a float where floats are expected.
+
+        Raises:
+            SignalError: wrong type, out of range or not among the allowed values.
+        """
+        if value is None and self.optional:
+            return cast(T, None)
+        expected = float if self.optional else type(self.default)
+        if expected is float and type(value) is int:
+            value = float(value)
+        if type(value) is not expected or value != value:
+            raise SignalError(f"{self.path} is {value!r}; it must be {_article(expected.__name__)} ({self.range})")
+        too_low = self.minimum is not None and isinstance(value, float) and value < self.minimum
+        too_high = self.maximum is not None and isinstance(value, float) and value > self.maximum
+        if too_low or too_high or (self.allowed and value not in self.allowed):
+            raise SignalError(f"{self.path} is {value!r}; it must be {self.range}")
+        return cast(T, value)
+
+    @property
+    def range(self) -> str:
+        """The legal values, in words."""
+        if self.allowed:
+            return "one of " + ", ".join(str(value) for value in self.allowed)
+        if isinstance(self.default, bool):
+            return "true or false"
+        if self.minimum is None and self.maximum is None:
+            return "any" + (" or nothing" if self.optional else "")
+        unit = f" {self.unit}" if self.unit else ""
+        return f"{_number(self.minimum)} to {_number(self.maximum)}{unit}" + (
+            " or nothing" if self.optional else ""
+        )
+
+
+def _number(value: float | None) -> str:
+    return "any" if value is None else f"{value:g}"
+
+
+def _article(noun: str) -> str:
+    return f"an {noun}" if noun[0] in "aeiou" else f"a {noun}"
+
+
+CATALOGUE: dict[str, Signal[Any]] = {}
+"""Every signal by its path."""
+
+
+def _enter(signal: Signal[T]) -> Signal[T]:
+    if signal.path in CATALOGUE:
+        raise ValueError(f"signal {signal.path!r} stands twice in the catalogue")
+    signal.check(signal.default)
+    CATALOGUE[signal.path] = signal
+    return signal
+
+
+def _switch(path: str, default: bool = False, *, overlay: bool = False) -> Signal[bool]:
+    return _enter(Signal(f"Vehicle.{path}", Kind.ACTUATOR, default, overlay=overlay))
+
+
+def _is(path: str, default: bool = False, *, overlay: bool = False) -> Signal[bool]:
+    return _enter(Signal(f"Vehicle.{path}", Kind.SENSOR, default, overlay=overlay))
+
+
+def _choice(path: str, default: str, allowed: str, *, overlay: bool = False) -> Signal[str]:
+    return _enter(
+        Signal(f"Vehicle.{path}", Kind.ACTUATOR, default, allowed=tuple(allowed.split()), overlay=overlay)
+    )
+
+
+def _set(
+    path: str, default: float, unit: str, low: float, high: float, step: float = 1.0, *, overlay: bool = False
+) -> Signal[float]:
+    return _enter(Signal(f"Vehicle.{path}", Kind.ACTUATOR, default, unit, low, high, step, overlay=overlay))
+
+
+def _measure(
+    path: str, default: float, unit: str, low: float | None, high: float | None, *, overlay: bool = False
+) -> Signal[float]:
+    return _enter(Signal(f"Vehicle.{path}", Kind.SENSOR, default, unit, low, high, overlay=overlay))
+
+
+def _maybe(path: str, unit: str, low: float, high: float | None, *, overlay: bool = False) -> Signal[float | None]:
+    signal: Signal[float | None] = Signal(
+        f"Vehicle.{path}", Kind.SENSOR, None, unit, low, high, optional=True, overlay=overlay
+    )
+    return _enter(signal)
+
+
+def _text(path: str, *, overlay: bool = False) -> Signal[str]:
+    return _enter(Signal(f"Vehicle.{path}", Kind.SENSOR, "", overlay=overlay))
+
+
+class HVAC:
+    """Heating, ventilation and air conditioning. One blower and one air flap serve both front seats."""
+
+    DRIVER_TEMPERATURE = _set("Cabin.HVAC.Station.Row1.Driver.Temperature", 21.0, "celsius", 16, 28, 0.5)
+    PASSENGER_TEMPERATURE = _set("Cabin.HVAC.Station.Row1.Passenger.Temperature", 21.0, "celsius", 16, 28, 0.5)
+    FAN_SPEED = _set("Cabin.HVAC.Station.Row1.Driver.FanSpeed", 30.0, "percent", 0, 100, 10)
+    AIR_DISTRIBUTION = _choice("Cabin.HVAC.Station.Row1.Driver.AirDistribution", "MIDDLE", "UP MIDDLE DOWN")
+    AIR_CONDITIONING = _switch("Cabin.HVAC.IsAirConditioningActive")
+    RECIRCULATION = _switch("Cabin.HVAC.IsRecirculationActive")
+    FRONT_DEFROSTER = _switch("Cabin.HVAC.IsFrontDefrosterActive")
+    REAR_DEFROSTER = _switch("Cabin.HVAC.IsRearDefrosterActive")
+    AUTO = _switch("Cabin.HVAC.IsAutoActive", overlay=True)
+    SYNC = _switch("Cabin.HVAC.IsSyncActive", True, overlay=True)
+    MAX_COOLING = _switch("Cabin.HVAC.IsMaxAirConditioningActive", overlay=True)
+    MAX_DEFROST = _switch("Cabin.HVAC.IsMaxDefrostActive", overlay=True)
+    PURIFIER = _switch("Cabin.HVAC.IsAirPurifierActive", overlay=True)
+    CABIN_TEMPERATURE = _measure("Cabin.HVAC.AmbientAirTemperature", 21.0, "celsius", -60, 90)
+    CABIN_HUMIDITY = _measure("Cabin.HVAC.AmbientAirHumidity", 45.0, "percent", 0, 100, overlay=True)
+    CABIN_FINE_DUST = _measure("Cabin.HVAC.AmbientAirFineDust", 4.0, "ug/m^3", 0, 2000, overlay=True)
+
+
+class SEAT:
+    """Warmth (negative is ventilation), position and massage. Positions count from the front, low and upright."""
+
+    DRIVER_HEATING = _set("Cabin.Seat.Row1.DriverSide.Seating.HeatingCooling", 0.0, "percent", -100, 100, 50)
+    PASSENGER_HEATING = _set("Cabin.Seat.Row1.PassengerSide.Seating.HeatingCooling", 0.0, "percent", -100, 100, 50)
+    REAR_LEFT_HEATING = _set("Cabin.Seat.Row2.DriverSide.Seating.HeatingCooling", 0.0, "percent", 0, 100, 50)
+    REAR_RIGHT_HEATING = _set("Cabin.Seat.Row2.PassengerSide.Seating.HeatingCooling", 0.0, "percent", 0, 100, 50)
+    STEERING_WHEEL_HEATING = _set("Chassis.SteeringWheel.HeatingCooling", 0.0, "percent", -100, 100, 100)
+    DRIVER_POSITION = _set("Cabin.Seat.Row1.DriverSide.Position", 140.0, "mm", 0, 260, 10)
+    DRIVER_HEIGHT = _set("Cabin.Seat.Row1.DriverSide.Height", 30.0, "mm", 0, 80, 5)
+    DRIVER_RECLINE = _set("Cabin.Seat.Row1.DriverSide.Backrest.Recline", 22.0, "degrees", 0, 60, 2)
+    DRIVER_LUMBAR = _set("Cabin.Seat.Row1.DriverSide.Backrest.LumbarSupport", 30.0, "percent", 0, 100, 10)
+    DRIVER_MASSAGE = _set("Cabin.Seat.Row1.DriverSide.MassageLevel", 0.0, "percent", 0, 100, 50)
+    PASSENGER_POSITION = _set("Cabin.Seat.Row1.PassengerSide.Position", 160.0, "mm", 0, 260, 10)
+    PASSENGER_HEIGHT = _set("Cabin.Seat.Row1.PassengerSide.Height", 20.0, "mm", 0, 80, 5)
+    PASSENGER_RECLINE = _set("Cabin.Seat.Row1.PassengerSide.Backrest.Recline", 24.0, "degrees", 0, 60, 2)
+    PASSENGER_LUMBAR = _set("Cabin.Seat.Row1.PassengerSide.Backrest.LumbarSupport", 30.0, "percent", 0, 100, 10)
+    PASSENGER_MASSAGE = _set("Cabin.Seat.Row1.PassengerSide.MassageLevel", 0.0, "percent", 0, 100, 50)
+    DRIVER_TEMPERATURE = _measure(
+        "Cabin.Seat.Row1.DriverSide.SurfaceTemperature", 21.0, "celsius", -60, 120, overlay=True
+    )
+    PASSENGER_TEMPERATURE = _measure(
+        "Cabin.Seat.Row1.PassengerSide.SurfaceTemperature", 21.0, "celsius", -60, 120, overlay=True
+    )
+    DRIVER_BELT = _is("Cabin.Seat.Row1.DriverSide.IsBelted", True)
+    PASSENGER_BELT = _is("Cabin.Seat.Row1.PassengerSide.IsBelted")
+
+
+class CABIN:
+    """Doors, windows, roof, mirrors and the light inside."""
+
+    DRIVER_LOCK = _switch("Cabin.Door.Row1.DriverSide.IsLocked", True)
+    PASSENGER_LOCK = _switch("Cabin.Door.Row1.PassengerSide.IsLocked", True)
+    REAR_LEFT_LOCK = _switch("Cabin.Door.Row2.DriverSide.IsLocked", True)
+    REAR_RIGHT_LOCK = _switch("Cabin.Door.Row2.PassengerSide.IsLocked", True)
+    LEFT_CHILD_LOCK = _switch("Cabin.Door.Row2.DriverSide.IsChildLockActive", overlay=True)
+    RIGHT_CHILD_LOCK = _switch("Cabin.Door.Row2.PassengerSide.IsChildLockActive", overlay=True)
+    WINDOW_LOCK = _switch("Cabin.IsWindowChildLockEngaged")
+    DRIVER_WINDOW = _set("Cabin.Door.Row1.DriverSide.Window.Position", 0.0, "percent", 0, 100, 10)
+    PASSENGER_WINDOW = _set("Cabin.Door.Row1.PassengerSide.Window.Position", 0.0, "percent", 0, 100, 10)
+    REAR_LEFT_WINDOW = _set("Cabin.Door.Row2.DriverSide.Window.Position", 0.0, "percent", 0, 100, 10)
+    REAR_RIGHT_WINDOW = _set("Cabin.Door.Row2.PassengerSide.Window.Position", 0.0, "percent", 0, 100, 10)
+    SUNROOF = _set("Cabin.Sunroof.Position", 0.0, "percent", 0, 100, 10, overlay=True)
+    SUNROOF_SHADE = _set("Cabin.Sunroof.Shade.Position", 100.0, "percent", 0, 100, 10)
+    """VSS: 0 is retracted, 100 covers the roof."""
+    TRUNK = _switch("Body.Trunk.Rear.IsOpen")
+    DOME_LIGHT = _switch("Cabin.Light.IsDomeOn")
+    DRIVER_READING_LIGHT = _switch("Cabin.Light.Spotlight.Row1.DriverSide.IsLightOn")
+    PASSENGER_READING_LIGHT = _switch("Cabin.Light.Spotlight.Row1.PassengerSide.IsLightOn")
+    AMBIENT_LIGHT = _set("Cabin.Light.AmbientLight.Row1.DriverSide.Intensity", 30.0, "percent", 0, 100, 10)
+    AMBIENT_COLOUR = _choice(
+        "Cabin.Light.AmbientLight.Row1.DriverSide.Color", "#4FA8FF", "#FFE3B0 #4FA8FF #45D18A #B57BFF #FF5C5C"
+    )
+
+
+class MIRROR:
+    """Outside mirrors. Pan 100 is outwards, tilt 100 upwards."""
+
+    DRIVER_FOLDED = _switch("Body.Mirrors.DriverSide.IsFolded")
+    PASSENGER_FOLDED = _switch("Body.Mirrors.PassengerSide.IsFolded")
+    DRIVER_HEATING = _switch("Body.Mirrors.DriverSide.IsHeatingOn")
+    PASSENGER_HEATING = _switch("Body.Mirrors.PassengerSide.IsHeatingOn")
+    DRIVER_PAN = _set("Body.Mirrors.DriverSide.Pan", 0.0, "percent", -100, 100, 10)
+    PASSENGER_PAN = _set("Body.Mirrors.PassengerSide.Pan", 0.0, "percent", -100, 100, 10)
+    DRIVER_TILT = _set("Body.Mirrors.DriverSide.Tilt", 0.0, "percent", -100, 100, 10)
+    PASSENGER_TILT = _set("Body.Mirrors.PassengerSide.Tilt", 0.0, "percent", -100, 100, 10)
+
+
+class TYRE:
+    """Tyre pressures, cold at 20 degrees 250 kPa."""
+
+    FRONT_LEFT = _measure("Chassis.Axle.Row1.Wheel.Left.Tire.Pressure", 250.0, "kPa", 0, 500)
+    FRONT_RIGHT = _measure("Chassis.Axle.Row1.Wheel.Right.Tire.Pressure", 250.0, "kPa", 0, 500)
+    REAR_LEFT = _measure("Chassis.Axle.Row2.Wheel.Left.Tire.Pressure", 250.0, "kPa", 0, 500)
+    REAR_RIGHT = _measure("Chassis.Axle.Row2.Wheel.Right.Tire.Pressure", 250.0, "kPa", 0, 500)
+
+
+class LIGHTS:
+    """Exterior lamps."""
+
+    SWITCH = _choice("Body.Lights.LightSwitch", "AUTO", "OFF POSITION AUTO BEAM")
+    POSITION = _switch("Body.Lights.Parking.IsOn")
+    LOW_BEAM = _switch("Body.Lights.Beam.Low.IsOn")
+    HIGH_BEAM = _switch("Body.Lights.Beam.High.IsOn")
+    FRONT_FOG = _switch("Body.Lights.Fog.Front.IsOn")
+    REAR_FOG = _switch("Body.Lights.Fog.Rear.IsOn")
+    HAZARD = _switch("Body.Lights.Hazard.IsSignaling")
+
+
+class BODY:
+    """Wipers, washer and the rain they meet."""
+
+    FRONT_WIPER = _choice(
+        "Body.Windshield.Front.Wiping.Mode", "RAIN_SENSOR", "OFF INTERVAL SLOW MEDIUM FAST RAIN_SENSOR"
+    )
+    REAR_WIPER = _choice("Body.Windshield.Rear.Wiping.Mode", "OFF", "OFF INTERVAL SLOW")
+    RAIN_INTENSITY = _measure("Body.Raindetection.Intensity", 0.0, "percent", 0, 100)
+    WASHER_FLUID = _measure("Body.Windshield.Front.WasherFluid.Level", 80.0, "percent", 0, 100)
+
+
+class GLASS:
+    """What stands between the driver's eyes and the road, 0 clear to 1 opaque, as the glass sensors see it."""
+
+    WINDSHIELD_FOG = _measure("Body.Windshield.Front.FogInside", 0.0, "", 0, 1, overlay=True)
+    WINDSHIELD_FILM = _measure("Body.Windshield.Front.FilmOutside", 0.0, "", 0, 1, overlay=True)
+    REAR_FOG = _measure("Body.Windshield.Rear.FogInside", 0.0, "", 0, 1, overlay=True)
+    REAR_FILM = _measure("Body.Windshield.Rear.FilmOutside", 0.0, "", 0, 1, overlay=True)
+
+
+class ADAS:
+    """Driver assistance."""
+
+    CRUISE_ENABLED = _switch("ADAS.CruiseControl.IsEnabled", True)
+    CRUISE_ACTIVE = _switch("ADAS.CruiseControl.IsActive")
+    CRUISE_SPEED = _set("ADAS.CruiseControl.SpeedSet", 50.0, "km/h", 10, 180, 5)
+    CRUISE_ADAPTIVE = _switch("ADAS.CruiseControl.IsAdaptive", True)
+    CRUISE_GAP = _set("ADAS.CruiseControl.TimeGapSet", 2.0, "s", 1.0, 3.0, 0.5, overlay=True)
+    LIMITER_ACTIVE = _switch("ADAS.SpeedLimiter.IsActive", overlay=True)
+    LIMITER_SPEED = _set("ADAS.SpeedLimiter.SpeedSet", 50.0, "km/h", 10, 180, 5, overlay=True)
+    FORWARD_COLLISION_WARNING = _switch("ADAS.ObstacleDetection.Front.Center.IsEnabled", True)
+    EMERGENCY_BRAKING = _switch("ADAS.EBA.IsEnabled", True)
+    STABILITY_CONTROL = _switch("ADAS.ESC.IsEnabled", True)
+    LANE_DEPARTURE = _switch("ADAS.LaneDepartureDetection.IsEnabled", True)
+    LANE_KEEPING = _switch("ADAS.LaneKeepingAssist.IsEnabled", True, overlay=True)
+    SPEED_WARNING = _switch("ADAS.IntelligentSpeedAssistance.IsEnabled", True, overlay=True)
+    BLIND_SPOT = _switch("ADAS.BlindSpotDetection.IsEnabled", True, overlay=True)
+    PARKING_SENSORS = _switch("ADAS.ObstacleDetection.Rear.Center.IsEnabled", True)
+    DRIVER_MONITORING = _switch("ADAS.DMS.IsEnabled", True)
+    ROAD_FRICTION = _measure("ADAS.ESC.RoadFriction.MostProbable", 100.0, "percent", 0, 100)
+    LIMIT_SIGN = _maybe("ADAS.RoadSign.SpeedLimit", "km/h", 0, 400, overlay=True)
+    LEADER_DISTANCE = _maybe("ADAS.ObstacleDetection.Front.Center.Distance", "m", 0, None)
+    LEADER_TIME_TO_COLLISION = _maybe(
+        "ADAS.ObstacleDetection.Front.Center.TimeToCollision", "s", 0, None, overlay=True
+    )
+
+
+class DRIVE:
+    """How the car answers to the pedals, what holds it, and what it is heard by."""
+
+    MODE = _choice("Powertrain.Transmission.PerformanceMode", "NORMAL", "NORMAL ECONOMY SPORT SNOW RAIN")
+    PARKING_BRAKE = _switch("Chassis.ParkingBrake.IsEngaged")
+    PARKING_BRAKE_AUTO = _switch("Chassis.ParkingBrake.IsAutoApplyEnabled", True)
+    HORN = _is("Body.Horn.IsActive")
+    """VSS has an actuator; here it sounds for a moment when it is pressed."""
+
+
+class MOTION:
+    """How and where the car moves."""
+
+    SPEED = _measure("Speed", 0.0, "km/h", 0, 400)
+    IS_MOVING = _is("IsMoving")
+    GEAR = _enter(
+        Signal("Vehicle.Powertrain.Transmission.Gear", Kind.SENSOR, "D", allowed=("P", "R", "N", "D"), overlay=True)
+    )
+    HEADING = _measure("CurrentLocation.Heading", 0.0, "degrees", 0, 360)
+    LATITUDE = _maybe("CurrentLocation.Latitude", "degrees", -90, 90)
+    LONGITUDE = _maybe("CurrentLocation.Longitude", "degrees", -180, 180)
+
+
+class ENERGY:
+    """The traction battery."""
+
+    LEVEL = _measure("Powertrain.TractionBattery.StateOfCharge.Displayed", 72.0, "percent", 0, 100)
+    RANGE = _measure("Powertrain.Range", 0.0, "m", 0, None)
+    CHARGE_LIMIT = _set("Powertrain.TractionBattery.Charging.ChargeLimit", 80.0, "percent", 50, 100, 5)
+    CHARGE_FLAP = _switch("Powertrain.TractionBattery.Charging.ChargingPort.AnyPosition.IsFlapOpen")
+    CABLE = _is("Powertrain.TractionBattery.Charging.ChargingPort.AnyPosition.IsChargingCableConnected")
+
+
+class OUTSIDE:
+    """What the car measures of sky, air and light."""
+
+    TEMPERATURE = _measure("Exterior.AirTemperature", 15.0, "celsius", -60, 70)
+    HUMIDITY = _measure("Exterior.Humidity", 60.0, "percent", 0, 100)
+    LIGHT = _measure("Exterior.LightIntensity", 100.0, "percent", 0, 100)
+    VISIBILITY = _measure("Exterior.Visibility", 20_000.0, "m", 0, None, overlay=True)
+    WIND = _measure("Exterior.WindSpeed", 0.0, "km/h", 0, 400, overlay=True)
+    GLARE = _measure("Exterior.Glare", 0.0, "percent", 0, 100, overlay=True)
+    FINE_DUST = _measure("Exterior.FineDust", 8.0, "ug/m^3", 0, 2000, overlay=True)
+    """Particles under 2.5 micrometres."""
+
+
+class MEDIA:
+    """Sound."""
+
+    ACTION = _choice("Cabin.Infotainment.Media.Action", "STOP", "STOP PLAY")
+    VOLUME = _set("Cabin.Infotainment.Media.Volume", 30.0, "percent", 0, 100, 5)
+    MUTED = _switch("Cabin.Infotainment.Media.IsMuted", overlay=True)
+    SOURCE = _choice("Cabin.Infotainment.Media.Played.Source", "BLUETOOTH", "BLUETOOTH FM DAB USB INTERNET")
+    SELECTED = _enter(Signal("Vehicle.Cabin.Infotainment.Media.SelectedURI", Kind.ACTUATOR, ""))
+    """What was chosen; what plays now is ``PLAYED``."""
+    SHUFFLE = _switch("Cabin.Infotainment.Media.IsShuffleActive", overlay=True)
+    REPEAT = _switch("Cabin.Infotainment.Media.IsRepeatActive", overlay=True)
+    BASS = _set("Cabin.Infotainment.Media.Equalizer.Bass", 0.0, "dB", -10, 10, 1, overlay=True)
+    MIDDLE = _set("Cabin.Infotainment.Media.Equalizer.Middle", 0.0, "dB", -10, 10, 1, overlay=True)
+    TREBLE = _set("Cabin.Infotainment.Media.Equalizer.Treble", 0.0, "dB", -10, 10, 1, overlay=True)
+    BALANCE = _set("Cabin.Infotainment.Media.Balance", 0.0, "percent", -100, 100, 10, overlay=True)
+    FADER = _set("Cabin.Infotainment.Media.Fader", 0.0, "percent", -100, 100, 10, overlay=True)
+    PLAYED = _text("Cabin.Infotainment.Media.Played.URI")
+    TRACK = _text("Cabin.Infotainment.Media.Played.Track")
+    ARTIST = _text("Cabin.Infotainment.Media.Played.Artist")
+
+
+class CALL:
+    """The phone, as far as it comes in by itself."""
+
+    RINGING = _text("Cabin.Infotainment.Call.Ringing", overlay=True)
+    """Who is calling; empty if nobody is."""
+    PARTNER = _text("Cabin.Infotainment.Call.Partner", overlay=True)
+    """With whom the driver is on the phone."""
+    UNREAD = _measure("Cabin.Infotainment.Message.Unread", 0.0, "", 0, None, overlay=True)
+    """How many people's messages were not read yet."""
+
+
+class VOICE:
+    """The other sounds: guidance, calls, the screen's clicks."""
+
+    GUIDANCE = _choice("Cabin.Infotainment.Navigation.Mute", "UNMUTED", "UNMUTED ALERT_ONLY MUTED")
+    GUIDANCE_VOLUME = _set("Cabin.Infotainment.Navigation.Volume", 50.0, "percent", 0, 100, 5)
+    CALL_VOLUME = _set("Cabin.Infotainment.Call.Volume", 50.0, "percent", 0, 100, 5, overlay=True)
+    TOUCH_SOUNDS = _switch("Cabin.Infotainment.HMI.IsTouchSoundActive", True, overlay=True)
+
+
+class HMI:
+    """The display itself."""
+
+    BRIGHTNESS = _set("Cabin.Infotainment.HMI.Brightness", 70.0, "percent", 0, 100, 10)
+    DAY_NIGHT = _choice("Cabin.Infotainment.HMI.DayNightMode", "DAY", "DAY NIGHT")
+    DAY_NIGHT_AUTO = _switch("Cabin.Infotainment.HMI.IsDayNightAuto", True, overlay=True)
+    DISTANCE_UNIT = _choice("Cabin.Infotainment.HMI.DistanceUnit", "KILOMETERS", "KILOMETERS MILES")
+    TEMPERATURE_UNIT = _choice("Cabin.Infotainment.HMI.TemperatureUnit", "C", "C F")
+    PRESSURE_UNIT = _choice("Cabin.Infotainment.HMI.TirePressureUnit", "BAR", "BAR KPA PSI")
+    TIME_FORMAT = _choice("Cabin.Infotainment.HMI.TimeFormat", "HR_24", "HR_24 HR_12")
+    CONTRAST = _measure("Cabin.Infotainment.HMI.ContrastRatio", 50.0, "ratio", 1, 2000, overlay=True)
+    """White over black as it is seen in the light that falls on the display."""
+    LANGUAGE = _choice("Cabin.Infotainment.HMI.CurrentLanguage", "en", "en fr de ja", overlay=True)
+
+
+class LINK:
+    """The way out of the car, and what goes along it."""
+
+    ONLINE = _is("Connectivity.IsConnectivityAvailable", True)
+    MOBILE_DATA = _switch("Connectivity.Cellular.IsEnabled", True, overlay=True)
+    WIFI = _switch("Connectivity.WiFi.IsEnabled", overlay=True)
+    HOTSPOT = _switch("Connectivity.WiFi.IsHotspotActive", overlay=True)
+    BLUETOOTH = _switch("Connectivity.Bluetooth.IsEnabled", True, overlay=True)
+    SHARE_POSITION = _switch("Connectivity.Privacy.IsPositionShared", overlay=True)
+    SHARE_DRIVING = _switch("Connectivity.Privacy.IsDrivingDataShared", overlay=True)
+    VOICE_ASSISTANT = _switch("Connectivity.Privacy.IsMicrophoneEnabled", True, overlay=True)
+
+
+def named(path: str) -> Signal[Any]:
+    """The signal of that path.
+
+    Raises:
+        UnknownNameError: there is none.
+    """
+    try:
+        return CATALOGUE[path]
+    except KeyError:
+        raise UnknownNameError("signal", path, CATALOGUE) from None
+
+
+class Signals:
+    """Values of every signal, each legal at all times."""
+
+    __slots__ = ("_values",)
+
+    def __init__(self, values: Mapping[str, Any] | None = None) -> None:
+        """All at their defaults but for ``values``, by path.
+
+        Raises:
+            UnknownNameError: no such path.
+            SignalError: a value is illegal.
+        """
+        self._values: dict[str, Any] = {path: signal.default for path, signal in CATALOGUE.items()}
+        for path, value in (values or {}).items():
+            self._values[path] = named(path).check(value)
+
+    def __getitem__(self, signal: Signal[T]) -> T:
+        value: T = self._values[signal.path]
+        return value
+
+    def __setitem__(self, signal: Signal[T], value: T) -> None:
+        self._values[signal.path] = signal.check(value)
+
+    def __iter__(self) -> Iterator[Signal[Any]]:
+        return iter(CATALOGUE.values())
+
+    def snapshot(self) -> dict[str, Any]:
+        """Path and value of every signal; a copy."""
+        return dict(self._values)
+
+    def commanded(self) -> dict[str, Any]:
+        """Path and value of every actuator; a copy."""
+        return {path: self._values[path] for path in ACTUATORS}
+
+    def reset(self) -> None:
+        """All at their defaults again."""
+        self._values = {path: signal.default for path, signal in CATALOGUE.items()}
+
+    def copy(self) -> Signals:
+        """An independent copy."""
+        twin = Signals.__new__(Signals)
+        twin._values = self._values.copy()
+        return twin
+
+
+ACTUATORS = tuple(path for path, signal in CATALOGUE.items() if signal.kind is Kind.ACTUATOR)
+"""Paths of all that can be commanded."""
+
+
+def difference(before: Mapping[str, Any], after: Mapping[str, Any]) -> dict[str, tuple[Any, Any]]:
+    """What differs between two snapshots: path to (before, after)."""
+    return {
+        path: (before.get(path), after.get(path))
+        for path in sorted(before.keys() | after.keys())
+        if before.get(path) != after.get(path)
+    }

@@ -1,0 +1,230 @@
+"""Everything the screens are built from: one mutable state of immutable values, so that a copy costs nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from datetime import datetime
+from typing import Any
+
+from automotive_cosim.cockpit.arrivals import Arrival
+from automotive_cosim.cockpit.cabin import Cabin, CabinStart
+from automotive_cosim.cockpit.desk import Desk
+from automotive_cosim.cockpit.map import RoadMap
+from automotive_cosim.cockpit.media import Library, Listening
+from automotive_cosim.cockpit.navigation import Navigation
+from automotive_cosim.cockpit.people import Directory, Phone
+from automotive_cosim.cockpit.places import Atlas
+from automotive_cosim.cockpit.restrictions import REASONS, Restriction, restrictions
+from automotive_cosim.cockpit.signals import HMI, MOTION, Signals
+from automotive_cosim.cockpit.theme import Icon
+from automotive_cosim.cockpit.tyres import Tyres
+from automotive_cosim.cockpit.vehicle import Vehicle
+from automotive_cosim.contracts import (
+    Alert,
+    AlertKind,
+    Feedback,
+    FeedbackCode,
+    RoadRequest,
+    Severity,
+    Surroundings,
+)
+
+NOTICE_S = 10.0
+"""A notice stays this long."""
+NOTICES = 20
+"""So many are kept to be looked up."""
+
+
+PICKED: Mapping[str, str] = {
+    "map.list": "saved",
+    "explore": "all",
+    "route": "turns",
+    "outside": "rain",
+    "media.list": "all",
+    "phone": "favourites",
+    "seats": "driver",
+    "manual": "0",
+}
+"""What screens with several parts show first."""
+
+
+@dataclass(frozen=True, slots=True)
+class AlertDraft:
+    """The alert being put together in the safety centre."""
+
+    kind: AlertKind | None = None
+    severity: Severity = Severity.WARNING
+    speed_kmh: float | None = None
+    """Advised speed; None leaves it to the posted limit."""
+
+
+@dataclass(frozen=True, slots=True)
+class AlertGiven:
+    """One line of the history."""
+
+    clock: str
+    alert: Alert
+    answer: str = ""
+    """What the road said."""
+
+
+@dataclass(frozen=True, slots=True)
+class Notice:
+    """A line in the status bar that goes by itself and stays among the notifications."""
+
+    at_s: float
+    clock: str
+    text: str
+    icon: Icon
+    tone: Severity
+    seen: bool = False
+    """Was taken out of the status bar."""
+    opens: tuple[str, str] | None = None
+    """Screen, and what on it, that a tap on the notice leads to."""
+
+
+@dataclass(slots=True)
+class State:
+    """The cockpit at one instant."""
+
+    vehicle: Vehicle
+    roads: RoadMap
+    library: Library
+    atlas: Atlas
+    directory: Directory
+    navigation: Navigation
+    listening: Listening
+    phone: Phone
+    desk: Desk
+    sign_camera: bool
+    cabin_start: CabinStart
+    cabin: Cabin | None = None
+    """None until the first look outside."""
+    tyres: Tyres | None = None
+    injected: Mapping[str, Any] = field(default_factory=dict)
+    """Sensors that read what they were told to, by path."""
+    outside: Surroundings | None = None
+    screen: str = "home"
+    past: tuple[tuple[str, str], ...] = ()
+    """Screens to go back to, and what was shown on them."""
+    scrolled: Mapping[str, int] = field(default_factory=dict)
+    """Rows each list is scrolled by."""
+    picked: Mapping[str, str] = field(default_factory=lambda: PICKED)
+    """What is chosen on a screen that shows several things, by its key."""
+    focus: str = ""
+    """Key of the text field that takes letters."""
+    keyboard: bool = False
+    """Whether its keys are on the screen."""
+    typed: Mapping[str, str] = field(default_factory=dict)
+    """Text by field."""
+    zoom: int = 1
+    north_up: bool = False
+    panned: tuple[float, float] | None = None
+    """Where the map looks in metres of the network, if not at the car."""
+    draft: AlertDraft = field(default_factory=AlertDraft)
+    alerts: tuple[AlertGiven, ...] = ()
+    notices: tuple[Notice, ...] = ()
+    calls: tuple[str, ...] = ()
+    asked: tuple[RoadRequest, ...] = ()
+    """Every request that cannot be taken back."""
+    horns: int = 0
+    washes: int = 0
+    pending: tuple[RoadRequest, ...] = ()
+    expected: tuple[Arrival, ...] = ()
+    """Calls and messages still to come."""
+    departed_s: float = 0.0
+    """Simulation time of the first look outside."""
+    played_s: float = 0.0
+    """How far the track is."""
+
+    def copy(self) -> State:
+        """An independent copy."""
+        return replace(self, vehicle=self.vehicle.copy())
+
+    @property
+    def signals(self) -> Signals:
+        """The vehicle's signals."""
+        return self.vehicle.signals
+
+    @property
+    def time_s(self) -> float:
+        """Simulation time; 0 before the first look outside."""
+        return 0.0 if self.outside is None else self.outside.driving.time_s
+
+    @property
+    def clock(self) -> str:
+        """Local time as the status bar shows it."""
+        return "--:--" if self.outside is None else self.clock_at(self.outside.local_time)
+
+    def clock_at(self, time: datetime) -> str:
+        """A time of day as the driver likes it."""
+        if self.signals[HMI.TIME_FORMAT] == "HR_24":
+            return time.strftime("%H:%M")
+        return f"{(time.hour - 1) % 12 + 1}:{time.minute:02d} {'am' if time.hour < 12 else 'pm'}"
+
+    @property
+    def restrictions(self) -> Restriction:
+        """What is locked now."""
+        return restrictions(self.signals[MOTION.GEAR], self.signals[MOTION.SPEED])
+
+    def locked(self, restriction: Restriction) -> str:
+        """Why that is locked now; empty if it is not."""
+        return REASONS[restriction] if restriction in self.restrictions else ""
+
+    @property
+    def is_typing(self) -> bool:
+        """Whether the keyboard is on the screen."""
+        return self.keyboard and bool(self.focus)
+
+    @property
+    def notice(self) -> Notice | None:
+        """The newest notice, if it has not gone."""
+        newest = self.notices[-1] if self.notices else None
+        fresh = newest is not None and not newest.seen and self.time_s - newest.at_s < NOTICE_S
+        return newest if fresh else None
+
+    def notify(
+        self,
+        text: str,
+        icon: Icon,
+        tone: Severity = Severity.INFO,
+        *,
+        seen: bool = False,
+        opens: tuple[str, str] | None = None,
+    ) -> None:
+        """Shows a line in the status bar, or keeps it silently among the notifications if ``seen``."""
+        notice = Notice(self.time_s, self.clock, text, icon, tone, seen, opens)
+        self.notices = (*self.notices[1 - NOTICES :], notice)
+
+    def said(self, words: str, icon: Icon) -> Feedback:
+        """Shows what was done, and answers so."""
+        self.notify(words, icon)
+        return Feedback(FeedbackCode.OK, words)
+
+    def refused(self, why: str) -> Feedback:
+        """Shows why it was not done, and answers so."""
+        self.notify(why, Icon.INFO)
+        return Feedback(FeedbackCode.REFUSED, why)
+
+    def commands(self) -> dict[str, Any]:
+        """All that can be commanded: actuators, app data, and what was sent out and can't be taken back."""
+        return self.signals.commanded() | {
+            "alerts": [
+                {
+                    "kind": str(given.alert.kind),
+                    "severity": str(given.alert.severity),
+                    "text": given.alert.text,
+                    "speed_kmh": given.alert.speed_kmh,
+                }
+                for given in self.alerts
+            ],
+            "calls": list(self.calls),
+            "requests": [repr(request) for request in self.asked],
+            "horn": self.horns,
+            "washer": self.washes,
+            **self.navigation.commands(),
+            **self.listening.commands(),
+            **self.phone.commands(),
+            **self.desk.commands(),
+        }

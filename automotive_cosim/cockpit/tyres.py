@@ -1,0 +1,40 @@
+"""Tyre pressure: the air in a tyre keeps its volume, so that absolute pressure follows absolute temperature.
+
+(p + p_air) / T = constant                      Gay-Lussac; p is the gauge pressure on the display
+tau dT/dt = T_air + warming * speed - T         first order
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+COLD_C = 20.0
+"""What cold inflation pressures are stated for here."""
+KELVIN = 273.15
+AIR_KPA = 101.325
+WARMING_K_PER_KMH = 0.25
+"""Tyres run some 25 K above the air at 100 km/h: an assumption of the size measured on passenger cars."""
+SETTLING_S = 600.0
+"""Time constant: settled after half an hour of driving, as long as rolling resistance is warmed up for tests."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tyres:
+    """All four, equally warm."""
+
+    cold_kpa: tuple[float, ...]
+    """Gauge pressures at ``COLD_C``."""
+    temperature_c: float
+
+    def after(self, dt_s: float, air_c: float, speed_kmh: float) -> Tyres:
+        """Some seconds later."""
+        settled_c = air_c + WARMING_K_PER_KMH * speed_kmh
+        left = math.exp(-dt_s / SETTLING_S)
+        return replace(self, temperature_c=settled_c + (self.temperature_c - settled_c) * left)
+
+    @property
+    def pressures_kpa(self) -> tuple[float, ...]:
+        """Gauge pressures now; an empty tyre stays empty."""
+        warmer = (self.temperature_c + KELVIN) / (COLD_C + KELVIN)
+        return tuple(max(0.0, (cold + AIR_KPA) * warmer - AIR_KPA) if cold > 0 else 0.0 for cold in self.cold_kpa)

@@ -1,0 +1,304 @@
+"""The one widget tree: drawn, listed for accessibility and hit by fingers.
+
+Widgets are frozen data with absolute boxes; a parent's children lie within it and are drawn after it. ``key`` is
+the stable resource id (``climate.front_defroster``). A widget says something (``on_tap``) only by a message.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum
+from typing import ClassVar, Literal
+
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.map import RoadMap
+from automotive_cosim.cockpit.mapdraw import Scene
+from automotive_cosim.cockpit.messages import Message, Set
+from automotive_cosim.cockpit.signals import Signal
+from automotive_cosim.cockpit.theme import Icon, Type
+from automotive_cosim.contracts import Severity
+
+Tone = Literal["text", "muted", "accent", "good", "warning"]
+"""A colour of the palette."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Widget:
+    """What all have."""
+
+    rect: Rect
+    key: str = ""
+    text: str = ""
+    description: str = ""
+    """What it is for a reader who does not see its icon."""
+    on_tap: Message | None = None
+    disabled: str = ""
+    """Why it cannot be used now; empty if it can."""
+    locked: str = ""
+    """Why it is locked while driving; empty if it is not."""
+    children: tuple[Widget, ...] = ()
+
+    class_name: ClassVar[str] = "View"
+
+    @property
+    def usable(self) -> bool:
+        """Neither disabled nor locked."""
+        return not (self.disabled or self.locked)
+
+    def walk(self) -> Iterator[Widget]:
+        """Itself and all below it, in drawing order. One generator, not one a level: screens are walked often."""
+        ahead: list[Widget] = [self]
+        while ahead:
+            widget = ahead.pop()
+            yield widget
+            ahead.extend(reversed(widget.children))
+
+    def at(self, x: float, y: float) -> Widget | None:
+        """The uppermost widget under a point that listens to fingers."""
+        if not self.rect.contains(x, y):
+            return None
+        for child in reversed(self.children):
+            hit = child.at(x, y)
+            if hit is not None:
+                return hit
+        return self if self.listens else None
+
+    @property
+    def listens(self) -> bool:
+        """Whether a tap does something."""
+        return self.on_tap is not None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Screen(Widget):
+    """The whole picture."""
+
+    night: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Card(Widget):
+    """A surface that holds others together."""
+
+    look: Literal["surface", "raised", "none"] = "surface"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Label(Widget):
+    """Text."""
+
+    style: Type = Type.BODY
+    tone: Tone = "text"
+    align: Literal["left", "centre", "right"] = "left"
+    lines: int = 1
+    plate: bool = False
+    """On a ground of its own, as on the map."""
+
+    class_name: ClassVar[str] = "TextView"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Glyph(Widget):
+    """An icon; listed only if it has a description."""
+
+    icon: Icon
+    size: int = 28
+    tone: Tone = "text"
+
+    class_name: ClassVar[str] = "ImageView"
+
+
+class Look(Enum):
+    """How loud a button is."""
+
+    PLAIN = "plain"
+    TONAL = "tonal"
+    FLOATING = "floating"
+    ACCENT = "accent"
+    CRITICAL = "critical"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Button(Widget):
+    """Does something when tapped."""
+
+    icon: Icon | None = None
+    icon_size: int = 28
+    look: Look = Look.TONAL
+    style: Type = Type.LABEL
+    stacked: bool = False
+    """Icon above the text."""
+
+    class_name: ClassVar[str] = "Button"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Choice(Widget):
+    """One of several, of which one is selected."""
+
+    icon: Icon | None = None
+    selected: bool = False
+    look: Literal["plain", "boxed", "quiet"] = "plain"
+    """Of one that is not selected: on its group's ground, on a ground of its own, or muted."""
+    stacked: bool = False
+    style: Type = Type.LABEL
+
+    class_name: ClassVar[str] = "RadioButton"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Tile(Widget):
+    """A large switch."""
+
+    icon: Icon
+    checked: bool = False
+    level: str = ""
+    """What stands beside the name where on and off don't say enough."""
+
+    class_name: ClassVar[str] = "Switch"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Slider(Widget):
+    """Sets a number by where it is touched."""
+
+    signal: Signal[float]
+    value: float
+    icon: Icon | None = None
+
+    class_name: ClassVar[str] = "SeekBar"
+
+    @property
+    def listens(self) -> bool:
+        """A slider always does."""
+        return True
+
+    @property
+    def track(self) -> Rect:
+        """The part that stands for the range."""
+        return Rect(self.rect.x + 20, self.rect.bottom - 26, self.rect.width - 40, 8)
+
+    def message_at(self, x: float) -> Message:
+        """What a finger at that column says."""
+        share = min(1.0, max(0.0, (x - self.track.x) / self.track.width))
+        low, high, step = self.signal.low, self.signal.high, self.signal.step
+        return Set(self.signal, low + round(share * (high - low) / step) * step)
+
+    def message_by(self, steps: int) -> Message:
+        """What dragging it that many steps says."""
+        value = self.value + steps * self.signal.step
+        return Set(self.signal, min(self.signal.high, max(self.signal.low, value)))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Field(Widget):
+    """Takes text."""
+
+    hint: str = ""
+    icon: Icon = Icon.SEARCH
+    focused: bool = False
+    on_enter: Message | None = None
+    """What the enter key does; None while nothing fits what was typed."""
+
+    class_name: ClassVar[str] = "EditText"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Row(Widget):
+    """A line of a list."""
+
+    icon: Icon | None = None
+    detail: str = ""
+    trail: str = ""
+    """Stands at the right end."""
+    raised: bool = False
+    """On a card, which has the ground of other rows."""
+    selected: bool = False
+    tone: Tone = "accent"
+    """Of the icon."""
+
+    class_name: ClassVar[str] = "Button"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rows(Widget):
+    """A list that scrolls by whole rows: its children are the rows in sight."""
+
+    first: int = 0
+    """Index of the first row in sight."""
+    shown: int = 0
+    total: int = 0
+
+    class_name: ClassVar[str] = "ListView"
+
+    @property
+    def last_first(self) -> int:
+        """How far it can be scrolled."""
+        return max(0, self.total - self.shown)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Bar(Widget):
+    """How much of something."""
+
+    share: float
+    tone: Tone = "accent"
+
+    class_name: ClassVar[str] = "View"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LimitSign(Widget):
+    """The limit sign the camera read last."""
+
+    class_name: ClassVar[str] = "ImageView"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pill(Widget):
+    """A notice in the status bar."""
+
+    icon: Icon
+    severity: Severity
+
+    class_name: ClassVar[str] = "TextView"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Badge(Widget):
+    """A mark on the map."""
+
+    icon: Icon
+
+    class_name: ClassVar[str] = "ImageView"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapView(Widget):
+    """The moving map."""
+
+    roads: RoadMap
+    scene: Scene
+    on_double_tap: Message | None = None
+    pans: bool = False
+    """A swipe moves it."""
+
+    class_name: ClassVar[str] = "View"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CarView(Widget):
+    """The car from above with its lamps and its glass."""
+
+    position: bool
+    low: bool
+    high: bool
+    front_fog: bool
+    rear_fog: bool
+    hazard: bool
+    windshield: int
+    """How opaque, in tenths."""
+    rear_window: int
+
+    class_name: ClassVar[str] = "ImageView"

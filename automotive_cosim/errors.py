@@ -1,0 +1,93 @@
+"""Every error the package raises on purpose, as one tree.
+
+CosimError                 anything a caller may want to catch at once
+├── UserError              the user can mend it; the command line prints one line and exits with 2
+│   ├── UnknownNameError        no scenario, task, agent, … of that name ("did you mean")
+│   ├── ScenarioError      a scenario's files are missing, broken or contradict each other
+│   ├── GeoDataError       a file of places and traffic rules is broken
+│   ├── ImportMapError     a map extract cannot be turned into a scenario
+│   ├── ActionError        an action is malformed (wrong type, missing or surplus fields)
+│   ├── SignalError        a vehicle signal was given a value it cannot have
+│   └── SetupError         the installation lacks something (SUMO's version, system libraries, an extra)
+├── InfrastructureError    not the agent's fault and not the user's: counted apart, never as a failure
+│   ├── TrafficError       the simulation refused a call, died, hung or lost the ego without a reason
+│   ├── ModelError         a model could not be reached, or did not answer
+│   └── TriggerNotReachedError  the drive up to the hand-over ended before the task's trigger held
+└── OutOfBudgetError       the agent has spent its tokens or its time: the episode is judged as it stands
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+
+class CosimError(Exception):
+    """Root of the tree above."""
+
+
+class UserError(CosimError):
+    """What came, what was expected, what to do, on one line."""
+
+
+class UnknownNameError(UserError):
+    """A name that is not in a catalogue.
+
+    Args:
+        kind: what was looked for, e.g. ``"scenario"``.
+        name: the name as it came.
+        known: the names there are.
+        hint: how to list them, e.g. ``"automotive-cosim scenarios list"``.
+    """
+
+    def __init__(self, kind: str, name: str, known: Iterable[str], hint: str = "") -> None:
+        choices = sorted(known)
+        close = get_close_matches(name, choices, n=1, cutoff=0.5)
+        mend = f"did you mean {close[0]!r}?" if close else f"there are: {', '.join(choices) or 'none'}."
+        super().__init__(f"no {kind} named {name!r}: {mend}" + (f" List them with `{hint}`." if hint else ""))
+        self.kind = kind
+        self.name = name
+
+
+class ScenarioError(UserError):
+    """A scenario that cannot be run as it is."""
+
+
+class GeoDataError(UserError):
+    """A file of places and traffic rules that cannot be used: file, entry and reason."""
+
+
+class ImportMapError(UserError):
+    """A map extract that cannot be imported."""
+
+
+class ActionError(UserError):
+    """An action that is not well formed."""
+
+
+class SignalError(UserError):
+    """A value that a vehicle signal cannot have."""
+
+
+class SetupError(UserError):
+    """Something the installation lacks, with the command that mends it."""
+
+
+class InfrastructureError(CosimError):
+    """The episode says nothing about the agent; it is reported apart and can be run again."""
+
+
+class TrafficError(InfrastructureError):
+    """The road side failed."""
+
+
+class ModelError(InfrastructureError):
+    """A model that could not be reached or did not answer."""
+
+
+class TriggerNotReachedError(InfrastructureError):
+    """The situation a task waits for did not come about in its bound."""
+
+
+class OutOfBudgetError(CosimError):
+    """An agent that has spent what it may; a failure of its own."""

@@ -1,0 +1,206 @@
+"""A flat view of the environment for reinforcement learning: ``Discrete`` actions, a ``Box`` of numbers.
+
+| action | what |
+|---|---|
+| first ``len(apps)`` | opens an app |
+| then ``len(controls)`` | taps the control with that resource id; a second passes if it is not in sight |
+| then 3 | declares ``complete``, ``infeasible`` or ``not_needed`` |
+
+| observation, float32 in [-1, 1] | how many |
+|---|---|
+| what the driver said: its words, hashed into slots | ``GOAL_SLOTS`` |
+| per control: in sight, on, usable | 3 ``len(controls)`` |
+| the car's numbers, scaled by ``spaces.BOUNDS`` | ``len(NUMBERS)`` |
+| share of the steps that is spent | 1 |
+
+It holds less than ``CockpitEnv`` does: no picture, no place, and only the controls that it is told of.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from hashlib import blake2b
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import numpy.typing as npt
+
+from automotive_cosim.contracts import Action, ActionType, GoalStatus, Observation
+from automotive_cosim.env import CockpitEnv
+from automotive_cosim.errors import UserError
+from automotive_cosim.observe import Channel
+from automotive_cosim.spaces import APPS, BOUNDS, OPTIONAL
+from automotive_cosim.suite import Task
+from automotive_cosim.traffic.fork import Simulations
+
+GOAL_SLOTS = 48
+NUMBERS = tuple(name for name in BOUNDS if name not in OPTIONAL)
+CONTROLS = (
+    "hvac.driver_temperature.decrease",
+    "hvac.driver_temperature.increase",
+    "hvac.driver_seat_heating",
+    "hvac.steering_wheel_heating",
+    "hvac.passenger_seat_heating",
+    "hvac.sync",
+    "hvac.fan.max",
+    "hvac.air.up",
+    "hvac.air.middle",
+    "hvac.air.down",
+    "hvac.air_conditioning",
+    "hvac.auto",
+    "hvac.recirculation",
+    "hvac.front_defroster",
+    "hvac.rear_defroster",
+    "lights.high_beam",
+    "lights.front_fog",
+    "lights.rear_fog",
+    "wiper.front.slow",
+    "wiper.rear.slow",
+)
+"""The switches of the climate screen, and some of the vehicle's."""
+ENDS = tuple(GoalStatus)
+
+
+class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
+    """Episodes of several tasks, one drawn at each reset.
+
+    The reward is that of ``CockpitEnv``: 1 at the end of a successful episode. ``goal_bonus`` adds a potential for
+    training: as much when the goal comes to hold, and as much less when it ceases to. It sums to zero over an
+    episode that ends as it began, and changes no verdict: ``info["is_success"]`` is the verdict's.
+    """
+
+    metadata = {"render_modes": []}  # noqa: RUF012, gymnasium's own form
+
+    def __init__(
+        self,
+        tasks: Sequence[str | Task],
+        controls: Sequence[str] = CONTROLS,
+        apps: Sequence[str] = APPS,
+        *,
+        scenario: str | None = None,
+        max_steps: int = 8,
+        goal_bonus: float = 0.0,
+        simulations: Simulations | None = None,
+    ) -> None:
+        """Makes an environment per task; nothing runs before ``reset``.
+
+        Args:
+            tasks: ids or tasks, their first halves.
+            controls: resource ids that can be tapped.
+            apps: names of the apps that can be opened.
+            scenario: runs all in another scenario than the tasks' own.
+            max_steps: actions after which an episode is cut off.
+            goal_bonus: potential of a state in which the goal holds; 0 but for training.
+            simulations: warm simulations to share; by default its own.
+
+        Raises:
+            UnknownNameError: no such task or scenario.
+            UserError: no task or no control is given.
+        """
+        if not tasks or not controls:
+            raise UserError("a flat environment needs at least one task and one control")
+        self._simulations = simulations or Simulations()
+        self._owns_simulations = simulations is None
+        channels = (Channel.ELEMENTS, Channel.VEHICLE)
+        self._envs = [
+            CockpitEnv(
+                task, scenario=scenario, channels=channels, max_steps=max_steps, simulations=self._simulations
+            )
+            for task in tasks
+        ]
+        self._env = self._envs[0]
+        self._controls = tuple(controls)
+        self._apps = tuple(apps)
+        self._max_steps = max_steps
+        self._goal_bonus = goal_bonus
+        self._held = False
+        self._seeds: dict[int, int | None] = {}
+        size = GOAL_SLOTS + 3 * len(self._controls) + len(NUMBERS) + 1
+        self.observation_space = gym.spaces.Box(-1.0, 1.0, (size,), np.float32)
+        self.action_space = gym.spaces.Discrete(len(self._apps) + len(self._controls) + len(ENDS))
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[npt.NDArray[np.float32], dict[str, Any]]:
+        """Draws a task, a phrasing and a drive; as in ``CockpitEnv`` only a seed warms other traffic.
+
+        Raises:
+            TriggerNotReachedError: the situation did not come about.
+            TrafficError: the road side failed.
+        """
+        super().reset(seed=seed)
+        if seed is not None or not self._seeds:
+            traffic_seed = int(self.np_random.integers(2**31)) if seed is None else seed
+            self._seeds = dict.fromkeys(range(len(self._envs)), traffic_seed)
+        number = int(self.np_random.integers(len(self._envs)))
+        self._env = self._envs[number]
+        self._env.reset(seed=self._seeds[number])
+        self._seeds[number] = None
+        self._held = self._holds()
+        return self._numbers(), {}
+
+    def step(self, action: np.int64) -> tuple[npt.NDArray[np.float32], float, bool, bool, dict[str, Any]]:
+        """One action, as the table says."""
+        _, reward, terminated, truncated, info = self._env.step(self._action(int(action)))
+        held = self._holds()
+        reward += self._goal_bonus * (held - self._held)
+        self._held = held
+        verdict = self._env.verdict
+        if verdict is not None:
+            info["is_success"] = verdict.success
+        return self._numbers(), float(reward), terminated, truncated, info
+
+    def close(self) -> None:
+        """Ends all drives and, if they are its own, the warm simulations."""
+        for env in self._envs:
+            env.close()
+        if self._owns_simulations:
+            self._simulations.close()
+
+    def _action(self, number: int) -> Action:
+        if number < len(self._apps):
+            return Action(ActionType.OPEN_APP, app_name=self._apps[number])
+        number -= len(self._apps)
+        if number >= len(self._controls):
+            return Action(ActionType.STATUS, goal_status=ENDS[number - len(self._controls)])
+        wanted = self._controls[number]
+        for index, element in enumerate(self._env.observation.elements or ()):
+            if element.resource_id == wanted:
+                return Action(ActionType.CLICK, index=index)
+        return Action(ActionType.WAIT, seconds=1)
+
+    def _holds(self) -> bool:
+        moments = self._env.moments
+        return self._env.instance.half.goal.holds(moments[0], moments[-1], moments)
+
+    def _numbers(self) -> npt.NDArray[np.float32]:
+        seen = self._env.observation
+        spent = (len(self._env.steps) - 1) / self._max_steps
+        parts = [*_words(seen.goal), *self._switches(seen), *_car(seen), spent]
+        return np.clip(np.array(parts, np.float32), -1.0, 1.0)
+
+    def _switches(self, seen: Observation) -> list[float]:
+        in_sight = {element.resource_id: element for element in seen.elements or ()}
+        numbers = []
+        for control in self._controls:
+            element = in_sight.get(control)
+            on = element is not None and (element.is_checked or element.is_selected)
+            numbers += [float(element is not None), float(on), float(element is not None and element.is_enabled)]
+        return numbers
+
+
+def _words(goal: str) -> list[float]:
+    slots = [0.0] * GOAL_SLOTS
+    for word in re.findall(r"\w+", goal.casefold()):
+        slots[int.from_bytes(blake2b(word.encode(), digest_size=4).digest()) % GOAL_SLOTS] = 1.0
+    return slots
+
+
+def _car(seen: Observation) -> list[float]:
+    numbers = []
+    for name in NUMBERS:
+        low, high = BOUNDS[name]
+        numbers.append((float(getattr(seen.vehicle, name)) - low) / (high - low))
+    return numbers

@@ -1,0 +1,176 @@
+"""Which country, region, city and time zone a position lies in, and what those say of the road there."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+
+import shapely
+import tzfpy
+
+from automotive_cosim.errors import GeoDataError, UserError
+from automotive_cosim.geo.rules import Jurisdiction, read_jurisdiction
+
+NEAR_BORDER_M = 2000.0
+"""So near to another country or region, position and coarse polygons may be on the wrong side; our choice."""
+
+METRES_PER_DEGREE = 111_320.0
+"""Of latitude, and of longitude at the equator."""
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """What lies at a position. An empty text means none is known."""
+
+    country: str = ""
+    """ISO 3166-1 code; empty at sea."""
+    country_name: str = ""
+    region: str = ""
+    city: str = ""
+    time_zone: str = ""
+    """IANA name; at sea one of the ``Etc/GMT`` zones."""
+    near_border_to: tuple[str, ...] = ()
+    """Codes of other countries and regions within two kilometres."""
+    layers: tuple[Jurisdiction, ...] = ()
+    """Whose rules hold, city before region before country; empty where no rules are known."""
+
+    @property
+    def law(self) -> Jurisdiction | None:
+        """The country's own entry, None where no rules are known."""
+        return self.layers[-1] if self.layers else None
+
+
+NOWHERE = Place()
+"""Where no position is known."""
+
+
+class Atlas:
+    """Places and their rules, read country by country when first needed.
+
+    Args:
+        folders: the user's own folders of rule files, the most important first; a file there stands before the
+            shipped one of the same code.
+    """
+
+    def __init__(self, folders: Sequence[Path] = ()) -> None:
+        self._files: dict[str, Path] = {}
+        for folder in (*folders, Path(str(files("automotive_cosim.geo.data")))):
+            if not folder.is_dir():
+                raise GeoDataError(f"{folder} is no folder; give one that holds rule files such as FR.toml")
+            for path in sorted(folder.glob("*.toml")):
+                self._files.setdefault(path.stem, path)
+        self._countries: dict[str, tuple[Jurisdiction, ...]] = {}
+
+    def codes(self) -> tuple[str, ...]:
+        """Every country, region and city that has a file."""
+        return tuple(sorted(self._files))
+
+    def place(self, lon_deg: float, lat_deg: float) -> Place:
+        """What lies at a position.
+
+        Raises:
+            UserError: no position on earth.
+            GeoDataError: a rule file of the country is broken.
+        """
+        check_position(lon_deg, lat_deg)
+        lon_deg = (lon_deg + 180.0) % 360.0 - 180.0
+        zone = tzfpy.get_tz(lon_deg, lat_deg)
+        country = _country_of_zone().get(zone, "")
+        layers = tuple(self._layers(country, lon_deg, lat_deg))
+        inner = {layer.kind: layer.name for layer in layers}
+        return Place(
+            country=country,
+            country_name=inner.get("country", _country_names().get(country, "")),
+            region=inner.get("region", ""),
+            city=inner.get("city", ""),
+            time_zone=zone,
+            near_border_to=self._neighbours(lon_deg, lat_deg, country, layers),
+            layers=layers,
+        )
+
+    def country(self, code: str) -> tuple[Jurisdiction, ...]:
+        """A country's file with those of its cities and regions, cities first and itself last; none if it has none.
+
+        Raises:
+            GeoDataError: one of the files is broken, or a region's country has none.
+        """
+        if code not in self._countries:
+            codes = [name for name in self._files if name == code or name.startswith(f"{code}-")]
+            found = [self._read(name) for name in codes]
+            if found and code not in codes:
+                raise GeoDataError(f"{self._files[codes[0]]}: there is no {code}.toml for its country")
+            order = ("city", "region", "country")
+            self._countries[code] = tuple(sorted(found, key=lambda entry: order.index(entry.kind)))
+        return self._countries[code]
+
+    def _read(self, code: str) -> Jurisdiction:
+        path = self._files[code]
+        entry = read_jurisdiction(path)
+        if entry.code != code:
+            raise GeoDataError(f"{path} [jurisdiction]: code {entry.code!r} is not the name of the file")
+        return entry
+
+    def _layers(self, country: str, lon_deg: float, lat_deg: float) -> Iterator[Jurisdiction]:
+        for entry in self.country(country):
+            if entry.area is None or shapely.contains_xy(entry.area, lon_deg, lat_deg):
+                yield entry
+
+    def _neighbours(
+        self, lon_deg: float, lat_deg: float, country: str, layers: tuple[Jurisdiction, ...]
+    ) -> tuple[str, ...]:
+        own = {country} | {layer.code for layer in layers}
+        found: set[str] = set()
+        for lon, lat in _ring(lon_deg, lat_deg):
+            there = _country_of_zone().get(tzfpy.get_tz(lon, lat), "")
+            found.add(there)
+            if there == country:
+                found |= {layer.code for layer in self._layers(there, lon, lat) if layer.kind == "region"}
+        return tuple(sorted(found - own - {""}))
+
+
+def check_position(lon_deg: float, lat_deg: float) -> None:
+    """Refuses what is no position on earth.
+
+    Raises:
+        UserError: latitude beyond 90 or longitude beyond 180 degrees, or no number.
+    """
+    if not -90.0 <= lat_deg <= 90.0:
+        raise UserError(f"latitude {lat_deg:g} is not on earth; give -90 (south) to 90 (north)")
+    if not -180.0 <= lon_deg <= 180.0:
+        raise UserError(f"longitude {lon_deg:g} is not on earth; give -180 (west) to 180 (east)")
+
+
+def metres_per_degree_east(lat_deg: float) -> float:
+    """Of longitude at a latitude; never quite nothing, so that one may divide by it at the poles."""
+    return METRES_PER_DEGREE * max(math.cos(math.radians(lat_deg)), 1e-3)
+
+
+def _ring(lon_deg: float, lat_deg: float) -> Iterator[tuple[float, float]]:
+    """Eight points two kilometres around, on earth."""
+    north = NEAR_BORDER_M / METRES_PER_DEGREE
+    east = NEAR_BORDER_M / metres_per_degree_east(lat_deg)
+    for index in range(8):
+        angle = index * math.pi / 4
+        lon = (lon_deg + east * math.sin(angle) + 180.0) % 360.0 - 180.0
+        yield lon, max(-90.0, min(90.0, lat_deg + north * math.cos(angle)))
+
+
+@cache
+def _country_of_zone() -> dict[str, str]:
+    """Time zone -> ISO country code, from the time zone database's ``zone.tab``."""
+    return {zone: country for country, _, zone, *_ in _table("zone.tab")}
+
+
+@cache
+def _country_names() -> dict[str, str]:
+    """ISO country code -> English name, from the time zone database's ``iso3166.tab``."""
+    return {code: name for code, name, *_ in _table("iso3166.tab")}
+
+
+def _table(name: str) -> list[list[str]]:
+    text = (files("tzdata") / "zoneinfo" / name).read_text(encoding="utf-8")
+    return [line.split("\t") for line in text.splitlines() if line and not line.startswith("#")]

@@ -1,0 +1,296 @@
+"""The virtual sensor: facts that an agent may ask for, by words.
+
+    reply = ask("rear fog lamp rules?", moments)     # Reply(ok=True, text="Rear fog lamp: ...", cost_s=1.0)
+
+What it knows are the lines of the geo-context, the road ahead, and where the car must be while GPS is out. It
+states facts; it tells neither whether a rule is broken nor what to do. Law, customs and position are on board;
+weather, traffic and hazards come over the air and need the link.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from automotive_cosim.contracts import Connectivity, DrivingState, GpsFix
+from automotive_cosim.geo.context import GeoContext
+from automotive_cosim.geo.reckoning import Roads, reckon
+from automotive_cosim.geo.rules import TOPICS
+from automotive_cosim.geo.text import amount_of_speed, position
+from automotive_cosim.geo.weather import visibility_class
+
+ON_BOARD_S = 1.0
+"""What an answer from the car's own data costs; our choice, as the next two."""
+OVER_THE_AIR_S = {"5g": 2.0, "4g": 3.0}
+"""By the kind of link."""
+NO_LINK_S = 1.0
+"""Until the car gives up without a link."""
+
+ANSWER_BYTES = 1000
+"""The longest answer; the observation space holds a little more."""
+
+CUSTOMS = ("heat", "cold")
+
+
+class Known(Protocol):
+    """One instant as the sensor knows it; ``cosim.Moment`` is one."""
+
+    @property
+    def time_s(self) -> float:
+        """Simulation time."""
+        ...
+
+    @property
+    def driving(self) -> DrivingState:
+        """Of which the compass, the speedometer and the road ahead are read."""
+        ...
+
+    @property
+    def gps(self) -> GpsFix | None:
+        """The receiver's last word."""
+        ...
+
+    @property
+    def connectivity(self) -> Connectivity:
+        """The link."""
+        ...
+
+    @property
+    def context(self) -> GeoContext:
+        """Place and law."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Reply:
+    """What came of a query."""
+
+    ok: bool
+    """False if nothing of it could be answered."""
+    text: str
+    cost_s: float
+    """Simulated seconds it took, on top of those of the action."""
+
+
+def ask(text: str, drive: Sequence[Known], *, with_position: bool = True, roads: Roads | None = None) -> Reply:
+    """Answers a query at the last instant of ``drive``.
+
+    Args:
+        text: what is asked, in any words.
+        drive: the drive so far in the order of time, back to the last fix; at least one instant.
+        with_position: whether it may say where the car is.
+        roads: the map that dead reckoning keeps to, if the car has one.
+    """
+    asked = frozenset(re.findall(r"[a-z]+", text.casefold()))
+    topics = _topics(asked)
+    if asked & _LAMP_WORDS:
+        asked -= frozenset().union(*_LAMPS.values())
+    offered = [subject for subject in _SUBJECTS if with_position or subject.answer is not _position]
+    subjects = [subject for subject in offered if asked & subject.words or (subject.by_topic and topics)]
+    if not subjects:
+        names = ", ".join(subject.name for subject in offered)
+        return Reply(False, f"nothing is known of that; there are: {names}", ON_BOARD_S)
+    link = drive[-1].connectivity
+    lines: list[str] = []
+    for subject in subjects:
+        if subject.on_board or link.online:
+            is_place = subject.answer is _position
+            lines += _position(drive, topics, roads) if is_place else subject.answer(drive, topics)
+    out_of_reach = [subject.name for subject in subjects if not (subject.on_board or link.online)]
+    if out_of_reach:
+        lines.append(f"No connection: {', '.join(out_of_reach)} unknown")
+    over_the_air = link.online and any(not subject.on_board for subject in subjects)
+    cost_s = OVER_THE_AIR_S[link.kind] if over_the_air else ON_BOARD_S
+    text = _within(list(dict.fromkeys(lines)))
+    return Reply(len(out_of_reach) < len(subjects), text, NO_LINK_S if out_of_reach else cost_s)
+
+
+def _within(lines: Sequence[str]) -> str:
+    """Whole lines, as many as an answer holds, and how many are left."""
+    kept: list[str] = []
+    left = ANSWER_BYTES - 60
+    for line in lines:
+        left -= len(line.encode()) + 1
+        if left < 0:
+            break
+        kept.append(line)
+    more = len(lines) - len(kept)
+    return "\n".join([*kept, f"{more} more; they come when asked for by topic"] if more else kept)
+
+
+# --- what can be asked ------------------------------------------------------------------------------------
+
+Answer = Callable[[Sequence[Known], frozenset[str]], Iterator[str]]
+
+
+@dataclass(frozen=True, slots=True)
+class _Subject:
+    name: str
+    words: frozenset[str]
+    answer: Answer
+    on_board: bool
+    by_topic: bool = False
+    """Asked for by the word of a rule's topic too."""
+
+
+def _weather(drive: Sequence[Known], topics: frozenset[str]) -> Iterator[str]:
+    return (line.text for line in drive[-1].context.lines if line.source in ("weather", "sky", "climate"))
+
+
+def _rules(drive: Sequence[Known], topics: frozenset[str]) -> Iterator[str]:
+    """Those of the topics asked for; all, if none is named."""
+    context = drive[-1].context
+    if not context.place.law:
+        yield "Rules: none known here"
+    of_rule = {rule.id: rule.topic for layer in context.place.layers for rule in layer.rules}
+    found: set[str] = set()
+    for line in context.lines:
+        topic = of_rule.get(line.source, "limit" if line.source == "road" else "")
+        if topic in topics or (topic and not topics and topic not in CUSTOMS):
+            found.add(topic)
+            yield line.text
+    if topics and not found:
+        yield f"No rule known here on: {', '.join(TOPICS[topic].casefold() for topic in sorted(topics))}"
+
+
+def _norms(drive: Sequence[Known], topics: frozenset[str]) -> Iterator[str]:
+    context = drive[-1].context
+    customs = {found.rule.id for found in context.rules if found.rule.topic in CUSTOMS}
+    lines = [line.text for line in context.lines if line.source == "climate" or line.source in customs]
+    yield from lines or ["Customs: none known here"]
+
+
+def _traffic(drive: Sequence[Known], topics: frozenset[str]) -> Iterator[str]:
+    driving = drive[-1].driving
+    ahead = driving.ahead
+    yield f"Traffic here: {driving.around.relative_speed:.0%} of the free speed"
+    yield (
+        f"Route left: {ahead.route_left_m / 1000:.1f} km, {ahead.eta_s / 60:.0f} min, "
+        f"{ahead.delay_s / 60:.0f} min of it delay, {ahead.relative_speed:.0%} of the free speed"
+    )
+    yield _jam(driving) or "Jam on the route: none"
+
+
+def _hazards(drive: Sequence[Known], topics: frozenset[str]) -> Iterator[str]:
+    known = drive[-1]
+    driving, ahead, context = known.driving, known.driving.ahead, known.context
+    found = [_jam(driving)]
+    if context.weather is not None:
+        seen = visibility_class(context.weather.visibility).replace("_", " ")
+        found.append(f"Visibility: {context.weather.visibility:.0f} m ({seen})")
+    if ahead.tunnel_distance_m is not None:
+        found.append(f"Tunnel: in {ahead.tunnel_distance_m:.0f} m")
+    if ahead.next_limit_mps is not None and ahead.next_limit_distance_m is not None:
+        limit = amount_of_speed(ahead.next_limit_mps * 3.6, context.speed_unit)
+        found.append(f"Limit on the route: {limit} in {ahead.next_limit_distance_m:.0f} m")
+    if driving.around.emergency_behind is not None:
+        found.append(f"Blue light: {driving.around.emergency_behind.gap_m:.0f} m behind")
+    if driving.road.friction < 1.0:
+        found.append(f"Road surface: friction {driving.road.friction:.2f}, dry is 1")
+    if context.sun is not None and context.sun.glares(context.heading_deg):
+        found.append(f"Sun: {context.sun.elevation_deg:.0f}° above the horizon, ahead")
+    yield from [line for line in found if line] or ["Hazards: none reported"]
+
+
+def _jam(driving: DrivingState) -> str:
+    ahead = driving.ahead
+    if ahead.jam_distance_m is None:
+        return ""
+    return f"Jam on the route: in {ahead.jam_distance_m:.0f} m, {ahead.jam_length_m:.0f} m long"
+
+
+def _position(drive: Sequence[Known], topics: frozenset[str], roads: Roads | None = None) -> Iterator[str]:
+    gps = drive[-1].gps
+    if gps is None or gps.has_fix:
+        yield next(line.text for line in drive[-1].context.lines if line.source == "gps")
+        return
+    estimate = reckon(drive, roads)
+    assert estimate is not None
+    yield (
+        f"Position by dead reckoning: {position(estimate.lon_deg, estimate.lat_deg)}, within "
+        f"{estimate.accuracy_m:.0f} m ({estimate.driven_m:.0f} m and {estimate.age_s:.0f} s since the last fix)"
+    )
+
+
+def _set(words: str) -> frozenset[str]:
+    return frozenset(words.split())
+
+
+_SUBJECTS = (
+    _Subject(
+        "weather",
+        _set("weather temperature rain raining snow snowing fog foggy wind visibility sky sun dark"),
+        _weather,
+        on_board=False,
+    ),
+    _Subject(
+        "rules",
+        _set("rule rules law laws legal regulation regulations allowed forbidden required"),
+        _rules,
+        on_board=True,
+        by_topic=True,
+    ),
+    _Subject("hazards", _set("hazard hazards danger dangers ahead tunnel"), _hazards, on_board=False),
+    _Subject(
+        "traffic",
+        _set("traffic jam jams congestion congested queue delay eta route arrival"),
+        _traffic,
+        on_board=False,
+    ),
+    _Subject(
+        "norms",
+        _set("norm norms custom customs customary usual usually habit habits climate people"),
+        _norms,
+        on_board=True,
+    ),
+    _Subject(
+        "position",
+        _set("position where location gps coordinates latitude longitude"),
+        _position,
+        on_board=True,
+    ),
+)
+
+_LAMP_WORDS = _set("lamp lamps light lights headlight headlights beam beams")
+_LAMPS = {
+    "dipped_beam": _set("dipped low wipers"),
+    "daytime_lamps": _set("daytime running"),
+    "high_beam": _set("high"),
+    "front_fog": _set("front fog"),
+    "rear_fog": _set("rear fog"),
+    "hazard_lights": _set("hazard"),
+}
+_TOPIC_WORDS = {
+    "limit": _set("limit limits speed"),
+    "advisory_limit": _set("limit limits speed advisory advised"),
+    "horn": _set("horn honk honking"),
+    "following_distance": _set("distance following gap headway"),
+    "phone": _set("phone phones mobile"),
+    "screens": _set("screen screens video display"),
+    "camera_warner": _set("camera cameras radar warner warners detector"),
+    "emergency_corridor": _set("corridor ambulance"),
+    "yield_emergency": _set("emergency ambulance yield"),
+    "move_over": _set("breakdown stopped"),
+    "turn_on_red": _set("red"),
+    "bus_lane": _set("bus"),
+    "through_traffic": _set("through"),
+    "low_emission": _set("emission emissions sticker"),
+    "school_zone": _set("school schools children"),
+    "toll": _set("toll tolls vignette"),
+    "winter_tyres": _set("winter tyre tyres chains"),
+    "studs": _set("stud studs studded"),
+    "idling": _set("idle idling engine"),
+    "alcohol": _set("alcohol drink drinking"),
+}
+"""The words by which a rule's topic is asked for; those of ``_LAMPS`` count beside a word for a lamp only."""
+
+
+def _topics(asked: frozenset[str]) -> frozenset[str]:
+    found = {topic for topic, words in _TOPIC_WORDS.items() if asked & words}
+    if asked & _LAMP_WORDS:
+        # "rear fog lamp" shares two words with the rear fog lamp's, one with the front one's.
+        shared = {topic: len(asked & words) for topic, words in _LAMPS.items()}
+        found |= {topic for topic, count in shared.items() if count == max(shared.values())}
+    return frozenset(found)

@@ -1,0 +1,43 @@
+"""Models behind the agents: one chat protocol, several back ends.
+
+``rules``               a deterministic stand-in that reads the prompt by keywords; runs anywhere
+``replay/FOLDER``       the answers recorded in an episode's folder, for an exact re-run
+``openai/NAME``         OpenAI, or what ``OPENAI_BASE_URL`` names
+``PROVIDER/NAME``       any OpenAI-compatible endpoint: ``PROVIDER_API_KEY`` and ``PROVIDER_BASE_URL``
+
+The last two take settings: ``openai/NAME?seed=3&timeout_s=30``; see ``remote.Settings``.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from automotive_cosim.errors import UnknownNameError
+from automotive_cosim.models.base import ChatModel, Message, Reply
+from automotive_cosim.models.replay import Replay
+from automotive_cosim.models.rules import Rules
+
+__all__ = ["MODELS", "ChatModel", "Message", "Replay", "Reply", "Rules", "make_model"]
+
+MODELS = ("rules", "replay/FOLDER", "openai/NAME", "PROVIDER/NAME")
+"""The forms of a model's name."""
+
+
+def make_model(name: str) -> ChatModel:
+    """A model by name.
+
+    Raises:
+        UnknownNameError: the name has none of the forms above.
+        UserError: the recording cannot be read, or a setting is wrong.
+        SetupError: the ``openai`` package, the key or the address is missing.
+    """
+    provider, slash, rest = name.partition("/")
+    if name == "rules":
+        return Rules()
+    if not slash or not provider or not rest:
+        raise UnknownNameError("model", name, MODELS)
+    if provider == "replay":
+        return Replay.read(Path(rest))
+    from automotive_cosim.models.remote import make_remote
+
+    return make_remote(name)

@@ -1,0 +1,80 @@
+"""What every model offers: messages in, text out, with what it took."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from math import ceil
+from typing import Protocol
+
+from automotive_cosim.contracts import Json
+
+CHARACTERS_PER_TOKEN = 4
+"""A usual estimate for English, for models that count no tokens themselves."""
+
+
+@dataclass(frozen=True, slots=True)
+class Message:
+    """One turn of a conversation."""
+
+    role: str
+    """``"system"``, ``"user"`` or ``"assistant"``."""
+    text: str
+    pictures: tuple[bytes, ...] = ()
+    """PNG files, in the order the text speaks of them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reply:
+    """What a model answered, and what that took."""
+
+    text: str
+    tokens_in: int = 0
+    tokens_out: int = 0
+    cost_usd: float = 0.0
+    seconds: float = 0.0
+    """From the question to the whole answer, attempts that failed included; 0 for models that run here."""
+    finish: str = "stop"
+    """Why it ended: ``"stop"``, ``"length"`` if it was cut off at its limit, or the provider's own word."""
+
+    def as_json(self) -> Json:
+        """The reply as a JSON object."""
+        return asdict(self)
+
+
+class ChatModel(Protocol):
+    """A model that answers a conversation."""
+
+    @property
+    def name(self) -> str:
+        """As it is written into results."""
+        ...
+
+    @property
+    def sees_pictures(self) -> bool:
+        """Whether it is to be sent pictures."""
+        ...
+
+    def chat(self, messages: Sequence[Message]) -> Reply:
+        """Answers the last message.
+
+        Raises:
+            ModelError: it cannot be reached or does not answer; the episode says nothing about the agent then.
+        """
+        ...
+
+
+def digest(messages: Sequence[Message]) -> str:
+    """SHA-256 over a conversation, pictures included, as a hexadecimal string."""
+    told = [
+        [message.role, message.text, [hashlib.sha256(picture).hexdigest() for picture in message.pictures]]
+        for message in messages
+    ]
+    return hashlib.sha256(json.dumps(told).encode()).hexdigest()
+
+
+def estimated_tokens(*texts: str) -> int:
+    """About how many tokens the texts are, at four characters each."""
+    return ceil(sum(map(len, texts)) / CHARACTERS_PER_TOKEN)

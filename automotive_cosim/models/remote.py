@@ -1,0 +1,274 @@
+"""Any OpenAI-compatible endpoint, through the ``openai`` package.
+
+Key and address come from ``<PROVIDER>_API_KEY`` and ``<PROVIDER>_BASE_URL``. The key is in no message, log or
+record: whatever is said about an endpoint passes ``_Endpoint.clean``.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import os
+import re
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, fields, replace
+from typing import TYPE_CHECKING, Any
+from urllib.parse import parse_qsl
+
+from automotive_cosim.errors import ModelError, SetupError, UnknownNameError, UserError
+from automotive_cosim.models.base import Message, Reply
+
+if TYPE_CHECKING:
+    import openai
+
+BODY_LIMIT_BYTES = 4_000_000
+"""Longest body that is read; an answer of a few thousand tokens has some tens of kilobytes."""
+LONGEST_PAUSE_S = 60.0
+FIRST_PAUSE_S = 0.5
+SHORTEST_KEY = 12
+"""What is shorter is no secret but a word for a local server, and may occur in any answer."""
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """What can stand behind the ``?`` of a model's name. ``none`` leaves a value to the provider."""
+
+    seed: int | None = 0
+    temperature: float | None = 0.0
+    max_tokens: int | None = 1024
+    """Longest answer."""
+    timeout_s: float = 60.0
+    """For one attempt, from the question to the answer's last byte."""
+    retries: int = 4
+    """Further attempts after one that failed for a passing reason."""
+    per_minute: float | None = None
+    """At most so many questions a minute."""
+    usd_per_million_in: float = 0.0
+    usd_per_million_out: float = 0.0
+
+    @classmethod
+    def read(cls, query: str) -> Settings:
+        """Settings from ``name=value&name=value``.
+
+        Raises:
+            UserError: an unknown name, or a value that is no number or out of range.
+        """
+        known = {entry.name: entry for entry in fields(cls)}
+        chosen: dict[str, Any] = {}
+        for name, value in parse_qsl(query, keep_blank_values=True):
+            if name not in known:
+                raise UnknownNameError("model setting", name, known)
+            chosen[name] = _number(name, value, str(known[name].type))
+        return replace(cls(), **chosen)
+
+
+def _number(name: str, value: str, kind: str) -> float | int | None:
+    if value == "none" and "None" in kind:
+        return None
+    try:
+        number = int(value) if kind.startswith("int") else float(value)
+    except ValueError:
+        number = -1
+    positive = name in ("timeout_s", "max_tokens", "per_minute")
+    if not 0 <= number < 1e12 or (positive and number == 0):
+        wanted = "a whole number" if kind.startswith("int") else "a number"
+        raise UserError(f"model setting {name} is {value!r}; give {wanted} {'above' if positive else 'from'} 0")
+    return number
+
+
+def make_remote(spec: str) -> Remote:
+    """The model ``PROVIDER/NAME`` or ``PROVIDER/NAME?settings``.
+
+    Raises:
+        SetupError: the ``openai`` package, the key or the address is missing.
+        UserError: a setting is wrong.
+    """
+    whole, _, query = spec.partition("?")
+    provider, _, model = whole.partition("/")
+    settings = Settings.read(query)
+    prefix = re.sub(r"\W", "_", provider).upper()
+    key, base_url = os.environ.get(f"{prefix}_API_KEY", ""), os.environ.get(f"{prefix}_BASE_URL", "")
+    if not key:
+        raise SetupError(f"model {whole!r} needs the key in {prefix}_API_KEY; a local server takes any word")
+    if not base_url and provider != "openai":
+        raise SetupError(f"model {whole!r} needs its address in {prefix}_BASE_URL, e.g. http://127.0.0.1:8000/v1")
+    return Remote(spec, model, settings, _Endpoint(provider, base_url or None, key))
+
+
+@dataclass(frozen=True, slots=True)
+class _Endpoint:
+    provider: str
+    base_url: str | None
+    key: str = field(repr=False)
+
+    def clean(self, text: str) -> str:
+        """The text without the key, whoever put it there."""
+        return text.replace(self.key, "***") if len(self.key) >= SHORTEST_KEY else text
+
+    def client(self, timeout_s: float) -> openai.OpenAI:
+        try:
+            import openai
+        except ImportError as error:
+            raise SetupError(
+                "the openai package is missing; install it with `pip install 'automotive-cosim[llm]'`"
+            ) from error
+        return openai.OpenAI(api_key=self.key, base_url=self.base_url, timeout=timeout_s, max_retries=0)
+
+
+class _PassingError(Exception):
+    """Worth another attempt."""
+
+    def __init__(self, why: str, pause_s: float | None = None) -> None:
+        super().__init__(why)
+        self.pause_s = pause_s
+
+
+class Remote:
+    """A model at an endpoint."""
+
+    sees_pictures = True
+
+    def __init__(
+        self,
+        name: str,
+        model: str,
+        settings: Settings,
+        endpoint: _Endpoint,
+        sleep: Callable[[float], None] = time.sleep,
+    ) -> None:
+        """Connects to nothing yet.
+
+        Args:
+            name: as it is written into results.
+            model: the provider's name of it.
+            settings: how it is asked.
+            endpoint: where.
+            sleep: waits so many seconds, between attempts and for the rate limit.
+
+        Raises:
+            SetupError: the ``openai`` package is missing.
+        """
+        self.name = name
+        self._model = model
+        self._settings = settings
+        self._endpoint = endpoint
+        self._sleep = sleep
+        self._client = endpoint.client(settings.timeout_s)
+        self._next_s = 0.0
+
+    def chat(self, messages: Sequence[Message]) -> Reply:
+        """Asks, and asks again after a failure that may pass, each time after a longer pause.
+
+        Raises:
+            ModelError: refused, or every attempt failed.
+        """
+        started_s = time.monotonic()
+        attempts, why = self._settings.retries + 1, ""
+        for attempt in range(attempts):
+            self._keep_pace()
+            try:
+                reply = self._ask(messages)
+            except _PassingError as error:
+                why, pause_s = str(error), error.pause_s
+                if attempt + 1 < attempts:
+                    longer_s = FIRST_PAUSE_S * 2**attempt
+                    self._sleep(min(LONGEST_PAUSE_S, longer_s if pause_s is None else max(pause_s, longer_s)))
+            else:
+                return replace(reply, seconds=time.monotonic() - started_s)
+        raise self._error(f"gave no answer in {attempts} attempts: {why}")
+
+    def _error(self, what: str) -> ModelError:
+        return ModelError(" ".join(self._endpoint.clean(f"{self.name} {what}").split()))
+
+    def _keep_pace(self) -> None:
+        if self._settings.per_minute is None:
+            return
+        now_s = time.monotonic()
+        if now_s < self._next_s:
+            self._sleep(self._next_s - now_s)
+        self._next_s = max(now_s, self._next_s) + 60 / self._settings.per_minute
+
+    def _ask(self, messages: Sequence[Message]) -> Reply:
+        import httpx2
+        import openai
+
+        try:
+            body = self._post(messages)
+        except openai.APIStatusError as error:
+            why = f"status {error.status_code}: {error.message[:300]}"
+            if error.status_code in (408, 409, 429) or error.status_code >= 500:
+                raise _PassingError(why, _pause(error.response.headers.get("retry-after"))) from None
+            raise self._error(f"refused: {why}") from None
+        except (openai.APIError, httpx2.HTTPError, httpx2.StreamError) as error:
+            raise _PassingError(f"{type(error).__name__}: {error}") from None
+        return self._read(body)
+
+    def _post(self, messages: Sequence[Message]) -> bytes:
+        """The body of the answer. It is read piece by piece, so that the time limit holds for a server that
+        trickles, too."""
+        settings = self._settings
+        longest = "max_completion_tokens" if self._endpoint.provider == "openai" else "max_tokens"
+        wanted: dict[str, Any] = {
+            "seed": settings.seed,
+            "temperature": settings.temperature,
+            longest: settings.max_tokens,
+        }
+        limit_s = time.monotonic() + settings.timeout_s
+        body = b""
+        with self._client.chat.completions.with_streaming_response.create(
+            model=self._model,
+            messages=[_wire(message) for message in messages],  # type: ignore[misc]
+            **{name: value for name, value in wanted.items() if value is not None},
+        ) as response:
+            for piece in response.iter_bytes():
+                body += piece
+                if time.monotonic() > limit_s:
+                    raise _PassingError(f"the answer took over {settings.timeout_s:g} s")
+                if len(body) > BODY_LIMIT_BYTES:
+                    raise _PassingError(f"the answer has over {BODY_LIMIT_BYTES} bytes")
+        return body
+
+    def _read(self, body: bytes) -> Reply:
+        try:
+            told = json.loads(body)
+            choice = told["choices"][0]
+            content = choice["message"].get("content")
+            usage = told.get("usage") or {}
+            tokens_in = int(usage.get("prompt_tokens") or 0)
+            tokens_out = int(usage.get("completion_tokens") or 0)
+            finish = str(choice.get("finish_reason") or "stop")
+        except (ValueError, LookupError, TypeError, AttributeError, RecursionError):
+            shown = body[:80].decode(errors="replace")
+            raise _PassingError(f"the answer is no chat completion: {shown!r}") from None
+        settings = self._settings
+        cost_usd = (tokens_in * settings.usd_per_million_in + tokens_out * settings.usd_per_million_out) / 1e6
+        text = self._endpoint.clean(_text(content))
+        return Reply(text, tokens_in, tokens_out, cost_usd, finish=finish)
+
+
+def _pause(header: str | None) -> float | None:
+    """The server's own wish, in seconds; None without one, or with a date."""
+    try:
+        return max(0.0, float(header)) if header else None
+    except ValueError:
+        return None
+
+
+def _text(content: object) -> str:
+    """A string, or the text parts of a list; nothing else counts as text."""
+    if isinstance(content, str):
+        return content
+    if isinstance(content, list):
+        return "".join(str(part.get("text", "")) for part in content if isinstance(part, dict))
+    return ""
+
+
+def _wire(message: Message) -> dict[str, Any]:
+    if not message.pictures:
+        return {"role": message.role, "content": message.text}
+    parts: list[dict[str, Any]] = [{"type": "text", "text": message.text}]
+    for picture in message.pictures:
+        data = base64.b64encode(picture).decode()
+        parts.append({"type": "image_url", "image_url": {"url": f"data:image/png;base64,{data}"}})
+    return {"role": message.role, "content": parts}

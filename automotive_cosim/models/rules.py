@@ -1,0 +1,134 @@
+"""``rules``: a deterministic stand-in for a language model.
+
+It gets the text a language model would get and nothing else, and reads it by headings and keywords. It is no
+language model and its success rates say nothing about one: it shows that the pipeline carries the information
+an agent needs, and what becomes of the same rules when they are given less. It sees no pixels, so that an agent
+with screenshots does exactly what the same agent does without them.
+
+What it knows stands in ``skills.py``; this module reads the prompt and follows a plan. A plan is carried from
+turn to turn by the prompt itself, in the section "Your plan".
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping, Sequence
+
+from automotive_cosim.models.base import Message, Reply, estimated_tokens
+from automotive_cosim.models.page import Line, Page
+from automotive_cosim.models.skills import SKILLS, Decline, Move, Wait, Way
+
+MOST_SCROLLS = 6
+"""So often it scrolls for one element before it gives up."""
+STOPPED = {
+    "restricted": "safety",
+    "disabled": "not_possible",
+    "refused": "not_possible",
+    "no_such_element": "not_possible",
+}
+"""Results after which a plan cannot go on, and the reason to decline with."""
+
+
+class Rules:
+    """See the module; ``chat`` is a pure function of the messages. Its token counts are estimates."""
+
+    name = "rules"
+    sees_pictures = False
+
+    def chat(self, messages: Sequence[Message]) -> Reply:
+        """Answers a prompt with an action, or a request to look back with one line."""
+        page = Page.read(messages[-1].text)
+        text = _look_back(page) if page.looks_back else _answer(page)
+        asked = [message.text for message in messages]
+        return Reply(text, estimated_tokens(*asked), estimated_tokens(text))
+
+
+def _answer(page: Page) -> str:
+    moves, scrolls = _plan(page.plan)
+    if moves:
+        return _go_on(page, "Going on as planned.", moves, scrolls)
+    decided = _decide(page)
+    if isinstance(decided, Decline):
+        return _say(decided.because, _status(decided.status, decided.reason))
+    if isinstance(decided, Wait):
+        return _say(decided.because, {"action_type": "wait", "seconds": decided.seconds})
+    return _go_on(page, decided.because, (*decided.moves, ("status", "complete", "none")), 0)
+
+
+def _decide(page: Page) -> Way | Decline | Wait:
+    goal = page.goal.lower()
+    for skill in SKILLS:
+        if any(re.search(word, goal) for word in skill.words):
+            return skill.do(page) if callable(skill.do) else skill.do
+    return Decline("infeasible", "none", "I do not know what is wanted.")
+
+
+def _go_on(page: Page, because: str, moves: Sequence[Move], scrolls: int) -> str:
+    """The first of the moves, with the others as the plan."""
+    if page.plan and page.result in STOPPED:
+        return _say(f"The car says {page.result}.", _status("infeasible", STOPPED[page.result]))
+    move, rest = moves[0], moves[1:]
+    action = _action(page, move)
+    if action is not None:
+        return _say(because, action, rest)
+    if scrolls < MOST_SCROLLS and any(line.is_scrollable for line in page.screen):
+        return _say(
+            f"{move[1]} is not in sight.", {"action_type": "scroll", "direction": "down"}, moves, scrolls + 1
+        )
+    return _say(f"I cannot find {move[1]}.", _status("infeasible", "not_possible"))
+
+
+def _action(page: Page, move: Move) -> dict[str, object] | None:
+    """The action of one move; None if what it is about is not on the screen."""
+    kind, about = move[0], move[1]
+    if kind == "open":
+        return {"action_type": "open_app", "app_name": about}
+    if kind == "say":
+        return {"action_type": "answer", "text": about}
+    if kind == "do":
+        action: dict[str, object] = json.loads(about)
+        return action
+    if kind == "status":
+        return _status(about, move[2])
+    line = page.find(about)
+    if line is None:
+        return None
+    if kind == "type":
+        return {"action_type": "input_text", "index": line.index, "text": move[2], "clear_text": True}
+    if kind == "slide":
+        return _on_track(line, float(move[2]))
+    return {"action_type": "click", "index": line.index}
+
+
+TRACK_INSET_PX = 20
+"""A slider's track begins and ends so far inside its bounds, as its picture shows."""
+
+
+def _on_track(line: Line, share: float) -> dict[str, object]:
+    left, top, right, bottom = line.bounds
+    x = left + TRACK_INSET_PX + share * (right - left - 2 * TRACK_INSET_PX)
+    return {"action_type": "click", "x": round(x), "y": (top + bottom) // 2}
+
+
+def _status(status: str, reason: str) -> dict[str, object]:
+    return {"action_type": "status", "goal_status": status, "reason": reason}
+
+
+def _say(because: str, action: Mapping[str, object], rest: Sequence[Move] = (), scrolls: int = 0) -> str:
+    plan = f"Plan: {json.dumps({'moves': rest, 'scrolls': scrolls})}\n" if rest else ""
+    return f"Situation: {because}\n{plan}Action: {json.dumps(action)}"
+
+
+def _plan(text: str) -> tuple[tuple[Move, ...], int]:
+    """The moves left of a plan and how often it has scrolled for the first; nothing if it is none of ours."""
+    try:
+        plan = json.loads(text)
+        return tuple(tuple(map(str, move)) for move in plan["moves"]), int(plan["scrolls"])
+    except (ValueError, LookupError, TypeError):
+        return (), 0
+
+
+def _look_back(page: Page) -> str:
+    before, after = set(page.before), set(page.after)
+    return f"Lesson: {page.result or 'done'}; {len(before - after)} elements gone, {len(after - before)} new."

@@ -1,0 +1,143 @@
+"""What the rule model knows, as a table: words of a wish, and how it is fulfilled in this cockpit.
+
+To add one, write a ``Skill`` into ``SKILLS``, above those whose words are more general: the first whose words are
+found in the goal decides. ``do`` is a ``Way``, a ``Decline``, a ``Wait``, or a function that reads the ``Page`` and
+returns one of them. The words are made from a task's first phrasings; its last ones are held out
+(``suite.Instance.held_out``) and must not be looked at here.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from automotive_cosim.models.page import Page
+
+SPEEDING_MARGIN_KMH = 3.0
+"""Above the limit by more than this counts as too fast: 1 km/h of rounding and 3 % of tolerance at 50 km/h, as
+Regulation (EU) 2021/1958 grants a speed assistant."""
+RAIN_PCT = 20.0
+"""Rain intensity from which drops, not fog, are what lies on the glass."""
+
+Move = tuple[str, ...]
+"""One step of a way; the functions below make them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """Moves to carry out one after another, and why."""
+
+    because: str
+    moves: tuple[Move, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Decline:
+    """Nothing is to be done: ``infeasible`` or ``not_needed``, with a reason code."""
+
+    status: str
+    reason: str
+    because: str
+
+
+@dataclass(frozen=True, slots=True)
+class Wait:
+    """Nothing is to be done yet."""
+
+    because: str
+    seconds: int = 1
+
+
+Decision = Way | Decline | Wait
+
+
+@dataclass(frozen=True, slots=True)
+class Skill:
+    """A wish and what to do about it."""
+
+    words: tuple[str, ...]
+    """Regular expressions on the goal in lower case, of which any must be found."""
+    do: Decision | Callable[[Page], Decision]
+
+
+def opened(app: str) -> Move:
+    """Opens an app."""
+    return ("open", app)
+
+
+def tap(resource_id: str) -> Move:
+    """Taps the element with this id, or with this text after ``=``; scrolls for it if need be."""
+    return ("tap", resource_id)
+
+
+def slide(resource_id: str, share: float) -> Move:
+    """Sets a slider to that share of its range, 0 to 1."""
+    return ("slide", resource_id, f"{share:.3f}")
+
+
+def typed(resource_id: str, text: str) -> Move:
+    """Types into a text field."""
+    return ("type", resource_id, text)
+
+
+def say(text: str) -> Move:
+    """Tells the driver."""
+    return ("say", text)
+
+
+def call(action_type: str, **fields: object) -> Move:
+    """Any other action, e.g. ``call("show_alert", kind="speed")``."""
+    return ("do", json.dumps({"action_type": action_type} | fields))
+
+
+def in_app(app: str, *ids: str, because: str) -> Way:
+    """Opens an app and taps elements."""
+    return Way(because, (opened(app), *map(tap, ids)))
+
+
+# --- decisions that read the page -------------------------------------------------------------------------
+
+
+def _watch_speed(page: Page) -> Decision:
+    speed, limit = page.number("speed_kmh"), page.limit_kmh()
+    if speed is None or limit is None:
+        return Decline("not_needed", "none", f"At {speed} km/h and no limit known there is nothing to say.")
+    if speed > limit + SPEEDING_MARGIN_KMH:
+        because = f"{speed:.0f} km/h where {limit:.0f} is the limit."
+        return in_app("safety", "safety.kind.speed", "safety.warn", because=because)
+    return Decline("not_needed", "already_so", f"{speed:.0f} km/h is within the limit of {limit:.0f}.")
+
+
+def _windshield(page: Page) -> Decision:
+    outside, inside = page.number("ambient_temperature_c"), page.number("cabin_temperature_c")
+    if outside is not None and inside is not None and outside > inside:
+        return in_app("vehicle", "wiper.front.slow", because="Warm damp air outside meets cold glass: wipe it off.")
+    return in_app("climate", "hvac.front_defroster", because="The glass is fogged from inside: blow dry air on it.")
+
+
+def _rear_window(page: Page) -> Decision:
+    if (page.number("rain_intensity_pct") or 0.0) > RAIN_PCT:
+        return in_app("vehicle", "wiper.rear.slow", because="It is rain on the outside: wipe it.")
+    return in_app("climate", "hvac.rear_defroster", because="The glass is fogged from inside: heat it.")
+
+
+# --- the table ----------------------------------------------------------------------------------------------
+
+SKILLS: tuple[Skill, ...] = (
+    Skill((r"how i.m driving", r"my driving", r"my speed", r"too fast", r"how fast"), _watch_speed),
+    Skill((r"rear|back window|behind|out of the back",), _rear_window),
+    Skill((r"windshield|windscreen|front window|fogg?", r"steamed up"), _windshield),
+    Skill(
+        (r"\bfan\b", r"\bblower\b"),
+        in_app("climate", "hvac.fan.max", because="The fan belongs to the climate screen."),
+    ),
+    Skill(
+        (r"seat (heat|warm)", r"driver seat"),
+        in_app("climate", "hvac.driver_seat_heating", because="The driver's seat is heated on the climate screen."),
+    ),
+    Skill(
+        (r"hands|fingers",),
+        in_app("climate", "hvac.steering_wheel_heating", because="Cold hands want a warm wheel."),
+    ),
+)

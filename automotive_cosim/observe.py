@@ -1,0 +1,65 @@
+"""Observations: what of a moment an agent is given. A channel it is not given is absent, not empty."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+from automotive_cosim.contracts import Element, Feedback, Observation
+from automotive_cosim.cosim import CoSimulation
+from automotive_cosim.geo.context import GeoContext
+from automotive_cosim.geo.text import BUDGET_TOKENS, within_budget
+
+
+class Channel(StrEnum):
+    """What can be withheld from an agent; goal, time and feedback never are."""
+
+    SCREENSHOT = "screenshot"
+    ELEMENTS = "elements"
+    VEHICLE = "vehicle"
+    GPS = "gps"
+    CONNECTIVITY = "connectivity"
+    CONTEXT = "context"
+
+
+ALL = frozenset(Channel)
+
+
+def observe(
+    world: CoSimulation,
+    goal: str,
+    hand_over_s: float,
+    elements: tuple[Element, ...],
+    feedback: Feedback,
+    channels: frozenset[Channel] = ALL,
+) -> Observation:
+    """What an agent gets to see of the world now.
+
+    Args:
+        world: the co-simulation.
+        goal: what the driver said.
+        hand_over_s: simulation time at which the agent took over.
+        elements: the accessibility list of the present screen.
+        feedback: what came of the last action.
+        channels: what the agent is given.
+    """
+    moment = world.moment
+    return Observation(
+        goal=goal,
+        time_s=moment.time_s - hand_over_s,
+        feedback=feedback,
+        elements=elements if Channel.ELEMENTS in channels else None,
+        screenshot=world.cockpit.screenshot() if Channel.SCREENSHOT in channels else None,
+        vehicle=world.cockpit.vehicle_state() if Channel.VEHICLE in channels else None,
+        connectivity=moment.connectivity if Channel.CONNECTIVITY in channels else None,
+        gps=moment.gps if Channel.GPS in channels else None,
+        context=context_text(moment.context, with_position=Channel.GPS in channels)
+        if Channel.CONTEXT in channels
+        else None,
+    )
+
+
+def context_text(context: GeoContext, *, with_position: bool) -> str:
+    """What holds here as text; an agent without GPS gets no line that states the position either."""
+    if with_position:
+        return context.text()
+    return within_budget((line for line in context.lines if line.source != "gps"), BUDGET_TOKENS)

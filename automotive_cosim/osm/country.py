@@ -1,0 +1,124 @@
+"""What a map leaves unsaid and its country decides: the side of the road, and the limit where none is mapped.
+
+The limits are those of the country's traffic code for a car in the dry, as collected on the OpenStreetMap wiki's
+page "Default speed limits" and corrected where the code itself says otherwise (FR: code de la route R413-2 and -3;
+DE: StVO § 3, 130 being advisory; CH: VRV art. 4a; JP: 30 without a centre line since 1 September 2026). They fill
+gaps in a network and are marked as assumed there: no verdict rests on them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib.resources import files
+
+KMH_PER_MPH = 1.609344
+
+# fmt: off
+LEFT_HAND = frozenset((
+    "AG", "AI", "AU", "BB", "BD", "BM", "BN", "BS", "BT", "BW", "CC", "CK", "CX", "CY", "DM", "FJ", "FK", "GB",
+    "GD", "GG", "GS", "GY", "HK", "ID", "IE", "IM", "IN", "JE", "JM", "JP", "KE", "KI", "KN", "KY", "LC", "LK",
+    "LS", "MO", "MS", "MT", "MU", "MV", "MW", "MY", "MZ", "NA", "NF", "NP", "NR", "NU", "NZ", "PG", "PK", "PN",
+    "SB", "SC", "SG", "SH", "SR", "SZ", "TC", "TH", "TK", "TL", "TO", "TT", "TV", "TZ", "UG", "VC", "VG", "VI",
+    "WS", "ZA", "ZM", "ZW",
+))
+# fmt: on
+"""ISO 3166-1 codes of where people drive on the left."""
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """General limits of a country, km/h."""
+
+    street: float
+    """Built-up, a residential street."""
+    town: float
+    """Built-up, any larger road."""
+    rural: float
+    dual: float
+    """Rural, separate carriageways (expressway, motor road)."""
+    motorway: float
+
+
+def _mph(street: float, town: float, rural: float, dual: float, motorway: float) -> Limits:
+    return Limits(*(round(limit * KMH_PER_MPH, 3) for limit in (street, town, rural, dual, motorway)))
+
+
+LIMITS: Mapping[str, Limits] = {
+    "AE": Limits(40, 60, 100, 100, 120),
+    "AR": Limits(40, 60, 110, 120, 130),
+    "AT": Limits(50, 50, 100, 100, 130),
+    "AU": Limits(50, 50, 100, 100, 110),
+    "BE": Limits(50, 50, 70, 120, 120),
+    "BG": Limits(50, 50, 90, 120, 140),
+    "BR": Limits(30, 60, 100, 110, 110),
+    "CA": Limits(50, 50, 80, 100, 100),
+    "CH": Limits(50, 50, 80, 100, 120),
+    "CN": Limits(30, 50, 70, 70, 120),
+    "CZ": Limits(50, 50, 90, 110, 130),
+    "DE": Limits(50, 50, 100, 130, 130),
+    "DK": Limits(50, 50, 80, 80, 130),
+    "EE": Limits(50, 50, 90, 90, 90),
+    "ES": Limits(30, 50, 90, 90, 120),
+    "FI": Limits(50, 50, 80, 80, 120),
+    "FR": Limits(50, 50, 80, 110, 130),
+    "GB": _mph(30, 30, 60, 70, 70),
+    "GR": Limits(50, 50, 90, 110, 130),
+    "HR": Limits(50, 50, 90, 110, 130),
+    "HU": Limits(50, 50, 90, 110, 130),
+    "IE": Limits(50, 50, 80, 100, 120),
+    "IN": Limits(70, 70, 70, 100, 120),
+    "IT": Limits(50, 50, 90, 110, 130),
+    "JP": Limits(30, 60, 60, 60, 100),
+    "KR": Limits(50, 50, 60, 80, 100),
+    "LT": Limits(50, 50, 90, 120, 130),
+    "LU": Limits(50, 50, 90, 90, 130),
+    "LV": Limits(50, 50, 90, 90, 90),
+    "NL": Limits(50, 50, 80, 100, 100),
+    "NO": Limits(50, 50, 80, 80, 110),
+    "NZ": Limits(50, 50, 100, 100, 100),
+    "PL": Limits(50, 50, 90, 100, 140),
+    "PT": Limits(50, 50, 90, 100, 120),
+    "RO": Limits(50, 50, 90, 100, 130),
+    "SE": Limits(50, 50, 70, 70, 110),
+    "SI": Limits(50, 50, 90, 110, 130),
+    "SK": Limits(50, 50, 90, 130, 130),
+    "TR": Limits(50, 50, 90, 110, 130),
+    "US": _mph(30, 30, 55, 65, 65),
+    "ZA": Limits(60, 60, 100, 100, 120),
+}
+WORLD = Limits(50, 50, 80, 100, 120)
+"""For a country without a row above: the commonest values among those that have one."""
+
+LIVING_STREET_KMH = 20.0
+"""Mapped living streets without a limit; the codes say 20 km/h (FR R110-2, BE, CH) or walking pace (DE)."""
+
+
+def country_codes() -> frozenset[str]:
+    """Every ISO 3166-1 code, from the time zone database's ``iso3166.tab``."""
+    text = (files("tzdata") / "zoneinfo" / "iso3166.tab").read_text(encoding="utf-8")
+    return frozenset(line[:2] for line in text.splitlines() if line and not line.startswith("#"))
+
+
+def limits_of(country: str) -> Limits:
+    """The general limits of a country, ``WORLD`` for one that is not listed."""
+    return LIMITS.get(country, WORLD)
+
+
+def assumed_limit_kmh(country: str, road_class: str, *, built_up: bool, dual: bool) -> float:
+    """The limit a road most likely has where the map states none.
+
+    Args:
+        country: ISO 3166-1 code.
+        road_class: OSM highway value.
+        built_up: the road lies in a town or village.
+        dual: it is one carriageway of two.
+    """
+    limits = limits_of(country)
+    if road_class == "motorway":
+        return limits.motorway
+    if road_class == "living_street":
+        return min(LIVING_STREET_KMH, limits.street)
+    if built_up:
+        return limits.street if road_class in ("residential", "unclassified") else limits.town
+    return limits.dual if dual and road_class == "trunk" else limits.rural

@@ -1,0 +1,169 @@
+"""Traffic for a network nobody has counted: random trips, weighted by what the roads can carry.
+
+SUMO's randomTrips does the like; this one draws from a numpy generator, lets half of the traffic come from outside
+the map, as it does on a crop of a city, and knows the limits that were only assumed.
+"""
+
+from __future__ import annotations
+
+import gzip
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+import numpy.typing as npt
+
+from automotive_cosim.errors import ImportMapError
+from automotive_cosim.osm.network import Built
+from automotive_cosim.sumo_programs import first_error, run
+from automotive_cosim.traffic.network import Edge
+
+OUTSIDE_SHARE = 0.5
+"""Share of trips that come from, and as many that go to, beyond the map's edge."""
+
+MIN_TRIP_M = 500.0
+"""Straight distance a trip should cover; a fifth of the diagonal on a small map."""
+
+CAR = '<vType id="car" vClass="passenger" lcStrategic="50"/>'
+"""The vehicles. They choose their lane far earlier than SUMO's default, or the short lanes of large roundabouts
+fill up with cars side by side of which each needs the other's lane."""
+
+ROUNDS = 20
+"""How often trips that are too short are drawn again."""
+
+SAMPLES = 500
+"""Trips from which the mean travel time, and the share that has a way, are known well enough."""
+
+
+@dataclass(frozen=True, slots=True)
+class Journey:
+    """A trip that can be driven."""
+
+    depart_s: float
+    way: tuple[Edge, ...]
+    """The fastest on empty roads."""
+
+    @property
+    def length_m(self) -> float:
+        """Of the way."""
+        return sum(edge.length_m for edge in self.way)
+
+
+def draw(
+    built: Built,
+    net_file: Path,
+    *,
+    scratch: Path,
+    density_per_km: float,
+    duration_s: float,
+    rng: np.random.Generator,
+) -> tuple[Journey, ...]:
+    """Draws trips and keeps those that duarouter finds a way for, in order of departure.
+
+    Args:
+        built: the imported network.
+        net_file: the same, as SUMO reads it.
+        scratch: a folder for intermediate files.
+        density_per_km: vehicles at a time per kilometre of lane, if nobody held them up. This, and not how many
+            set out, tells how full a network is, whatever its size.
+        duration_s: departures are spread evenly over this.
+        rng: where all chance comes from.
+
+    Raises:
+        ImportMapError: so little traffic is asked for that there is none, or no trip can be driven.
+    """
+    samples = _routed(_pairs(built, SAMPLES, rng), built, net_file, scratch)
+    if not samples:
+        raise ImportMapError("no two roads of this map are connected; give a larger extract")
+    travel_time_s = float(np.mean([sum(edge.length_m / edge.speed_mps for edge in way) for way in samples]))
+    lane_km = sum(edge.length_m * len(edge.lane_ids) for edge in built.edges) / 1000
+    count = round(density_per_km * lane_km * duration_s / travel_time_s)
+    if not count:
+        raise ImportMapError(f"{density_per_km:g} vehicles per km on {lane_km:.1f} km are none; raise --density")
+    ways = _routed(_pairs(built, math.ceil(count * SAMPLES / len(samples)), rng), built, net_file, scratch)
+    departs = np.sort(rng.uniform(0.0, duration_s, min(count, len(ways))))
+    return tuple(Journey(float(depart_s), way) for depart_s, way in zip(departs, ways, strict=False))
+
+
+def write(journeys: Sequence[Journey], target: Path) -> None:
+    """Writes the traffic as SUMO trips (gzip); SUMO routes each by the travel times when it departs."""
+    rows = (
+        f'    <trip id="{number}" type="car" depart="{journey.depart_s:.2f}" departLane="best" departSpeed="max"'
+        f" {_ends(journey.way[0], journey.way[-1])}/>"
+        for number, journey in enumerate(journeys)
+    )
+    text = "\n".join(("<routes>", f"    {CAR}", *rows, "</routes>", ""))
+    target.write_bytes(gzip.compress(text.encode(), compresslevel=9, mtime=0))
+
+
+def _ends(start: Edge, goal: Edge) -> str:
+    return f"from={quoteattr(start.edge_id)} to={quoteattr(goal.edge_id)}"
+
+
+def _pairs(built: Built, count: int, rng: np.random.Generator) -> npt.NDArray[np.int64]:
+    """Start and goal of each trip as indices of edges, (n, 2); n is less than count on a map too small for them."""
+    edges = built.edges
+    start_weights = _weights(edges, built.entries())
+    goal_weights = _weights(edges, built.exits())
+    middles = np.array([edge.shape_m[len(edge.shape_m) // 2] for edge in edges])
+    distance_m = min(MIN_TRIP_M, 0.2 * float(np.hypot(*np.ptp(middles, axis=0))))
+    found = np.empty((0, 2), dtype=np.int64)
+    for _ in range(ROUNDS):
+        short = count - len(found)
+        starts = rng.choice(len(edges), short, p=start_weights)
+        goals = rng.choice(len(edges), short, p=goal_weights)
+        far = np.hypot(*(middles[goals] - middles[starts]).T) >= distance_m
+        found = np.concatenate((found, np.column_stack((starts, goals))[far & (starts != goals)]))
+        if len(found) == count:
+            break
+    return found
+
+
+def _weights(edges: Sequence[Edge], fringe: frozenset[str]) -> npt.NDArray[np.float64]:
+    """Probability of each edge as one end of a trip: inside by length and lanes, at the map's edge by what a road
+    carries, taken as lanes times the square of the speed."""
+    inside = np.array([edge.length_m * len(edge.lane_ids) for edge in edges])
+    outside = np.array([len(edge.lane_ids) * edge.speed_mps**2 * (edge.edge_id in fringe) for edge in edges])
+    weights = inside / inside.sum()
+    if outside.any():
+        weights = (1 - OUTSIDE_SHARE) * weights + OUTSIDE_SHARE * outside / outside.sum()
+    return np.asarray(weights, dtype=np.float64)
+
+
+def _routed(pairs: npt.NDArray[np.int64], built: Built, net_file: Path, scratch: Path) -> list[tuple[Edge, ...]]:
+    """The fastest way for each pair that has one."""
+    asked, routed = scratch / "asked.trips.xml", scratch / "routed.rou.xml"
+    edges = built.edges
+    rows = (
+        f'<trip id="{number}" depart="0" {_ends(edges[start], edges[goal])}/>'
+        for number, (start, goal) in enumerate(pairs.tolist())
+    )
+    asked.write_text("\n".join(("<routes>", *rows, "</routes>")), encoding="utf-8")
+    ok, printed = run(
+        "duarouter",
+        (
+            f"--net-file={net_file}",
+            f"--route-files={asked}",
+            f"--output-file={routed}",
+            "--ignore-errors",
+            "--no-warnings",
+            "--no-step-log",
+            "--routing-algorithm=astar",
+        ),
+    )
+    if not ok:
+        raise ImportMapError(f"SUMO's duarouter cannot route on this map: {first_error(printed)}")
+    return list(_read_ways(routed, built))
+
+
+def _read_ways(file: Path, built: Built) -> Iterator[tuple[Edge, ...]]:
+    for _, element in ElementTree.iterparse(file):
+        if element.tag == "vehicle":
+            route = element.find("route")
+            if route is not None:
+                yield tuple(built.network.edges[edge] for edge in route.get("edges", "").split())
+            element.clear()

@@ -1,0 +1,300 @@
+"""Reading an OSM extract, whatever its format, and reducing it to the roads that cars use.
+
+libosmium reads every format and finds every cut; what is written for netconvert is always plain OSM XML. Other
+ways (paths, buildings, railways) go, because each path that meets a road would split it in two.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from automotive_cosim.errors import ImportMapError, SetupError
+from automotive_cosim.osm.area import Area
+from automotive_cosim.osm.limits import complete, zone_of
+from automotive_cosim.sumo_programs import INSTALL
+
+LINKED = ("motorway", "trunk", "primary", "secondary", "tertiary")
+"""Classes whose ramps and slip roads are a class of their own, ``…_link``."""
+
+ROAD_CLASSES = frozenset(
+    (*LINKED, *(f"{road}_link" for road in LINKED), "unclassified", "residential", "living_street")
+)
+"""OSM highway values kept. Service roads are left out: SUMO's type map opens them to deliveries only."""
+
+ACCESS_KEYS = ("motorcar", "motor_vehicle", "vehicle", "access")
+"""Who may drive there, the key nearest to cars first (OSM wiki, "Key:access"). netconvert looks at none of them."""
+
+BARRED = frozenset(("no", "private", "agricultural", "forestry", "military", "emergency", "psv", "bus", "delivery"))
+"""Values that keep an ordinary car out."""
+
+DROPPED_TAGS = ("railway", "cycleway", "sidewalk", "public_transport", "route")
+"""Keys, with what follows a colon, that make netconvert give a road a compound type instead of its class."""
+
+CELL_DEG = 0.0025
+"""Side of the cells in which town streets are counted, degrees of latitude (about 280 m)."""
+
+TOWN_NODES = 12
+"""Nodes of town streets in a cell and its eight neighbours from which on a road there counts as built-up."""
+
+TOWN_STREETS = frozenset(("residential", "living_street"))
+
+
+class Position(NamedTuple):
+    """WGS 84."""
+
+    lon_deg: float
+    lat_deg: float
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """One road of the extract."""
+
+    way_id: int
+    tags: Mapping[str, str]
+    nodes: tuple[int, ...]
+
+    @property
+    def road_class(self) -> str:
+        """OSM highway value."""
+        return self.tags["highway"]
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """One point of a road, with what stands there (signals, crossings)."""
+
+    position: Position
+    tags: Mapping[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class Restriction:
+    """A turn restriction; members are (``"n"`` or ``"w"``, id, role)."""
+
+    relation_id: int
+    tags: Mapping[str, str]
+    members: tuple[tuple[str, int, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Extract:
+    """The roads of an OSM extract."""
+
+    ways: tuple[Way, ...]
+    nodes: Mapping[int, Node]
+    restrictions: tuple[Restriction, ...]
+    cameras: tuple[Position, ...] = ()
+    """Where speed cameras stand, on a road or beside it."""
+
+    def crop(self, area: Area) -> Extract:
+        """What of it lies within an area; of a road that leaves and comes back, the longest stretch.
+
+        Raises:
+            ImportMapError: no road does.
+        """
+        nodes = {ref: node for ref, node in self.nodes.items() if area.holds(*node.position)}
+        ways = tuple(piece for way in self.ways for piece in _known_pieces(way, nodes))
+        if not ways:
+            west, south, east, north = self.bounds
+            raise ImportMapError(
+                f"no road lies in the --bbox; the map reaches from {west:.4f},{south:.4f} to {east:.4f},{north:.4f}"
+            )
+        kept = {way.way_id for way in ways}
+        turns = tuple(
+            turn for turn in self.restrictions if all(kind != "w" or ref in kept for kind, ref, _ in turn.members)
+        )
+        used = {ref for way in ways for ref in way.nodes}
+        return Extract(
+            ways,
+            {ref: node for ref, node in nodes.items() if ref in used},
+            turns,
+            tuple(camera for camera in self.cameras if area.holds(*camera)),
+        )
+
+    @property
+    def bounds(self) -> Area:
+        """The smallest area that holds every road."""
+        lons = [node.position.lon_deg for node in self.nodes.values()]
+        lats = [node.position.lat_deg for node in self.nodes.values()]
+        return Area(min(lons), min(lats), max(lons), max(lats))
+
+    @property
+    def centre(self) -> Position:
+        """The median node: a position on the mapped roads even where a far-off way stretches the box."""
+        lons = sorted(node.position.lon_deg for node in self.nodes.values())
+        lats = sorted(node.position.lat_deg for node in self.nodes.values())
+        return Position(lons[len(lons) // 2], lats[len(lats) // 2])
+
+
+def read(source: Path) -> Extract:
+    """Reads the roads of an extract: OSM XML, plain, gzip or bzip2, or PBF, known by content and not by name.
+
+    Raises:
+        ImportMapError: the file is missing, empty, cut off, no OSM data, or without roads.
+        SetupError: the osmium package is not installed.
+    """
+    file = _open(source)
+    try:
+        ways, restrictions = _read_ways(file)
+        nodes = _read_nodes(file, {ref for way in ways for ref in way.nodes})
+        cameras = _read_cameras(file)
+    except RuntimeError as error:
+        raise ImportMapError(_explain(source, str(error))) from error
+    complete = tuple(piece for way in ways for piece in _known_pieces(way, nodes))
+    if not complete:
+        raise ImportMapError(
+            f"{source} has no roads for cars ({len(ways)} ways tagged as such, with {len(nodes)} of their nodes);"
+            " give an extract that keeps highway=* ways and their nodes"
+        )
+    return Extract(complete, nodes, restrictions, cameras)
+
+
+def _osmium() -> Any:
+    try:
+        return import_module("osmium")
+    except ImportError as error:
+        raise SetupError(f"importing maps needs the osmium package: {INSTALL}") from error
+
+
+def _open(source: Path) -> Any:
+    try:
+        with source.open("rb") as stream:
+            head = stream.read(64)
+    except OSError as error:
+        raise ImportMapError(f"{source}: {error.strerror}; give the path of an OSM extract") from error
+    return _osmium().io.File(str(source), _format(source, head))
+
+
+def _format(source: Path, head: bytes) -> str:
+    if not head:
+        raise ImportMapError(f"{source} is empty; download the extract again")
+    if head.startswith(b"\x1f\x8b"):
+        return "osm.gz"
+    if head.startswith(b"BZh"):
+        return "osm.bz2"
+    if b"OSMHeader" in head:
+        return "pbf"
+    if head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<"):
+        return "osm"
+    kind = "a zip archive; unpack it and" if head.startswith(b"PK\x03\x04") else "not OSM data;"
+    raise ImportMapError(f"{source} is {kind} give OSM XML (plain, .gz or .bz2) or .osm.pbf")
+
+
+def _explain(source: Path, error: str) -> str:
+    if "top-level element" in error:
+        return f"{source} is XML but not OSM ({error}); give an extract whose root is <osm>"
+    if "gzip error" in error or "bzip2 error" in error or "EOF" in error or "truncated" in error:
+        return f"{source} is cut off or damaged ({error}); download it again"
+    if "XML parsing error" in error:
+        return f"{source} is cut off or not OSM XML ({error}); download it again"
+    return f"{source} cannot be read as OSM data ({error}); give OSM XML (plain, .gz or .bz2) or .osm.pbf"
+
+
+def _read_ways(file: Any) -> tuple[list[Way], tuple[Restriction, ...]]:
+    osmium = _osmium()
+    ways: list[Way] = []
+    restrictions: list[Restriction] = []
+    wanted = osmium.filter.KeyFilter("highway", "restriction")
+    for item in osmium.FileProcessor(file, osmium.osm.WAY | osmium.osm.RELATION).with_filter(wanted):
+        tags = {tag.k: tag.v for tag in item.tags}
+        if item.is_way():
+            if tags.get("highway") in ROAD_CLASSES and tags.get("area") != "yes" and _cars_may(tags):
+                ways.append(Way(item.id, tags, tuple(node.ref for node in item.nodes)))
+        elif "restriction" in tags:
+            members = tuple((member.type, member.ref, member.role) for member in item.members)
+            restrictions.append(Restriction(item.id, tags, members))
+    return ways, tuple(restrictions)
+
+
+def _cars_may(tags: Mapping[str, str]) -> bool:
+    access = next((tags[key] for key in ACCESS_KEYS if key in tags), "yes")
+    return access not in BARRED
+
+
+def _read_nodes(file: Any, wanted: set[int]) -> dict[int, Node]:
+    osmium = _osmium()
+    nodes: dict[int, Node] = {}
+    for node in osmium.FileProcessor(file, osmium.osm.NODE).with_filter(osmium.filter.IdFilter(wanted)):
+        if node.location.valid():
+            tags = {tag.k: tag.v for tag in node.tags}
+            nodes[node.id] = Node(Position(node.location.lon, node.location.lat), tags)
+    return nodes
+
+
+def _read_cameras(file: Any) -> tuple[Position, ...]:
+    osmium = _osmium()
+    tagged = osmium.filter.TagFilter(("highway", "speed_camera"))
+    found = osmium.FileProcessor(file, osmium.osm.NODE).with_filter(tagged)
+    return tuple(Position(node.location.lon, node.location.lat) for node in found if node.location.valid())
+
+
+def _known_pieces(way: Way, nodes: Mapping[int, Node]) -> Iterator[Way]:
+    """The way where its nodes are in the extract: the longest stretch, if clipping left holes."""
+    stretches: list[list[int]] = [[]]
+    for ref in way.nodes:
+        if ref in nodes:
+            stretches[-1].append(ref)
+        elif stretches[-1]:
+            stretches.append([])
+    longest = max(stretches, key=len)
+    if len(longest) > 1:
+        yield Way(way.way_id, way.tags, tuple(longest))
+
+
+def write(extract: Extract, target: Path, country: str) -> None:
+    """Writes the roads as OSM XML for netconvert, each with a limit (``limits.complete``) and a name.
+
+    A road without a name is called by its number (``"A 5"``), as signposts do.
+    """
+    osmium = _osmium()
+    mutable = osmium.osm.mutable
+    towns = town_cells(extract)
+    with osmium.SimpleWriter(osmium.io.File(str(target), "osm"), overwrite=True) as writer:
+        for node_id, node in sorted(extract.nodes.items()):
+            writer.add_node(mutable.Node(id=node_id, location=node.position, tags=dict(node.tags)))
+        for way in extract.ways:
+            tags = {key: value for key, value in way.tags.items() if key.split(":")[0] not in DROPPED_TAGS}
+            if not tags.get("name") and tags.get("ref"):
+                tags["name"] = tags["ref"]
+            tags = complete(tags, country, built_up=is_built_up(way, extract.nodes, towns))
+            writer.add_way(mutable.Way(id=way.way_id, nodes=way.nodes, tags=tags))
+        for turn in extract.restrictions:
+            writer.add_relation(mutable.Relation(id=turn.relation_id, members=turn.members, tags=dict(turn.tags)))
+
+
+def _cell(position: Position) -> tuple[int, int]:
+    across = CELL_DEG / max(0.01, math.cos(math.radians(round(position.lat_deg))))
+    return math.floor(position.lon_deg / across), math.floor(position.lat_deg / CELL_DEG)
+
+
+def town_cells(extract: Extract) -> frozenset[tuple[int, int]]:
+    """The cells about which town streets lie close together, as columns and rows of a grid."""
+    streets = Counter(
+        _cell(extract.nodes[ref].position)
+        for way in extract.ways
+        if way.road_class in TOWN_STREETS
+        for ref in way.nodes
+    )
+    about = Counter[tuple[int, int]]()
+    for (column, row), count in streets.items():
+        for step in range(9):
+            about[column + step % 3 - 1, row + step // 3 - 1] += count
+    return frozenset(cell for cell, count in about.items() if count >= TOWN_NODES)
+
+
+def is_built_up(way: Way, nodes: Mapping[int, Node], towns: frozenset[tuple[int, int]]) -> bool:
+    """Whether a road lies in a town or village: as its tags say, else by the streets about it."""
+    zone = zone_of(way.tags)
+    if zone in ("urban", "rural", "motorway", "trunk"):
+        return zone == "urban"
+    if way.road_class in TOWN_STREETS:
+        return True
+    inside = sum(_cell(nodes[ref].position) in towns for ref in way.nodes)
+    return 2 * inside > len(way.nodes)

@@ -1,0 +1,234 @@
+"""Fetches the roads of an area from an Overpass endpoint that the user names.
+
+    download("https://.../api/interpreter", Area.parse("2.28,48.86,2.31,48.88"), Path("etoile.osm"))
+
+The query and the answers follow the OSM wiki's "Overpass API/Overpass QL": a server that is busy says 429 or 504,
+one that gave up half-way says so in a ``<remark>`` at the end of an answer that is otherwise well. The file keeps
+the server's ``<note>`` with the licence; it appears whole or not at all.
+"""
+
+from __future__ import annotations
+
+import http.client
+import re
+import socket
+import tempfile
+import time
+import urllib.error
+import urllib.parse
+import urllib.request
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import IO
+
+from automotive_cosim.errors import ImportMapError
+from automotive_cosim.osm.area import Area
+
+LARGEST_KM2 = 2500.0
+"""A large city. Of more than that, extracts in PBF are offered for download."""
+
+BUSY = (429, 502, 503, 504)
+"""Answers after which it is worth trying again."""
+
+FIRST_PAUSE_S = 2.0
+LONGEST_PAUSE_S = 120.0
+"""Before the second try; doubled each time, unless the server says how long."""
+
+PIECE_BYTES = 1 << 16
+
+Tell = Callable[[str, float | None], None]
+"""Told what is being done, and the share of it that is done where that is known."""
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """How patient the download is."""
+
+    timeout_s: float = 180.0
+    """For the server's work, and wall time without a byte from it."""
+    tries: int = 4
+    size_mb: float = 500.0
+    """A larger answer is given up."""
+
+
+@dataclass(frozen=True, slots=True)
+class Download:
+    """What came."""
+
+    size_mb: float
+    note: str
+    """What the server says of the licence; empty if it says nothing."""
+    map_date: str
+    """Up to when the map's changes are in it, ISO 8601; empty if the server does not say."""
+
+
+class _BusyError(Exception):
+    """Worth another try, after so many seconds if the server says so."""
+
+    def __init__(self, why: str, pause_s: float | None = None) -> None:
+        super().__init__(why)
+        self.pause_s = pause_s
+
+
+def query(area: Area, limits: Limits) -> str:
+    """The roads within an area, with turn restrictions and speed cameras, in Overpass QL."""
+    box = f"{area.south_deg:.7f},{area.west_deg:.7f},{area.north_deg:.7f},{area.east_deg:.7f}"
+    return (
+        f"[out:xml][timeout:{limits.timeout_s:.0f}][maxsize:{limits.size_mb * 1e6:.0f}];"
+        f"way[highway]({box})->.roads;"
+        f"(.roads;node(w.roads);rel(bw.roads)[restriction];node[highway=speed_camera]({box}););"
+        "out body qt;"
+    )
+
+
+def download(
+    endpoint: str,
+    area: Area,
+    target: Path,
+    limits: Limits | None = None,
+    *,
+    tell: Tell = lambda _stage, _share: None,
+    sleep: Callable[[float], None] = time.sleep,
+) -> Download:
+    """Writes the roads of an area to ``target`` as OSM XML.
+
+    Args:
+        endpoint: URL of an Overpass API's ``interpreter``.
+        area: what is fetched.
+        target: must not exist.
+        limits: of time, tries and size.
+        tell: told what is being done.
+        sleep: how pauses are made.
+
+    Raises:
+        ImportMapError: the endpoint, the area or the target cannot be used, or the server gives no map.
+    """
+    limits = limits or Limits()
+    _check(endpoint, area, target)
+    request = urllib.request.Request(
+        endpoint,
+        data=urllib.parse.urlencode({"data": query(area, limits)}).encode(),
+        headers={
+            "User-Agent": f"automotive-cosim/{version('automotive-cosim')}",
+            "Accept": "application/osm3s+xml",
+        },
+    )
+    try:
+        with tempfile.TemporaryDirectory(prefix=f".{target.name}-", dir=target.absolute().parent) as scratch:
+            fetched = Path(scratch) / "answer.osm"
+            _fetch_patiently(request, fetched, limits, tell, sleep)
+            found = _judge(fetched, endpoint)
+            fetched.rename(target)
+    except OSError as error:
+        raise ImportMapError(f"{target} cannot be written ({error.strerror}); choose another --out") from error
+    return found
+
+
+def _check(endpoint: str, area: Area, target: Path) -> None:
+    parts = urllib.parse.urlsplit(endpoint)
+    if parts.scheme not in ("http", "https") or not parts.netloc:
+        raise ImportMapError(
+            f"{endpoint!r} is no Overpass endpoint; give a URL that ends in /api/interpreter with --endpoint"
+        )
+    if area.size_km2 > LARGEST_KM2:
+        raise ImportMapError(
+            f"the area has {area.size_km2:.0f} km2, more than the {LARGEST_KM2:.0f} that a server should be "
+            "asked for; give a smaller --bbox, or download an extract and crop it with `scenarios import --bbox`"
+        )
+    if target.exists():
+        raise ImportMapError(f"{target} exists; choose another --out")
+
+
+def _fetch_patiently(
+    request: urllib.request.Request, target: Path, limits: Limits, tell: Tell, sleep: Callable[[float], None]
+) -> None:
+    pause_s = FIRST_PAUSE_S
+    for left in range(limits.tries - 1, -1, -1):
+        try:
+            _fetch(request, target, limits, tell)
+        except _BusyError as error:
+            if not left:
+                times = "once" if limits.tries == 1 else f"{limits.tries} times"
+                raise ImportMapError(
+                    f"{request.full_url} gave no map, asked {times}: {error}; try later, or another --endpoint"
+                ) from error
+            wait_s = min(LONGEST_PAUSE_S, error.pause_s or pause_s)
+            tell(f"{error}; trying again in {wait_s:.0f} s", None)
+            sleep(wait_s)
+            pause_s *= 2
+        else:
+            return
+
+
+def _fetch(request: urllib.request.Request, target: Path, limits: Limits, tell: Tell) -> None:
+    tell("asking the server", None)
+    try:
+        with urllib.request.urlopen(request, timeout=limits.timeout_s) as answer, target.open("wb") as file:
+            _copy(answer, file, limits, tell)
+    except urllib.error.HTTPError as error:
+        with error:
+            text = _words(error.read(PIECE_BYTES).decode("utf-8", "replace"))
+            after = error.headers.get("Retry-After", "")
+        if error.code in BUSY:
+            raise _BusyError(
+                f"it is busy (HTTP {error.code})", float(after) if after.isdigit() else None
+            ) from error
+        raise ImportMapError(f"{request.full_url} refuses (HTTP {error.code}): {text}") from error
+    except TimeoutError as error:
+        raise _BusyError(f"no answer in {limits.timeout_s:g} s") from error
+    except urllib.error.URLError as error:
+        if isinstance(error.reason, TimeoutError):
+            raise _BusyError(f"no answer in {limits.timeout_s:g} s") from error
+        if isinstance(error.reason, socket.gaierror):
+            raise ImportMapError(f"{request.full_url}: no such host; is there a network?") from error
+        raise _BusyError(f"it cannot be reached ({error.reason})") from error
+    except (http.client.HTTPException, ConnectionError) as error:
+        raise _BusyError(f"the connection broke ({type(error).__name__})") from error
+
+
+def _copy(answer: http.client.HTTPResponse, file: IO[bytes], limits: Limits, tell: Tell) -> None:
+    size = 0
+    while piece := answer.read(PIECE_BYTES):
+        size += len(piece)
+        if size > limits.size_mb * 1e6:
+            raise ImportMapError(f"the map is larger than {limits.size_mb:g} MB; give a smaller --bbox or --max-mb")
+        file.write(piece)
+        tell(f"receiving, {size / 1e6:.1f} MB", None)
+    if size < int(answer.headers.get("Content-Length", 0)):
+        raise _BusyError("the connection broke")
+
+
+def _judge(file: Path, endpoint: str) -> Download:
+    """Tells a whole map from half of one, and from a page that is none.
+
+    Raises:
+        ImportMapError: it is not a whole map.
+    """
+    size = file.stat().st_size
+    with file.open("rb") as stream:
+        head = stream.read(4096).decode("utf-8", "replace")
+        stream.seek(max(0, size - 4096))
+        tail = stream.read().decode("utf-8", "replace")
+    if "<osm" not in head:
+        raise ImportMapError(
+            f"{endpoint} does not answer with a map but with {_words(head) or 'nothing'!r}; is it an Overpass API?"
+        )
+    remark = re.search(r"<remark>(.*?)</remark>", tail, re.DOTALL)
+    if remark:
+        raise ImportMapError(
+            f"the server gave up: {_words(remark[1])}; give a smaller --bbox or a longer --timeout"
+        )
+    if not tail.rstrip().endswith("</osm>"):
+        raise ImportMapError(f"the answer of {endpoint} is cut off after {size / 1e6:.1f} MB; try again")
+    note = re.search(r"<note>(.*?)</note>", head, re.DOTALL)
+    date = re.search(r'<meta [^>]*osm_base="([^"]*)"', head)
+    return Download(size / 1e6, _words(note[1]) if note else "", date[1] if date else "")
+
+
+def _words(markup: str) -> str:
+    """The text of a page, on one line, short."""
+    body = re.sub(r"<(script|style|head)\b.*?</\1>", " ", markup, flags=re.DOTALL | re.IGNORECASE)
+    text = " ".join(re.sub(r"<[^>]*>", " ", body).split())
+    return text if len(text) <= 300 else f"{text[:297]}..."

@@ -1,0 +1,156 @@
+"""What an import found, guessed and measured."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterable, Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from automotive_cosim.contracts import LimitSource
+from automotive_cosim.osm.area import Area
+from automotive_cosim.osm.country import LEFT_HAND, LIMITS
+from automotive_cosim.osm.extract import Extract
+from automotive_cosim.osm.folder import ATTRIBUTION
+from automotive_cosim.osm.network import Built
+from automotive_cosim.stability import Stability
+from automotive_cosim.traffic.network import Edge
+from automotive_cosim.traffic.posted import timed_limits
+
+
+@dataclass(frozen=True, slots=True)
+class ImportReport:
+    """The figures of one import; ``import.json`` in the scenario's folder."""
+
+    source: str
+    """File name of the extract."""
+    source_sha256: str
+    attribution: str
+    country: str
+    """ISO 3166-1 code."""
+    bbox: tuple[float, float, float, float] | None
+    """West, south, east, north, degrees: what was cropped to."""
+    left_hand: bool
+    ways: int
+    """Of the extract, open to cars."""
+    edges: int
+    """Of the network, inside junctions not counted."""
+    road_km: float
+    """Each direction counts."""
+    posted_share: float
+    """Of the road length, where the map states the limit (or that there is none)."""
+    derestricted_km: float
+    """Where it states that there is none."""
+    signals: int
+    roundabouts: int
+    tunnels: int
+    """Edges in tunnels."""
+    tunnel_km: float
+    lit_known_share: float
+    """Of the road length, where the map says whether there are lamps; likewise the next."""
+    built_up_known_share: float
+    school_zone_km: float
+    timed_limit_km: float
+    """Where other limits are posted for certain hours."""
+    bus_lane_km: float
+    speed_cameras: int
+    """At imported roads; one that watches both directions counts once."""
+    density_per_km: float
+    """Asked for; ``vehicles_per_hour`` is what is left after scaling."""
+    vehicles_per_hour: float
+    seed: int
+    scale: float
+    stability: Stability
+    """At that scale and the scenario's own step length."""
+    guessed: tuple[str, ...]
+    """In words."""
+
+    def write(self, target: Path) -> None:
+        """Writes the report as JSON."""
+        target.write_text(json.dumps(asdict(self), indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+
+
+def make_report(
+    source: Path,
+    extract: Extract,
+    built: Built,
+    stability: Stability,
+    *,
+    country: str,
+    area: Area | None,
+    density_per_km: float,
+    seed: int,
+    demand_per_hour: float,
+) -> ImportReport:
+    """Counts what came of a map. ``demand_per_hour`` is the traffic before scaling."""
+    edges = built.edges
+    length_m = sum(edge.length_m for edge in edges)
+    posted_m = sum(edge.length_m for edge in edges if edge.limit_source is LimitSource.POSTED)
+    free_m = sum(edge.length_m for edge in edges if edge.limit_mps is None)
+    tunnels = [edge for edge in edges if edge.in_tunnel]
+    return ImportReport(
+        source=source.name,
+        source_sha256=hashlib.sha256(source.read_bytes()).hexdigest(),
+        attribution=ATTRIBUTION,
+        country=country,
+        bbox=area,
+        left_hand=country in LEFT_HAND,
+        ways=len(extract.ways),
+        edges=len(edges),
+        road_km=round(length_m / 1000, 3),
+        posted_share=round(posted_m / length_m, 4),
+        derestricted_km=round(free_m / 1000, 3),
+        signals=built.signals,
+        roundabouts=built.roundabouts,
+        tunnels=len(tunnels),
+        tunnel_km=round(sum(edge.length_m for edge in tunnels) / 1000, 3),
+        lit_known_share=_share(length_m, (edge for edge in edges if edge.lit is not None)),
+        built_up_known_share=_share(length_m, (edge for edge in edges if edge.built_up is not None)),
+        school_zone_km=_km(edge for edge in edges if edge.school_zone),
+        timed_limit_km=_km(edge for edge in edges if edge.timed_limits),
+        bus_lane_km=_km(edge for edge in edges if edge.bus_lane),
+        speed_cameras=_cameras(built),
+        density_per_km=density_per_km,
+        vehicles_per_hour=round(demand_per_hour * stability.scale, 1),
+        seed=seed,
+        scale=stability.scale,
+        stability=stability,
+        guessed=tuple(_guesses(extract, built, country, (length_m - posted_m) / 1000)),
+    )
+
+
+def _km(edges: Iterable[Edge]) -> float:
+    return round(sum(edge.length_m for edge in edges) / 1000, 3)
+
+
+def _share(whole_m: float, edges: Iterable[Edge]) -> float:
+    return round(sum(edge.length_m for edge in edges) / whole_m, 4)
+
+
+def _cameras(built: Built) -> int:
+    """Those of one direction, where both have them."""
+    seen: set[str] = set()
+    count = 0
+    for edge in built.edges:
+        if built.network.opposite.get(edge.edge_id) not in seen:
+            count += len(edge.cameras_m)
+            seen.add(edge.edge_id)
+    return count
+
+
+def _guesses(extract: Extract, built: Built, country: str, assumed_km: float) -> Iterator[str]:
+    if assumed_km > 0:
+        whose = f"the general limits of {country}" if country in LIMITS else "limits as they are common"
+        yield f"the limit on {assumed_km:.2f} km of road: {whose}"
+    mapped = sum(node.tags.get("highway") == "traffic_signals" for node in extract.nodes.values())
+    if mapped:
+        yield f"junctions and phases of {built.signals} signals, from {mapped} points in the map"
+    if built.roundabouts:
+        yield f"right of way in {built.roundabouts} roundabouts"
+    unread = {part for way in extract.ways for part in timed_limits(way.tags.get("maxspeed:conditional", ""))[1]}
+    if unread:
+        yield f"limits under conditions that are not of the clock, left out: {', '.join(sorted(unread))}"
+    yield "lanes and right of way where the map is silent: by the class of the road"
+    yield "traffic: random trips, half of them across the map's edge"
+    yield "date, weather and ego trips: to be changed in scenario.toml"

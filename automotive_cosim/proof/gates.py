@@ -1,0 +1,299 @@
+"""The gates a task must pass, each a function from its hand-over to what is wrong with it.
+
+| gate | what must be so |
+|---|---|
+| oracle | every way of the expert succeeds by public actions, within the budget and 70 % of the deadline |
+| start | the goal does not hold at the hand-over |
+| prefix | ``complete`` after any earlier step of the expert's way scores 0 |
+| late | the expert's way after the deadline fails |
+| undone | the goal's own writes put back fail |
+| near | other zone, value or direction fails |
+| collateral | one unrelated change more fails |
+| trivial | no strategy without a thought wins: both halves of a pair, or the one there is |
+| random | random actions win at most one of twenty |
+| leak | without goal, ways and what is right every observation is the same, byte for byte |
+| road | with the car parked the trigger is not reached |
+| law | what is right in one half fails in the other |
+| repeat | the same seed gives the same words and trace; other seeds others |
+| residue | after another task's episode a task gives its own trace |
+| reach | the trigger comes in time in every scenario the task names |
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from automotive_cosim.agents.trivial import AlwaysAlert, NoOp, PressEverything, Random
+from automotive_cosim.checks import NothingDone
+from automotive_cosim.contracts import Action, ActionType, AlertKind, GoalStatus, Observation
+from automotive_cosim.env import CockpitEnv
+from automotive_cosim.errors import ScenarioError, TriggerNotReachedError
+from automotive_cosim.proof import mutations
+from automotive_cosim.proof.ground import CHANNELS, Ground, Played, Script, finish, sha256
+from automotive_cosim.suite import Basis, Half, Task
+from automotive_cosim.traffic.fork import Simulations
+from automotive_cosim.triggers import Parked, Standing
+from automotive_cosim.verdict import judge
+
+PACE = 0.7
+"""Of the deadline: what an expert may take, so that others have a chance."""
+RANDOM_RUNS = 20
+RANDOM_WINS = 1
+PRESSES = 60
+"""Steps for pressing everything: more controls than the fullest screen has."""
+PATIENCE = 200
+"""Steps where waiting counts, not the budget."""
+BY_NUMBER = re.compile(r"\b(element|index|widget)\s*(number\s*)?\d", re.IGNORECASE)
+
+Wrong = Iterator[str]
+Strategy = Callable[[Ground], Played]
+
+
+# --- one half ---------------------------------------------------------------------------------------------
+
+
+def oracle(ground: Ground) -> Wrong:
+    """Every way of the expert."""
+    for number, way in enumerate((ground.instance.moves, *ground.half.ways)):
+        played = ground.play(ground.oracle(way))
+        if not played.success:
+            yield f"way {number}: {played.why}"
+        elif played.seconds > PACE * ground.half.deadline.seconds:
+            yield f"way {number} takes {played.seconds:.0f} s of {ground.half.deadline.seconds:g} s"
+
+
+def start(ground: Ground) -> Wrong:
+    """The goal at the hand-over, and its words."""
+    moment = ground.env.moments[0]
+    if ground.half.declares is GoalStatus.COMPLETE and ground.half.goal.holds(moment, moment, [moment]):
+        yield f"already so: {ground.half.goal}"
+    if BY_NUMBER.search(ground.instance.goal):
+        yield f"names a widget by its number: {ground.instance.goal!r}"
+
+
+def prefix(ground: Ground) -> Wrong:
+    """``complete`` before the expert's last move; where nothing is to be done, at once."""
+    expert = ground.oracle()
+    walk = ground.env.branch()
+    while walk.verdict is None:
+        action = expert.act(walk.observation)
+        if action.action_type is ActionType.STATUS and len(walk.steps) > 1:
+            break  # all is done: the declaration is due
+        early = finish(walk.branch(), Script((Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE),)))
+        if early.success:
+            yield f"complete after {len(walk.steps) - 1} actions succeeds"
+        if action.action_type is ActionType.STATUS:
+            break
+        walk.step(action)
+    walk.close()
+
+
+def late(ground: Ground) -> Wrong:
+    """The expert's way begun when the deadline is over."""
+    expert = ground.oracle()
+    wait_s = ground.half.deadline.seconds
+
+    class Late:
+        left_s = wait_s
+
+        def act(self, observation: Observation) -> Action:
+            if self.left_s > 0:
+                self.left_s -= 10
+                return Action(ActionType.WAIT, seconds=10)
+            return expert.act(observation)
+
+    if ground.play(Late(), PATIENCE).success:
+        yield f"succeeds {wait_s:g} s late"
+
+
+def undone(ground: Ground, right: Played) -> Wrong:
+    """The expert's end state taken back."""
+    if ground.half.goal.writes:
+        moments = mutations.undone(right.moments[0], right.moments, ground.half)
+        if _wins(ground, right, moments):
+            yield "succeeds with everything put back"
+
+
+def near(ground: Ground, right: Played) -> Wrong:
+    """The expert's end state somewhere else or the wrong way."""
+    for what, moments in mutations.near_misses(right.moments[0], right.moments, ground.half):
+        if _wins(ground, right, moments):
+            yield f"succeeds with {what}"
+
+
+def collateral(ground: Ground, right: Played) -> Wrong:
+    """The expert's end state and something else."""
+    rng = np.random.default_rng([ground.seed, 7])
+    for what, moments in mutations.collaterals(right.moments[0], right.moments, ground.half, rng):
+        if _wins(ground, right, moments):
+            yield f"succeeds with {what}"
+
+
+def random(ground: Ground) -> Wrong:
+    """Random actions."""
+    wins = 0
+    for number in range(RANDOM_RUNS):
+        wins += ground.play(ground.agent(Random(number))).success
+        if wins > RANDOM_WINS:
+            yield f"random actions win {wins} of {number + 1}"
+            return
+
+
+def _wins(ground: Ground, right: Played, moments: tuple[object, ...]) -> bool:
+    declared = right.actions[-1]
+    assert declared is not None
+    verdict = judge(ground.instance, moments, right.idle, declared.goal_status, declared.reason)  # type: ignore[arg-type]
+    return verdict.success
+
+
+# --- strategies over all halves ---------------------------------------------------------------------------
+
+
+def _strategies(grounds: dict[str, Ground]) -> Iterator[tuple[str, Strategy]]:
+    yield "no-op", lambda ground: ground.play(ground.agent(NoOp()))
+    for status in GoalStatus:
+        yield str(status), partial(Ground.declares, status=status)
+    yield "press-everything", lambda ground: ground.play(ground.agent(PressEverything()), PRESSES)
+    for kind in AlertKind:
+        yield f"always {kind}", partial(_alerts, kind=kind)
+    if len(grounds) > 1:
+        for name, acting in grounds.items():
+            yield f"context-reader, {name}", partial(_reads_context, acting=acting)
+
+
+def _alerts(ground: Ground, kind: AlertKind) -> Played:
+    return ground.play(ground.agent(AlwaysAlert(kind)))
+
+
+def _reads_context(ground: Ground, acting: Ground) -> Played:
+    """Does what is right in ``acting`` if a rule on its topic stands in the context, else declines."""
+    topics = {topic.strip() for topic in acting.half.rule.split(",")}
+    known = {
+        name for applied in ground.env.moments[0].context.rules for name in (applied.rule.topic, applied.rule.id)
+    }
+    if acting.half.basis is not Basis.LAW or _topics(acting, topics) & known:
+        return ground.play(acting.oracle())
+    return ground.declares(GoalStatus.NOT_NEEDED)
+
+
+def _topics(ground: Ground, ids: set[str]) -> set[str]:
+    return {
+        applied.rule.topic
+        for applied in ground.env.moments[0].context.rules
+        if any(applied.rule.id in text for text in ids)
+    }
+
+
+def trivial(grounds: dict[str, Ground]) -> Wrong:
+    """Strategies without a thought, over every half."""
+    for name, strategy in _strategies(grounds):
+        if all(strategy(ground).success for ground in grounds.values()):
+            yield f"{name} wins" + (" both halves" if len(grounds) > 1 else "")
+
+
+def law(grounds: dict[str, Ground]) -> Wrong:
+    """What is right in one half, done in the other."""
+    if len(grounds) < 2:
+        return
+    for name, other in (("first", "second"), ("second", "first")):
+        if grounds[name].play(grounds[other].oracle()).success:
+            yield f"what is right in the {other} half also succeeds in the {name}"
+
+
+# --- further hand-overs -----------------------------------------------------------------------------------
+
+
+def leak(ground: Ground, simulations: Simulations) -> Wrong:
+    """The same hand-over of a task that has no goal."""
+    task = ground.task
+    bare = {name: _bare(task.half(name)) for name in task.halves}
+    twin = Ground.reach(
+        replace(task, first=bare["first"], second=bare.get("second")), ground.half_name, ground.seed, simulations
+    )
+    steps = [Action(ActionType.NAVIGATE_HOME), Action(ActionType.WAIT, seconds=2)]
+    seen = [_observed(side.env, steps) for side in (ground, twin)]
+    twin.close()
+    if seen[0] != seen[1]:
+        yield "an observation differs without goal, ways and declaration"
+
+
+def _bare(half: Half) -> Half:
+    return replace(
+        half,
+        goal=NothingDone(),
+        moves=(),
+        ways=(),
+        basis=Basis.WISH,
+        rule="",
+        declares=GoalStatus.INFEASIBLE,
+        reasons=frozenset(),
+        may_write=frozenset(),
+    )
+
+
+def _observed(env: CockpitEnv, actions: list[Action]) -> list[str]:
+    branch = env.branch()
+    seen = [repr(branch.observation)]
+    for action in actions:
+        branch.step(action)
+        seen.append(repr(branch.observation))
+    branch.close()
+    return seen
+
+
+def road(ground: Ground, simulations: Simulations) -> Wrong:
+    """The same task with the car parked; one that asks for standing is left out."""
+    half = ground.task.half(ground.half_name)
+    if half.start.parked or "Parked" in str(half.trigger.condition) or _stands(half):
+        return
+    parked = replace(half, start=replace(half.start, parked=True))
+    changed = {"first": parked} if ground.half_name == "first" else {"second": parked}
+    try:
+        Ground.reach(replace(ground.task, **changed), ground.half_name, ground.seed, simulations).close()  # type: ignore[arg-type]
+    except TriggerNotReachedError:
+        return
+    yield "its trigger is reached by a parked car"
+
+
+def _stands(half: Half) -> bool:
+    conditions = getattr(half.trigger.condition, "conditions", (half.trigger.condition,))
+    return any(isinstance(condition, Parked | Standing) for condition in conditions)
+
+
+def repeat(ground: Ground, simulations: Simulations) -> Wrong:
+    """The same seed once more."""
+    twin = Ground.reach(ground.task, ground.half_name, ground.seed, simulations)
+    if (twin.instance.goal, twin.instance.parameters) != (ground.instance.goal, ground.instance.parameters):
+        yield f"the same seed says {twin.instance.goal!r} after {ground.instance.goal!r}"
+    if sha256(twin.env) != sha256(ground.env) or hash_of_oracle(twin) != hash_of_oracle(ground):
+        yield "the same seed gives another trace"
+    twin.close()
+
+
+def hash_of_oracle(ground: Ground) -> str:
+    """The hash of the expert's episode."""
+    branch = ground.env.branch()
+    expert, done = ground.oracle(), False
+    while not done:
+        _, _, terminated, truncated, _ = branch.step(expert.act(branch.observation))
+        done = terminated or truncated
+    digest = sha256(branch)
+    branch.close()
+    return digest
+
+
+def reach(task: Task, seed: int, simulations: Simulations) -> Wrong:
+    """Every further scenario."""
+    for scenario in task.scenarios:
+        env = CockpitEnv(task, scenario=scenario, channels=CHANNELS, simulations=simulations)
+        try:
+            env.reset(seed=seed)
+        except (TriggerNotReachedError, ScenarioError) as error:
+            yield f"{scenario}: {error}"
+        finally:
+            env.close()

@@ -1,0 +1,104 @@
+"""Wrong end states made from a right one by code: what a judge must not take for success."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from automotive_cosim.cockpit.signals import ACTUATORS, Signal, named
+from automotive_cosim.cockpit.vehicle import COUPLED
+from automotive_cosim.cosim import Moment
+from automotive_cosim.suite import Half
+
+SIBLINGS = (("Driver", "Passenger"), ("Front", "Rear"), ("Left", "Right"), ("Row1", "Row2"), ("Low", "High"))
+"""Words of signal paths that change places: the other seat, window, side, row or beam."""
+COLLATERALS = 3
+"""So many unrelated switches are tried, drawn by the seed."""
+
+
+def undone(start: Moment, moments: Sequence[Moment], half: Half) -> tuple[Moment, ...]:
+    """The goal's own writes back where they were."""
+    values = {key: start.commands[key] for key in half.goal.writes if key in start.commands}
+    return put(moments, values)
+
+
+def near_misses(start: Moment, moments: Sequence[Moment], half: Half) -> Iterator[tuple[str, tuple[Moment, ...]]]:
+    """What was changed for the goal, changed somewhere else, the wrong way, or to something else."""
+    end = moments[-1]
+    writes = half.goal.writes
+    for key in sorted(writes):
+        before, after = start.commands.get(key), end.commands.get(key)
+        if before == after:
+            continue
+        if key in ACTUATORS:
+            for sibling in _siblings(key):
+                if sibling not in writes:
+                    yield f"{sibling} in place of {key}", put(moments, {key: before, sibling: after})
+            other = _wrong_way(named(key), before, after)
+            if other is not None:
+                yield f"{key} {other}", put(moments, {key: other})
+        elif isinstance(after, str) and after:
+            yield f"{key} something else", put(moments, {key: f"another {after}"})
+        elif isinstance(after, list) and after and not (key == "requests" and "alerts" in writes):
+            # An alert's request goes with it: what counts is the alert.
+            last = after[-1]
+            wrong = [*after[:-1], f"another {last}"] if isinstance(last, str) else [*after, last]
+            yield f"{key} something else", put(moments, {key: wrong})
+
+
+def collaterals(
+    start: Moment, moments: Sequence[Moment], half: Half, rng: np.random.Generator
+) -> Iterator[tuple[str, tuple[Moment, ...]]]:
+    """The right end state, and one switch more that has nothing to do with it."""
+    allowed = half.goal.writes | half.may_write
+    allowed |= frozenset().union(*(COUPLED.get(path, frozenset()) for path in allowed))
+    free = [path for path in ACTUATORS if path not in allowed]
+    for path in rng.choice(free, COLLATERALS, replace=False):
+        value = _other(named(str(path)), moments[-1].commands[str(path)])
+        yield f"{path} {value} as well", put(moments, {str(path): value})
+
+
+def put(moments: Sequence[Moment], values: Mapping[str, Any]) -> tuple[Moment, ...]:
+    """The moments, the last of them with other values."""
+    end = moments[-1]
+    signals = {path: value for path, value in values.items() if path in end.signals}
+    last = replace(end, commands={**end.commands, **values}, signals={**end.signals, **signals})
+    return (*moments[:-1], last)
+
+
+def _siblings(path: str) -> Iterator[str]:
+    for one, other in SIBLINGS:
+        for word, instead in ((one, other), (other, one)):
+            sibling = path.replace(word, instead)
+            if sibling != path and sibling in ACTUATORS and _same_kind(named(sibling), named(path)):
+                yield sibling
+
+
+def _same_kind(one: Signal[Any], other: Signal[Any]) -> bool:
+    return (type(one.default), one.minimum, one.maximum, one.allowed) == (
+        type(other.default),
+        other.minimum,
+        other.maximum,
+        other.allowed,
+    )
+
+
+def _wrong_way(signal: Signal[Any], before: Any, after: Any) -> Any:
+    """A number moved in the other direction; None where there is no other direction."""
+    if isinstance(before, bool) or not isinstance(before, float):
+        return None
+    moved = before - signal.step if after > before else before + signal.step
+    return moved if signal.low <= moved <= signal.high else None
+
+
+def _other(signal: Signal[Any], value: Any) -> Any:
+    if isinstance(value, bool):
+        return not value
+    if signal.allowed:
+        return next(other for other in signal.allowed if other != value)
+    if isinstance(value, str):
+        return f"another {value}"
+    return value + signal.step if value + signal.step <= signal.high else value - signal.step

@@ -1,0 +1,84 @@
+"""The case that shows what place is worth: one instance, once with geo-context and once without."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+from automotive_cosim.actions import parse
+from automotive_cosim.contracts import Json
+from automotive_cosim.report.findings import PLACE
+from automotive_cosim.report.page import element, embedded
+from automotive_cosim.report.plot import Plot
+from automotive_cosim.report.results import Results, instance
+from automotive_cosim.run.store import read_trace, trace_file
+from automotive_cosim.run.words import action_in_words
+
+CONTROLS = ("none", "irrelevant", "wrong", "gps", "context")
+"""What is set against full geo-context, the clearest contrast first."""
+
+
+@dataclass(frozen=True, slots=True)
+class Side:
+    """One of the two episodes, ready to be shown."""
+
+    row: Json
+    result: Json
+    wide: Plot
+    narrow: Plot
+    steps: tuple[tuple[str, str, str], ...]
+    """Seconds from the hand-over, what was done, and the thought behind it."""
+    picture: str
+    """The cockpit at the end, as data; empty where no pictures were kept."""
+
+
+def contrast(results: Results) -> tuple[Side, Side] | None:
+    """An instance that the same agent solved with geo-context and not without; None if there is none.
+
+    Pairs that place decides come first, then other safety tasks, then the order of the ids.
+    """
+    rows = [row for row in results.rows if row["success"] is not None and _has_trace(results, row)]
+    solved = {_key(row): row for row in rows if row["geo"] == "full" and row["success"]}
+    found = [
+        (PLACE not in row.get("tags", ()), not row["pair"], CONTROLS.index(row["geo"]), row["id"], row)
+        for row in rows
+        if row["geo"] in CONTROLS and not row["success"] and _key(row) in solved
+    ]
+    if not found:
+        return None
+    *_, without = min(found, key=lambda each: each[:-1])
+    return _side(results.folder, solved[_key(without)]), _side(results.folder, without)
+
+
+def _key(row: Json) -> tuple[object, ...]:
+    return row["agent"], row["model"], *instance(row)
+
+
+def _has_trace(results: Results, row: Json) -> bool:
+    return trace_file(results.folder, row["id"]).is_file()
+
+
+def _side(folder: Path, row: Json) -> Side:
+    *steps, last = read_trace(folder, row["id"])
+    result = last["result"]
+    pictures = sorted((folder / "pictures" / row["id"]).glob("step_*.jpg"))
+    return Side(
+        row,
+        result,
+        Plot(result, 480, 260),
+        Plot(result, 360, 240),
+        tuple(_told(steps)),
+        embedded(pictures[-1].read_bytes(), "jpeg") if pictures else "",
+    )
+
+
+def _told(steps: Sequence[Json]) -> list[tuple[str, str, str]]:
+    told = []
+    for before, step in pairwise(steps):
+        action = None if step["action"] is None else parse(step["action"])
+        at_s = before["time_s"] - steps[0]["time_s"]
+        words = action_in_words(action, tuple(map(element, before["elements"])))
+        told.append((f"{at_s:+.1f} s", words, step["thought"]))
+    return told

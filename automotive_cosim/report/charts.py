@@ -1,0 +1,208 @@
+"""Plots of an evaluation as SVG, in the colours of the page they stand on."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from io import StringIO
+from typing import TYPE_CHECKING, Any
+
+from automotive_cosim.errors import SetupError
+from automotive_cosim.report.findings import NAMES
+from automotive_cosim.report.results import NOT_RANKED, Contestant, Results, pairs
+from automotive_cosim.report.stats import Rate
+from automotive_cosim.report.summary import DIMENSIONS, rate_of
+from automotive_cosim.suite import Module
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+INK = "#010203"
+"""Stands for the colour of the text around the plot, which differs between day and night."""
+PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c6bb1", "#7f7f7f")
+"""Okabe and Ito's colours, which most people can tell apart, without black and yellow, and two more."""
+DASHES: dict[str, Any] = {
+    "full": "-",
+    "none": ":",
+    "irrelevant": "--",
+    "gps": "-.",
+    "context": (0, (6, 2)),
+    "wrong": (0, (1, 3)),
+}
+"""Of the geo controls."""
+MARKERS = "osD^vP*X"
+WIDE_IN, NARROW_IN = 9.6, 4.0
+"""A page is at most 1040 pixels wide, a telephone about 390; an inch is 96 pixels."""
+
+
+def charts(results: Results) -> dict[str, tuple[str, str, str]]:
+    """Plots by name: title, SVG for a wide page, SVG for a narrow one.
+
+    Raises:
+        SetupError: matplotlib is not installed.
+    """
+    made = {
+        "dimensions": ("Success by dimension", _dimensions(results)),
+        "modules": ("Success by module", _modules(results)),
+        "prompts": ("Length of prompts", _prompts(results)),
+        "distribution": ("Tasks by module and dimension", _distribution(results)),
+    }
+    return {
+        name: (title, drawn(name, draw, WIDE_IN), drawn(name, draw, NARROW_IN))
+        for name, (title, draw) in made.items()
+        if draw is not None
+    }
+
+
+Drawing = tuple[float, Callable[["Axes"], None]]
+"""Height in inches, and what draws it."""
+
+
+def _dimensions(results: Results) -> Drawing:
+    def rates(each: Contestant) -> list[Rate]:
+        mine = results.of(each)
+        firsts = [row for row in mine if row["half"] == "first"]
+        return [
+            *(rate_of(row for row in firsts if row["dimension"] == name) for name in DIMENSIONS),
+            rate_of(pair for pair, _ in pairs(mine)),
+        ]
+
+    return _rates(results, [*DIMENSIONS.values(), "Safety pairs"], rates)
+
+
+def _modules(results: Results) -> Drawing:
+    names = [str(module) for module in Module if any(row["module"] == module for row in results.rows)]
+
+    def rates(each: Contestant) -> list[Rate]:
+        return [rate_of(row for row in results.of(each) if row["module"] == name) for name in names]
+
+    return _rates(results, [NAMES.get(Module(name), name.capitalize()) for name in names], rates)
+
+
+def _rates(results: Results, names: Sequence[str], rates: Callable[[Contestant], list[Rate]]) -> Drawing:
+    """A row for each name, in it a point with its interval for each contestant."""
+    contestants = results.contestants
+    height_in = 0.9 + len(names) * (0.2 + 0.17 * len(contestants)) + 0.23 * len(contestants)
+
+    def draw(axes: Axes) -> None:
+        for number, each in enumerate(contestants):
+            offset = (number - (len(contestants) - 1) / 2) * 0.8 / len(contestants)
+            found = [(place + offset, rate) for place, rate in enumerate(rates(each)) if rate.interval is not None]
+            values = [(rate.value or 0.0) * 100 for _, rate in found]
+            bounds = [rate.interval for _, rate in found if rate.interval is not None]
+            axes.errorbar(
+                values,
+                [place for place, _ in found],
+                xerr=[
+                    [max(0.0, value - bound.low * 100) for value, bound in zip(values, bounds, strict=True)],
+                    [max(0.0, bound.high * 100 - value) for value, bound in zip(values, bounds, strict=True)],
+                ],
+                fmt=MARKERS[number % len(MARKERS)],
+                color=PALETTE[number % len(PALETTE)],
+                markerfacecolor="none" if each.agent in NOT_RANKED else PALETTE[number % len(PALETTE)],
+                markersize=6,
+                elinewidth=1.6,
+                capsize=0,
+                label=each.label,
+            )
+        axes.set_yticks(range(len(names)), names)
+        axes.set_ylim(len(names) - 0.5, -0.5)
+        axes.set_xlim(-2, 102)
+        axes.set_xlabel("per cent, with 95 % intervals")
+        legend(axes)
+
+    return height_in, draw
+
+
+def _prompts(results: Results) -> Drawing | None:
+    """How long prompts were, as shares of them up to each length; the dashes tell the geo controls apart."""
+    lengths = {
+        each: sorted(length for row in results.of(each) for length in row.get("prompt_tokens") or ())
+        for each in results.contestants
+    }
+    lengths = {each: found for each, found in lengths.items() if found}
+    if not lengths:
+        return None
+    agents = list(dict.fromkeys((each.agent, each.model) for each in lengths))
+
+    def draw(axes: Axes) -> None:
+        for each, found in lengths.items():
+            shares = [100 * (place + 1) / len(found) for place in range(len(found))]
+            axes.step(
+                [found[0], *found],
+                [0, *shares],
+                where="post",
+                color=PALETTE[agents.index((each.agent, each.model)) % len(PALETTE)],
+                linestyle=DASHES[each.geo],
+                label=each.label,
+            )
+        axes.set_xlim(left=0)
+        axes.set_ylim(0, 102)
+        axes.set_ylabel("per cent of prompts")
+        axes.set_xlabel("tokens or fewer")
+        legend(axes)
+
+    return 3.2 + 0.23 * len(lengths), draw
+
+
+def _distribution(results: Results) -> Drawing:
+    """Tasks by module, stacked by dimension."""
+    tasks = {row["task"]: row for row in results.rows}.values()
+    modules = [module for module in Module if any(row["module"] == module for row in tasks)]
+
+    def draw(axes: Axes) -> None:
+        done = [0] * len(modules)
+        for number, (name, title) in enumerate(DIMENSIONS.items()):
+            counts = [
+                sum(row["module"] == module and row["dimension"] == name for row in tasks) for module in modules
+            ]
+            axes.barh(range(len(modules)), counts, left=done, height=0.6, color=PALETTE[number], label=title)
+            done = [before + count for before, count in zip(done, counts, strict=True)]
+        axes.set_yticks(range(len(modules)), [NAMES.get(module, module.capitalize()) for module in modules])
+        axes.set_ylim(len(modules) - 0.5, -0.5)
+        axes.set_xlabel("tasks")
+        axes.locator_params(axis="x", integer=True)
+        legend(axes)
+
+    return 1.9 + 0.32 * len(modules), draw
+
+
+def legend(axes: Axes) -> None:
+    """What the marks mean, above the plot and as wide as all of it."""
+    axes.figure.legend(
+        *axes.get_legend_handles_labels(), loc="outside upper left", frameon=False, handletextpad=0.6
+    )
+
+
+def drawn(name: str, drawing: Drawing, width_in: float) -> str:
+    """A plot as SVG, its ids its own.
+
+    Raises:
+        SetupError: matplotlib is not installed.
+    """
+    try:
+        import matplotlib as mpl
+        from matplotlib.figure import Figure
+    except ImportError as error:
+        raise SetupError("plots need matplotlib: pip install 'automotive-cosim[report]'") from error
+    height_in, draw = drawing
+    style: Any = {
+        "svg.fonttype": "none",
+        "svg.hashsalt": f"{name} {width_in}",
+        "font.family": "sans-serif",
+        "font.size": 10,
+        **dict.fromkeys(("text.color", "axes.edgecolor", "axes.labelcolor", "xtick.color", "ytick.color"), INK),
+    }
+    with mpl.rc_context(style):
+        figure = Figure(figsize=(width_in, height_in), layout="constrained")
+        axes = figure.subplots()
+        axes.grid(axis="x", color=INK, alpha=0.15, linewidth=0.8)
+        axes.spines[["top", "right", "left"]].set_visible(False)
+        axes.tick_params(length=0)
+        draw(axes)
+        text = StringIO()
+        figure.savefig(text, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
+    svg = text.getvalue()
+    # Several plots stand on one page, where an id may stand once.
+    own = re.sub(r'( id="|href="#|url\(#)', rf"\g<1>{name}-{width_in:.0f}-", svg[svg.index("<svg") :])
+    return own.replace(INK, "currentColor")

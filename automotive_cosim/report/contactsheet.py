@@ -1,0 +1,44 @@
+"""All screens of a cockpit on one sheet, by day and by night."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import product
+
+from PIL import Image
+
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cockpit.drawing import Canvas
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.screens import SCREENS
+from automotive_cosim.cockpit.signals import HMI
+from automotive_cosim.cockpit.theme import DAY, SCREEN_HEIGHT, SCREEN_WIDTH, Type
+
+COLUMNS, CAPTION_HEIGHT, GAP = 6, 22, 10
+
+
+def contact_sheet(cockpit: Cockpit, width: int = 400) -> Image.Image:
+    """The sheet, six screens a row, each by day and beside it by night.
+
+    Args:
+        cockpit: is left as it is.
+        width: of each screen in pixels.
+    """
+    size = width, round(width * SCREEN_HEIGHT / SCREEN_WIDTH)
+    step_x, step_y = width + GAP, size[1] + CAPTION_HEIGHT + GAP
+    lines = -(-2 * len(SCREENS) // COLUMNS)
+    canvas = Canvas.plain(COLUMNS * step_x + GAP, lines * step_y + GAP, 1.0, DAY.background)
+    for at, (name, picture) in enumerate(pictures(cockpit)):
+        left, top = GAP + at % COLUMNS * step_x, GAP + at // COLUMNS * step_y
+        canvas.text(Rect(left, top, width, CAPTION_HEIGHT), name, Type.SMALL, DAY.text)
+        canvas.image.paste(picture.resize(size, Image.Resampling.LANCZOS), (left, top + CAPTION_HEIGHT))
+    return canvas.image
+
+
+def pictures(cockpit: Cockpit) -> Iterator[tuple[str, Image.Image]]:
+    """Name and picture at full size of every screen, each first by day and then by night."""
+    for screen, light in product(SCREENS, HMI.DAY_NIGHT.allowed):
+        shown = cockpit.copy()
+        shown.inject(HMI.DAY_NIGHT.path, light)
+        shown.visit(screen)
+        yield f"{screen}, {light.lower()}", Image.fromarray(shown.screenshot())

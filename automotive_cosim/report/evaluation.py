@@ -1,0 +1,149 @@
+"""``report.html``: an evaluation on one page that opens from disk, and its tables and plots as files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import jinja2
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.errors import UserError
+from automotive_cosim.report import findings
+from automotive_cosim.report.case import contrast
+from automotive_cosim.report.charts import INK, charts
+from automotive_cosim.report.failures import FailureClass
+from automotive_cosim.report.page import PARTS
+from automotive_cosim.report.results import Results, contestant, read_results
+from automotive_cosim.report.summary import errors, tables
+from automotive_cosim.report.tables import Cell, Table
+from automotive_cosim.run.record import write_whole
+from automotive_cosim.run.store import cannot_write, megabytes, read_trace, trace_file
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """The episodes behind one figure."""
+
+    number: int
+    title: str
+    figure: str
+    episodes: tuple[Json, ...]
+
+
+def write_report(folder: Path) -> Path:
+    """Writes ``report.html``, ``tables/`` and ``plots/`` into an evaluation's folder; returns the page.
+
+    Raises:
+        UserError: it is no evaluation, holds no episode yet, or cannot be written.
+        SetupError: the extra ``report`` is not installed.
+    """
+    results = read_results(folder)
+    if not results.rows:
+        raise UserError(f"{folder} holds no episode yet; the `eval` command that made it goes on")
+    found = findings.classes(results)
+    made, plots = all_tables(results, found), charts(results)
+    try:
+        for name in ("tables", "plots"):
+            (folder / name).mkdir(exist_ok=True)
+        for table in made:
+            for suffix, text in (("md", table.markdown()), ("csv", table.csv()), ("tex", table.latex())):
+                write_whole(folder / "tables" / f"{table.name}.{suffix}", text)
+        for name, (_, wide, _) in plots.items():
+            write_whole(folder / "plots" / f"{name}.svg", wide.replace("currentColor", INK))
+        page = folder / "report.html"
+        write_whole(page, _page(results, made, plots, found))
+    except OSError as error:
+        raise cannot_write(folder, error) from error
+    return page
+
+
+def all_tables(results: Results, found: Mapping[str, FailureClass]) -> list[Table]:
+    """Every table of the report, the most important first."""
+    made = [
+        *tables(results),
+        findings.failures(results, found),
+        findings.harm(results),
+        findings.place_effect(results),
+        findings.by_label(results, "skills", "Skill"),
+        findings.by_label(results, "tags", "Tag"),
+        findings.prompts(results),
+        findings.distribution(results),
+        errors(results),
+    ]
+    return [table for table in made if table.rows]
+
+
+def _page(
+    results: Results,
+    made: Sequence[Table],
+    plots: dict[str, tuple[str, str, str]],
+    found: Mapping[str, FailureClass],
+) -> str:
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("automotive_cosim", "report"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    numbers = {row["id"]: number for number, row in enumerate(results.rows)}
+    sources, linked = _sources(results, made)
+    starts = results.manifest["starts"]
+    return environment.get_template("evaluation.html").render(
+        results=results,
+        tables=[table for table in linked if table[0].name not in ("published", "errors")],
+        published=next(table for table in made if table.name == "published"),
+        errors=next((table for table in linked if table[0].name == "errors"), None),
+        plots=plots,
+        sources=sources,
+        numbers=numbers,
+        episodes=[_episode(results.folder, row) for row in results.rows],
+        case=contrast(results),
+        classes={episode: name.replace("_", " ") for episode, name in found.items()},
+        failures=[row for row in results.rows if row["success"] is False],
+        labels={row["id"]: contestant(row).label for row in results.rows},
+        parts=PARTS,
+        plan=results.manifest["plan"],
+        starts=starts,
+        is_mixed=any(start["git"] != starts[0]["git"] for start in starts),
+        has_stand_in=any(row["model"] == "rules" for row in results.rows),
+        megabytes=megabytes(results.folder),
+    )
+
+
+def _sources(
+    results: Results, made: Sequence[Table]
+) -> tuple[list[Source], list[tuple[Table, list[list[tuple[str, int | None]]]]]]:
+    """The episodes behind each figure, numbered, and each table's cells with the numbers they link to."""
+    rows = {row["id"]: row for row in results.rows}
+    sources: list[Source] = []
+    linked = []
+    for table in made:
+        cells: list[list[tuple[str, int | None]]] = []
+        for row in table.rows:
+            told: list[tuple[str, int | None]] = []
+            for column, cell in zip(table.columns, row, strict=True):
+                number = None
+                if isinstance(cell, Cell) and cell.episodes:
+                    number = len(sources)
+                    named = ", ".join(map(str, row[: table.heads]))
+                    title = f"{table.title}: {named}" + ("" if table.name == "errors" else f", {column}")
+                    sources.append(Source(number, title, cell.text, tuple(rows[name] for name in cell.episodes)))
+                told.append((str(cell), number))
+            cells.append(told)
+        linked.append((table, cells))
+    return sources, linked
+
+
+def _episode(folder: Path, row: Json) -> Json:
+    """What the page tells of an episode: its line, its result if there is a trace, and its files."""
+    has_trace = trace_file(folder, row["id"]).is_file()
+    pictures = sorted((folder / "pictures" / row["id"]).glob("step_*.jpg"))
+    return {
+        "row": row,
+        "result": read_trace(folder, row["id"])[-1]["result"] if has_trace else None,
+        "trace": trace_file(folder, row["id"]).relative_to(folder).as_posix() if has_trace else "",
+        "pictures": [path.relative_to(folder).as_posix() for path in pictures],
+    }

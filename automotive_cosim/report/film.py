@@ -1,0 +1,175 @@
+"""``episode.webp``: the episode as an animation, cockpit and road side by side."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+from PIL import Image
+
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cockpit.drawing import Canvas
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.map import RoadMap
+from automotive_cosim.cockpit.theme import NIGHT, Colour, Type
+from automotive_cosim.cosim import Moment
+from automotive_cosim.env import CockpitEnv
+from automotive_cosim.report.filmplot import speed_plot
+from automotive_cosim.report.filmroad import draw_road
+from automotive_cosim.run.episode import EpisodeResult, Shot, Watcher
+from automotive_cosim.run.timeline import Sample
+from automotive_cosim.run.words import action_in_words, is_over
+
+WIDTH, HEIGHT = 1280, 720
+SCALE = 0.75
+"""Of the film's pixels: 960 x 540."""
+COCKPIT = Rect(20, 20, 848, 477)
+ROAD = Rect(884, 20, 376, 477)
+SIGN = Rect(ROAD.x + 12, ROAD.y + 12, ROAD.width - 24, 52)
+PLOT = Rect(20, 513, 848, 187)
+INFO = Rect(884, 513, 376, 187)
+BEFORE_FRAMES, BEFORE_EVERY_S = 8, 2.0
+AFTER_EVERY_S = 1.0
+BEFORE_MS, STEP_MS, AFTER_MS, LAST_MS = 350, 1500, 350, 4000
+QUALITY = 72
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """One picture of the film before it is composed."""
+
+    time_s: float
+    cockpit: Image.Image
+    title: str
+    words: str
+    milliseconds: int
+
+
+class Film(Watcher):
+    """Collects frames while an episode runs and writes the film when it is over."""
+
+    def __init__(self, folder: Path) -> None:
+        """``folder`` is the record's; nothing is written before the end."""
+        self._path = folder / "episode.webp"
+        self._before: deque[Frame] = deque(maxlen=BEFORE_FRAMES)
+        self._steps: list[Frame] = []
+        self._after: list[Frame] = []
+        self._map: RoadMap | None = None
+        self._hand_over_s = 0.0
+
+    def moved(self, moment: Moment, cockpit: Cockpit) -> None:
+        """Takes a picture now and then: of the drive up, and of what may turn out to be the aftermath."""
+        if self._map is None:
+            if not self._before or moment.time_s - self._before[-1].time_s >= BEFORE_EVERY_S:
+                title, words = "The drive up to the hand-over", "nobody acts yet"
+                self._before.append(_frame(moment.time_s, cockpit.screenshot(), title, words, BEFORE_MS))
+        elif not self._after or moment.time_s - self._after[-1].time_s >= AFTER_EVERY_S:
+            title, words = "After the end", "how the drive goes on"
+            self._after.append(_frame(moment.time_s, cockpit.screenshot(), title, words, AFTER_MS))
+
+    def handed_over(self, env: CockpitEnv, shot: Shot) -> None:
+        """The first frame of the episode, with the driver's words."""
+        self._map = RoadMap(env.network)
+        self._hand_over_s = shot.step.moment.time_s
+        words = f"“{env.instance.goal}”"
+        self._steps.append(_frame(self._hand_over_s, shot.screenshot, "The driver says", words, STEP_MS))
+
+    def stepped(self, shot: Shot) -> None:
+        """One frame a step."""
+        self._after.clear()
+        step = shot.step
+        title = f"{step.number}  {action_in_words(step.action, shot.seen)}"
+        words = shot.thought or step.feedback.text
+        self._steps.append(_frame(step.moment.time_s, shot.screenshot, title, words, STEP_MS))
+
+    def finished(self, result: EpisodeResult) -> None:
+        """Composes and writes the film, if there was a hand-over."""
+        if self._map is None:
+            return
+        frames = [*self._before, *self._steps, *self._after]
+        frames[-1] = replace(frames[-1], milliseconds=LAST_MS, title=_outcome(result), words=_why(result))
+        pictures = [self._compose(frame, result) for frame in frames]
+        draft = self._path.with_name(f".{self._path.name}.part")
+        pictures[0].save(
+            draft,
+            format="WEBP",
+            save_all=True,
+            append_images=pictures[1:],
+            duration=[frame.milliseconds for frame in frames],
+            loop=0,
+            quality=QUALITY,
+            method=3,
+        )
+        draft.replace(self._path)
+
+    def _compose(self, frame: Frame, result: EpisodeResult) -> Image.Image:
+        assert self._map is not None
+        at_s = frame.time_s - self._hand_over_s
+        past = [sample for sample in result.path if sample.at_s <= at_s + 0.05]
+        here = past[-1]
+        canvas = Canvas.plain(round(WIDTH * SCALE), round(HEIGHT * SCALE), SCALE, NIGHT.background)
+        canvas.box(COCKPIT.inset(-3), NIGHT.pressed, 17)
+        canvas.picture(COCKPIT, frame.cockpit, 14)
+        draw_road(canvas, ROAD, self._map, past, (SIGN,))
+        _road_sign(canvas, here)
+        canvas.picture(PLOT, speed_plot(result.path, len(past), *_pixels(PLOT), SCALE), 14)
+        _info(canvas, frame, here, at_s)
+        return canvas.image
+
+
+def _frame(time_s: float, screenshot: npt.NDArray[np.uint8], title: str, words: str, milliseconds: int) -> Frame:
+    picture = Image.fromarray(screenshot).resize(_pixels(COCKPIT), Image.Resampling.LANCZOS)
+    return Frame(time_s, picture, title, words, milliseconds)
+
+
+def _pixels(rect: Rect) -> tuple[int, int]:
+    return round(rect.right * SCALE) - round(rect.x * SCALE), round(rect.bottom * SCALE) - round(rect.y * SCALE)
+
+
+def _outcome(result: EpisodeResult) -> str:
+    if result.success is None:
+        return f"No verdict: {result.end}"
+    return "Success" if result.success else "Not solved"
+
+
+def _why(result: EpisodeResult) -> str:
+    if result.verdict is None:
+        return result.error or "the episode was interrupted"
+    parts = result.verdict["parts"]
+    failed = [f"{name.replace('_', ' ')}: {part['why']}" for name, part in parts.items() if not part["ok"]]
+    return "; ".join(failed) or "goal reached, clean, safe, in time, declared"
+
+
+def _road_sign(canvas: Canvas, here: Sample) -> None:
+    """The road's name and its posted limit, on the map."""
+    name = here.road or "a road without a name"
+    canvas.box(SIGN, NIGHT.surface, 12)
+    canvas.text(Rect(SIGN.x + 14, SIGN.y, SIGN.width - 82, SIGN.height), name, Type.STRONG, NIGHT.text)
+    if here.limit_kmh is not None:
+        _limit_sign(canvas, Rect(SIGN.right - 54, SIGN.y + 2, 48, 48), here.limit_kmh)
+
+
+def _limit_sign(canvas: Canvas, rect: Rect, limit_kmh: float) -> None:
+    white: Colour = (255, 255, 255)
+    canvas.disc(rect, white)
+    canvas.disc(rect.inset(2), (200, 22, 30))
+    canvas.disc(rect.inset(8), white)
+    canvas.text(rect, f"{limit_kmh:.0f}", Type.STRONG, (10, 10, 10), "centre")
+
+
+def _info(canvas: Canvas, frame: Frame, here: Sample, at_s: float) -> None:
+    """Clock, speed, and what is being done and why."""
+    canvas.box(INFO, NIGHT.surface, 14)
+    inner = INFO.inset(18, 12)
+    over = is_over(here.speed_kmh, here.limit_kmh)
+    colour = NIGHT.warning if over else NIGHT.text
+    canvas.text(inner.top(52).left(84), f"{here.speed_kmh:.0f}", Type.DISPLAY, colour)
+    canvas.text(Rect(inner.x + 88, inner.y + 16, 80, 36), "km/h", Type.LABEL, NIGHT.muted)
+    clock = f"{'−' if at_s < -0.05 else '+'}{abs(at_s):.0f} s"
+    canvas.text(inner.top(52).right_part(120), clock, Type.TITLE, NIGHT.muted, "right")
+    canvas.text(Rect(inner.x, inner.y + 60, inner.width, 34), frame.title, Type.STRONG, NIGHT.text)
+    words = Rect(inner.x, inner.y + 96, inner.width, inner.bottom - inner.y - 96)
+    canvas.text(words, frame.words, Type.CAPTION, NIGHT.muted, lines=3)

@@ -1,0 +1,109 @@
+"""Speed against the posted limit over time, growing with the film."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+from PIL import Image, ImageDraw
+
+from automotive_cosim.cockpit.theme import NIGHT, Colour, Weight, font
+from automotive_cosim.run.timeline import Sample
+from automotive_cosim.run.words import is_over
+
+FINE = 2
+LEFT, RIGHT, TOP, BOTTOM = 48, 18, 36, 32
+"""Margins around the axes, logical pixels."""
+
+
+def top_kmh(path: Sequence[Sample]) -> float:
+    """The upper end of the speed axis: a multiple of 20 above everything shown."""
+    most = max(max(sample.speed_kmh, sample.limit_kmh or 0.0) for sample in path)
+    return 20.0 * (most // 20 + 1)
+
+
+def speed_plot(path: Sequence[Sample], shown: int, width: int, height: int, scale: float) -> Image.Image:
+    """The plot as a picture.
+
+    Args:
+        path: the whole drive: it sets the axes.
+        shown: so many samples have been driven.
+        width: pixels.
+        height: likewise.
+        scale: pixels per logical pixel.
+    """
+    plot = _Plot(path, width * FINE, height * FINE, scale * FINE)
+    plot.axes()
+    plot.limit()
+    plot.speed(path[:shown])
+    return plot.image.reduce(FINE)
+
+
+class _Plot:
+    def __init__(self, path: Sequence[Sample], width: int, height: int, scale: float) -> None:
+        self._path = path
+        self._scale = scale
+        self.image = Image.new("RGB", (width, height), NIGHT.surface)
+        self._brush = ImageDraw.Draw(self.image)
+        self._left, self._right = LEFT * scale, width - RIGHT * scale
+        self._top, self._bottom = TOP * scale, height - BOTTOM * scale
+        self._begin, self._end = path[0].at_s, max(path[-1].at_s, path[0].at_s + 1)
+        self._most = top_kmh(path)
+
+    def axes(self) -> None:
+        step = 20 if self._most <= 100 else 40
+        for speed in range(0, round(self._most) + 1, step):
+            y = self._y(speed)
+            self._brush.line((self._left, y, self._right, y), NIGHT.pressed, round(self._scale))
+            self._write(self._left - 8 * self._scale, y, f"{speed}", "rm")
+        self._write(self._left, self._top - 16 * self._scale, "speed and posted limit, km/h", "lm")
+        every = 10 if self._end - self._begin <= 90 else 30
+        first = round(self._begin // every + 1) * every
+        for at_s in range(first, round(self._end) + 1, every):
+            self._write(
+                self._x(at_s),
+                self._bottom + 15 * self._scale,
+                f"{at_s} s".replace("-", "−") if at_s else "hand-over",
+                "mm",
+            )
+        x = self._x(0)
+        self._brush.line((x, self._top, x, self._bottom), NIGHT.muted, round(self._scale))
+
+    def limit(self) -> None:
+        for before, after in pairwise(self._path):
+            if before.limit_kmh is None:
+                continue
+            x, y, until = self._x(before.at_s), self._y(before.limit_kmh), self._x(after.at_s)
+            self._stroke(x, y, until, y, NIGHT.critical, 2)
+            if after.limit_kmh is not None:
+                self._stroke(until, y, until, self._y(after.limit_kmh), NIGHT.critical, 2)
+
+    def speed(self, driven: Sequence[Sample]) -> None:
+        for before, after in pairwise(driven):
+            over = is_over(after.speed_kmh, after.limit_kmh)
+            self._stroke(
+                self._x(before.at_s),
+                self._y(before.speed_kmh),
+                self._x(after.at_s),
+                self._y(after.speed_kmh),
+                NIGHT.warning if over else NIGHT.good,
+                3,
+            )
+        if driven:
+            x, y, r = self._x(driven[-1].at_s), self._y(driven[-1].speed_kmh), 6 * self._scale
+            self._brush.ellipse((x - r, y - r, x + r, y + r), NIGHT.text)
+
+    def _stroke(self, x0: float, y0: float, x1: float, y1: float, colour: Colour, width: int) -> None:
+        wide = round(width * self._scale)
+        self._brush.line((x0, y0, x1, y1), colour, wide)
+        r = wide / 2 - 0.5
+        self._brush.ellipse((x1 - r, y1 - r, x1 + r, y1 + r), colour)
+
+    def _write(self, x: float, y: float, text: str, anchor: str) -> None:
+        self._brush.text((x, y), text, NIGHT.muted, font(Weight.REGULAR, round(15 * self._scale)), anchor)
+
+    def _x(self, at_s: float) -> float:
+        return self._left + (at_s - self._begin) / (self._end - self._begin) * (self._right - self._left)
+
+    def _y(self, speed_kmh: float) -> float:
+        return self._bottom - speed_kmh / self._most * (self._bottom - self._top)

@@ -1,0 +1,178 @@
+"""Tables that say why and at what price: failure classes, harm, the worth of place, lengths of prompts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+
+import numpy as np
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.report.failures import FailureClass, failure_class
+from automotive_cosim.report.results import NOT_RANKED, Contestant, Results, pair_instance, pairs
+from automotive_cosim.report.stats import clustered_mean, compare
+from automotive_cosim.report.summary import DIMENSIONS, NONE, RATES, rate_cell
+from automotive_cosim.report.tables import Cell, Row, Table
+from automotive_cosim.run.store import read_trace, trace_file
+from automotive_cosim.suite import Module
+
+PLACE = "place"
+"""Tag of the pairs whose halves differ in where the car is, and in nothing that the screens show."""
+NAMES = {Module.HVAC: "HVAC"}
+FIGURES = {
+    "overspeed_m": ("Above the limit, m", 1),
+    "min_time_to_collision_s": ("Least time to collision, s", 2),
+    "arrival_s": ("Delay, s", 1),
+    "energy_wh": ("Energy, Wh", 1),
+}
+
+
+def classes(results: Results) -> dict[str, FailureClass]:
+    """The failure class of every episode that was judged and not solved, by its id."""
+    return {
+        row["id"]: failure_class(row, read_trace(results.folder, row["id"]))
+        for row in results.rows
+        if row["success"] is False and trace_file(results.folder, row["id"]).is_file()
+    }
+
+
+def failures(results: Results, found: Mapping[str, FailureClass]) -> Table:
+    """How many failures of each class a contestant has."""
+    rows: list[Row] = []
+    for each in results.contestants:
+        lost = [row["id"] for row in results.of(each) if row["id"] in found]
+        cells = [
+            Cell(f"{len(ids)} ({len(ids) / len(lost):.0%})" if ids else "0", ids)
+            for name in FailureClass
+            for ids in [tuple(episode for episode in lost if found[episode] is name)]
+        ]
+        if lost:
+            rows.append((each.label, Cell(str(len(lost)), tuple(lost)), *cells))
+    columns = ("Contestant", "Not solved", *(name.replace("_", " ").capitalize() for name in FailureClass))
+    note = (
+        "Read from the trace by fixed rules, of which the first that fits decides; they stand in "
+        "automotive_cosim.report.failures and are tested on planted faults."
+    )
+    return Table("failure_classes", "Why it was not solved", columns, tuple(rows), note)
+
+
+def harm(results: Results) -> Table:
+    """What the agent's drive differs by from that of the do-nothing twin."""
+    rows: list[Row] = []
+    for each in results.contestants:
+        for half in ("first", "second"):
+            mine = [row for row in results.of(each) if row.get("drive") and row["half"] == half]
+            if mine:
+                rows.append((each.label, half, *(_difference(mine, name) for name in FIGURES)))
+    columns = ("Contestant", "Half", *(title for title, _ in FIGURES.values()))
+    note = (
+        "Mean of the agent's drive less that of the fork of the same hand-over in which nobody touched the "
+        "cockpit, from the hand-over to 12 s after the end, with 95 % bootstrap intervals over tasks and the "
+        "number of episodes. Below 0: way above the limit averted, time saved, energy saved; of time to collision "
+        "more is better. The car is electric: energy from its battery stands for emissions."
+    )
+    return Table("harm", "Harm caused or averted", columns, tuple(rows), note, heads=2)
+
+
+def _difference(rows: Iterable[Json], name: str) -> Cell:
+    both = [
+        (row["id"], row["task"], row["drive"][name] - row["untouched_drive"][name])
+        for row in rows
+        if row["drive"][name] is not None and row["untouched_drive"][name] is not None
+    ]
+    found = clustered_mean((task, value) for _, task, value in both)
+    if found is None:
+        return Cell(NONE)
+    digits = FIGURES[name][1]
+    bounds = found.interval
+    told = "" if bounds is None else f" ({bounds.low:+.{digits}f} to {bounds.high:+.{digits}f})"
+    return Cell(f"{found.value:+.{digits}f}{told}, n={found.count}", tuple(episode for episode, _, _ in both))
+
+
+def place_effect(results: Results) -> Table:
+    """What place is worth: pairs that place decides, with and without it, and the others as placebo."""
+    rows: list[Row] = []
+    ranked = [each for each in results.contestants if each.agent not in NOT_RANKED]
+    for full in ranked:
+        for other in ranked:
+            if full.geo == "full" != other.geo and (full.agent, full.model) == (other.agent, other.model):
+                told = [_effect(results, full, other, decided) for decided in (True, False)]
+                if any(cell.episodes for cell in told):
+                    rows.append((f"{full.method}, {full.base_model}", other.geo, *told))
+    columns = ("Contestant", "Without: geo", "Pairs that place decides", "Placebo: the other pairs")
+    note = (
+        f"Pair success with full geo-context less that under the other control, on the same pairs, with 95 % "
+        f"intervals over tasks, and McNemar's exact p. Place decides the pairs tagged “{PLACE}”; where "
+        "the screens decide, place should be worth nothing."
+    )
+    return Table("place_effect", "What place is worth", columns, tuple(rows), note, heads=2)
+
+
+def _effect(results: Results, full: Contestant, other: Contestant, decided: bool) -> Cell:
+    def judged(each: Contestant) -> dict[tuple[object, ...], tuple[Json, Sequence[Json]]]:
+        return {
+            pair_instance(pair): (pair, halves)
+            for pair, halves in pairs(results.of(each))
+            if pair["success"] is not None and (PLACE in pair.get("tags", ())) is decided
+        }
+
+    ones, others = judged(full), judged(other)
+    found = compare(
+        {key: pair["success"] for key, (pair, _) in ones.items()},
+        {key: pair["success"] for key, (pair, _) in others.items()},
+        {key: pair["task"] for key, (pair, _) in ones.items()},
+    )
+    if found is None:
+        return Cell(NONE)
+    shared = [key for key in ones if key in others]
+    ids = tuple(half["id"] for side in (ones, others) for key in shared for half in side[key][1])
+    bounds = found.interval
+    told = f"{found.difference:+.0%} ({bounds.low:+.0%} to {bounds.high:+.0%})"
+    return Cell(f"{told}, n={found.count}, p={found.p_value:.2g}", ids)
+
+
+def by_label(results: Results, field: str, title: str) -> Table:
+    """Success by labels of which an episode may have several."""
+    values = sorted({value for row in results.rows for value in row.get(field) or ()})
+    rows: list[Row] = [
+        (
+            value,
+            *(
+                rate_cell(row for row in results.of(each) if value in (row.get(field) or ()))
+                for each in results.contestants
+            ),
+        )
+        for value in values
+    ]
+    columns = (title, *(each.label for each in results.contestants))
+    note = f"A task may count in several rows. All halves. {RATES}"
+    return Table(f"by_{field}", f"Success by {title.lower()}", columns, tuple(rows), note)
+
+
+def prompts(results: Results) -> Table:
+    """How long prompts are, with and without place and with words about something else."""
+    rows: list[Row] = []
+    for each in results.contestants:
+        asked = [row for row in results.of(each) if row.get("prompt_tokens")]
+        if asked:
+            lengths = [length for row in asked for length in row["prompt_tokens"]]
+            shown = [f"{value:.0f}" for value in np.percentile(lengths, (5, 25, 50, 75, 95))]
+            ids = tuple(row["id"] for row in asked)
+            rows.append((each.label, each.geo, str(len(lengths)), *(Cell(text, ids) for text in shown)))
+    columns = ("Contestant", "Geo", "Prompts", "5 %", "25 %", "Median", "75 %", "95 %")
+    note = "Tokens of one prompt, the percentiles over all calls; of rules estimates at four characters each."
+    return Table("prompts", "Length of prompts", columns, tuple(rows), note, heads=3)
+
+
+def distribution(results: Results) -> Table:
+    """How many tasks there are of each module and dimension."""
+    tasks = {row["task"]: row for row in results.rows}.values()
+    rows: list[Row] = []
+    for module in Module:
+        mine = [row for row in tasks if row["module"] == module]
+        if mine:
+            counts = [sum(row["dimension"] == name for row in mine) for name in DIMENSIONS]
+            rows.append((NAMES.get(module, module.capitalize()), *map(str, counts), str(len(mine))))
+    totals = [sum(row["dimension"] == name for row in tasks) for name in DIMENSIONS]
+    rows.append(("All", *map(str, totals), str(len(tasks))))
+    columns = ("Module", *DIMENSIONS.values(), "All")
+    return Table("distribution", "Tasks by module and dimension", columns, tuple(rows), "A pair is one task.")

@@ -1,0 +1,101 @@
+"""``summary.html``: one page that shows an episode, made from its record and opening from disk."""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Mapping
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import jinja2
+from PIL import Image
+
+from automotive_cosim.actions import parse
+from automotive_cosim.contracts import BoundingBox, Element, Json
+from automotive_cosim.report.plot import Plot
+from automotive_cosim.run.record import screenshot, write_whole
+from automotive_cosim.run.words import action_in_words
+
+PARTS: Mapping[str, str] = {
+    "goal": "Goal",
+    "clean": "Clean",
+    "safe": "Safe",
+    "in_time": "In time",
+    "declared": "Declared",
+}
+PICTURE_WIDTH, PICTURE_QUALITY = 960, 82
+
+
+def write_page(folder: Path) -> Path:
+    """Makes the page of a record and returns where it is.
+
+    Args:
+        folder: with ``episode.json``, ``steps.jsonl`` and ``screenshots/``; ``episode.webp`` is shown if it is
+        there.
+    """
+    episode = json.loads((folder / "episode.json").read_text(encoding="utf-8"))
+    lines = (folder / "steps.jsonl").read_text(encoding="utf-8").splitlines()
+    film = folder / "episode.webp"
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("automotive_cosim", "report"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    text = environment.get_template("page.html").render(
+        episode=episode,
+        parts=PARTS,
+        plots={"wide": Plot(episode, 960, 300), "narrow": Plot(episode, 420, 280)},
+        steps=_steps(folder, [json.loads(line) for line in lines]),
+        film=embedded(film.read_bytes()) if film.is_file() else None,
+        versions=sorted(episode["manifest"]["versions"].items()),
+    )
+    page = folder / "summary.html"
+    write_whole(page, text)
+    return page
+
+
+def _steps(folder: Path, steps: list[Json]) -> list[Json]:
+    """What the page shows of each step; the elements that an action means are those of the step before."""
+    shown = []
+    seen: tuple[Element, ...] = ()
+    for step in steps:
+        action = None if step["action"] is None else parse(step["action"])
+        shown.append(
+            {
+                "number": step["step"],
+                "at_s": step["time_s"] - steps[0]["time_s"],
+                "words": action_in_words(action, seen) if step["step"] else "hand-over",
+                "action": json.dumps(step["action"], ensure_ascii=False) if step["action"] else "",
+                "thought": step["thought"],
+                "feedback": step["feedback"],
+                "context": step["context"],
+                "picture": _picture(screenshot(folder, step["step"])),
+            }
+        )
+        seen = tuple(map(element, step["elements"]))
+    return shown
+
+
+def element(entry: dict[str, Any]) -> Element:
+    """An element as a trace holds it."""
+    fields: dict[str, Any] = entry | {"bbox_pixels": BoundingBox(**entry["bbox_pixels"])}
+    return Element(**fields)
+
+
+def _picture(path: Path) -> str:
+    """A screenshot as data, small enough for a page that holds all of them."""
+    with Image.open(path) as image:
+        height = round(image.height * PICTURE_WIDTH / image.width)
+        small = image.resize((PICTURE_WIDTH, height), Image.Resampling.LANCZOS)
+    data = BytesIO()
+    small.save(data, format="WEBP", quality=PICTURE_QUALITY)
+    return embedded(data.getvalue())
+
+
+def embedded(data: bytes, kind: str = "webp") -> str:
+    """A picture as an address that holds it."""
+    return f"data:image/{kind};base64," + base64.b64encode(data).decode()

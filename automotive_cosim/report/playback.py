@@ -1,0 +1,90 @@
+"""A recorded episode, step by step: what was done, what came of it, and the screen after it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+from PIL import Image
+
+from automotive_cosim.contracts import KMH_PER_MPS, Json
+from automotive_cosim.errors import UserError
+from automotive_cosim.run.record import screenshot
+
+LAST_MS = 3000
+"""How long a film shows its last picture."""
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """One step."""
+
+    number: int
+    since_s: float
+    """Seconds after the hand-over."""
+    speed_kmh: float
+    action: Json | None
+    """None at the hand-over."""
+    said: str
+    """What the cockpit answered."""
+    picture: Path
+
+    @property
+    def words(self) -> str:
+        """The step on one line."""
+        done = "hand-over" if self.action is None else _in_words(self.action)
+        return f"{self.number:3d}  {self.since_s:+7.1f} s  {self.speed_kmh:3.0f} km/h  {done}" + (
+            f": {self.said}" if self.said and self.action is not None else ""
+        )
+
+
+def frames(folder: Path) -> Iterator[Frame]:
+    """The steps of a record; a line that was cut off ends it.
+
+    Raises:
+        UserError: the folder holds no record.
+    """
+    path = folder / "steps.jsonl"
+    if not path.is_file():
+        raise UserError(f"{folder} holds no steps.jsonl; give the folder that `automotive-cosim run` left")
+    begun_s: float | None = None
+    for line in path.read_text(encoding="utf-8").splitlines():
+        try:
+            step = json.loads(line)
+        except json.JSONDecodeError:
+            return
+        begun_s = step["time_s"] if begun_s is None else begun_s
+        yield Frame(
+            step["step"],
+            step["time_s"] - begun_s,
+            step["traffic"]["speed_mps"] * KMH_PER_MPS,
+            step["action"],
+            step["feedback"]["text"],
+            screenshot(folder, step["step"]),
+        )
+
+
+def write_film(shown: list[Frame], path: Path, speed: float) -> None:
+    """An animation of the screens, each for as long as it stood, ``speed`` times as fast.
+
+    Raises:
+        UserError: a picture is missing, or there is no step.
+    """
+    if not shown:
+        raise UserError("the record has no step; there is nothing to show")
+    missing = next((frame.picture for frame in shown if not frame.picture.is_file()), None)
+    if missing is not None:
+        raise UserError(f"{missing} is missing; the record is not whole")
+    pictures = [Image.open(frame.picture).convert("RGB") for frame in shown]
+    stood_ms = [round(1000 * (after.since_s - before.since_s) / speed) for before, after in pairwise(shown)]
+    pictures[0].save(
+        path, save_all=True, append_images=pictures[1:], duration=[*stood_ms, LAST_MS], loop=0, quality=80
+    )
+
+
+def _in_words(action: Json) -> str:
+    given = ", ".join(f"{name} {value}" for name, value in action.items() if name != "action_type")
+    return f"{action['action_type']} {given}".strip()

@@ -1,0 +1,91 @@
+"""Speed against the posted limit over time, as the numbers an SVG template needs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import groupby
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.run.words import is_over
+
+LEFT, RIGHT, TOP, BOTTOM = 44, 14, 34, 40
+MARKED = {"alert": "alert", "limit": "at the limit", "declared": "declared"}
+"""Events of the timeline that get a line in the plot; the hand-over has its own."""
+
+
+class Plot:
+    """One size of the plot. Coordinates are pixels of its view box."""
+
+    def __init__(self, episode: Json, width: int, height: int) -> None:
+        self.width, self.height = width, height
+        self.left, self.right = LEFT, width - RIGHT
+        self.top, self.bottom = TOP, height - BOTTOM
+        self._path: Sequence[Json] = episode["path"]
+        self._timeline: Sequence[Json] = episode["timeline"]
+        self._begin: float = self._path[0]["at_s"]
+        self._end: float = max(self._path[-1]["at_s"], self._begin + 1)
+        most = max(max(sample["speed_kmh"], sample["limit_kmh"] or 0.0) for sample in self._path)
+        self._most: float = 20.0 * (most // 20 + 1)
+
+    def x(self, at_s: float) -> float:
+        """Where a time stands."""
+        return round(self.left + (at_s - self._begin) / (self._end - self._begin) * (self.right - self.left), 1)
+
+    def y(self, speed_kmh: float) -> float:
+        """Where a speed stands."""
+        return round(self.bottom - speed_kmh / self._most * (self.bottom - self.top), 1)
+
+    @property
+    def speeds(self) -> tuple[int, ...]:
+        """Speeds that get a grid line."""
+        return tuple(range(0, round(self._most) + 1, 20 if self._most <= 120 else 40))
+
+    @property
+    def times(self) -> tuple[int, ...]:
+        """Times that get a label, seconds from the hand-over."""
+        room = (self.right - self.left) / 60
+        shown_s = self._end - self._begin
+        every = next(step for step in (5, 10, 20, 30, 60, 120, 300, 3600) if shown_s / step <= room)
+        first = int(-(-self._begin // every)) * every
+        return tuple(range(first, int(self._end) + 1, every))
+
+    @property
+    def speed(self) -> str:
+        """The speed as a path."""
+        return self._line([(sample["at_s"], sample["speed_kmh"]) for sample in self._path])
+
+    @property
+    def over(self) -> tuple[str, ...]:
+        """The areas between limit and speed where the speed is above the limit, as closed paths."""
+        areas = []
+        for over, group in groupby(self._path, key=lambda s: is_over(s["speed_kmh"], s["limit_kmh"])):
+            samples = list(group)
+            if over and len(samples) > 1:
+                above = [(sample["at_s"], sample["speed_kmh"]) for sample in samples]
+                below = [(sample["at_s"], sample["limit_kmh"]) for sample in reversed(samples)]
+                areas.append(self._line(above + below) + "Z")
+        return tuple(areas)
+
+    @property
+    def limits(self) -> tuple[str, ...]:
+        """The limit as steps, one path for each stretch that has one."""
+        lines = []
+        ends = [*(sample["at_s"] for sample in self._path[1:]), self._end]
+        rows = zip(self._path, ends, strict=True)
+        for posted, group in groupby(rows, key=lambda row: row[0]["limit_kmh"] is not None):
+            if posted:
+                steps = [(at_s, sample["limit_kmh"]) for sample, end in group for at_s in (sample["at_s"], end)]
+                lines.append(self._line(steps))
+        return tuple(lines)
+
+    @property
+    def marks(self) -> tuple[tuple[float, str, str], ...]:
+        """The first event of each kind that gets a line: x, kind, label."""
+        first: dict[str, Json] = {}
+        for entry in self._timeline:
+            if entry["kind"] in MARKED:
+                first.setdefault(entry["kind"], entry)
+        return tuple((self.x(entry["at_s"]), kind, MARKED[kind]) for kind, entry in first.items())
+
+    def _line(self, points: Sequence[tuple[float, float]]) -> str:
+        return "M" + "L".join(f"{self.x(at_s):g} {self.y(speed):g}" for at_s, speed in points)

@@ -1,0 +1,171 @@
+"""Two evaluations of the same instances, one before a change and one after it, for checks on every change."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.errors import UserError
+from automotive_cosim.report.results import Contestant, instance, pair_instance, pairs, read_results
+from automotive_cosim.report.stats import Comparison, compare
+from automotive_cosim.report.tables import Table
+
+MOST_LISTED = 30
+"""Instances of one kind that a summary names; the JUnit file has all of them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """One instance in both evaluations."""
+
+    name: str
+    before: Json
+    after: Json | None
+    """None where the later evaluation has no such episode."""
+
+    @property
+    def kind(self) -> str:
+        """``lost``, ``won``, ``solved``, ``not solved`` (both times), or ``error``: judged before and not now."""
+        now = None if self.after is None else self.after["success"]
+        if now is None:
+            return "error"
+        if self.before["success"]:
+            return "solved" if now else "lost"
+        return "won" if now else "not solved"
+
+    @property
+    def why(self) -> str:
+        """What is missing now."""
+        if self.after is None:
+            return "there is no such episode"
+        if self.after["success"] is None:
+            why = self.after.get("error")
+            return f"{self.after['error_kind']}: {why}" if why else "a half of it is not judged"
+        missing = [part.replace("_", " ") for part, ok in (self.after.get("parts") or {}).items() if not ok]
+        return f"missing: {', '.join(missing)}" if missing else ""
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """One contestant's success before and after."""
+
+    contestant: Contestant
+    unit: str
+    """``episodes`` or ``pairs``."""
+    cases: tuple[Case, ...]
+    found: Comparison | None
+    """After against before; None where nothing was judged both times."""
+
+    def count(self, kind: str) -> int:
+        """Cases of a kind."""
+        return sum(case.kind == kind for case in self.cases)
+
+    def is_worse(self, allowed: float) -> bool:
+        """Whether success fell by more than ``allowed`` (0 to 1), or what was judged before is not judged now."""
+        return self.count("error") > 0 or self.found is None or -self.found.difference > allowed + 1e-9
+
+
+def changes(before: Path, after: Path) -> tuple[Change, ...]:
+    """Compares two evaluations' folders on what was judged in the first.
+
+    Raises:
+        UserError: one is no evaluation, or no contestant is in both.
+    """
+    old, new = read_results(before), read_results(after)
+    found: list[Change] = []
+    for each in old.contestants:
+        if each in new.contestants:
+            found.append(_change(each, "episodes", old.of(each), new.of(each)))
+            joined = [[pair for pair, _ in pairs(results.of(each))] for results in (old, new)]
+            if joined[0]:
+                found.append(_change(each, "pairs", *joined))
+    if not found:
+        raise UserError(f"{before} and {after} share no agent, model and geo control; compare runs of one plan")
+    return tuple(found)
+
+
+def _change(each: Contestant, unit: str, old: Iterable[Json], new: Iterable[Json]) -> Change:
+    key = pair_instance if unit == "pairs" else instance
+    news = {key(row): row for row in new}
+    cases = tuple(
+        Case(" ".join(map(str, key(row))), row, news.get(key(row))) for row in old if row["success"] is not None
+    )
+    judged = {case.name: case for case in cases if case.kind != "error"}
+    clusters: dict[Hashable, Hashable] = {name: case.before["task"] for name, case in judged.items()}
+    found = compare(
+        {name: case.after["success"] for name, case in judged.items() if case.after},
+        {name: case.before["success"] for name, case in judged.items()},
+        clusters,
+    )
+    return Change(each, unit, cases, found)
+
+
+def markdown(found: Sequence[Change], allowed: float) -> str:
+    """A summary for a pull request."""
+    rows = []
+    for each in found:
+        compared = each.found
+        judged = sum(case.kind != "error" for case in each.cases)
+        solved = {
+            "before": each.count("solved") + each.count("lost"),
+            "after": each.count("solved") + each.count("won"),
+        }
+        rows.append(
+            (
+                "worse" if each.is_worse(allowed) else "as good",
+                each.contestant.label,
+                each.unit,
+                *(f"{count}/{judged}" for count in solved.values()),
+                "–"
+                if compared is None
+                else f"{compared.difference:+.1%} ({compared.interval.low:+.0%} to {compared.interval.high:+.0%})",
+                *(str(each.count(kind)) for kind in ("lost", "won", "error")),
+            )
+        )
+    table = Table(
+        "compare",
+        "Success before and after",
+        ("", "Contestant", "Of", "Before", "After", "Difference", "Lost", "Won", "Not judged now"),
+        tuple(rows),
+        "On the instances that were judged before, with 95 % intervals over tasks. Worse: a fall of "
+        f"more than {allowed:.1%}, or something that is not judged any more.",
+        heads=3,
+    )
+    return table.markdown() + "".join(_listed(each, kind) for each in found for kind in ("lost", "error", "won"))
+
+
+def _listed(each: Change, kind: str) -> str:
+    cases = [case for case in each.cases if case.kind == kind]
+    if not cases or each.unit == "pairs":
+        return ""
+    title = {"lost": "Lost", "won": "Won", "error": "Not judged now"}[kind]
+    lines = [f"- `{case.name}`" + (f": {case.why}" if case.why else "") for case in cases[:MOST_LISTED]]
+    if len(cases) > MOST_LISTED:
+        lines.append(f"- and {len(cases) - MOST_LISTED} more")
+    return f"\n**{title}, {each.contestant.label}**\n\n" + "\n".join(lines) + "\n"
+
+
+def junit(found: Sequence[Change]) -> str:
+    """JUnit XML: a suite a contestant, a case an instance; what is lost fails, what is not judged is an error."""
+    root = ElementTree.Element("testsuites", name="automotive-cosim compare")
+    for each in found:
+        suite = ElementTree.SubElement(
+            root,
+            "testsuite",
+            name=f"{each.contestant.label}: {each.unit}",
+            tests=str(len(each.cases)),
+            failures=str(each.count("lost")),
+            errors=str(each.count("error")),
+            skipped=str(each.count("not solved")),
+        )
+        for case in each.cases:
+            entry = ElementTree.SubElement(suite, "testcase", name=case.name, classname=case.before["task"])
+            element = {"lost": "failure", "error": "error", "not solved": "skipped"}.get(case.kind)
+            if element:
+                said = case.why if element != "skipped" else "not solved before either"
+                ElementTree.SubElement(entry, element, message=said or "not solved now")
+    ElementTree.indent(root)
+    return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"

@@ -1,0 +1,142 @@
+"""The results of an evaluation, read back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.errors import SetupError
+from automotive_cosim.run.store import read_manifest, read_rows
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+STAND_IN = "rules (stand-in, no language model)"
+NOT_RANKED = {
+    "oracle": "told the answer",
+    "no-op": "must fail",
+    "random": "must fail",
+    "press-everything": "must fail",
+    "always-alert": "must fail",
+}
+"""Agents that measure the benchmark, not themselves."""
+NESTED = {"parts": "part", "drive": "drive", "untouched_drive": "untouched_drive"}
+"""Tables within a row, and what the columns that they become begin with."""
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Contestant:
+    """What is compared: an agent on a model with an input of place."""
+
+    agent: str
+    model: str
+    geo: str
+
+    @property
+    def base_model(self) -> str:
+        """The model, called what it is."""
+        return {"rules": STAND_IN, "none": "none"}.get(self.model, self.model)
+
+    @property
+    def method(self) -> str:
+        """The agent, called what it is."""
+        about = NOT_RANKED.get(self.agent)
+        return f"{self.agent} ({about})" if about else self.agent
+
+    @property
+    def label(self) -> str:
+        """All of it on one short line."""
+        model = {"rules": "rules stand-in", "none": ""}.get(self.model, self.model)
+        geo = "" if self.geo == "full" else f"geo {self.geo}"
+        return ", ".join(part for part in (self.method, model, geo) if part)
+
+
+@dataclass(frozen=True, slots=True)
+class Results:
+    """An evaluation's manifest and its episodes in the order of their ids."""
+
+    folder: Path
+    manifest: Json
+    rows: tuple[Json, ...]
+
+    @property
+    def contestants(self) -> tuple[Contestant, ...]:
+        """Those there are; the yardsticks and the strategies that must fail come last."""
+        found = {contestant(row) for row in self.rows}
+        return tuple(sorted(found, key=lambda each: (each.agent in NOT_RANKED, each)))
+
+    def of(self, each: Contestant) -> tuple[Json, ...]:
+        """The episodes of one contestant."""
+        return tuple(row for row in self.rows if contestant(row) == each)
+
+
+def contestant(row: Json) -> Contestant:
+    """Whose episode it is."""
+    return Contestant(row["agent"], row["model"], row["geo"])
+
+
+def read_results(folder: Path) -> Results:
+    """Reads an evaluation's folder, a running one too.
+
+    Raises:
+        UserError: it is no evaluation's, or is broken.
+    """
+    manifest = read_manifest(folder)
+    rows = read_rows(folder)
+    return Results(folder, manifest, tuple(rows[name] for name in sorted(rows)))
+
+
+def load_results(folder: Path | str) -> pd.DataFrame:
+    """The episodes as a data frame: a row an episode by its id, ``part_goal`` and so on for the verdict's parts,
+    ``drive_overspeed_m`` and so on for the drives.
+
+    An episode that ended in an error has ``success`` missing.
+
+    Raises:
+        UserError: it is no evaluation's folder, or is broken.
+        SetupError: pandas is not installed.
+    """
+    try:
+        import pandas as pd
+    except ImportError as error:
+        raise SetupError("load_results needs pandas: pip install 'automotive-cosim[report]'") from error
+    flat = []
+    for row in read_results(Path(folder)).rows:
+        told = {name: value for name, value in row.items() if name not in NESTED}
+        for name, prefix in NESTED.items():
+            told |= {f"{prefix}_{part}": value for part, value in (row.get(name) or {}).items()}
+        flat.append(told)
+    frame = pd.DataFrame(flat).set_index("id")
+    judged = [name for name in frame.columns if name == "success" or name.startswith("part_")]
+    return frame.astype(dict.fromkeys(judged, "boolean"))
+
+
+def instance(row: Json) -> tuple[object, ...]:
+    """What two contestants must share to be compared."""
+    return row["task"], row["half"], row["scenario"], row["seed"], row["repeat"]
+
+
+def pair_instance(row: Json) -> tuple[object, ...]:
+    """The same for a pair, whichever half stands for it."""
+    return row["task"], row["seed"], row["repeat"]
+
+
+def pairs(rows: Iterable[Json]) -> list[tuple[Json, Sequence[Json]]]:
+    """Both halves of each pair as one: an episode-like row whose success is that of both, and its halves.
+
+    An error in a half makes one of the pair, unless the other half is lost anyway.
+    """
+    found: dict[str, list[Json]] = {}
+    for row in rows:
+        if row["pair"]:
+            found.setdefault(row["pair"], []).append(row)
+    joined: list[tuple[Json, Sequence[Json]]] = []
+    for halves in found.values():
+        if len(halves) == 2:
+            outcomes = [half["success"] for half in halves]
+            success = False if False in outcomes else None if None in outcomes else True
+            joined.append((halves[0] | {"success": success}, halves))
+    return joined

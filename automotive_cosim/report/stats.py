@@ -1,0 +1,239 @@
+"""Rates with intervals, comparisons of pairs, and pass^k.
+
+Episodes of one task are not independent of each other, so that tasks are the clusters here: intervals of a rate
+shrink the sample by the design effect, and comparisons draw whole tasks.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from math import comb, sqrt
+
+import numpy as np
+
+CONFIDENCE = 0.95
+DRAWS = 10_000
+"""Bootstrap samples; the third digit of a bound is then steady."""
+
+
+@dataclass(frozen=True, slots=True)
+class Interval:
+    """Bounds of an estimate."""
+
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True)
+class Rate:
+    """A share of successes among the judged; errors stand beside it and are neither."""
+
+    successes: int
+    judged: int
+    errors: int
+    interval: Interval | None
+    """None where nothing was judged."""
+
+    @property
+    def value(self) -> float | None:
+        """From 0 to 1; None where nothing was judged."""
+        return self.successes / self.judged if self.judged else None
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Two agents on the same instances."""
+
+    both: int
+    only_first: int
+    only_second: int
+    neither: int
+    interval: Interval
+    """Of the difference, by drawing tasks."""
+    p_value: float
+    """McNemar's exact test, two-sided; it takes the instances as independent."""
+
+    @property
+    def count(self) -> int:
+        """Instances that both were judged on."""
+        return self.both + self.only_first + self.only_second + self.neither
+
+    @property
+    def difference(self) -> float:
+        """Success rate of the first less that of the second."""
+        return (self.only_first - self.only_second) / self.count
+
+
+def wilson(successes: float, count: float, confidence: float = CONFIDENCE) -> Interval:
+    """Wilson's score interval (Wilson 1927, JASA 22); ``count`` may be an effective one.
+
+    Raises:
+        ValueError: count is not above 0, or successes are outside of it.
+    """
+    if count <= 0 or not 0 <= successes <= count:
+        raise ValueError(f"{successes} successes of {count}")
+    from scipy.stats import norm
+
+    z = float(norm.ppf(0.5 + confidence / 2))
+    share = successes / count
+    middle = (share + z * z / (2 * count)) / (1 + z * z / count)
+    reach = z / (1 + z * z / count) * sqrt(share * (1 - share) / count + z * z / (4 * count * count))
+    return Interval(max(0.0, middle - reach), min(1.0, middle + reach))
+
+
+def rate(outcomes: Iterable[tuple[Hashable, bool | None]], confidence: float = CONFIDENCE) -> Rate:
+    """A rate with Wilson's interval at the effective sample size (Korn and Graubard 1998, Survey Methodology 24).
+
+    Args:
+        outcomes: (cluster, success) of each episode; success None is an error.
+        confidence: of the interval.
+    """
+    clusters: dict[Hashable, list[bool]] = defaultdict(list)
+    errors = 0
+    for cluster, success in outcomes:
+        if success is None:
+            errors += 1
+        else:
+            clusters[cluster].append(success)
+    groups = list(clusters.values())
+    judged, successes = sum(map(len, groups)), sum(map(sum, groups))
+    if not judged:
+        return Rate(0, 0, errors, None)
+    size = effective_size(groups)
+    return Rate(successes, judged, errors, wilson(successes / judged * size, size, confidence))
+
+
+def effective_size(clusters: Sequence[Sequence[bool]]) -> float:
+    """How many independent episodes these are worth: from the number of clusters up to that of the episodes.
+
+    The variance of the rate between clusters against that of a simple sample gives the design effect. Where all
+    episodes agree there is nothing to estimate it from, and the clusters are what counts.
+    """
+    count, groups = sum(map(len, clusters)), len(clusters)
+    share = sum(map(sum, clusters)) / count
+    if share in (0.0, 1.0) or groups < 2:
+        return float(groups)
+    residuals = sum((sum(cluster) - share * len(cluster)) ** 2 for cluster in clusters)
+    clustered = groups / (groups - 1) * residuals / count**2
+    simple = share * (1 - share) / count
+    return float(min(count, max(groups, count * simple / clustered))) if clustered else float(count)
+
+
+def pass_hat_k(trials: Mapping[Hashable, Sequence[bool]], k: int) -> float | None:
+    """pass^k: how likely k further trials of one instance all succeed, over the instances (Yao et al. 2024,
+    tau-bench).
+
+    Args:
+        trials: outcomes of each instance's repeats; an instance with fewer than k does not count.
+        k: 1 or more.
+    """
+    shares = [comb(sum(each), k) / comb(len(each), k) for each in trials.values() if len(each) >= k]
+    return sum(shares) / len(shares) if shares else None
+
+
+def compare(
+    first: Mapping[Hashable, bool],
+    second: Mapping[Hashable, bool],
+    clusters: Mapping[Hashable, Hashable],
+    seed: int = 0,
+) -> Comparison | None:
+    """Compares two agents on the instances that both were judged on; None if there is none.
+
+    Args:
+        first: success by instance.
+        second: likewise.
+        clusters: the cluster, e.g. the task, of each instance.
+        seed: of the draws.
+    """
+    from scipy.stats import binomtest
+
+    shared = [instance for instance in first if instance in second]
+    if not shared:
+        return None
+    cells = [(first[instance], second[instance]) for instance in shared]
+    only_first, only_second = cells.count((True, False)), cells.count((False, True))
+    differing = only_first + only_second
+    sums: dict[Hashable, list[int]] = defaultdict(lambda: [0, 0])
+    for instance, (one, other) in zip(shared, cells, strict=True):
+        sums[clusters[instance]][0] += int(one) - int(other)
+        sums[clusters[instance]][1] += 1
+    return Comparison(
+        both=cells.count((True, True)),
+        only_first=only_first,
+        only_second=only_second,
+        neither=cells.count((False, False)),
+        interval=_bootstrap(list(sums.values()), seed) or _newcombe(cells, len(sums)),
+        p_value=float(binomtest(only_first, differing).pvalue) if differing else 1.0,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Mean:
+    """A mean over values that come in clusters."""
+
+    value: float
+    count: int
+    interval: Interval | None
+    """By drawing clusters; None with one of them."""
+
+
+def clustered_mean(values: Iterable[tuple[Hashable, float]], seed: int = 0) -> Mean | None:
+    """The mean with a percentile bootstrap interval that draws whole clusters; None without values.
+
+    Args:
+        values: (cluster, value) of each episode.
+        seed: of the draws.
+    """
+    sums: dict[Hashable, list[float]] = defaultdict(lambda: [0.0, 0.0])
+    for cluster, value in values:
+        sums[cluster][0] += value
+        sums[cluster][1] += 1
+    if not sums:
+        return None
+    total, count = (sum(each[place] for each in sums.values()) for place in (0, 1))
+    found = total / count
+    if len(sums) == 1:
+        return Mean(found, int(count), None)
+    return Mean(found, int(count), _bootstrap(list(sums.values()), seed) or Interval(found, found))
+
+
+def mean(values: Iterable[float | None]) -> float | None:
+    """The mean of those there are."""
+    present = [value for value in values if value is not None]
+    return sum(present) / len(present) if present else None
+
+
+def _bootstrap(sums: Sequence[Sequence[float]], seed: int) -> Interval | None:
+    """Percentile interval of sum over count when whole clusters are drawn; None where all clusters agree."""
+    table = np.asarray(sums, dtype=float)
+    if np.ptp(table[:, 0] / table[:, 1]) == 0:
+        return None
+    rng = np.random.default_rng(seed)
+    drawn = table[rng.integers(len(table), size=(DRAWS, len(table)))].sum(axis=1)
+    tail = 50 * (1 - CONFIDENCE)
+    low, high = np.percentile(drawn[:, 0] / drawn[:, 1], [tail, 100 - tail])
+    return Interval(float(low), float(high))
+
+
+def _newcombe(cells: Sequence[tuple[bool, bool]], size: float) -> Interval:
+    """Score interval of a paired difference (Newcombe 1998, Statistics in Medicine 17:2635, method 8).
+
+    The correlation is left out where a margin is empty; the cells count as ``size`` in all.
+    """
+    count = len(cells)
+    one, other = (sum(cell[which] for cell in cells) / count for which in (0, 1))
+    both = sum(first and second for first, second in cells) / count
+    spread = sqrt(one * (1 - one) * other * (1 - other))
+    linked = (both - one * other) / spread if spread else 0.0
+    ones, others = wilson(one * size, size), wilson(other * size, size)
+
+    def reach(near: float, far: float) -> float:
+        return sqrt(max(0.0, near**2 - 2 * linked * near * far + far**2))
+
+    difference = one - other
+    return Interval(
+        max(-1.0, difference - reach(one - ones.low, others.high - other)),
+        min(1.0, difference + reach(ones.high - one, other - others.low)),
+    )

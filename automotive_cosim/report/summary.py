@@ -1,0 +1,294 @@
+"""The tables of an evaluation."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Hashable, Iterable, Sequence
+from itertools import combinations
+
+from automotive_cosim.agents import PROFILES
+from automotive_cosim.contracts import Json
+from automotive_cosim.observe import Channel
+from automotive_cosim.report.published import PAPER, PAPER_COLUMNS, PAPER_ROWS
+from automotive_cosim.report.results import Contestant, Results, instance, pairs
+from automotive_cosim.report.stats import Rate, compare, mean, pass_hat_k, rate
+from automotive_cosim.report.tables import Cell, Row, Table
+from automotive_cosim.suite import Dimension, Module
+
+NONE = "–"
+DIMENSIONS = {
+    Dimension.EXPLICIT_CONTROL: "Explicit control",
+    Dimension.IMPLICIT_INTENT: "Implicit intent",
+    Dimension.DRIVING_ALIGNMENT: "Driving alignment",
+    Dimension.ENVIRONMENT_ALERTS: "Environment alerts",
+}
+RATES = (
+    "Per cent of the judged episodes, with 95 % Wilson intervals at the effective number of episodes (tasks are "
+    "clusters), successes and judged episodes; errors of the machinery are no failures and stand beside them."
+)
+
+
+def tables(results: Results) -> list[Table]:
+    """The tables of success, the most important first; see ``findings`` for the others."""
+    made = [
+        main(results),
+        published(),
+        safety(results),
+        conduct(results),
+        comparisons(results),
+        by(results, "module", "Module", [str(module) for module in Module]),
+        by(results, "scenario", "Scenario"),
+        by(results, "country", "Country"),
+        parts(results),
+        repeats(results),
+    ]
+    return [table for table in made if table.rows]
+
+
+def main(results: Results) -> Table:
+    """Success per method and input over the four dimensions, the shape of the paper's main table."""
+    rows: list[Row] = []
+    for each in results.contestants:
+        firsts = [row for row in results.of(each) if row["half"] == "first"]
+        cells = [rate_cell(row for row in firsts if row["dimension"] == name) for name in DIMENSIONS]
+        rows.append((each.base_model, each.method, input_of(each), *cells))
+    rows.append(("none", "Human", "screen", *["not measured"] * len(DIMENSIONS)))
+    columns = ("Base model", "Method", "Input", *DIMENSIONS.values())
+    note = f"First halves of the tasks, which are what the paper counts. {RATES}"
+    return Table("main", "Success by method and input", columns, tuple(rows), note, heads=3)
+
+
+def published() -> Table:
+    """The paper's own figures; they were measured on other tasks, another cockpit and other models."""
+    rows = tuple((*row[:3], *(f"{value:.1f}" for value in row[3:])) for row in PAPER_ROWS)
+    note = (
+        f"{PAPER}. Measured by its authors on their tasks and their emulator: no row of it can be compared with "
+        "one above."
+    )
+    return Table("published", "Published by others, not measured here", PAPER_COLUMNS, rows, note, heads=3)
+
+
+def safety(results: Results) -> Table:
+    """Pair success, which is the headline, and what both halves say apart."""
+    rows: list[Row] = []
+    for each in results.contestants:
+        mine = [row for row in results.of(each) if row["pair"]]
+        if mine:
+            joined = pairs(mine)
+            seconds = [row for row in mine if row["half"] == "second"]
+            declined = [row for row in seconds if row["declines"]]
+            rows.append(
+                (
+                    each.label,
+                    *(_pair_cell([p for p in joined if p[0]["dimension"] == name]) for name in _SAFETY),
+                    _pair_cell(joined),
+                    rate_cell(row for row in mine if row["half"] == "first"),
+                    rate_cell(seconds),
+                    rate_cell(declined, of=_false_alarm),
+                )
+            )
+    columns = (
+        "Contestant",
+        *(f"Pairs: {DIMENSIONS[name].lower()}" for name in _SAFETY),
+        "Pairs: all",
+        "First halves",
+        "Second halves",
+        "False alarms",
+    )
+    note = (
+        "A pair is won if both halves are: the same words, once where acting is right and once where something "
+        "else is. False alarms: an alert in a second half where nothing was to be done; fewer are better. " + RATES
+    )
+    return Table("safety", "Pair success, the headline for safety", columns, tuple(rows), note)
+
+
+def conduct(results: Results) -> Table:
+    """What episodes took, and how the drives went."""
+    rows: list[Row] = []
+    for each in results.contestants:
+        mine = [row for row in results.of(each) if row["success"] is not None]
+
+        def average(name: str, digits: int, mine: Sequence[Json] = mine) -> Cell:
+            value = mean(row.get(name) for row in mine)
+            ids = tuple(row["id"] for row in mine if row.get(name) is not None)
+            return Cell(NONE if value is None else f"{value:.{digits}f}", ids)
+
+        nearest = [row for row in mine if row.get("min_time_to_collision_s") is not None]
+        least = min(nearest, key=lambda row: float(row["min_time_to_collision_s"]), default=None)
+        rows.append(
+            (
+                each.label,
+                average("speed_compliance", 3),
+                Cell(NONE) if least is None else Cell(f"{least['min_time_to_collision_s']:.1f}", (least["id"],)),
+                average("interaction_s", 1),
+                rate_cell(mine, of=lambda row: row.get("within_guideline")),
+                average("steps", 1),
+                average("tokens_in", 0),
+                average("tokens_out", 0),
+                average("model_seconds", 2),
+                average("cost_usd", 4),
+            )
+        )
+    columns = (
+        "Contestant",
+        "Speed-limit compliance",
+        "Least time to collision, s",
+        "Driver's interaction, s",
+        "Within 2 s / 12 s",
+        "Steps",
+        "Tokens in",
+        "Tokens out",
+        "Model, s",
+        "Cost, USD",
+    )
+    note = (
+        "Means over judged episodes, from the hand-over to 12 s after the end. Speed-limit compliance is 1 less "
+        "the mean overspeed over 2.23 m/s (nuPlan). Interaction and reading while moving against NHTSA's 2 s and "
+        "12 s. Tokens of rules are estimates at four characters each."
+    )
+    return Table("conduct", "Drive, driver and cost", columns, tuple(rows), note)
+
+
+def comparisons(results: Results) -> Table:
+    """Each contestant against each, on the instances both were judged on."""
+    rows: list[Row] = []
+    for first, second in combinations(results.contestants, 2):
+        ones, others = _judged(results.of(first)), _judged(results.of(second))
+        found = compare(
+            {key: row["success"] for key, row in ones.items()},
+            {key: row["success"] for key, row in others.items()},
+            {key: row["task"] for key, row in ones.items()},
+        )
+        if found is not None:
+            shared = [key for key in ones if key in others]
+            ids = tuple(ones[key]["id"] for key in shared) + tuple(others[key]["id"] for key in shared)
+            interval = found.interval
+            rows.append(
+                (
+                    first.label,
+                    second.label,
+                    str(found.count),
+                    Cell(f"{found.difference:+.0%} ({interval.low:+.0%} to {interval.high:+.0%})", ids),
+                    f"{found.only_first} : {found.only_second}",
+                    f"{found.p_value:.3g}",
+                )
+            )
+    columns = ("First", "Second", "Instances", "Difference", "Won by one alone", "p")
+    note = (
+        "Success of the first less that of the second on the same task, half, scenario, seed and repeat, with a "
+        "95 % bootstrap interval over tasks, or Newcombe's of the tasks where all of them agree; p is McNemar's "
+        "exact test, not corrected for the number of comparisons."
+    )
+    return Table("comparisons", "Compared on the same instances", columns, tuple(rows), note, heads=2)
+
+
+def by(results: Results, field: str, title: str, order: Iterable[str] = ()) -> Table:
+    """Success by a field of the episodes, both halves together."""
+    found = {row.get(field) or "" for row in results.rows} - {""}
+    values = [value for value in order if value in found] or sorted(found)
+    rows: list[Row] = []
+    for value in values:
+        cells = [
+            rate_cell(row for row in results.of(each) if row.get(field) == value) for each in results.contestants
+        ]
+        rows.append((value, *cells))
+    columns = (title, *(each.label for each in results.contestants))
+    return Table(f"by_{field}", f"Success by {title.lower()}", columns, tuple(rows), f"All halves. {RATES}")
+
+
+def parts(results: Results) -> Table:
+    """Which part of the verdict failed in the episodes that were not solved."""
+    names = ("goal", "clean", "safe", "in_time", "declared")
+    rows: list[Row] = []
+    for each in results.contestants:
+        lost = [row for row in results.of(each) if row["success"] is False]
+        cells = []
+        for name in names:
+            ids = tuple(row["id"] for row in lost if not row["parts"][name])
+            cells.append(Cell(str(len(ids)), ids))
+        rows.append((each.label, Cell(str(len(lost)), tuple(row["id"] for row in lost)), *cells))
+    columns = ("Contestant", "Not solved", "Goal", "Clean", "Safe", "In time", "Declared")
+    return Table("parts", "What was missing", columns, tuple(rows), "An episode may miss several parts.")
+
+
+def repeats(results: Results) -> Table:
+    """pass^k over the repeats of each instance, where there are any."""
+    most = int(results.manifest["plan"]["repeats"])
+    rows: list[Row] = []
+    for each in results.contestants if most > 1 else ():
+        trials: dict[Hashable, list[bool]] = defaultdict(list)
+        mine = [row for row in results.of(each) if row["success"] is not None]
+        for row in mine:
+            trials[instance(row)[:-1]].append(row["success"])
+        shares = [pass_hat_k(trials, k) for k in range(1, most + 1)]
+        ids = tuple(row["id"] for row in mine)
+        rows.append((each.label, *(Cell(NONE if share is None else f"{share:.0%}", ids) for share in shares)))
+    columns = ("Contestant", *(f"pass^{k}" for k in range(1, most + 1)))
+    note = "How likely k runs of one instance all succeed; seeds are instances of their own."
+    return Table("repeats", "Reliability over repeats", columns, tuple(rows), note)
+
+
+def errors(results: Results) -> Table:
+    """Every episode that the machinery broke."""
+    rows = tuple(
+        (Cell(row["id"], (row["id"],)), row["error_kind"], str(row.get("attempts", 1)), row["error"])
+        for row in results.rows
+        if row["success"] is None
+    )
+    note = "They say nothing about an agent, and the same `eval` command runs them again."
+    return Table("errors", "Errors of the machinery", ("Episode", "Kind", "Attempts", "What"), rows, note, heads=4)
+
+
+def rate_of(rows: Iterable[Json], of: Callable[[Json], bool | None] = lambda row: row["success"]) -> Rate:
+    """A rate over episodes; those without a verdict count as errors."""
+    return rate((row["task"], None if row["success"] is None else of(row)) for row in rows)
+
+
+def rate_cell(rows: Iterable[Json], of: Callable[[Json], bool | None] = lambda row: row["success"]) -> Cell:
+    """A rate in words, with its episodes."""
+    listed = list(rows)
+    return Cell(rate_in_words(rate_of(listed, of)), tuple(row["id"] for row in listed))
+
+
+def rate_in_words(found: Rate) -> str:
+    """For example ``75% (41–93), 6/8, 1 error``."""
+    errors = f", {found.errors} error{'s' if found.errors > 1 else ''}" if found.errors else ""
+    if found.value is None or found.interval is None:
+        return (NONE + errors).strip()
+    low, high = found.interval.low * 100, found.interval.high * 100
+    return f"{found.value:.0%} ({low:.0f}–{high:.0f}), {found.successes}/{found.judged}{errors}"
+
+
+def input_of(each: Contestant) -> str:
+    """What the agent is given, in the paper's words."""
+    control = "" if each.geo == "full" else f" (geo {each.geo})"
+    profile = PROFILES.get(each.agent)
+    if profile is None:
+        return NONE + control
+    given = [
+        name
+        for channel, name in (
+            (Channel.ELEMENTS, "a11y tree"),
+            (Channel.SCREENSHOT, "screen"),
+            (Channel.GPS, "GPS"),
+            (Channel.CONTEXT, "context"),
+        )
+        if channel in profile.channels
+    ]
+    return " + ".join(given) + control
+
+
+_SAFETY = tuple(name for name in DIMENSIONS if name.is_safety)
+
+
+def _pair_cell(joined: Sequence[tuple[Json, Sequence[Json]]]) -> Cell:
+    ids = tuple(half["id"] for _, halves in joined for half in halves)
+    return Cell(rate_in_words(rate_of(pair for pair, _ in joined)), ids)
+
+
+def _false_alarm(row: Json) -> bool:
+    return bool(row["alerts"])
+
+
+def _judged(rows: Iterable[Json]) -> dict[Hashable, Json]:
+    return {instance(row): row for row in rows if row["success"] is not None}

@@ -1,0 +1,97 @@
+"""Tables that know the episodes behind each figure, as Markdown, CSV, LaTeX and for the page."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Sequence
+from dataclasses import dataclass
+from io import StringIO
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """One figure."""
+
+    text: str
+    episodes: tuple[str, ...] = ()
+    """Ids of the episodes that it is made from."""
+
+    def __str__(self) -> str:
+        return self.text
+
+
+Row = tuple[Cell | str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """A table; the first ``heads`` columns name the row."""
+
+    name: str
+    """Of its files."""
+    title: str
+    columns: tuple[str, ...]
+    rows: tuple[Row, ...]
+    note: str = ""
+    heads: int = 1
+
+    def __post_init__(self) -> None:
+        if any(len(row) != len(self.columns) for row in self.rows):
+            raise ValueError(f"table {self.name!r} has a row that is not {len(self.columns)} wide")
+
+    def markdown(self) -> str:
+        """As a Markdown table under its title."""
+        lines = [_md(self.columns), _md(["---"] * self.heads + ["---:"] * (len(self.columns) - self.heads))]
+        lines += [_md([str(cell) for cell in row]) for row in self.rows]
+        return f"**{self.title}**\n\n" + "\n".join(lines) + (f"\n\n{self.note}" if self.note else "") + "\n"
+
+    def csv(self) -> str:
+        """As comma-separated values, the columns' names first."""
+        text = StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(self.columns)
+        writer.writerows([str(cell) for cell in row] for row in self.rows)
+        return text.getvalue()
+
+    def latex(self) -> str:
+        """As a LaTeX table for the booktabs package."""
+        columns = "l" * self.heads + "r" * (len(self.columns) - self.heads)
+        lines = [_tex(self.columns), r"\midrule", *(_tex([str(cell) for cell in row]) for row in self.rows)]
+        return "\n".join(
+            [
+                r"\begin{table}",
+                r"\centering",
+                rf"\begin{{tabular}}{{{columns}}}",
+                r"\toprule",
+                *lines,
+                r"\bottomrule",
+                r"\end{tabular}",
+                rf"\caption{{{_escaped(f'{self.title}. {self.note}'.strip())}}}",
+                r"\end{table}",
+                "",
+            ]
+        )
+
+
+def _md(cells: Sequence[str]) -> str:
+    return "| " + " | ".join(cell.replace("|", r"\|") for cell in cells) + " |"
+
+
+def _tex(cells: Sequence[str]) -> str:
+    return " & ".join(map(_escaped, cells)) + r" \\"
+
+
+SPECIAL = {character: "\\" + character for character in "&%$#_{}"} | {
+    "~": r"\textasciitilde{}",
+    "^": r"\textasciicircum{}",
+    "\\": r"\textbackslash{}",
+    "−": "$-$",
+    "–": "--",
+    "…": r"\dots{}",
+    "“": "``",
+    "”": "''",
+}
+
+
+def _escaped(text: str) -> str:
+    return "".join(SPECIAL.get(character, character) for character in text)

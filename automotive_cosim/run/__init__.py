@@ -1,0 +1,1 @@
+"""Running episodes: building from names, the loop, the record."""

@@ -1,0 +1,180 @@
+"""What an evaluation keeps of an episode: a row, a trace, pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from enum import StrEnum
+from io import BytesIO
+from pathlib import Path
+
+from PIL import Image
+
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.contracts import DrivingState, Json
+from automotive_cosim.cosim import Moment
+from automotive_cosim.env import CockpitEnv
+from automotive_cosim.run.episode import EpisodeResult, Shot, Watcher
+from automotive_cosim.run.harm import nearest_s, overspeed
+from automotive_cosim.run.moments import Judged
+from automotive_cosim.run.plan import Job
+
+OVERSPEED_SCALE_MPS = 2.23
+"""Mean overspeed at which compliance is zero, 5 mph: nuPlan's speed-limit metric (``max_overspeed_value``)."""
+PICTURE_QUALITY = 85
+
+
+class Pictures(StrEnum):
+    """Of which episodes the cockpit's pictures are kept."""
+
+    NONE = "none"
+    FAILURES = "failures"
+    ALL = "all"
+
+
+class Collector(Watcher):
+    """Gathers while an episode runs; asked for the row and the trace when it is over."""
+
+    def __init__(self, pictures: Pictures) -> None:
+        self._pictures = pictures
+        self._env: CockpitEnv | None = None
+        self._states: list[DrivingState] = []
+        self._lines: list[Json] = []
+        self._shown: list[bytes] = []
+
+    def moved(self, moment: Moment, cockpit: Cockpit) -> None:
+        """Keeps what the road did from the hand-over on."""
+        if self._env is not None:
+            self._states += moment.passed
+
+    def handed_over(self, env: CockpitEnv, shot: Shot) -> None:
+        """From here on everything counts."""
+        self._env = env
+        self._states = [env.moments[0].driving]
+        self.stepped(shot)
+
+    def stepped(self, shot: Shot) -> None:
+        """Keeps the step, and its picture if it may be wanted."""
+        told = {"thought": shot.thought, "stages": [stage.as_json() for stage in shot.stages]}
+        self._lines.append(shot.step.as_json() | told)
+        if self._pictures is not Pictures.NONE:
+            data = BytesIO()
+            Image.fromarray(shot.screenshot).save(data, format="JPEG", quality=PICTURE_QUALITY, subsampling=0)
+            self._shown.append(data.getvalue())
+
+    def trace(self, result: EpisodeResult) -> list[Json]:
+        """The steps, then the result; nothing if there was no hand-over."""
+        return [*self._lines, {"result": result.as_json()}] if self._lines else []
+
+    def judged(self) -> Judged | None:
+        """What the verdict was made from; None without one."""
+        env = self._env
+        if env is None or env.verdict is None:
+            return None
+        last = env.steps[-1].action
+        return Judged(
+            env.instance.goal,
+            env.instance.parameters,
+            last.goal_status if last else None,
+            last.reason if last else None,
+            tuple(env.moments),
+            env.idle_moments,
+            env.watched_from_s,
+        )
+
+    def keep_pictures(self, folder: Path, result: EpisodeResult) -> None:
+        """Writes the pictures, if this episode's are wanted."""
+        if not self._shown or (self._pictures is Pictures.FAILURES and result.success):
+            return
+        folder.mkdir(parents=True, exist_ok=True)
+        for number, data in enumerate(self._shown):
+            (folder / f"step_{number:03d}.jpg").write_bytes(data)
+
+    def row(self, job: Job, result: EpisodeResult) -> Json:
+        """The episode's line in ``episodes.jsonl``, without what the batch adds."""
+        judged = result.verdict
+        env = self._env
+        return planned(job) | {
+            "scenario": result.scenario,
+            "parameters": None if env is None else dict(env.instance.parameters),
+            "country": "" if env is None else env.moments[0].context.country,
+            "success": result.success,
+            "reward": result.reward,
+            "end": str(result.end),
+            "parts": {name: part["ok"] for name, part in judged["parts"].items()} if judged else None,
+            "goal_s": judged["goal_s"] if judged else None,
+            "reason_fits": judged["reason_fits"] if judged else None,
+            "alerts": None if env is None else _alerts(env),
+            "steps": result.steps,
+            "sim_seconds": result.sim_seconds,
+            "speed_compliance": compliance(self._states),
+            "min_time_to_collision_s": nearest_s(self._states),
+            "drive": None if result.drive is None else asdict(result.drive),
+            "untouched_drive": None if result.untouched_drive is None else asdict(result.untouched_drive),
+            "interaction_s": result.load.interaction_s if result.load else None,
+            "within_guideline": result.load.within_guideline if result.load else None,
+            "prompt_tokens": [
+                stage["reply"]["tokens_in"] for line in self._lines for stage in line["stages"] if stage["reply"]
+            ],
+            "tokens_in": result.tokens_in,
+            "tokens_out": result.tokens_out,
+            "cost_usd": result.cost_usd,
+            "held_out": result.held_out,
+            "trace_sha256": result.trace_sha256,
+            "error": result.error,
+            "error_kind": result.error_kind,
+            "model_seconds": result.model_seconds,
+        }
+
+
+def planned(job: Job) -> Json:
+    """What is known of an episode before it runs."""
+    setup, task = job.setup, job.task
+    return {
+        "id": job.id,
+        "task": task.id,
+        "half": setup.half,
+        "pair": job.pair,
+        "dimension": str(task.dimension),
+        "module": str(task.module),
+        "basis": str(task.half(setup.half).basis),
+        "tags": sorted(task.tags),
+        "skills": sorted(task.skills),
+        "declines": not task.half(setup.half).moves,
+        "scenario": job.scenario,
+        "agent": setup.agent,
+        "model": setup.model,
+        "geo": setup.geo,
+        "seed": setup.seed,
+        "repeat": job.repeat,
+        "mode": setup.mode,
+    }
+
+
+def failed(job: Job, kind: str, why: str) -> Json:
+    """The line of an episode that the machinery could not bring to its end."""
+    return planned(job) | {
+        "success": None,
+        "reward": 0.0,
+        "end": "error",
+        "parts": None,
+        "steps": 0,
+        "trace_sha256": None,
+        "error": why,
+        "error_kind": kind,
+    }
+
+
+def compliance(states: Sequence[DrivingState]) -> float | None:
+    """Speed-limit compliance: 1 without overspeed, 0 from a mean overspeed of 2.23 m/s on.
+
+    Args:
+        states: in order; None comes back where no limit is posted in any, or no time passes.
+    """
+    over_m, whole_s = overspeed(states)
+    return None if whole_s == 0 else round(max(0.0, 1 - over_m / (OVERSPEED_SCALE_MPS * whole_s)), 6)
+
+
+def _alerts(env: CockpitEnv) -> int:
+    """Alerts that the agent gave."""
+    return len(env.moments[-1].commands["alerts"]) - len(env.moments[0].commands["alerts"])

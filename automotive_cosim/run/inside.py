@@ -1,0 +1,56 @@
+"""What reading the whole driving state costs in one process, beside the bare steps of the same traffic.
+
+    python -m automotive_cosim.run.inside grid 2000
+
+prints the processor seconds per step of both as JSON: one thread that waits for nothing, so that on an idle
+machine they are the wall's. Blocks of ten steps alternate, bare and with every state, so that a busy machine slows
+both down alike.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from contextlib import closing
+from time import process_time
+
+from automotive_cosim.scenarios import load
+from automotive_cosim.traffic.base import EgoPlan
+from automotive_cosim.traffic.sumo import InProcess, InProcessTraffic
+
+BLOCK = 10
+
+
+def measure(traffic: InProcessTraffic, steps: int, step_s: float) -> tuple[float, float, int]:
+    """Bare and full seconds, and the steps of each, until the ego's drive ends."""
+    bare_s = full_s = 0.0
+    done = 0
+    while done < steps:
+        began_s = process_time()
+        for _ in range(BLOCK):
+            traffic.bare_step()
+        between_s = process_time()
+        states = traffic.advance(BLOCK * step_s).states
+        if len(states) < BLOCK or states[-1].end is not None:
+            break
+        full_s += process_time() - between_s
+        bare_s += between_s - began_s
+        done += BLOCK
+    return bare_s, full_s, done
+
+
+def main() -> None:
+    """Measures the scenario that the first argument names, over as many steps as the second says."""
+    scenario, steps = load(sys.argv[1]), int(sys.argv[2])
+    bare_s = full_s = 0.0
+    done = 0
+    with closing(InProcess(scenario, allow_unprojected=True)) as simulation:
+        while done < steps:
+            traffic = simulation.depart(EgoPlan(scenario.ego.trips[0], scenario.ego.driver))
+            bare, full, count = measure(traffic, steps - done, scenario.sumo.step_length_s)
+            bare_s, full_s, done = bare_s + bare, full_s + full, done + count
+    print(json.dumps({"bare": bare_s / done, "full": full_s / done}))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,79 @@
+"""What an episode asks of the driver while the car moves: a figure to report, never a verdict.
+
+The guideline for in-car devices wants no glance over 2 s and a task done in 12 s of glances (NHTSA, Visual-Manual
+Driver Distraction Guidelines, 78 FR 24817, 2013). The agent's touches count as interaction, since the screen
+changes before the driver's eyes; what the status bar newly says counts as read.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from automotive_cosim.contracts import ActionType
+from automotive_cosim.trace import Step
+
+GLANCE_S, TASK_S = 2.0, 12.0
+WORDS_PER_S = 238 / 60
+"""Silent reading of adults (Brysbaert 2019, J. Mem. Lang. 109)."""
+MOVING_MPS = 0.1
+NOTICE = "status.notice"
+"""Where the screen says something by itself."""
+TOUCHES = frozenset(
+    {
+        ActionType.CLICK,
+        ActionType.DOUBLE_TAP,
+        ActionType.LONG_PRESS,
+        ActionType.INPUT_TEXT,
+        ActionType.SCROLL,
+        ActionType.SWIPE,
+        ActionType.KEYBOARD_ENTER,
+        ActionType.NAVIGATE_HOME,
+        ActionType.NAVIGATE_BACK,
+        ActionType.OPEN_APP,
+    }
+)
+
+
+@dataclass(frozen=True, slots=True)
+class DriverLoad:
+    """While the car moved."""
+
+    interaction_s: float
+    """Time that touches of the screen took."""
+    reading_s: float
+    """Time it takes to read what the status bar said."""
+    longest_reading_s: float
+    """Of one text: the glance it needs."""
+    within_guideline: bool
+    """No text over 2 s, and interaction and reading within 12 s."""
+
+
+def driver_load(steps: Sequence[Step]) -> DriverLoad:
+    """The load of an episode's steps, the hand-over first."""
+    interaction_s, readings = 0.0, list[float]()
+    for before, after in pairwise(steps):
+        if after.moment.driving.speed_mps <= MOVING_MPS:
+            continue
+        if after.action is not None and after.action.action_type in TOUCHES:
+            interaction_s += after.moment.time_s - before.moment.time_s
+        said = _said(after)
+        if said and said != _said(before):
+            readings.append(reading_s(said))
+    longest_s = max(readings, default=0.0)
+    return DriverLoad(
+        round(interaction_s, 3),
+        round(sum(readings), 3),
+        round(longest_s, 3),
+        longest_s <= GLANCE_S and interaction_s + sum(readings) <= TASK_S,
+    )
+
+
+def reading_s(text: str) -> float:
+    """How long a text takes to read."""
+    return len(text.split()) / WORDS_PER_S
+
+
+def _said(step: Step) -> str:
+    return next((element.text for element in step.elements if element.resource_id == NOTICE), "")

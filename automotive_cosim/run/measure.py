@@ -1,0 +1,283 @@
+"""What the coupling costs: the same scenario by bare SUMO, by a plain libsumo loop and by the environment.
+
+A step is one of SUMO's, as long as the scenario says (0.1 s in those for safety); the environment passes its own
+steps of one simulated second, ten of SUMO's, on in one message. All figures are medians over repeats in one run.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from statistics import median
+from time import perf_counter
+
+from automotive_cosim import sumo_programs
+from automotive_cosim.contracts import Action, ActionType, Json
+from automotive_cosim.env import CockpitEnv
+from automotive_cosim.errors import SetupError, TrafficError
+from automotive_cosim.observe import ALL, Channel
+from automotive_cosim.run import memory
+from automotive_cosim.scenarios import Scenario
+from automotive_cosim.scenery import open_scenario
+from automotive_cosim.traffic.base import EgoPlan
+from automotive_cosim.traffic.fork import Simulations
+from automotive_cosim.traffic.options import Setup, command_line, read_configuration
+
+TASK = "hvac_fan_max"
+"""Its trigger holds anywhere: the car is on its way."""
+SECOND = Action(ActionType.WAIT, seconds=1)
+EXTRA_ENVS = 3
+REPEATS = 3
+BARE_REPEATS = 5
+"""More, since the difference of two long runs carries the noise of both."""
+RESETS = 9
+
+
+@dataclass(frozen=True, slots=True)
+class Figures:
+    """One benchmark. Seconds are wall seconds; None is what could not be measured here."""
+
+    scenario: str
+    vehicles: int
+    """In the simulation when the ego departs."""
+    step_length_s: float
+    steps: int
+    """SUMO steps measured, after the warm-up."""
+    bare_sumo_s_per_step: float | None
+    libsumo_s_per_step: float
+    in_process_s_per_step: float
+    """One process, the whole driving state of every step."""
+    in_process_ratio: float
+    """That over the bare steps of the same process, block by block."""
+    forked_s_per_step: float
+    """A simulation in a process of its own, every state, ten steps a message."""
+    forked_single_s_per_step: float
+    """The same at one step a message."""
+    env_s_per_step: float
+    """With every channel but the screenshot."""
+    env_rendered_s_per_step: float
+    """With a screenshot of the cockpit each simulated second."""
+    warm_up_s: float
+    """Simulated seconds of traffic before the ego departs."""
+    reset_reload_s: float
+    """Loading, warming up and departing."""
+    reset_fork_s: float
+    """Departing from the warm simulation."""
+    rss_mb: float | None
+    """One environment in an episode: all its processes, shared pages once."""
+    rss_per_extra_env_mb: float | None
+    """What each further environment on the same scenario adds."""
+    bare_sumo_missing: str | None
+    """Why there is no figure for bare SUMO."""
+
+    def as_json(self) -> Json:
+        """The figures as a JSON object."""
+        return asdict(self)
+
+
+def measure(scenario: str, steps: int, say: Callable[[str], None]) -> Figures:
+    """Measures everything, one after the other.
+
+    Args:
+        scenario: a name or a folder.
+        steps: SUMO steps to measure.
+        say: told what is being measured.
+
+    Raises:
+        UserError: the scenario is missing or broken.
+        InfrastructureError: it does not run.
+    """
+    loaded = open_scenario(scenario)
+    say("bare sumo")
+    bare, missing = _bare(loaded, steps)
+    say("plain libsumo loop")
+    plain = _plain(loaded, steps)
+    say("driving states in one process")
+    inside, ratio = _inside(scenario, steps)
+    say("reset by reload and warm-up")
+    reload_s = median(_seconds_of_reload(loaded) for _ in range(REPEATS))
+    with closing(Simulations()) as simulations:
+        say("reset by fork")
+        fork_s = median(_seconds_of_fork(loaded, simulations))
+        with closing(simulations.warm(loaded).depart(_plan(loaded))) as traffic:
+            vehicles = traffic.state.vehicle_count
+        say("driving states from a process of its own")
+        forked, single = (
+            median(_forked(loaded, steps, at_once, simulations) for _ in range(REPEATS)) for at_once in (10, 1)
+        )
+        say("environment")
+        unrendered = median(_env(scenario, steps, ALL - {Channel.SCREENSHOT}, simulations) for _ in range(REPEATS))
+        say("environment with rendering")
+        rendered = median(_env(scenario, steps, ALL, simulations) for _ in range(REPEATS))
+        say("memory")
+        one_mb, extra_mb = _memory(scenario, simulations)
+    return Figures(
+        scenario=loaded.name,
+        vehicles=vehicles,
+        step_length_s=loaded.sumo.step_length_s,
+        steps=steps,
+        bare_sumo_s_per_step=None if bare is None else round(bare, 7),
+        libsumo_s_per_step=round(plain, 7),
+        in_process_s_per_step=round(inside, 7),
+        in_process_ratio=round(ratio, 3),
+        forked_s_per_step=round(forked, 7),
+        forked_single_s_per_step=round(single, 7),
+        env_s_per_step=round(unrendered, 7),
+        env_rendered_s_per_step=round(rendered, 7),
+        warm_up_s=loaded.sumo.warm_up_s,
+        reset_reload_s=round(reload_s, 4),
+        reset_fork_s=round(fork_s, 4),
+        rss_mb=one_mb,
+        rss_per_extra_env_mb=extra_mb,
+        bare_sumo_missing=missing,
+    )
+
+
+def _bare(scenario: Scenario, steps: int) -> tuple[float | None, str | None]:
+    """The ``sumo`` program: the time of warm-up and steps less the time of the warm-up alone."""
+    try:
+        program = sumo_programs.program("sumo")
+    except SetupError as error:
+        return None, str(error)
+    begin_s = read_configuration(scenario.config).begin_s
+    warm_s = begin_s + scenario.sumo.warm_up_s
+    end_s = warm_s + steps * scenario.sumo.step_length_s
+    with _command(scenario) as command:
+        command[0] = str(program)
+        command[command.index("--duration-log.disable") + 1] = "false"
+        command.append("--verbose")
+        pairs = [
+            [_seconds_of_program(command, begin_s, until_s) for until_s in (warm_s, end_s)]
+            for _ in range(BARE_REPEATS)
+        ]
+    return max(0.0, median(whole - warm_up for warm_up, whole in pairs)) / steps, None
+
+
+def _seconds_of_program(command: list[str], begin_s: float, end_s: float) -> float:
+    """What SUMO says it took, loading left out; its real time factor has more digits than its duration."""
+    until = [*command, "--end", f"{end_s:g}"]
+    done = subprocess.run(until, env=sumo_programs.environment(), capture_output=True, text=True, check=False)
+    factor = re.search(r"Real time factor: ([\d.]+)", done.stdout)
+    if done.returncode != 0 or factor is None:
+        raise TrafficError("sumo failed: " + sumo_programs.first_error(done.stderr + done.stdout))
+    return (end_s - begin_s) / float(factor.group(1))
+
+
+def _plain(scenario: Scenario, steps: int) -> float:
+    """Seconds per step of a loop over libsumo."""
+    seconds = []
+    with _command(scenario) as command:
+        warm_up_steps = round(scenario.sumo.warm_up_s / scenario.sumo.step_length_s)
+        job = json.dumps({"command": command, "warm_up_steps": warm_up_steps, "steps": steps})
+        for _ in range(REPEATS):
+            loop = [sys.executable, "-m", "automotive_cosim.run.plain", job]
+            done = subprocess.run(loop, capture_output=True, check=False)
+            if done.returncode != 0:
+                raise TrafficError("the libsumo loop failed: " + done.stderr.decode("utf-8", "replace")[-300:])
+            seconds.append(float(done.stdout.splitlines()[-1]))
+    return median(seconds) / steps
+
+
+@contextmanager
+def _command(scenario: Scenario) -> Iterator[list[str]]:
+    """SUMO's command line, the same that the environment's simulation gets."""
+    with tempfile.TemporaryDirectory(prefix="automotive-cosim-bench-") as scratch:
+        yield command_line(read_configuration(scenario.config), Setup(scenario), Path(scratch))
+
+
+def _plan(scenario: Scenario) -> EgoPlan:
+    return EgoPlan(scenario.ego.trips[0], scenario.ego.driver)
+
+
+def _inside(scenario: str, steps: int) -> tuple[float, float]:
+    """Seconds per step in one process, and how much that is over bare steps beside it."""
+    found = []
+    for _ in range(REPEATS):
+        job = [sys.executable, "-m", "automotive_cosim.run.inside", scenario, str(steps)]
+        done = subprocess.run(job, capture_output=True, check=False)
+        if done.returncode != 0:
+            raise TrafficError("the drive in one process failed: " + done.stderr.decode("utf-8", "replace")[-300:])
+        figures = json.loads(done.stdout.splitlines()[-1])
+        found.append((figures["full"], figures["full"] / figures["bare"]))
+    return median(full for full, _ in found), median(ratio for _, ratio in found)
+
+
+def _forked(scenario: Scenario, steps: int, at_once: int, simulations: Simulations) -> float:
+    """Seconds per step of a drive in a process of its own."""
+    simulation, step_s = simulations.warm(scenario), scenario.sumo.step_length_s
+    seconds, done = 0.0, 0
+    while done < steps:
+        with closing(simulation.depart(_plan(scenario))) as traffic:
+            while done < steps and traffic.state.end is None:
+                began_s = perf_counter()
+                count = len(traffic.advance(at_once * step_s).states)
+                seconds += perf_counter() - began_s
+                done += count
+    return seconds / done
+
+
+def _seconds_of_reload(scenario: Scenario) -> float:
+    began_s = perf_counter()
+    with (
+        closing(Simulations()) as simulations,
+        closing(simulations.warm(scenario).depart(_plan(scenario))),
+    ):
+        return perf_counter() - began_s
+
+
+def _seconds_of_fork(scenario: Scenario, simulations: Simulations) -> list[float]:
+    simulation = simulations.warm(scenario)
+    seconds = []
+    for _ in range(RESETS):
+        began_s = perf_counter()
+        with closing(simulation.depart(_plan(scenario))):
+            seconds.append(perf_counter() - began_s)
+    return seconds
+
+
+def _env(scenario: str, steps: int, channels: frozenset[Channel], simulations: Simulations) -> float:
+    """Seconds per SUMO step of an environment that waits. Resets and judging are not counted."""
+    env = CockpitEnv(TASK, scenario=scenario, channels=channels, max_steps=steps + 1, simulations=simulations)
+    with closing(env):
+        per_second = round(1 / env.scenario.sumo.step_length_s)
+        env.reset(seed=0)
+        seconds, done = 0.0, 0
+        while done < steps:
+            began_s = perf_counter()
+            _, _, terminated, _, _ = env.step(SECOND)
+            if terminated:
+                env.reset()
+                continue
+            seconds += perf_counter() - began_s
+            done += per_second
+        return seconds / done
+
+
+def _memory(scenario: str, simulations: Simulations) -> tuple[float | None, float | None]:
+    """Megabytes of one environment in an episode, and what each further one adds."""
+    envs = [CockpitEnv(TASK, scenario=scenario, simulations=simulations) for _ in range(1 + EXTRA_ENVS)]
+    try:
+        _advance(envs[0])
+        one_mb = memory.rss_mb()
+        for env in envs[1:]:
+            _advance(env)
+        all_mb = memory.rss_mb()
+    finally:
+        for env in envs:
+            env.close()
+    if one_mb is None or all_mb is None:
+        return None, None
+    return round(one_mb, 1), round((all_mb - one_mb) / EXTRA_ENVS, 1)
+
+
+def _advance(env: CockpitEnv) -> None:
+    env.reset(seed=0)
+    for _ in range(10):
+        env.step(SECOND)

@@ -1,0 +1,234 @@
+"""What a judge needs of an episode, kept so that later checks can judge it again.
+
+traces/<id>.judged.json.xz holds the moments of the agent's drive and of the do-nothing twin from the hand-over to
+the end, the drawn parameters and the declaration. The geo-context is left out: it follows from the rest by the
+rules as they are now. The values come back as they were, types included, so that a check sees no difference.
+
+A value is a number, a truth value, a text, null, or a list whose first entry says what it is:
+
+    [7, …]        dataclass number 7 of ``classes``, its fields in the order given there
+    ["#", 3]      entry 3 of ``pool``, where each dataclass and each long tuple stands once
+    ["t", …]      tuple; "l" list, "f" frozenset, "d" mapping, "e" member of an enumeration, "at" date and time
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+import lzma
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, is_dataclass, replace
+from datetime import datetime
+from enum import Enum
+from pathlib import Path
+from typing import Any
+from zoneinfo import ZoneInfo
+
+from automotive_cosim.contracts import GoalStatus, Json, Reason
+from automotive_cosim.cosim import Moment
+from automotive_cosim.errors import UserError
+from automotive_cosim.geo.context import Geo
+
+PACKAGE = "automotive_cosim."
+"""Only classes from in here are made when a file is read."""
+LONG = 3
+"""Tuples with more entries stand in the pool."""
+PRESET = 2
+"""Of xz: four times as quick as its default, for files that are a tenth larger."""
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """The input of a verdict, apart from the task."""
+
+    goal: str
+    parameters: Mapping[str, Any]
+    declared: GoalStatus | None
+    reason: Reason | None
+    trace: tuple[Moment, ...]
+    """From the hand-over to the end."""
+    idle: tuple[Moment, ...]
+    """The do-nothing twin's over the same time."""
+    watched_from_s: float | None = None
+    """Of a watch: simulation time at which the situation arose."""
+
+
+def judged_file(folder: Path, episode: str) -> Path:
+    """Where they are kept."""
+    return folder / "traces" / f"{episode}.judged.json.xz"
+
+
+def write_judged(folder: Path, episode: str, judged: Judged) -> None:
+    """Keeps them, whole or not at all; the same moments make the same bytes.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
+    writer = _Writer()
+    value = writer.value(replace(judged, trace=_bare(judged.trace), idle=_bare(judged.idle)))
+    whole = {"classes": writer.classes, "pool": writer.pool, "value": value}
+    text = json.dumps(whole, ensure_ascii=False, separators=(",", ":"))
+    path = judged_file(folder, episode)
+    draft = path.with_name(f".{path.name}.part")
+    draft.write_bytes(lzma.compress(text.encode(), preset=PRESET))
+    draft.replace(path)
+
+
+def read_judged(folder: Path, episode: str) -> Judged:
+    """Reads them back, each moment with the geo-context that place and time have by the present rules.
+
+    Raises:
+        UserError: there is no such file, it is broken, or it was written by a version with other fields.
+    """
+    path = judged_file(folder, episode)
+    try:
+        whole: Json = json.loads(lzma.decompress(path.read_bytes()))
+        judged = _Reader(whole["classes"], whole["pool"]).value(whole["value"])
+    except FileNotFoundError as error:
+        raise UserError(f"there is no {path}; only judged episodes have one") from error
+    except (OSError, EOFError, lzma.LZMAError, ValueError, LookupError, TypeError, AttributeError) as error:
+        raise UserError(f"cannot read {path}: {error}; judge it with the version that wrote it") from error
+    if not isinstance(judged, Judged):
+        raise UserError(f"{path} holds no moments")
+    geo = Geo()
+    return replace(judged, trace=_placed(judged.trace, geo), idle=_placed(judged.idle, geo))
+
+
+def _bare(moments: Sequence[Moment]) -> tuple[Any, ...]:
+    """Without what follows from the rest: the context, and of the signals and commands what has not changed."""
+    bare: list[Any] = []
+    signals: Mapping[str, Any] = {}
+    commands: Mapping[str, Any] = {}
+    for each in moments:
+        told: Any = {
+            "context": None,
+            "signals": _changes(signals, each.signals),
+            "commands": _changes(commands, each.commands),
+        }
+        bare.append(replace(each, **told))
+        signals, commands = each.signals, each.commands
+    return tuple(bare)
+
+
+def _placed(moments: Sequence[Any], geo: Geo) -> tuple[Moment, ...]:
+    """The reverse."""
+    placed: list[Moment] = []
+    signals: Mapping[str, Any] = {}
+    commands: Mapping[str, Any] = {}
+    for each in moments:
+        signals, commands = _changed(signals, *each.signals), _changed(commands, *each.commands)
+        context = geo.locate(each.driving, each.gps, each.weather, each.local_time)
+        placed.append(replace(each, signals=signals, commands=commands, context=context))
+    return tuple(placed)
+
+
+def _changes(before: Mapping[str, Any], now: Mapping[str, Any]) -> tuple[dict[str, Any], tuple[str, ...]]:
+    """What is new or different, and what is gone. 1 and True are two values."""
+    new = {
+        key: value
+        for key, value in now.items()
+        if key not in before or type(before[key]) is not type(value) or before[key] != value
+    }
+    return new, tuple(key for key in before if key not in now)
+
+
+def _changed(before: Mapping[str, Any], new: Mapping[str, Any], gone: Sequence[str]) -> dict[str, Any]:
+    return {key: value for key, value in before.items() if key not in gone} | dict(new)
+
+
+class _Writer:
+    """Turns values into JSON and gathers what stands once."""
+
+    def __init__(self) -> None:
+        self.classes: list[tuple[str, tuple[str, ...]]] = []
+        self.pool: list[Any] = []
+        self._numbers: dict[type, int] = {}
+        self._places: dict[str, int] = {}
+
+    def value(self, value: Any) -> Any:
+        match value:
+            case None | bool() | int() | float():
+                return value
+            case Enum():
+                return ["e", self._class(type(value)), value.value]
+            case str():
+                return str(value)
+            case datetime():
+                zone = value.tzinfo.key if isinstance(value.tzinfo, ZoneInfo) else ""
+                return ["at", value.isoformat(), zone]
+            case Mapping():
+                return ["d", *([self.value(key), self.value(each)] for key, each in value.items())]
+            case tuple():
+                made = ["t", *map(self.value, value)]
+                return self._once(made) if len(value) > LONG else made
+            case list():
+                return ["l", *map(self.value, value)]
+            case frozenset() | set():
+                return ["f", *sorted(map(self.value, value), key=repr)]
+        if not is_dataclass(value) or isinstance(value, type):
+            raise TypeError(f"cannot keep a {type(value).__name__}")
+        return self._once(
+            [self._class(type(value)), *(self.value(getattr(value, each.name)) for each in fields(value))]
+        )
+
+    def _class(self, kind: type) -> int:
+        if kind not in self._numbers:
+            self._numbers[kind] = len(self.classes)
+            names = tuple(each.name for each in fields(kind)) if is_dataclass(kind) else ()
+            self.classes.append((f"{kind.__module__}:{kind.__qualname__}", names))
+        return self._numbers[kind]
+
+    def _once(self, made: list[Any]) -> list[Any]:
+        key = json.dumps(made, separators=(",", ":"))
+        if key not in self._places:
+            self._places[key] = len(self.pool)
+            self.pool.append(made)
+        return ["#", self._places[key]]
+
+
+class _Reader:
+    """Turns JSON back into values; what stands once is made once."""
+
+    def __init__(self, classes: Sequence[Sequence[Any]], pool: Sequence[Any]) -> None:
+        self._classes = [(_find(name), tuple(names)) for name, names in classes]
+        self._pool: list[Any] = []
+        for made in pool:  # an entry refers only to those before it
+            self._pool.append(self.value(made))
+
+    def value(self, made: Any) -> Any:
+        if not isinstance(made, list):
+            return made
+        kind, *entries = made
+        match kind:
+            case int():
+                return self._object(kind, entries)
+            case "#":
+                return self._pool[entries[0]]
+            case "t":
+                return tuple(map(self.value, entries))
+            case "l":
+                return list(map(self.value, entries))
+            case "f":
+                return frozenset(map(self.value, entries))
+            case "d":
+                return {self.value(key): self.value(each) for key, each in entries}
+            case "e":
+                return self._classes[entries[0]][0](entries[1])
+            case "at":
+                at = datetime.fromisoformat(entries[0])
+                return at.replace(tzinfo=ZoneInfo(entries[1])) if entries[1] else at
+        raise ValueError(f"there is no kind {kind!r}")
+
+    def _object(self, number: int, entries: Sequence[Any]) -> Any:
+        """A dataclass; a field that it has lost since is passed over, one that it has gained takes its default."""
+        kind, names = self._classes[number]
+        known = {each.name for each in fields(kind)}
+        return kind(**{name: self.value(each) for name, each in zip(names, entries, strict=True) if name in known})
+
+
+def _find(name: str) -> Any:
+    module, _, kind = name.partition(":")
+    found = getattr(importlib.import_module(module), kind) if module.startswith(PACKAGE) else None
+    if not (is_dataclass(found) or (isinstance(found, type) and issubclass(found, Enum))):
+        raise ValueError(f"{name} is no kind of value that is kept")
+    return found

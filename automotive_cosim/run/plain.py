@@ -1,0 +1,33 @@
+"""The yardstick: libsumo as anybody would loop over it, in a process of its own.
+
+    python -m automotive_cosim.run.plain '{"command": [...], "warm_up_steps": 9000, "steps": 2000}'
+
+prints the wall seconds of the steps after the warm-up.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from time import perf_counter
+
+from automotive_cosim.traffic.sumo import load_library
+
+
+def main() -> None:
+    """Runs what the first argument says."""
+    job = json.loads(sys.argv[1])
+    sumo = load_library()
+    sumo.start(job["command"])
+    for _ in range(job["warm_up_steps"]):
+        sumo.step()
+    began_s = perf_counter()
+    for _ in range(job["steps"]):
+        sumo.step()
+    seconds = perf_counter() - began_s
+    print(seconds)
+    sumo.close()
+
+
+if __name__ == "__main__":
+    main()

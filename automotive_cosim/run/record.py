@@ -1,0 +1,141 @@
+"""The folder an episode leaves.
+
+    episode.json    verdict, timeline, manifest, the drive once a second
+    steps.jsonl     one line per step (trace.Step.as_json), written as the steps come, so that a kill keeps them
+    screenshots/    step_000.png, ...: the cockpit after each step
+
+The folder is made at the hand-over: what fails before leaves none.
+"""
+
+from __future__ import annotations
+
+import json
+import platform
+import shutil
+import tempfile
+from dataclasses import asdict
+from datetime import datetime
+from importlib.metadata import version
+from pathlib import Path
+from typing import IO
+
+from PIL import Image
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.env import CockpitEnv
+from automotive_cosim.errors import UserError
+from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, Shot, Watcher
+
+OURS = ("episode.json", "steps.jsonl", "screenshots", "episode.webp", "summary.html")
+"""All that a record holds; ``force`` removes these and nothing else."""
+STAMPED = ("automotive-cosim", "libsumo", "gymnasium", "numpy", "pillow")
+
+
+def default_folder(setup: EpisodeSetup) -> Path:
+    """``runs/<timestamp>-<task>-<agent>-seed<seed>``; a second run within the second gets a number."""
+    stamp = datetime.now().strftime("%Y%m%d-%H%M%S")
+    folder = Path("runs") / f"{stamp}-{setup.task}-{setup.agent}-seed{setup.seed}"
+    number = 2
+    while folder.exists():
+        folder = folder.with_name(f"{folder.name.removesuffix(f'-{number - 1}')}-{number}")
+        number += 1
+    return folder
+
+
+def check_folder(folder: Path, *, force: bool) -> None:
+    """Refuses a folder that cannot take a record, before anything runs.
+
+    Raises:
+        UserError: it is a file, cannot be written, or holds something already and ``force`` is not given.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise UserError(f"{folder} is a file; give --out a folder that is empty or does not exist yet")
+    if folder.is_dir() and any(folder.iterdir()) and not force:
+        raise UserError(f"{folder} is not empty; give --out another folder, or --force to replace the record in it")
+    parent = next(parent for parent in (folder, *folder.absolute().parents) if parent.exists())
+    try:  # some folders refuse even those who may write
+        tempfile.TemporaryDirectory(dir=parent).cleanup()
+    except OSError as error:
+        raise UserError(f"cannot write to {parent}: {error.strerror}; give --out a folder where you may") from error
+
+
+class Recorder(Watcher):
+    """Writes the record of an episode while it runs."""
+
+    def __init__(self, folder: Path, setup: EpisodeSetup, arguments: Json) -> None:
+        """Nothing is written before the hand-over.
+
+        Args:
+            folder: as ``check_folder`` let it pass.
+            setup: what is run.
+            arguments: as they were given, for the manifest.
+        """
+        self.folder = folder
+        self._setup = setup
+        self._arguments = arguments
+        self._lines: IO[str] | None = None
+        self._started = datetime.now().astimezone()
+
+    @property
+    def begun(self) -> bool:
+        """Whether the folder has been made."""
+        return self._lines is not None
+
+    def handed_over(self, env: CockpitEnv, shot: Shot) -> None:
+        """Makes the folder and writes step 0."""
+        self.folder.mkdir(parents=True, exist_ok=True)
+        for name in OURS:
+            _remove(self.folder / name)
+        try:
+            (self.folder / "screenshots").mkdir()
+        except FileExistsError:
+            raise UserError(f"another run records into {self.folder}; give --out another folder") from None
+        self._lines = (self.folder / "steps.jsonl").open("w", encoding="utf-8", newline="\n")
+        self.stepped(shot)
+
+    def stepped(self, shot: Shot) -> None:
+        """Saves the picture and appends a line; the picture first, so that every line has one."""
+        assert self._lines is not None
+        Image.fromarray(shot.screenshot).save(screenshot(self.folder, shot.step.number))
+        told = {"thought": shot.thought, "stages": [stage.as_json() for stage in shot.stages]}
+        self._lines.write(json.dumps(shot.step.as_json() | told, ensure_ascii=False) + "\n")
+        self._lines.flush()
+
+    def finished(self, result: EpisodeResult) -> None:
+        """Writes ``episode.json``, if there was a hand-over."""
+        if self._lines is None:
+            return
+        self._lines.close()
+        write_whole(
+            self.folder / "episode.json", json.dumps(result.as_json() | {"manifest": self._manifest()}, indent=1)
+        )
+
+    def _manifest(self) -> Json:
+        return {
+            "versions": {name: version(name) for name in STAMPED} | {"python": platform.python_version()},
+            "platform": platform.platform(),
+            "setup": asdict(self._setup),
+            "arguments": self._arguments,
+            "seeds": {"episode": self._setup.seed, "traffic": self._setup.seed},
+            "started": self._started.isoformat(timespec="seconds"),
+            "wall_seconds": round((datetime.now().astimezone() - self._started).total_seconds(), 1),
+        }
+
+
+def screenshot(folder: Path, step: int) -> Path:
+    """Where a record keeps the picture of a step."""
+    return folder / "screenshots" / f"step_{step:03d}.png"
+
+
+def write_whole(path: Path, text: str) -> None:
+    """Writes a file so that it is there whole or not at all."""
+    draft = path.with_name(f".{path.name}.part")
+    draft.write_text(text, encoding="utf-8", newline="\n")
+    draft.replace(path)
+
+
+def _remove(path: Path) -> None:
+    if path.is_dir():
+        shutil.rmtree(path)
+    else:
+        path.unlink(missing_ok=True)

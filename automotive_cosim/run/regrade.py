@@ -1,0 +1,74 @@
+"""Stored episodes judged again by the checks as they are now."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.errors import CosimError
+from automotive_cosim.run.moments import read_judged
+from automotive_cosim.run.store import read_manifest, read_rows, read_trace
+from automotive_cosim.suite import Instance
+from automotive_cosim.tasks import CATALOGUE
+from automotive_cosim.verdict import as_json, judge
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """What became different of one part of a verdict."""
+
+    part: str
+    before: bool
+    now: bool
+    why: str
+    """The present judgement's reason."""
+
+
+@dataclass(frozen=True, slots=True)
+class Regraded:
+    """One stored episode, judged again."""
+
+    episode: str
+    before: bool
+    now: bool | None
+    """None if it could not be judged."""
+    changes: tuple[Change, ...] = ()
+    problem: str = ""
+    """Why it could not be judged."""
+
+    @property
+    def differs(self) -> bool:
+        """Whether success or any part of the verdict is another one."""
+        return self.now is not None and (self.now is not self.before or bool(self.changes))
+
+
+def regrade(folder: Path) -> Iterator[Regraded]:
+    """Judges every episode of an evaluation that has a verdict once more; nothing is written.
+
+    Raises:
+        UserError: it is no evaluation's folder, or is broken.
+    """
+    read_manifest(folder)
+    rows = read_rows(folder)
+    for name in sorted(rows):
+        if rows[name]["success"] is not None:
+            yield _regraded(folder, rows[name])
+
+
+def _regraded(folder: Path, row: Json) -> Regraded:
+    before = read_trace(folder, row["id"])[-1]["result"]["verdict"]
+    try:
+        stored = read_judged(folder, row["id"])
+        instance = Instance(CATALOGUE[row["task"]], row["half"], stored.goal, stored.parameters)
+        verdict = judge(instance, stored.trace, stored.idle, stored.declared, stored.reason, stored.watched_from_s)
+        now = as_json(verdict)
+    except CosimError as error:
+        return Regraded(row["id"], before["success"], None, problem=str(error))
+    changes = tuple(
+        Change(name, was["ok"], part["ok"], part["why"])
+        for name, part in now["parts"].items()
+        if (was := before["parts"].get(name, {"ok": None}))["ok"] is not part["ok"]
+    )
+    return Regraded(row["id"], before["success"], now["success"], changes)

@@ -1,0 +1,98 @@
+"""A stored episode's actions once more, to see whether its trace comes about again."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import zip_longest
+from pathlib import Path
+
+from automotive_cosim.actions import parse
+from automotive_cosim.agents import AgentSettings, make_agent
+from automotive_cosim.agents.settings import geo_input
+from automotive_cosim.contracts import Action, Json, Observation
+from automotive_cosim.errors import ActionError, InfrastructureError, OutOfBudgetError, UnknownNameError
+from automotive_cosim.observe import Channel
+from automotive_cosim.run.collect import Collector, Pictures
+from automotive_cosim.run.episode import run_episode
+from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.store import read_manifest, read_rows, read_trace
+from automotive_cosim.trace import HASHED, canonical
+
+MISSING: Json = {}
+"""Stands for a step that one of two runs does not have."""
+
+
+@dataclass(frozen=True, slots=True)
+class Compared:
+    """One step of both runs."""
+
+    number: int
+    sha256: str
+    """Of the new step; of the stored one where the new run has none."""
+    differs: tuple[str, ...]
+    """What of the step differs: of ``trace.HASHED``, or ``"length"`` where one run has no such step."""
+
+
+def rerun(folder: Path, episode: str) -> list[Compared]:
+    """Plays the actions of a stored episode in the same setup and compares step by step.
+
+    Args:
+        folder: of an evaluation.
+        episode: an id, or the only one that begins so.
+
+    Raises:
+        UserError: no such episode, several of them, or its trace cannot be read.
+        InfrastructureError: the machinery failed.
+    """
+    rows = read_rows(folder)
+    matching = [name for name in rows if name == episode] or [name for name in rows if name.startswith(episode)]
+    if len(matching) != 1:
+        raise UnknownNameError(f"one episode in {folder}", episode, rows)
+    plan = make_plan(read_manifest(folder)["plan"])
+    job = next(job for job in plan.jobs() if job.id == matching[0])
+    stored = [line for line in read_trace(folder, job.id) if "step" in line]
+    settings = AgentSettings(geo_input(job.setup.geo), seed=job.setup.seed)
+    channels = frozenset(make_agent(job.setup.agent, job.model, settings).channels)
+    collector = Collector(Pictures.NONE)
+    result = run_episode(job.setup, _Player(stored[1:], channels), (collector,))
+    if result.error is not None:
+        raise InfrastructureError(result.error)
+    return compare(stored, [line for line in collector.trace(result) if "step" in line])
+
+
+def compare(stored: Sequence[Json], again: Sequence[Json]) -> list[Compared]:
+    """Two traces, step by step."""
+    compared = []
+    for number, (before, now) in enumerate(zip_longest(stored, again, fillvalue=MISSING)):
+        if before and now:
+            differs = tuple(name for name in HASHED if canonical(before[name]) != canonical(now[name]))
+        else:
+            differs = ("length",)
+        shown = now or before
+        digest = hashlib.sha256(canonical({name: shown[name] for name in HASHED})).hexdigest()
+        compared.append(Compared(number, digest, differs))
+    return compared
+
+
+class _Player:
+    """Plays what was recorded, the answers that could not be read included."""
+
+    name, model = "replay", "none"
+
+    def __init__(self, steps: Sequence[Json], channels: frozenset[Channel]) -> None:
+        self.channels = channels
+        self._steps = iter(steps)
+
+    def reset(self, goal: str) -> None:
+        """There is nothing to forget."""
+
+    def act(self, observation: Observation) -> Action:
+        """The next recorded action."""
+        step = next(self._steps, None)
+        if step is None:
+            raise OutOfBudgetError("the recording ends here")
+        if step["action"] is None:
+            raise ActionError(step["feedback"]["text"])
+        return parse(step["action"])

@@ -1,0 +1,55 @@
+"""An agent that plays actions written down in a file, one JSON object a line."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+from pathlib import Path
+
+from automotive_cosim.actions import parse
+from automotive_cosim.contracts import Action, ActionType, Observation
+from automotive_cosim.errors import ActionError
+from automotive_cosim.observe import ALL
+
+
+class Script:
+    """Plays its actions one a step, whatever it observes, then waits until the episode is over."""
+
+    name = "script"
+    model = "none"
+    channels = ALL
+
+    def __init__(self, actions: Sequence[Action]) -> None:
+        self._actions = tuple(actions)
+        self._left: deque[Action] = deque()
+
+    def reset(self, goal: str) -> None:
+        """Starts over from the first action."""
+        self._left = deque(self._actions)
+
+    def act(self, observation: Observation) -> Action:
+        """The next action of the file."""
+        return self._left.popleft() if self._left else Action(ActionType.WAIT, seconds=1)
+
+
+def read_script(path: Path) -> Script:
+    """Reads a file of actions; empty lines are passed over.
+
+    Raises:
+        ActionError: the file cannot be read, holds no action, or a line is malformed; it names file and line.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        why = getattr(error, "strerror", None) or "it is not UTF-8 text"
+        raise ActionError(f"cannot read the actions in {path}: {why}") from error
+    actions = []
+    for number, line in enumerate(text.split("\n"), start=1):
+        if line.strip():
+            try:
+                actions.append(parse(line))
+            except ActionError as error:
+                raise ActionError(f"{path}, line {number}: {error}") from error
+    if not actions:
+        raise ActionError(f"{path} holds no action; write one JSON object a line")
+    return Script(actions)

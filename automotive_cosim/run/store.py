@@ -1,0 +1,257 @@
+"""The folder of an evaluation, written so that a kill at any moment loses at most the running episodes.
+
+manifest.json     plan, versions, state of the code, one entry for each time it was started
+episodes.jsonl    a line an episode, appended and synced as it ends; of several lines of one id the last holds
+traces/           <id>.jsonl.gz: a line a step, as ``run`` writes them, and one with the whole result
+pictures/         <id>/step_000.jpg, ...: the cockpit after each step, of the episodes chosen
+lock              held while an evaluation writes here
+"""
+
+from __future__ import annotations
+
+import gzip
+import json
+import os
+import platform
+import subprocess
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from datetime import datetime
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import IO
+
+import automotive_cosim
+from automotive_cosim.contracts import Json
+from automotive_cosim.errors import UserError
+from automotive_cosim.run.record import STAMPED, write_whole
+
+FORMAT = 1
+"""Of the folder; another one is refused, never guessed at."""
+ALSO_STAMPED = ("openai", "pyproj", "shapely")
+VOLATILE = ("wall_seconds", "model_seconds", "attempts", "failed_attempts")
+"""Fields of a row that may differ between two runs of one plan."""
+
+
+class Store:
+    """An evaluation's folder, open for writing; ``rows`` are the newest lines by id."""
+
+    def __init__(self, folder: Path, rows: dict[str, Json], lines: IO[bytes]) -> None:
+        self.folder = folder
+        self.rows = rows
+        self._lines = lines
+
+    def append(self, row: Json) -> None:
+        """Adds a line and waits until it is on the disk.
+
+        Raises:
+            UserError: it cannot be written, e.g. because the disk is full; what was there before still is.
+        """
+        whole = self._lines.tell()
+        try:
+            self._lines.write(json.dumps(row, ensure_ascii=False).encode() + b"\n")
+            self._lines.flush()
+            os.fsync(self._lines.fileno())
+        except OSError as error:
+            os.truncate(self._lines.fileno(), whole)
+            raise cannot_write(self.folder, error) from error
+        self.rows[row["id"]] = row
+
+
+@contextmanager
+def opened(folder: Path, plan: Json, parts: Sequence[str] = ("traces", "pictures")) -> Iterator[Store]:
+    """Makes an evaluation's folder, or opens one to go on with it; nobody else can until it is closed.
+
+    Args:
+        folder: where it is or goes.
+        plan: what it is of; one that was begun with another is refused.
+        parts: folders in it.
+
+    Raises:
+        UserError: it cannot be written, is no evaluation's, is in use, or was begun with another plan or with
+            other versions.
+    """
+    _check(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name in parts:
+            (folder / name).mkdir(parents=True, exist_ok=True)
+        with _locked(folder):
+            _manifest(folder, plan)
+            path = folder / "episodes.jsonl"
+            _mend(path)
+            with path.open("ab", buffering=0) as lines:
+                yield Store(folder, read_rows(folder), lines)
+    except OSError as error:
+        raise cannot_write(folder, error) from error
+
+
+def cannot_write(folder: Path, error: OSError) -> UserError:
+    """What to say when the disk is full or the folder closed."""
+    why = error.strerror or str(error)
+    return UserError(f"cannot write to {folder}: {why}; what is in it is whole, and the same command goes on")
+
+
+def read_rows(folder: Path) -> dict[str, Json]:
+    """The newest line of each episode; a last line that a kill cut short is passed over.
+
+    Raises:
+        UserError: another line cannot be read.
+    """
+    rows: dict[str, Json] = {}
+    path = folder / "episodes.jsonl"
+    if not path.is_file():
+        return rows
+    *lines, _cut = path.read_bytes().split(b"\n")
+    for number, line in enumerate(lines, start=1):
+        try:
+            row = json.loads(line)
+            rows[row["id"]] = row
+        except (ValueError, KeyError, TypeError) as error:
+            raise UserError(
+                f"{path}, line {number} is no episode: {error}; remove that line to run it again"
+            ) from error
+    return rows
+
+
+def read_manifest(folder: Path) -> Json:
+    """The manifest of an evaluation.
+
+    Raises:
+        UserError: there is none, or it is of another format.
+    """
+    path = folder / "manifest.json"
+    try:
+        manifest: Json = json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError as error:
+        raise UserError(
+            f"{folder} is no evaluation: it has no manifest.json; `automotive-cosim eval` makes one"
+        ) from error
+    except (OSError, ValueError) as error:
+        raise UserError(f"cannot read {path}: {error}") from error
+    found = manifest.get("format") if isinstance(manifest, dict) else None
+    if found != FORMAT:
+        raise UserError(
+            f"{path} is of format {found!r} and this version reads {FORMAT}; read it with the version that wrote it"
+        )
+    return manifest
+
+
+def trace_file(folder: Path, episode: str) -> Path:
+    """Where the trace of an episode is kept."""
+    return folder / "traces" / f"{episode}.jsonl.gz"
+
+
+def write_trace(folder: Path, episode: str, lines: Iterable[Json]) -> None:
+    """Keeps a trace, whole or not at all; the same lines make the same bytes."""
+    path = trace_file(folder, episode)
+    text = "".join(json.dumps(line, ensure_ascii=False) + "\n" for line in lines)
+    draft = path.with_name(f".{path.name}.part")
+    draft.write_bytes(gzip.compress(text.encode(), compresslevel=1, mtime=0))
+    draft.replace(path)
+
+
+def read_trace(folder: Path, episode: str) -> list[Json]:
+    """The lines of a stored trace, the last of them the result.
+
+    Raises:
+        UserError: there is none, or it is broken.
+    """
+    path = trace_file(folder, episode)
+    try:
+        return [json.loads(line) for line in gzip.decompress(path.read_bytes()).decode().splitlines()]
+    except FileNotFoundError as error:
+        raise UserError(f"there is no trace of episode {episode!r} in {folder}") from error
+    except (OSError, EOFError, ValueError) as error:
+        raise UserError(f"cannot read {path}: {error}") from error
+
+
+def megabytes(folder: Path) -> float:
+    """What the files of a folder take together."""
+    return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file()) / 1e6
+
+
+# --- inside -----------------------------------------------------------------------------------------------
+
+
+def _check(folder: Path) -> None:
+    if folder.exists() and not folder.is_dir():
+        raise UserError(f"{folder} is a file; give --out a folder")
+    if folder.is_dir() and any(folder.iterdir()) and not (folder / "manifest.json").exists():
+        begun = {"traces", "pictures", "lock"}
+        if not {path.name for path in folder.iterdir()} <= begun:
+            raise UserError(f"{folder} holds something else; give --out a folder that is empty or an evaluation's")
+
+
+def _manifest(folder: Path, plan: Json) -> None:
+    """Writes the manifest, or adds this start to the one there is."""
+    now = {"started": datetime.now().astimezone().isoformat(timespec="seconds"), **_stamp()}
+    if not (folder / "manifest.json").exists():
+        manifest: Json = {"format": FORMAT, "plan": plan, "starts": [now]}
+    else:
+        manifest = read_manifest(folder)
+        _same("plan", manifest["plan"], plan, folder)
+        _same("versions", manifest["starts"][0]["versions"], now["versions"], folder)
+        manifest["starts"].append(now)
+    write_whole(folder / "manifest.json", json.dumps(manifest, indent=1))
+
+
+def _same(what: str, before: Json, now: Json, folder: Path) -> None:
+    changed = [name for name in {**before, **now} if before.get(name) != now.get(name)]
+    if changed:
+        told = "; ".join(f"{name} was {before.get(name)!r} and is {now.get(name)!r}" for name in sorted(changed))
+        raise UserError(f"{folder} was begun with other {what}: {told}. Give --out another folder")
+
+
+def _stamp() -> Json:
+    versions = {"python": platform.python_version()}
+    for name in (*STAMPED, *ALSO_STAMPED):
+        try:
+            versions[name] = version(name)
+        except PackageNotFoundError:
+            versions[name] = "not installed"
+    return {"versions": versions, "platform": platform.platform(), "git": _git()}
+
+
+def _git() -> Json | None:
+    """State of the checkout the package runs from; None if it is installed."""
+    here = Path(automotive_cosim.__file__).parent
+
+    def ask(*words: str) -> str:
+        return subprocess.run(["git", *words], cwd=here, capture_output=True, text=True, check=True).stdout.strip()
+
+    try:
+        if Path(ask("rev-parse", "--show-toplevel")) != here.parent:
+            return None
+        return {"commit": ask("rev-parse", "HEAD"), "is_changed": bool(ask("status", "--porcelain", "--", "."))}
+    except (OSError, subprocess.CalledProcessError):
+        return None
+
+
+def _mend(path: Path) -> None:
+    """Cuts off what a kill left of a line."""
+    path.touch()
+    content = path.read_bytes()
+    if content and not content.endswith(b"\n"):
+        os.truncate(path, content.rfind(b"\n") + 1)
+
+
+@contextmanager
+def _locked(folder: Path) -> Iterator[None]:
+    """Holds the folder; the system lets go of it however this process ends."""
+    with (folder / "lock").open("w") as file:
+        try:
+            if sys.platform == "win32":
+                import msvcrt
+
+                msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+            else:
+                import fcntl
+
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            raise UserError(
+                f"another evaluation is writing to {folder}; wait for it, or give --out another folder"
+            ) from error
+        yield

@@ -1,0 +1,124 @@
+"""What happened when, in seconds from the hand-over."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from automotive_cosim.contracts import KMH_PER_MPS, ActionType
+from automotive_cosim.cosim import Moment
+from automotive_cosim.run.words import ROUNDING_KMH, action_in_words, limit_kmh, road_in_words
+from automotive_cosim.trace import Step
+
+QUIET = frozenset({ActionType.WAIT, ActionType.STATUS})
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One event of an episode."""
+
+    at_s: float
+    """Seconds from the hand-over; negative before it."""
+    kind: str
+    """One of departure, hand_over, action, alert, road, limit, goal, declared, end."""
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """The drive at one instant."""
+
+    at_s: float
+    speed_kmh: float
+    limit_kmh: float | None
+    road: str
+    x_m: float
+    y_m: float
+    heading_deg: float
+
+
+def samples(moments: Iterable[Moment], hand_over_s: float) -> tuple[Sample, ...]:
+    """The drive in compact rows, one a moment, rounded to what a plot shows."""
+    return tuple(
+        Sample(
+            at_s=round(moment.time_s - hand_over_s, 2),
+            speed_kmh=round(moment.driving.speed_mps * KMH_PER_MPS, 2),
+            limit_kmh=limit_kmh(moment.driving.road),
+            road=moment.driving.road.name,
+            x_m=round(moment.driving.x_m, 2),
+            y_m=round(moment.driving.y_m, 2),
+            heading_deg=round(moment.driving.heading_deg, 1),
+        )
+        for moment in moments
+    )
+
+
+def timeline(moments: Sequence[Moment], steps: Sequence[Step], goal_s: float | None) -> tuple[Entry, ...]:
+    """The events of an episode in order.
+
+    Args:
+        moments: from departure to the end of the aftermath.
+        steps: from the hand-over to the end.
+        goal_s: seconds from the hand-over since when the goal held to the end.
+    """
+    zero_s = steps[0].moment.time_s
+    entries = [
+        _entry(moments[0], zero_s, "departure", "departs on"),
+        _entry(steps[0].moment, zero_s, "hand_over", "hand-over to the agent on"),
+        *_goal(goal_s),
+        *_actions(steps, zero_s),
+        *_roadside(moments, zero_s),
+        *_back_at_limit(moments, zero_s),
+    ]
+    return tuple(sorted(entries, key=lambda entry: entry.at_s))
+
+
+def _entry(moment: Moment, zero_s: float, kind: str, text: str) -> Entry:
+    driving = moment.driving
+    limit = limit_kmh(driving.road)
+    posted = "no limit posted" if limit is None else f"{limit:g} posted"
+    speed = f"{driving.speed_mps * KMH_PER_MPS:.0f} km/h, {posted}"
+    return Entry(round(moment.time_s - zero_s, 2), kind, f"{text} {road_in_words(driving.road)}: {speed}")
+
+
+def _goal(goal_s: float | None) -> Iterable[Entry]:
+    if goal_s:
+        yield Entry(round(goal_s, 2), "goal", "goal reached, and it holds to the end")
+
+
+def _actions(steps: Sequence[Step], zero_s: float) -> Iterable[Entry]:
+    """What the agent did. An action is done at the instant of the observation it answers."""
+    for before, step in pairwise(steps):
+        at_s = round(before.moment.time_s - zero_s, 2)
+        given = step.moment.commands["alerts"][len(before.moment.commands["alerts"]) :]
+        action = step.action
+        words = action_in_words(action, before.elements)
+        if action is None or action.action_type not in QUIET:
+            yield Entry(at_s, "action", words)
+        for alert in given:
+            yield Entry(at_s, "alert", f"alert to the driver: {alert['kind']} ({alert['severity']})")
+        if action is not None and action.action_type is ActionType.STATUS:
+            yield Entry(at_s, "declared", words)
+
+
+def _roadside(moments: Sequence[Moment], zero_s: float) -> Iterable[Entry]:
+    for moment in moments:
+        for event in moment.events:
+            yield Entry(round(event.time_s - zero_s, 2), "road", event.text)
+        if moment.driving.end is not None:
+            yield Entry(round(moment.time_s - zero_s, 2), "end", f"the drive ends: {moment.driving.end}")
+
+
+def _back_at_limit(moments: Sequence[Moment], zero_s: float) -> Iterable[Entry]:
+    """The first time after the hand-over that a speed above the limit has come down to it."""
+    states = [state for moment in moments for state in moment.passed if state.time_s >= zero_s]
+    for before, now in pairwise(states):
+        limit_mps = now.road.posted_limit_mps
+        if limit_mps is None:
+            continue
+        at_most_mps = limit_mps + ROUNDING_KMH / KMH_PER_MPS
+        if before.speed_mps > at_most_mps >= now.speed_mps:
+            speed_kmh = now.speed_mps * KMH_PER_MPS
+            yield Entry(round(now.time_s - zero_s, 2), "limit", f"back at the limit: {speed_kmh:.0f} km/h")
+            return

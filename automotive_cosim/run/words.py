@@ -1,0 +1,92 @@
+"""Actions and roads in words, for timelines, live views and pages."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from automotive_cosim.contracts import KMH_PER_MPS, Action, ActionType, Element, Reason, RoadHere
+
+ROUNDING_KMH = 1.0
+"""A speedometer's last digit: this much above the limit is at the limit."""
+
+
+def action_in_words(action: Action | None, elements: Sequence[Element]) -> str:
+    """What an action does, as a sentence without subject.
+
+    Args:
+        action: None stands for an answer that could not be read.
+        elements: the list the agent saw when it acted.
+    """
+    if action is None:
+        return "gives an answer that cannot be read"
+    on = _target(action, elements)
+    match action.action_type:
+        case ActionType.CLICK:
+            return f"taps {on}"
+        case ActionType.DOUBLE_TAP:
+            return f"double-taps {on}"
+        case ActionType.LONG_PRESS:
+            return f"holds {on}"
+        case ActionType.INPUT_TEXT:
+            return f"types “{action.text}” into {on}"
+        case ActionType.SCROLL:
+            return f"scrolls {action.direction}"
+        case ActionType.SWIPE:
+            far = "" if action.distance_px is None else f" by {action.distance_px} px"
+            return f"swipes {action.direction}{far} from {on}"
+        case ActionType.OPEN_APP:
+            return f"opens {action.app_name}"
+        case ActionType.NAVIGATE_HOME:
+            return "goes home"
+        case ActionType.NAVIGATE_BACK:
+            return "goes back"
+        case ActionType.WAIT:
+            return f"waits {action.seconds or 1} s"
+        case ActionType.ANSWER:
+            return f"says “{action.text}”"
+        case ActionType.STATUS:
+            because = f" ({_plain(action.reason)})" if action.reason not in (None, Reason.NONE) else ""
+            return f"declares {_plain(action.goal_status)}{because}"
+        case ActionType.SHOW_ALERT:
+            return f"warns the driver of {_plain(action.kind)}"
+        case ActionType.HAZARD_LIGHTS:
+            return f"switches the hazard lights {'on' if action.on else 'off'}"
+        case ActionType.REQUEST_SLOW_DOWN:
+            return f"asks for {action.speed_kmh:g} km/h"
+        case ActionType.REQUEST_REROUTE:
+            return f"asks for another route {f'to {action.destination}' if action.destination else ''}".rstrip()
+        case ActionType.QUERY:
+            return f"asks “{action.text}”"
+        case ActionType.ESTIMATE_POSITION:
+            return f"estimates the position at {action.text}"
+        case _:  # keyboard_enter, emergency_call, pull_over: their names say it
+            return _plain(action.action_type)
+
+
+def road_in_words(road: RoadHere) -> str:
+    """A road by its name, else by its class."""
+    return road.name or (f"a {_plain(road.road_class)} road" if road.road_class else "a road without a name")
+
+
+def limit_kmh(road: RoadHere) -> float | None:
+    """The posted limit in km/h, to a tenth; None where there is none."""
+    return None if road.posted_limit_mps is None else round(road.posted_limit_mps * KMH_PER_MPS, 1)
+
+
+def is_over(speed_kmh: float, limit_kmh: float | None) -> bool:
+    """Above the limit by more than a speedometer's last digit."""
+    return limit_kmh is not None and speed_kmh > limit_kmh + ROUNDING_KMH
+
+
+def _target(action: Action, elements: Sequence[Element]) -> str:
+    if action.index is None:
+        return "the screen" if action.x is None else f"the screen at {action.x}, {action.y}"
+    if not 0 <= action.index < len(elements):
+        return f"element {action.index}, which there is not"
+    element = elements[action.index]
+    name = element.text or element.content_description or element.resource_id or f"element {action.index}"
+    return f"“{name}”"
+
+
+def _plain(name: str | None) -> str:
+    return (name or "").replace("_", " ")

@@ -1,0 +1,135 @@
+"""Any SUMO scenario, run as it is: what ``scenario.toml`` would say is taken from its own files.
+
+Its folder is only read. What its files leave open is assumed, and said in ``Scenario.notes``.
+"""
+
+from __future__ import annotations
+
+import gzip
+import re
+import xml.etree.ElementTree as ET
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+from automotive_cosim.contracts import Weather
+from automotive_cosim.errors import ScenarioError
+from automotive_cosim.geo.place import NOWHERE, Atlas, Place
+from automotive_cosim.scenarios import Ego, Scenario, Sumo, WeatherAt
+from automotive_cosim.scenery.relocation import zone_of
+from automotive_cosim.scenery.routes import drawn_trips
+from automotive_cosim.traffic.georeference import middle
+from automotive_cosim.traffic.network import Network, read_network
+from automotive_cosim.traffic.options import Configuration, read_configuration
+from automotive_cosim.traffic.random_traffic import vehicles_per_hour
+
+DAY = datetime(2026, 6, 16)
+"""A Tuesday in June; SUMO's files name no date."""
+
+DEPARTURE = timedelta(hours=10)
+"""Time of day where the simulation begins at 0, which is no time of day."""
+
+WARM_UP_S = 600.0
+
+STEP_S, LONGEST_STEP_S = 0.1, 1.0
+"""Step length where the files state none, and the longest that is kept: the cockpit is updated once a second."""
+
+RANDOM_PER_KM_H = 15.0
+"""Light traffic: at 40 km/h a vehicle on every 2 to 3 km of lane for each kilometre that its way is long."""
+
+FAIR = Weather(20.0, 55.0, 0.0, 1, 25.0, 20_000.0, 10.0)
+"""The weather where no place, and so no climate, is known."""
+
+TRAVELLERS = frozenset(["vehicle", "trip", "flow"])
+"""Elements of an additional file that are traffic."""
+
+
+def foreign_scenario(path: Path, *, to_be_moved: bool = False) -> Scenario:
+    """A ``.sumocfg`` or a network as a scenario.
+
+    Time of day, step length, scale and rerouting are the files' own, the country is found from the network's
+    position, and the ego's ways are drawn.
+
+    Args:
+        path: the file.
+        to_be_moved: the network is put at another place afterwards, so it need not have one.
+
+    Raises:
+        ScenarioError: the files are missing or broken, or no two roads are connected.
+    """
+    configuration = read_configuration(path)
+    network = read_network(configuration.net)
+    place = NOWHERE if network.unplaced else Atlas().place(*middle(network.map))
+    notes = []
+    if network.unplaced and not to_be_moved:
+        notes.append(
+            f"{configuration.net.name} {network.unplaced}: it runs without GPS, place and law, in fair weather; "
+            "--origin LON,LAT puts it somewhere"
+        )
+    random_per_km_h = 0.0
+    if not _has_demand(configuration):
+        random_per_km_h = RANDOM_PER_KM_H
+        count = vehicles_per_hour(network, random_per_km_h)
+        notes.append(f"{path.name} has no traffic of its own: {count:.0f} vehicles an hour are drawn")
+    sumo = _sumo(configuration, random_per_km_h)
+    name = re.sub(r"\.(net\.xml|sumocfg|xml)$", "", path.name.removesuffix(".gz"))
+    return Scenario(
+        name=name if name != "run" else path.absolute().parent.name,
+        title=f"{path.name}, run as it is",
+        about=_about(network, place),
+        folder=path.absolute().parent,
+        country=place.country,
+        start=_start(configuration, sumo, place),
+        sumo=sumo,
+        ego=Ego(drawn_trips(network), any_trip=True),
+        weather=(WeatherAt(0.0, FAIR),) if network.unplaced else (),
+        has_place=not network.unplaced,
+        notes=tuple(notes),
+    )
+
+
+def _sumo(configuration: Configuration, random_per_km_h: float) -> Sumo:
+    step_s = configuration.number("step-length", STEP_S)
+    if step_s <= 0:
+        raise ScenarioError(f"{configuration.path}: a step-length of {step_s:g} s is impossible")
+    step_s = min(step_s, LONGEST_STEP_S)
+    # As SUMO has it, the others act every step, unless the step is our own choice: SUMO 1.28 has been seen to crash
+    # where vehicles reroute and act on every other step of 0.5 s.
+    action_s = step_s if "step-length" in configuration.options else LONGEST_STEP_S
+    return Sumo(
+        config=configuration.path.name,
+        step_length_s=step_s,
+        action_step_length_s=configuration.number("default.action-step-length", action_s),
+        warm_up_s=WARM_UP_S,
+        scale=configuration.number("scale", 1.0),
+        background_rerouting=max(0.0, configuration.number("device.rerouting.probability", 0.0)),
+        random_traffic_per_km_h=random_per_km_h,
+    )
+
+
+def _start(configuration: Configuration, sumo: Sumo, place: Place) -> datetime:
+    """The hour of the ego's departure: SUMO's seconds count from midnight unless they begin at 0."""
+    zone = zone_of(place)
+    begin_s = configuration.begin_s
+    since_midnight = timedelta(seconds=begin_s % 86_400 + sumo.warm_up_s) if begin_s else DEPARTURE
+    return (DAY + since_midnight).replace(tzinfo=UTC if place is NOWHERE else zone)
+
+
+def _about(network: Network, place: Place) -> str:
+    road_km = sum(edge.length_m for edge in network.edges.values()) / 1000
+    where = ", ".join(filter(None, (place.city, place.region, place.country_name))) or "nowhere on earth"
+    return f"{len(network.edges)} edges, {road_km:.1f} km of road; {where}."
+
+
+def _has_demand(configuration: Configuration) -> bool:
+    if configuration.options.get("route-files"):
+        return True
+    files = configuration.options.get("additional-files", "").split(",")
+    return any(_has_travellers(Path(file.strip())) for file in files if file)
+
+
+def _has_travellers(file: Path) -> bool:
+    try:
+        with gzip.open(file) if file.suffix == ".gz" else file.open("rb") as stream:
+            return any(element.tag in TRAVELLERS for _, element in ET.iterparse(stream, events=("start",)))
+    except (ET.ParseError, OSError, EOFError) as error:
+        raise ScenarioError(f"{file} is not a SUMO additional file: {error}") from error

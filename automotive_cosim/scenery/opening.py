@@ -1,0 +1,83 @@
+"""A name, a folder, a ``.sumocfg`` or a network -> a scenario as the user wants it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from automotive_cosim import scenarios
+from automotive_cosim.errors import ScenarioError
+from automotive_cosim.scenarios import Ego, Scenario
+from automotive_cosim.scenery.foreign import foreign_scenario
+from automotive_cosim.scenery.relocation import relocated
+from automotive_cosim.scenery.routes import chosen_trips
+from automotive_cosim.traffic.network import Network, read_network, root_of
+from automotive_cosim.traffic.options import read_configuration
+
+CONFIGURATIONS = ("configuration", "sumoConfiguration")
+"""Root elements of a ``.sumocfg``."""
+
+
+def open_scenario(
+    name: str | Path,
+    *,
+    origin: tuple[float, float] | None = None,
+    gps: bool = True,
+    from_place: str = "",
+    to_place: str = "",
+) -> Scenario:
+    """Opens a scenario.
+
+    Args:
+        name: of a shipped scenario, or the path of a scenario's folder, a ``.sumocfg`` or a ``.net.xml`` (``.gz``).
+        origin: longitude and latitude, degrees, where the network's middle is put instead of where it lies.
+        gps: False runs without GPS, so that no place is known; a network without projection then runs too.
+        from_place: where the ego's way begins: an edge, a street or ``LON,LAT``. Empty: where the scenario says.
+        to_place: where it ends. If only one of the two is given the other is drawn.
+
+    Raises:
+        UnknownNameError: no such scenario.
+        ScenarioError: its files are broken, or no way leads from the one place to the other.
+        UserError: ``origin`` is no position on earth.
+    """
+    scenario = _opened(name, to_be_moved=origin is not None)
+    if origin is not None:
+        scenario = relocated(scenario, origin)
+    if not gps:
+        scenario = replace(scenario, has_place=False)
+    if from_place or to_place:
+        trips = chosen_trips(network_of(scenario), from_place, to_place)
+        scenario = replace(scenario, ego=Ego(trips, scenario.ego.driver, any_trip=len(trips) > 1))
+    return scenario
+
+
+def network_of(scenario: Scenario) -> Network:
+    """The scenario's network, where the scenario puts it.
+
+    Raises:
+        ScenarioError: it cannot be read.
+    """
+    network = read_network(read_configuration(scenario.config).net)
+    return network if scenario.origin is None else network.at(scenario.origin)
+
+
+def _opened(name: str | Path, *, to_be_moved: bool) -> Scenario:
+    path = Path(name)
+    if path.is_dir() and not (path / "scenario.toml").is_file():
+        configurations = sorted(path.glob("*.sumocfg"))
+        if len(configurations) > 1:
+            found = ", ".join(configuration.name for configuration in configurations)
+            raise ScenarioError(f"{path} has no scenario.toml but several configurations; name one of {found}")
+        path = configurations[0] if configurations else path
+    if not path.is_file():
+        if path.name.endswith((".sumocfg", ".xml", ".gz")):
+            raise ScenarioError(f"there is no file {path}")
+        return scenarios.load(name)
+    if path.name == "scenario.toml":
+        return scenarios.load(path.parent)
+    root = root_of(path).tag
+    if root == "osm":
+        raise ScenarioError(f"{path} is an OpenStreetMap extract; import it first: scenarios import {path}")
+    if root != "net" and root not in CONFIGURATIONS:
+        raise ScenarioError(f"{path} is neither a SUMO configuration nor a network: its root is <{root}>")
+    return foreign_scenario(path, to_be_moved=to_be_moved)

@@ -1,0 +1,304 @@
+"""Draws a scenario: its roads by class, tunnels, names, limits and the ways of the ego, north up."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+from PIL import Image, ImageDraw
+from shapely import LineString, Polygon, box
+
+from automotive_cosim.cockpit.map import AVENUES, MOTORWAYS, QUIET
+from automotive_cosim.cockpit.theme import DAY, Colour, Weight, font
+from automotive_cosim.errors import ScenarioError, UserError
+from automotive_cosim.geo.place import Atlas
+from automotive_cosim.scenarios import Scenario
+from automotive_cosim.scenery.labels import Labels, place_labels
+from automotive_cosim.scenery.opening import network_of
+from automotive_cosim.traffic.georeference import GeoReference
+from automotive_cosim.traffic.network import Edge, Network
+from automotive_cosim.traffic.ways import way_through
+
+FINE = 2
+"""Oversampling of the roads."""
+
+MAP_PIXELS = 1_100_000
+"""Of the map, whatever its shape."""
+
+ASPECTS = (0.62, 1.9)
+"""Width over height of the map, at least and at most."""
+
+MARGIN, HEAD, ROW = 36, 84, 30
+"""Around the map's roads, the height of the title and that of a line of the legend, pixels."""
+
+TRIP_COLOURS: tuple[Colour, ...] = (
+    (31, 120, 230),
+    (200, 40, 120),
+    (14, 140, 90),
+    (125, 70, 200),
+    (210, 95, 0),
+    (0, 140, 160),
+    (140, 90, 40),
+)
+TRIP_WIDTH = 4.0
+TUNNEL: Colour = (128, 140, 156)
+DASH = 8.0
+"""Of tunnels, at least."""
+ATTRIBUTED = "OpenStreetMap"
+"""Scenarios made from its data say so in ``about``; so must their pictures."""
+CLASSES = (("motorway, trunk", "motorway"), ("primary, secondary", "primary"), ("other streets", "residential"))
+"""For the legend: words and a road class that is drawn so."""
+
+ENDINGS = (".webp", ".png")
+QUALITY = 75
+"""Of WebP, which is lossy."""
+
+Points = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """Where the network's metres lie on the picture."""
+
+    left_m: float
+    top_m: float
+    pixels_per_m: float
+    width: int
+    height: int
+
+    @classmethod
+    def around(cls, edges: Iterable[Edge]) -> Frame:
+        """A frame of the usual size that holds all roads."""
+        points = np.array([point for edge in edges for point in edge.shape_m])
+        (x_min, y_min), (x_max, y_max) = points.min(axis=0), points.max(axis=0)
+        wide_m, high_m = max(x_max - x_min, 1.0), max(y_max - y_min, 1.0)
+        aspect = min(max(wide_m / high_m, ASPECTS[0]), ASPECTS[1])
+        height = round(math.sqrt(MAP_PIXELS / aspect))
+        width = round(height * aspect)
+        scale = min((width - 2 * MARGIN) / wide_m, (height - 2 * MARGIN) / high_m)
+        left_m = (x_min + x_max) / 2 - width / 2 / scale
+        top_m = (y_min + y_max) / 2 + height / 2 / scale
+        return cls(float(left_m), float(top_m), float(scale), width, height)
+
+    def pixels(self, shape_m: Sequence[tuple[float, float]]) -> Points:
+        """Points in pixels of the map, (n, 2)."""
+        points = np.asarray(shape_m, dtype=np.float64)
+        return np.stack((points[:, 0] - self.left_m, self.top_m - points[:, 1]), axis=1) * self.pixels_per_m
+
+
+def draw_scenario(scenario: Scenario) -> Image.Image:
+    """The scenario's picture, RGB.
+
+    Raises:
+        ScenarioError: its network cannot be read, or a trip has no way through it.
+    """
+    network = network_of(scenario)
+    edges = tuple(network.edges.values())
+    frame = Frame.around(edges)
+    roads = _roads(frame, edges)
+    _trips(roads, frame, network, scenario)
+    picture = roads.reduce(FINE)
+    labels = Labels(picture, frame.pixels)
+    labels.taken.append(_scale_bar(picture, frame, edges))
+    labels.taken += _ends(picture, frame, network, scenario)
+    place_labels(labels, network)
+    return _framed(picture, scenario, _where(scenario, network))
+
+
+def save_picture(scenario: Scenario, path: Path) -> None:
+    """Draws the scenario into a file whose ending is one of ``ENDINGS``; it is there whole or not at all.
+
+    Raises:
+        ScenarioError: as ``draw_scenario``.
+        UserError: the file cannot be written.
+    """
+    picture = draw_scenario(scenario)
+    draft = path.with_name(f".{path.name}.part")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        picture.save(draft, path.suffix[1:].upper(), quality=QUALITY, method=6)
+        draft.replace(path)
+    except OSError as error:
+        raise UserError(f"cannot write {path} ({error.strerror}); give --out a place where you may") from error
+
+
+def _roads(frame: Frame, edges: Sequence[Edge]) -> Image.Image:
+    picture = Image.new("RGB", (frame.width * FINE, frame.height * FINE), DAY.land)
+    brush = ImageDraw.Draw(picture)
+    order = sorted(edges, key=lambda edge: (not edge.in_tunnel, rank(edge.road_class)))
+    lines = [(edge, frame.pixels(edge.shape_m) * FINE) for edge in order]
+    for edge, line in lines:
+        _stroke(brush, line, _width(edge, frame) + 2 * FINE, TUNNEL if edge.in_tunnel else DAY.casing)
+    for edge, line in lines:
+        if edge.in_tunnel:
+            _dashed(brush, line, _width(edge, frame), _colour(edge.road_class))
+        else:
+            _stroke(brush, line, _width(edge, frame), _colour(edge.road_class))
+    return picture
+
+
+def _trips(picture: Image.Image, frame: Frame, network: Network, scenario: Scenario) -> None:
+    """The ways side by side where they share a road."""
+    brush = ImageDraw.Draw(picture)
+    count = len(scenario.ego.trips)
+    for number, trip in enumerate(scenario.ego.trips):
+        way = way_through(network, (trip.from_edge, *trip.via, trip.to_edge))
+        if not way:
+            raise ScenarioError(f"trip {trip.name!r} of scenario {scenario.name!r} has no way through the network")
+        line = np.concatenate([frame.pixels(network.edges[edge].shape_m) for edge in way])
+        aside = (number - (count - 1) / 2) * (TRIP_WIDTH + 0.5)
+        _stroke(brush, _shifted(line, aside) * FINE, TRIP_WIDTH * FINE, trip_colour(number))
+
+
+def _ends(picture: Image.Image, frame: Frame, network: Network, scenario: Scenario) -> list[Polygon]:
+    """A disc with the trip's number where it begins, a ring where it ends; returns what they cover."""
+    brush = ImageDraw.Draw(picture)
+    face = font(Weight.BOLD, 15)
+    taken: list[tuple[float, float]] = []
+    for number, trip in enumerate(scenario.ego.trips):
+        for edge, at, is_start in ((trip.from_edge, 0, True), (trip.to_edge, -1, False)):
+            x, y = (float(value) for value in frame.pixels(network.edges[edge].shape_m)[at])
+            while any(math.dist((x, y), other) < 20 for other in taken):
+                x += 20
+            taken.append((x, y))
+            fill, ink = (trip_colour(number), DAY.halo) if is_start else (DAY.halo, trip_colour(number))
+            brush.ellipse((x - 11, y - 11, x + 11, y + 11), fill, trip_colour(number), 3)
+            brush.text((x, y + 0.5), str(number + 1), ink, face, "mm")
+    return [box(x - 12, y - 12, x + 12, y + 12) for x, y in taken]
+
+
+def _scale_bar(picture: Image.Image, frame: Frame, edges: Iterable[Edge]) -> Polygon:
+    brush = ImageDraw.Draw(picture)
+    longest_m = 0.22 * frame.width / frame.pixels_per_m
+    power = 10 ** math.floor(math.log10(longest_m))
+    length_m = max(step * power for step in (1, 2, 5) if step * power <= longest_m)
+    wide = length_m * frame.pixels_per_m + 24
+    area = _emptiest(frame, wide, 46.0, edges)
+    left, top, right, bottom = area.bounds
+    text = f"{length_m / 1000:g} km" if length_m >= 1000 else f"{length_m:g} m"
+    brush.rectangle(area.bounds, DAY.halo)
+    x_1, x_2, y = left + 12, right - 12, bottom - 12
+    brush.line((x_1, y - 7, x_1, y, x_2, y, x_2, y - 7), DAY.muted, 2)
+    brush.text(((left + right) / 2, top + 16), text, DAY.text, font(Weight.MEDIUM, 15), "mm")
+    return area
+
+
+def _emptiest(frame: Frame, width: float, height: float, edges: Iterable[Edge]) -> Polygon:
+    """The corner of the map with the fewest roads, the lower right one if it is a draw."""
+    roads = [LineString(frame.pixels(edge.shape_m)) for edge in edges]
+    right, bottom = frame.width - 12 - width, frame.height - 12 - height
+    corners = ((right, bottom), (12, bottom), (right, 12), (12, 12))
+    areas = [box(x, y, x + width, y + height) for x, y in corners]
+    return min(areas, key=lambda area: sum(area.intersects(road) for road in roads))
+
+
+def _where(scenario: Scenario, network: Network) -> str:
+    """The countries that the trips begin and end in."""
+    if network.map.projection is None:
+        return "no place on earth"
+    atlas, reference = Atlas(), GeoReference(network.map)
+    ends = [edge for trip in scenario.ego.trips for edge in (trip.from_edge, trip.to_edge)]
+    places = [atlas.place(*reference.lon_lat(*network.edges[edge].shape_m[0])) for edge in ends]
+    return " and ".join(dict.fromkeys(place.country_name or "the sea" for place in places))
+
+
+def _framed(picture: Image.Image, scenario: Scenario, where: str) -> Image.Image:
+    """The title above, the legend below."""
+    trips = scenario.ego.trips
+    height = HEAD + picture.height + ROW * (len(trips) + 1) + 30
+    whole = Image.new("RGB", (picture.width, height), DAY.surface)
+    whole.paste(picture, (0, HEAD))
+    brush = ImageDraw.Draw(whole)
+    title = cut(scenario.title, Weight.MEDIUM, 26, whole.width - 48)
+    brush.text((24, 30), title, DAY.text, font(Weight.MEDIUM, 26), "lm")
+    facts = f"{where} · {scenario.start:%A} {scenario.start.day} {scenario.start:%B %Y, %H:%M}"
+    if ATTRIBUTED in scenario.about:
+        facts += f" · map data © {ATTRIBUTED} contributors"
+    brush.text((24, 62), facts, DAY.muted, font(Weight.REGULAR, 17), "lm")
+    y = HEAD + picture.height + 26
+    _classes(brush, y)
+    for number, trip in enumerate(trips):
+        y += ROW
+        brush.ellipse((24, y - 11, 46, y + 11), trip_colour(number))
+        brush.text((35, y + 0.5), str(number + 1), DAY.halo, font(Weight.BOLD, 15), "mm")
+        brush.text((58, y), trip.name, DAY.text, font(Weight.MEDIUM, 17), "lm")
+        left = 58 + font(Weight.MEDIUM, 17).getlength(trip.name) + 14
+        about = cut(trip.about, Weight.REGULAR, 17, whole.width - 24 - left)
+        brush.text((left, y), about, DAY.muted, font(Weight.REGULAR, 17), "lm")
+    return whole
+
+
+def _classes(brush: ImageDraw.ImageDraw, y: float) -> None:
+    x = 24.0
+    face = font(Weight.REGULAR, 16)
+    for words, road_class in CLASSES:
+        brush.line((x, y, x + 34, y), DAY.casing, 11)
+        brush.line((x + 1, y, x + 33, y), _colour(road_class), 8)
+        brush.text((x + 44, y), words, DAY.muted, face, "lm")
+        x += 44 + face.getlength(words) + 26
+    brush.line((x, y, x + 34, y), TUNNEL, 11)
+    _dashed(brush, np.array(((x + 1, y), (x + 33, y))), 8, _colour("primary"))
+    brush.text((x + 44, y), "tunnel", DAY.muted, face, "lm")
+
+
+def cut(text: str, weight: Weight, size: int, width: float) -> str:
+    """The text, shortened until it fits."""
+    face = font(weight, size)
+    if face.getlength(text) <= width:
+        return text
+    while text and face.getlength(text + "…") > width:
+        text = text[:-1]
+    return text.rstrip() + "…"
+
+
+def trip_colour(number: int) -> Colour:
+    """Of the n-th trip, from 0."""
+    return TRIP_COLOURS[number % len(TRIP_COLOURS)]
+
+
+def rank(road_class: str) -> int:
+    """The greater the road, the further up it is drawn."""
+    if road_class in MOTORWAYS:
+        return 3
+    return 2 if road_class in AVENUES else 0 if road_class in QUIET else 1
+
+
+def _colour(road_class: str) -> Colour:
+    return (DAY.street, DAY.street, DAY.avenue, DAY.motorway)[rank(road_class)]
+
+
+def _width(edge: Edge, frame: Frame) -> float:
+    least = (2.5, 3.5, 5.0, 6.5)[rank(edge.road_class)]
+    return FINE * max(least, len(edge.lane_ids) * 3.2 * frame.pixels_per_m)
+
+
+def _stroke(brush: ImageDraw.ImageDraw, line: Points, width: float, colour: Colour) -> None:
+    brush.line([(float(x), float(y)) for x, y in line], colour, max(1, round(width)), joint="curve")
+    r = width / 2 - 0.5
+    for x, y in (line[0], line[-1]):
+        brush.ellipse((x - r, y - r, x + r, y + r), colour)
+
+
+def _dashed(brush: ImageDraw.ImageDraw, line: Points, width: float, colour: Colour) -> None:
+    """Short dashes of the colour on the casing."""
+    along = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))))
+    dash = max(width, DASH)
+    for start in np.arange(0.0, along[-1], 2 * dash):
+        ends = np.array((start, min(start + dash, along[-1])))
+        xs, ys = np.interp(ends, along, line[:, 0]), np.interp(ends, along, line[:, 1])
+        brush.line((xs[0], ys[0], xs[1], ys[1]), colour, max(1, round(width)))
+
+
+def _shifted(line: Points, aside: float) -> Points:
+    """The line, so many pixels further to its right."""
+    kept = np.concatenate(([True], np.any(np.diff(line, axis=0) != 0, axis=1)))
+    line = line[kept]
+    if len(line) < 2:
+        return line
+    ahead = np.gradient(line, axis=0)
+    ahead /= np.maximum(np.hypot(ahead[:, 0], ahead[:, 1]), 1e-9)[:, None]
+    return line + aside * np.stack((-ahead[:, 1], ahead[:, 0]), axis=1)

@@ -1,0 +1,298 @@
+"""Does a scenario's traffic flow for an hour, or does it lock up?
+
+The demand of a network is guessed more often than counted, and SUMO locks for good once a ring of junctions is
+blocked. So a scenario is driven without the ego, by the plain ``sumo`` program, and what it reports every second is
+held against one law: after the warm-up, under a quarter of the vehicles halted in every minute, nobody standing for
+300 s (SUMO would teleport it), no collision, and hardly anybody unable to enter the network.
+"""
+
+from __future__ import annotations
+
+import re
+import signal
+import subprocess
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Generator, Sequence
+from contextlib import closing
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from automotive_cosim.errors import ScenarioError, TrafficError
+from automotive_cosim.scenarios import Scenario
+from automotive_cosim.sumo_programs import environment, first_error, program
+from automotive_cosim.traffic.options import Setup, command_line, read_configuration
+
+HALTED_SHARE_LIMIT = 0.25
+"""Halted (under 0.1 m/s, as SUMO counts) among the running vehicles, mean of any minute."""
+
+FEW_VEHICLES = 40
+"""Of fewer than that the share is taken of so many: one red light halts a third of ten cars, and that is no jam. A
+real one among few is told by the teleports."""
+
+LONGEST_WAIT_S = 300
+"""Standing longer than this without a reason is a teleport, SUMO's own default."""
+
+BACKLOG_SHARE_LIMIT = 0.05
+"""Vehicles still waiting to enter at the end, among all that wanted to since the start."""
+
+SILENCE_LIMIT_S = 120.0
+"""Wall time without a second of traffic after which SUMO counts as hung; one takes it milliseconds."""
+
+LOADING_LIMIT_S = 600.0
+"""Likewise before the first one: reading a country's network takes minutes."""
+
+WINDOW_S = 60.0
+"""The halted share is averaged over this, about one cycle of the signals."""
+
+Progress = Callable[[float], None]
+"""Told the share of the simulation that is done, 0 to 1."""
+
+Step = dict[str, float]
+"""One ``step`` of SUMO's summary output."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stability:
+    """How the traffic did after its warm-up."""
+
+    scale: float
+    """Factor on the demand it was measured at."""
+    seed: int
+    step_length_s: float
+    observed_s: float
+    """Simulated time the figures cover; shorter than asked for if the run was given up."""
+    halted_share_max: float
+    """Highest of the minutes' means; of at least ``FEW_VEHICLES``, likewise the next."""
+    halted_share_mean: float
+    vehicles_mean: float
+    vehicles_max: int
+    arrived: int
+    teleports: int
+    collisions: int
+    backlog: int
+    """Vehicles waiting to enter the network at the end."""
+    backlog_share: float
+    """Of all that had set out by then."""
+
+    @property
+    def problems(self) -> tuple[str, ...]:
+        """What breaks the law, in words; empty if nothing does."""
+        found: list[str] = []
+        if self.halted_share_max >= HALTED_SHARE_LIMIT:
+            found.append(f"{self.halted_share_max:.0%} of the vehicles halted in the worst minute")
+        if self.teleports:
+            found.append(f"{self.teleports} vehicles stood for over {LONGEST_WAIT_S} s or were stuck otherwise")
+        if self.collisions:
+            found.append(f"{self.collisions} collisions")
+        if self.backlog_share > BACKLOG_SHARE_LIMIT:
+            found.append(f"{self.backlog} vehicles could not enter the network")
+        if not self.vehicles_max:
+            found.append("there was no traffic")
+        return tuple(found)
+
+    @property
+    def stable(self) -> bool:
+        """Nothing breaks the law."""
+        return not self.problems
+
+
+def measure(
+    scenario: Scenario,
+    *,
+    observe_s: float = 3600.0,
+    scale: float | None = None,
+    seed: int = 0,
+    step_length_s: float = 1.0,
+    give_up_at: float = 1.0,
+    on_progress: Progress | None = None,
+) -> Stability:
+    """Runs the scenario's traffic, without the ego, through its warm-up and ``observe_s`` more.
+
+    SUMO is started as every drive starts it, so nothing is written to the scenario's folder.
+
+    Args:
+        scenario: whose traffic.
+        observe_s: seconds after the warm-up.
+        scale: factor on the demand; None takes the scenario's own.
+        seed: SUMO's seed.
+        step_length_s: 1 s shows most jams at a fifth of the cost of 0.1 s.
+        give_up_at: end the run once a minute's halted share reaches this, or a vehicle was teleported after the
+            warm-up; 1 drives on to the end whatever happens.
+        on_progress: called once per simulated minute.
+
+    Raises:
+        ScenarioError: SUMO refuses the scenario; the text is SUMO's.
+        TrafficError: SUMO hung or was killed.
+        SetupError: eclipse-sumo is not installed.
+    """
+    sumo = replace(
+        scenario.sumo, step_length_s=step_length_s, scale=scenario.sumo.scale if scale is None else scale
+    )
+    begin_s = read_configuration(scenario.config).begin_s
+    warm_s = begin_s + sumo.warm_up_s
+    end_s = warm_s + observe_s
+    tally = _Tally(warm_s, minute_start_s=begin_s)
+    with tempfile.TemporaryDirectory(prefix="automotive-cosim-stability-") as scratch:
+        setup = Setup(replace(scenario, sumo=sumo), seed=seed)
+        options = _options(setup, end_s, Path(scratch))
+        with closing(_run(scenario.config.name, options, Path(scratch))) as steps:
+            for step in steps:
+                minute_is_over = tally.add(step)
+                if minute_is_over and on_progress:
+                    on_progress(min(1.0, (step["time"] - begin_s) / (end_s - begin_s)))
+                if minute_is_over and tally.broken_beyond(give_up_at):
+                    break
+    return tally.result(setup)
+
+
+def _options(setup: Setup, end_s: float, scratch: Path) -> list[str]:
+    _, *arguments = command_line(read_configuration(setup.scenario.config), setup, scratch)
+    options = dict(zip(arguments[::2], arguments[1::2], strict=True)) | {
+        "--end": f"{end_s:g}",
+        "--time-to-teleport": str(LONGEST_WAIT_S),
+        "--summary-output": "stdout",
+        "--summary-output.period": "1",
+    }
+    return [part for option in options.items() for part in option]
+
+
+_ATTRIBUTE = re.compile(r'(\w+)="(-?[\d.]+)"')
+
+
+def _run(config: str, options: Sequence[str], scratch: Path) -> Generator[Step, None, None]:
+    """SUMO's summary, second by second. Closing the iterator ends SUMO."""
+    with (
+        tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as complaints,
+        subprocess.Popen(
+            [program("sumo"), *options],
+            cwd=scratch,
+            env=environment(),
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=complaints,
+            encoding="utf-8",
+            errors="replace",
+        ) as process,
+    ):
+        watchdog = _Watchdog(process)
+        try:
+            for line in process.stdout or ():
+                if line.lstrip().startswith("<step "):
+                    watchdog.alive()
+                    yield {key: float(value) for key, value in _ATTRIBUTE.findall(line)}
+            if process.wait():
+                complaints.seek(0)
+                watchdog.judge(config)
+                raise ScenarioError(f"SUMO cannot run {config}: {first_error(complaints.read())}")
+        finally:
+            watchdog.stop()
+            process.kill()
+
+
+class _Watchdog:
+    """Kills a process that gives no sign of life for too long."""
+
+    def __init__(self, process: subprocess.Popen[str]) -> None:
+        self._process = process
+        self._until_s = time.monotonic() + LOADING_LIMIT_S
+        self._is_over = threading.Event()
+        self._has_bitten = False
+        self._thread = threading.Thread(target=self._watch, daemon=True)
+        self._thread.start()
+
+    def alive(self) -> None:
+        """A sign of life. While its taker looks at it nothing is awaited, so the clock starts anew each time."""
+        self._until_s = time.monotonic() + SILENCE_LIMIT_S
+
+    def judge(self, config: str) -> None:
+        """Why the process ended, if it was not its own doing.
+
+        Raises:
+            TrafficError: it was killed.
+        """
+        if self._has_bitten:
+            raise TrafficError(f"SUMO hung in {config} and was ended; try again, or a smaller network")
+        if self._process.returncode < 0:
+            name = signal.Signals(-self._process.returncode).name
+            raise TrafficError(f"SUMO was ended by {name} while it ran {config}; is there memory enough?")
+
+    def stop(self) -> None:
+        """Nothing more is to be watched."""
+        self._is_over.set()
+        self._thread.join()
+
+    def _watch(self) -> None:
+        while (left_s := self._until_s - time.monotonic()) > 0:
+            if self._is_over.wait(left_s):
+                return
+        self._has_bitten = True
+        self._process.kill()
+
+
+@dataclass(slots=True)
+class _Tally:
+    """Adds up SUMO's summary from the end of the warm-up on."""
+
+    warm_s: float
+    """Simulation time at which the warm-up ends."""
+    before: Step = field(default_factory=dict)
+    """The last step of the warm-up: SUMO's counts run from the start."""
+    last: Step = field(default_factory=dict)
+    minute_start_s: float = 0.0
+    running: list[float] = field(default_factory=list)
+    """Vehicle-steps of each minute, the last one unfinished; likewise ``halting``."""
+    halting: list[float] = field(default_factory=list)
+    samples: list[int] = field(default_factory=list)
+    """Steps in each minute."""
+    steps: int = 0
+    vehicles_max: int = 0
+
+    def add(self, step: Step) -> bool:
+        """Takes one step in; true at the end of every minute, of the warm-up too."""
+        minute_is_over = step["time"] - self.minute_start_s >= WINDOW_S
+        if minute_is_over:
+            self.minute_start_s = step["time"]
+        self.last = step
+        if step["time"] <= self.warm_s:
+            self.before = step
+        else:
+            if minute_is_over or not self.running:
+                self.running.append(0.0)
+                self.halting.append(0.0)
+                self.samples.append(0)
+            self.samples[-1] += 1
+            self.running[-1] += step["running"]
+            self.halting[-1] += step["halting"]
+            self.steps += 1
+            self.vehicles_max = max(self.vehicles_max, int(step["running"]))
+        return minute_is_over
+
+    def broken_beyond(self, halted_share: float) -> bool:
+        return halted_share < 1 and (self._halted_share_max() >= halted_share or self._since("teleports") > 0)
+
+    def result(self, setup: Setup) -> Stability:
+        backlog = int(self.last.get("waiting", 0))
+        return Stability(
+            scale=setup.scenario.sumo.scale,
+            seed=setup.seed,
+            step_length_s=setup.scenario.sumo.step_length_s,
+            observed_s=max(0.0, self.last.get("time", 0.0) - self.warm_s),
+            halted_share_max=self._halted_share_max(),
+            halted_share_mean=sum(self.halting) / max(1.0, sum(self.running), FEW_VEHICLES * self.steps),
+            vehicles_mean=sum(self.running) / max(1, self.steps),
+            vehicles_max=self.vehicles_max,
+            arrived=self._since("arrived"),
+            teleports=self._since("teleports"),
+            collisions=self._since("collisions"),
+            backlog=backlog,
+            backlog_share=backlog / max(1.0, backlog + self.last.get("inserted", 0.0)),
+        )
+
+    def _halted_share_max(self) -> float:
+        minutes = zip(self.halting, self.running, self.samples, strict=True)
+        return max((halted / max(total, FEW_VEHICLES * count) for halted, total, count in minutes), default=0.0)
+
+    def _since(self, count: str) -> int:
+        return int(self.last.get(count, 0.0) - self.before.get(count, 0.0))

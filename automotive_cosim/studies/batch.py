@@ -1,0 +1,149 @@
+"""The drives of a study, in parallel and resumed, until all have been driven or enough is known."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.errors import CosimError
+from automotive_cosim.run.batch import Progress, run_jobs
+from automotive_cosim.run.store import opened
+from automotive_cosim.run.worker import Runner
+from automotive_cosim.studies.drive import run_drive
+from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
+from automotive_cosim.studies.plan import DriveJob, StudyPlan
+from automotive_cosim.studies.policies import Rule
+from automotive_cosim.studies.results import choices
+from automotive_cosim.studies.traffic import PULSE_S
+from automotive_cosim.traffic.fork import Forked
+from automotive_cosim.traffic.ledger import Pulse
+
+STRIDE = 5
+"""Seeds that are added at a time once there are the fewest that an interval takes."""
+
+
+def run_study(
+    plan: StudyPlan,
+    folder: Path,
+    *,
+    workers: int = 1,
+    retries: int = 1,
+    tell: Callable[[Progress], None] = lambda progress: None,
+) -> Progress:
+    """Runs what is left of a study; drives that ended in an error are tried again.
+
+    Args:
+        plan: what to run.
+        folder: where the results are or go.
+        workers: processes; the results do not depend on their number.
+        retries: how often a drive that the machinery broke is tried again.
+        tell: called at the start and after every drive.
+
+    Raises:
+        UserError: the plan names what does not exist, or the folder cannot take its results.
+        KeyboardInterrupt: passed on; the running drives are lost, and no other.
+    """
+    plan.check()
+    first, *more = _stages(plan)
+    with opened(folder, plan.as_json(), parts=()) as store:
+
+        def run(seeds: tuple[int, ...]) -> Progress:
+            jobs = [job for job in plan.jobs() if job.seed in seeds]
+            return run_jobs(jobs, store, drives, failed, workers=workers, retries=retries, tell=tell)
+
+        progress = run(first)
+        for seeds in more:
+            if _is_narrow(plan, list(store.rows.values())):
+                break
+            progress = run(seeds)
+    return progress
+
+
+def _stages(plan: StudyPlan) -> list[tuple[int, ...]]:
+    """The seeds to have run before the interval is looked at again: all at once without a stopping rule."""
+    counts = [] if plan.half_width_s is None else range(LEAST_SEEDS, len(plan.seeds), STRIDE)
+    return [*(plan.seeds[:count] for count in counts), plan.seeds]
+
+
+def _is_narrow(plan: StudyPlan, rows: Sequence[Json]) -> bool:
+    """Whether the mean gain of rerouting always is known closely enough."""
+    found = [each for each in choices(rows, (Rule.ALWAYS,)) if each["age_s"] == plan.ages_s[0]]
+    mean = seed_mean((each["seed"], each["gain_time_s"]) for each in found)
+    if plan.half_width_s is None or mean is None or mean.interval is None:
+        return False
+    return (mean.interval.high - mean.interval.low) / 2 <= plan.half_width_s
+
+
+@contextmanager
+def drives() -> Iterator[Runner]:
+    """What runs the drives in a worker."""
+    warm = _Warm()
+    try:
+        yield warm.run
+    finally:
+        warm.close()
+
+
+def failed(job: DriveJob, kind: str, why: str) -> Json:
+    """The row of a drive that the machinery could not bring to its end."""
+    return _named(job) | {"excluded": "", "why": "", "looks": 0, "decisions": [], "error": why, "error_kind": kind}
+
+
+def _named(job: DriveJob) -> Json:
+    return {
+        "id": job.id,
+        "scenario": job.plan.scenario,
+        "share": job.share,
+        "seed": job.seed,
+        "departure_s": job.departure_s,
+        "trip": job.trip.name,
+    }
+
+
+class _Warm:
+    """The traffic of one seed and share, which runs on from departure to departure."""
+
+    def __init__(self) -> None:
+        self._simulation: Forked | None = None
+        self._key: tuple[str, int] | None = None
+        self._now_s = 0.0
+        self._pulses: list[Pulse] = []
+
+    def run(self, job: DriveJob) -> Json:
+        """Runs a drive; an error becomes a row too."""
+        began_s = time.perf_counter()
+        try:
+            row = _named(job) | {"error": None, "error_kind": None} | run_drive(job, *self._at(job))
+        except CosimError as error:
+            self.close()  # whatever it was, the next drive begins with traffic that is known to be right
+            row = failed(job, type(error).__name__, str(error))
+        except Exception as error:
+            # A fault in an agent or in here must not take the study with it; it is counted and listed.
+            self.close()
+            row = failed(job, type(error).__name__, f"{type(error).__name__}: {error}")
+        return row | {"wall_seconds": round(time.perf_counter() - began_s, 3)}
+
+    def close(self) -> None:
+        """Ends the simulation."""
+        if self._simulation is not None:
+            self._simulation.close()
+        self._simulation = self._key = None
+
+    def _at(self, job: DriveJob) -> tuple[Forked, Sequence[Pulse]]:
+        """The traffic at the departure, and how it has been doing up to it."""
+        if self._simulation is None or self._key != job.simulation or job.departure_s < self._now_s:
+            self.close()
+            scene = job.plan.scene(job.share)
+            self._simulation = Forked(scene, job.seed, allow_unprojected=True)
+            self._simulation.watch()
+            self._key, self._now_s, self._pulses = job.simulation, 0.0, []
+        while self._now_s < job.departure_s:
+            onward_s = min(job.departure_s, (self._now_s // PULSE_S + 1) * PULSE_S) - self._now_s
+            pulse = self._simulation.run_on(onward_s)
+            self._now_s += onward_s
+            if self._now_s % PULSE_S == 0:
+                self._pulses.append(pulse)
+        return self._simulation, tuple(self._pulses)

@@ -1,0 +1,171 @@
+"""Plots of a study as SVG, in the colours of the page they stand on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.report.charts import INK, MARKERS, NARROW_IN, PALETTE, WIDE_IN, Drawing, drawn, legend
+from automotive_cosim.studies.results import Study
+from automotive_cosim.studies.tables import BINS, STAYING, bin_name, goes_by_news, groups, mean_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Series = Sequence[tuple[str, Sequence[Sequence[Json]]]]
+"""Name of each series, and its choices for each row of the plot."""
+
+SAVED = "seconds saved"
+
+
+def charts(study: Study) -> dict[str, tuple[str, str, str]]:
+    """Plots by name: title, SVG for a wide page, SVG for a narrow one.
+
+    Raises:
+        SetupError: matplotlib is not installed.
+    """
+    made = {
+        "policies": ("Time saved by each policy", _policies(study)),
+        "promised": ("Promised and saved", _promised(study)),
+        "congestion": ("Time saved by congestion at the decision", _congestion(study)),
+        "ages": ("Time saved by the age of the news", _ages(study)),
+        "shares": ("Time saved by the share of cars that reroute", _shares(study)),
+    }
+    return {
+        name: (title, drawn(name, drawing, WIDE_IN), drawn(name, drawing, NARROW_IN))
+        for name, (title, drawing) in made.items()
+        if drawing is not None
+    }
+
+
+def _policies(study: Study) -> Drawing | None:
+    found = [(share, policy, rows) for share, policy, age_s, rows in groups(study) if age_s == study.plan.ages_s[0]]
+    named = [name for name in dict.fromkeys(policy for _, policy, _ in found) if name not in STAYING]
+    shares = list(dict.fromkeys(share for share, _, _ in found))
+    series = [
+        (
+            f"{share:.0%} of the others reroute",
+            [[each for s, p, rows in found if (s, p) == (share, name) for each in rows] for name in named],
+        )
+        for share in shares
+    ]
+    return _points(study, named, series)
+
+
+def _congestion(study: Study) -> Drawing | None:
+    chosen = [
+        each for each in study.choices if each["age_s"] == study.plan.ages_s[0] and each["policy"] not in STAYING
+    ]
+    bins = [(low, high) for low, high in BINS if any(low <= each["time_index"] < high for each in chosen)]
+    series = [
+        (
+            name,
+            [
+                [each for each in chosen if each["policy"] == name and low <= each["time_index"] < high]
+                for low, high in bins
+            ],
+        )
+        for name in dict.fromkeys(each["policy"] for each in chosen)
+    ]
+    return _points(study, [f"time index {bin_name(low, high)}" for low, high in bins], series)
+
+
+def _ages(study: Study) -> Drawing | None:
+    ages_s = study.plan.ages_s
+    if len(ages_s) < 2:
+        return None
+    named = [name for name in study.plan.policies if goes_by_news(name)]
+    series = [
+        (
+            name,
+            [
+                [each for each in study.choices if (each["policy"], each["age_s"]) == (name, age_s)]
+                for age_s in ages_s
+            ],
+        )
+        for name in named
+    ]
+    return _points(study, [f"{age_s:g} s old" for age_s in ages_s], series)
+
+
+def _shares(study: Study) -> Drawing | None:
+    shares = sorted({each["share"] for each in study.choices})
+    if len(shares) < 2:
+        return None
+    first_s = study.plan.ages_s[0]
+    series = [
+        (
+            name,
+            [
+                [e for e in study.choices if (e["policy"], e["share"], e["age_s"]) == (name, share, first_s)]
+                for share in shares
+            ],
+        )
+        for name in study.plan.policies
+        if name not in STAYING
+    ]
+    return _points(study, [f"{share:.0%} reroute" for share in shares], series)
+
+
+def _promised(study: Study) -> Drawing | None:
+    """What the news promised of each other way that was driven, and what it saved."""
+    points = [
+        (each["stay_s"] - each["offered_s"], decision["branches"][each["branch"]]["gains"]["time_s"])
+        for decision in study.decisions
+        for each in decision["news"][:1]
+        if each["branch"] is not None
+    ]
+    if not points:
+        return None
+
+    def draw(axes: Axes) -> None:
+        promised, saved = zip(*points, strict=True)
+        ends = [min(*promised, *saved), max(*promised, *saved)]
+        axes.plot(ends, ends, color=INK, alpha=0.4, linewidth=1, label="as promised")
+        floor_s = study.noise().time_s
+        axes.axhspan(-floor_s, floor_s, color=INK, alpha=0.12, linewidth=0, label="noise floor")
+        axes.scatter(promised, saved, s=22, alpha=0.6, color=PALETTE[0], linewidths=0, label="a decision")
+        axes.grid(axis="y", color=INK, alpha=0.15, linewidth=0.8)
+        axes.set_xlabel("seconds that the news promised")
+        axes.set_ylabel("seconds saved")
+        legend(axes)
+
+    return 4.4, draw
+
+
+def _points(study: Study, names: Sequence[str], series: Series) -> Drawing | None:
+    """A row for each name, in it a mean with its interval for each series; the noise floor behind them."""
+    if not names or not series:
+        return None
+    height_in = 1.0 + len(names) * (0.2 + 0.17 * len(series)) + 0.23 * len(series)
+    floor_s = study.noise().time_s
+
+    def draw(axes: Axes) -> None:
+        axes.axvspan(-floor_s, floor_s, color=INK, alpha=0.12, linewidth=0)
+        axes.axvline(0, color=INK, alpha=0.5, linewidth=1)
+        for number, (label, cells) in enumerate(series):
+            offset = (number - (len(series) - 1) / 2) * 0.8 / len(series)
+            found = [(place + offset, mean_of(rows, "gain_time_s")) for place, rows in enumerate(cells)]
+            means = [(place, mean) for place, mean in found if mean is not None]
+            reach = [
+                (mean.value - mean.interval.low, mean.interval.high - mean.value) if mean.interval else (0.0, 0.0)
+                for _, mean in means
+            ]
+            axes.errorbar(
+                [mean.value for _, mean in means],
+                [place for place, _ in means],
+                xerr=[[max(0.0, low) for low, _ in reach], [max(0.0, high) for _, high in reach]],
+                fmt=MARKERS[number % len(MARKERS)],
+                color=PALETTE[number % len(PALETTE)],
+                markersize=6,
+                elinewidth=1.6,
+                capsize=0,
+                label=label,
+            )
+        axes.set_yticks(range(len(names)), names)
+        axes.set_ylim(len(names) - 0.5, -0.5)
+        axes.set_xlabel(SAVED)
+        legend(axes)
+
+    return height_in, draw

@@ -1,0 +1,74 @@
+"""Two futures of one instant against each other. A gain is what the second saves: positive is better."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from automotive_cosim.contracts import DrivingState, EgoEnd, Json
+from automotive_cosim.traffic.ledger import Settled
+
+METRICS = ("time_s", "distance_m", "stops", "standing_s", "co2_g", "fuel_g")
+"""Of the ego, over its whole drive, as SUMO's tripinfo counts them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Future:
+    """One way on from an instant, driven to its end."""
+
+    last: DrivingState
+    """Of the ego."""
+    settled: Settled
+
+    @property
+    def has_arrived(self) -> bool:
+        """Whether the ego reached its goal in time."""
+        return self.last.end is EgoEnd.ARRIVED
+
+    def totals(self) -> Json:
+        """What the ego's drive came to; the rest of the way that the last step covered counts as driven."""
+        ego = self.settled.ego
+        return {
+            "time_s": round(self.last.time_s - ego.departed_s, 3),
+            "distance_m": round(self.last.distance_m + self.last.ahead.route_left_m, 2),
+            "stops": ego.stops,
+            "standing_s": round(ego.standing_s, 3),
+            "co2_g": round(ego.co2_g, 3),
+            "fuel_g": round(ego.fuel_g, 3),
+        }
+
+
+def gains(stay: Future, other: Future) -> Json:
+    """What the ego saves in the other future."""
+    before, after = stay.totals(), other.totals()
+    return {name: round(before[name] - after[name], 3) for name in METRICS}
+
+
+def others(stay: Future, other: Future, group: Sequence[str]) -> Json:
+    """What everybody else saves: the sum over all who were there at the fork, of their time from then on.
+
+    Both futures are looked at up to the same instant, the earlier of their ends. Who has not arrived by then counts
+    up to it and as unfinished, so that nobody drops out of the sum, whoever is late in only one of the two.
+
+    Args:
+        stay: the future in which the ego stays.
+        other: the one in which it does not.
+        group: the vehicles that were on the road, or due and waiting to enter it.
+    """
+    until_s = min(stay.settled.time_s, other.settled.time_s)
+    times = [
+        [min(future.settled.arrivals_s.get(vehicle, until_s), until_s) for vehicle in group]
+        for future in (stay, other)
+    ]
+    return {
+        "count": len(group),
+        "gain_s": round(sum(before - after for before, after in zip(*times, strict=True)), 3),
+        "changed": sum(before != after for before, after in zip(*times, strict=True)),
+        "unfinished_stay": unfinished(stay, group, until_s),
+        "unfinished": unfinished(other, group, until_s),
+    }
+
+
+def unfinished(future: Future, group: Sequence[str], until_s: float) -> int:
+    """How many of the group have not arrived by an instant."""
+    return sum(future.settled.arrivals_s.get(vehicle, until_s + 1) > until_s for vehicle in group)

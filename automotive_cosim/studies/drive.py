@@ -1,0 +1,253 @@
+"""One drive of a study: the way it stays on, and at each decision point the branches that leave it.
+
+The drive itself is the future in which the ego stays; all its decisions share it, so that a drive with five
+decisions takes one future and five branches, not ten futures. A branch is a fork of the running simulation: the
+same traffic to the bit, and the same random numbers from there on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import closing
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from automotive_cosim.contracts import DrivingState, Json, Reroute, RouteOption
+from automotive_cosim.errors import TrafficError
+from automotive_cosim.geo.forecast import drawn_weather
+from automotive_cosim.studies import compare
+from automotive_cosim.studies.compare import Future
+from automotive_cosim.studies.driver import decided
+from automotive_cosim.studies.plan import DriveJob
+from automotive_cosim.studies.policies import Rule, parse_policy
+from automotive_cosim.studies.traffic import gridlock
+from automotive_cosim.traffic.base import EgoPlan
+from automotive_cosim.traffic.fork import Forked, RemoteTraffic
+from automotive_cosim.traffic.ledger import Pulse
+
+LOOK_S = 10.0
+"""Time between two looks whether a decision is due; the traffic's speeds are sampled as often."""
+
+SAME_PLACE = "start is goal"
+NO_ROOM = "no room to enter"
+NO_CONGESTION = "no congestion met"
+NO_ALTERNATIVE = "no alternative"
+GRIDLOCK = "gridlock"
+NOT_ARRIVED = "ego did not arrive"
+NOT_CLEARED = "traffic did not clear"
+"""Why a drive or a decision is kept out of the averages."""
+
+
+@dataclass(slots=True)
+class _Point:
+    """A decision point, its branches driven."""
+
+    row: Json
+    group: tuple[str, ...]
+    pulse: Pulse
+    branches: list[Future]
+    placebo: Future | None = None
+
+
+def run_drive(job: DriveJob, simulation: Forked, history: Sequence[Pulse]) -> Json:
+    """Drives it, branches at every decision point, and compares the futures.
+
+    Args:
+        job: what to drive.
+        simulation: its traffic at the instant the ego is to set out, watched.
+        history: how the traffic has been doing, ``traffic.PULSE_S`` apart.
+
+    Raises:
+        TrafficError: the simulation failed.
+        UserError: the scenario or an agent cannot be used.
+    """
+    found: Json = {"excluded": "", "why": "", "looks": 0, "decisions": []}
+    if job.trip.from_edge == job.trip.to_edge and not job.trip.via:
+        return found | {
+            "excluded": SAME_PLACE,
+            "why": f"trip {job.trip.name!r} begins and ends on {job.trip.to_edge}",
+        }
+    try:
+        traffic = depart(job, simulation)
+    except TrafficError as error:
+        if "found no gap" not in str(error):
+            raise
+        return found | {"excluded": NO_ROOM, "why": str(error)}
+    with closing(traffic):
+        drive = _Drive(job, traffic)
+        drive.go()
+        if not drive.points:
+            return found | {"looks": drive.looks} | drive.why_not()
+        groups = [point.group for point in drive.points]
+        settled = traffic.settle(groups, job.plan.arrived, job.plan.limit_s)
+        stay = Future(traffic.state, settled)
+    decisions = [_compared(point, stay, [*history, point.pulse, settled.pulse]) for point in drive.points]
+    return found | {"looks": drive.looks, "stay": stay.totals(), "decisions": decisions}
+
+
+def depart(job: DriveJob, simulation: Forked) -> RemoteTraffic:
+    """Puts the ego on its way under the scenario's weather, or the one drawn for its place and month."""
+    scenario = job.plan.scene(job.share)
+    seed = int(np.random.default_rng([*job.entropy, 0]).integers(2**31))
+    plan = EgoPlan(job.trip, job.plan.driver or scenario.ego.driver, seed, scenario.weather, scenario.start)
+    traffic = simulation.depart(plan)
+    if plan.weather:
+        return traffic
+    with closing(traffic):
+        plan = replace(plan, weather=drawn_weather(traffic.state, scenario.start, seed))
+    return simulation.depart(plan)
+
+
+class _Drive:
+    """The drive that stays, up to its last decision."""
+
+    def __init__(self, job: DriveJob, traffic: RemoteTraffic) -> None:
+        self.job = job
+        self.traffic = traffic
+        self.points: list[_Point] = []
+        self.looks = 0
+        """Instants at which congestion lay ahead but no other way was there."""
+        self._draws = np.random.default_rng([*job.entropy, 1])
+        self._rules = {parse_policy(text).rule for text in job.plan.policies}
+        self._begun_s = traffic.state.time_s
+        self._most_delay_s = 0.0
+
+    def go(self) -> None:
+        """Drives and decides until the drive or its decisions are over."""
+        plan, traffic = self.job.plan, self.traffic
+        due_s = self._begun_s + LOOK_S
+        traffic.advance(LOOK_S)
+        while (now := traffic.state).end is None and now.time_s - self._begun_s < plan.limit_s:
+            self._most_delay_s = max(self._most_delay_s, now.ahead.delay_s)
+            if now.time_s >= due_s - 1e-9 and now.ahead.delay_s >= plan.least_delay_s and self._decide(now):
+                due_s = now.time_s + plan.every_s
+                if len(self.points) == plan.per_drive:
+                    break
+            traffic.advance(LOOK_S)
+
+    def why_not(self) -> Json:
+        """Why there was no decision at all."""
+        if self.looks:
+            return {"excluded": NO_ALTERNATIVE, "why": f"at {self.looks} instants with congestion ahead"}
+        least_s, most_s = self.job.plan.least_delay_s, self._most_delay_s
+        return {
+            "excluded": NO_CONGESTION,
+            "why": f"at most {most_s:.0f} s of delay ahead, {least_s:g} s are wanted",
+        }
+
+    def _decide(self, now: DrivingState) -> bool:
+        """Drives the branches of a decision; false if there is none here."""
+        plan, traffic = self.job.plan, self.traffic
+        if now.road.edge_id.startswith(":"):
+            return False
+        news = {age_s: traffic.alternatives_of_old(age_s) for age_s in plan.ages_s}
+        own = traffic.own_choice() if Rule.SUMO in self._rules else now.ahead.route_edges
+        ways = _ways(now, news, own)
+        if not ways and not plan.agents:
+            self.looks += 1
+            return False
+        group, pulse = traffic.others()
+        branches: list[Future] = []
+        numbers: dict[tuple[str, ...], int] = {}
+        for edges in ways:
+            future = self._rerouted(edges, group)
+            if future is not None:
+                numbers[edges] = len(branches)
+                branches.append(future)
+        agents: Json = {}
+        for agent in plan.agents:
+            agents[agent] = len(branches)
+            branches.append(self._agents(agent, group))
+        if not branches:
+            self.looks += 1
+            return False
+        told = [self._told(age_s, options, numbers) for age_s, options in news.items()]
+        row = {
+            "at_s": now.time_s,
+            "edge": now.road.edge_id,
+            "delay_s": round(now.ahead.delay_s, 1),
+            "eta_s": round(now.ahead.eta_s, 1),
+            "relative_speed": round(now.ahead.relative_speed, 3),
+            "complies": bool(self._draws.random() < plan.compliance),
+            "news": told,
+            "own": numbers.get(own),
+            "agents": agents,
+        }
+        point = _Point(row, group, pulse, branches)
+        if not self.points and self._has_placebo():
+            point.placebo = self._placebo(group)
+        self.points.append(point)
+        return True
+
+    def _told(self, age_s: float, options: Sequence[RouteOption], numbers: dict[tuple[str, ...], int]) -> Json:
+        """What news of that age says: of the present way, and of the quickest other one."""
+        offered = options[1] if len(options) > 1 else None
+        return {
+            "age_s": age_s,
+            "stay_s": round(options[0].eta_s, 1) if options else None,
+            "delay_s": round(options[0].delay_s, 1) if options else 0.0,
+            "offered_s": None if offered is None else round(offered.eta_s, 1),
+            "branch": None if offered is None else numbers.get(offered.edges),
+        }
+
+    def _rerouted(self, edges: tuple[str, ...], group: Sequence[str]) -> Future | None:
+        """The future on another way; None if it is too late to turn into it."""
+        with closing(self.traffic.branch()) as branch:
+            return self._left(branch, group) if branch.request(Reroute(edges=edges)).accepted else None
+
+    def _agents(self, agent: str, group: Sequence[str]) -> Future:
+        """The future in which an agent does what it likes."""
+        with closing(self.traffic.branch()) as branch:
+            decided(agent, self.job, branch)
+            return self._left(branch, group)
+
+    def _left(self, branch: RemoteTraffic, group: Sequence[str]) -> Future:
+        """Drives it to its end."""
+        settled = branch.settle([group], self.job.plan.arrived, self.job.plan.limit_s)
+        return Future(branch.state, settled)
+
+    def _has_placebo(self) -> bool:
+        """By lot, so that it does not depend on what other drives come to."""
+        every = self.job.plan.placebo_every
+        return every > 0 and self._draws.random() < 1 / every
+
+    def _placebo(self, group: Sequence[str]) -> Future:
+        """The future in which one other car is changed a little."""
+        with closing(self.traffic.branch()) as branch:
+            branch.nudge(float(self._draws.random()))
+            return self._left(branch, group)
+
+
+def _ways(
+    now: DrivingState, news: dict[float, tuple[RouteOption, ...]], own: tuple[str, ...]
+) -> list[tuple[str, ...]]:
+    """Every other way that somebody may choose, once."""
+    offered = [options[1].edges for options in news.values() if len(options) > 1]
+    return [edges for edges in dict.fromkeys([*offered, own]) if edges and edges != now.ahead.route_edges]
+
+
+def _compared(point: _Point, stay: Future, pulses: Sequence[Pulse]) -> Json:
+    """The row of a decision, with what each branch gained."""
+    futures = [stay, *point.branches, *([point.placebo] if point.placebo else [])]
+    jam = gridlock(pulses)
+    excluded, why = "", ""
+    if not all(future.has_arrived for future in futures):
+        ends = sorted({str(future.last.end) for future in futures if not future.has_arrived})
+        excluded, why = NOT_ARRIVED, f"it ended as {', '.join(ends)}"
+    elif jam:
+        excluded, why = GRIDLOCK, jam
+    elif not all(future.settled.is_complete for future in futures):
+        excluded, why = NOT_CLEARED, "too few of those who were there had arrived in time"
+    row = point.row | {"excluded": excluded, "why": why, "branches": []}
+    row["branches"] = [_branched(stay, branch, point.group) for branch in point.branches]
+    row["placebo"] = None if point.placebo is None else _branched(stay, point.placebo, point.group)
+    return row
+
+
+def _branched(stay: Future, other: Future, group: Sequence[str]) -> Json:
+    return {
+        "gains": compare.gains(stay, other),
+        "totals": other.totals(),
+        "others": compare.others(stay, other, group),
+    }

@@ -1,0 +1,110 @@
+"""``report.html``: a study on one page that opens from disk, and its tables, plots and data as files."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Sequence
+from io import StringIO
+from pathlib import Path
+
+import jinja2
+
+from automotive_cosim.agents import PROFILES
+from automotive_cosim.contracts import Json
+from automotive_cosim.errors import UserError
+from automotive_cosim.report.charts import INK
+from automotive_cosim.run.record import write_whole
+from automotive_cosim.run.store import cannot_write
+from automotive_cosim.studies.charts import charts
+from automotive_cosim.studies.intervals import LEAST_SEEDS, PUBLISHED_SEEDS
+from automotive_cosim.studies.plan import named
+from automotive_cosim.studies.results import Study, read_study
+from automotive_cosim.studies.tables import tables
+
+
+def write_study(folder: Path) -> Path:
+    """Writes ``report.html``, ``choices.csv``, ``tables/`` and ``plots/`` into a study's folder; returns the page.
+
+    Raises:
+        UserError: it is no study's, holds no decision that counts, or cannot be written.
+        SetupError: the extra ``report`` is not installed.
+    """
+    study = read_study(folder)
+    if not study.rows:
+        raise UserError(f"{folder} holds no drive yet; the `study` command that made it goes on")
+    made, plots = tables(study), charts(study) if study.choices else {}
+    try:
+        for name in ("tables", "plots"):
+            (folder / name).mkdir(exist_ok=True)
+        for table in made:
+            for suffix, text in (("md", table.markdown()), ("csv", table.csv()), ("tex", table.latex())):
+                write_whole(folder / "tables" / f"{table.name}.{suffix}", text)
+        for name, (_, wide, _) in plots.items():
+            write_whole(folder / "plots" / f"{name}.svg", wide.replace("currentColor", INK))
+        write_whole(folder / "choices.csv", as_csv(study.choices))
+        page = folder / "report.html"
+        environment = jinja2.Environment(
+            loader=jinja2.ChoiceLoader(
+                [jinja2.PackageLoader("automotive_cosim", name) for name in ("studies", "report")]
+            ),
+            autoescape=True,
+            undefined=jinja2.StrictUndefined,
+            trim_blocks=True,
+            lstrip_blocks=True,
+        )
+        text = environment.get_template("study.html").render(
+            study=study,
+            count=len(study.decisions),
+            tables=made,
+            plots=plots,
+            warnings=warnings(study),
+            plan=study.plan.as_json(),
+            demand=study.plan.demand(),
+            cost_s=cost_s(study),
+            starts=study.manifest["starts"],
+        )
+        write_whole(page, text)
+    except OSError as error:
+        raise cannot_write(folder, error) from error
+    return page
+
+
+def warnings(study: Study) -> list[str]:
+    """What has to be known before a figure of the study is used."""
+    found = []
+    seeds = {each["seed"] for each in study.decisions}
+    if not study.decisions:
+        told = "; ".join(f"{count} × {reason}" for (_, reason), count in sorted(study.excluded.items()))
+        found.append(f"No decision counts, so that there is nothing to average: {told or 'every drive failed'}.")
+    elif len(seeds) < LEAST_SEEDS:
+        found.append(
+            f"{len(seeds)} seeds with a decision: means have no interval below {LEAST_SEEDS} seeds, since "
+            "decisions of one seed are not independent."
+        )
+    elif len(seeds) < PUBLISHED_SEEDS:
+        found.append(f"{len(seeds)} seeds with a decision: run {PUBLISHED_SEEDS} before publishing.")
+    if study.decisions and not study.noise().placebos:
+        found.append("There is no placebo, so that no noise floor is known: any difference counts.")
+    if any(name in PROFILES and model == "rules" for name, model in map(named, study.plan.agents)):
+        found.append(
+            "“rules” is a deterministic stand-in: its rows say nothing about how well a language model does."
+        )
+    return found
+
+
+def cost_s(study: Study) -> float | None:
+    """Wall seconds of one worker for a decision, drive up and all its futures included."""
+    decisions = sum(len(row["decisions"]) for row in study.rows)
+    return (
+        sum(row["wall_seconds"] for row in study.rows if "wall_seconds" in row) / decisions if decisions else None
+    )
+
+
+def as_csv(choices: Sequence[Json]) -> str:
+    """A row a choice, the fields' names first."""
+    text = StringIO()
+    if choices:
+        writer = csv.DictWriter(text, list(choices[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(choices)
+    return text.getvalue()

@@ -1,0 +1,220 @@
+"""What a rerouting study runs: every departure of every trip, in the traffic of every seed and rerouting share."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields, replace
+from itertools import product
+from typing import Any
+
+from automotive_cosim import scenarios
+from automotive_cosim.agents import make_agent
+from automotive_cosim.contracts import Json
+from automotive_cosim.errors import UserError
+from automotive_cosim.scenarios import Scenario, Trip
+from automotive_cosim.studies.policies import AGENT, parse_policy
+from automotive_cosim.traffic.congestion import OLDEST_NEWS_S
+from automotive_cosim.traffic.profiles import profile
+
+KIND = "reroute"
+"""Stands in the manifest, so that a report knows what it reads."""
+
+EQUILIBRIUM_GAP = 0.01
+"""Relative gap under which a dynamic user assignment counts as converged."""
+
+RANGES = {
+    "departures_s": (0.0, 86_400.0),
+    "shares": (0.0, 1.0),
+    "ages_s": (0.0, OLDEST_NEWS_S),
+    "compliance": (0.0, 1.0),
+    "least_delay_s": (0.0, 3_600.0),
+    "every_s": (10.0, 3_600.0),
+    "per_drive": (1, 50),
+    "placebo_every": (0, 1_000_000),
+    "arrived": (0.5, 1.0),
+    "limit_s": (60.0, 86_400.0),
+    "step_s": (0.1, 1.0),
+    "scale": (0.01, 100.0),
+    "half_width_s": (0.1, 3_600.0),
+    "agent_steps": (1, 100),
+}
+"""What the numbers of a plan may be."""
+
+
+@dataclass(frozen=True, slots=True)
+class StudyPlan:
+    """A rerouting study; times in seconds."""
+
+    scenario: str
+    """Name or folder."""
+    departures_s: tuple[float, ...] = (0.0, 300.0, 600.0, 900.0)
+    """When the ego sets out, after the warm-up; each in its own copy of the traffic."""
+    trips: tuple[str, ...] = ()
+    """Names of the scenario's trips; none takes all."""
+    seeds: tuple[int, ...] = tuple(range(10))
+    """Of the traffic; decisions of one seed are not independent of each other."""
+    shares: tuple[float, ...] = ()
+    """Of the other cars, that reroute; each is warmed up on its own. None takes the scenario's."""
+    ages_s: tuple[float, ...] = (0.0,)
+    """How old the traffic news is that the offered way is chosen by."""
+    driver: str = ""
+    """Name of a driver profile; empty takes the scenario's."""
+    compliance: float = 1.0
+    """Probability that the driver does as told."""
+    policies: tuple[str, ...] = ("never", "always", "delay:60", "sumo", "best")
+    least_delay_s: float = 30.0
+    """A decision is due while the expected delay on the way ahead is at least this."""
+    every_s: float = 60.0
+    """Time between two decisions of one drive."""
+    per_drive: int = 5
+    """Decisions of one drive at most."""
+    placebo_every: int = 1
+    """One placebo in every so many drives with a decision; 0 makes none."""
+    arrived: float = 0.95
+    """Share of those who were there at the decision that must arrive before a future is left alone."""
+    limit_s: float = 7_200.0
+    """Simulated time after which it is left alone anyway."""
+    step_s: float = 1.0
+    """SUMO's step length."""
+    scale: float | None = None
+    """Multiplies the demand; None takes the scenario's."""
+    equilibrium_gap: float | None = None
+    """Relative gap of the assignment (duaIterate) that the demand's routes come from; None if from none."""
+    half_width_s: float | None = None
+    """Seeds are added only until the interval of the mean gain is this narrow to either side; None runs all."""
+    agent_steps: int = 12
+    """Actions that an agent has for a decision."""
+
+    def as_json(self) -> Json:
+        """The plan as a JSON object, for the manifest."""
+        values = {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(self).items()}
+        return {"study": KIND} | values
+
+    def check(self) -> None:
+        """Tries every name and number before anything runs.
+
+        Raises:
+            UserError: one that does not exist or is out of its range.
+        """
+        for name, (low, high) in RANGES.items():
+            value = getattr(self, name)
+            values = value if isinstance(value, tuple) else () if value is None else (value,)
+            for each in values:
+                if not low <= each <= high:
+                    raise UserError(f"{_option(name)} is {each:g}; it goes from {low:g} to {high:g}")
+        for name in ("departures_s", "seeds", "ages_s", "policies"):
+            if not getattr(self, name):
+                raise UserError(f"{_option(name)} is empty; give at least one")
+        for name in ("departures_s", "seeds", "shares", "ages_s", "policies", "trips"):
+            values = getattr(self, name)
+            if len(set(values)) < len(values):
+                raise UserError(f"{_option(name)} names something twice: {', '.join(map(str, values))}")
+        if self.equilibrium_gap is not None and not 0 <= self.equilibrium_gap < EQUILIBRIUM_GAP:
+            raise UserError(
+                f"--equilibrium-gap is {self.equilibrium_gap:g}; demand counts as an equilibrium under "
+                f"{EQUILIBRIUM_GAP:g}: run duaIterate further, or leave the option out and declare none"
+            )
+        for text in self.policies:
+            parse_policy(text)
+        for agent in self.agents:
+            if agent == "human":
+                raise UserError("policy 'agent:human' needs a person; a study runs by itself")
+            make_agent(*named(agent))
+        if self.driver:
+            profile(self.driver)
+        scenario = self.scene(0.0)
+        for name in self.trips:
+            scenario.trip(name)
+
+    def scene(self, share: float) -> Scenario:
+        """The scenario as it is run with that share of rerouting cars.
+
+        Raises:
+            ScenarioError: it cannot be read.
+        """
+        scenario = scenarios.load(self.scenario)
+        sumo = replace(scenario.sumo, step_length_s=self.step_s, background_rerouting=share)
+        sumo = replace(sumo, action_step_length_s=max(self.step_s, sumo.action_step_length_s))
+        return replace(scenario, sumo=sumo if self.scale is None else replace(sumo, scale=self.scale))
+
+    @property
+    def agents(self) -> tuple[str, ...]:
+        """The agents among the policies, as ``make_agent`` names them."""
+        return tuple(text.removeprefix(AGENT) for text in self.policies if text.startswith(AGENT))
+
+    def demand(self) -> str:
+        """What the routes of the others come from, in words."""
+        if self.equilibrium_gap is not None:
+            return f"routes from duaIterate, relative gap {self.equilibrium_gap:.2%}"
+        told = sorted({job.share for job in self.jobs()})
+        if told == [0.0]:
+            return "one-shot: routes by free flow at departure, kept to the end"
+        return f"rerouting: {' / '.join(f'{share:.0%}' for share in told)} of the cars reroute by current times"
+
+    def jobs(self) -> tuple[DriveJob, ...]:
+        """Every drive, those of one simulation together in the order they depart."""
+        scenario = scenarios.load(self.scenario)
+        shares = self.shares or (scenario.sumo.background_rerouting,)
+        trips = [trip for trip in scenario.ego.trips if not self.trips or trip.name in self.trips]
+        return tuple(
+            DriveJob(self, share, seed, departure_s, trip)
+            for seed, share, departure_s, trip in product(self.seeds, shares, sorted(self.departures_s), trips)
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class DriveJob:
+    """One drive of a study, with all its decisions."""
+
+    plan: StudyPlan
+    share: float
+    seed: int
+    departure_s: float
+    trip: Trip
+
+    @property
+    def simulation(self) -> tuple[str, int]:
+        """The warm traffic it departs from."""
+        return f"{self.share:g}", self.seed
+
+    @property
+    def wall_s(self) -> float:
+        """Wall time that it may take: agents think for a while."""
+        return 7_200.0 if self.plan.agents else 1_800.0
+
+    @property
+    def id(self) -> str:
+        """Its name, good for a file."""
+        name = re.sub(r"[^A-Za-z0-9_.]+", "_", self.trip.name)
+        return f"share{self.share:g}-seed{self.seed}-at{self.departure_s:g}-{name}"
+
+    @property
+    def entropy(self) -> tuple[int, ...]:
+        """What everything random of this drive is drawn from; the share has no part in it."""
+        return self.seed, round(self.departure_s * 10), *self.trip.name.encode()
+
+
+def named(agent: str) -> tuple[str, str]:
+    """An agent's name and its model's, from ``NAME`` or ``NAME/MODEL``."""
+    name, _, model = agent.partition("/")
+    return name, model or "rules"
+
+
+def make_study(values: Mapping[str, Any]) -> StudyPlan:
+    """A plan from a manifest's table.
+
+    Raises:
+        UserError: it is of another kind of study, or of another version.
+    """
+    known = {field.name for field in fields(StudyPlan)}
+    given: dict[str, Any] = {
+        name: tuple(value) if isinstance(value, list) else value for name, value in values.items()
+    }
+    if given.pop("study", None) != KIND or not given.keys() <= known:
+        raise UserError("the folder holds no rerouting study of this version; read it with the one that wrote it")
+    return StudyPlan(**given)
+
+
+def _option(name: str) -> str:
+    return "--" + name.removesuffix("_s").replace("_", "-")

@@ -1,0 +1,98 @@
+"""Who decides whether to reroute, and what came of it, judged on futures that have all been driven."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import StrEnum
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.errors import UnknownNameError, UserError
+
+AGENT = "agent:"
+DELAY = "delay:"
+
+
+class Rule(StrEnum):
+    """How a policy decides."""
+
+    NEVER = "never"
+    ALWAYS = "always"
+    """Takes the quickest other way by the news, also where the news says that it is slower."""
+    DELAY = "delay"
+    """Takes it if the delay expected on the present way is long enough and the other way is said to be quicker."""
+    SUMO = "sumo"
+    """Goes where SUMO's rerouting device would."""
+    BEST = "best"
+    """Knows how every future ends: nobody can do better with the same choices."""
+    AGENT = "agent"
+    """An agent of the benchmark at the cockpit."""
+
+
+@dataclass(frozen=True, slots=True)
+class Policy:
+    """One of them."""
+
+    text: str
+    """As it was named."""
+    rule: Rule
+    delay_s: float = 0.0
+    agent: str = ""
+
+
+def parse_policy(text: str) -> Policy:
+    """Reads ``never``, ``always``, ``delay:60``, ``sumo``, ``best`` or ``agent:asurada``.
+
+    Raises:
+        UserError: it is none of them.
+    """
+    if text.startswith(AGENT) and text != AGENT:
+        return Policy(text, Rule.AGENT, agent=text.removeprefix(AGENT))
+    if text.startswith(DELAY):
+        try:
+            delay_s = float(text.removeprefix(DELAY))
+        except ValueError:
+            delay_s = math.nan
+        if not 0 <= delay_s <= 3_600:
+            raise UserError(f"policy {text!r} needs seconds of delay from 0 to 3600, as in delay:60")
+        return Policy(text, Rule.DELAY, delay_s=delay_s)
+    if text not in {Rule.NEVER, Rule.ALWAYS, Rule.SUMO, Rule.BEST}:
+        known = (Rule.NEVER, Rule.ALWAYS, "delay:60", Rule.SUMO, Rule.BEST, "agent:asurada")
+        raise UnknownNameError("policy", text, known)
+    return Policy(text, Rule(text))
+
+
+def chosen(policy: Policy, decision: Json, age_s: float) -> int | None:
+    """The future that a policy's choice leads to.
+
+    Args:
+        policy: who decides.
+        decision: of a drive's row.
+        age_s: of the news it has; SUMO's device, hindsight and agents have their own.
+
+    Returns:
+        The number of the branch; None for staying.
+    """
+    news = next(each for each in decision["news"] if each["age_s"] == age_s)
+    match policy.rule:
+        case Rule.NEVER:
+            return None
+        case Rule.BEST:
+            return best(decision)
+        case Rule.AGENT:
+            number = decision["agents"][policy.agent]
+        case Rule.SUMO:
+            number = decision["own"]
+        case Rule.ALWAYS:
+            number = news["branch"]
+        case Rule.DELAY:
+            is_worth = news["delay_s"] >= policy.delay_s and (news["offered_s"] or math.inf) < news["stay_s"]
+            number = news["branch"] if is_worth else None
+    return number if decision["complies"] else None
+
+
+def best(decision: Json) -> int | None:
+    """The branch with the shortest travel time; None where staying is as short."""
+    times = {number: branch["gains"]["time_s"] for number, branch in enumerate(decision["branches"])}
+    quickest = max(times, key=lambda number: times[number], default=None)
+    return quickest if quickest is not None and times[quickest] > 0 else None

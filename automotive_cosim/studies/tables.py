@@ -1,0 +1,289 @@
+"""The tables of a study."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.report.tables import Row, Table
+from automotive_cosim.studies.intervals import LEAST_SEEDS, SeedMean, seed_mean
+from automotive_cosim.studies.policies import Rule, parse_policy
+from automotive_cosim.studies.results import NOISE, Noise, Study
+
+NONE = "–"
+BINS = ((1.0, 1.25), (1.25, 1.5), (1.5, 2.0), (2.0, float("inf")))
+"""Travel-time indices, expected over free travel time, that decisions are sorted by."""
+
+HINDSIGHT = "best"
+STAYING = ("never",)
+
+
+def tables(study: Study) -> list[Table]:
+    """All tables that have something to say, the most important first."""
+    made = [
+        policies(study),
+        costs(study),
+        by_congestion(study),
+        by_age(study),
+        by_share(study),
+        noise_floor(study),
+        excluded(study),
+        errors(study),
+    ]
+    return [table for table in made if table.rows]
+
+
+def groups(study: Study) -> list[tuple[float, str, float, list[Json]]]:
+    """The choices by share of rerouting cars, policy and age of the news; ages only where they matter."""
+    found: dict[tuple[float, str, float], list[Json]] = {}
+    first_s = study.plan.ages_s[0]
+    for each in study.choices:
+        if goes_by_news(each["policy"]) or each["age_s"] == first_s:
+            found.setdefault((each["share"], each["policy"], each["age_s"]), []).append(each)
+    return [(*key, rows) for key, rows in found.items()]
+
+
+def goes_by_news(policy: str) -> bool:
+    """Whether a policy decides by the plan's traffic news; the others know the present, the future or nothing."""
+    return parse_policy(policy).rule in (Rule.ALWAYS, Rule.DELAY)
+
+
+def policies(study: Study) -> Table:
+    """What each policy gained for who follows it."""
+    floor = study.noise()
+    rows: list[Row] = []
+    for share, policy, age_s, chosen in groups(study):
+        wins, ties, losses = outcomes(chosen, floor)
+        rows.append(
+            (
+                f"{share:.0%}",
+                policy,
+                f"{age_s:g}" if goes_by_news(policy) else NONE,
+                str(len(chosen)),
+                str(len({each["seed"] for each in chosen})),
+                per_cent(each["rerouted"] for each in chosen),
+                mean_cell(chosen, "gain_time_s"),
+                f"{wins} / {ties} / {losses}",
+                per_cent(each["regret_s"] <= floor.time_s for each in chosen),
+                mean_cell(chosen, "regret_s"),
+            )
+        )
+    columns = (
+        "Share rerouting",
+        "Policy",
+        "News age, s",
+        "Decisions",
+        "Seeds",
+        "Rerouted",
+        "Time saved, s",
+        "Won / tied / lost",
+        "Chose the better",
+        "Regret, s",
+    )
+    note = (
+        "Over all decisions that count, those where the policy stays with a gain of 0. In brackets 95 % intervals "
+        f"by drawing whole seeds, with {LEAST_SEEDS} seeds or more. Won and lost leave out differences up to the "
+        f"noise floor of {floor.time_s:.1f} s. Regret: time lost against the best of the futures."
+    )
+    return Table("policies", "What each policy saved the ego", columns, tuple(rows), note, heads=3)
+
+
+def costs(study: Study) -> Table:
+    """What else it changed, for the ego and for everybody who was there."""
+    rows: list[Row] = []
+    for share, policy, age_s, chosen in groups(study):
+        if policy in STAYING:
+            continue
+        rows.append(
+            (
+                f"{share:.0%}",
+                policy,
+                f"{age_s:g}" if goes_by_news(policy) else NONE,
+                mean_cell(chosen, "gain_distance_m", 0),
+                mean_cell(chosen, "gain_stops", 2),
+                mean_cell(chosen, "gain_co2_g"),
+                mean_cell(chosen, "gain_fuel_g"),
+                mean_cell(chosen, "others_gain_s"),
+                f"{sum(each['unfinished_stay'] for each in chosen)} / {sum(each['unfinished'] for each in chosen)}",
+            )
+        )
+    columns = (
+        "Share rerouting",
+        "Policy",
+        "News age, s",
+        "Distance saved, m",
+        "Stops saved",
+        "CO2 saved, g",
+        "Fuel saved, g",
+        "Others save, s",
+        "Unfinished",
+    )
+    note = (
+        "Means over decisions; negative: it costs that much. CO2 and fuel by SUMO's emission model. Others: "
+        "the sum over every vehicle on the road or due at the decision, departure delay included, until "
+        f"{study.plan.arrived:.0%} of them had arrived; the rest up to that instant. Unfinished: how many those "
+        "are, if the ego stays / as the policy chooses."
+    )
+    return Table("costs", "What else it changed", columns, tuple(rows), note, heads=3)
+
+
+def by_congestion(study: Study) -> Table:
+    """Time saved by how congested the way ahead was."""
+    first_s = study.plan.ages_s[0]
+    chosen = [each for each in study.choices if each["age_s"] == first_s and each["policy"] not in STAYING]
+    named = list(dict.fromkeys(each["policy"] for each in chosen))
+    rows: list[Row] = []
+    for low, high in BINS:
+        here = [each for each in chosen if low <= each["time_index"] < high]
+        if here:
+            cells = [mean_cell((each for each in here if each["policy"] == name), "gain_time_s") for name in named]
+            rows.append((bin_name(low, high), str(len({each["id"] for each in here})), *cells))
+    note = (
+        "Seconds saved, by the expected travel time to the goal over that at free flow, at the decision, with the "
+        "newest news of the plan."
+    )
+    return Table(
+        "by_congestion", "Time saved by congestion", ("Time index", "Decisions", *named), tuple(rows), note
+    )
+
+
+def by_age(study: Study) -> Table:
+    """Time saved by the age of the news, at the same decisions."""
+    rows: list[Row] = []
+    if len(study.plan.ages_s) > 1:
+        named = [name for name in study.plan.policies if goes_by_news(name)]
+        for age_s in study.plan.ages_s:
+            here = [each for each in study.choices if each["age_s"] == age_s]
+            cells = [mean_cell((each for each in here if each["policy"] == name), "gain_time_s") for name in named]
+            rows.append((f"{age_s:g}", *cells))
+        columns: tuple[str, ...] = ("News age, s", *named)
+    else:
+        columns = ("News age, s",)
+    note = "Seconds saved at the very same decisions, when the way offered is chosen by news of that age."
+    return Table("by_age", "Time saved by the age of the news", columns, tuple(rows), note)
+
+
+def by_share(study: Study) -> Table:
+    """Time saved by how many of the others reroute too; each share's traffic was warmed up on its own."""
+    rows: list[Row] = []
+    shares = sorted({each["share"] for each in study.choices})
+    for share in shares if len(shares) > 1 else ():
+        here = [each for each in study.choices if each["share"] == share and each["age_s"] == study.plan.ages_s[0]]
+        rows.append(
+            (
+                f"{share:.0%}",
+                str(len({each["id"] for each in here})),
+                mean_cell((each for each in here if each["policy"] == "never"), "stay_time_s", 0, signed=False),
+                mean_cell((each for each in here if each["policy"] == "always"), "gain_time_s"),
+                mean_cell((each for each in here if each["policy"] == HINDSIGHT), "gain_time_s"),
+                mean_cell((each for each in here if each["policy"] == "always"), "others_gain_s"),
+            )
+        )
+    columns = (
+        "Share rerouting",
+        "Decisions",
+        "Staying takes, s",
+        "Always saves, s",
+        "Best saves, s",
+        "Others save, s",
+    )
+    return Table("by_share", "By the share of cars that reroute", columns, tuple(rows), stops_helping(study))
+
+
+def stops_helping(study: Study) -> str:
+    """From which share of rerouting cars on one more that reroutes gains nothing, in words."""
+    floor = study.noise()
+    helps: dict[float, bool] = {}
+    for share in sorted({each["share"] for each in study.choices}):
+        mean = seed_mean(
+            (each["seed"], each["gain_time_s"])
+            for each in study.choices
+            if each["share"] == share and each["policy"] == "always" and each["age_s"] == study.plan.ages_s[0]
+        )
+        if mean is None or mean.interval is None:
+            return f"Too few seeds to say where rerouting stops helping: {LEAST_SEEDS} are needed in every share."
+        helps[share] = mean.interval.low > floor.time_s
+    never_again = [share for share in helps if not any(helps[other] for other in helps if other >= share)]
+    if not never_again:
+        return "Rerouting always helps at every share that was run: its interval lies above the noise floor."
+    return (
+        f"From a share of {never_again[0]:.0%} on, always rerouting no longer helps: its interval does not lie "
+        f"above the noise floor of {floor.time_s:.1f} s."
+    )
+
+
+def noise_floor(study: Study) -> Table:
+    """What the placebos changed."""
+    floor = study.noise()
+    rows: tuple[Row, ...] = ()
+    if floor.placebos:
+        rows = (
+            ("One other car 0.1 % faster", str(floor.placebos), f"{floor.time_s:.1f}", f"{floor.others_s:.1f}"),
+        )
+    note = (
+        f"{NOISE:.0%} of the placebo futures differ from staying by no more than this. A difference of the ego's "
+        "time up to it is a tie."
+    )
+    columns = ("Placebo", "Futures", "Ego's time, s", "Others' time, s")
+    return Table("noise", "Noise floor", columns, rows, note)
+
+
+def excluded(study: Study) -> Table:
+    """What is kept out of the averages."""
+    examples: dict[tuple[str, str], str] = {}
+    for row in study.rows:
+        examples.setdefault(("drive", row["excluded"]), f"{row['id']}: {row['why']}")
+        for each in row["decisions"]:
+            examples.setdefault(("decision", each["excluded"]), f"{row['id']}: {each['why']}")
+    rows = tuple(
+        (f"{reason} ({what})", str(count), examples[what, reason])
+        for (what, reason), count in sorted(study.excluded.items())
+    )
+    note = "Counted here and in no average; gridlocked traffic says nothing about rerouting."
+    return Table("excluded", "Kept out of the averages", ("Reason", "Count", "For example"), rows, note, heads=3)
+
+
+def errors(study: Study) -> Table:
+    """Drives that the machinery broke."""
+    rows = tuple((row["id"], row["error_kind"], row["error"]) for row in study.errors)
+    note = "The same command runs them again."
+    return Table("errors", "Errors of the machinery", ("Drive", "Kind", "What"), rows, note, heads=3)
+
+
+def outcomes(chosen: Sequence[Json], floor: Noise) -> tuple[int, int, int]:
+    """How many choices saved time, made no difference, and lost time."""
+    gains = [each["gain_time_s"] for each in chosen]
+    wins = sum(gain > floor.time_s for gain in gains)
+    losses = sum(gain < -floor.time_s for gain in gains)
+    return wins, len(gains) - wins - losses, losses
+
+
+def mean_of(chosen: Iterable[Json], name: str) -> SeedMean | None:
+    """The mean of a field over choices, with its interval over seeds."""
+    return seed_mean((each["seed"], float(each[name])) for each in chosen)
+
+
+def mean_cell(chosen: Iterable[Json], name: str, digits: int = 1, *, signed: bool = True) -> str:
+    """For example ``+12.3 (+4.0 to +20.1)``."""
+    mean = mean_of(chosen, name)
+    if mean is None:
+        return NONE
+    sign = "+" if signed else ""
+
+    def told(value: float) -> str:
+        return f"{value:{sign}.{digits}f}".replace("-", "−")
+
+    if mean.interval is None:
+        return told(mean.value)
+    return f"{told(mean.value)} ({told(mean.interval.low)} to {told(mean.interval.high)})"
+
+
+def per_cent(flags: Iterable[bool]) -> str:
+    """Share of those that hold."""
+    listed = list(flags)
+    return f"{sum(listed) / len(listed):.0%}" if listed else NONE
+
+
+def bin_name(low: float, high: float) -> str:
+    """Of a range of time indices."""
+    return f"{low:g} to {high:g}" if high < float("inf") else f"over {low:g}"

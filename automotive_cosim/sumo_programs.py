@@ -1,0 +1,77 @@
+"""SUMO's own programs, from the installed ``eclipse-sumo`` distribution and from nowhere else.
+
+A ``SUMO_HOME`` left behind by another version picks that version's data and type maps, so it is neither read nor
+set for this process: the programs get an environment of their own.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
+from importlib.metadata import Distribution, PackageNotFoundError, distribution, version
+from pathlib import Path
+
+from automotive_cosim.errors import SetupError
+
+INSTALL = "pip install 'automotive-cosim[import]'"
+
+
+def home() -> Path:
+    """The folder that holds SUMO's ``bin``, ``data`` and ``tools``.
+
+    Raises:
+        SetupError: eclipse-sumo is not installed, or in another version than libsumo.
+    """
+    try:
+        installed: Distribution = distribution("eclipse-sumo")
+    except PackageNotFoundError as error:
+        raise SetupError(
+            f"this needs SUMO's programs (eclipse-sumo), which are not installed: {INSTALL}"
+        ) from error
+    if installed.version != version("libsumo"):
+        raise SetupError(f"eclipse-sumo {installed.version} and libsumo {version('libsumo')} differ: {INSTALL}")
+    return Path(str(installed.locate_file("sumo")))
+
+
+def program(name: str) -> Path:
+    """The path of ``netconvert``, ``duarouter``, ``sumo``, …
+
+    Raises:
+        SetupError: it is not installed.
+    """
+    path = home() / "bin" / (f"{name}.exe" if sys.platform == "win32" else name)
+    if not path.is_file():
+        raise SetupError(f"eclipse-sumo is installed without {name}; install it again: {INSTALL}")
+    return path
+
+
+def environment() -> Mapping[str, str]:
+    """The environment SUMO's programs run in: ours, but with the installed SUMO's own data."""
+    data = home() / "data"
+    return os.environ | {"SUMO_HOME": str(home()), "PROJ_DATA": str(data / "proj"), "PROJ_LIB": str(data / "proj")}
+
+
+def run(name: str, arguments: Sequence[str | Path]) -> tuple[bool, str]:
+    """Runs a program to its end.
+
+    Returns:
+        Whether it succeeded, and everything it printed.
+    """
+    done = subprocess.run(
+        [program(name), *arguments],
+        env=environment(),
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        check=False,
+    )
+    return done.returncode == 0, done.stdout.decode("utf-8", "replace")
+
+
+def first_error(printed: str) -> str:
+    """The first ``Error:`` line of what a SUMO program printed; its last line if there is none."""
+    lines = [line.strip() for line in printed.splitlines() if line.strip()]
+    errors = [line.removeprefix("Error:").strip() for line in lines if line.startswith("Error:")]
+    return (errors or lines[-1:] or ["it printed nothing"])[0]

@@ -1,0 +1,1 @@
+"""The road side: SUMO behind one protocol."""

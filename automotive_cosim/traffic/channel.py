@@ -1,0 +1,94 @@
+"""Messages between this process and a simulation's: pickled objects over a pair of sockets."""
+
+from __future__ import annotations
+
+import pickle
+import socket
+import struct
+from contextlib import suppress
+from typing import Any
+
+_LENGTH = struct.Struct("!Q")
+
+
+class ClosedError(Exception):
+    """The other side has closed its end, or died."""
+
+
+class Channel:
+    """One end of a connection. Both ends are this package, started by the same user."""
+
+    def __init__(self, connection: socket.socket) -> None:
+        """Takes the socket over."""
+        self._socket = connection
+
+    def fileno(self) -> int:
+        """Descriptor of the socket."""
+        return self._socket.fileno()
+
+    def send(self, message: object) -> None:
+        """Sends an object.
+
+        Raises:
+            ClosedError: nobody listens.
+        """
+        self.send_pickled(pickle.dumps(message, pickle.HIGHEST_PROTOCOL))
+
+    def send_pickled(self, data: bytes) -> None:
+        """Sends an object that is already pickled."""
+        try:
+            self._socket.sendall(_LENGTH.pack(len(data)) + data)
+        except OSError as error:
+            raise ClosedError from error
+
+    def receive(self, timeout_s: float | None = None) -> Any:
+        """Waits for an object.
+
+        Args:
+            timeout_s: longest silence; None waits for ever.
+
+        Raises:
+            ClosedError: the other side is gone.
+            TimeoutError: nothing came in time.
+        """
+        self._socket.settimeout(timeout_s)
+        (length,) = _LENGTH.unpack(self._read(_LENGTH.size))
+        return pickle.loads(self._read(length))
+
+    def send_socket(self, connection: socket.socket) -> None:
+        """Hands a socket to the process on the other side (not on Windows)."""
+        try:
+            socket.send_fds(self._socket, [b"s"], [connection.fileno()])
+        except OSError as error:
+            raise ClosedError from error
+
+    def receive_socket(self) -> socket.socket:
+        """Takes a socket over."""
+        _, descriptors, _, _ = socket.recv_fds(self._socket, 1, 1)
+        if not descriptors:
+            raise ClosedError
+        return socket.socket(fileno=descriptors[0])
+
+    def hang_up(self) -> None:
+        """Tells the other side that no more messages come; what it sends can still be received."""
+        with suppress(OSError):
+            self._socket.shutdown(socket.SHUT_WR)
+
+    def close(self) -> None:
+        """Closes this end; harmless when called again."""
+        self._socket.close()
+
+    def _read(self, length: int) -> bytearray:
+        data = bytearray(length)
+        view, got = memoryview(data), 0
+        while got < length:
+            try:
+                count = self._socket.recv_into(view[got:])
+            except TimeoutError:
+                raise
+            except OSError as error:
+                raise ClosedError from error
+            if not count:
+                raise ClosedError
+            got += count
+        return data

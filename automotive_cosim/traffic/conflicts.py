@@ -1,0 +1,157 @@
+"""Post-encroachment times: how closely the ego and others cross each other's way inside junctions.
+
+The post-encroachment time (PET) is what passes between one vehicle leaving the point where two ways cross and the
+other reaching it (Allen, Shin and Cooper, 1978). Ways are SUMO's lanes inside junctions, points where their middles
+meet. Vehicles are looked at twice a second and their passage reckoned from position and speed, to about 0.1 s.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from shapely import LineString, Point
+
+from automotive_cosim.contracts import DrivingState
+from automotive_cosim.traffic.base import Event
+
+if TYPE_CHECKING:
+    from automotive_cosim.traffic.sumo import Sumo
+
+LOOK_S = 0.5
+LONGEST_PET_S = 5.0
+"""Beyond this nobody speaks of a conflict."""
+
+NEAR_M = 30.0
+"""The junction ahead is watched from here on, or from ``LONGEST_PET_S`` before it."""
+
+CREEPING_MPS = 0.5
+"""A vehicle counts as no slower, so that passages stay finite."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Crossing:
+    """A point where the ego's way and another meet."""
+
+    foe_lane: str
+    ego_m: float
+    """From the start of the ego's lane."""
+    foe_m: float
+
+
+@dataclass(slots=True)
+class _Sight:
+    """A vehicle on a lane as it was seen last."""
+
+    time_s: float
+    position_m: float
+    speed_mps: float
+    length_m: float
+
+    def passage(self, point_m: float) -> tuple[float, float]:
+        """When its front reached or will reach a point, and when its rear leaves it."""
+        speed_mps = max(CREEPING_MPS, self.speed_mps)
+        reached_s = self.time_s + (point_m - self.position_m) / speed_mps
+        return reached_s, reached_s + self.length_m / speed_mps
+
+
+@dataclass(slots=True)
+class _Way:
+    """One of the ego's lanes through a junction, with who crosses it."""
+
+    crossings: tuple[_Crossing, ...]
+    foes: dict[tuple[str, str], _Sight] = field(default_factory=dict)
+    """By lane and vehicle."""
+    ego: _Sight | None = None
+    told: set[str] = field(default_factory=set)
+
+
+class Conflicts:
+    """Watches the junctions that the ego comes to."""
+
+    def __init__(self, sumo: Sumo, ego_id: str) -> None:
+        """Starts with nothing in sight."""
+        self._sumo = sumo
+        self._ego = ego_id
+        self._length_m = sumo.length(ego_id)
+        self._crossings: dict[str, tuple[_Crossing, ...]] = {}
+        self._ways: dict[str, _Way] = {}
+
+    def look(self, state: DrivingState) -> tuple[Event, ...]:
+        """Called every ``LOOK_S``; tells what is sure by now."""
+        inside = state.road.lane_id if state.road.edge_id.startswith(":") else ""
+        if not inside and not self._ways and not self._is_near(state):
+            return ()
+        coming = inside or self._next_lane(state)
+        if coming and coming not in self._ways and self._crossings_of(coming):
+            self._ways[coming] = _Way(self._crossings_of(coming))
+        events: list[Event] = []
+        for lane, way in list(self._ways.items()):
+            self._see(way, state)
+            if lane == inside:
+                way.ego = _Sight(state.time_s, state.road.lane_position_m, state.speed_mps, self._length_m)
+            elif way.ego is not None:
+                events += self._told(way, state.time_s)
+            is_past = way.ego is not None and state.time_s > way.ego.time_s + 2 * LONGEST_PET_S
+            if is_past or (way.ego is None and lane != coming):
+                del self._ways[lane]
+        return tuple(events)
+
+    def _is_near(self, state: DrivingState) -> bool:
+        lane_m: float = self._sumo.lane.getLength(state.road.lane_id)
+        return lane_m - state.road.lane_position_m < max(NEAR_M, LONGEST_PET_S * state.speed_mps)
+
+    def _next_lane(self, state: DrivingState) -> str:
+        """The lane that the ego will take through the next junction."""
+        if not self._is_near(state):
+            return ""
+        links = self._sumo.vehicle.getNextLinks(self._ego)
+        return links[0][4] if links else ""
+
+    def _see(self, way: _Way, state: DrivingState) -> None:
+        sumo = self._sumo
+        for crossing in way.crossings:
+            for vehicle in sumo.lane.getLastStepVehicleIDs(crossing.foe_lane):
+                if vehicle != self._ego:
+                    way.foes[crossing.foe_lane, vehicle] = _Sight(
+                        state.time_s, sumo.lane_position(vehicle), sumo.speed(vehicle), sumo.length(vehicle)
+                    )
+
+    def _told(self, way: _Way, now_s: float) -> list[Event]:
+        """Conflicts with those that have passed, the ego being through."""
+        assert way.ego is not None
+        events = []
+        for crossing in way.crossings:
+            ego_in_s, ego_out_s = way.ego.passage(crossing.ego_m)
+            for (lane, vehicle), sight in way.foes.items():
+                if lane != crossing.foe_lane or vehicle in way.told or sight.time_s == now_s:
+                    continue
+                foe_in_s, foe_out_s = sight.passage(crossing.foe_m)
+                pet_s, order = max((ego_in_s - foe_out_s, "after"), (foe_in_s - ego_out_s, "before"))
+                if 0.0 <= pet_s <= LONGEST_PET_S:
+                    way.told.add(vehicle)
+                    events.append(Event(now_s, "pet", f"{pet_s:.1f} s: the ego crosses {order} {vehicle}"))
+        return events
+
+    def _crossings_of(self, lane: str) -> tuple[_Crossing, ...]:
+        if lane not in self._crossings:
+            self._crossings[lane] = _meetings(lane, self._sumo.lane.getShape, self._sumo.lane.getInternalFoes)
+        return self._crossings[lane]
+
+
+def _meetings(
+    lane: str,
+    shape: Callable[[str], tuple[tuple[float, float], ...]],
+    foes: Callable[[str], tuple[str, ...]],
+) -> tuple[_Crossing, ...]:
+    """Where other lanes of the junction cross a lane or join it."""
+    own = LineString(shape(lane))
+    found = []
+    for foe in sorted(set(foes(lane))):
+        other = LineString(shape(foe))
+        common = own.intersection(other)
+        if not common.is_empty:
+            point = Point(common.representative_point())
+            found.append(_Crossing(foe, own.project(point), other.project(point)))
+    return tuple(found)

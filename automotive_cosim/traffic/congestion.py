@@ -1,0 +1,291 @@
+"""How the traffic flows: smoothed speed per edge, and what it means for the route ahead.
+
+Speeds are weighted by vehicles and smoothed over about a cycle of the signals: a red light is no jam, and an empty
+edge is free. The route's sums are made anew with each sample; asking for them at a position costs a few additions.
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from collections import deque
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import islice, pairwise
+from typing import Protocol
+
+from automotive_cosim.contracts import RoadAhead, TrafficLight
+from automotive_cosim.traffic.network import Crossing, Edge, Network
+
+SAMPLE_PERIOD_S = 10.0
+"""Time between samples of all edges."""
+
+MEMORY_S = 90.0
+"""Time constant of the smoothing: a fixed-time signal's cycle lasts 60 to 120 s (HCM, chapter on signals)."""
+
+WINDOW_S = 300.0
+SEEN_AT_LEAST = 3
+"""Travel times for choosing a route are means of this long, where so many vehicles were seen."""
+
+OLDEST_NEWS_S = 900.0
+"""How far back travel times can be asked for."""
+
+FREE_WEIGHT = 0.1
+"""Vehicles that an edge counts at free flow beside those seen, so that an empty one is free."""
+
+JAM_BELOW = 0.25
+"""Relative speed under which an edge is jammed."""
+
+SLOW_BELOW = 0.75
+"""Relative speed under which a map is told of an edge."""
+
+SLOWEST_MPS = 0.5
+"""Speeds count as at least this, so that travel times stay finite."""
+
+MOTORWAY_CLASSES = frozenset({"motorway", "trunk"})
+"""Road classes that are left by exits."""
+
+
+class Flow(Protocol):
+    """Knows how fast the traffic flows."""
+
+    def speed_mps(self, edge_id: str) -> float:
+        """Mean speed driven on an edge, never 0."""
+        ...
+
+    def slow_edges(self) -> tuple[tuple[str, float], ...]:
+        """Edges driven slower than ``SLOW_BELOW`` of their limit, and their speed over the limit."""
+        ...
+
+
+class Congestion:
+    """Smoothed speed of every edge."""
+
+    def __init__(self, network: Network, counts: Callable[[str], int], speeds: Callable[[str], float]) -> None:
+        """Starts at free flow.
+
+        Args:
+            network: whose edges.
+            counts: vehicles on an edge now.
+            speeds: their mean speed in m/s.
+        """
+        self._edges = network.edges
+        self._counts = counts
+        self._speeds = speeds
+        self._vehicles = dict.fromkeys(network.edges, 0.0)
+        self._flow = dict.fromkeys(network.edges, 0.0)
+        self._keep = math.exp(-SAMPLE_PERIOD_S / MEMORY_S)
+        self._slow: tuple[tuple[str, float], ...] = ()
+        self._samples: deque[dict[str, tuple[int, float]]] = deque(
+            maxlen=round((WINDOW_S + OLDEST_NEWS_S) / SAMPLE_PERIOD_S)
+        )
+
+    def sample(self) -> None:
+        """Takes the speeds of now into account; called every ``SAMPLE_PERIOD_S``."""
+        keep, vehicles, flow, counts, edges = self._keep, self._vehicles, self._flow, self._counts, self._edges
+        seen: dict[str, tuple[int, float]] = {}
+        slow: list[tuple[str, float]] = []
+        for edge_id, before in vehicles.items():
+            count = counts(edge_id)
+            if count:
+                speed_mps = self._speeds(edge_id)
+                seen[edge_id] = (count, count * speed_mps)
+                vehicles[edge_id] = before * keep + count * (1 - keep)
+                flow[edge_id] = flow[edge_id] * keep + count * speed_mps * (1 - keep)
+            elif before > 1e-6:
+                vehicles[edge_id] = before * keep
+                flow[edge_id] *= keep
+            else:
+                continue
+            weight, free_mps = vehicles[edge_id] + FREE_WEIGHT, edges[edge_id].speed_mps
+            if flow[edge_id] + FREE_WEIGHT * free_mps < SLOW_BELOW * weight * free_mps:
+                slow.append((edge_id, round(self.relative_speed(edge_id), 2)))
+        self._samples.append(seen)
+        self._slow = tuple(slow)
+
+    def forget(self, age_s: float) -> None:
+        """Drops what was seen in the last seconds, so that travel times are news of that age."""
+        for _ in range(min(len(self._samples), round(age_s / SAMPLE_PERIOD_S))):
+            self._samples.pop()
+
+    def window_speeds_mps(self) -> dict[str, float]:
+        """Mean speeds of the last ``WINDOW_S``, weighted by vehicles, of edges with ``SEEN_AT_LEAST`` of them."""
+        sums: dict[str, tuple[int, float]] = {}
+        for seen in islice(reversed(self._samples), round(WINDOW_S / SAMPLE_PERIOD_S)):
+            for edge_id, (count, flow) in seen.items():
+                before = sums.get(edge_id, (0, 0.0))
+                sums[edge_id] = (before[0] + count, before[1] + flow)
+        return {edge_id: flow / count for edge_id, (count, flow) in sums.items() if count >= SEEN_AT_LEAST}
+
+    def speed_mps(self, edge_id: str) -> float:
+        """Mean speed driven on an edge."""
+        free_mps = self._edges[edge_id].speed_mps
+        driven = (self._flow[edge_id] + FREE_WEIGHT * free_mps) / (self._vehicles[edge_id] + FREE_WEIGHT)
+        return max(SLOWEST_MPS, min(free_mps, driven))
+
+    def relative_speed(self, edge_id: str) -> float:
+        """Mean speed over the edge's limit; 1 is free flow."""
+        return self.speed_mps(edge_id) / self._edges[edge_id].speed_mps
+
+    def slow_edges(self) -> tuple[tuple[str, float], ...]:
+        """As ``Flow``; to a hundredth, in the network's order, as of the last sample."""
+        return self._slow
+
+
+@dataclass(frozen=True, slots=True)
+class _Leg:
+    """One edge of the route, and what lies behind its end."""
+
+    edge: Edge
+    start_m: float
+    """From the start of the route."""
+    speed_mps: float
+    relative_speed: float
+    time_after_s: float
+    """From its end to the goal, at the speeds driven; likewise the three below."""
+    free_after_s: float
+    length_after_m: float
+    relative_after_m: float
+    """Relative speed times length, summed."""
+    next_limit: tuple[float | None, float] | None
+    """The next different limit and where it starts."""
+    tunnel_m: float | None
+    """Where the next tunnel starts after this edge."""
+    jam: tuple[float, float] | None
+    """Where the next jam starts and ends, from this edge on."""
+    exit_m: float | None
+    """Where the motorway it belongs to can next be left."""
+
+
+class Route:
+    """A route, with the sums that ``RoadAhead`` needs."""
+
+    def __init__(self, edge_ids: Sequence[str], network: Network, flow: Flow) -> None:
+        """Prepares the sums from the flow of now."""
+        self.edge_ids = tuple(edge_ids)
+        edges = [network.edges[edge_id] for edge_id in edge_ids]
+        ways = [
+            network.crossings.get(here.edge_id, {}).get(there.edge_id, Crossing(0.0, here.speed_mps))
+            for here, there in pairwise(edges)
+        ]
+        starts_m = [0.0]
+        for edge, way in zip(edges, ways, strict=False):
+            starts_m.append(starts_m[-1] + edge.length_m + way.length_m)
+        self.length_m = starts_m[-1] + edges[-1].length_m
+        self.bends = tuple(
+            (start_m, way.speed_mps) for start_m, way in zip(starts_m[1:], ways, strict=True) if not way.is_straight
+        )
+        """Where each turn ends, and the speed it allows."""
+        self._cameras_m = sorted(
+            start_m + place_m for start_m, edge in zip(starts_m, edges, strict=True) for place_m in edge.cameras_m
+        )
+        self._rest = tuple(self.edge_ids[index:] for index in range(len(edges)))
+        self._slow = flow.slow_edges()
+        self._legs = _legs(edges, ways, starts_m, network, flow)
+
+    def position_m(self, index: int, on_edge_m: float) -> float:
+        """Distance from the start of the route."""
+        return self._legs[index].start_m + on_edge_m
+
+    def relative_speed(self, index: int) -> float:
+        """Mean speed over the limit on an edge of the route; 1 is free flow."""
+        return self._legs[index].relative_speed
+
+    def edge_at(self, position_m: float) -> tuple[int, float]:
+        """Index of the edge at a distance from the start of the route, and the distance on that edge."""
+        index = max(0, bisect_right(self._legs, position_m, key=lambda leg: leg.start_m) - 1)
+        leg = self._legs[index]
+        return index, max(0.0, min(position_m - leg.start_m, leg.edge.length_m))
+
+    def ahead(self, index: int, position_m: float, next_light: TrafficLight | None) -> RoadAhead:
+        """What lies ahead.
+
+        Args:
+            index: the edge of the route, or the last one before the junction the car is in.
+            position_m: from the start of the route.
+            next_light: passed on.
+        """
+        leg = self._legs[index]
+        left_m = max(0.0, self.length_m - position_m)
+        on_edge_m = max(0.0, leg.start_m + leg.edge.length_m - position_m)
+        eta_s = on_edge_m / leg.speed_mps + leg.time_after_s
+        free_s = on_edge_m / leg.edge.speed_mps + leg.free_after_s
+        relative_m = on_edge_m * leg.relative_speed + leg.relative_after_m
+        edges_left_m = on_edge_m + leg.length_after_m
+        return RoadAhead(
+            left_m,
+            eta_s,
+            max(0.0, eta_s - free_s),
+            relative_m / edges_left_m if edges_left_m > 0 else leg.relative_speed,
+            max(0.0, leg.jam[0] - position_m) if leg.jam else None,
+            leg.jam[1] - max(leg.jam[0], position_m) if leg.jam else 0.0,
+            next_light,
+            leg.next_limit[0] if leg.next_limit else None,
+            max(0.0, leg.next_limit[1] - position_m) if leg.next_limit else None,
+            0.0 if leg.edge.in_tunnel else None if leg.tunnel_m is None else max(0.0, leg.tunnel_m - position_m),
+            None if leg.exit_m is None else max(0.0, leg.exit_m - position_m),
+            self._rest[index],
+            camera_distance_m=self._camera_m(position_m) if self._cameras_m else None,
+            slow_edges=self._slow,
+        )
+
+    def _camera_m(self, position_m: float) -> float | None:
+        index = bisect_right(self._cameras_m, position_m)
+        return self._cameras_m[index] - position_m if index < len(self._cameras_m) else None
+
+
+def _legs(
+    edges: Sequence[Edge], ways: Sequence[Crossing], starts_m: Sequence[float], network: Network, flow: Flow
+) -> tuple[_Leg, ...]:
+    """Adds up from the goal back to the start."""
+    legs: list[_Leg] = []
+    for index in range(len(edges) - 1, -1, -1):
+        edge = edges[index]
+        after = legs[-1] if legs else None
+        way = ways[index] if after else Crossing(0.0, edge.speed_mps)
+        way_s = way.length_m / max(SLOWEST_MPS, way.speed_mps)
+        speed_mps = flow.speed_mps(edge.edge_id)
+        legs.append(
+            _Leg(
+                edge=edge,
+                start_m=starts_m[index],
+                speed_mps=speed_mps,
+                relative_speed=speed_mps / edge.speed_mps,
+                time_after_s=way_s + after.time_after_s + after.edge.length_m / after.speed_mps if after else 0.0,
+                free_after_s=way_s + after.free_after_s + after.edge.length_m / after.edge.speed_mps
+                if after
+                else 0.0,
+                length_after_m=after.edge.length_m + after.length_after_m if after else 0.0,
+                relative_after_m=(
+                    after.edge.length_m * after.relative_speed + after.relative_after_m if after else 0.0
+                ),
+                next_limit=_next_limit(edge, after),
+                tunnel_m=None if after is None else after.start_m if after.edge.in_tunnel else after.tunnel_m,
+                jam=_jam(edge, starts_m[index], speed_mps / edge.speed_mps, after),
+                exit_m=_exit(edge, starts_m[index], after, network),
+            )
+        )
+    return tuple(reversed(legs))
+
+
+def _next_limit(edge: Edge, after: _Leg | None) -> tuple[float | None, float] | None:
+    if after is None:
+        return None
+    return (after.edge.limit_mps, after.start_m) if after.edge.limit_mps != edge.limit_mps else after.next_limit
+
+
+def _jam(edge: Edge, start_m: float, relative_speed: float, after: _Leg | None) -> tuple[float, float] | None:
+    following = after.jam if after else None
+    if relative_speed >= JAM_BELOW:
+        return following
+    goes_on = after is not None and following is not None and following[0] == after.start_m
+    return (start_m, following[1] if goes_on and following else start_m + edge.length_m)
+
+
+def _exit(edge: Edge, start_m: float, after: _Leg | None, network: Network) -> float | None:
+    if edge.road_class not in MOTORWAY_CLASSES:
+        return None
+    leaves = after is None or after.edge.road_class not in MOTORWAY_CLASSES
+    if leaves or len(network.crossings.get(edge.edge_id, {})) > 1:
+        return start_m + edge.length_m
+    return after.exit_m if after else None

@@ -1,0 +1,82 @@
+"""The loop of one drive, the same on every road: step, driver, predicate."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Protocol
+
+from automotive_cosim.contracts import Answer, DrivingState, RoadRequest, RouteOption
+from automotive_cosim.traffic.base import Drive, Event, Until
+from automotive_cosim.traffic.ego import Driver
+
+Call = int | RoadRequest
+"""One call of a drive, as a replay repeats it: a number of steps or a request."""
+
+
+class Road(Protocol):
+    """Something that moves the ego by one step."""
+
+    step_s: float
+
+    def step(self, *, hazard_lights: bool) -> tuple[DrivingState, tuple[Event, ...]]:
+        """The state after one step, and what happened in it; the last state has its end set."""
+        ...
+
+    def alternatives(self) -> tuple[RouteOption, ...]:
+        """As ``Traffic.alternatives``, but it may spoil the road for driving on."""
+        ...
+
+
+class EgoDrive:
+    """One drive on a road, from its first state on."""
+
+    def __init__(self, road: Road, driver: Driver, state: DrivingState) -> None:
+        """Takes over at ``state``, and lets the driver set the pedals."""
+        self._road = road
+        self._driver = driver
+        self.state = state
+        driver.tick(state)
+
+    def advance(
+        self, duration_s: float, until: Until | None = None, beat: Callable[[], None] | None = None
+    ) -> Drive:
+        """As ``Traffic.advance``; ``beat`` is called after every step."""
+        road, driver = self._road, self._driver
+        states: list[DrivingState] = []
+        events: list[Event] = []
+        held_since_s: float | None = None
+        for _ in range(round(duration_s / road.step_s)):
+            if self.state.end is not None:
+                break
+            state, happened = road.step(hazard_lights=driver.hazard_lights)
+            self.state = state
+            states.append(state)
+            events += happened
+            if state.end is None:
+                events += driver.tick(state)
+            if beat is not None:
+                beat()
+            if until is not None:
+                if not until.predicate(state):
+                    held_since_s = None
+                else:
+                    held_since_s = state.time_s if held_since_s is None else held_since_s
+                    if state.time_s - held_since_s >= until.for_s - 1e-9:
+                        return Drive(tuple(states), tuple(events), until_held=True)
+        return Drive(tuple(states), tuple(events), until_held=False)
+
+    def request(self, request: RoadRequest) -> Answer:
+        """As ``Traffic.request``."""
+        return self._driver.request(request, self.state)
+
+    def alternatives(self) -> tuple[RouteOption, ...]:
+        """As ``Traffic.alternatives``, but it may spoil the drive: call it on a copy."""
+        return () if self.state.end is not None else self._road.alternatives()
+
+    def replay(self, calls: Sequence[Call], beat: Callable[[], None] | None = None) -> None:
+        """Repeats what was done on an equal drive."""
+        for call in calls:
+            if isinstance(call, int):
+                self.advance(call * self._road.step_s, beat=beat)
+            else:
+                self.request(call)

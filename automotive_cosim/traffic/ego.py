@@ -1,0 +1,415 @@
+"""The driver: how a profile drives, and what becomes of what the cockpit asks.
+
+Pure logic over a few ``Pedals``, the same in SUMO and on a scripted road. Speed is held by a factor on the limit
+of the road and an upper bound; both change smoothly, because SUMO's own model would brake hard as soon as either
+falls.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+
+from automotive_cosim.contracts import (
+    KMH_PER_MPS,
+    MPH_PER_MPS,
+    Alert,
+    AlertKind,
+    Answer,
+    Cruise,
+    DrivingState,
+    Hazards,
+    PullOver,
+    Reroute,
+    RoadRequest,
+    Severity,
+    SlowDown,
+)
+from automotive_cosim.traffic.base import EgoPlan, Event
+from automotive_cosim.traffic.profiles import Profile, profile
+from automotive_cosim.traffic.road_weather import DRY, Condition, Forecast
+
+REACTION_SPREAD = 0.25
+"""Standard deviation of the logarithm of a reaction time: brake reactions are log-normal (Taoka, 1989)."""
+
+EASING_MPS2 = 1.5
+"""Deceleration of a driver who slows down unforced: the accelerator released, then a touch of brake."""
+
+BRAKING_MPS2 = 3.0
+"""The same after a critical alert; AASHTO's Green Book takes 3.4 m/s2 as what most drivers find comfortable."""
+
+SAFE_HEADWAY_S = 2.0
+"""The gap that a driver opens to when told about the distance (R412-12 and the common two-second rule)."""
+
+ATTENTIVE = 0.3
+"""Imperfection of a driver who has been woken up."""
+
+SPEED_KINDS = frozenset(
+    {
+        AlertKind.SPEED,
+        AlertKind.COLLISION,
+        AlertKind.VISIBILITY,
+        AlertKind.SLIPPERY,
+        AlertKind.WEATHER,
+        AlertKind.TRAFFIC,
+        AlertKind.SCHOOL,
+        AlertKind.TUNNEL,
+    }
+)
+"""Alerts after which a driver goes no faster than the limit, or than the speed advised."""
+
+GAP_KINDS = frozenset({AlertKind.DISTANCE, AlertKind.COLLISION, AlertKind.VISIBILITY, AlertKind.SLIPPERY})
+"""Alerts after which a driver keeps further back."""
+
+ROOM_KINDS = frozenset({AlertKind.CORRIDOR, AlertKind.YIELD, AlertKind.MOVE_OVER})
+"""Alerts after which a driver makes room for somebody."""
+
+WAKING_KINDS = frozenset({AlertKind.FATIGUE, AlertKind.DISTRACTION})
+
+GIVE_WAY_S = 12.0
+"""How long a driver waits at the side, or keeps to the lane at the kerb, to let a blue light by."""
+
+CORRIDOR_S = 90.0
+"""How long a driver keeps a corridor open."""
+
+MOVE_OVER_S = 30.0
+MOVE_OVER_MPS = 20 / MPH_PER_MPS
+SLOWEST_MOVE_OVER_MPS = 5 / MPH_PER_MPS
+"""Who cannot change lanes passes 20 mph under the limit, at 5 mph where that is 20 or less (Florida statute
+316.126)."""
+
+SLOWEST_REQUEST_KMH = 5.0
+FAST_ROADS = frozenset({"motorway", "trunk"})
+SLOW_TRAFFIC = 0.5
+"""Relative speed under which going slowly on a fast road hinders nobody."""
+
+
+FOR_GOOD_S = 86_400.0
+
+
+class RefusedError(Exception):
+    """The car cannot do it now; the text says why."""
+
+
+class Pedals(Protocol):
+    """What a driver does with the car."""
+
+    def set_speed_factor(self, factor: float) -> None:
+        """Speed aimed at on every road, over its limit."""
+        ...
+
+    def set_top_speed(self, speed_mps: float) -> None:
+        """No faster than this anywhere."""
+        ...
+
+    def set_headway(self, headway_s: float) -> None:
+        """Time gap kept to the leader."""
+        ...
+
+    def set_imperfection(self, imperfection: float) -> None:
+        """How unevenly the speed is held, 0 to 1."""
+        ...
+
+    def set_grip(self, friction: float) -> None:
+        """What the road allows: no braking harder than ``friction * g``."""
+        ...
+
+    def set_hazards(self, on: bool) -> None:
+        """Hazard lights."""
+        ...
+
+    def pull_over(self, state: DrivingState, for_s: float) -> str:
+        """Stops at the side as soon as can be, for so long; returns where.
+
+        Raises:
+            RefusedError: there is no place for it.
+        """
+        ...
+
+    def change_lane(self, lanes_from_kerb: int, for_s: float) -> bool:
+        """Goes so many lanes away from the kerb, or towards it if negative, and stays there so long.
+
+        False if there is no such lane here.
+        """
+        ...
+
+    def leave_corridor(self, leave: bool) -> str:
+        """Drives at the edge of its lane so that a corridor opens, or in its middle again; returns where."""
+        ...
+
+    def reroute(self, request: Reroute, state: DrivingState) -> str:
+        """Takes another route; returns it in words.
+
+        Raises:
+            RefusedError: there is none, or it is too late for it.
+        """
+        ...
+
+
+@dataclass(slots=True)
+class _Intent:
+    """Something that the driver will do after the reaction time."""
+
+    due_s: float
+    asked_s: float
+    request: Alert | SlowDown | PullOver
+    complies: bool
+
+
+@dataclass(slots=True)
+class _Bounds:
+    """Speeds that the driver holds to, in m/s; infinite where nobody asked."""
+
+    asked: float = math.inf
+    cruise: float = math.inf
+    advised: float = math.inf
+    advised_under: float | None = None
+    """The limit under which the advice was given: it ends with it."""
+    advised_until_s: float = math.inf
+
+
+@dataclass(slots=True)
+class Driver:
+    """Drives by the profile of a plan and reacts to requests. ``tick`` is called once per step."""
+
+    plan: EgoPlan
+    pedals: Pedals
+    step_s: float
+    hazard_lights: bool = False
+    _profile: Profile = field(init=False)
+    _draws: np.random.Generator = field(init=False)
+    _intents: list[_Intent] = field(default_factory=list)
+    _bounds: _Bounds = field(default_factory=_Bounds)
+    _law_abiding: bool = False
+    _easing_mps2: float = EASING_MPS2
+    _factor: float = math.nan
+    _top_mps: float = math.nan
+    _headway_s: float = field(init=False)
+    """Kept on a dry road."""
+    _own_ratio: float = field(init=False)
+    """Speed over the limit that the driver chooses in this weather."""
+    _own_top_mps: float = field(init=False)
+    _corridor_until_s: float = math.inf
+    _condition: Condition = DRY
+    _forecast: Forecast | None = None
+
+    def __post_init__(self) -> None:
+        self._profile = profile(self.plan.driver)
+        self._draws = np.random.default_rng([self.plan.seed, 0])
+        self._headway_s = self._profile.headway_s
+        self._choose_speed()
+
+    def request(self, request: RoadRequest, state: DrivingState) -> Answer:
+        """Hears a request. What needs no driver happens now, the rest after the reaction time."""
+        if state.end is not None:
+            return Answer(False, f"the drive has ended: {state.end}")
+        match request:
+            case Alert():
+                return self._hear(request, state, "the driver hears it")
+            case SlowDown(speed_kmh):
+                why_not = _too_slow(speed_kmh, state)
+                return Answer(False, why_not) if why_not else self._hear(request, state, "the driver is asked to")
+            case PullOver():
+                if state.road.in_tunnel:
+                    return Answer(False, "stopping in a tunnel is dangerous; it can be done behind it")
+                return self._hear(request, state, "the driver is asked to")
+            case Cruise(speed_kmh):
+                return self._cruise(speed_kmh, state)
+            case Hazards(on):
+                self.hazard_lights = on
+                self.pedals.set_hazards(on)
+                return Answer(True, f"hazard lights {'on' if on else 'off'}")
+            case Reroute():
+                try:
+                    return Answer(True, self.pedals.reroute(request, state))
+                except RefusedError as refusal:
+                    return Answer(False, str(refusal))
+
+    def tick(self, state: DrivingState) -> tuple[Event, ...]:
+        """Does what is due and holds the speed; what it does acts from the next step on."""
+        events: tuple[Event, ...] = ()
+        if self._forecast is None:
+            self._forecast = Forecast(self.plan.weather, state.time_s)
+        if state.time_s >= self._forecast.until_s:
+            self._meet(self._forecast.read(state.time_s))
+        if self._intents:
+            due = [intent for intent in self._intents if intent.due_s <= state.time_s + 1e-9]
+            if due:
+                self._intents = [intent for intent in self._intents if intent not in due]
+                events = tuple(event for intent in due for event in self._act(intent, state))
+        if state.time_s >= self._corridor_until_s:
+            self._corridor_until_s = math.inf
+            self.pedals.leave_corridor(False)
+        self._hold_speed(state)
+        return events
+
+    def _hear(self, request: Alert | SlowDown | PullOver, state: DrivingState, reason: str) -> Answer:
+        """Draws once for every request, whatever it is, so that the driver's luck depends on their number alone."""
+        reaction_s = self._profile.reaction_s * math.exp(REACTION_SPREAD * float(self._draws.standard_normal()))
+        complies = float(self._draws.random()) < self._profile.compliance
+        self._intents.append(_Intent(state.time_s + reaction_s, state.time_s, request, complies))
+        return Answer(True, reason)
+
+    def _cruise(self, speed_kmh: float | None, state: DrivingState) -> Answer:
+        if speed_kmh is None:
+            self._bounds.cruise = math.inf
+            return Answer(True, "cruise control off")
+        why_not = _too_slow(speed_kmh, state)
+        if why_not:
+            return Answer(False, why_not)
+        self._bounds.cruise = speed_kmh / KMH_PER_MPS
+        return Answer(True, f"cruise control holds at most {speed_kmh:.0f} km/h")
+
+    def _act(self, intent: _Intent, state: DrivingState) -> tuple[Event, ...]:
+        request, after = intent.request, f"{state.time_s - intent.asked_s:.1f} s after"
+        if not intent.complies:
+            what = f"the {request.kind} alert" if isinstance(request, Alert) else "the request"
+            return (Event(state.time_s, "driver_ignores", f"driver hears {what} and goes on as before"),)
+        match request:
+            case Alert():
+                return tuple(self._heed(request, state, f"{after} the alert"))
+            case SlowDown(speed_kmh):
+                self._bounds.asked = speed_kmh / KMH_PER_MPS
+                return (self._slows(state, f"{after} the request"),)
+            case PullOver():
+                try:
+                    where = self.pedals.pull_over(state, FOR_GOOD_S)
+                except RefusedError as refusal:
+                    return (Event(state.time_s, "driver_cannot_stop", f"driver cannot stop: {refusal}"),)
+                return (
+                    Event(state.time_s, "driver_pulls_over", f"driver pulls over {where}, {after} the request"),
+                )
+
+    def _heed(self, alert: Alert, state: DrivingState, after: str) -> list[Event]:
+        events = []
+        if alert.kind in SPEED_KINDS:
+            self._law_abiding = True
+            self._easing_mps2 = BRAKING_MPS2 if alert.severity is Severity.CRITICAL else EASING_MPS2
+            if alert.speed_kmh is not None:
+                self._advise(alert.speed_kmh / KMH_PER_MPS, state)
+            events.append(self._slows(state, after))
+        if alert.kind in GAP_KINDS:
+            self._headway_s = max(SAFE_HEADWAY_S, self._profile.headway_s)
+            self.pedals.set_headway(self._headway_s * self._adapted(self._condition.headway_ratio))
+            events.append(
+                Event(state.time_s, "driver_opens_gap", f"driver keeps {SAFE_HEADWAY_S:g} s behind, {after}")
+            )
+        if alert.kind in WAKING_KINDS:
+            self.pedals.set_imperfection(min(ATTENTIVE, self._profile.imperfection))
+            events.append(Event(state.time_s, "driver_wakes", f"driver pays attention, {after}"))
+        if alert.kind in ROOM_KINDS:
+            events.append(self._make_room(alert, state, after))
+        return events or [
+            Event(state.time_s, "driver_notes", f"driver takes note of the {alert.kind} alert, {after}")
+        ]
+
+    def _make_room(self, alert: Alert, state: DrivingState, after: str) -> Event:
+        """For a blue light behind, for a corridor in a jam, for someone who stands at the kerb."""
+        pedals = self.pedals
+        if alert.kind is AlertKind.CORRIDOR:
+            self._corridor_until_s = state.time_s + CORRIDOR_S
+            return Event(state.time_s, "driver_makes_corridor", f"driver {pedals.leave_corridor(True)}, {after}")
+        if alert.kind is AlertKind.MOVE_OVER:
+            if pedals.change_lane(1, MOVE_OVER_S):
+                return Event(state.time_s, "driver_moves_over", f"driver goes one lane away from the kerb, {after}")
+            limit_mps = state.road.posted_limit_mps or state.speed_mps
+            speed_mps = max(SLOWEST_MOVE_OVER_MPS, limit_mps - MOVE_OVER_MPS)
+            if alert.speed_kmh is not None:
+                speed_mps = alert.speed_kmh / KMH_PER_MPS
+            self._advise(speed_mps, state, MOVE_OVER_S)
+            return self._slows(state, after)
+        if state.road.lane_count > 1 and not state.road.in_tunnel:
+            pedals.change_lane(-state.road.lane_index, GIVE_WAY_S)
+            return Event(state.time_s, "driver_gives_way", f"driver keeps to the lane at the kerb, {after}")
+        try:
+            where = pedals.pull_over(state, GIVE_WAY_S)
+        except RefusedError as refusal:
+            return Event(state.time_s, "driver_cannot_stop", f"driver cannot give way: {refusal}")
+        return Event(state.time_s, "driver_gives_way", f"driver stops at the side {where}, {after}")
+
+    def _advise(self, speed_mps: float, state: DrivingState, for_s: float = math.inf) -> None:
+        self._bounds.advised = speed_mps
+        self._bounds.advised_under = state.road.posted_limit_mps
+        self._bounds.advised_until_s = state.time_s + for_s
+
+    def _slows(self, state: DrivingState, after: str) -> Event:
+        wanted_kmh = self._wanted_mps(state) * KMH_PER_MPS
+        if wanted_kmh < state.speed_mps * KMH_PER_MPS:
+            return Event(state.time_s, "driver_slows", f"driver slows to {wanted_kmh:.0f} km/h, {after}")
+        return Event(state.time_s, "driver_holds", f"driver goes no faster than {wanted_kmh:.0f} km/h, {after}")
+
+    # --- weather ------------------------------------------------------------------------------------------
+
+    def _meet(self, condition: Condition) -> None:
+        """Adapts to another weather as far as the driver is cautious; the grip asks nobody."""
+        if condition != self._condition:
+            self._condition = condition
+            self._choose_speed()
+            self.pedals.set_grip(condition.friction)
+            self.pedals.set_headway(self._headway_s * self._adapted(condition.headway_ratio))
+
+    def _choose_speed(self) -> None:
+        adapted = self._adapted(self._condition.speed_ratio)
+        self._own_ratio = self._profile.speed_ratio * adapted
+        self._own_top_mps = self._profile.top_speed_kmh / KMH_PER_MPS * adapted
+        if self._profile.caution:
+            self._own_top_mps = min(self._own_top_mps, self._condition.sight_mps)
+
+    def _adapted(self, ratio: float) -> float:
+        return 1.0 + self._profile.caution * (ratio - 1.0)
+
+    # --- speed --------------------------------------------------------------------------------------------
+
+    def _chosen_factor(self, limit_mps: float | None) -> float:
+        """Speed over the limit on a clear road, before anything is asked."""
+        if limit_mps is None:
+            return 1.0
+        chosen = self._own_ratio
+        if chosen > 1.0:
+            chosen = min(chosen, 1.0 + self._profile.over_limit_max_kmh / KMH_PER_MPS / limit_mps)
+        return min(chosen, 1.0) if self._law_abiding else chosen
+
+    def _bound_mps(self) -> float:
+        bounds = self._bounds
+        return min(self._own_top_mps, bounds.asked, bounds.cruise, bounds.advised)
+
+    def _wanted_mps(self, state: DrivingState) -> float:
+        limit_mps = state.road.posted_limit_mps
+        bound_mps = self._bound_mps()
+        return bound_mps if limit_mps is None else min(bound_mps, self._chosen_factor(limit_mps) * limit_mps)
+
+    def _hold_speed(self, state: DrivingState) -> None:
+        """Sets factor and upper bound; from a higher speed both come down at ``_easing_mps2``."""
+        limit_mps = state.road.posted_limit_mps
+        bounds = self._bounds
+        if bounds.advised < math.inf and (
+            limit_mps != bounds.advised_under or state.time_s >= bounds.advised_until_s
+        ):
+            bounds.advised = math.inf
+        factor, top_mps = self._chosen_factor(limit_mps), self._bound_mps()
+        wanted_mps = top_mps if limit_mps is None else min(top_mps, factor * limit_mps)
+        if state.speed_mps > wanted_mps + 0.1:
+            top_mps = max(wanted_mps, state.speed_mps - self._easing_mps2 * self.step_s)
+            if limit_mps is not None:
+                factor = max(factor, top_mps / limit_mps)
+        if factor != self._factor:
+            self._factor = factor
+            self.pedals.set_speed_factor(factor)
+        if top_mps != self._top_mps:
+            self._top_mps = top_mps
+            self.pedals.set_top_speed(top_mps)
+
+
+def _too_slow(speed_kmh: float, state: DrivingState) -> str:
+    """Why that speed would be dangerous or senseless; empty if it is not."""
+    if not speed_kmh >= SLOWEST_REQUEST_KMH:
+        return f"{speed_kmh:g} km/h is no speed to drive at; ask to pull over to stop"
+    limit_mps = state.road.posted_limit_mps
+    fast_kmh = (limit_mps or 130 / KMH_PER_MPS) * KMH_PER_MPS
+    is_crawling = state.road.road_class in FAST_ROADS and speed_kmh < fast_kmh / 2
+    if is_crawling and state.around.relative_speed > SLOW_TRAFFIC:
+        return f"{speed_kmh:g} km/h is dangerous where the others drive {fast_kmh:.0f}"
+    return ""

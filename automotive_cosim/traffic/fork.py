@@ -1,0 +1,340 @@
+"""Simulations in processes of their own: warmed up once, then an exact copy for every drive and branch.
+
+Where the platform can fork, a copy is a fork, which takes milliseconds whatever the warm-up took. Elsewhere
+(Windows, and wherever ``by_replay`` asks for it) each copy is a new process that loads, warms up with the same seed
+and repeats the calls so far: the same states, only slower.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+import sys
+from collections import OrderedDict
+from collections.abc import Sequence
+from contextlib import closing
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from automotive_cosim.contracts import Answer, DrivingState, RoadNetwork, RoadRequest, RouteOption
+from automotive_cosim.errors import SetupError, TrafficError
+from automotive_cosim.scenarios import Scenario
+from automotive_cosim.traffic.base import Drive, EgoPlan, Progress, Until
+from automotive_cosim.traffic.drive import Call
+from automotive_cosim.traffic.ledger import Pulse, Settled
+from automotive_cosim.traffic.options import Setup
+from automotive_cosim.traffic.profiles import profile
+from automotive_cosim.traffic.remote import TIMEOUT_S, RemoteProcess
+from automotive_cosim.traffic.wire import Packed, pack_state, unpack_drive, unpack_state
+
+CAN_FORK = sys.platform == "linux"
+"""Files are reopened through /proc, which only Linux has."""
+
+
+class Forked:
+    """A scenario's warm traffic in a process of its own, from which any number of drives depart."""
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        seed: int = 0,
+        progress: Progress | None = None,
+        *,
+        allow_unprojected: bool = False,
+        timeout_s: float = TIMEOUT_S,
+        by_replay: bool = not CAN_FORK,
+        outputs: Path | None = None,
+    ) -> None:
+        """Loads the scenario and warms its traffic up.
+
+        Args:
+            scenario: what to run.
+            seed: of SUMO's random numbers.
+            progress: told how far the warm-up is.
+            allow_unprojected: take a network without projection, with lon and lat None.
+            timeout_s: wall time without a sign of life after which a simulation counts as hung.
+            by_replay: make copies by repeating everything instead of forking.
+            outputs: an empty folder for SUMO's own outputs; the warm traffic writes to ``warm`` in it, each drive
+                and branch to its ``drive-N``, whole from the start of the simulation, complete when it is closed.
+
+        Raises:
+            ScenarioError: the scenario cannot be loaded.
+            SetupError: libsumo is missing or unfit.
+            TrafficError: the process died or hung.
+        """
+        setup = Setup(scenario, seed, allow_unprojected, outputs)
+        self._source = _Source(setup, timeout_s, by_replay=by_replay, progress=progress)
+        self._is_closed = False
+
+    def depart(self, plan: EgoPlan) -> RemoteTraffic:
+        """Puts the ego on its way in an exact copy of the warm traffic.
+
+        Raises:
+            ScenarioError: its trip has no route, or its edges are not in the network.
+            UnknownNameError: no such driver.
+            TrafficError: it could not be inserted, or the simulation died or hung; the next one can depart all the
+                same.
+        """
+        profile(plan.driver)
+        if self._is_closed:
+            raise TrafficError("the simulation is closed")
+        return self._source.departed(plan)
+
+    def watch(self) -> None:
+        """From now on this traffic and every drive that departs from it keep a ledger, which studies read.
+
+        Raises:
+            SetupError: the platform cannot fork.
+        """
+        if self._source.by_replay:
+            raise SetupError("studies branch a running simulation, which takes a platform that forks: use Linux")
+        self._source.warm_call("watch")
+
+    def run_on(self, duration_s: float) -> Pulse:
+        """Lets the watched traffic run on, so that later drives depart later; tells how it is doing.
+
+        Raises:
+            TrafficError: SUMO stopped at an error, died or hung.
+        """
+        pulse: Pulse = self._source.warm_call("run_on", duration_s)
+        return pulse
+
+    @property
+    def memory_bytes(self) -> int:
+        """Memory that the warm process holds; 0 where the platform does not tell, or there is none."""
+        return self._source.memory_bytes()
+
+    def close(self) -> None:
+        """Ends the warm process; drives that have departed go on until they are closed."""
+        self._is_closed = True
+        self._source.close()
+
+
+class RemoteTraffic:
+    """One drive in a process of its own."""
+
+    def __init__(
+        self, source: _Source, process: RemoteProcess, plan: EgoPlan, calls: Sequence[Call], state: Packed
+    ) -> None:
+        self._source = source
+        self._process = process
+        self._plan = plan
+        self._calls = list(calls)
+        self._state = unpack_state(state)
+
+    @property
+    def network(self) -> RoadNetwork:
+        """The roads, as a map draws them."""
+        return self._source.network
+
+    @property
+    def state(self) -> DrivingState:
+        """The newest state."""
+        return self._state
+
+    @property
+    def pid(self) -> int:
+        """The process that runs it."""
+        return self._process.pid
+
+    def advance(self, duration_s: float, until: Until | None = None) -> Drive:
+        """As ``Traffic.advance``; the predicate must be defined in a module that can be imported."""
+        pickled = None if until is None else pickle.dumps(until)
+        drive = unpack_drive(self._process.call("advance", duration_s, pickled))
+        if drive.states:
+            self._state = drive.states[-1]
+        self._remember(len(drive.states))
+        return drive
+
+    def request(self, request: RoadRequest) -> Answer:
+        """As ``Traffic.request``."""
+        answer: Answer = self._process.call("request", request)
+        self._remember(request)
+        return answer
+
+    def alternatives(self) -> tuple[RouteOption, ...]:
+        """As ``Traffic.alternatives``; found by a copy that is thrown away."""
+        with closing(self.branch()) as copy:
+            options: tuple[RouteOption, ...] = copy._process.call("alternatives")
+            return options
+
+    def alternatives_of_old(self, age_s: float) -> tuple[RouteOption, ...]:
+        """As ``alternatives``, with the times that the traffic took that long ago, at most ``OLDEST_NEWS_S``."""
+        with closing(self.branch()) as copy:
+            options: tuple[RouteOption, ...] = copy._process.call("alternatives_of_old", age_s)
+            return options
+
+    def own_choice(self) -> tuple[str, ...]:
+        """The way that SUMO's rerouting device would take now, from the present edge on."""
+        with closing(self.branch()) as copy:
+            edges: tuple[str, ...] = copy._process.call("own_choice")
+            return edges
+
+    def others(self) -> tuple[tuple[str, ...], Pulse]:
+        """Who is on the road or due beside the ego, and how the traffic is doing, in a watched simulation."""
+        seen: tuple[tuple[str, ...], Pulse] = self._process.call("others")
+        return seen
+
+    def nudge(self, place: float) -> str:
+        """Lets one other car, ``place`` of the way through the list of them, aim 0.1 % faster; returns which."""
+        chosen: str = self._process.call("nudge", place)
+        return chosen
+
+    def settle(self, groups: Sequence[Sequence[str]], share: float, limit_s: float) -> Settled:
+        """Drives a watched simulation on until the ego's drive has ended and that share of each group has arrived.
+
+        Args:
+            groups: vehicles, as ``others`` named them.
+            share: 0 to 1.
+            limit_s: simulated seconds at most.
+
+        Raises:
+            TrafficError: SUMO stopped at an error, died or hung.
+        """
+        state, settled = self._process.call("settle", groups, share, limit_s)
+        self._state = unpack_state(state)
+        outcome: Settled = settled
+        return outcome
+
+    def branch(self) -> RemoteTraffic:
+        """An exact copy that drives on by itself from this instant, even if this one is closed."""
+        if self._source.by_replay:
+            return self._source.departed(self._plan, self._calls)
+        return self._source.branched(self._process, self._plan, self._state)
+
+    def close(self) -> None:
+        """As ``Traffic.close``."""
+        self._process.close()
+
+    def _remember(self, call: Call) -> None:
+        if self._source.by_replay:
+            self._calls.append(call)
+
+
+class _Source:
+    """Where copies of a warm simulation come from."""
+
+    def __init__(
+        self, setup: Setup, timeout_s: float, *, by_replay: bool, progress: Progress | None = None
+    ) -> None:
+        self.by_replay = by_replay
+        self._setup = setup
+        self._timeout_s = timeout_s
+        self._drives = 0
+        self._warm: RemoteProcess | None
+        self._warm, self.network = RemoteProcess.start(
+            self._writing("drive-1" if by_replay else "warm"), progress, timeout_s
+        )
+
+    def departed(self, plan: EgoPlan, calls: Sequence[Call] = ()) -> RemoteTraffic:
+        """A drive in a process of its own, after the calls."""
+        process = self._taken() if self.by_replay else self._ready().fork(self._next_outputs())
+        try:
+            state = process.call("depart", plan)
+            if calls:
+                state = process.call("replay", calls)
+        except BaseException:
+            process.close()
+            raise
+        return RemoteTraffic(self, process, plan, calls, state)
+
+    def branched(self, process: RemoteProcess, plan: EgoPlan, state: DrivingState) -> RemoteTraffic:
+        """A drive that goes on from where another one is."""
+        return RemoteTraffic(self, process.fork(self._next_outputs()), plan, (), pack_state(state))
+
+    def warm_call(self, name: str, *arguments: object) -> Any:
+        """Calls the warm process itself."""
+        assert self._warm is not None
+        return self._warm.call(name, *arguments)
+
+    def close(self) -> None:
+        """Ends the warm process."""
+        if self._warm is not None:
+            self._warm.close()
+            self._warm = None
+
+    def memory_bytes(self) -> int:
+        """Of the warm process."""
+        if self._warm is None or not Path("/proc/self/statm").exists():
+            return 0
+        pages = Path(f"/proc/{self._warm.pid}/statm").read_text(encoding="ascii").split()[1]
+        return int(pages) * os.sysconf("SC_PAGE_SIZE")
+
+    def _ready(self) -> RemoteProcess:
+        """The warm process, started again if it has died."""
+        if self._warm is None or self._warm.is_broken:
+            self.close()
+            name = f"drive-{self._drives + 1}" if self.by_replay else "warm"
+            self._warm, _ = RemoteProcess.start(self._writing(name), None, self._timeout_s)
+        return self._warm
+
+    def _writing(self, name: str) -> Setup:
+        """The setup with a folder of its own for the outputs."""
+        outputs = self._setup.outputs
+        if outputs is None:
+            return self._setup
+        (outputs / name).mkdir(parents=True, exist_ok=True)
+        return replace(self._setup, outputs=outputs / name)
+
+    def _next_outputs(self) -> Path | None:
+        self._drives += 1
+        return self._writing(f"drive-{self._drives}").outputs
+
+    def _taken(self) -> RemoteProcess:
+        """A warm process that nobody else uses."""
+        process, self._warm = self._ready(), None
+        self._drives += 1
+        return process
+
+
+def replayed(setup: Setup, plan: EgoPlan, calls: Sequence[Call]) -> RemoteTraffic:
+    """A drive in a new process that repeats one elsewhere."""
+    return _Source(setup, TIMEOUT_S, by_replay=True).departed(plan, calls)
+
+
+class Simulations:
+    """Keeps warm simulations for the next drive, the least recently used one out first."""
+
+    def __init__(self, count_limit: int = 4, memory_limit_bytes: int = 2 * 1024**3) -> None:
+        """Starts empty.
+
+        Args:
+            count_limit: most simulations kept.
+            memory_limit_bytes: most memory that they may hold together; one is kept whatever it holds.
+        """
+        self._count_limit = count_limit
+        self._memory_limit_bytes = memory_limit_bytes
+        self._kept: OrderedDict[Setup, Forked] = OrderedDict()
+
+    def warm(
+        self,
+        scenario: Scenario,
+        seed: int = 0,
+        progress: Progress | None = None,
+        *,
+        allow_unprojected: bool = False,
+    ) -> Forked:
+        """The warm simulation of a scenario and seed, made now if there is none; it stays the pool's to close.
+
+        Raises:
+            as ``Forked``.
+        """
+        setup = Setup(scenario, seed, allow_unprojected)
+        if setup not in self._kept:
+            self._kept[setup] = Forked(scenario, seed, progress, allow_unprojected=allow_unprojected)
+            self._make_room()
+        self._kept.move_to_end(setup)
+        return self._kept[setup]
+
+    def close(self) -> None:
+        """Ends them all; harmless when called again."""
+        while self._kept:
+            self._kept.popitem()[1].close()
+
+    def _make_room(self) -> None:
+        while len(self._kept) > 1 and (
+            len(self._kept) > self._count_limit
+            or sum(simulation.memory_bytes for simulation in self._kept.values()) > self._memory_limit_bytes
+        ):
+            self._kept.popitem(last=False)[1].close()

@@ -1,0 +1,217 @@
+"""What became of everybody: kept beside a simulation for studies, one entry a step.
+
+A study compares futures that leave one instant. It has to know who was on the road or waiting to enter it, when
+each of them arrived, what the ego used up on the way, and whether the traffic as a whole was still flowing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from automotive_cosim.traffic.sumo import EGO
+
+if TYPE_CHECKING:
+    from automotive_cosim.traffic.drive import EgoDrive
+    from automotive_cosim.traffic.sumo import Sumo
+    from automotive_cosim.traffic.world import World
+
+HALTED_MPS = 0.1
+"""SUMO counts a vehicle as halted up to this speed (SUMO_const_haltingSpeed)."""
+
+STUCK_S = 300.0
+"""Waiting this long without a break is being stuck: SUMO's own time to teleport."""
+
+NUDGE = 1.001
+"""A placebo multiplies one car's speed factor by this."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pulse:
+    """How the traffic as a whole is doing. Counts of events begin when the ledger was opened."""
+
+    time_s: float
+    running: int
+    """Vehicles on the road."""
+    halted: int
+    """Of them, slower than ``HALTED_MPS``."""
+    stuck: int
+    """Of them, waiting for ``STUCK_S`` or longer."""
+    backlog: int
+    """Vehicles that are due and found no room to enter."""
+    departed: int
+    teleported: int
+
+
+@dataclass(frozen=True, slots=True)
+class Account:
+    """What the ego's drive came to since its departure, counted as SUMO's tripinfo counts it."""
+
+    departed_s: float
+    """Simulation time at the end of the step it was inserted in."""
+    stops: int
+    """How often it came to a halt."""
+    standing_s: float
+    co2_g: float
+    fuel_g: float
+    """Both by SUMO's emission model for the vehicle's class."""
+
+
+@dataclass(frozen=True, slots=True)
+class Settled:
+    """How a future ended."""
+
+    time_s: float
+    """When it was left alone: enough of everybody had arrived, or its time was over."""
+    is_complete: bool
+    """False if the time was over first."""
+    arrivals_s: dict[str, float]
+    """Simulation time at which each vehicle that was waited for arrived; who has not is missing."""
+    ego: Account
+    pulse: Pulse
+
+
+class Ledger:
+    """Notes a step after it has been made; a fork takes its copy along."""
+
+    def __init__(self, sumo: Sumo, step_s: float) -> None:
+        """Opens it.
+
+        Args:
+            sumo: the running simulation.
+            step_s: its step length.
+        """
+        self._sumo = sumo
+        self._step_s = step_s
+        self._departed = self._teleported = 0
+        self.arrivals_s: dict[str, float] = {}
+        """When each vehicle left the road."""
+        self.arrived: Sequence[str] = ()
+        """Who left it in the last step."""
+        self._ego_is_on = self._ego_is_halted = False
+        self._ego = Account(0.0, 0, 0.0, 0.0, 0.0)
+
+    def note(self) -> None:
+        """Takes down the step that has just been made."""
+        sumo, now_s = self._sumo, self._sumo.time()
+        departed, self.arrived = sumo.departed(), sumo.arrived()
+        teleporting = sumo.teleporting()
+        self._departed += len(departed)
+        self._teleported += len(teleporting)
+        self.arrivals_s.update(dict.fromkeys(self.arrived, now_s))
+        if EGO in departed:
+            self._ego_is_on = True
+            self._ego = Account(now_s, 0, 0.0, 0.0, 0.0)
+        if self._ego_is_on and (EGO in self.arrived or EGO in teleporting):
+            self._ego_is_on = False
+        if self._ego_is_on:
+            self._note_ego()
+
+    def _note_ego(self) -> None:
+        vehicle, before, step_s = self._sumo.vehicle, self._ego, self._step_s
+        halted = self._sumo.speed(EGO) <= HALTED_MPS
+        self._ego = Account(
+            before.departed_s,
+            before.stops + (halted and not self._ego_is_halted),
+            before.standing_s + step_s * halted,
+            before.co2_g + vehicle.getCO2Emission(EGO) * step_s / 1000,
+            before.fuel_g + vehicle.getFuelConsumption(EGO) * step_s / 1000,
+        )
+        self._ego_is_halted = halted
+
+    def account(self) -> Account:
+        """The ego's, up to now or to its end."""
+        return self._ego
+
+    def pulse(self) -> Pulse:
+        """How the traffic is doing now."""
+        vehicle = self._sumo.vehicle
+        running = vehicle.getIDList()
+        return Pulse(
+            self._sumo.time(),
+            len(running),
+            sum(self._sumo.speed(each) <= HALTED_MPS for each in running),
+            sum(vehicle.getWaitingTime(each) >= STUCK_S for each in running),
+            len(self._sumo.simulation.getPendingVehicles()),
+            self._departed,
+            self._teleported,
+        )
+
+    def others(self) -> tuple[str, ...]:
+        """Everybody but the ego who is on the road, teleporting, or due and not yet in; by name."""
+        simulation = self._sumo.simulation
+        due = {*self._sumo.vehicle.getIDList(), *simulation.getPendingVehicles()}
+        return tuple(sorted(due - {EGO}))
+
+
+def settle(
+    world: World,
+    drive: EgoDrive,
+    ledger: Ledger,
+    groups: Sequence[Sequence[str]],
+    share: float,
+    limit_s: float,
+    after_step: Callable[[], None],
+) -> Settled:
+    """Drives on until the ego's drive has ended and that share of each group has arrived, or the time is over.
+
+    Args:
+        world: the simulation.
+        drive: the ego's.
+        ledger: open since before the groups were named.
+        groups: vehicles to wait for.
+        share: of each group, 0 to 1.
+        limit_s: simulated seconds at most.
+        after_step: called after every step; it notes it.
+
+    Raises:
+        TrafficError: SUMO stopped at an error.
+    """
+    left = [set(group) - ledger.arrivals_s.keys() for group in groups]
+    most = [(1 - share) * len(group) + 1e-9 for group in groups]
+
+    def is_complete() -> bool:
+        return drive.state.end is not None and all(
+            len(each) <= limit for each, limit in zip(left, most, strict=True)
+        )
+
+    for _ in range(round(limit_s / world.step_s)):
+        if is_complete():
+            break
+        if drive.state.end is None:
+            drive.advance(world.step_s, beat=after_step)
+        else:
+            world.step()
+            after_step()
+        for each in left:
+            each.difference_update(ledger.arrived)
+    everybody = {vehicle for group in groups for vehicle in group}
+    arrivals_s = {vehicle: at_s for vehicle, at_s in ledger.arrivals_s.items() if vehicle in everybody}
+    pulse = ledger.pulse()
+    return Settled(pulse.time_s, is_complete(), arrivals_s, ledger.account(), pulse)
+
+
+def own_choice(sumo: Sumo) -> tuple[str, ...]:
+    """The way that SUMO's rerouting device would send the ego on now; the ego takes it, so ask a copy.
+
+    The device routes by travel times averaged over its adaptation interval; where no vehicle carries one, SUMO
+    begins to average at the first question, which is free flow.
+    """
+    sumo.vehicle.rerouteTraveltime(EGO, True)
+    return tuple(sumo.route(EGO)[sumo.route_index(EGO) :])
+
+
+def nudge(sumo: Sumo, place: float) -> str:
+    """Lets one other car aim at a speed 0.1 % higher; returns which, empty if there is none.
+
+    Args:
+        sumo: the running simulation.
+        place: which one, 0 up to 1 over all of them in order of name.
+    """
+    others = sorted(set(sumo.vehicle.getIDList()) - {EGO})
+    if not others:
+        return ""
+    chosen: str = others[int(place * len(others))]
+    sumo.set_speed_factor(chosen, sumo.vehicle.getSpeedFactor(chosen) * NUDGE)
+    return chosen

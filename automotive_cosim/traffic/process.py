@@ -1,0 +1,280 @@
+"""The simulation's own process: ``python -m automotive_cosim.traffic.process``, started by ``fork``.
+
+It has one thread and holds nothing but SUMO. It loads and warms up once; every ``fork`` makes a child that goes on
+by itself over a connection of its own, and can be forked again. A process ends when its connection closes, so none
+outlives the program that uses it; one that hangs is ended by its alarm.
+"""
+
+from __future__ import annotations
+
+import faulthandler
+import gc
+import os
+import pickle
+import shutil
+import signal
+import socket
+import stat
+import sys
+import time
+import traceback
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from automotive_cosim import errors
+from automotive_cosim.contracts import Answer, RoadNetwork, RoadRequest, RouteOption
+from automotive_cosim.errors import CosimError
+from automotive_cosim.traffic.base import EgoPlan, Until
+from automotive_cosim.traffic.channel import Channel, ClosedError
+from automotive_cosim.traffic.drive import Call, EgoDrive
+from automotive_cosim.traffic.ledger import Ledger, Pulse, Settled, nudge, own_choice, settle
+from automotive_cosim.traffic.options import OUTPUTS, Setup
+from automotive_cosim.traffic.sumo import load_library
+from automotive_cosim.traffic.wire import Packed, pack_drive, pack_state
+from automotive_cosim.traffic.world import World
+
+if sys.platform != "win32":
+    import fcntl
+
+BEAT_S = 1.0
+"""Wall time between two signs of life during a long call."""
+
+LOADING_LIMIT_S = 300.0
+"""Wall time that loading a network may take."""
+
+DESCRIPTORS = Path("/proc/self/fd")
+
+
+class Server:
+    """Answers the messages of one connection."""
+
+    def __init__(self, channel: Channel, hang_limit_s: float) -> None:
+        """Takes the connection over.
+
+        Args:
+            channel: to the program that uses the simulation.
+            hang_limit_s: wall time after which a step that does not end ends the process.
+        """
+        self._channel = channel
+        self._hang_limit_s = hang_limit_s
+        self._world: World | None = None
+        self._drive: EgoDrive | None = None
+        self._ledger: Ledger | None = None
+        self._last_beat_s = 0.0
+
+    def run(self) -> None:
+        """Serves until the connection closes."""
+        try:
+            while True:
+                name, arguments = self._channel.receive()
+                self._set_alarm()
+                answer = self._answer(name, arguments)
+                self._stop_alarm()
+                self._channel.send(answer)  # in a forked child this is its own connection already
+        except ClosedError:
+            if self._world is not None and self._world.writes:
+                self._world.close()  # which ends the outputs properly
+
+    def _answer(self, name: str, arguments: tuple[Any, ...]) -> tuple[str, Any]:
+        try:
+            return "done", getattr(self, f"do_{name}")(*arguments)
+        except ClosedError:
+            raise
+        except CosimError as error:
+            return "error", (type(error).__name__, str(error))
+        except Exception as error:  # whatever it is, the other side has to hear of it
+            traceback.print_exc()
+            place = traceback.extract_tb(error.__traceback__)[-1]
+            text = f"{type(error).__name__}: {error} ({Path(place.filename).name}, line {place.lineno})"
+            return "error", (errors.TrafficError.__name__, text)
+
+    # --- the calls ----------------------------------------------------------------------------------------
+
+    def do_load(self, setup: Setup) -> RoadNetwork:
+        """Loads and warms up; returns the network."""
+        self._set_alarm(LOADING_LIMIT_S)
+        self._world = World(setup)
+        self._set_alarm()
+        self._world.warm_up(self._progress)
+        gc.collect()
+        gc.freeze()  # collecting garbage would copy every page that the children share
+        return self._world.network.map
+
+    def do_fork(self, outputs: Path | None) -> int:
+        """Makes a child that serves the connection that follows; both answer with their process id."""
+        connection = self._channel.receive_socket()
+        child = os.fork()
+        if not child:
+            self._channel.close()
+            self._channel = Channel(connection)
+            self._set_alarm()
+            reopen_files()
+            if outputs is not None:
+                copy_outputs(outputs)
+        else:
+            connection.close()
+        return child or os.getpid()
+
+    def do_depart(self, plan: EgoPlan) -> Packed:
+        """Puts the ego on the road; returns its first state."""
+        assert self._world is not None
+        self._drive = self._world.depart(plan, self._after_step)
+        return pack_state(self._drive.state)
+
+    def do_advance(self, duration_s: float, until: bytes | None) -> Packed:
+        """Advances; the predicate is evaluated here."""
+        assert self._drive is not None
+        return pack_drive(self._drive.advance(duration_s, _load_until(until), self._after_step))
+
+    def do_request(self, request: RoadRequest) -> Answer:
+        """Asks something of the driver or the car."""
+        assert self._drive is not None
+        return self._drive.request(request)
+
+    def do_alternatives(self) -> tuple[RouteOption, ...]:
+        """Looks for other ways; nothing else may be asked of this process afterwards."""
+        assert self._drive is not None
+        return self._drive.alternatives()
+
+    def do_replay(self, calls: Sequence[Call]) -> Packed:
+        """Repeats the calls of a drive; returns the state it ends in."""
+        assert self._drive is not None
+        self._drive.replay(calls, self._beat)
+        return pack_state(self._drive.state)
+
+    # --- what studies ask ---------------------------------------------------------------------------------
+
+    def do_watch(self) -> None:
+        """From now on every step goes into a ledger, which the forks take along."""
+        assert self._world is not None
+        self._ledger = Ledger(load_library(), self._world.step_s)
+
+    def do_run_on(self, duration_s: float) -> Pulse:
+        """Lets the traffic run without an ego."""
+        assert self._world is not None
+        assert self._ledger is not None
+        for _ in range(round(duration_s / self._world.step_s)):
+            self._world.step()
+            self._after_step()
+        return self._ledger.pulse()
+
+    def do_others(self) -> tuple[tuple[str, ...], Pulse]:
+        """Who is there beside the ego, and how the traffic is doing."""
+        assert self._ledger is not None
+        return self._ledger.others(), self._ledger.pulse()
+
+    def do_settle(self, groups: Sequence[Sequence[str]], share: float, limit_s: float) -> tuple[Packed, Settled]:
+        """Drives on until everything has ended; returns the ego's last state and the outcome."""
+        assert self._world is not None
+        assert self._drive is not None
+        assert self._ledger is not None
+        outcome = settle(self._world, self._drive, self._ledger, groups, share, limit_s, self._after_step)
+        return pack_state(self._drive.state), outcome
+
+    def do_alternatives_of_old(self, age_s: float) -> tuple[RouteOption, ...]:
+        """As ``alternatives``, by news of that age."""
+        assert self._world is not None
+        self._world.congestion.forget(age_s)
+        return self.do_alternatives()
+
+    def do_own_choice(self) -> tuple[str, ...]:
+        """SUMO's own; nothing else may be asked of this process afterwards."""
+        return own_choice(load_library())
+
+    def do_nudge(self, place: float) -> str:
+        """Changes one other car by 0.1 %; returns which."""
+        return nudge(load_library(), place)
+
+    def _after_step(self) -> None:
+        if self._ledger is not None:
+            self._ledger.note()
+        self._beat()
+
+    # --- signs of life ------------------------------------------------------------------------------------
+
+    def _beat(self) -> None:
+        now_s = time.monotonic()
+        if now_s - self._last_beat_s >= BEAT_S:
+            self._last_beat_s = now_s
+            self._set_alarm()
+            self._channel.send(("beat", None))
+
+    def _progress(self, done_s: float, total_s: float) -> None:
+        self._set_alarm()
+        self._channel.send(("progress", (done_s, total_s)))
+
+    def _set_alarm(self, limit_s: float | None = None) -> None:
+        """The kernel ends the process after the limit, even if nobody is left to see that it hangs."""
+        if sys.platform != "win32":
+            signal.setitimer(signal.ITIMER_REAL, limit_s or self._hang_limit_s)
+
+    def _stop_alarm(self) -> None:
+        if sys.platform != "win32":
+            signal.setitimer(signal.ITIMER_REAL, 0)
+
+
+def _load_until(pickled: bytes | None) -> Until | None:
+    if pickled is None:
+        return None
+    try:
+        until = pickle.loads(pickled)
+    except (AttributeError, ImportError) as error:
+        raise errors.TrafficError(
+            f"the predicate cannot be loaded in the simulation's process ({error}): define it in a module"
+        ) from error
+    assert isinstance(until, Until)
+    return until
+
+
+def reopen_files() -> None:
+    """Gives this process its own position in every file it was forked with.
+
+    SUMO reads its demand piece by piece; with a shared position the first reader takes the others' traffic.
+    """
+    for entry in list(DESCRIPTORS.iterdir()):
+        descriptor = int(entry.name)
+        try:
+            is_file = stat.S_ISREG(os.fstat(descriptor).st_mode)
+        except OSError:  # the listing's own
+            continue
+        if is_file and fcntl.fcntl(descriptor, fcntl.F_GETFL) & os.O_ACCMODE == os.O_RDONLY:
+            own = os.open(f"{DESCRIPTORS}/{descriptor}", os.O_RDONLY)
+            os.lseek(own, os.lseek(descriptor, 0, os.SEEK_CUR), os.SEEK_SET)
+            os.dup2(own, descriptor, inheritable=False)
+            os.close(own)
+
+
+def copy_outputs(folder: Path) -> None:
+    """Gives this process its own copies, in ``folder``, of the files that it was forked with to write to.
+
+    What SUMO has not written out yet is in this process's memory too, and goes into the copy.
+    """
+    for entry in list(DESCRIPTORS.iterdir()):
+        descriptor = int(entry.name)
+        try:
+            name = entry.readlink()
+        except OSError:  # the listing's own
+            continue
+        if name.name in OUTPUTS and name.parent.parent == folder.parent:
+            shutil.copyfile(name, folder / name.name)
+            own = os.open(folder / name.name, os.O_WRONLY | os.O_APPEND)
+            os.dup2(own, descriptor, inheritable=False)
+            os.close(own)
+
+
+def main() -> None:
+    """Serves the connection whose descriptor is the first argument (on Windows, that comes through stdin)."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    faulthandler.enable()
+    if sys.platform == "win32":
+        connection = socket.fromshare(sys.stdin.buffer.read())
+    else:
+        signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # children need no waiting for
+        connection = socket.socket(fileno=int(sys.argv[1]))
+    Server(Channel(connection), float(sys.argv[2])).run()
+    os._exit(0)  # without tearing the simulation down piece by piece
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,160 @@
+"""Kinds of drivers, in SUMO's terms where it has them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from automotive_cosim.errors import UnknownNameError
+
+
+@dataclass(frozen=True, slots=True)
+class Profile:
+    """A kind of driver, in SUMO's terms where it has them (Krauss model)."""
+
+    name: str
+    about: str
+    speed_ratio: float
+    """Speed chosen on a clear road, over the posted limit (SUMO ``speedFactor``)."""
+    over_limit_max_kmh: float
+    """But never more than this above the limit."""
+    top_speed_kmh: float
+    """Speed chosen where there is no limit."""
+    headway_s: float
+    """Time gap kept to the leader (SUMO ``tau``)."""
+    min_gap_m: float
+    acceleration_mps2: float
+    deceleration_mps2: float
+    imperfection: float
+    """How unevenly the speed is held, 0 to 1 (SUMO ``sigma``)."""
+    overtaking: float
+    """How readily the lane is changed to go faster (SUMO ``lcSpeedGain``)."""
+    reaction_s: float
+    """Median time to react to a request."""
+    compliance: float
+    """Share of requests that are followed."""
+    caution: float
+    """How far speed and gap are adapted to the weather: 1 as much as the others do, 0 not at all."""
+
+
+PROFILES: Mapping[str, Profile] = {
+    profile.name: profile
+    for profile in (
+        Profile(
+            name="calm",
+            about="keeps just under the limit and well back",
+            speed_ratio=0.95,
+            over_limit_max_kmh=0,
+            top_speed_kmh=120,
+            headway_s=2.0,
+            min_gap_m=3.0,
+            acceleration_mps2=1.8,
+            deceleration_mps2=3.5,
+            imperfection=0.2,
+            overtaking=0.5,
+            reaction_s=1.0,
+            compliance=1.0,
+            caution=1.0,
+        ),
+        Profile(
+            name="average",
+            about="keeps the limit",
+            speed_ratio=1.0,
+            over_limit_max_kmh=0,
+            top_speed_kmh=130,
+            headway_s=1.4,
+            min_gap_m=2.5,
+            acceleration_mps2=2.6,
+            deceleration_mps2=4.5,
+            imperfection=0.3,
+            overtaking=1.0,
+            reaction_s=1.1,
+            compliance=0.95,
+            caution=1.0,
+        ),
+        Profile(
+            name="steady",
+            about="exactly the limit, without wavering: for studies that reckon by hand",
+            speed_ratio=1.0,
+            over_limit_max_kmh=0,
+            top_speed_kmh=130,
+            headway_s=1.0,
+            min_gap_m=2.5,
+            acceleration_mps2=2.6,
+            deceleration_mps2=4.5,
+            imperfection=0.0,
+            overtaking=1.0,
+            reaction_s=1.0,
+            compliance=1.0,
+            caution=1.0,
+        ),
+        Profile(
+            name="hurried",
+            about="far over the limit where the road is clear",
+            speed_ratio=1.62,
+            over_limit_max_kmh=31,
+            top_speed_kmh=170,
+            headway_s=0.9,
+            min_gap_m=2.0,
+            acceleration_mps2=3.0,
+            deceleration_mps2=4.5,
+            imperfection=0.1,
+            overtaking=5.0,
+            reaction_s=0.9,
+            compliance=0.9,
+            caution=0.0,
+        ),
+        Profile(
+            name="tailgating",
+            about="a little over the limit and close behind whoever is ahead",
+            speed_ratio=1.1,
+            over_limit_max_kmh=15,
+            top_speed_kmh=150,
+            headway_s=0.5,
+            min_gap_m=1.5,
+            acceleration_mps2=2.9,
+            deceleration_mps2=4.5,
+            imperfection=0.1,
+            overtaking=2.0,
+            reaction_s=0.9,
+            compliance=0.85,
+            caution=0.0,
+        ),
+        Profile(
+            name="drowsy",
+            about="uneven in speed and late to react",
+            speed_ratio=1.0,
+            over_limit_max_kmh=0,
+            top_speed_kmh=120,
+            headway_s=1.6,
+            min_gap_m=2.5,
+            acceleration_mps2=2.0,
+            deceleration_mps2=4.5,
+            imperfection=0.9,
+            overtaking=0.3,
+            reaction_s=2.0,
+            compliance=0.8,
+            caution=0.5,
+        ),
+    )
+}
+"""The drivers there are.
+
+The average one's acceleration, deceleration and overtaking are SUMO's defaults for passenger cars (sumo.dlr.de,
+"Vehicle Type Parameter Defaults"). 2 s is the least gap French law allows (code de la route R412-12); the
+tailgating one keeps a quarter of it. Reaction times lie about the 1.25 s that Green (2000, "How long does it take
+to stop?") gives for a common unexpected signal, shorter for alert drivers (0.7 s when expected), longer for drowsy
+ones. The speeds of the hurried and the tailgating driver, the evenness, the compliance and the caution are chosen,
+not measured.
+"""
+
+
+def profile(name: str) -> Profile:
+    """The profile of that name.
+
+    Raises:
+        UnknownNameError: there is none such.
+    """
+    if name not in PROFILES:
+        raise UnknownNameError("driver", name, PROFILES)
+    return PROFILES[name]

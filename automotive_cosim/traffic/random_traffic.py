@@ -1,0 +1,50 @@
+"""Light traffic for a network that comes without any: flows between random edges, by seed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+
+from automotive_cosim.traffic.network import Network
+from automotive_cosim.traffic.ways import ways_from
+
+STARTS, GOALS = 24, 5
+"""Flows begin on so many edges and lead from each to so many."""
+
+MOST_PER_HOUR = 3600.0
+"""However large the network is."""
+
+
+def vehicles_per_hour(network: Network, per_km_h: float) -> float:
+    """How many set out each hour."""
+    lane_km = sum(edge.length_m * len(edge.lane_ids) for edge in network.edges.values()) / 1000
+    return min(MOST_PER_HOUR, per_km_h * lane_km)
+
+
+def write(path: Path, network: Network, per_km_h: float, seed: int) -> None:
+    """Writes the flows as one of SUMO's additional files; nothing but an empty one if no edge leads to another.
+
+    Args:
+        path: the file to write.
+        network: where.
+        per_km_h: vehicles that set out each hour per kilometre of lane.
+        seed: of their starts and goals.
+    """
+    rng = np.random.default_rng(seed)
+    edges = list(network.edges.values())
+    weights = np.array([edge.length_m * len(edge.lane_ids) for edge in edges])
+    pairs: list[tuple[str, str]] = []
+    for index in rng.choice(len(edges), STARTS, p=weights / weights.sum()):
+        start = edges[int(index)].edge_id
+        reached = list(ways_from(network, start).before)
+        if reached:
+            pairs += [(start, reached[int(goal)]) for goal in rng.integers(len(reached), size=GOALS)]
+    each_per_s = vehicles_per_hour(network, per_km_h) / 3600 / max(1, len(pairs))
+    rows = (
+        f'    <flow id="random.{number}" begin="0" end="604800" period="exp({each_per_s:.9f})" departLane="best" '
+        f'departSpeed="max" from={quoteattr(start)} to={quoteattr(goal)}/>'
+        for number, (start, goal) in enumerate(pairs)
+    )
+    path.write_text("\n".join(("<additional>", *rows, "</additional>", "")), encoding="utf-8")

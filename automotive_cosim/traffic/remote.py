@@ -1,0 +1,238 @@
+"""A simulation's process, seen from the program that uses it: starts it, calls it, copies it, ends it."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import weakref
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, NoReturn
+
+from automotive_cosim import errors
+from automotive_cosim.contracts import RoadNetwork
+from automotive_cosim.errors import CosimError, TrafficError
+from automotive_cosim.traffic.base import Progress
+from automotive_cosim.traffic.channel import Channel, ClosedError
+from automotive_cosim.traffic.options import Setup
+
+TIMEOUT_S = 20.0
+"""Wall time without a sign of life after which a simulation counts as hung; it gives one every second."""
+
+ALARM_MARGIN_S = 5.0
+"""The simulation's own alarm comes this much later, for when nobody is left to end it."""
+
+LOADING_LIMIT_S = 300.0
+"""Wall time that loading a network may take."""
+
+CLOSING_LIMIT_S = 2.0
+
+DROPPED_VARIABLES = ("SUMO_HOME", "PROJ_DATA", "PROJ_LIB", "LIBSUMO_AS_TRACI", "PYTHONSTARTUP", "PYTHONINSPECT")
+ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+"""A process with one thread can be forked safely; numpy's libraries would start more."""
+
+
+class _Complaints:
+    """What a simulation's process and its children write to their standard error, in a file without a name."""
+
+    def __init__(self) -> None:
+        with tempfile.TemporaryFile() as file:
+            self.descriptor = os.dup(file.fileno())
+        weakref.finalize(self, os.close, self.descriptor)
+
+    def last(self) -> str:
+        """Its end on one line."""
+        size = os.fstat(self.descriptor).st_size
+        os.lseek(self.descriptor, max(0, size - 2000), os.SEEK_SET)
+        return " ".join(os.read(self.descriptor, 2000).decode("utf-8", "replace").split())
+
+
+class RemoteProcess:
+    """A simulation's process, seen from here."""
+
+    def __init__(self, channel: Channel, complaints: _Complaints, timeout_s: float) -> None:
+        self._channel = channel
+        self._complaints = complaints
+        self._timeout_s = timeout_s
+        self._broken = ""
+        self._popen: subprocess.Popen[bytes] | None = None
+        self.pid = 0
+        self._end: weakref.finalize[..., RemoteProcess] = weakref.finalize(self, channel.close)
+        """Runs even if nobody closes it: a process whose connection is gone ends."""
+
+    @classmethod
+    def start(cls, setup: Setup, progress: Progress | None, timeout_s: float) -> tuple[RemoteProcess, RoadNetwork]:
+        """Starts a process that loads and warms up; returns it with the network.
+
+        Raises:
+            ScenarioError: the scenario cannot be loaded.
+            SetupError: libsumo is missing or unfit.
+            TrafficError: the process died or hung.
+        """
+        ours, theirs = socket.socketpair()
+        process = cls(Channel(ours), _Complaints(), timeout_s)
+        with theirs:
+            popen = _popen(theirs, process._complaints.descriptor, timeout_s + ALARM_MARGIN_S)
+        process._popen, process.pid = popen, popen.pid
+        process._end.detach()
+        process._end = weakref.finalize(process, _end, process._channel, popen)
+        try:
+            network = process.call("load", setup, progress=progress, timeout_s=LOADING_LIMIT_S)
+        except TrafficError as error:
+            process.close()
+            raise TrafficError(f"{error}; it was loading or warming up {setup.scenario.config}") from None
+        except BaseException:
+            process.close()
+            raise
+        return process, network
+
+    def fork(self, outputs: Path | None) -> RemoteProcess:
+        """An exact copy of the process, with a connection of its own and a folder of its own for SUMO's outputs.
+
+        Raises:
+            TrafficError: the process or its copy died or hung.
+        """
+        ours, theirs = socket.socketpair()
+        child = RemoteProcess(Channel(ours), self._complaints, self._timeout_s)
+        try:
+            with theirs:
+                child.pid = self.call("fork", outputs, hand_over=theirs)
+            child.receive()
+        except BaseException:
+            child.close()
+            raise
+        return child
+
+    @property
+    def is_broken(self) -> bool:
+        """It died, hung or was interrupted: every further call fails."""
+        return bool(self._broken)
+
+    def call(
+        self,
+        name: str,
+        *arguments: object,
+        progress: Progress | None = None,
+        timeout_s: float | None = None,
+        hand_over: socket.socket | None = None,
+    ) -> Any:
+        """Calls a method of ``process.Server``.
+
+        Raises:
+            TrafficError: it died or hung; or what the method raised.
+        """
+        if self._broken:
+            raise TrafficError(self._broken)
+        try:
+            self._channel.send((name, arguments))
+            if hand_over is not None:
+                self._channel.send_socket(hand_over)
+        except ClosedError:
+            self._give_up(self._death())
+        return self.receive(progress, timeout_s)
+
+    def receive(self, progress: Progress | None = None, timeout_s: float | None = None) -> Any:
+        """Waits for an answer; raises as ``call``."""
+        limit_s = max(self._timeout_s, timeout_s or 0.0)
+        try:
+            outcome, value = self._channel.receive(limit_s)
+            while outcome in ("beat", "progress"):
+                if outcome == "progress" and progress is not None:
+                    progress(*value)
+                outcome, value = self._channel.receive(self._timeout_s)
+        except ClosedError:
+            self._give_up(self._death())
+        except TimeoutError:
+            self._give_up(
+                f"the simulation (process {self.pid}) hung: no sign of life for {limit_s:g} s; it was ended"
+            )
+        except BaseException:
+            self._kill()
+            self._broken = "the simulation was interrupted"
+            raise
+        if outcome == "error":
+            name, text = value
+            kind_of_error: type[CosimError] = getattr(errors, name)
+            raise kind_of_error.__new__(kind_of_error, text)  # the text is whole already
+        return value
+
+    def close(self) -> None:
+        """Ends the process and waits for it; harmless when called again."""
+        if not self._broken:
+            self._broken = "the simulation is closed"
+            self._channel.hang_up()
+            try:
+                while True:
+                    self._channel.receive(CLOSING_LIMIT_S)
+            except ClosedError:
+                pass
+            except TimeoutError:
+                self._kill()
+        self._end()
+
+    def _give_up(self, why: str) -> NoReturn:
+        self._kill()
+        self._broken = why
+        raise TrafficError(why) from None
+
+    def _kill(self) -> None:
+        if self._popen is not None:
+            self._popen.kill()
+        elif self.pid and sys.platform != "win32":
+            with suppress(ProcessLookupError):
+                os.kill(self.pid, signal.SIGKILL)
+
+    def _death(self) -> str:
+        """How the process came to its end, as far as can be told from outside."""
+        cause = "killed, perhaps for want of memory"
+        if self._popen is not None:
+            with suppress(subprocess.TimeoutExpired):
+                code = self._popen.wait(CLOSING_LIMIT_S)
+                cause = f"by {signal.Signals(-code).name}" if code < 0 else f"with exit code {code}"
+        said = self._complaints.last()
+        return f"the simulation (process {self.pid}) died: {cause}" + (f"; it said: {said}" if said else "")
+
+
+def _end(channel: Channel, popen: subprocess.Popen[bytes]) -> None:
+    """Ends a process that we started, and waits for it."""
+    channel.close()
+    try:
+        popen.wait(CLOSING_LIMIT_S)
+    except subprocess.TimeoutExpired:
+        popen.kill()
+        popen.wait()
+
+
+def _popen(connection: socket.socket, complaints: int, alarm_s: float) -> subprocess.Popen[bytes]:
+    """Starts ``process`` with one end of the connection, and with an environment of our choice."""
+    environment = {name: value for name, value in os.environ.items() if name not in DROPPED_VARIABLES}
+    environment |= ONE_THREAD
+    environment["PYTHONPATH"] = os.pathsep.join(str(Path(entry).absolute()) for entry in sys.path)
+    command = [
+        sys.executable,
+        "-P",
+        "-m",
+        "automotive_cosim.traffic.process",
+        str(connection.fileno()),
+        str(alarm_s),
+    ]
+    if sys.platform == "win32":
+        process = subprocess.Popen(
+            command, env=environment, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=complaints
+        )
+        assert process.stdin is not None
+        with process.stdin as pipe:
+            pipe.write(connection.share(process.pid))
+        return process
+    return subprocess.Popen(
+        command,
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=complaints,
+        pass_fds=[connection.fileno()],
+    )

@@ -1,0 +1,207 @@
+"""What the weather does to driving: grip, speed choice, gaps and sight, for the ego's driver and for all others.
+
+Posted limits stay what they are. SUMO's own friction only lowers the speed wanted, so braking is set here too: no
+vehicle brakes harder than ``friction * g``, which makes stopping distances those of physics, v^2 / (2 friction g).
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from automotive_cosim.contracts import Weather
+from automotive_cosim.scenarios import WeatherAt, weather_at
+from automotive_cosim.traffic.network import Network
+
+if TYPE_CHECKING:
+    from automotive_cosim.traffic.sumo import Sumo
+
+G_MPS2 = 9.81
+
+FOG_BELOW_M = 1000.0
+"""WMO: fog is visibility under one kilometre."""
+
+HEAVY_RAIN_FROM_MM_PER_H = 7.6
+"""American Meteorological Society, Glossary of Meteorology, "rain"."""
+
+LOSS_PER_KELVIN = 0.0023
+"""Asphalt loses 0.232 BPN, hundredths of friction, per kelvin (Bazlamit and Reza, J. Transp. Eng. 131 (2005))."""
+
+WARM_FROM_C = 20.0
+"""Friction tests are referred to about this temperature."""
+
+REACTION_S = 2.5
+COMFORTABLE_MPS2 = 3.4
+"""AASHTO's Green Book plans stopping sight distances with this reaction time and deceleration."""
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """How a road is to be driven; the ratios are to what is done on a dry road in clear air."""
+
+    friction: float = 1.0
+    """1 is dry, as in SUMO."""
+    speed_ratio: float = 1.0
+    headway_ratio: float = 1.0
+    sight_mps: float = math.inf
+    """Speed from which one can stop within sight."""
+
+
+DRY = Condition()
+
+# Friction: Wallman and Astrom, "Friction measurement methods and the correlation between road friction and
+# traffic safety" (VTI meddelande 911A, 2001): dry 0.8 to 1.0, wet 0.7 to 0.8, packed snow 0.20 to 0.30, loose snow
+# and slush 0.20 to 0.50, black ice 0.15 to 0.30, wet ice 0.05 to 0.10. Dust on asphalt is our choice.
+# Speed and headway: FHWA Road Weather Management Program, "How Do Weather Events Impact Roads?": freeway speeds
+# fall by 3 to 13 % in light rain or snow, 3 to 16 % in heavy rain, 5 to 40 % in heavy snow, 10 to 12 % in low
+# visibility; capacities by 4 to 11, 10 to 30, 12 to 27 and 12 %. The middle is taken; the headway is the
+# capacity's inverse.
+LIGHT, HEAVY_RAIN, HEAVY_SNOW, LOW_VISIBILITY = (
+    (0.92, 1 / 0.925),
+    (0.905, 1 / 0.80),
+    (0.775, 1 / 0.805),
+    (0.89, 1 / 0.88),
+)
+
+_OF_CODES: dict[frozenset[int], tuple[float, tuple[float, float]]] = {
+    frozenset((51, 53, 55, 61, 63, 80, 81)): (0.75, LIGHT),
+    frozenset((65, 82, 95, 96, 99)): (0.7, HEAVY_RAIN),
+    frozenset((71, 73, 77, 85)): (0.35, LIGHT),
+    frozenset((75, 86)): (0.25, HEAVY_SNOW),
+    frozenset((48, 56, 57, 66, 67)): (0.15, HEAVY_SNOW),
+    frozenset((7,)): (0.9, LIGHT),
+    frozenset((31,)): (0.6, LOW_VISIBILITY),
+}
+"""Friction, and the ratios of speed and headway, of weather codes (WMO 4677; freezing rain and rime are ice)."""
+
+
+def condition_of(weather: Weather) -> Condition:
+    """What the weather makes of a road in the open."""
+    friction, ratios = 1.0, (1.0, 1.0)
+    for codes, effect in _OF_CODES.items():
+        if weather.weather_code in codes:
+            friction, ratios = effect
+    if ratios is LIGHT and friction > 0.5 and weather.precipitation >= HEAVY_RAIN_FROM_MM_PER_H:
+        friction, ratios = 0.7, HEAVY_RAIN
+    if weather.visibility < FOG_BELOW_M:
+        ratios = (min(ratios[0], LOW_VISIBILITY[0]), max(ratios[1], LOW_VISIBILITY[1]))
+    hot = max(0.0, weather.temperature_2m - WARM_FROM_C)
+    friction = min(friction, 1.0 - LOSS_PER_KELVIN * hot)
+    return Condition(friction, *ratios, sight_speed_mps(weather.visibility, friction))
+
+
+def sight_speed_mps(visibility_m: float, friction: float) -> float:
+    """The speed from which a driver stops within sight: v t + v^2 / 2b, as AASHTO has it."""
+    braking_mps2 = min(COMFORTABLE_MPS2, friction * G_MPS2)
+    return braking_mps2 * (-REACTION_S + math.sqrt(REACTION_S**2 + 2 * visibility_m / braking_mps2))
+
+
+class Forecast:
+    """A timeline of weather as conditions of the road."""
+
+    def __init__(self, timeline: tuple[WeatherAt, ...], departure_s: float) -> None:
+        """Takes a timeline in seconds after ``departure_s``; an empty one is dry for good."""
+        self._timeline = timeline
+        self._departure_s = departure_s
+        self.until_s = -math.inf
+        """Simulation time up to which the condition read last holds."""
+
+    def read(self, time_s: float) -> Condition:
+        """The condition at a simulation time."""
+        if not self._timeline:
+            self.until_s = math.inf
+            return DRY
+        since_s = time_s - self._departure_s
+        following = bisect_right([entry.at_s for entry in self._timeline], since_s)
+        self.until_s = (
+            math.inf if following == len(self._timeline) else self._departure_s + self._timeline[following].at_s
+        )
+        return condition_of(weather_at(self._timeline, since_s))
+
+
+@dataclass(slots=True)
+class _Type:
+    """A vehicle type as it is on a dry road."""
+
+    deceleration_mps2: float
+    emergency_mps2: float
+    headway_s: float
+    top_mps: float
+
+
+class Surface:
+    """Puts a condition on the road: the friction of the lanes, and how all but the ego drive on it.
+
+    Lanes in tunnels stay dry. Speeds wanted are each vehicle's own, the rest is its type's.
+    """
+
+    def __init__(self, sumo: Sumo, network: Network, left_out: tuple[str, ...]) -> None:
+        """Starts dry.
+
+        Args:
+            sumo: the simulation.
+            network: its roads.
+            left_out: types, or what their names begin with, that stay as they are.
+        """
+        self._sumo = sumo
+        self._left_out = left_out
+        self.condition = DRY
+        tunnels = {lane for edge in network.edges.values() if edge.in_tunnel for lane in edge.lane_ids}
+        self._lanes = tuple(lane for lane in sumo.lane.getIDList() if lane not in tunnels)
+        self._types: dict[str, _Type] = {}
+        self._factors: dict[str, float] = {}
+        """Speed factor of each vehicle on a dry road, kept while it is not."""
+
+    def put(self, condition: Condition) -> None:
+        """Changes the condition for everything on the road."""
+        if condition == self.condition:
+            return
+        if condition.friction != self.condition.friction:
+            for lane in self._lanes:
+                self._sumo.lane.setFriction(lane, condition.friction)
+        self.condition = condition
+        for type_id in self._sumo.type.getIDList():
+            if not type_id.startswith(self._left_out):
+                self._treat(type_id)
+        for vehicle in self._sumo.vehicle.getIDList():
+            if not self._sumo.type_of(vehicle).startswith(self._left_out):
+                self._slow(vehicle)
+
+    def adopt(self, type_id: str) -> None:
+        """A type has been made after the condition was put on the road."""
+        if self.condition != DRY:
+            self._treat(type_id)
+
+    def departed(self, vehicle: str) -> None:
+        """A vehicle has come onto the road."""
+        if self.condition.speed_ratio != 1.0:
+            self._slow(vehicle)
+
+    def arrived(self, vehicle: str) -> None:
+        """A vehicle has left the road."""
+        self._factors.pop(vehicle, None)
+
+    def _treat(self, type_id: str) -> None:
+        kind, condition = self._sumo.type, self.condition
+        dry = self._types.get(type_id)
+        if dry is None:
+            dry = self._types[type_id] = _Type(
+                kind.getDecel(type_id),
+                kind.getEmergencyDecel(type_id),
+                kind.getTau(type_id),
+                kind.getMaxSpeed(type_id),
+            )
+        hardest_mps2 = condition.friction * G_MPS2
+        kind.setDecel(type_id, min(dry.deceleration_mps2, hardest_mps2))
+        kind.setApparentDecel(type_id, min(dry.deceleration_mps2, hardest_mps2))
+        kind.setEmergencyDecel(type_id, min(dry.emergency_mps2, hardest_mps2))
+        kind.setTau(type_id, dry.headway_s * condition.headway_ratio)
+        kind.setMaxSpeed(type_id, min(dry.top_mps, condition.sight_mps))
+
+    def _slow(self, vehicle: str) -> None:
+        factor = self._factors.get(vehicle)
+        if factor is None:
+            factor = self._factors[vehicle] = self._sumo.vehicle.getSpeedFactor(vehicle)
+        self._sumo.set_speed_factor(vehicle, factor * self.condition.speed_ratio)

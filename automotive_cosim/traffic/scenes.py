@@ -1,0 +1,419 @@
+"""How each kind of incident is staged in SUMO. ``situations`` says when."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from datetime import datetime
+from typing import Any, Protocol
+
+from automotive_cosim import incidents
+from automotive_cosim.contracts import KMH_PER_MPS
+from automotive_cosim.errors import ScenarioError
+from automotive_cosim.traffic.network import Edge
+from automotive_cosim.traffic.posted import TimedLimit
+from automotive_cosim.traffic.stage import CAR_TYPE, Stage
+
+HAZARD_SIGNAL = 4
+"""SUMO's bit for the hazard lights (VEH_SIGNAL_BLINKER_EMERGENCY)."""
+
+AUTHORITY = ("authority",)
+"""Whom a closed lane is left open to."""
+
+CAR_SPACE_M = 7.5
+"""A standing car with its gap: SUMO's default length and minimum gap."""
+
+SCHOOL_DAYS = frozenset(range(1, 6))
+
+NARROW_PLACE_M = 10.0
+"""The head of a jam stands this far before the end of its last edge."""
+
+
+_CROSSING = re.compile(r":.+_c\d+")
+"""Netconvert's ids of pedestrian crossings."""
+
+
+class Scene(Protocol):
+    """One incident as it is staged."""
+
+    def begin(self) -> str:
+        """Starts it; returns what has happened in words, empty if nothing is to be told."""
+        ...
+
+    def tick(self, local_time: datetime) -> str:
+        """Once per second while it lasts; returns what has happened in words."""
+        ...
+
+    def end(self) -> str:
+        """Puts things back; returns what has happened in words."""
+        ...
+
+
+class _Scene:
+    """Most scenes do nothing while they last, and need no putting back."""
+
+    def begin(self) -> str:
+        return ""
+
+    def tick(self, local_time: datetime) -> str:
+        return ""
+
+    def end(self) -> str:
+        return ""
+
+
+class _Breakdown(_Scene):
+    """A stopped car."""
+
+    def __init__(self, stage: Stage, incident: incidents.Breakdown) -> None:
+        self._stage, self._incident = stage, incident
+        self._lane = stage.lane(incident.edge, incident.lane)
+        length_m = stage.edge(incident.edge).length_m
+        if not 5.0 <= incident.position_m <= length_m:
+            raise ScenarioError(
+                f"[[incidents]]: edge {incident.edge!r} is {length_m:.0f} m long, so a car cannot stand at "
+                f"position_m = {incident.position_m:g}; say 5 to {length_m:.0f}"
+            )
+
+    def begin(self) -> str:
+        stage, incident = self._stage, self._incident
+        position_m = incident.position_m
+        self._car = stage.car("breakdown", (incident.edge,), self._lane, position_m, "0")
+        lane = int(self._lane.rpartition("_")[2])
+        stage.sumo.set_stop(self._car, incident.edge, position_m, lane, incident.to_s - incident.from_s, 0)
+        stage.sumo.set_signals(self._car, HAZARD_SIGNAL)
+        return f"a car has broken down{_on(stage.edge(incident.edge))}"
+
+
+class _Roadworks(_Scene):
+    """A lower limit and closed lanes."""
+
+    def __init__(self, stage: Stage, incident: incidents.Roadworks) -> None:
+        self._stage, self._incident = stage, incident
+        self._closed = tuple(stage.lane(incident.edge, lane) for lane in incident.closed_lanes)
+        if len(set(self._closed)) >= len(stage.edge(incident.edge).lane_ids):
+            raise ScenarioError(
+                f"[[incidents]]: roadworks on {incident.edge!r} leave no lane; say kind = 'closure'"
+            )
+
+    def begin(self) -> str:
+        stage = self._stage
+        stage.signs.put_up(self._incident.edge, self._incident.limit_kmh / KMH_PER_MPS)
+        self._allowed = {lane: stage.sumo.lane.getAllowed(lane) for lane in self._closed}
+        for lane in self._closed:
+            stage.sumo.lane.setAllowed(lane, AUTHORITY)
+        return f"roadworks{_on(stage.edge(self._incident.edge))}"
+
+    def end(self) -> str:
+        self._stage.signs.take_down(self._incident.edge, self._incident.limit_kmh / KMH_PER_MPS)
+        for lane, allowed in self._allowed.items():
+            self._stage.sumo.lane.setAllowed(lane, allowed)
+        return ""
+
+
+class _Jam(_Scene):
+    """A queue, and a place that lets one vehicle a lane pass at a time."""
+
+    def __init__(self, stage: Stage, incident: incidents.Jam) -> None:
+        self._stage, self._incident = stage, incident
+        self._edges = [stage.edge(edge) for edge in incident.edges]
+        for here, there in zip(incident.edges, incident.edges[1:], strict=False):
+            if there not in stage.network.crossings.get(here, {}):
+                raise ScenarioError(f"[[incidents]]: jam: no way leads from edge {here!r} to {there!r}")
+        room_m = sum(edge.length_m for edge in self._edges) - NARROW_PLACE_M
+        if incident.length_m > room_m:
+            raise ScenarioError(f"[[incidents]]: a jam of {incident.length_m:g} m does not fit on {room_m:.0f} m")
+        self._head_m = self._edges[-1].length_m - NARROW_PLACE_M
+        self._held: set[str] = set()
+
+    def begin(self) -> str:
+        left_m = self._incident.length_m
+        for index in range(len(self._edges) - 1, -1, -1):
+            edge = self._edges[index]
+            position_m = self._head_m if index == len(self._edges) - 1 else edge.length_m - 1.0
+            route = [ahead.edge_id for ahead in self._edges[index:]]
+            while position_m > CAR_SPACE_M and left_m > 0:
+                for lane in edge.lane_ids:
+                    self._stage.car("jam", route, lane, position_m, "0")
+                position_m -= CAR_SPACE_M
+                left_m -= CAR_SPACE_M
+        return f"a jam of {self._incident.length_m:.0f} m{_on(self._edges[-1])}"
+
+    def tick(self, local_time: datetime) -> str:
+        stage, last = self._stage, self._edges[-1]
+        for vehicle in stage.sumo.edge_vehicles(last.edge_id):
+            if vehicle not in self._held and vehicle != stage.ego_id:
+                self._held.add(vehicle)
+                with suppress(*stage.sumo.refusals):  # too near to stop: it slips through
+                    lane = stage.sumo.lane_index(vehicle)
+                    stage.sumo.set_stop(vehicle, last.edge_id, self._head_m, lane, self._incident.hold_s, 0)
+        return ""
+
+    def end(self) -> str:
+        for vehicle in self._stage.sumo.edge_vehicles(self._edges[-1].edge_id):
+            if self._stage.sumo.vehicle.isStopped(vehicle) and vehicle != self._stage.ego_id:
+                self._stage.sumo.vehicle.resume(vehicle)
+        return ""
+
+
+class _Closure(_Scene):
+    """A road that all but the authorities go round."""
+
+    def __init__(self, stage: Stage, incident: incidents.Closure) -> None:
+        self._stage = stage
+        self._edge = stage.edge(incident.edge)
+        self._seen: set[str] = set()
+
+    def begin(self) -> str:
+        lanes = self._stage.sumo.lane
+        self._allowed = {lane: lanes.getAllowed(lane) for lane in self._edge.lane_ids}
+        for lane in self._edge.lane_ids:
+            lanes.setAllowed(lane, AUTHORITY)
+        for vehicle in self._stage.sumo.vehicle.getIDList():
+            self._send_round(vehicle)
+        return f"{self._edge.name or self._edge.edge_id} is closed"
+
+    def tick(self, local_time: datetime) -> str:
+        for vehicle in self._stage.sumo.vehicle.getIDList():
+            if vehicle not in self._seen:
+                self._send_round(vehicle)
+        return self._turn_off()
+
+    def end(self) -> str:
+        for lane, allowed in self._allowed.items():
+            self._stage.sumo.lane.setAllowed(lane, allowed)
+        return f"{self._edge.name or self._edge.edge_id} is open again"
+
+    def _send_round(self, vehicle: str) -> None:
+        """The ego has a driver of its own."""
+        sumo = self._stage.sumo
+        self._seen.add(vehicle)
+        if vehicle != self._stage.ego_id and self._edge.edge_id in sumo.route(vehicle)[sumo.route_index(vehicle) :]:
+            with suppress(*sumo.refusals):  # without another way it waits
+                sumo.vehicle.rerouteTraveltime(vehicle, False)
+
+    def _turn_off(self) -> str:
+        """The ego's driver sees the sign on the edge before and follows the detour to the goal."""
+        sumo, ego, sensor = self._stage.sumo, self._stage.ego_id, self._stage.sensor
+        if sensor is None:
+            return ""
+        index = sumo.route_index(ego)
+        edges = sensor.route.edge_ids[index:]
+        if self._edge.edge_id not in edges[1:3] or sumo.edge_of(ego) != edges[0]:
+            return ""
+        way = sumo.find_route(edges[0], edges[-1], CAR_TYPE).edges
+        if not way or self._edge.edge_id in way:
+            return ""
+        sumo.set_route(ego, way)
+        self._stage.route_changed = True
+        return f"driver goes round {self._edge.name or self._edge.edge_id}, which is closed"
+
+
+class _SchoolZone(_Scene):
+    """A limit by the clock."""
+
+    def __init__(self, stage: Stage, incident: incidents.SchoolZone) -> None:
+        self._stage, self._edges = stage, incident.edges
+        for edge in incident.edges:
+            stage.edge(edge)
+        opens, closes = incident.opens, incident.closes
+        self._limit = TimedLimit(
+            incident.limit_kmh / KMH_PER_MPS,
+            SCHOOL_DAYS,
+            ((opens.hour * 60 + opens.minute, closes.hour * 60 + closes.minute),),
+            f"{incident.limit_kmh:g} km/h Mo-Fr {opens:%H:%M}-{closes:%H:%M}",
+        )
+
+    def begin(self) -> str:
+        self._stage.signs.put_up_zone(self._edges, self._limit)
+        return ""
+
+    def end(self) -> str:
+        self._stage.signs.take_down_zone(self._edges, self._limit)
+        return ""
+
+
+class _RushHour(_Scene):
+    """More demand."""
+
+    def __init__(self, stage: Stage, incident: incidents.RushHour) -> None:
+        self._stage, self._incident = stage, incident
+
+    def begin(self) -> str:
+        simulation = self._stage.sumo.simulation
+        self._before = simulation.getScale()
+        simulation.setScale(self._before * self._incident.scale)
+        return ""
+
+    def end(self) -> str:
+        self._stage.sumo.simulation.setScale(self._before)
+        return ""
+
+
+class _Tractor(_Scene):
+    """A slow vehicle."""
+
+    def __init__(self, stage: Stage, incident: incidents.Tractor) -> None:
+        self._stage, self._incident = stage, incident
+        stage.edge(incident.from_edge)
+        stage.edge(incident.to_edge)
+
+    def begin(self) -> str:
+        stage, incident = self._stage, self._incident
+        kind = stage.kind("tractor")
+        types = stage.sumo.type
+        types.setShapeClass(kind, "truck")
+        types.setLength(kind, incident.length_m)
+        types.setMaxSpeed(kind, incident.speed_kmh / KMH_PER_MPS)
+        types.setAccel(kind, 1.0)
+        types.setParameter(kind, "has.rerouting.device", "false")
+        way = stage.sumo.find_route(incident.from_edge, incident.to_edge, kind).edges
+        if not way:
+            raise ScenarioError(
+                f"[[incidents]]: tractor: no way leads from {incident.from_edge!r} to {incident.to_edge!r}"
+            )
+        stage.car("tractor", way, stage.lane(incident.from_edge, 0), incident.length_m, "max", kind)
+        return f"a tractor{_on(stage.edge(incident.from_edge))}"
+
+
+class _Pedestrians(_Scene):
+    """Groups that cross."""
+
+    def __init__(self, stage: Stage, incident: incidents.Pedestrians) -> None:
+        self._stage, self._incident = stage, incident
+        try:
+            self._walk = stage.sumo.simulation.findIntermodalRoute(incident.from_edge, incident.to_edge)
+        except stage.sumo.refusals as error:
+            raise ScenarioError(f"[[incidents]]: pedestrians: {error}") from error
+        if not self._walk or not any(_CROSSING.fullmatch(edge) for edge in stage.sumo.edge_ids()):
+            raise ScenarioError(
+                f"[[incidents]]: pedestrians cannot walk from {incident.from_edge!r} to {incident.to_edge!r}; the "
+                "network needs sidewalks and crossings (netconvert --sidewalks.guess --crossings.guess)"
+            )
+        self._next_s = 0
+
+    def begin(self) -> str:
+        return "people cross the road"
+
+    def tick(self, local_time: datetime) -> str:
+        if self._next_s <= 0:
+            self._next_s = round(self._incident.every_s)
+            for _ in range(self._incident.group):
+                self._send()
+        self._next_s -= 1
+        return ""
+
+    def _send(self) -> None:
+        person = self._stage.sumo.person
+        name = self._stage.name("person")
+        edge = self._walk[0].edges[0]
+        length_m = self._stage.edge(edge).length_m
+        person.add(name, edge, max(0.0, length_m - 5.0))
+        person.appendWalkingStage(name, self._walk[0].edges, 5.0)
+
+
+class _EmergencyVehicle(_Scene):
+    """An ambulance on the way that the ego has come."""
+
+    def __init__(self, stage: Stage, incident: incidents.EmergencyVehicle) -> None:
+        self._stage, self._incident = stage, incident
+        self._sent = False
+
+    def tick(self, local_time: datetime) -> str:
+        """Waits until the ego has come far enough."""
+        stage, sensor = self._stage, self._stage.sensor
+        if self._sent or sensor is None or sensor.position_m < self._incident.behind_m:
+            return ""
+        self._sent = True
+        index, on_edge_m = sensor.route.edge_at(sensor.position_m - self._incident.behind_m)
+        kind = stage.kind("ambulance")
+        types = stage.sumo.type
+        types.setVehicleClass(kind, "emergency")
+        types.setShapeClass(kind, "emergency")
+        types.setLength(kind, 6.5)
+        types.setSpeedFactor(kind, self._incident.speed_ratio)
+        types.setSpeedDeviation(kind, 0.0)
+        types.setParameter(kind, "has.bluelight.device", "true")
+        types.setParameter(kind, "has.rerouting.device", "false")
+        stage.car("ambulance", sensor.route.edge_ids[index:], "", on_edge_m, "max", kind)
+        return ""
+
+
+class _BrakingLeader(_Scene):
+    """The vehicle ahead brakes."""
+
+    def __init__(self, stage: Stage, incident: incidents.BrakingLeader) -> None:
+        self._stage, self._incident = stage, incident
+        self._has_called = False
+        self._braking = ""
+        self._left_s = 0.0
+
+    def tick(self, local_time: datetime) -> str:
+        if self._left_s < 0:
+            return ""
+        if self._braking:
+            self._left_s -= 1.0
+            if self._left_s <= 0:
+                self._release()
+            return ""
+        found = self._stage.sumo.leader(self._stage.ego_id, self._incident.within_m)
+        if found and found[0] and found[1] <= self._incident.within_m:
+            return self._brake(found[0])
+        if not self._has_called:
+            self._has_called = True
+            self._call()
+        return ""
+
+    def _brake(self, vehicle: str) -> str:
+        sumo, incident = self._stage.sumo, self._incident
+        to_mps = incident.to_kmh / KMH_PER_MPS
+        self._braking = vehicle
+        self._left_s = max(0.0, sumo.speed(vehicle) - to_mps) / incident.deceleration_mps2 + incident.hold_s
+        sumo.vehicle.setDecel(vehicle, incident.deceleration_mps2)
+        sumo.vehicle.setSpeed(vehicle, to_mps)
+        return "the vehicle ahead brakes"
+
+    def _call(self) -> None:
+        """A car pulls out before the ego, as fast as the ego is."""
+        stage, sensor, ego = self._stage, self._stage.sensor, self._stage.ego_id
+        assert sensor is not None
+        here, _ = sensor.route.edge_at(sensor.position_m)
+        index, on_edge_m = sensor.route.edge_at(sensor.position_m + self._incident.ahead_m + CAR_SPACE_M)
+        lane = stage.sumo.lane_of(ego) if index == here else ""
+        speed = f"{stage.sumo.speed(ego):.2f}"
+        stage.car("leader", sensor.route.edge_ids[index:], lane, on_edge_m, speed)
+
+    def end(self) -> str:
+        if self._braking:
+            self._release()
+        return ""
+
+    def _release(self) -> None:
+        with suppress(*self._stage.sumo.refusals):  # it may have left
+            self._stage.sumo.vehicle.setSpeed(self._braking, -1.0)
+        self._braking, self._left_s = "", -1.0
+
+
+SCENES: Mapping[type[incidents.Incident], Callable[[Stage, Any], Scene]] = {
+    incidents.Breakdown: _Breakdown,
+    incidents.Roadworks: _Roadworks,
+    incidents.Jam: _Jam,
+    incidents.Closure: _Closure,
+    incidents.SchoolZone: _SchoolZone,
+    incidents.RushHour: _RushHour,
+    incidents.Tractor: _Tractor,
+    incidents.Pedestrians: _Pedestrians,
+    incidents.EmergencyVehicle: _EmergencyVehicle,
+    incidents.BrakingLeader: _BrakingLeader,
+}
+"""Who stages which incident."""
+
+
+def scene_of(stage: Stage, incident: incidents.Incident) -> Scene:
+    """How an incident is staged.
+
+    Raises:
+        ScenarioError: it does not fit the network.
+    """
+    return SCENES[type(incident)](stage, incident)

@@ -1,0 +1,276 @@
+"""What SUMO knows of the ego and its road, read into a ``DrivingState`` once per step."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from automotive_cosim.contracts import Around, DrivingState, OtherVehicle, RoadHere, TrafficLight
+from automotive_cosim.traffic.congestion import Congestion, Route
+from automotive_cosim.traffic.georeference import GeoReference
+from automotive_cosim.traffic.network import Edge, Network
+
+if TYPE_CHECKING:
+    from automotive_cosim.traffic.sumo import Sumo
+
+TOUCHING_M = 0.1
+"""Gaps count as at least this in the DRAC, so that it stays finite."""
+
+STANDING_BELOW_MPS = 0.1
+"""Slower than this is standing, as SUMO counts halted vehicles."""
+
+LEADER_RANGE_M = 200.0
+SIGHT_M = 300.0
+"""How far oncoming and emergency vehicles are looked for."""
+
+LOOK_S = 1.0
+"""The next signal and the nearest oncoming vehicle are looked for this often, and followed each step."""
+
+NO_GAP_M = 1e6
+"""SUMO's gaps beyond this mean that it found none (near junctions it may report about -1.8e308)."""
+
+INVALID_M = -1e6
+"""SUMO puts the coordinates of a vehicle that is on no road below this (INVALID_DOUBLE_VALUE)."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Lane:
+    """What the state needs of a lane."""
+
+    index: int
+    """Among the edge's lanes for cars."""
+    limit_mps: float | None
+    friction: float
+    limit_hours: str
+
+
+class Sensor:
+    """Reads the ego's state. It keeps what SUMO does not: standing time, the route's sums, the last edge."""
+
+    def __init__(
+        self, sumo: Sumo, ego_id: str, network: Network, congestion: Congestion, emergency: set[str], step_s: float
+    ) -> None:
+        """Starts with the ego just inserted.
+
+        Args:
+            sumo: the running simulation.
+            ego_id: the ego's vehicle.
+            network: the roads.
+            congestion: smoothed speeds.
+            emergency: vehicles with blue lights, kept up to date by the owner.
+            step_s: step length.
+        """
+        self._sumo = sumo
+        self._ego = ego_id
+        self._network = network
+        self._congestion = congestion
+        self._emergency = emergency
+        self._step_s = step_s
+        self._lon_lat = _converter(sumo, network)
+        self._standing_s = 0.0
+        self._odometer_m = 0.0
+        self.position_m = 0.0
+        """Along the route, from its start."""
+        self._edge: Edge = network.edges[sumo.edge_of(ego_id)]
+        self._min_gap_m = sumo.min_gap(ego_id)
+        self._look_steps = max(1, round(LOOK_S / step_s))
+        self._steps = 0
+        self._lanes: dict[str, _Lane] = {}
+        self._light: tuple[str, int, float] | None = None
+        """The next signal: id, index of the ego's link, and where its stop line is on the route."""
+        self._oncoming_id = ""
+        self._follower_id = ""
+        self._follower_min_gap_m = 0.0
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Takes up a new route, or new congestion."""
+        self.route = Route(self._sumo.route(self._ego), self._network, self._congestion)
+        self._lanes.clear()
+        self._steps = 0
+
+    def read(self, *, hazard_lights: bool, vehicle_count: int) -> DrivingState:
+        """The state now, with what others keep of it."""
+        sumo, ego = self._sumo, self._ego
+        x_m, y_m = sumo.position(ego)
+        lon_deg, lat_deg = self._lon_lat(x_m, y_m)
+        speed_mps = sumo.speed(ego)
+        self._standing_s = self._standing_s + self._step_s if speed_mps < STANDING_BELOW_MPS else 0.0
+        odometer_m = sumo.driven(ego)
+        index = sumo.route_index(ego)
+        edge_id = sumo.edge_of(ego)
+        lane_position_m = sumo.lane_position(ego)
+        if edge_id.startswith(":"):
+            self.position_m += odometer_m - self._odometer_m
+        else:
+            self._edge = self._network.edges[edge_id]
+            self.position_m = self.route.position_m(index, lane_position_m)
+        self._odometer_m = odometer_m
+        is_looking = self._steps % self._look_steps == 0
+        self._steps += 1
+        if is_looking or (self._light and self._light[2] <= self.position_m):
+            self._look_for_light()
+        if is_looking:
+            self._oncoming_id = self._look_for_oncoming(index)
+        return DrivingState(
+            sumo.time(),
+            x_m,
+            y_m,
+            lon_deg,
+            lat_deg,
+            sumo.angle(ego),
+            speed_mps,
+            sumo.acceleration(ego),
+            self._standing_s,
+            odometer_m,
+            self._road(edge_id, lane_position_m),
+            self.route.ahead(index, self.position_m, self._next_light()),
+            Around(
+                self._leader(speed_mps),
+                self._follower(speed_mps),
+                self._oncoming(index, x_m, y_m, speed_mps) if self._oncoming_id else None,
+                self._emergency_behind(x_m, y_m, speed_mps) if self._emergency else None,
+                self.route.relative_speed(index),
+            ),
+            hazard_lights,
+            vehicle_count,
+        )
+
+    def _road(self, edge_id: str, lane_position_m: float) -> RoadHere:
+        """The road under the car; inside a junction its signs are those of the edge it comes from."""
+        edge = self._edge
+        lane_id = self._sumo.lane_of(self._ego) or edge.lane_ids[0]  # parked beside the kerb it is on none
+        lane = self._lanes.get(lane_id)
+        if lane is None:
+            lane = self._lanes[lane_id] = self._read_lane(lane_id)
+        return RoadHere(
+            edge_id,
+            lane_id,
+            lane.index,
+            len(edge.lane_ids),
+            lane_position_m,
+            edge.name,
+            edge.road_class,
+            lane.limit_mps,
+            edge.limit_source,
+            edge.in_tunnel,
+            edge.lit,
+            edge.built_up,
+            edge.centre_line,
+            lane.friction,
+            edge.school_zone,
+            lane.limit_hours,
+            edge.timed_limit is not None and edge.limit_mps == edge.timed_limit.limit_mps,
+            edge.bus_lane,
+        )
+
+    def _read_lane(self, lane_id: str) -> _Lane:
+        """What does not change while the ego is on the lane, but for weather and signs, which cause a refresh."""
+        sumo, edge = self._sumo, self._edge
+        friction = sumo.friction(lane_id)
+        if lane_id in edge.lane_ids:
+            limit_mps = None if edge.limit_mps is None else sumo.lane_speed(lane_id)
+            return _Lane(edge.lane_ids.index(lane_id), limit_mps, friction, edge.limit_hours)
+        return _Lane(sumo.lane_index(self._ego), edge.limit_mps, friction, edge.limit_hours)
+
+    def _look_for_light(self) -> None:
+        lights = self._sumo.next_lights(self._ego)
+        self._light = (lights[0][0], lights[0][1], self.position_m + lights[0][2]) if lights else None
+
+    def _next_light(self) -> TrafficLight | None:
+        if self._light is None:
+            return None
+        tls_id, link, stop_line_m = self._light
+        return TrafficLight(tls_id, self._sumo.light_state(tls_id)[link], max(0.0, stop_line_m - self.position_m))
+
+    def _leader(self, speed_mps: float) -> OtherVehicle | None:
+        """SUMO's gap begins at the minimum gap before the ego's bumper."""
+        found = self._sumo.leader(self._ego, LEADER_RANGE_M)
+        if found is None or not found[0] or abs(found[1]) > NO_GAP_M:
+            return None
+        other_mps = self._sumo.speed(found[0])
+        return other_vehicle(found[0], found[1] + self._min_gap_m, other_mps, speed_mps - other_mps)
+
+    def _follower(self, speed_mps: float) -> OtherVehicle | None:
+        found_id, gap_m = self._sumo.follower(self._ego, LEADER_RANGE_M)
+        if not found_id or abs(gap_m) > NO_GAP_M:
+            return None
+        if found_id != self._follower_id:
+            self._follower_id, self._follower_min_gap_m = found_id, self._sumo.min_gap(found_id)
+        other_mps = self._sumo.speed(found_id)
+        return other_vehicle(found_id, gap_m + self._follower_min_gap_m, other_mps, other_mps - speed_mps)
+
+    def _look_for_oncoming(self, index: int) -> str:
+        """The nearest vehicle on the opposite edges of the route's next edges that is still ahead."""
+        sumo, edges = self._sumo, self._network.edges
+        for leg in range(index, len(self.route.edge_ids)):
+            edge_id = self.route.edge_ids[leg]
+            start_m = self.route.position_m(leg, 0.0) - self.position_m
+            opposite = self._network.opposite.get(edge_id)
+            if start_m > SIGHT_M or opposite is None or edges[edge_id].name != self._edge.name:
+                return ""
+            length_m = edges[opposite].length_m
+            distances = (
+                (start_m + length_m - sumo.lane_position(vehicle), vehicle)
+                for vehicle in sumo.edge_vehicles(opposite)
+            )
+            beyond_m, nearest = min((each for each in distances if each[0] > 0), default=(math.inf, ""))
+            if beyond_m <= SIGHT_M:
+                return nearest
+        return ""
+
+    def _oncoming(self, index: int, x_m: float, y_m: float, speed_mps: float) -> OtherVehicle | None:
+        """The one found, as long as it is on the road and ahead; then the next."""
+        sumo = self._sumo
+        heading = math.radians(sumo.angle(self._ego))
+        for _ in range(2):
+            try:
+                other_x_m, other_y_m = sumo.position(self._oncoming_id)
+            except sumo.refusals:  # it has left
+                other_x_m = other_y_m = INVALID_M
+            dx_m, dy_m = other_x_m - x_m, other_y_m - y_m
+            if other_x_m > INVALID_M and dx_m * math.sin(heading) + dy_m * math.cos(heading) > 0:
+                other_mps = sumo.speed(self._oncoming_id)
+                return other_vehicle(self._oncoming_id, math.hypot(dx_m, dy_m), other_mps, speed_mps + other_mps)
+            self._oncoming_id = self._look_for_oncoming(index)
+            if not self._oncoming_id:
+                break
+        return None
+
+    def _emergency_behind(self, x_m: float, y_m: float, speed_mps: float) -> OtherVehicle | None:
+        """The nearest blue light behind that heads roughly the same way."""
+        sumo = self._sumo
+        heading_deg = sumo.angle(self._ego)
+        east, north = math.sin(math.radians(heading_deg)), math.cos(math.radians(heading_deg))
+        nearest: tuple[float, str] | None = None
+        for vehicle in sorted(self._emergency):
+            other_x_m, other_y_m = sumo.position(vehicle)
+            dx_m, dy_m = other_x_m - x_m, other_y_m - y_m
+            distance_m = math.hypot(dx_m, dy_m)
+            turned_deg = abs((sumo.angle(vehicle) - heading_deg + 180) % 360 - 180)
+            is_behind = dx_m * east + dy_m * north < 0 and turned_deg < 60
+            if distance_m <= SIGHT_M and is_behind and (nearest is None or distance_m < nearest[0]):
+                nearest = (distance_m, vehicle)
+        if nearest is None:
+            return None
+        other_mps = sumo.speed(nearest[1])
+        gap_m = nearest[0] - sumo.length(self._ego)
+        return other_vehicle(nearest[1], gap_m, other_mps, other_mps - speed_mps)
+
+
+def _converter(sumo: Sumo, network: Network) -> Callable[[float, float], tuple[float | None, float | None]]:
+    """From metres to longitude and latitude: SUMO's own unless the network was moved."""
+    if network.map.projection is None:
+        return lambda x_m, y_m: (None, None)
+    return GeoReference(network.map).lon_lat if network.moved else sumo.to_lon_lat
+
+
+def other_vehicle(vehicle_id: str, gap_m: float, speed_mps: float, closing_mps: float) -> OtherVehicle:
+    """Adds time to collision and DRAC; ``closing_mps`` is positive while the gap shrinks."""
+    gap_m = max(0.0, gap_m)
+    if closing_mps <= 1e-3:
+        return OtherVehicle(vehicle_id, gap_m, speed_mps, None)
+    drac_mps2 = closing_mps**2 / (2 * max(TOUCHING_M, gap_m))
+    return OtherVehicle(vehicle_id, gap_m, speed_mps, gap_m / closing_mps, drac_mps2)

@@ -1,0 +1,101 @@
+"""Speed limits as they stand in SUMO now: the network's, by the clock, and what incidents put up over them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from datetime import datetime
+from typing import TYPE_CHECKING
+
+from automotive_cosim.contracts import LimitSource
+from automotive_cosim.traffic.network import DERESTRICTED_MPS, Edge, Network
+from automotive_cosim.traffic.posted import TimedLimit, in_force
+
+if TYPE_CHECKING:
+    from automotive_cosim.traffic.sumo import Sumo
+
+
+class Signs:
+    """Puts limits up and takes them down. Where incidents do so the lowest of theirs holds, else the network's."""
+
+    def __init__(self, sumo: Sumo, network: Network) -> None:
+        self._sumo = sumo
+        self._edges = network.edges
+        self._as_built: dict[str, tuple[Edge, tuple[float, ...]]] = {}
+        """Edges whose limit was ever changed, with the speeds of their lanes, as the network has them."""
+        self._over: dict[str, list[float]] = {}
+        self._timed = {edge.edge_id for edge in network.edges.values() if edge.timed_limits}
+        self._minute: datetime | None = None
+        self.changed = False
+        """Whether a limit has changed since somebody set this to False."""
+
+    @property
+    def follow_the_clock(self) -> bool:
+        """Whether any limit depends on the hour."""
+        return bool(self._timed)
+
+    def put_up(self, edge_id: str, limit_mps: float) -> None:
+        """A sign that holds until it is taken down."""
+        self._over.setdefault(edge_id, []).append(limit_mps)
+        self._show(edge_id)
+
+    def take_down(self, edge_id: str, limit_mps: float) -> None:
+        """Removes a sign that was put up."""
+        self._over[edge_id].remove(limit_mps)
+        self._show(edge_id)
+
+    def put_up_zone(self, edge_ids: Iterable[str], limit: TimedLimit) -> None:
+        """A school zone with its hours, where the limit is not as low as that anyway."""
+        for edge_id in edge_ids:
+            edge = self._edges[edge_id]
+            if limit.limit_mps is not None and edge.speed_mps > limit.limit_mps:
+                self._keep(edge_id)
+                self._post(edge_id, (*edge.timed_limits, limit), school_zone=True)
+
+    def take_down_zone(self, edge_ids: Iterable[str], limit: TimedLimit) -> None:
+        """Removes it."""
+        for edge_id in edge_ids:
+            if edge_id in self._as_built and limit in self._edges[edge_id].timed_limits:
+                others = tuple(each for each in self._edges[edge_id].timed_limits if each is not limit)
+                self._post(edge_id, others, school_zone=self._as_built[edge_id][0].school_zone)
+
+    def follow(self, local_time: datetime) -> None:
+        """Shows what holds at this time of day."""
+        minute = local_time.replace(second=0, microsecond=0)
+        if minute == self._minute:
+            return
+        self._minute = minute
+        for edge_id in sorted(self._timed):
+            edge = self._edges[edge_id]
+            limit = in_force(edge.timed_limits, local_time)
+            if limit is not edge.timed_limit:
+                self._keep(edge_id)
+                self._edges[edge_id] = replace(edge, timed_limit=limit)
+                self._show(edge_id)
+
+    def _post(self, edge_id: str, limits: tuple[TimedLimit, ...], *, school_zone: bool) -> None:
+        edge = replace(self._edges[edge_id], timed_limits=limits, school_zone=school_zone)
+        self._edges[edge_id] = edge
+        self._timed.add(edge_id)
+        self._minute = None
+        self.changed = True
+
+    def _keep(self, edge_id: str) -> None:
+        if edge_id not in self._as_built:
+            edge = self._edges[edge_id]
+            self._as_built[edge_id] = edge, tuple(self._sumo.lane_speed(lane) for lane in edge.lane_ids)
+
+    def _show(self, edge_id: str) -> None:
+        self._keep(edge_id)
+        built, speeds_mps = self._as_built[edge_id]
+        now = self._edges[edge_id]
+        limit_mps, source = built.limit_mps, built.limit_source
+        over = self._over.get(edge_id)
+        if over or now.timed_limit:
+            limit_mps = min(over) if over else None if now.timed_limit is None else now.timed_limit.limit_mps
+            speeds_mps = (DERESTRICTED_MPS if limit_mps is None else limit_mps,) * len(speeds_mps)
+            source = LimitSource.POSTED
+        for lane, speed_mps in zip(built.lane_ids, speeds_mps, strict=True):
+            self._sumo.lane.setMaxSpeed(lane, speed_mps)
+        self._edges[edge_id] = replace(now, speed_mps=max(speeds_mps), limit_mps=limit_mps, limit_source=source)
+        self.changed = True

@@ -1,0 +1,101 @@
+"""When a scenario's incidents begin and end, and which limits hold; ``scenes`` and ``signs`` stage them.
+
+Nothing here is random: what happens depends on the simulation's time and on the ego's way alone. All times are
+taken at whole seconds of the simulation.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+
+from automotive_cosim.incidents import EgoIncident, Incident
+from automotive_cosim.scenarios import Scenario
+from automotive_cosim.traffic.base import EgoPlan, Event
+from automotive_cosim.traffic.scenes import Scene, scene_of
+from automotive_cosim.traffic.sensing import Sensor
+from automotive_cosim.traffic.stage import Stage
+
+
+@dataclass(slots=True)
+class _Entry:
+    incident: Incident
+    scene: Scene
+    has_begun: bool = False
+    is_over: bool = False
+
+
+class Situations:
+    """The incidents of one simulation."""
+
+    def __init__(self, stage: Stage, scenario: Scenario) -> None:
+        """Reads what the scenario declares.
+
+        Raises:
+            ScenarioError: something of it does not fit the network.
+        """
+        self._stage = stage
+        self._entries = [_Entry(incident, scene_of(stage, incident)) for incident in scenario.incidents]
+        self._zero_s = scenario.sumo.warm_up_s
+        self._start = scenario.start
+        self._trip = ""
+
+    @property
+    def are_left(self) -> bool:
+        """Whether anything is still to happen or lasts."""
+        return self._stage.signs.follow_the_clock or any(not entry.is_over for entry in self._entries)
+
+    def set_off(self, plan: EgoPlan, sensor: Sensor, now_s: float) -> None:
+        """The ego has departed: from now on its trip, its way and its clock count."""
+        self._stage.sensor = sensor
+        self._zero_s = now_s
+        self._start = plan.start or self._start
+        self._trip = plan.trip.name
+        self._stage.signs.follow(self._local_time(now_s))
+
+    def tick(self, now_s: float) -> tuple[Event, ...]:
+        """Begins and ends what is due; called once per second of the simulation."""
+        since_s = now_s - self._zero_s
+        local_time = self._local_time(now_s)
+        told: list[str] = []
+        for entry in self._entries:
+            if not entry.is_over:
+                told += self._proceed(entry, since_s, local_time)
+        self._stage.signs.follow(local_time)
+        return tuple(Event(now_s, "incident", text) for text in told if text)
+
+    def _local_time(self, now_s: float) -> datetime:
+        """The clock of the place: the scenario's in the warm-up, the ego's once it is under way."""
+        since = timedelta(seconds=now_s - self._zero_s)
+        return (self._start.astimezone(UTC) + since).astimezone(self._start.tzinfo)
+
+    def take_changes(self) -> bool:
+        """Whether signs or the ego's route have changed since this was asked last."""
+        stage = self._stage
+        changed = stage.signs.changed or stage.route_changed
+        stage.signs.changed = stage.route_changed = False
+        return changed
+
+    def _proceed(self, entry: _Entry, since_s: float, local_time: datetime) -> list[str]:
+        told: list[str] = []
+        if not entry.has_begun and self._is_due(entry.incident, since_s):
+            entry.has_begun = True
+            told.append(entry.scene.begin())
+        if entry.has_begun and since_s < entry.incident.to_s:
+            told.append(entry.scene.tick(local_time))
+        elif since_s >= entry.incident.to_s:
+            entry.is_over = True
+            if entry.has_begun:
+                told.append(entry.scene.end())
+        return told
+
+    def _is_due(self, incident: Incident, since_s: float) -> bool:
+        if not self._concerns(incident) or not incident.from_s <= since_s < incident.to_s:
+            return False
+        sensor = self._stage.sensor
+        return not isinstance(incident, EgoIncident) or (sensor is not None and sensor.position_m >= incident.at_m)
+
+    def _concerns(self, incident: Incident) -> bool:
+        if isinstance(incident, EgoIncident) and self._stage.sensor is None:
+            return False
+        return not incident.trip or incident.trip == self._trip

@@ -1,0 +1,95 @@
+"""What the staging of incidents works with: signs, lanes and vehicles in SUMO."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from automotive_cosim.errors import ScenarioError
+from automotive_cosim.traffic.network import Edge, Network
+from automotive_cosim.traffic.signs import Signs
+
+if TYPE_CHECKING:
+    from automotive_cosim.traffic.road_weather import Surface
+    from automotive_cosim.traffic.sensing import Sensor
+    from automotive_cosim.traffic.sumo import Sumo
+
+TEMPLATE_TYPE = "automotive_cosim.template"
+"""A passenger car as SUMO has it, whatever the weather makes of the others' types."""
+
+CAR_TYPE = "automotive_cosim.car"
+"""The same, as the weather makes it."""
+
+
+class Stage:
+    """What scenes work with."""
+
+    def __init__(self, sumo: Sumo, network: Network, surface: Surface, ego_id: str) -> None:
+        self.sumo = sumo
+        self.network = network
+        self._surface = surface
+        self.ego_id = ego_id
+        self.sensor: Sensor | None = None
+        """The ego's, once it is on the road."""
+        self.signs = Signs(sumo, network)
+        self.route_changed = False
+        """Whether the ego goes another way since somebody set this to False."""
+        self._names = 0
+        sumo.copy_type(TEMPLATE_TYPE, CAR_TYPE)
+
+    def edge(self, edge_id: str) -> Edge:
+        """An edge of the network.
+
+        Raises:
+            ScenarioError: there is none such that cars may use.
+        """
+        if edge_id not in self.network.edges:
+            raise ScenarioError(f"[[incidents]]: the network has no edge {edge_id!r} that cars may use")
+        return self.network.edges[edge_id]
+
+    def lane(self, edge_id: str, lane: int) -> str:
+        """A lane of an edge, counted from the kerb.
+
+        Raises:
+            ScenarioError: there are not so many.
+        """
+        lanes = self.edge(edge_id).lane_ids
+        if not 0 <= lane < len(lanes):
+            raise ScenarioError(
+                f"[[incidents]]: edge {edge_id!r} has {len(lanes)} lanes for cars, so no lane {lane}"
+            )
+        return lanes[lane]
+
+    def name(self, what: str) -> str:
+        """A new id."""
+        self._names += 1
+        return f"automotive_cosim.{what}.{self._names}"
+
+    def car(
+        self,
+        what: str,
+        route: Sequence[str],
+        lane: str,
+        position_m: float,
+        speed: str,
+        vehicle_type: str = CAR_TYPE,
+    ) -> str:
+        """Puts a vehicle on the road as soon as there is room; returns its id."""
+        vehicle = self.name(what)
+        self._surface.adopt(vehicle_type)
+        self.sumo.add_route(vehicle, route)
+        self.sumo.add_vehicle(
+            vehicle,
+            vehicle,
+            typeID=vehicle_type,
+            departLane=lane.rpartition("_")[2] if lane else "best",
+            departPos=f"{position_m:.2f}",
+            departSpeed=speed,
+        )
+        return vehicle
+
+    def kind(self, what: str) -> str:
+        """A vehicle type of its own that nothing else changes."""
+        name = self.name(f"type.{what}")
+        self.sumo.copy_type(TEMPLATE_TYPE, name)
+        return name

@@ -1,0 +1,246 @@
+"""The ego's pedals and its route in SUMO."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from automotive_cosim.contracts import DrivingState, Reroute
+from automotive_cosim.traffic.ego import RefusedError
+from automotive_cosim.traffic.georeference import GeoReference
+from automotive_cosim.traffic.network import Network
+from automotive_cosim.traffic.road_weather import G_MPS2
+
+if TYPE_CHECKING:
+    from automotive_cosim.traffic.sensing import Sensor
+    from automotive_cosim.traffic.sumo import Sumo
+
+HAZARD_SIGNAL = 4
+"""SUMO's bit for the hazard lights (VEH_SIGNAL_BLINKER_EMERGENCY)."""
+
+PARKING = 1
+"""SUMO's stop flag: off the lane, so that the others can pass."""
+
+FASTEST_MPS = 100.0
+
+STOPPING_MPS2 = 2.0
+"""Deceleration a stop at the side is planned with."""
+
+STOPPING_RESERVE_M = 30.0
+
+TURN_TIME_S = 4.0
+TURN_RESERVE_M = 30.0
+"""A turn must be known this long and this far before it, to find its lane; later ones are missed."""
+
+CORNERING_MPS2 = 2.0
+"""Deceleration before a bend that the speed factor would otherwise take too fast."""
+
+BEND_RESERVE_M = 15.0
+"""The bend's speed is reached this far before its end, about where a junction begins."""
+
+BENDS_WITHIN_M = 500.0
+
+STREET_CANDIDATES = 8
+"""Edges of a street that a route is looked for to, nearest first."""
+WALK_M = 400.0
+"""What people walk from the car to a door: five minutes at 1.35 m/s."""
+
+
+class SumoPedals:
+    """Implements ``ego.Pedals``."""
+
+    def __init__(self, sumo: Sumo, ego_id: str, type_id: str, network: Network, sensor: Sensor) -> None:
+        self._sumo = sumo
+        self._ego = ego_id
+        self._type = type_id
+        self._network = network
+        self._sensor = sensor
+        self._service_mps2: float = sumo.vehicle.getDecel(ego_id)
+        self._factor = 1.0
+        self._top_mps = self._set_mps = FASTEST_MPS
+        # The first change gives the ego a type of its own and draws its speed factor anew, so it comes before ours.
+        sumo.set_max_speed(ego_id, FASTEST_MPS)
+
+    def set_speed_factor(self, factor: float) -> None:
+        """As the protocol says."""
+        self._factor = factor
+        self._sumo.set_speed_factor(self._ego, factor)
+
+    def set_top_speed(self, speed_mps: float) -> None:
+        """As the protocol says; a bend ahead may ask for less."""
+        self._top_mps = speed_mps
+
+    def set_headway(self, headway_s: float) -> None:
+        """As the protocol says."""
+        self._sumo.set_headway(self._ego, headway_s)
+
+    def set_imperfection(self, imperfection: float) -> None:
+        """As the protocol says."""
+        self._sumo.set_imperfection(self._ego, imperfection)
+
+    def set_grip(self, friction: float) -> None:
+        """As the protocol says."""
+        hardest_mps2 = friction * G_MPS2
+        service_mps2 = min(self._service_mps2, hardest_mps2)
+        vehicle = self._sumo.vehicle
+        vehicle.setDecel(self._ego, service_mps2)
+        vehicle.setApparentDecel(self._ego, service_mps2)
+        vehicle.setEmergencyDecel(self._ego, hardest_mps2)
+
+    def set_hazards(self, on: bool) -> None:
+        """As the protocol says."""
+        self._sumo.set_signals(self._ego, HAZARD_SIGNAL if on else -1)
+
+    def apply(self) -> None:
+        """Sets the upper bound of the next step: what the driver wants, less before a bend.
+
+        SUMO takes the speed factor for bends too; nobody who speeds on the straight corners as much faster.
+        """
+        top_mps = self._top_mps
+        if self._factor > 1.0:
+            position_m = self._sensor.position_m
+            for end_m, allowed_mps in self._sensor.route.bends:
+                if end_m > position_m:
+                    before_m = max(0.0, end_m - position_m - BEND_RESERVE_M)
+                    top_mps = min(top_mps, math.sqrt(allowed_mps**2 + 2 * CORNERING_MPS2 * before_m))
+                    if before_m > BENDS_WITHIN_M:
+                        break
+        if top_mps != self._set_mps:
+            self._set_mps = top_mps
+            self._sumo.set_max_speed(self._ego, top_mps)
+
+    def pull_over(self, state: DrivingState, for_s: float) -> str:
+        """Stops beside the lane on the first edge of the route that is long enough and not in a tunnel."""
+        needed_m = state.speed_mps**2 / (2 * STOPPING_MPS2) + STOPPING_RESERVE_M
+        route = self._sensor.route
+        for index in range(self._sumo.route_index(self._ego), len(route.edge_ids)):
+            edge = self._network.edges[route.edge_ids[index]]
+            earliest_m = self._sensor.position_m + needed_m - route.position_m(index, 0.0)
+            stop_m = max(earliest_m, min(15.0, edge.length_m / 2))
+            if stop_m <= edge.length_m - 5.0 and not edge.in_tunnel:
+                lane_index = int(edge.lane_ids[0].rpartition("_")[2])
+                try:
+                    self._sumo.set_stop(self._ego, edge.edge_id, stop_m, lane_index, for_s, PARKING)
+                except self._sumo.refusals as error:
+                    raise RefusedError(str(error)) from error
+                away_m = route.position_m(index, stop_m) - self._sensor.position_m
+                return f"in {away_m:.0f} m" + (f" on {edge.name}" if edge.name else "")
+        raise RefusedError("there is no place to stop on the rest of the route")
+
+    def change_lane(self, lanes_from_kerb: int, for_s: float) -> bool:
+        """As the protocol says; SUMO changes as soon as there is a gap."""
+        lane = self._sumo.lane_of(self._ego)
+        edge_id = self._sumo.edge_of(self._ego)
+        lanes = self._network.edges[edge_id].lane_ids if edge_id in self._network.edges else ()
+        if lane not in lanes or not 0 <= lanes.index(lane) + lanes_from_kerb < len(lanes):
+            return False
+        target = lanes[lanes.index(lane) + lanes_from_kerb]
+        self._sumo.vehicle.changeLane(self._ego, int(target.rpartition("_")[2]), for_s)
+        return True
+
+    def leave_corridor(self, leave: bool) -> str:
+        """As the protocol says; without sublanes a lane is all that SUMO knows, and the car stays in it.
+
+        The corridor opens between the lane farthest from the kerb and the next (StVO section 11 (2)).
+        """
+        lane = self._sumo.lane_of(self._ego)
+        edge = self._network.edges.get(self._sumo.edge_of(self._ego))
+        is_innermost = edge is not None and len(edge.lane_ids) > 1 and lane == edge.lane_ids[-1]
+        side = "left" if is_innermost != self._network.map.left_hand else "right"
+        self._sumo.vehicle.setLateralAlignment(self._ego, side if leave else "center")
+        return f"keeps to the {side}" if leave else "drives in the middle of the lane"
+
+    # --- routes -------------------------------------------------------------------------------------------
+
+    def reroute(self, request: Reroute, state: DrivingState) -> str:
+        """Takes another route; the next turn stays as it is where it is too near to change."""
+        if state.road.edge_id.startswith(":"):
+            raise RefusedError("inside a junction the way is fixed; ask again behind it")
+        edges = self._given(request.edges) if request.edges else self._found(request.destination, state)
+        try:
+            self._sumo.set_route(self._ego, edges)
+        except self._sumo.refusals as error:
+            raise RefusedError(f"no such route: {error}") from error
+        self._sensor.refresh()
+        length_km = (self._sensor.route.length_m - self._sensor.position_m) / 1000
+        name = self._network.edges[edges[-1]].name
+        return f"new route of {length_km:.1f} km" + (f" to {name}" if name else "")
+
+    def _given(self, edge_ids: tuple[str, ...]) -> tuple[str, ...]:
+        here, planned = self._fixed()
+        if here in edge_ids:
+            edge_ids = edge_ids[edge_ids.index(here) :]
+        for edge_id in edge_ids:
+            if edge_id not in self._network.edges:
+                raise RefusedError(f"there is no edge {edge_id!r}")
+        if edge_ids[0] != here:
+            raise RefusedError(f"the route must begin where the car is, on edge {here!r}, not on {edge_ids[0]!r}")
+        if edge_ids[: len(planned)] != planned:
+            raise RefusedError("the next junction is too near for another turn")
+        for edge_id, following in pairwise(edge_ids):
+            if following not in self._network.crossings.get(edge_id, {}):
+                raise RefusedError(f"there is no way from {edge_id!r} to {following!r}")
+        return edge_ids
+
+    def _found(self, destination: str, state: DrivingState) -> tuple[str, ...]:
+        """The quickest way to the destination; where no way leads there, to an edge within a short walk of it."""
+        _, planned = self._fixed()
+        for goals in (self._goals(destination, state), self._beside(destination)):
+            routes = [self._sumo.find_route(planned[-1], goal, self._type) for goal in goals]
+            ways = [(route.travelTime, tuple(route.edges)) for route in routes if route.edges]
+            if ways:
+                return (*planned[:-1], *min(ways)[1])
+        raise RefusedError(f"there is no way to {destination or 'the goal'} from here")
+
+    def _beside(self, edge_id: str) -> tuple[str, ...]:
+        """The edges that end next to where that edge ends; none if there is no such edge."""
+        if edge_id not in self._network.edges:
+            return ()
+        end = self._network.edges[edge_id].shape_m[-1]
+        away_m = {other: math.dist(edge.shape_m[-1], end) for other, edge in self._network.edges.items()}
+        near = sorted((other for other in away_m if away_m[other] <= WALK_M), key=away_m.__getitem__)
+        return tuple(near[: STREET_CANDIDATES + 1])
+
+    def fixed(self) -> tuple[int, int] | None:
+        """Where on the route the car is, and how many of its edges can no longer be changed; None in a junction."""
+        if self._sumo.edge_of(self._ego).startswith(":"):
+            return None
+        return self._sumo.route_index(self._ego), len(self._fixed()[1])
+
+    def _fixed(self) -> tuple[str, tuple[str, ...]]:
+        """The edge the car is on, and the edges that can no longer be changed."""
+        route, index = self._sensor.route, self._sumo.route_index(self._ego)
+        here = route.edge_ids[index]
+        left_m = self._network.edges[here].length_m - self._sumo.lane_position(self._ego)
+        needed_m = TURN_TIME_S * self._sumo.speed(self._ego) + TURN_RESERVE_M
+        return here, route.edge_ids[index : index + (2 if left_m < needed_m else 1)]
+
+    def _goals(self, destination: str, state: DrivingState) -> tuple[str, ...]:
+        """Edges that a destination may mean."""
+        edges = self._network.edges
+        if not destination:
+            return (self._sensor.route.edge_ids[-1],)
+        if destination in edges:
+            return (destination,)
+        if position := _lon_lat(destination):
+            if state.lon_deg is None:
+                raise RefusedError("this network has no place on earth")
+            if self._network.moved:
+                x_m, y_m = GeoReference(self._network.map).x_y(*position)
+                return (self._sumo.find_road(x_m, y_m, False, "passenger")[0],)
+            return (self._sumo.find_road(*position, True, "passenger")[0],)
+        named = [edge for edge in edges.values() if edge.name.casefold() == destination.casefold()]
+        if not named:
+            raise RefusedError(f"there is no street or edge named {destination!r}")
+        named.sort(key=lambda edge: math.dist(edge.shape_m[0], (state.x_m, state.y_m)))
+        return tuple(edge.edge_id for edge in named[:STREET_CANDIDATES])
+
+
+def _lon_lat(text: str) -> tuple[float, float] | None:
+    """``"2.295,48.874"`` -> (lon, lat); None if it is something else."""
+    try:
+        lon_deg, lat_deg = (float(part) for part in text.split(","))
+    except ValueError:
+        return None
+    return (lon_deg, lat_deg) if abs(lon_deg) <= 180 and abs(lat_deg) <= 90 else None

@@ -1,0 +1,70 @@
+"""The quickest way over a network on empty roads, without SUMO."""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+from automotive_cosim.traffic.network import Network
+
+
+@dataclass(frozen=True, slots=True)
+class Ways:
+    """The quickest ways from one edge to all that can be reached from it."""
+
+    before: Mapping[str, str]
+    """Each edge that can be reached -> the one it is entered from; the start is not among them."""
+    length_m: Mapping[str, float]
+    """Of the way to each, whole edges and junctions."""
+
+    def to(self, goal: str) -> tuple[str, ...]:
+        """The edges of the way, start and goal included; empty if there is none."""
+        if goal not in self.before:
+            return ()
+        edges = [goal]
+        while edges[-1] in self.before:
+            edges.append(self.before[edges[-1]])
+        return tuple(reversed(edges))
+
+
+def ways_from(network: Network, start: str) -> Ways:
+    """Searches the network from the end of an edge on; ties go to the edge found first."""
+    before: dict[str, str] = {}
+    best_s: dict[str, float] = {start: 0.0}
+    length_m: dict[str, float] = {start: network.edges[start].length_m}
+    queue: list[tuple[float, int, str]] = [(0.0, 0, start)]
+    done: set[str] = set()
+    count = 0
+    while queue:
+        time_s, _, here = heapq.heappop(queue)
+        if here in done:
+            continue
+        done.add(here)
+        for following, crossing in network.crossings.get(here, {}).items():
+            if following in done:
+                continue
+            edge = network.edges[following]
+            at_s = time_s + edge.length_m / edge.speed_mps
+            if crossing.length_m:
+                at_s += crossing.length_m / crossing.speed_mps
+            if at_s < best_s.get(following, float("inf")):
+                best_s[following], before[following] = at_s, here
+                length_m[following] = length_m[here] + crossing.length_m + edge.length_m
+                count += 1
+                heapq.heappush(queue, (at_s, count, following))
+    return Ways(before, length_m)
+
+
+def way_through(network: Network, stops: Sequence[str]) -> tuple[str, ...]:
+    """The edges of the quickest way from stop to stop; empty if one is no edge or cannot be reached."""
+    if not network.edges.keys() >= set(stops):
+        return ()
+    edges: list[str] = [stops[0]]
+    for start, goal in pairwise(stops):
+        leg = ways_from(network, start).to(goal)
+        if not leg:
+            return ()
+        edges += leg[1:]
+    return tuple(edges)

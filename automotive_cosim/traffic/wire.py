@@ -1,0 +1,61 @@
+"""A drive as plain tuples: pickling dataclasses costs ten times as much, more than a step of a small network."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from operator import attrgetter
+from typing import Any, TypeAlias
+
+from automotive_cosim.contracts import Around, DrivingState, OtherVehicle, RoadAhead, RoadHere, TrafficLight
+from automotive_cosim.traffic.base import Drive, Event
+
+Packed: TypeAlias = tuple[Any, ...]
+
+
+def _getter(kind: type) -> attrgetter[Packed]:
+    return attrgetter(*(field.name for field in fields(kind)))
+
+
+_STATE, _ROAD, _AHEAD, _AROUND = (_getter(kind) for kind in (DrivingState, RoadHere, RoadAhead, Around))
+_OTHER, _LIGHT, _EVENT = (_getter(kind) for kind in (OtherVehicle, TrafficLight, Event))
+_ROAD_AT, _AHEAD_AT, _AROUND_AT = (
+    [f.name for f in fields(DrivingState)].index(n) for n in ("road", "ahead", "around")
+)
+_LIGHT_AT = [field.name for field in fields(RoadAhead)].index("next_light")
+_OTHERS = 4
+"""The first fields of ``Around`` are other vehicles."""
+
+
+def pack_state(state: DrivingState) -> Packed:
+    """A state as nested tuples."""
+    row, ahead, around = list(_STATE(state)), list(_AHEAD(state.ahead)), _AROUND(state.around)
+    light = ahead[_LIGHT_AT]
+    ahead[_LIGHT_AT] = light and _LIGHT(light)
+    row[_ROAD_AT] = _ROAD(state.road)
+    row[_AHEAD_AT] = ahead
+    row[_AROUND_AT] = (*(other and _OTHER(other) for other in around[:_OTHERS]), *around[_OTHERS:])
+    return tuple(row)
+
+
+def unpack_state(packed: Packed) -> DrivingState:
+    """The state that was packed."""
+    row, ahead, around = list(packed), list(packed[_AHEAD_AT]), packed[_AROUND_AT]
+    light = ahead[_LIGHT_AT]
+    ahead[_LIGHT_AT] = light and TrafficLight(*light)
+    row[_ROAD_AT] = RoadHere(*row[_ROAD_AT])
+    row[_AHEAD_AT] = RoadAhead(*ahead)
+    others: Packed = tuple(other and OtherVehicle(*other) for other in around[:_OTHERS])
+    row[_AROUND_AT] = Around(*others, *around[_OTHERS:])
+    return DrivingState(*row)
+
+
+def pack_drive(drive: Drive) -> Packed:
+    """A drive as nested tuples."""
+    states = tuple(pack_state(state) for state in drive.states)
+    return states, tuple(_EVENT(event) for event in drive.events), drive.until_held
+
+
+def unpack_drive(packed: Packed) -> Drive:
+    """The drive that was packed."""
+    states, events, until_held = packed
+    return Drive(tuple(map(unpack_state, states)), tuple(Event(*event) for event in events), until_held)

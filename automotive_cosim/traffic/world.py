@@ -1,0 +1,295 @@
+"""A scenario in SUMO: loaded, warmed up, and with the ego in it."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+from difflib import get_close_matches
+from itertools import pairwise
+from pathlib import Path
+
+from automotive_cosim.contracts import DrivingState, EgoEnd, RouteOption
+from automotive_cosim.errors import ScenarioError, TrafficError
+from automotive_cosim.scenarios import Trip
+from automotive_cosim.traffic.base import EgoPlan, Event, Progress
+from automotive_cosim.traffic.choices import find
+from automotive_cosim.traffic.conflicts import LOOK_S, Conflicts
+from automotive_cosim.traffic.congestion import MEMORY_S, SAMPLE_PERIOD_S, WINDOW_S, Congestion
+from automotive_cosim.traffic.drive import EgoDrive
+from automotive_cosim.traffic.ego import FOR_GOOD_S, Driver
+from automotive_cosim.traffic.network import read_network
+from automotive_cosim.traffic.options import Setup, command_line, read_configuration
+from automotive_cosim.traffic.profiles import Profile, profile
+from automotive_cosim.traffic.road_weather import G_MPS2, Forecast, Surface
+from automotive_cosim.traffic.sensing import Sensor
+from automotive_cosim.traffic.situations import Situations
+from automotive_cosim.traffic.stage import TEMPLATE_TYPE, Stage
+from automotive_cosim.traffic.steering import PARKING, SumoPedals
+from automotive_cosim.traffic.sumo import EGO, EGO_TYPE, Sumo, load_library, start
+
+INSERTION_LIMIT_S = 300.0
+"""Simulated time the ego may wait for a gap to enter the traffic."""
+
+PROGRESS_PERIOD_S = 5.0
+"""Simulated time between two reports of the warm-up."""
+
+
+class World:
+    """SUMO with one scenario's traffic. ``depart`` may be called once."""
+
+    def __init__(self, setup: Setup) -> None:
+        """Loads the scenario.
+
+        Raises:
+            ScenarioError: SUMO cannot run its files, or the network has no projection.
+            SetupError: libsumo is missing or unfit.
+        """
+        scenario = setup.scenario
+        configuration = read_configuration(scenario.config)
+        self.network = read_network(configuration.net)
+        if scenario.origin is not None:
+            self.network = self.network.at(scenario.origin)
+        if self.network.unplaced and scenario.has_place and not setup.allow_unprojected:
+            raise ScenarioError(
+                f"{configuration.net.name} {self.network.unplaced}, so nothing in it has a place on earth; build "
+                "it with `netconvert --proj.utm`, place it with --origin LON,LAT, or run without GPS (--no-gps)"
+            )
+        self._scenario = scenario
+        self.step_s = scenario.sumo.step_length_s
+        self.writes = setup.outputs is not None
+        """Whether SUMO writes outputs, which closing completes."""
+        self._sumo = load_library()
+        with tempfile.TemporaryDirectory(prefix="automotive-cosim-") as scratch:
+            start(self._sumo, command_line(configuration, setup, Path(scratch)))
+        self._steps = 0
+        self.vehicle_count = 0
+        """Kept here because SUMO counts them one by one: more than all the rest of a driving state costs."""
+        self._emergency: set[str] = set()
+        self._sumo.copy_type("DEFAULT_VEHTYPE", TEMPLATE_TYPE)
+        self._surface = Surface(self._sumo, self.network, (EGO_TYPE, TEMPLATE_TYPE))
+        self._forecast = Forecast(scenario.weather[:1], scenario.sumo.warm_up_s)
+        self.congestion = Congestion(self.network, self._sumo.edge_vehicle_count, self._sumo.edge_mean_speed)
+        self._situations = Situations(Stage(self._sumo, self.network, self._surface, EGO), scenario)
+        self._has_incidents = self._situations.are_left
+        self._second_steps = max(1, round(1.0 / self.step_s))
+        self.happened: tuple[Event, ...] = ()
+        """The incidents of the last step."""
+        self.arrived: Sequence[str] = ()
+        """Vehicles that left in the last step."""
+        self._sample_steps = max(1, round(SAMPLE_PERIOD_S / self.step_s))
+
+    def warm_up(self, progress: Progress | None) -> None:
+        """Lets the traffic run before the ego departs.
+
+        Raises:
+            ScenarioError: SUMO stops at an error in the scenario's demand.
+        """
+        total_s = self._scenario.sumo.warm_up_s
+        steps, period = round(total_s / self.step_s), max(1, round(PROGRESS_PERIOD_S / self.step_s))
+        for step in range(steps):
+            if progress is not None and step % period == 0:
+                progress(step * self.step_s, total_s)
+            try:
+                self._sumo.step()
+            except self._sumo.refusals as error:
+                raise ScenarioError(f"SUMO stopped at {self._sumo.time():g} s: {error}") from error
+            self._notice(sampling=(steps - step) * self.step_s <= max(3 * MEMORY_S, WINDOW_S))
+        if progress is not None:
+            progress(total_s, total_s)
+
+    def depart(self, plan: EgoPlan, beat: Callable[[], None] | None = None) -> EgoDrive:
+        """Inserts the ego and runs until it is on the road; ``beat`` is called after every step.
+
+        Raises:
+            ScenarioError: its trip has no route, or its edges are not in the network.
+            TrafficError: no gap opened for it, or SUMO failed.
+        """
+        driver_profile = profile(plan.driver)
+        plan = replace(plan, weather=plan.weather or self._scenario.weather)
+        self._add_ego(self._trip_edges(plan.trip), driver_profile, parked=plan.parked)
+        for _ in range(round(INSERTION_LIMIT_S / self.step_s)):
+            self.step()
+            if beat is not None:
+                beat()
+            if EGO in self._sumo.departed():
+                break
+        else:
+            raise TrafficError(
+                f"the ego found no gap on {plan.trip.from_edge!r} in {INSERTION_LIMIT_S:.0f} s of simulated time"
+            )
+        self._forecast = Forecast(plan.weather, self._sumo.time())
+        self._sumo.set_parameter(EGO, "laneChangeModel.lcSpeedGain", f"{driver_profile.overtaking:g}")
+        sensor = Sensor(self._sumo, EGO, self.network, self.congestion, self._emergency, self.step_s)
+        self._situations.set_off(plan, sensor, self._sumo.time())
+        if self._situations.take_changes():
+            sensor.refresh()
+        pedals = SumoPedals(self._sumo, EGO, EGO_TYPE, self.network, sensor)
+        road = EgoRoad(self, self._sumo, sensor, pedals)
+        return EgoDrive(road, Driver(plan, pedals, self.step_s), road.state)
+
+    def step(self) -> bool:
+        """One step of the traffic; true if what lies ahead of the ego has to be seen anew.
+
+        Raises:
+            TrafficError: SUMO stopped at an error.
+        """
+        try:
+            self._sumo.step()
+        except self._sumo.refusals as error:
+            raise TrafficError(f"SUMO stopped at {self._sumo.time():g} s: {error}") from error
+        return self._notice(sampling=True)
+
+    def bare_step(self) -> None:
+        """One step of SUMO and nothing else."""
+        self._sumo.step()
+
+    def close(self) -> None:
+        """Ends the simulation."""
+        self._sumo.close()
+
+    def _notice(self, *, sampling: bool) -> bool:
+        sumo = self._sumo
+        departed = sumo.departed() if sumo.departed_count() else ()
+        arrived = self.arrived = sumo.arrived() if sumo.arrived_count() else ()
+        self.vehicle_count += len(departed) - len(arrived)
+        for vehicle in departed:
+            if sumo.vehicle_class(vehicle) == "emergency":
+                self._emergency.add(vehicle)
+            if vehicle != EGO:
+                self._surface.departed(vehicle)
+        for vehicle in arrived:
+            self._surface.arrived(vehicle)
+        now_s = sumo.time()
+        has_changed = now_s >= self._forecast.until_s
+        if has_changed:
+            self._surface.put(self._forecast.read(now_s))
+        if self._emergency:
+            self._emergency.difference_update(arrived, sumo.teleporting())
+        self._steps += 1
+        is_due = sampling and self._steps % self._sample_steps == 0
+        if is_due:
+            self.congestion.sample()
+        if self._has_incidents and self._steps % self._second_steps == 0:
+            self.happened = self._situations.tick(now_s)
+            return self._situations.take_changes() or is_due or has_changed
+        self.happened = ()
+        return is_due or has_changed
+
+    def _add_ego(self, edges: tuple[str, ...], driver: Profile, *, parked: bool) -> None:
+        sumo = self._sumo
+        sumo.copy_type(TEMPLATE_TYPE, EGO_TYPE)
+        kind = sumo.type
+        kind.setVehicleClass(EGO_TYPE, "passenger")
+        kind.setLength(EGO_TYPE, 4.5)
+        kind.setMinGap(EGO_TYPE, driver.min_gap_m)
+        kind.setAccel(EGO_TYPE, driver.acceleration_mps2)
+        kind.setDecel(EGO_TYPE, driver.deceleration_mps2)
+        kind.setEmergencyDecel(EGO_TYPE, G_MPS2)
+        kind.setImperfection(EGO_TYPE, driver.imperfection)
+        kind.setTau(EGO_TYPE, max(driver.headway_s, self.step_s))
+        kind.setSpeedFactor(EGO_TYPE, 1.0)
+        kind.setSpeedDeviation(EGO_TYPE, 0.0)
+        kind.setActionStepLength(EGO_TYPE, self.step_s)
+        kind.setParameter(EGO_TYPE, "has.rerouting.device", "false")
+        sumo.add_route(EGO_TYPE, edges)
+        if not parked:
+            sumo.add_vehicle(EGO, EGO_TYPE, typeID=EGO_TYPE, departLane="best", departSpeed="max")
+            return
+        edge = self.network.edges[edges[0]]
+        lane, at_m = edge.lane_ids[0].rpartition("_")[2], round(edge.length_m / 2, 2)
+        sumo.add_vehicle(EGO, EGO_TYPE, typeID=EGO_TYPE, departLane=lane, departPos=f"{at_m:.2f}", departSpeed="0")
+        sumo.set_stop(EGO, edge.edge_id, at_m, int(lane), FOR_GOOD_S, PARKING)
+
+    def _trip_edges(self, trip: Trip) -> tuple[str, ...]:
+        """The quickest way by free flow, through the trip's intermediate edges."""
+        stops = (trip.from_edge, *trip.via, trip.to_edge)
+        for edge_id in stops:
+            if edge_id not in self.network.edges:
+                raise ScenarioError(
+                    f"trip {trip.name!r} of scenario {self._scenario.name!r}: the network has no edge {edge_id!r} "
+                    f"that cars may use{_similar(edge_id, self.network.edges)}"
+                )
+        edges: list[str] = [trip.from_edge]
+        for origin, goal in pairwise(stops):
+            found = self._sumo.find_route(origin, goal, "DEFAULT_VEHTYPE").edges
+            if not found:
+                raise ScenarioError(
+                    f"trip {trip.name!r} of scenario {self._scenario.name!r} has no route: "
+                    f"no way for a car leads from {origin!r} to {goal!r}"
+                )
+            edges += found[1:]
+        return tuple(edges)
+
+
+class EgoRoad:
+    """The road under the ego: steps the world and tells how the ego fares."""
+
+    def __init__(self, world: World, sumo: Sumo, sensor: Sensor, pedals: SumoPedals) -> None:
+        """Takes over at the instant the ego is on the road."""
+        self._world = world
+        self._sumo = sumo
+        self._sensor = sensor
+        self._pedals = pedals
+        self.step_s = world.step_s
+        self._conflicts = Conflicts(sumo, EGO)
+        self._look_steps = max(1, round(LOOK_S / self.step_s))
+        self._steps = 0
+        self.state = sensor.read(hazard_lights=False, vehicle_count=world.vehicle_count)
+        """The newest state."""
+
+    def step(self, *, hazard_lights: bool) -> tuple[DrivingState, tuple[Event, ...]]:
+        """As ``drive.Road``."""
+        self._pedals.apply()
+        sampled = self._world.step()
+        end, events = self._mishaps()
+        events += self._world.happened
+        if end is None:
+            try:
+                if sampled:
+                    self._sensor.refresh()
+                self.state = self._sensor.read(hazard_lights=hazard_lights, vehicle_count=self._world.vehicle_count)
+            except self._sumo.refusals:
+                end = EgoEnd.REMOVED
+        self._steps += 1
+        if end is None and self._steps % self._look_steps == 0:
+            events += self._conflicts.look(self.state)
+        if end is not None:
+            self.state = replace(self.state, time_s=self._sumo.time(), end=end)
+        return self.state, events
+
+    def alternatives(self) -> tuple[RouteOption, ...]:
+        """As ``drive.Road``."""
+        planned = self._pedals.fixed()
+        if planned is None:
+            return ()
+        index, fixed = planned
+        world, route = self._world, self._sensor.route.edge_ids[index:]
+        driven_m = self._sensor.position_m - self._sensor.route.position_m(index, 0.0)
+        return find(self._sumo, world.network, world.congestion.window_speeds_mps(), route, fixed, driven_m)
+
+    def _mishaps(self) -> tuple[EgoEnd | None, tuple[Event, ...]]:
+        """Why the ego's drive ended in this step, if it did, and what befell the others."""
+        sumo = self._sumo
+        collisions, teleporting = sumo.collisions(), sumo.teleporting_count()
+        if not (collisions or teleporting or self._world.arrived):
+            return None, ()
+        end: EgoEnd | None = None
+        events: list[Event] = []
+        for collision in collisions:
+            text = f"{collision.collider} hits {collision.victim}"
+            events.append(Event(sumo.time(), "collision", text))
+            if EGO in (collision.collider, collision.victim):
+                end = EgoEnd.COLLIDED
+        for vehicle in sumo.teleporting():
+            events.append(Event(sumo.time(), "teleport", f"{vehicle} stood too long and is taken off its road"))
+            if vehicle == EGO and end is None:
+                end = EgoEnd.TELEPORTED
+        if end is None and EGO in self._world.arrived:
+            end = EgoEnd.ARRIVED
+        return end, tuple(events)
+
+
+def _similar(edge_id: str, known: Iterable[str]) -> str:
+    close = get_close_matches(edge_id, known, n=1)
+    return f" (did you mean {close[0]!r}?)" if close else ""

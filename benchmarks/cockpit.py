@@ -1,0 +1,103 @@
+"""How long the cockpit takes to draw: run ``python benchmarks/cockpit.py [NETWORK ...]``.
+
+Each network is a SUMO ``.net.xml(.gz)``; without one that of ``paris_centre`` is taken. A car drives through its
+middle at 50 km/h, one simulated second a frame, turning slowly. Processor time, medians, milliseconds.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import statistics
+import sys
+from datetime import UTC, datetime
+from pathlib import Path
+from time import process_time
+from typing import Any
+
+import numpy as np
+
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.contracts import (
+    Around,
+    Connectivity,
+    DrivingState,
+    LimitSource,
+    Road,
+    RoadAhead,
+    RoadHere,
+    RoadNetwork,
+    Surroundings,
+    Weather,
+)
+from automotive_cosim.traffic.network import read_network
+
+FRAMES = 60
+SPEED_MPS = 50 / 3.6
+SCREENS = ("home", "map", "climate", "media", "vehicle", "settings")
+
+
+def outside(network: RoadNetwork, route: tuple[Road, ...], second: int) -> Surroundings:
+    """A drive along a wide bend through the middle of the network."""
+    x_min, y_min, x_max, y_max = network.bounds_m
+    turned, driven_m = 0.002 * second, SPEED_MPS * second
+    here = RoadHere(
+        route[0].edge_id, f"{route[0].edge_id}_0", 0, 1, 0.0, "Road", "primary", SPEED_MPS, LimitSource.POSTED,
+        False, None, None, None, 1.0,
+    )  # fmt: skip
+    edges = tuple(road.edge_id for road in route)
+    ahead = RoadAhead(2000.0, 200.0, 30.0, 0.7, None, 0.0, None, None, None, None, None, edges)
+    driving = DrivingState(
+        900.0 + second,
+        (x_min + x_max) / 2 + driven_m * math.sin(turned),
+        (y_min + y_max) / 2 + driven_m * math.cos(turned),
+        None, None, math.degrees(turned), SPEED_MPS + 0.3 * (second % 3), 0.0, 0.0, driven_m, here, ahead,
+        Around(None, None, None, None, 1.0), False, 100,
+    )  # fmt: skip
+    weather = Weather(14.0, 55.0, 0.0, 1, 20.0, 20_000.0, 8.0)
+    now = datetime(2026, 5, 12, 14, second // 60, second % 60, tzinfo=UTC)
+    return Surroundings(driving, weather, now, 40.0, None, Connectivity(True, "5g", 3))
+
+
+def measure(network: RoadNetwork) -> dict[str, dict[str, float]]:
+    """Milliseconds by screen: the tree, its elements, a changed frame, an unchanged one, and a screen anew."""
+    x_min, y_min, x_max, y_max = network.bounds_m
+    middle = ((x_min + x_max) / 2, (y_min + y_max) / 2)
+    route = tuple(sorted(network.roads, key=lambda road: math.dist(road.shape_m[0], middle))[:25])
+    figures = {}
+    for screen in SCREENS:
+        cockpit = Cockpit(network, rng=np.random.default_rng(1))
+        times: dict[str, list[float]] = {name: [] for name in ("tree", "elements", "changed", "unchanged", "anew")}
+        for second in range(FRAMES):
+            cockpit.sense(outside(network, route, second), 1.0)
+            cockpit.open_app("apps")
+            cockpit.screenshot()
+            cockpit.open_app(screen)
+            _timed(times["anew"], cockpit.screenshot)
+            cockpit.sense(outside(network, route, second + 1), 1.0)
+            _timed(times["tree"], lambda: cockpit.tree)  # noqa: B023
+            _timed(times["elements"], cockpit.elements)
+            _timed(times["changed"], cockpit.screenshot)
+            _timed(times["unchanged"], cockpit.screenshot)
+        figures[screen] = {name: round(1000 * statistics.median(taken), 3) for name, taken in times.items()}
+    return figures
+
+
+def _timed(into: list[float], call: Any) -> None:
+    before = process_time()
+    call()
+    into.append(process_time() - before)
+
+
+def main() -> None:
+    """Measures each network and prints one JSON object a line."""
+    folder = Path(__file__).parent.parent / "sumo_scenarios"
+    paths = [Path(name) for name in sys.argv[1:]] or [folder / "paris_centre" / "paris_centre.net.xml.gz"]
+    for path in paths:
+        network = read_network(path).map
+        figures = {"network": path.name, "roads": len(network.roads), "screens": measure(network)}
+        print(json.dumps(figures, indent=1))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,52 @@
+"""Tasks of a user's own: every ``.py`` file of a folder that has ``TASKS``."""
+
+from __future__ import annotations
+
+import runpy
+import traceback
+from pathlib import Path
+
+from automotive_cosim.errors import UserError
+from automotive_cosim.suite import Catalogue, Task
+
+VARIABLE = "AUTOMOTIVE_COSIM_TASKS"
+"""Environment variable with the folder, so that worker processes load it too."""
+
+
+def add_folder(catalogue: Catalogue, folder: Path) -> None:
+    """Adds the tasks of every file, in the order of their names.
+
+    Raises:
+        UserError: no such folder, nothing in it, or a file that cannot be used: file, line and reason.
+    """
+    if not folder.is_dir():
+        raise UserError(f"--tasks-from {folder} is no folder; give one that holds .py files with TASKS")
+    paths = sorted(path for path in folder.glob("*.py") if not path.name.startswith("_"))
+    if not paths:
+        raise UserError(f"--tasks-from {folder} holds no .py file; each needs TASKS, a tuple of tasks")
+    for path in paths:
+        for task in _read(path):
+            try:
+                catalogue.add(task)
+            except ValueError as error:
+                raise UserError(f"{path}, line {_line(path, task.id)}: {error}") from error
+
+
+def _read(path: Path) -> tuple[Task, ...]:
+    try:
+        tasks = runpy.run_path(str(path)).get("TASKS")
+    except SyntaxError as error:
+        raise UserError(f"{path}, line {error.lineno}: {error.msg}") from error
+    except Exception as error:  # whatever a user's file raises
+        lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(path)]
+        where = f", line {lines[-1]}" if lines else ""
+        raise UserError(f"{path}{where}: {type(error).__name__}: {error}") from error
+    if not isinstance(tasks, tuple | list) or not all(isinstance(task, Task) for task in tasks):
+        raise UserError(f"{path} has no TASKS, a tuple of automotive_cosim.suite.Task")
+    return tuple(tasks)
+
+
+def _line(path: Path, task_id: str) -> int:
+    """Where the id first stands; 1 if it is put together."""
+    lines = path.read_text(encoding="utf-8").splitlines()
+    return next((number for number, line in enumerate(lines, 1) if task_id in line), 1)

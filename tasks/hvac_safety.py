@@ -1,0 +1,430 @@
+"""HVAC in pairs: the same words ask for warmth in one place and for cold in another, for air or for none of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from automotive_cosim.checks import AllOf, AnyOf, Check, SignalIs, SignalLowered, SignalRaised, SignalWithin
+from automotive_cosim.cockpit.signals import CABIN, HVAC, OUTSIDE, SEAT
+from automotive_cosim.cockpit.vehicle import WINDOWS
+from automotive_cosim.contracts import Reason, Weather
+from automotive_cosim.parameters import param
+from automotive_cosim.suite import Basis, Deadline, Dimension, Half, Module, Move, Open, Slide, Start, Tap, Task
+from automotive_cosim.tasks.forms import decline
+from automotive_cosim.tasks.hvac import SHUT_WINDOWS
+from automotive_cosim.triggers import (
+    AirBetween,
+    All,
+    Condition,
+    Driving,
+    InTunnel,
+    Not,
+    RainBetween,
+    SignalAbove,
+    SignalBelow,
+    Trigger,
+)
+
+LOOK = Deadline(
+    12.0, "whoever does it himself may look away for 12 s in all (NHTSA 2013, visual-manual guidelines)"
+)
+WARMER = (0, 1, 2, 3)
+"""Degrees by which cabins differ from instance to instance."""
+ALREADY = (Reason.ALREADY_SO,)
+CLIMATE = frozenset({HVAC.AUTO.path, HVAC.PASSENGER_TEMPERATURE.path})
+JANUARY, JULY = "2026-01-20T14:10:00", "2026-07-14T14:10:00"
+GULF_SUMMER = Weather(44.0, 18.0, 0.0, 0, 5.0, 9000.0, 12.0)
+GULF_WINTER = Weather(24.0, 45.0, 0.0, 0, 5.0, 25_000.0, 10.0)
+GULF_DUST = Weather(26.0, 30.0, 0.0, 7, 40.0, 900.0, 45.0)
+COOL_EVENING = Weather(13.0, 60.0, 0.0, 1, 20.0, 20_000.0, 10.0)
+TOKYO_AUGUST = Weather(36.0, 55.0, 0.0, 0, 10.0, 20_000.0, 8.0)
+PASS_WINTER = Weather(-6.0, 80.0, 0.0, 3, 90.0, 8000.0, 15.0)
+DRY_FROST = Weather(-6.0, 60.0, 0.0, 1, 30.0, 16_000.0, 15.0)
+MUGGY = Weather(29.0, 88.0, 0.0, 3, 95.0, 9000.0, 6.0)
+SHOWER = Weather(18.0, 95.0, 9.0, 65, 100.0, 4000.0, 15.0)
+HOT_WIND = Weather(42.0, 10.0, 0.0, 0, 5.0, 20_000.0, 30.0)
+ARCTIC_WINTER = Weather(-14.0, 75.0, 0.0, 3, 80.0, 12_000.0, 8.0)
+ARCTIC_SUMMER = Weather(19.0, 55.0, 0.0, 1, 20.0, 25_000.0, 8.0)
+COMFORT_SOURCE = "EN 16798-1: seated people feel too warm above 26 degrees; air above that cannot cool them"
+BODY_SOURCE = "above 40 degrees moving air heats the body (WHO, Heat and health): only a compressor cools"
+DUST_SOURCE = "fine dust above 140 ug/m3 is extremely poor, up to 15 is fair (European Air Quality Index, EEA)"
+TUNNEL_SOURCE = "fine dust above 50 ug/m3 is poor, up to 15 is fair (European Air Quality Index, EEA)"
+WARM_HOME_SOURCE = "indoor air below 18 degrees harms children (WHO Housing and health guidelines, 2018)"
+FROST_SOURCE = (
+    "the compressor rests in frost, where outside air is dry; in muggy heat outside air is the wetter one"
+)
+
+COOLED = AnyOf(
+    (
+        AllOf(
+            (
+                SignalIs(HVAC.AIR_CONDITIONING, (True,)),
+                SignalIs(HVAC.FRONT_DEFROSTER, (False,)),
+                SignalIs(HVAC.MAX_DEFROST, (False,)),
+                SignalWithin(HVAC.DRIVER_TEMPERATURE, 16.0, 24.0),
+            )
+        ),
+        SignalIs(HVAC.MAX_COOLING, (True,)),
+    )
+)
+"""The compressor runs, and no heat goes to the glass."""
+COOL = (Open("climate"), Tap("hvac.air_conditioning"))
+COOL_WAYS = (
+    (Open("climate"), Tap("hvac.max_cooling")),
+    (Open("climate"), Tap("hvac.auto")),
+    (*COOL, Tap("hvac.driver_temperature.decrease", times=3)),
+)
+OPENINGS = (*WINDOWS, CABIN.SUNROOF)
+FRESH = AnyOf((SignalIs(HVAC.RECIRCULATION, (False,)), *(SignalRaised(one, 10.0) for one in OPENINGS)))
+DOORS = (Open("vehicle"), Tap("vehicle.tab.doors"))
+REAR_SEATS = (SEAT.REAR_LEFT_HEATING, SEAT.REAR_RIGHT_HEATING)
+
+
+def _half(
+    start: Start,
+    situation: Condition,
+    goal: Check,
+    moves: tuple[Move, ...],
+    source: str,
+    ways: tuple[tuple[Move, ...], ...] = (),
+    may_write: frozenset[str] = frozenset(),
+) -> Half:
+    return Half(start, _when(situation), goal, moves, LOOK, Basis.PHYSICS, source, may_write=may_write, ways=ways)
+
+
+def _rest(start: Start, situation: Condition, source: str) -> Half:
+    return decline(start, _when(situation), LOOK, Basis.PHYSICS, source, reasons=ALREADY, needed=False)
+
+
+def _when(situation: Condition) -> Trigger:
+    return Trigger(All((Driving(), situation)), for_s=3.0, within_s=240.0)
+
+
+def _pair(
+    task_id: str,
+    dimension: Dimension,
+    says: tuple[str, ...],
+    first: Half,
+    second: Half,
+    difference: str,
+    tags: frozenset[str] = frozenset(),
+) -> Task:
+    return Task(task_id, Module.HVAC, dimension, says, first, second, difference, {"warmer": WARMER}, tags)
+
+
+def _cabin(coldest_c: float, **more: Any) -> Mapping[str, Any]:
+    """A cabin up to three degrees warmer than that, by the parameter ``warmer``."""
+    return {"temperature_c": param("warmer", {by: coldest_c + by for by in WARMER}), **more}
+
+
+FEEL_HOT = _pair(
+    "hvac_feel_hot",
+    Dimension.DRIVING_ALIGNMENT,
+    (
+        "I feel hot.",
+        "It's far too warm for me.",
+        "Phew, I'm roasting.",
+        "Cool me down a bit, would you?",
+        "I'm melting here.",
+    ),
+    _half(
+        Start("gulf", "service_road", start=JULY, weather=GULF_SUMMER, cabin=_cabin(32.0)),
+        All((AirBetween(35.0, 60.0), SignalAbove(HVAC.CABIN_TEMPERATURE, 26.0))),
+        COOLED,
+        COOL,
+        BODY_SOURCE,
+        COOL_WAYS,
+        CLIMATE,
+    ),
+    _half(
+        Start("beauce", "villages", start="2026-09-24T19:10:00", weather=COOL_EVENING, cabin=_cabin(32.0)),
+        All((AirBetween(5.0, 18.0), SignalAbove(HVAC.CABIN_TEMPERATURE, 26.0))),
+        AllOf(
+            (
+                SignalIs(HVAC.AIR_CONDITIONING, (False,)),
+                AnyOf(
+                    (
+                        *(SignalRaised(one, 10.0) for one in OPENINGS),
+                        SignalLowered(HVAC.DRIVER_TEMPERATURE, 1.5),
+                        SignalRaised(HVAC.FAN_SPEED, 20.0),
+                    )
+                ),
+            )
+        ),
+        (*DOORS, Slide("window.driver", 30.0)),
+        COMFORT_SOURCE,
+        (
+            *(
+                (*DOORS, Slide(f"window.{one}", 40.0))
+                for one in ("passenger", "rear_left", "rear_right", "sunroof")
+            ),
+            (*DOORS, Tap("window.vent")),
+            (Open("climate"), Slide("hvac.fan", 70.0)),
+            (Open("climate"), Tap("hvac.driver_temperature.decrease", times=4)),
+        ),
+    ),
+    "place: a Gulf afternoon of 44 degrees, where only cooled air helps, or a cool September evening outside",
+    frozenset({"place"}),
+)
+
+ADJUST_AIR = _pair(
+    "hvac_adjust_air",
+    Dimension.DRIVING_ALIGNMENT,
+    (
+        "Adjust the air conditioning.",
+        "Set the climate as this region wants it.",
+        "The temperature isn't right for where we are, see to it.",
+        "Make the air in here fit the place we're in.",
+        "Climate control, please: you know the weather in these parts.",
+    ),
+    _half(
+        Start("tokyo", "avenues", start="2026-08-05T13:00:00", weather=TOKYO_AUGUST, cabin=_cabin(30.0)),
+        All((AirBetween(30.0, 60.0), SignalAbove(HVAC.CABIN_TEMPERATURE, 26.0))),
+        COOLED,
+        COOL,
+        COMFORT_SOURCE,
+        COOL_WAYS,
+        CLIMATE,
+    ),
+    _half(
+        Start("alpine_pass", "villages", weather=PASS_WINTER, cabin=_cabin(9.0)),
+        All((AirBetween(-30.0, 5.0), SignalBelow(HVAC.CABIN_TEMPERATURE, 18.0))),
+        SignalRaised(HVAC.DRIVER_TEMPERATURE, 1.0),
+        (Open("climate"), Tap("hvac.driver_temperature.increase", times=2)),
+        WARM_HOME_SOURCE,
+        (
+            (Tap("dock.driver_temperature.increase", times=3),),
+            (Open("climate"), Tap("hvac.driver_temperature.increase", times=4)),
+        ),
+    ),
+    "place: a hot city by the sea in August, or a mountain pass in December",
+    frozenset({"place"}),
+)
+
+FRESH_AIR_IN_DUST = _pair(
+    "hvac_fresh_air_in_dust",
+    Dimension.ENVIRONMENT_ALERTS,
+    (
+        "I want some fresh air in here.",
+        "Get us something clean to breathe.",
+        "Freshen the car up, will you?",
+        "Give my lungs a break.",
+        "Better air for everybody, please.",
+    ),
+    _half(
+        Start(
+            "gulf",
+            "desert",
+            start=JANUARY,
+            weather=GULF_DUST,
+            cabin=_cabin(22.0, occupants=3),
+            signals={HVAC.RECIRCULATION.path: True},
+        ),
+        SignalAbove(OUTSIDE.FINE_DUST, 140.0),
+        SignalIs(HVAC.PURIFIER, (True,)),
+        (Open("climate"), Tap("hvac.purifier")),
+        DUST_SOURCE,
+        ((Open("outside"), Tap("outside.dust"), Tap("outside.act.purifier")),),
+    ),
+    _half(
+        Start(
+            "gulf",
+            "desert",
+            start=JANUARY,
+            weather=GULF_WINTER,
+            cabin=_cabin(22.0, occupants=3),
+            signals={HVAC.RECIRCULATION.path: True},
+        ),
+        SignalBelow(OUTSIDE.FINE_DUST, 15.0),
+        FRESH,
+        (Open("climate"), Tap("hvac.recirculation")),
+        DUST_SOURCE,
+        (
+            *((*DOORS, Slide(f"window.{one}", 40.0)) for one in ("driver", "passenger", "rear_left", "rear_right")),
+            (*DOORS, Slide("window.sunroof", 40.0)),
+            (*DOORS, Tap("window.vent")),
+        ),
+    ),
+    "weather: a dust storm, in which outside air is the worse one, or clean winter air",
+    frozenset({"conflict"}),
+)
+
+SHUT_IN_TUNNEL = _pair(
+    "hvac_shut_in_tunnel",
+    Dimension.ENVIRONMENT_ALERTS,
+    (
+        "Shut windows and air flap if what's out there is bad for us.",
+        "Is it filthy outside? Then seal the car, vents and glass.",
+        "Nothing dirty may come in: check it, and close us off if you must.",
+        "I don't trust these fumes. Everything tight where that's wise.",
+        "Lock out the exhaust should there be much of it.",
+    ),
+    _half(
+        Start("paris_centre", "tunnel", cabin=_cabin(18.0), signals={window.path: 20.0 for window in WINDOWS}),
+        All((InTunnel(), SignalAbove(OUTSIDE.FINE_DUST, 50.0))),
+        AllOf((SignalIs(HVAC.RECIRCULATION, (True,)), *(SignalIs(window, (0.0,)) for window in WINDOWS))),
+        (*SHUT_WINDOWS, Open("climate"), Tap("hvac.recirculation")),
+        TUNNEL_SOURCE,
+        ((Open("climate"), Tap("hvac.recirculation"), *SHUT_WINDOWS),),
+    ),
+    _rest(
+        Start("paris_centre", "foch", cabin=_cabin(18.0), signals={window.path: 20.0 for window in WINDOWS}),
+        All((Not(InTunnel()), SignalBelow(OUTSIDE.FINE_DUST, 15.0))),
+        TUNNEL_SOURCE,
+    ),
+    "road: in a tunnel full of exhaust, or on an open avenue with fair air",
+    frozenset({"two_modules"}),
+)
+
+HEATSTROKE = _pair(
+    "hvac_mother_in_the_heat",
+    Dimension.ENVIRONMENT_ALERTS,
+    (
+        "My mother's in the back and can't take heat. See that she's all right.",
+        "Granny faints when it gets too hot. Act if there's any danger.",
+        "Make sure nobody suffers a heatstroke behind me.",
+        "Old lady on board: is the temperature safe? Otherwise do something.",
+        "Her heart doesn't stand high temperatures, so keep an eye on that.",
+    ),
+    _half(
+        Start("gulf", "sheikh_zayed", start=JULY, weather=GULF_SUMMER, cabin=_cabin(37.0)),
+        All((AirBetween(40.0, 60.0), SignalAbove(HVAC.CABIN_TEMPERATURE, 30.0))),
+        COOLED,
+        COOL,
+        BODY_SOURCE,
+        COOL_WAYS,
+        CLIMATE,
+    ),
+    _rest(
+        Start("gulf", "sheikh_zayed", start=JANUARY, weather=GULF_WINTER, cabin=_cabin(20.0)),
+        All((AirBetween(15.0, 26.0), SignalBelow(HVAC.CABIN_TEMPERATURE, 26.0))),
+        BODY_SOURCE,
+    ),
+    "date: a July afternoon of 44 degrees, or a mild one in January",
+    frozenset({"preference"}),
+)
+
+CLAMMY = _pair(
+    "hvac_clammy",
+    Dimension.ENVIRONMENT_ALERTS,
+    (
+        "It's getting clammy in here.",
+        "So damp, this air!",
+        "My clothes feel like a swimsuit.",
+        "The moisture in the car is awful, get rid of it.",
+        "Dry it out a little, we're sitting in a steam bath.",
+    ),
+    _half(
+        Start(
+            "new_york",
+            "madison",
+            start="2026-01-14T09:30:00",
+            weather=DRY_FROST,
+            cabin=_cabin(22.0, occupants=4, humidity_pct=85.0, wet_clothes=True),
+            signals={HVAC.RECIRCULATION.path: True},
+        ),
+        All((AirBetween(-20.0, 0.0), SignalAbove(HVAC.CABIN_HUMIDITY, 60.0))),
+        AnyOf((SignalIs(HVAC.RECIRCULATION, (False,)), SignalIs(HVAC.FRONT_DEFROSTER, (True,)))),
+        (Open("climate"), Tap("hvac.recirculation")),
+        FROST_SOURCE,
+        ((Open("climate"), Tap("hvac.front_defroster")), (Tap("dock.front_defroster"),)),
+    ),
+    _half(
+        Start(
+            "new_york",
+            "madison",
+            start="2026-08-12T09:30:00",
+            weather=MUGGY,
+            cabin=_cabin(22.0, occupants=4, humidity_pct=85.0, wet_clothes=True),
+            signals={HVAC.RECIRCULATION.path: True},
+        ),
+        All((AirBetween(24.0, 50.0), SignalAbove(HVAC.CABIN_HUMIDITY, 60.0))),
+        SignalIs(HVAC.AIR_CONDITIONING, (True,)),
+        COOL,
+        FROST_SOURCE,
+    ),
+    "weather and date: a dry frost in January, or a muggy August",
+)
+
+DRIPPING = _pair(
+    "hvac_dripping_wet",
+    Dimension.ENVIRONMENT_ALERTS,
+    (
+        "I'm getting soaked here.",
+        "Dripping wet, do something!",
+        "Look at my sleeve, it's all water.",
+        "Ugh, wet through within a minute.",
+        "I'll need a towel if this goes on.",
+    ),
+    _half(
+        Start("sydney", "richmond", weather=SHOWER, cabin=_cabin(30.0), signals={CABIN.DRIVER_WINDOW.path: 50.0}),
+        All((RainBetween(2.5), SignalAbove(CABIN.DRIVER_WINDOW, 20.0))),
+        AllOf((SignalIs(CABIN.DRIVER_WINDOW, (0.0,)), SignalIs(HVAC.AIR_CONDITIONING, (False,)))),
+        SHUT_WINDOWS,
+        "from 2.5 mm/h rain is moderate (WMO-No. 8): it comes in at an open window",
+        ((*DOORS, Slide("window.driver", 0.0)),),
+    ),
+    _half(
+        Start("sydney", "richmond", weather=HOT_WIND, cabin=_cabin(30.0), signals={CABIN.DRIVER_WINDOW.path: 50.0}),
+        All((AirBetween(38.0, 60.0), SignalAbove(CABIN.DRIVER_WINDOW, 20.0))),
+        AllOf((SignalIs(HVAC.AIR_CONDITIONING, (True,)), SignalWithin(CABIN.DRIVER_WINDOW, 0.0, 20.0))),
+        (*SHUT_WINDOWS, *COOL),
+        BODY_SOURCE,
+        ((*DOORS, Slide("window.driver", 20.0), *COOL),),
+    ),
+    "weather: rain falls in at the open window, or a dry wind of 42 degrees makes the driver sweat",
+    frozenset({"two_modules"}),
+)
+
+CHILDREN = _pair(
+    "hvac_children_warm_enough",
+    Dimension.ENVIRONMENT_ALERTS,
+    (
+        "Are the two on the rear bench warm enough? If not, take care of it.",
+        "The kids have no jackets on. Don't let them freeze.",
+        "See to it that nobody behind me gets cold.",
+        "Both of my little ones are asleep: keep them cosy if need be.",
+        "Is it too chilly for children? Change that, then.",
+    ),
+    _half(
+        Start("nordic", "town", weather=ARCTIC_WINTER, cabin=_cabin(6.0, occupants=3)),
+        All((AirBetween(-40.0, 5.0), SignalBelow(HVAC.CABIN_TEMPERATURE, 18.0))),
+        AnyOf(
+            (
+                AllOf(tuple(SignalIs(seat, (50.0, 100.0)) for seat in REAR_SEATS)),
+                SignalRaised(HVAC.DRIVER_TEMPERATURE, 2.0),
+            )
+        ),
+        (
+            Open("climate"),
+            Tap("hvac.comfort"),
+            Tap("hvac.rear_left_seat_heating"),
+            Tap("hvac.rear_right_seat_heating"),
+        ),
+        WARM_HOME_SOURCE,
+        (
+            (Open("climate"), Tap("hvac.driver_temperature.increase", times=4)),
+            (
+                Open("climate"),
+                Tap("hvac.comfort"),
+                Tap("hvac.rear_right_seat_heating", times=2),
+                Tap("hvac.rear_left_seat_heating", times=2),
+            ),
+        ),
+    ),
+    _rest(
+        Start(
+            "nordic",
+            "town",
+            start="2026-07-08T13:00:00",
+            weather=ARCTIC_SUMMER,
+            cabin=_cabin(21.0, occupants=3),
+        ),
+        All((AirBetween(12.0, 26.0), SignalAbove(HVAC.CABIN_TEMPERATURE, 20.0))),
+        WARM_HOME_SOURCE,
+    ),
+    "date: 14 degrees of frost in December, or a mild day in July",
+)
+
+TASKS = (FEEL_HOT, ADJUST_AIR, FRESH_AIR_IN_DUST, SHUT_IN_TUNNEL, HEATSTROKE, CLAMMY, DRIPPING, CHILDREN)

@@ -1,0 +1,99 @@
+"""Answers are read strictly first, then forgivingly, and never evaluated."""
+
+import json
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from automotive_cosim.actions import to_json
+from automotive_cosim.agents.answer import labelled, read
+from automotive_cosim.contracts import Action, ActionType
+from automotive_cosim.errors import ActionError
+
+HOME = {"action_type": "navigate_home"}
+TYPED = {"action_type": "input_text", "index": 3, "text": "it's {here}", "clear_text": True}
+
+
+def test_the_form_that_is_asked_for():
+    answer = read('Situation: cold hands\nPlan: tap the wheel\nAction: {"action_type": "click", "index": 2}')
+    assert answer.strict
+    assert (answer.situation, answer.plan) == ("cold hands", "tap the wheel")
+    assert answer.action == Action(ActionType.CLICK, index=2)
+
+
+def test_null_true_and_nested_objects_are_json_like_any_other():
+    text = 'Action: {"action_type": "hazard_lights", "on": true, "index": null}'
+    assert read(text).action.on is True
+    with pytest.raises(ActionError, match="dict"):
+        read('Action: {"action_type": "answer", "text": {"a": {"b": [1, null]}}}')
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '```json\n{"action_type": "navigate_home"}\n```',
+        'Action:\n```\n{"action_type": "navigate_home"}\n```',
+        'I go home. {"action_type": "navigate_home"} That is all.',
+        "Action: {'action_type': 'navigate_home'}",
+        "Action: {'action_type': 'navigate_home', 'index': None}",
+        'Action: {"action_type": "navigate_home",}',
+        '**Action:** {"action_type": "navigate_home"}',
+        'action: {"action_type": "navigate_home"}',
+        'Action: {"action_type": "navigate_home"}.',
+        'Maybe {"action_type": "navigate_back"}? No.\nAction: {"action_type": "navigate_home"} !',
+        '{"thought": "go", "action_type": 1} {"action_type": "navigate_home"} {"not": "one"}',
+        '{"action": {"action_type": "navigate_home"}}',
+        "Not {\"action_type\": \"navigate_back\"}.\nAction: {'action_type': 'navigate_home'}",
+        "Situation: it's {odd} and \"quoted\nAction: {'action_type': 'navigate_home'}",
+    ],
+)
+def test_near_misses_are_forgiven(text):
+    answer = read(text)
+    assert not answer.strict
+    assert to_json(answer.action) == HOME
+
+
+def test_single_quotes_around_an_apostrophe():
+    answer = read("Action: {'action_type': 'answer', 'text': 'it's on', 'index': None}")
+    assert answer.action.text == "it's on"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "", "   ", "I would rather not.", "Action:", "Action: none", "Action: {", "Action: {}", "Action: []",
+        'Action: {"index": 3}', 'Action: {"action_type": "fly"}', 'Action: {"action_type": "click"}',
+        "Action: __import__('os').system('true')", "Action: {'action_type': open('/etc/passwd')}",
+        "{" * 50_000, '{"action_type": ' * 10_000, "'" * 50_000, "\0", '{"action_type": "click", "index": 1e999}',
+    ],
+    ids=lambda text: repr(text[:30]),
+)  # fmt: skip
+def test_what_cannot_be_read_says_why_in_one_line(text):
+    with pytest.raises(ActionError) as caught:
+        read(text)
+    assert "\n" not in str(caught.value)
+    assert len(str(caught.value)) < 500
+
+
+@given(st.text())
+def test_anything_is_an_answer_or_an_action_error(text):
+    try:
+        read(text)
+    except ActionError as error:
+        assert str(error)
+
+
+@given(st.text(), st.text())
+def test_an_action_is_found_whatever_stands_around_it(before, after):
+    """Unless what stands around it closes or opens another object."""
+    text = f"{before}\nAction: {json.dumps(TYPED)}\n{after}"
+    if "{" not in after and '"' not in before + after and "'" not in before + after:
+        assert to_json(read(text).action) == TYPED
+
+
+def test_labels_are_found_in_any_order_and_dress():
+    text = "**Plan:** first a\nthen b\n- Situation: cold\nLesson: none"
+    assert labelled(text, "plan") == "first a\nthen b"
+    assert labelled(text, "situation") == "cold"
+    assert labelled(text, "action") == ""

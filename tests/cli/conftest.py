@@ -1,0 +1,33 @@
+"""The command line in this process: what it prints, and the code it ends with."""
+
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import pytest
+
+from automotive_cosim.cli.main import main
+
+
+@dataclass
+class Ran:
+    code: int
+    out: str
+    err: str
+
+
+@pytest.fixture
+def cli(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], tmp_path) -> Callable[..., Ran]:
+    """Runs ``automotive-cosim`` in an empty folder."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("AUTOMOTIVE_COSIM_DEBUG", raising=False)
+
+    def run(*arguments: object) -> Ran:
+        monkeypatch.setattr(sys, "argv", ["automotive-cosim", *map(str, arguments)])
+        capfd.readouterr()
+        with pytest.raises(SystemExit) as ended:
+            main()
+        printed = capfd.readouterr()
+        return Ran(int(ended.value.code or 0), printed.out, printed.err)
+
+    return run

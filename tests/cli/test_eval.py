@@ -1,0 +1,123 @@
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from automotive_cosim.run.store import read_trace, write_trace
+
+GRID = ("--tasks", "hvac_fan_max", "--scenarios", "grid")
+PROGRAM = (sys.executable, "-c", "from automotive_cosim.cli.main import main; main()")
+
+
+def test_the_plan_is_shown_first_and_a_dry_run_ends_there(cli, tmp_path):
+    ran = cli("eval", "--agents", "oracle,t3a", *GRID, "--seeds", "0-2,7", "--geo", "full,none", "--dry-run")
+    assert ran.code == 0
+    assert "16 from 4 warm simulations" in ran.out
+    assert "say nothing about a language model" in " ".join(ran.out.split())
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_run_is_told_and_the_same_command_finds_it_done(cli, tmp_path):
+    (tmp_path / "plan.toml").write_text('agents = ["oracle"]\ntasks = ["hvac_fan_max"]\nscenarios = ["grid"]\n')
+    first = cli("eval", "--plan", "plan.toml", "--json")
+    assert (first.code, first.out.count("\n")) == (0, 1)
+    told = json.loads(first.out)
+    assert (told["planned"], told["successes"], told["errors"], told["ran"]) == (1, 1, 0, 1)
+    assert Path(told["out"], "manifest.json").is_file()
+    again = cli("eval", "--agents", "oracle", *GRID)
+    assert again.code == 0
+    assert "1 of 1 episodes; 100% succeeded" in again.out
+    assert "1 of 1 judged episodes succeeded; 0 errors" in again.out
+    assert len(list((tmp_path / "runs").iterdir())) == 1
+
+
+def test_errors_are_listed_and_set_the_exit_code(cli):
+    ran = cli("eval", "--agents", "oracle", "--tasks", "road_speed_80_in_50", "--scenarios", "grid", "--out", "e")
+    assert ran.code == 3
+    assert "TriggerNotReachedError" in ran.out
+    assert "1 of 1 judged episodes succeeded; 1 errors" in ran.out
+    assert ran.err.startswith("error: 1 of 2 episodes ended in an error")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ((), "names no agent"),
+        (("--agents", "t4a"), "did you mean"),
+        (("--agents", "t3a", "--seeds", "3-1"), "--seeds"),
+        (("--agents", "t3a", "--tasks", "nothing_*"), "no task"),
+        (("--agents", "t3a", "--pictures", "some"), "no choice of pictures"),
+        (("--agents", "t3a", "--workers", "0"), "whole number"),
+        (("--agents", "t3a", "--scenarios", ""), "--scenarios is empty"),
+        (("--plan", "none.toml"), "none.toml"),
+    ],
+)
+def test_bad_input_is_one_line(cli, arguments, said, tmp_path):
+    ran = cli("eval", *arguments)
+    assert ran.code == 2
+    assert ran.err.startswith("error: ")
+    assert ran.err.count("\n") == 1
+    assert said in ran.err
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="needs a folder that refuses even root")
+def test_a_folder_that_cannot_be_written_is_one_line(cli):
+    ran = cli("eval", "--agents", "oracle", *GRID, "--out", "/proc/x")
+    assert ran.code == 2
+    assert ran.err.startswith("error: cannot write to /proc/x")
+    assert ran.err.count("\n") == 1
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for another process")
+def test_ctrl_c_says_how_to_go_on(tmp_path):
+    process = subprocess.Popen(
+        [*PROGRAM, "eval", "--agents", "oracle", *GRID, "--repeats", "50", "--out", "e", "--workers", "2"],
+        cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
+    )  # fmt: skip
+    lines = tmp_path / "e" / "episodes.jsonl"
+    end_s = time.monotonic() + 90
+    while not (lines.is_file() and lines.read_bytes().count(b"\n") >= 2):
+        assert time.monotonic() < end_s
+        time.sleep(0.05)
+    os.killpg(process.pid, signal.SIGINT)
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "Traceback" not in err
+    assert "the same command goes on" in err
+    assert lines.read_bytes().endswith(b"\n")
+
+
+def test_a_stored_episode_is_run_again_and_compared_step_by_step(cli, tmp_path):
+    ran = json.loads(cli("eval", "--agents", "always-alert", *GRID, "--out", "e", "--json").out)
+    assert ran["judged"] == 1
+    (trace,) = (tmp_path / "e" / "traces").glob("*.jsonl.gz")
+    name = trace.name.removesuffix(".jsonl.gz")
+    again = cli("replay", "e", name)
+    assert again.code == 0, again.err
+    assert again.out.count("the same\n") >= 4
+    assert "all 3 steps are the same" in again.out
+    judged_again = cli("regrade", "e")
+    assert (judged_again.code, judged_again.out) == (0, "0 of 1 verdicts change\n")
+    lines = read_trace(tmp_path / "e", name)
+    lines[2]["signals"]["Vehicle.Speed"] = -1.0
+    write_trace(tmp_path / "e", name, lines)
+    differs = cli("replay", "e", "hvac_fan_max")
+    assert differs.code == 1
+    assert "1 of 3 steps differ, from step 2 on" in differs.out
+    assert "differs in signals" in differs.out
+    assert cli("replay", "e", "hvac_x").code == 2
+    assert cli("report", "e").code == 0
+    assert (tmp_path / "e" / "report.html").is_file()
+
+
+def test_a_folder_that_is_no_evaluation_is_told(cli):
+    for command in (("report", "."), ("replay", ".", "x"), ("regrade", ".")):
+        ran = cli(*command)
+        assert ran.code == 2
+        assert ran.err.startswith("error: ")

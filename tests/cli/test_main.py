@@ -1,0 +1,79 @@
+import subprocess
+import sys
+
+import pytest
+
+from automotive_cosim import __version__
+from automotive_cosim.agents import AGENTS
+from automotive_cosim.errors import TriggerNotReachedError
+from automotive_cosim.tasks import CATALOGUE
+
+HEAVY = ("libsumo", "shapely", "pyproj", "PIL", "openai", "matplotlib", "jinja2", "scipy", "pandas")
+COMMANDS = (
+    "run",
+    "eval",
+    "report",
+    "compare",
+    "replay",
+    "regrade",
+    "bench",
+    "context",
+    "scenarios",
+    "tasks",
+    "agents",
+)
+
+
+def test_help_names_every_command_and_loads_nothing_heavy():
+    program = (
+        "import sys; sys.argv = ['automotive-cosim', '--help']\n"
+        "from automotive_cosim.cli.main import main\n"
+        "try: main()\n"
+        f"finally: print('LOADED', *[name for name in {HEAVY!r} if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stderr == ""
+    assert done.stdout.splitlines()[-1] == "LOADED"
+    for command in COMMANDS:
+        assert command in done.stdout
+
+
+@pytest.mark.parametrize("command", [*COMMANDS, "tasks show"])
+def test_every_command_explains_itself(cli, command):
+    ran = cli(*command.split(), "--help")
+    assert ran.code == 0
+    assert "Usage" in ran.out
+    assert ran.err == ""
+
+
+def test_version(cli):
+    assert cli("--version").out.split() == ["automotive-cosim", __version__]
+
+
+def test_tasks_and_agents_are_listed(cli):
+    listed = cli("tasks", "list").out.splitlines()
+    assert [line.split()[0] for line in listed] == list(CATALOGUE)
+    assert set(AGENTS) <= set(cli("agents").out.split())
+
+
+@pytest.mark.parametrize("task", CATALOGUE)
+def test_a_task_is_shown_with_its_words_and_halves(cli, task):
+    text = cli("tasks", "show", task).out
+    assert all(words in text for words in CATALOGUE[task].templates)
+    assert all(f"{half} half" in text for half in CATALOGUE[task].halves)
+
+
+@pytest.mark.parametrize(
+    ("error", "code"),
+    [(TriggerNotReachedError("the light\nwas red"), 3), (KeyboardInterrupt(), 130)],
+)
+def test_other_ends_have_codes_of_their_own(cli, monkeypatch, error, code):
+    def fail(*_: object) -> None:
+        raise error
+
+    monkeypatch.setattr("automotive_cosim.agents.make_agent", fail)
+    ran = cli("run")
+    assert ran.code == code
+    assert ran.out == ""
+    assert ran.err.startswith("error: ")
+    assert len(ran.err.splitlines()) == 1

@@ -1,0 +1,165 @@
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+GRID = ("--task", "hvac_fan_max", "--scenario", "grid")
+KEYS = {
+    "task", "scenario", "agent", "model", "seed", "success", "reward", "steps", "sim_seconds", "trace_sha256",
+    "out",
+}  # fmt: skip
+PROGRAM = (sys.executable, "-c", "from automotive_cosim.cli.main import main; main()")
+
+
+def test_json_prints_one_object_and_nothing_else(cli, tmp_path):
+    ran = cli("run", "--json", *GRID, "--agent", "oracle")
+    assert ran.code == 0
+    assert ran.err == ""
+    assert ran.out.count("\n") == 1
+    told = json.loads(ran.out)
+    assert set(told) >= KEYS
+    assert told["success"] is True
+    folder = tmp_path / told["out"]
+    assert folder.parent == tmp_path / "runs"
+    left = {path.name for path in folder.iterdir()}
+    assert left == {"episode.json", "steps.jsonl", "screenshots", "episode.webp", "summary.html"}
+
+
+def test_the_film_has_a_frame_for_every_step_and_stays_small(cli):
+    ran = cli("run", "--json", *GRID, "--agent", "oracle", "--out", "out")
+    steps = json.loads(ran.out)["steps"]
+    film = Path("out/episode.webp")
+    assert film.stat().st_size < 5e6
+    with Image.open(film) as image:
+        assert image.n_frames > steps + 1
+        assert image.size == (960, 540)
+
+
+def test_without_a_terminal_it_tells_in_plain_lines(cli):
+    ran = cli("run", *GRID, "--agent", "oracle", "--out", "out")
+    assert ran.code == 0
+    assert "\x1b" not in ran.out
+    for word in ("hand-over", "step 1", "success", "declared", "out/summary.html"):
+        assert word in ran.out, ran.out
+    assert "Traceback" not in ran.out + ran.err
+
+
+def test_an_episode_that_is_not_solved_has_run_all_the_same(cli):
+    ran = cli("run", "--json", *GRID, "--agent", "always-alert")
+    assert ran.code == 0
+    assert json.loads(ran.out)["success"] is False
+
+
+def test_force_replaces_a_record(cli):
+    first = json.loads(cli("run", "--json", *GRID, "--agent", "oracle", "--out", "out").out)
+    again = json.loads(cli("run", "--json", *GRID, "--agent", "oracle", "--out", "out", "--force").out)
+    assert first == again
+
+
+def test_a_file_of_actions_is_played(cli, tmp_path):
+    actions = [
+        {"action_type": "open_app", "app_name": "climate"},
+        {"action_type": "status", "goal_status": "complete"},
+    ]
+    (tmp_path / "a.jsonl").write_text("\n".join(map(json.dumps, actions)), encoding="utf-8")
+    told = json.loads(cli("run", "--json", *GRID, "--actions", "a.jsonl", "--out", "out").out)
+    assert told["agent"] == "script"
+    assert told["steps"] == len(actions)
+    lines = [json.loads(line) for line in Path("out/steps.jsonl").read_text(encoding="utf-8").splitlines()]
+    assert [line["action"] for line in lines[1:]] == actions
+
+
+def test_a_trigger_out_of_reach_is_no_failure_and_leaves_no_folder(cli, tmp_path):
+    ran = cli("run", "--json", "--scenario", "grid", "--task", "road_speed_80_in_50", "--half", "second")
+    assert ran.code == 3
+    assert json.loads(ran.out)["success"] is None
+    assert len(ran.err.splitlines()) == 1
+    assert ran.err.startswith("error: task 'road_speed_80_in_50'")
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_terminal_that_knows_ascii_alone_gets_the_whole_record(tmp_path):
+    done = subprocess.run(
+        [*PROGRAM, "run", *GRID, "--agent", "oracle", "--out", "out"],
+        cwd=tmp_path, env=os.environ | {"PYTHONIOENCODING": "ascii"}, capture_output=True, check=True,
+    )  # fmt: skip
+    assert done.stderr == b""
+    assert b"the driver says: ?" in done.stdout
+    assert (tmp_path / "out" / "summary.html").is_file()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for another process")
+def test_ctrl_c_while_the_command_line_loads_ends_it_in_silence(tmp_path):
+    (tmp_path / "gymnasium.py").write_text(
+        "import os, signal\nos.kill(os.getpid(), signal.SIGINT)\nwhile True: pass\n"
+    )
+    program = f"import sys; sys.argv[0] = 'automotive-cosim'; {PROGRAM[-1]}"
+    done = subprocess.run([sys.executable, "-c", program], cwd=tmp_path, capture_output=True, timeout=60)
+    assert done.returncode == -signal.SIGINT
+    assert done.stdout + done.stderr == b""
+
+
+@pytest.fixture
+def long_run(tmp_path):
+    """A run of minutes in a session of its own, far enough to have recorded two steps."""
+    wait = json.dumps({"action_type": "wait", "seconds": 10})
+    (tmp_path / "a.jsonl").write_text("\n".join([wait] * 30), encoding="utf-8")
+    process = subprocess.Popen(
+        [*PROGRAM, "run", *GRID, "--actions", "a.jsonl", "--out", "out"],
+        cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
+    )  # fmt: skip
+    steps = tmp_path / "out" / "steps.jsonl"
+    _until(lambda: steps.is_file() and steps.read_text(encoding="utf-8").count("\n") >= 2)
+    yield process
+    process.kill()
+    process.communicate()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for another process")
+@pytest.mark.parametrize("to_group", [True, False], ids=["as a terminal does", "to the program alone"])
+def test_ctrl_c_keeps_what_was_recorded_and_ends_every_process(long_run, tmp_path, to_group):
+    (os.killpg if to_group else os.kill)(long_run.pid, signal.SIGINT)
+    _, err = long_run.communicate(timeout=30)
+    assert long_run.returncode == 130
+    assert "Traceback" not in err
+    assert "out" in err
+    lines = (tmp_path / "out" / "steps.jsonl").read_text(encoding="utf-8").splitlines()
+    assert [json.loads(line)["step"] for line in lines] == list(range(len(lines)))
+    assert json.loads((tmp_path / "out" / "episode.json").read_text(encoding="utf-8"))["end"] == "interrupted"
+    assert (tmp_path / "out" / "summary.html").is_file()
+    _until(lambda: not _session(long_run.pid))
+
+
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks at /proc")
+def test_a_kill_keeps_the_steps_and_leaves_no_process(long_run, tmp_path):
+    long_run.kill()
+    long_run.communicate()
+    for line in (tmp_path / "out" / "steps.jsonl").read_text(encoding="utf-8").splitlines()[:-1]:
+        json.loads(line)
+    _until(lambda: not _session(long_run.pid))
+
+
+def _until(holds, seconds=60.0):
+    end_s = time.monotonic() + seconds
+    while not holds():
+        assert time.monotonic() < end_s, "did not come about"
+        time.sleep(0.05)
+
+
+def _session(leader):
+    """Living processes of the session, as /proc tells; none where there is no /proc."""
+    living = []
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = stat.read_text().rpartition(")")[2].split()
+        except OSError:
+            continue
+        if int(fields[3]) == leader and fields[0] != "Z":
+            living.append(stat.parent.name)
+    return living

@@ -1,0 +1,92 @@
+"""The on-screen keyboard."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cockpit.signals import HMI
+from automotive_cosim.contracts import Element, FeedbackCode, Surroundings
+
+FIELDS = {"map": "map.search", "media": "media.search", "manual": "manual.search"}
+
+
+def find(cockpit: Cockpit, key: str) -> Element:
+    return next(element for element in cockpit.elements() if element.resource_id == key)
+
+
+def press(cockpit: Cockpit, *keys: str) -> FeedbackCode:
+    code = FeedbackCode.OK
+    for key in keys:
+        box = find(cockpit, key).bbox_pixels
+        code = cockpit.tap((box.x_min + box.x_max) // 2, (box.y_min + box.y_max) // 2).code
+    return code
+
+
+def has_keys(cockpit: Cockpit) -> bool:
+    return any(element.resource_id.startswith("keyboard.") for element in cockpit.elements())
+
+
+@pytest.fixture
+def standing(make: Callable[..., Cockpit], around: Surroundings) -> Cockpit:
+    return make(surroundings=replace(around, driving=replace(around.driving, speed_mps=0.0)))
+
+
+@pytest.mark.parametrize("screen", FIELDS)
+def test_a_tap_on_a_field_brings_the_keys_and_they_write_into_it(standing: Cockpit, screen: str) -> None:
+    standing.visit(screen)
+    assert not has_keys(standing)
+    assert press(standing, FIELDS[screen]) is FeedbackCode.OK
+    assert not any(element.resource_id.startswith("dock.") for element in standing.elements())
+    press(standing, "keyboard.f", "keyboard.o", "keyboard.k", "keyboard.backspace", "keyboard.g", "keyboard.space")
+    assert find(standing, FIELDS[screen]).text == "fog "
+
+
+def test_enter_takes_the_first_result(standing: Cockpit) -> None:
+    standing.visit("manual")
+    press(standing, "manual.search", "keyboard.f", "keyboard.o", "keyboard.g", "keyboard.enter")
+    assert not has_keys(standing)
+    assert any(element.is_selected and "og" in element.text for element in standing.elements())
+
+
+def test_enter_is_off_while_nothing_fits(standing: Cockpit) -> None:
+    standing.visit("map")
+    press(standing, "map.search", *(f"keyboard.{letter}" for letter in "zqzq"))
+    assert press(standing, "keyboard.enter") is FeedbackCode.DISABLED
+
+
+def test_folded_keys_leave_the_text_and_the_whole_list(standing: Cockpit) -> None:
+    standing.visit("media")
+    press(standing, "media.search", "keyboard.r")
+    rows = [element for element in standing.elements() if element.resource_id.startswith("media.entry.")]
+    assert press(standing, "keyboard.hide") is FeedbackCode.OK
+    more = [element for element in standing.elements() if element.resource_id.startswith("media.entry.")]
+    assert (has_keys(standing), find(standing, "media.search").text) == (False, "r")
+    assert len(more) > len(rows) > 0
+
+
+def test_text_that_is_typed_at_once_folds_the_keys_and_can_be_entered(standing: Cockpit) -> None:
+    standing.visit("manual")
+    press(standing, "manual.search")
+    assert standing.type_text("ice").code is FeedbackCode.OK
+    assert not has_keys(standing)
+    assert standing.key_enter().code is FeedbackCode.OK
+
+
+def test_driving_off_folds_the_keys(standing: Cockpit, around: Surroundings) -> None:
+    standing.visit("map")
+    press(standing, "map.search")
+    standing.sense(around, 1.0)
+    assert not has_keys(standing)
+    assert press(standing, "map.search") is FeedbackCode.RESTRICTED
+
+
+@pytest.mark.parametrize(("language", "letter"), [("fr", "é"), ("de", "ß"), ("ja", "q"), ("en", "'")])
+def test_each_language_has_its_keys(standing: Cockpit, language: str, letter: str) -> None:
+    standing.inject(HMI.LANGUAGE.path, language)
+    standing.visit("map")
+    assert press(standing, "map.search", f"keyboard.{letter}") is FeedbackCode.OK
+    assert find(standing, "map.search").text == letter

@@ -1,0 +1,295 @@
+"""Laws of every screen: what is listed is drawn, can be read, and can be touched."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+import pytest
+
+from automotive_cosim.cockpit import accessibility
+from automotive_cosim.cockpit.arrivals import Arrival
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.render import render
+from automotive_cosim.cockpit.screens import SCREENS
+from automotive_cosim.cockpit.signals import ACTUATORS, difference
+from automotive_cosim.cockpit.theme import TOUCH, Colour
+from automotive_cosim.cockpit.widgets import Rows, Screen, Slider
+from automotive_cosim.contracts import (
+    Alert,
+    AlertKind,
+    Connectivity,
+    Direction,
+    Element,
+    FeedbackCode,
+    GpsFix,
+    RoadNetwork,
+    Severity,
+    Surroundings,
+    Weather,
+)
+
+Make = Callable[..., Cockpit]
+WHOLE = Rect(0, 0, 1280, 720)
+
+
+def press(cockpit: Cockpit, key: str) -> FeedbackCode:
+    element = next(element for element in cockpit.elements() if element.resource_id == key)
+    return cockpit.tap(*middle(element)).code
+
+
+def middle(element: Element) -> tuple[int, int]:
+    box = element.bbox_pixels
+    return (box.x_min + box.x_max) // 2, (box.y_min + box.y_max) // 2
+
+
+def busy(cockpit: Cockpit) -> Cockpit:
+    """With all on that takes room: notice, history, lamps, long names."""
+    cockpit.alert(Alert(AlertKind.CORRIDOR, Severity.CRITICAL, "", 20.0))
+    cockpit.alert(Alert(AlertKind.YIELD, Severity.WARNING))
+    cockpit.hazards(True)
+    cockpit.open_app("vehicle")
+    for key in ("lights.switch.low_beam", "lights.high_beam", "lights.front_fog", "lights.rear_fog"):
+        press(cockpit, key)
+    return cockpit
+
+
+def _speaking(language: str) -> dict[str, str]:
+    return {"Vehicle.Cabin.Infotainment.HMI.CurrentLanguage": language}
+
+
+CASES: dict[str, Callable[[Make, Surroundings], Cockpit]] = {
+    "day": lambda make, o: make(surroundings=o),
+    "night": lambda make, o: make(surroundings=replace(o, sun_elevation_deg=-20.0)),
+    "busy": lambda make, o: busy(make(surroundings=replace(o, sun_elevation_deg=-20.0))),
+    "busy by day": lambda make, o: busy(make(surroundings=o)),
+    "parked": lambda make, o: make(
+        surroundings=replace(o, driving=replace(o.driving, speed_mps=0.0)),
+        signals={"Vehicle.Powertrain.Transmission.Gear": "P"},
+    ),
+    "offline, cold and without camera": lambda make, o: make(
+        surroundings=replace(
+            o,
+            gps=GpsFix(False, 2.3, 48.8, 40.0, 30.0, 0.0),
+            connectivity=Connectivity(False, "none", 0),
+            weather=Weather(-18.0, 90.0, 3.0, 73, 100.0, 300.0, 40.0),
+        ),
+        sign_camera=False,
+    ),
+    "a call rings": lambda make, o: make(
+        surroundings=o,
+        arrivals=[Arrival("message", 0.0, "Femi Lindqvist"), Arrival("call", 0.0, "Tilda Lindqvist")],
+    ),
+    "busy in French": lambda make, o: busy(make(surroundings=o, signals=_speaking("fr"))),
+    "parked in German by night": lambda make, o: make(
+        surroundings=replace(o, sun_elevation_deg=-20.0, driving=replace(o.driving, speed_mps=0.0)),
+        signals={**_speaking("de"), "Vehicle.Powertrain.Transmission.Gear": "P"},
+    ),
+    "a call in Japanese": lambda make, o: make(
+        surroundings=o, signals=_speaking("ja"), arrivals=[Arrival("call", 0.0, "Tilda Lindqvist")]
+    ),
+    "miles and fahrenheit, very fast": lambda make, o: make(
+        surroundings=replace(o, driving=replace(o.driving, speed_mps=69.0)),
+        signals={
+            "Vehicle.Cabin.Infotainment.HMI.DistanceUnit": "MILES",
+            "Vehicle.Cabin.Infotainment.HMI.TemperatureUnit": "F",
+        },
+    ),
+}
+
+
+@pytest.fixture(scope="module", params=CASES, ids=str)
+def screens(
+    request: pytest.FixtureRequest,
+    network: RoadNetwork,
+    outdoors: Callable[..., Surroundings],
+    walker: Callable[[Cockpit], tuple[Any, ...]],
+) -> list[Cockpit]:
+    """Every view from home, in each case. The cockpits are only looked at."""
+
+    def make(seed: int = 1, surroundings: Surroundings | None = None, **options: Any) -> Cockpit:
+        cockpit = Cockpit(network, rng=np.random.default_rng(seed), **options)
+        cockpit.sense(surroundings or outdoors(), 0.0)
+        return cockpit
+
+    return [view.cockpit for view in walker(CASES[request.param](make, outdoors()))]
+
+
+def test_every_screen_is_reached_from_home(make: Make, around: Surroundings, walker: Any) -> None:
+    parked = walker(CASES["parked"](make, around))
+    assert {view.cockpit.screen for view in parked} == set(SCREENS)
+    assert len(parked) >= 70
+    moving = walker(make())
+    assert {view.cockpit.screen for view in moving} == set(SCREENS) - {"calendar"}
+
+
+def test_every_actuator_is_set_from_home(make: Make, around: Surroundings, walker: Any) -> None:
+    set_by_taps, known = set[str](), set[tuple[str, str]]()
+    for view in walker(CASES["parked"](make, replace(around, sun_elevation_deg=-20.0))):
+        before = view.cockpit.signals.commanded()
+        for widget in view.cockpit.tree.walk():
+            if not widget.listens or not widget.usable or (view.cockpit.screen, widget.key) in known:
+                continue
+            known.add((view.cockpit.screen, widget.key))
+            if isinstance(widget, Slider):
+                set_by_taps.add(widget.signal.path)
+                continue
+            twin = view.cockpit.copy()
+            twin.tap(*widget.rect.centre)
+            set_by_taps |= set(difference(before, twin.signals.commanded()))
+    assert set(ACTUATORS) - set_by_taps == set()
+
+
+def test_what_can_be_touched_lies_on_the_screen_is_named_large_and_unique(screens: list[Cockpit]) -> None:
+    for cockpit in screens:
+        keys = Counter(element.resource_id for element in cockpit.elements() if element.resource_id)
+        assert [key for key, count in keys.items() if count > 1] == []
+        for element in cockpit.elements():
+            box = element.bbox_pixels
+            assert WHOLE.encloses(Rect(box.x_min, box.y_min, box.x_max - box.x_min, box.y_max - box.y_min))
+            if element.is_clickable:
+                assert element.text or element.content_description
+                assert element.resource_id
+                assert min(box.x_max - box.x_min, box.y_max - box.y_min) >= TOUCH, element.resource_id
+
+
+def test_a_tap_on_the_middle_reaches_the_widget(screens: list[Cockpit]) -> None:
+    for cockpit in screens:
+        for element in cockpit.elements():
+            if element.is_clickable:
+                hit = cockpit.tree.at(*middle(element))
+                assert hit is not None
+                assert hit.key == element.resource_id
+
+
+def test_every_usable_widget_does_something_and_every_other_says_why_not(screens: list[Cockpit]) -> None:
+    known = set()
+    for cockpit in screens:
+        for element in cockpit.elements():
+            if not element.is_clickable or (cockpit.screen, element.resource_id) in known:
+                continue
+            if element.resource_id.startswith(("dock.", "status.")):
+                known.add((cockpit.screen, element.resource_id))
+            twin = cockpit.copy()
+            feedback = twin.tap(*middle(element))
+            assert feedback.text
+            changed = twin.commands() != cockpit.commands() or twin.tree != cockpit.tree
+            if element.is_enabled:
+                same = element.is_selected or element.is_scrollable or element.is_focused
+                same |= element.resource_id == "hvac.fan.max"
+                assert same or feedback.code in (FeedbackCode.OK, FeedbackCode.REFUSED), element.resource_id
+                assert changed or feedback.code is not FeedbackCode.OK, element.resource_id
+            else:
+                assert feedback.code in (FeedbackCode.DISABLED, FeedbackCode.RESTRICTED)
+                assert not changed
+
+
+def test_no_text_is_cut_off_leaves_its_box_or_lies_over_another(screens: list[Cockpit]) -> None:
+    for cockpit in screens:
+        inks = render(cockpit.tree).inks
+        for ink in inks:
+            assert not ink.cut, f"{cockpit.screen}: {ink.text}"
+            assert ink.box.inset(-1, -3).encloses(ink.rect), f"{cockpit.screen}: {ink}"
+        for one, other in combinations(inks, 2):
+            assert not one.rect.overlaps(other.rect), f"{cockpit.screen}: {one.text} over {other.text}"
+
+
+def test_every_text_on_the_picture_is_in_the_list(screens: list[Cockpit]) -> None:
+    for cockpit in screens:
+        said = " ".join(
+            f"{element.text} {element.content_description} {element.hint_text}" for element in cockpit.elements()
+        )
+        for ink in render(cockpit.tree).inks:
+            assert ink.text in said
+
+
+def test_every_text_stands_out_from_its_ground(screens: list[Cockpit]) -> None:
+    for cockpit in screens:
+        canvas = render(cockpit.tree)
+        pixels = canvas.pixels().astype(np.int64) @ np.array((1 << 16, 1 << 8, 1))
+        for ink in canvas.inks:
+            rect = ink.rect.inset(-2)
+            patch = pixels[max(0, rect.y) : rect.bottom, max(0, rect.x) : rect.right]
+            colours, counts = np.unique(patch, return_counts=True)
+            own = int(np.dot(ink.colour, (1 << 16, 1 << 8, 1)))
+            ground = int(colours[np.argmax(np.where(colours == own, 0, counts))])
+            shade = (ground >> 16, ground >> 8 & 255, ground & 255)
+            assert contrast(ink.colour, shade) >= 4.5, f"{cockpit.screen}: {ink.text}"
+
+
+def contrast(one: Colour, other: Colour) -> float:
+    """Ratio by WCAG 2.1."""
+
+    def luminance(colour: Colour) -> float:
+        linear = [c / 3294.6 if c <= 10 else ((c / 255 + 0.055) / 1.055) ** 2.4 for c in colour]
+        return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+    lighter, darker = sorted((luminance(one), luminance(other)), reverse=True)
+    return (lighter + 0.05) / (darker + 0.05)
+
+
+def test_the_yardstick_of_contrast_is_right() -> None:
+    assert contrast((0, 0, 0), (255, 255, 255)) == pytest.approx(21.0)
+    assert contrast((119, 119, 119), (255, 255, 255)) == pytest.approx(4.48, abs=0.01)
+
+
+def test_children_lie_within_their_parents(screens: list[Cockpit]) -> None:
+    for cockpit in screens:
+        for widget in cockpit.tree.walk():
+            for child in widget.children:
+                assert widget.rect.encloses(child.rect), f"{child.key or child.text} beyond {widget.key}"
+
+
+def test_every_list_scrolls_through_all_it_has(make: Make, around: Surroundings, walker: Any) -> None:
+    for view in walker(CASES["parked"](make, around)):
+        for rows in [widget for widget in view.cockpit.tree.walk() if isinstance(widget, Rows)]:
+            cockpit = view.cockpit.copy()
+            seen = set[str]()
+            while True:
+                here = next(widget for widget in cockpit.tree.walk() if widget.key == rows.key)
+                seen |= {child.key for child in here.children}
+                if cockpit.scroll(rows.key, Direction.DOWN).code is not FeedbackCode.OK:
+                    break
+            assert len(seen) >= rows.total
+            while cockpit.scroll(rows.key, Direction.UP).code is FeedbackCode.OK:
+                pass
+            assert next(w for w in cockpit.tree.walk() if w.key == rows.key).first == 0  # type: ignore[attr-defined]
+
+
+def test_same_state_same_bytes_and_another_state_other_bytes(make: Make, around: Surroundings, walker: Any) -> None:
+    slow = replace(around, driving=replace(around.driving, speed_mps=0.0))
+    for one, other in zip(walker(make()), walker(make()), strict=True):
+        assert one.cockpit.screenshot().tobytes() == other.cockpit.screenshot().tobytes()
+        assert one.cockpit.elements() == other.cockpit.elements()
+        other.cockpit.sense(slow, 1.0)
+        assert one.cockpit.screenshot().tobytes() != other.cockpit.screenshot().tobytes()
+
+
+def test_an_unchanged_tree_keeps_its_picture(cockpit: Cockpit, around: Surroundings) -> None:
+    first = cockpit.screenshot()
+    assert cockpit.screenshot() is first
+    cockpit.open_app("settings")
+    settings = cockpit.screenshot()
+    cockpit.sense(around, 0.0)
+    assert cockpit.screenshot() is settings
+    assert not first.flags.writeable
+
+
+@pytest.mark.parametrize("width", [640, 960, 1920])
+def test_other_resolutions_show_and_hit_the_same(network: object, around: Surroundings, width: int) -> None:
+    cockpit = Cockpit(network, rng=np.random.default_rng(1), width=width)  # type: ignore[arg-type]
+    cockpit.sense(around, 0.0)
+    assert cockpit.screenshot().shape == (width * 9 // 16, width, 3)
+    assert press(cockpit, "dock.climate") is FeedbackCode.OK
+    assert press(cockpit, "hvac.fan.max") is FeedbackCode.OK
+
+
+def test_the_picture_changes_only_with_the_tree(cockpit: Cockpit) -> None:
+    tree: Screen = cockpit.tree
+    assert render(tree).pixels().tobytes() == render(tree).pixels().tobytes()
+    assert accessibility.elements(tree) == accessibility.elements(tree)

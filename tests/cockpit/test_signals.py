@@ -1,0 +1,102 @@
+"""The signal catalogue and the store."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from automotive_cosim.cockpit.signals import (
+    ACTUATORS,
+    ADAS,
+    CATALOGUE,
+    HVAC,
+    LIGHTS,
+    Kind,
+    Signal,
+    Signals,
+    difference,
+    named,
+)
+from automotive_cosim.errors import SignalError, UnknownNameError, UserError
+
+ANYTHING = st.one_of(
+    st.none(), st.booleans(), st.integers(), st.floats(), st.text(max_size=8), st.binary(max_size=2)
+)
+
+
+@pytest.mark.parametrize("signal", CATALOGUE.values(), ids=CATALOGUE.keys())
+def test_default_is_legal_and_path_is_vss(signal: Signal[Any]) -> None:
+    assert signal.check(signal.default) == signal.default
+    assert signal.path.startswith("Vehicle.")
+    assert all(part[0].isupper() for part in signal.path.split("."))
+
+
+@given(value=ANYTHING)
+def test_a_store_holds_only_legal_values(value: Any) -> None:
+    signals = Signals()
+    for signal in CATALOGUE.values():
+        before = signals[signal]
+        try:
+            signals[signal] = value
+        except SignalError as error:
+            assert signal.path in str(error)
+            assert "\n" not in str(error)
+            assert signals[signal] == before
+        else:
+            assert signal.check(signals[signal]) == signals[signal]
+
+
+@pytest.mark.parametrize(
+    ("signal", "value", "expected"),
+    [
+        (HVAC.FAN_SPEED, 101.0, "0 to 100 percent"),
+        (HVAC.DRIVER_TEMPERATURE, 15.5, "16 to 28 celsius"),
+        (HVAC.FAN_SPEED, float("nan"), "float"),
+        (HVAC.FAN_SPEED, True, "float"),
+        (LIGHTS.SWITCH, "BRIGHT", "one of OFF, POSITION, AUTO, BEAM"),
+        (LIGHTS.HIGH_BEAM, 1, "bool"),
+        (ADAS.LIMIT_SIGN, -5.0, "or nothing"),
+    ],
+)
+def test_illegal_values_are_refused_by_name_and_range(signal: Signal[Any], value: Any, expected: str) -> None:
+    with pytest.raises(SignalError, match=expected) as caught:
+        Signals()[signal] = value
+    assert signal.path in str(caught.value)
+    assert isinstance(caught.value, UserError)
+
+
+def test_integers_become_floats() -> None:
+    signals = Signals()
+    signals[HVAC.FAN_SPEED] = 60
+    assert type(signals[HVAC.FAN_SPEED]) is float
+
+
+def test_unknown_path_is_refused_with_a_suggestion() -> None:
+    with pytest.raises(UnknownNameError, match=r"did you mean 'Vehicle\.Speed'"):
+        named("Vehicle.Sped")
+    with pytest.raises(UnknownNameError):
+        Signals({"Vehicle.Nothing": 1})
+
+
+def test_snapshot_is_json_and_a_difference_lists_what_changed() -> None:
+    signals = Signals({LIGHTS.HAZARD.path: True})
+    before = signals.snapshot()
+    assert json.loads(json.dumps(before)) == before
+    signals[HVAC.FAN_SPEED] = 80.0
+    assert difference(before, signals.snapshot()) == {HVAC.FAN_SPEED.path: (30.0, 80.0)}
+
+
+def test_copies_are_independent() -> None:
+    signals = Signals()
+    twin = signals.copy()
+    twin[HVAC.FAN_SPEED] = 90.0
+    assert signals[HVAC.FAN_SPEED] != twin[HVAC.FAN_SPEED]
+
+
+def test_what_can_be_commanded_are_the_actuators() -> None:
+    assert set(ACTUATORS) == {path for path, signal in CATALOGUE.items() if signal.kind is Kind.ACTUATOR}
+    assert set(Signals().commanded()) == set(ACTUATORS)

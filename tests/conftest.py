@@ -1,0 +1,86 @@
+"""Builders of observations for tests that need no simulation, and warm simulations for those that do."""
+
+from collections.abc import Callable, Iterator
+
+import pytest
+
+from automotive_cosim.contracts import (
+    BoundingBox,
+    Connectivity,
+    Element,
+    Feedback,
+    FeedbackCode,
+    GpsFix,
+    Observation,
+    VehicleState,
+)
+from automotive_cosim.traffic.fork import Simulations
+
+PARIS = "Place: Paris, France\nSpeed limit here: 50 km/h (posted on Avenue Foch)"
+
+
+def _vehicle(**changes: object) -> VehicleState:
+    values: dict[str, object] = dict(
+        speed_kmh=80.2,
+        gear="D",
+        restrictions=511,
+        ambient_temperature_c=4.0,
+        cabin_temperature_c=20.0,
+        cabin_humidity_pct=60.0,
+        rain_intensity_pct=0.0,
+        driver_temperature_set_c=21.0,
+        fan_speed_pct=30.0,
+        is_low_beam_on=False,
+        is_high_beam_on=False,
+        is_front_fog_on=False,
+        is_rear_fog_on=False,
+        is_hazard_on=False,
+        energy_level_pct=70.0,
+        range_km=250.0,
+        speed_limit_sign_kmh=None,
+        leader_gap_m=None,
+        leader_time_to_collision_s=None,
+    )
+    return VehicleState(**(values | changes))  # type: ignore[arg-type]
+
+
+def _button(resource_id: str, text: str = "Button") -> Element:
+    box = BoundingBox(0, 0, 100, 60)
+    return Element(text, "", "Button", box, resource_id, "automotive", is_clickable=True)
+
+
+def _observation(goal: str, context: str | None = PARIS, **changes: object) -> Observation:
+    values: dict[str, object] = dict(
+        goal=goal,
+        time_s=0.0,
+        feedback=Feedback(FeedbackCode.NONE, ""),
+        elements=(_button("safety.kind.speed", "Speed"), _button("safety.warn", "Warn driver")),
+        vehicle=_vehicle(),
+        connectivity=Connectivity(True, "5g", 4),
+        gps=GpsFix(True, 2.29, 48.87, 3.0, 0.0, 90.0),
+        context=context,
+    )
+    return Observation(**(values | changes))  # type: ignore[arg-type]
+
+
+@pytest.fixture(scope="session")
+def vehicle() -> Callable[..., VehicleState]:
+    return _vehicle
+
+
+@pytest.fixture(scope="session")
+def button() -> Callable[..., Element]:
+    return _button
+
+
+@pytest.fixture(scope="session")
+def observation() -> Callable[..., Observation]:
+    return _observation
+
+
+@pytest.fixture(scope="session")
+def simulations() -> Iterator[Simulations]:
+    """Shared by all tests of a worker."""
+    shared = Simulations()
+    yield shared
+    shared.close()

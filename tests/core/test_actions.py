@@ -1,0 +1,126 @@
+"""Actions are read strictly, and a wrong one says what was wrong."""
+
+import json
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from automotive_cosim.actions import FIELDS, check, grammar, parse, to_json
+from automotive_cosim.contracts import Action, ActionType, AlertKind, Direction, GoalStatus, Severity
+from automotive_cosim.errors import ActionError
+
+SAMPLES = {
+    "index": 3,
+    "text": "hello",
+    "clear_text": True,
+    "direction": Direction.DOWN,
+    "distance_px": 120,
+    "app_name": "climate",
+    "seconds": 2,
+    "goal_status": GoalStatus.INFEASIBLE,
+    "reason": "law",
+    "kind": AlertKind.SPEED,
+    "severity": Severity.CRITICAL,
+    "speed_kmh": 50.0,
+    "on": False,
+    "destination": "Rue de Rivoli",
+}
+
+
+def full(kind: ActionType) -> dict[str, object]:
+    takes = FIELDS[kind]
+    names = (("index",) if takes.target else ()) + takes.required + takes.optional
+    return {"action_type": str(kind)} | {name: SAMPLES[name] for name in names}
+
+
+def test_every_action_type_has_its_fields_stated():
+    assert set(FIELDS) == set(ActionType)
+
+
+@pytest.mark.parametrize("kind", ActionType)
+def test_json_round_trip(kind: ActionType):
+    sent = full(kind)
+    assert to_json(parse(json.dumps(sent))) == sent
+
+
+@pytest.mark.parametrize("kind", ActionType)
+def test_a_missing_required_field_is_named(kind: ActionType):
+    for name in FIELDS[kind].required:
+        sent = full(kind)
+        del sent[name]
+        with pytest.raises(ActionError, match=name):
+            parse(sent)
+
+
+@pytest.mark.parametrize("kind", ActionType)
+def test_a_surplus_field_is_named(kind: ActionType):
+    surplus = next(name for name in SAMPLES if name not in full(kind))
+    with pytest.raises(ActionError, match=surplus):
+        parse(full(kind) | {surplus: SAMPLES[surplus]})
+
+
+@pytest.mark.parametrize("kind", [kind for kind, takes in FIELDS.items() if takes.target])
+def test_target_is_an_index_or_a_point_never_both(kind: ActionType):
+    sent = full(kind)
+    with pytest.raises(ActionError, match="both"):
+        parse(sent | {"x": 1, "y": 2})
+    del sent["index"]
+    with pytest.raises(ActionError, match="target"):
+        parse(sent)
+    with pytest.raises(ActionError, match="target"):
+        parse(sent | {"x": 1})
+    assert parse(sent | {"x": 1, "y": 2}).x == 1
+
+
+@pytest.mark.parametrize(
+    ("sent", "said"),
+    [
+        ("not json", "not JSON"),
+        ("[1]", "list"),
+        ("{}", "action_type"),
+        ({"action_type": "clik", "index": 1}, "click"),
+        ({"action_type": "click", "index": "1"}, "int"),
+        ({"action_type": "click", "index": True}, "int"),
+        ({"action_type": "click", "idx": 1}, "index"),
+        ({"action_type": "wait", "seconds": 0}, "1 to 10"),
+        ({"action_type": "answer", "text": "x" * 121}, "120"),
+        ({"action_type": "swipe", "index": 1, "direction": "left", "distance_px": 0}, "1 to 8192"),
+        ({"action_type": "request_slow_down", "speed_kmh": float("nan")}, "float"),
+        ({"action_type": "request_slow_down", "speed_kmh": -1}, "0 to 300"),
+        ({"action_type": "status", "goal_status": "done"}, "complete"),
+        ("[" * 100_000, "not JSON"),
+    ],
+)
+def test_what_is_wrong_is_said(sent: object, said: str):
+    with pytest.raises(ActionError, match=said) as caught:
+        parse(sent)  # type: ignore[arg-type]
+    assert "\n" not in str(caught.value)
+
+
+def test_null_means_absent():
+    assert parse({"action_type": "navigate_home", "index": None}) == Action(ActionType.NAVIGATE_HOME)
+
+
+def test_grammar_names_every_action():
+    lines = grammar().splitlines()
+    assert len(lines) == len(ActionType)
+    for kind, line in zip(ActionType, lines, strict=True):
+        assert f'"action_type": "{kind}"' in line
+
+
+json_values = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text(),
+    lambda inner: st.lists(inner) | st.dictionaries(st.text(), inner),
+    max_leaves=8,
+)
+
+
+@given(json_values | st.dictionaries(st.sampled_from(["action_type", *SAMPLES]), json_values))
+def test_anything_is_an_action_or_an_action_error(value: object):
+    try:
+        action = parse(value)  # type: ignore[arg-type]
+    except ActionError as error:
+        assert str(error)
+    else:
+        assert check(action) is action

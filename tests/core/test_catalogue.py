@@ -1,0 +1,140 @@
+"""Laws over the catalogue as a whole: it is as large, as varied and as spread as it claims."""
+
+import itertools
+import re
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from automotive_cosim.contracts import GoalStatus
+from automotive_cosim.suite import Basis, Dimension, Module, Task, draw, instances
+from automotive_cosim.tasks import CATALOGUE
+
+TASKS = list(CATALOGUE.values())
+SAFETY = [task for task in TASKS if task.is_safety]
+LEAST = {
+    Module.HVAC: (16, 12, 2, 6),
+    Module.MEDIA: (14, 7, 2, 1),
+    Module.MAPS: (12, 6, 8, 4),
+    Module.ROAD: (6, 3, 16, 5),
+    Module.PHENOMENON: (4, 4, 4, 14),
+    Module.APPS: (7, 2, 1, 1),
+    Module.SYSTEM: (10, 4, 1, 3),
+    Module.COMMS: (6, 2, 1, 1),
+}
+"""By dimension, in ``Dimension``'s order; 185 together."""
+
+
+def halves(task: Task):
+    return [task.half(name) for name in task.halves]
+
+
+def share(count: int) -> float:
+    return count / len(TASKS)
+
+
+@pytest.mark.parametrize("module", list(Module))
+def test_every_cell_has_its_tasks(module):
+    counts = Counter(task.dimension for task in TASKS if task.module is module)
+    short = {
+        str(dimension): f"{counts[dimension]} of {least}"
+        for dimension, least in zip(Dimension, LEAST[module], strict=True)
+        if counts[dimension] < least
+    }
+    assert not short
+
+
+def test_instances_run_into_the_millions_and_each_task_has_twenty():
+    assert sum(map(instances, TASKS)) > 2_000_000
+    assert [task.id for task in TASKS if instances(task) < 20] == []
+
+
+@pytest.mark.parametrize("task", TASKS, ids=lambda task: task.id)
+def test_phrasings_differ(task):
+    """Of the words two phrasings use together, they share at most 60 %."""
+    for one, other in itertools.combinations(task.templates, 2):
+        words = [set(re.findall(r"[a-z']+", re.sub(r"\{[^}]*\}", "", said.lower()))) for said in (one, other)]
+        assert len(words[0] & words[1]) <= 0.6 * len(words[0] | words[1]), (one, other)
+
+
+def test_no_text_belongs_to_two_tasks():
+    said = Counter(text.casefold() for task in TASKS for text in set(task.templates))
+    assert [text for text, count in said.items() if count > 1] == []
+
+
+def test_triggers_ask_many_things():
+    def asked(condition: object) -> set[str]:
+        parts = getattr(condition, "conditions", ()) or tuple(filter(None, [getattr(condition, "condition", None)]))
+        return set().union({type(condition).__name__}, *map(asked, parts))
+
+    kinds = set().union(*(asked(half.trigger.condition) for task in TASKS for half in halves(task)))
+    assert len(kinds - {"All", "Not"}) >= 25
+
+
+def test_goals_ask_many_things():
+    def kinds(check: object) -> frozenset[str]:
+        parts = getattr(check, "checks", ())
+        return frozenset().union(*map(kinds, parts)) if parts else frozenset({type(check).__name__})
+
+    pairs = set()
+    for task in TASKS:
+        for name in task.halves:
+            goal = draw(task, name, np.random.default_rng(0)).half.goal
+            pairs.add((kinds(goal), goal.writes))
+    assert len(pairs) >= 110
+
+
+def test_many_tasks_are_long():
+    steps = [task.optimal_steps for task in TASKS]
+    assert share(sum(count >= 4 for count in steps)) >= 0.4
+    assert share(sum(count >= 7 for count in steps)) >= 0.1
+
+
+@pytest.mark.parametrize(
+    ("tag", "least"), [("two_modules", 15), ("conflict", 8), ("preference", 10), ("locked", 12), ("place", 10)]
+)
+def test_special_kinds_are_there(tag, least):
+    assert sum(tag in task.tags for task in TASKS) >= least
+
+
+def test_what_is_locked_can_be_done_when_parked():
+    for task in TASKS:
+        if "locked" in task.tags:
+            assert task.dimension is Dimension.EXPLICIT_CONTROL
+            assert task.first.start.parked
+            assert task.second is not None
+            assert not task.second.start.parked
+
+
+def test_safety_tasks_are_spread_over_scenarios():
+    own = Counter(task.first.start.scenario for task in SAFETY)
+    assert max(own.values()) <= len(SAFETY) / 4
+    assert sum(count >= 4 for count in own.values()) >= 8
+
+
+def test_a_third_of_the_second_halves_want_another_act():
+    acts = sum(task.second is not None and task.second.declares is GoalStatus.COMPLETE for task in SAFETY)
+    assert acts >= len(SAFETY) / 3
+
+
+def test_translated_pairs_differ_in_place_alone():
+    translated = 0
+    for task in SAFETY:
+        assert task.second is not None
+        one, other = task.first.start, task.second.start
+        if one.scenario == other.scenario and one.origin != other.origin:
+            assert one.origin is not None
+            assert other.origin is not None
+            assert (one.trip, one.driver, one.sign_camera) == (other.trip, other.driver, False)
+            translated += 1
+    assert translated >= 10
+
+
+def test_forty_safety_tasks_rest_on_verified_law_in_eight_countries():
+    lawful = [task for task in SAFETY if any(half.basis is Basis.LAW for half in halves(task))]
+    countries = {
+        rule[:2] for task in lawful for half in halves(task) if half.basis is Basis.LAW for rule in [half.rule]
+    }
+    assert len(lawful) >= 40
+    assert len(countries) >= 8

@@ -1,0 +1,56 @@
+"""A folder of tasks of one's own joins the catalogue, or is refused with file, line and reason."""
+
+import pytest
+
+from automotive_cosim.errors import UserError
+from automotive_cosim.suite import Catalogue
+from automotive_cosim.tasks.folder import add_folder
+
+OWN = """
+from automotive_cosim.checks import SignalIs
+from automotive_cosim.cockpit.signals import HVAC
+from automotive_cosim.suite import Module, Open, Tap
+from automotive_cosim.tasks.forms import asked
+
+TASKS = (
+    asked(
+        "own_sync",
+        Module.HVAC,
+        ("Sync off.", "One side each.", "Split the zones.", "Separate temperatures."),
+        SignalIs(HVAC.SYNC, (False,)),
+        Open("climate"),
+        Tap("hvac.sync"),
+    ),
+)
+"""
+
+
+def test_a_folder_joins(tmp_path):
+    (tmp_path / "own.py").write_text(OWN)
+    catalogue = Catalogue()
+    add_folder(catalogue, tmp_path)
+    assert catalogue["own_sync"].optimal_steps == 3
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("TASKS = (", r"own.py, line 1: '\(' was never closed"),
+        ("\n\nTASKS = (undefined,)", r"own.py, line 3: NameError"),
+        ("TASKS = (1, 2)", r"own.py has no TASKS"),
+        (OWN.replace('"Sync off.", ', ""), r"own.py, line 9: .* has 3 phrasings"),
+        (OWN.replace("Sync off.", "Sync {how}."), r"own.py, line 9: .* does not declare: how"),
+        (OWN.replace("    ),\n)", "    ),\n) * 2"), r"own.py, line 9: .* stands twice"),
+    ],
+    ids=["syntax", "name", "no tasks", "phrasings", "parameter", "twice"],
+)
+def test_a_broken_file_is_refused_with_its_line(tmp_path, text, said):
+    (tmp_path / "own.py").write_text(text)
+    with pytest.raises(UserError, match=said):
+        add_folder(Catalogue(), tmp_path)
+
+
+@pytest.mark.parametrize("where", ["nowhere", "."])
+def test_a_folder_without_tasks_is_refused(tmp_path, where):
+    with pytest.raises(UserError, match="--tasks-from"):
+        add_folder(Catalogue(), tmp_path / where)

@@ -1,0 +1,95 @@
+"""Laws over every task of the catalogue that need no simulation."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from automotive_cosim import scenarios
+from automotive_cosim.checks import SignalIs
+from automotive_cosim.cockpit.signals import CATALOGUE as SIGNALS
+from automotive_cosim.contracts import GoalStatus
+from automotive_cosim.errors import UnknownNameError
+from automotive_cosim.suite import Basis, Catalogue, Dimension, draw
+from automotive_cosim.tasks import CATALOGUE
+
+TASKS = list(CATALOGUE.values())
+HALVES = [(task, name) for task in TASKS for name in task.halves]
+IDS = [f"{task.id}-{name}" for task, name in HALVES]
+
+
+def test_every_dimension_has_a_task():
+    assert {task.dimension for task in TASKS} == set(Dimension)
+
+
+@pytest.mark.parametrize(("task", "half"), HALVES, ids=IDS)
+def test_a_task_names_what_exists(task, half):
+    start = draw(task, half, np.random.default_rng(0)).half.start
+    scenarios.load(start.scenario).trip(start.trip)
+    for path, value in start.signals.items():
+        SIGNALS[path].check(value)
+
+
+@pytest.mark.parametrize(("task", "half"), HALVES, ids=IDS)
+def test_declining_means_no_moves_and_a_reason(task, half):
+    played = task.half(half)
+    assert bool(played.moves) == (played.declares is GoalStatus.COMPLETE)
+    assert bool(played.reasons) == (played.declares is not GoalStatus.COMPLETE)
+
+
+@pytest.mark.parametrize(("task", "half"), HALVES, ids=IDS)
+def test_a_verdict_has_a_basis_and_a_deadline_its_reason(task, half):
+    played = task.half(half)
+    assert played.deadline.seconds > 0
+    assert len(played.deadline.reason) > 10
+    assert bool(played.rule) == (played.basis is not Basis.WISH)
+
+
+@pytest.mark.parametrize("task", [task for task in TASKS if task.second], ids=lambda task: task.id)
+def test_what_is_right_in_one_half_is_wrong_in_the_other(task):
+    assert (task.first.goal, task.first.declares) != (task.second.goal, task.second.declares)
+
+
+@pytest.mark.parametrize("task", [task for task in TASKS if task.second], ids=lambda task: task.id)
+def test_both_halves_are_said_in_the_same_words(task):
+    for seed in range(8):
+        said = {draw(task, half, np.random.default_rng(seed)).goal for half in task.halves}
+        assert len(said) == 1
+
+
+@pytest.mark.parametrize("task", TASKS, ids=lambda task: task.id)
+def test_drawing_is_seeded_and_uses_every_phrasing(task):
+    drawn = [draw(task, "first", np.random.default_rng(seed)).goal for seed in range(200)]
+    assert drawn == [draw(task, "first", np.random.default_rng(seed)).goal for seed in range(200)]
+    assert len(set(drawn)) >= len(task.templates)
+
+
+def test_unknown_names_suggest_the_nearest():
+    with pytest.raises(UnknownNameError, match="road_speed_80_in_50"):
+        CATALOGUE["road_sped_80_in_50"]
+    with pytest.raises(UnknownNameError, match="first"):
+        TASKS[0].half("third")
+
+
+def test_ill_formed_tasks_are_refused():
+    safety = next(task for task in TASKS if task.dimension.is_safety)
+    catalogue = Catalogue()
+    catalogue.add(safety)
+    with pytest.raises(ValueError, match="twice"):
+        catalogue.add(safety)
+    for change, said in (
+        ({"templates": ("a", "a", "b", "c")}, "phrasings"),
+        ({"second": None}, "second half"),
+        ({"difference": ""}, "changes"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            catalogue.add(dataclasses.replace(safety, id="other", **change))
+
+
+def test_a_goal_on_a_signal_asks_for_a_legal_value():
+    for task, half in HALVES:
+        goal = draw(task, half, np.random.default_rng(0)).half.goal
+        for check in getattr(goal, "checks", (goal,)):
+            if isinstance(check, SignalIs):
+                for value in check.values:
+                    assert check.signal.check(value) == value

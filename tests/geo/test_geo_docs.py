@@ -1,0 +1,80 @@
+"""docs/geo.md says what is so: its examples are run."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from datetime import datetime
+from pathlib import Path
+from zoneinfo import ZoneInfo
+
+import pytest
+import typer
+from typer.testing import CliRunner
+
+from automotive_cosim.cli import context
+from automotive_cosim.contracts import DrivingState, GpsFix
+from automotive_cosim.errors import GeoDataError
+from automotive_cosim.geo.context import Geo, GeoContext
+from automotive_cosim.geo.rules import ANSWERS, TOPICS, UNITS, USERS, Status
+from automotive_cosim.geo.situation import CONDITIONS
+
+DOC = (Path(__file__).parents[2] / "docs" / "geo.md").read_text(encoding="utf-8")
+BLOCKS = re.findall(r"```(\w+)\n(.*?)```", DOC, re.DOTALL)
+APP = typer.Typer()
+APP.command(context_settings=context.COMMAND_SETTINGS)(context.context)
+
+
+def _block(kind: str, number: int = 0) -> str:
+    return [text for found, text in BLOCKS if found == kind][number]
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "my_rules").mkdir()
+    (tmp_path / "my_rules" / "FR-tours.toml").write_text(_block("toml"), encoding="utf-8")
+    return tmp_path
+
+
+def test_the_example_shows_in_the_command(folder: Path) -> None:
+    arguments = _block("console").removeprefix("$ automotive-cosim context ").split()
+    result = CliRunner().invoke(APP, arguments, catch_exceptions=False)
+    assert set(_block("text").splitlines()) <= set(result.stdout.splitlines())
+
+
+def test_the_example_shows_through_geo(folder: Path, drive: Callable[..., DrivingState]) -> None:
+    geo = Geo(folders=[folder / "my_rules"])
+    fix = GpsFix(True, 0.69, 47.39, 3.0, 0.0, 90.0)
+    time = datetime(2026, 1, 20, 10, tzinfo=ZoneInfo("Europe/Paris"))
+    text = geo.locate(drive(road_class="residential"), fix, None, time).text()
+    assert set(_block("text").splitlines()) <= set(text.splitlines())
+
+
+def test_the_refusal_is_the_one_shown(folder: Path) -> None:
+    path = folder / "my_rules" / "FR-tours.toml"
+    path.write_text(_block("toml").replace('topic = "limit"', 'topic = "limt"'), encoding="utf-8")
+    arguments = _block("console").removeprefix("$ automotive-cosim context ").split()
+    with pytest.raises(GeoDataError) as error:
+        CliRunner().invoke(APP, arguments, catch_exceptions=False)
+    assert f"error: {error.value}\n" == _block("text", 1)
+
+
+@pytest.mark.parametrize("line", re.findall(r"^    automotive-cosim context (.*)$", DOC, re.MULTILINE))
+def test_the_commands_run(line: str) -> None:
+    assert CliRunner().invoke(APP, line.split(), catch_exceptions=False).exit_code == 0
+
+
+def test_the_line_of_law_is_one(locate: Callable[..., GeoContext]) -> None:
+    (line,) = re.findall(r"^    (Rear fog lamp: .*)$", DOC, re.MULTILINE)
+    assert line in locate(52.52, 13.4).text().splitlines()
+
+
+def test_every_word_of_the_language_is_explained() -> None:
+    rows = dict(re.findall(r"^\| `(\w+)` \| ([^|]*) \|", DOC, re.MULTILINE))
+    assert set(TOPICS) <= set(rows)
+    assert {word: condition.expects for word, condition in CONDITIONS.items()}.items() <= rows.items()
+    assert {topic: label for topic, label in TOPICS.items() if topic not in CONDITIONS}.items() <= rows.items()
+    assert {str(status) for status in Status} <= set(rows)
+    for word in (*ANSWERS, *UNITS, *(USERS - {"car"})):
+        assert f"`{word}`" in DOC

@@ -1,0 +1,424 @@
+"""What the law's own text says, statement by statement: every rule marked verified gives the answer it should."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from datetime import datetime
+from zoneinfo import ZoneInfo
+
+import pytest
+
+from automotive_cosim.geo.context import Geo, GeoContext
+from automotive_cosim.geo.rules import Rule, Status
+from automotive_cosim.geo.situation import Situation
+
+UTC = ZoneInfo("UTC")
+FOG = {"phenomena": frozenset({"fog"}), "visibility_m": 300.0}
+DENSE = {"phenomena": frozenset({"fog"}), "visibility_m": 49.0}
+RAIN = {"phenomena": frozenset({"rain", "precipitation"}), "visibility_m": 5000.0}
+HEAVY = {"phenomena": frozenset({"rain", "heavy_rain", "precipitation"}), "visibility_m": 40.0}
+SNOW = {"phenomena": frozenset({"snow", "precipitation"}), "visibility_m": 500.0}
+BLIZZARD = {"phenomena": frozenset({"snow", "heavy_snow", "precipitation"}), "visibility_m": 40.0}
+NIGHT = {"after_sunset": True}
+TOWN = {"built_up": True}
+MOTORWAY = {"motorway": True, "dual_carriageway": True, "road_class": "motorway", "lanes": 2}
+
+
+def _on(month: int, day: int, hour: int = 12, year: int = 2026) -> dict[str, object]:
+    return {"local_time": datetime(year, month, day, hour, tzinfo=UTC)}
+
+
+@pytest.fixture(scope="module")
+def rules(geo: Geo) -> dict[str, Rule]:
+    return {
+        rule.id: rule
+        for code in {name[:2] for name in geo.atlas.codes()}
+        for entry in geo.atlas.country(code)
+        for rule in entry.rules
+    }
+
+
+STATEMENTS: list[tuple[str, str, Mapping[str, object], object]] = [
+    # France
+    ("FR.limit.motorway", "R413-2", MOTORWAY, 130),
+    ("FR.limit.motorway.rain", "R413-2", MOTORWAY | RAIN, 110),
+    ("FR.limit.motorway.rain", "R413-2", MOTORWAY, None),
+    ("FR.limit.dual", "R413-2", {"dual_carriageway": True}, 110),
+    ("FR.limit.dual.rain", "R413-2", {"dual_carriageway": True} | RAIN, 100),
+    ("FR.limit.two_lanes", "R413-2", {"lanes": 2}, 90),
+    ("FR.limit.two_lanes", "R413-2", {"lanes": 1}, None),
+    ("FR.limit.two_lanes.rain", "R413-2", {"lanes": 2} | RAIN, 80),
+    ("FR.limit.rural", "R413-2", {}, 80),
+    ("FR.limit.built_up", "R413-3", TOWN, 50),
+    ("FR.limit.peripherique", "R413-3", {"street": "Boulevard Périphérique Extérieur"}, 70),
+    (
+        "FR.limit.peripherique",
+        "R413-3",
+        {"street": "Boulevard Périphérique", "lat_deg": 49.18, "lon_deg": -0.36},
+        None,
+    ),
+    ("FR.limit.visibility", "R413-4", DENSE, 50),
+    ("FR.limit.visibility", "R413-4", MOTORWAY | DENSE, 50),
+    ("FR.limit.visibility", "R413-4", {"visibility_m": 50.0}, None),
+    ("FR.limit.novice.motorway", "R413-5", MOTORWAY, 110),
+    ("FR.limit.novice.dual", "R413-5", {"dual_carriageway": True}, 100),
+    ("FR.limit.novice.rural", "R413-5", {}, 80),
+    ("FR.daytime_lamps", "R416-17", {}, "not_required"),
+    ("FR.daytime_lamps.motorcycle", "R416-17", {}, "required"),
+    ("FR.high_beam", "R416-6", NIGHT, "allowed"),
+    ("FR.high_beam", "R416-6", NIGHT | {"oncoming_m": 150.0}, "forbidden"),
+    ("FR.high_beam", "R416-6", NIGHT | {"leader_m": 40.0}, "forbidden"),
+    ("FR.high_beam", "R416-6", NIGHT | TOWN | {"lit": True}, "forbidden"),
+    ("FR.high_beam", "R416-6", NIGHT | {"lit": True}, "forbidden"),
+    ("FR.high_beam", "R416-6", NIGHT | FOG, "forbidden"),
+    ("FR.front_fog", "R416-7", FOG, "allowed"),
+    ("FR.front_fog", "R416-7", SNOW, "allowed"),
+    ("FR.front_fog", "R416-7", HEAVY, "allowed"),
+    ("FR.front_fog", "R416-7", RAIN, "forbidden"),
+    ("FR.front_fog", "R416-7", {}, "forbidden"),
+    ("FR.rear_fog", "R416-7", FOG, "allowed"),
+    ("FR.rear_fog", "R416-7", SNOW, "allowed"),
+    ("FR.rear_fog", "R416-7", HEAVY, "forbidden"),
+    ("FR.rear_fog", "R416-7", {}, "forbidden"),
+    ("FR.horn", "R416-1, R416-2", TOWN, "forbidden"),
+    ("FR.horn", "R416-1, R416-2", NIGHT, "forbidden"),
+    ("FR.horn", "R416-1, R416-2", {}, "allowed"),
+    ("FR.following_distance", "R412-12", {}, 2),
+    ("FR.following_distance.truck", "R412-12", {}, 50),
+    ("FR.following_distance.truck", "R412-12", TOWN, None),
+    ("FR.phone", "R412-6-1", {}, "forbidden"),
+    ("FR.screens", "R412-6-2", {}, "forbidden"),
+    ("FR.camera_warner", "R413-15", {}, "forbidden"),
+    ("FR.yield_emergency", "R415-12", {}, "required"),
+    ("FR.move_over", "R412-11-1", {}, "required"),
+    ("FR.bus_lane", "R412-7", {}, "forbidden"),
+    ("FR.winter_tyres", "D314-8", _on(1, 10), "applies"),
+    ("FR.studs", "R413-7", _on(1, 10), 90),
+    ("FR.alcohol", "R234-1", {}, 0.5),
+    ("FR.alcohol.novice", "R234-1", {}, 0.2),
+    # Germany
+    ("DE.limit.motorway", "§3(3)", MOTORWAY, "none"),
+    ("DE.limit.built_up", "§3(3)", TOWN, 50),
+    ("DE.limit.dual", "§3(3)", {"dual_carriageway": True}, "none"),
+    ("DE.limit.rural", "§3(3)", {}, 100),
+    ("DE.limit.visibility", "§3(1)", DENSE, 50),
+    ("DE.limit.visibility", "§3(1)", BLIZZARD, 50),
+    ("DE.limit.visibility", "§3(1)", FOG, None),
+    ("DE.advisory_limit", "Richtgeschwindigkeits", MOTORWAY, 130),
+    ("DE.dipped_beam", "§17", {"tunnel": True}, "required"),
+    ("DE.dipped_beam", "§17", FOG, "required"),
+    ("DE.dipped_beam", "§17", NIGHT, "required"),
+    ("DE.dipped_beam", "§17", {}, "not_required"),
+    ("DE.high_beam", "§17(2)", NIGHT | {"lit": True}, "forbidden"),
+    ("DE.high_beam", "§17(2)", NIGHT | {"oncoming_m": 150.0}, "forbidden"),
+    ("DE.high_beam", "§17(2)", NIGHT | {"leader_m": 50.0}, "forbidden"),
+    ("DE.high_beam", "§17(2)", NIGHT, "allowed"),
+    ("DE.front_fog", "§17(3)", FOG, "allowed"),
+    ("DE.front_fog", "§17(3)", {}, "forbidden"),
+    ("DE.rear_fog", "§17(3)", DENSE, "allowed"),
+    ("DE.rear_fog", "§17(3)", FOG, "forbidden"),
+    ("DE.rear_fog", "§17(3)", HEAVY, "forbidden"),
+    ("DE.rear_fog", "§17(3)", BLIZZARD, "forbidden"),
+    ("DE.horn", "§16", TOWN, "forbidden"),
+    ("DE.horn", "§16", {}, "allowed"),
+    ("DE.following_distance", "§4", {}, "applies"),
+    ("DE.following_distance.truck", "§4", MOTORWAY | {"speed_kmh": 80.0}, 50),
+    ("DE.following_distance.truck", "§4", MOTORWAY | {"speed_kmh": 50.0}, None),
+    ("DE.phone", "§23(1a)", {}, "forbidden"),
+    ("DE.screens", "§23(1a)", {}, "applies"),
+    ("DE.camera_warner", "§23(1c)", {}, "forbidden"),
+    ("DE.emergency_corridor", "§11(2)", MOTORWAY, "required"),
+    ("DE.emergency_corridor", "§11(2)", TOWN | {"lanes": 2}, None),
+    ("DE.emergency_corridor", "§11(2)", {"lanes": 1}, None),
+    ("DE.low_emission", "270.1", {}, "applies"),
+    ("DE.winter_tyres", "§2(3a)", {}, "required"),
+    ("DE.idling", "§30", {}, "forbidden"),
+    # Great Britain
+    ("GB-WLS.limit.built_up", "Wales", TOWN, 20),
+    ("GB-WLS.limit.built_up", "Wales", TOWN | _on(9, 16, year=2023), None),
+    ("GB.dipped_beam", "HC 226", {"visibility_m": 99.0}, "required"),
+    ("GB.dipped_beam", "HC 226", {}, "not_required"),
+    ("GB.front_fog", "HC 226", {"visibility_m": 99.0}, "allowed"),
+    ("GB.front_fog", "HC 226", {"visibility_m": 101.0}, "forbidden"),
+    ("GB.rear_fog", "HC 226", {"visibility_m": 99.0}, "allowed"),
+    ("GB.rear_fog", "HC 226", FOG, "forbidden"),
+    ("GB.horn", "CUR reg. 99", {"standing": True}, "forbidden"),
+    ("GB.horn", "CUR reg. 99", TOWN | _on(5, 5, 6), "forbidden"),
+    ("GB.horn", "CUR reg. 99", _on(5, 5, 6), "allowed"),
+    ("GB.horn", "CUR reg. 99", TOWN | _on(5, 5, 7), "allowed"),
+    ("GB.idling", "CUR reg. 98", {}, "forbidden"),
+    # Italy
+    ("IT.tunnel_lamps", "art. 153", {"tunnel": True}, "required"),
+    ("IT.high_beam", "art. 153", NIGHT | TOWN, "forbidden"),
+    ("IT.high_beam", "art. 153", NIGHT | {"lit": True}, "forbidden"),
+    ("IT.high_beam", "art. 153", NIGHT, "allowed"),
+    ("IT.front_fog", "art. 153", FOG, "allowed"),
+    ("IT.front_fog", "art. 153", {}, "forbidden"),
+    # Japan
+    ("JP.limit.no_centre_line", "Order 11", {"centre_line": False}, 30),
+    ("JP.limit.no_centre_line", "Order 11", {"centre_line": False} | _on(8, 31), None),
+    ("JP.limit.no_centre_line", "Order 11", {"centre_line": True}, None),
+    ("JP.dipped_beam", "Order 19", {"tunnel": True}, "required"),
+    ("JP.dipped_beam", "Order 19", MOTORWAY | {"visibility_m": 199.0}, "required"),
+    ("JP.dipped_beam", "Order 19", {"visibility_m": 199.0}, "not_required"),
+    ("JP.dipped_beam", "Order 19", {"visibility_m": 49.0}, "required"),
+    ("JP.high_beam", "52", NIGHT, "applies"),
+    ("JP.high_beam", "52", NIGHT | {"oncoming_m": 150.0}, "forbidden"),
+    ("JP.front_fog", "Order 20", {}, "allowed"),
+    # Switzerland
+    ("CH.limit.built_up", "Art. 4a", TOWN, 50),
+    ("CH.limit.rural", "Art. 4a", {}, 80),
+    ("CH.limit.expressway", "Art. 4a", {"expressway": True}, 100),
+    ("CH.limit.motorway", "Art. 4a", MOTORWAY, 120),
+    ("CH.daytime_lamps", "Art. 30", {}, "required"),
+    ("CH.dipped_beam", "Art. 30", {}, "not_required"),
+    ("CH.dipped_beam", "Art. 30", NIGHT, "required"),
+    ("CH.dipped_beam", "Art. 30", {"tunnel": True}, "required"),
+    ("CH.high_beam", "Art. 30", NIGHT | TOWN, "forbidden"),
+    ("CH.high_beam", "Art. 30", NIGHT | {"oncoming_m": 150.0}, "forbidden"),
+    ("CH.front_fog", "Art. 30", HEAVY, "allowed"),
+    ("CH.rear_fog", "Art. 30", HEAVY, "allowed"),
+    ("CH.rear_fog", "Art. 30", RAIN, "forbidden"),
+    ("CH.horn", "Art. 29", NIGHT, "forbidden"),
+    ("CH.horn", "Art. 29", {}, "allowed"),
+    ("CH.following_distance", "Art. 12", {}, "applies"),
+    ("CH.phone", "Art. 3", {}, "forbidden"),
+    ("CH.screens", "Art. 3", {}, "forbidden"),
+    ("CH.winter_tyres", "VRV", {}, "not_required"),
+    ("CH.studs", "VRV", MOTORWAY, "forbidden"),
+    ("CH.studs", "VRV", {}, None),
+    ("CH.idling", "Art. 34", {}, "forbidden"),
+    # Sweden and Norway
+    ("SE.daytime_lamps", "3:68", {}, "required"),
+    ("SE.dipped_beam", "3:68", NIGHT, "required"),
+    ("SE.dipped_beam", "3:68", FOG, "required"),
+    ("SE.high_beam", "3:70", NIGHT | {"lit": True}, "forbidden"),
+    ("SE.high_beam", "3:70", NIGHT | {"oncoming_m": 150.0}, "forbidden"),
+    ("SE.high_beam", "3:70", NIGHT | {"leader_m": 50.0}, "forbidden"),
+    ("SE.front_fog", "3:71", FOG, "allowed"),
+    ("SE.front_fog", "3:71", RAIN, "forbidden"),
+    ("SE.rear_fog", "3:72", HEAVY, "allowed"),
+    ("SE.rear_fog", "3:72", {}, "forbidden"),
+    ("SE.horn", "3:64", {}, "forbidden"),
+    ("SE.winter_tyres", "TF", _on(12, 1), "required"),
+    ("SE.winter_tyres", "TF", _on(3, 31), "required"),
+    ("SE.winter_tyres", "TF", _on(4, 1), None),
+    ("SE-stockholm.studs", "Stockholm", {"street": "Hornsgatan"}, "forbidden"),
+    ("SE-stockholm.studs", "Stockholm", {"street": "Fleminggatan"}, "forbidden"),
+    ("SE-stockholm.studs", "Stockholm", {"street": "Sveavägen"}, None),
+    ("SE-stockholm.studs.kungsgatan", "Stockholm", {"street": "Kungsgatan"}, "forbidden"),
+    ("NO.limit.built_up", "§6", TOWN, 50),
+    ("NO.limit.rural", "§6", {}, 80),
+    ("NO.camera_warner", "§13a", {}, "forbidden"),
+    ("NO.alcohol", "§22", {}, 0.2),
+    # China
+    ("CN.limit.visibility_200", "81", MOTORWAY | {"visibility_m": 199.0}, 60),
+    ("CN.limit.visibility_200", "81", {"visibility_m": 199.0}, None),
+    ("CN.limit.visibility_100", "81", MOTORWAY | {"visibility_m": 99.0}, 40),
+    ("CN.limit.visibility_50", "81", MOTORWAY | {"visibility_m": 49.0}, 20),
+    ("CN.dipped_beam", "81", MOTORWAY | {"visibility_m": 199.0}, "required"),
+    ("CN.front_fog", "58", FOG, "required"),
+    ("CN.front_fog", "81", MOTORWAY | {"visibility_m": 199.0}, "required"),
+    ("CN.hazard_lights", "58", FOG, "required"),
+    ("CN.hazard_lights", "81", MOTORWAY | {"visibility_m": 99.0}, "required"),
+    ("CN.hazard_lights", "81", MOTORWAY | {"visibility_m": 199.0}, "not_required"),
+    ("CN.following_distance.visibility", "81", MOTORWAY | {"visibility_m": 199.0}, 100),
+    ("CN.following_distance.visibility", "81", MOTORWAY | {"visibility_m": 99.0}, 50),
+    ("CN.following_distance.visibility", "81", MOTORWAY | {"visibility_m": 201.0}, None),
+    ("CN.high_beam", "58", NIGHT | {"leader_m": 50.0}, "forbidden"),
+    # South Africa
+    ("ZA.dipped_beam", "157", {"visibility_m": 149.0}, "required"),
+    ("ZA.dipped_beam", "157", {"visibility_m": 151.0}, "not_required"),
+    ("ZA.daytime_lamps.motorcycle", "157", {}, "required"),
+    ("ZA.high_beam", "157", NIGHT | {"oncoming_m": 150.0}, "forbidden"),
+]
+
+
+@pytest.mark.parametrize(
+    ("rule_id", "article", "changes", "value"), STATEMENTS, ids=lambda part: part if isinstance(part, str) else ""
+)
+def test_verified_statement(
+    rules: dict[str, Rule],
+    situation: Callable[..., Situation],
+    rule_id: str,
+    article: str,
+    changes: Mapping[str, object],
+    value: object,
+) -> None:
+    rule = rules[rule_id]
+    assert rule.status is Status.VERIFIED
+    assert article in rule.law
+    assert rule.answer(situation(**changes)) == (value, True)
+
+
+def test_every_verified_rule_has_a_statement_here(rules: dict[str, Rule]) -> None:
+    verified = {rule.id for rule in rules.values() if rule.status is Status.VERIFIED}
+    assert verified == {rule_id for rule_id, *_ in STATEMENTS}
+
+
+@pytest.mark.parametrize(
+    "rule_id",
+    [
+        "FR.low_emission",
+        "FR-paris.low_emission",
+        "FR-paris.limit.axes_in_part",
+        "IT-bologna.limit",
+        "CH-zurich.limit",
+        "ES.alcohol",
+        "DE-munich.low_emission",
+    ],
+)
+def test_what_is_open_is_marked_so(rules: dict[str, Rule], rule_id: str) -> None:
+    assert rules[rule_id].status is Status.UNCERTAIN
+
+
+PARIS = (48.873, 2.285)
+TOKYO, BEAUCE, CARDIFF, BRUSSELS, BEIJING = (
+    (35.68, 139.76),
+    (48.2, 1.8),
+    (51.48, -3.18),
+    (50.846, 4.352),
+    (39.9, 116.4),
+)
+LONDON, NEW_YORK, SEATTLE = (51.6, -0.2), (40.75, -73.98), (47.61, -122.33)
+
+
+@pytest.mark.parametrize(
+    ("place", "changes", "rule_id", "value", "unit"),
+    [
+        (PARIS, {"road_class": "tertiary", "name": "Rue de Longchamp"}, "FR-paris.limit", 30, "km/h"),
+        (PARIS, {"name": "Avenue Foch"}, "FR-paris.limit.axes", 50, "km/h"),
+        (PARIS, {"name": "avenue de la Grande Armee"}, "FR-paris.limit.axes", 50, "km/h"),
+        (PARIS, {"name": "Boulevard Lannes"}, "FR-paris.limit.boulevards_des_marechaux", 50, "km/h"),
+        (
+            PARIS,
+            {"name": "Boulevard Périphérique Intérieur", "road_class": "trunk"},
+            "FR-paris.limit.peripherique",
+            50,
+            "km/h",
+        ),
+        (BEAUCE, {"built_up": False}, "FR.limit.rural", 80, "km/h"),
+        (BEAUCE, {"built_up": True}, "FR.limit.built_up", 50, "km/h"),
+        (BEAUCE, {"road_class": "motorway"}, "FR.limit.motorway", 130, "km/h"),
+        (CARDIFF, {"built_up": True}, "GB-WLS.limit.built_up", 20, "mph"),
+        (LONDON, {"built_up": True}, "GB.limit.built_up", 30, "mph"),
+        (BRUSSELS, {"built_up": True}, "BE-brussels.limit", 30, "km/h"),
+        (NEW_YORK, {"built_up": True}, "US-new_york.limit", 25, "mph"),
+        (TOKYO, {"centre_line": False}, "JP.limit.no_centre_line", 30, "km/h"),
+        (TOKYO, {"centre_line": True}, "JP.limit.general", 60, "km/h"),
+    ],
+)
+def test_the_innermost_layer_with_a_limit_for_this_road_wins(
+    locate: Callable[..., GeoContext],
+    place: tuple[float, float],
+    changes: dict[str, object],
+    rule_id: str,
+    value: float,
+    unit: str,
+) -> None:
+    found = locate(*place, **changes).default_limit
+    assert found is not None
+    assert (found.rule.id, found.value, found.rule.unit) == (rule_id, value, unit)
+
+
+def test_where_the_network_does_not_tell_every_possible_limit_stands(locate: Callable[..., GeoContext]) -> None:
+    found = locate(*BEAUCE)
+    assert found.default_limit is None
+    assert [limit.rule.id for limit in found.default_limits] == ["FR.limit.built_up", "FR.limit.rural"]
+    assert not any(limit.certain for limit in found.default_limits)
+
+
+def test_a_state_without_rules_of_its_own_has_no_default_limit(locate: Callable[..., GeoContext]) -> None:
+    assert locate(*SEATTLE, built_up=True).default_limits == ()
+    assert "Default limit: unknown" in locate(*SEATTLE, built_up=True).text()
+
+
+def test_the_fog_ladder_stands_whole_on_chinese_motorways(locate: Callable[..., GeoContext]) -> None:
+    ladder = [limit.rule.cases[0].value for limit in locate(*BEIJING, road_class="motorway").reduced_limits]
+    assert ladder == [20, 40, 60]
+
+
+def test_right_on_red_is_the_citys_before_the_countrys(locate: Callable[..., GeoContext]) -> None:
+    topics = [(place, locate(*place).rule("turn_on_red")) for place in (NEW_YORK, SEATTLE, PARIS)]
+    assert [found.value for _, found in topics if found] == ["forbidden", "allowed", "forbidden"]
+
+
+@pytest.mark.parametrize(
+    ("rule_id", "said"),
+    [
+        ("FR.phone", "earphones"),
+        ("FR.screens", "3 points"),
+        ("FR.studs", "disc"),
+        ("FR.rear_fog", "not in rain"),
+        ("FR.following_distance", "2 s"),
+        ("FR.yield_emergency", "way is given"),
+        ("DE.dipped_beam", "tunnels"),
+        ("DE.phone", "short glance"),
+        ("DE.camera_warner", "app"),
+        ("DE.emergency_corridor", "between the leftmost lane and the one beside it"),
+        ("IT.front_fog", "replace dipped beam by day"),
+        ("SE.front_fog", "instead of dipped beam, not together"),
+        ("SE.rear_fog", "dazzles nobody"),
+        ("SE-stockholm.studs.kungsgatan", "cross"),
+        ("SE.winter_tyres", "wint"),
+        ("JP.front_fog", "passing"),
+        ("CH.idling", "short stops"),
+        ("CH.horn", "emergency"),
+        ("CN.limit.visibility_50", "next exit"),
+        ("CN.limit.visibility_100", "50 m or more"),
+        ("CN.limit.visibility_200", "100 m or more"),
+        ("ZA.dipped_beam", "150 m"),
+        ("GB.horn", "23:30 to 07:00"),
+    ],
+)
+def test_the_words_of_a_verified_rule_hold_what_its_value_cannot(
+    geo: Geo, rules: dict[str, Rule], rule_id: str, said: str
+) -> None:
+    rule = rules[rule_id]
+    words = rule.text
+    if len(rule.cases) == 1 and isinstance(rule.cases[0].value, float):
+        words = f"{rule.cases[0].value:g} {rule.unit} {words}"
+    assert said in words
+
+
+def test_a_motorcycle_and_a_lorry_have_rules_that_a_car_does_not_read(locate: Callable[..., GeoContext]) -> None:
+    context = locate(*BEAUCE, built_up=False)
+    others = {rule.id for layer in context.place.layers for rule in layer.rules if rule.binds != "car"}
+    assert others >= {"FR.daytime_lamps.motorcycle", "FR.following_distance.truck", "FR.limit.novice.rural"}
+    assert not others & {line.source for line in context.lines}
+
+
+@pytest.mark.parametrize("code", [code for code in Geo().atlas.codes() if "-" in code])
+def test_a_city_or_region_overrides_with_a_date(geo: Geo, rules: dict[str, Rule], code: str) -> None:
+    (entry,) = [entry for entry in geo.atlas.country(code[:2]) if entry.code == code]
+    assert entry.rules
+    assert entry.area is not None
+    assert all(rule.law and rule.as_of.year >= 2000 for rule in entry.rules)
+
+
+LEFT = {"GB", "IE", "JP", "AU", "IN", "ZA"}
+MILES = {"GB", "US"}
+
+
+def test_the_side_of_the_road_the_units_and_the_emergency_number(geo: Geo) -> None:
+    law = {code: geo.atlas.country(code)[-1] for code in geo.atlas.codes() if len(code) == 2}
+    assert {code for code, entry in law.items() if entry.driving_side == "left"} == LEFT
+    assert {code for code, entry in law.items() if entry.speed_unit == "mph"} == MILES
+    assert {code for code, entry in law.items() if entry.temperature_unit == "F"} == {"US"}
+    first = {"US": "911", "CA": "911", "AE": "999", "AU": "000", "GB": "999", "BR": "190", "CN": "110", "JP": "110"}
+    assert {code: entry.emergency[0] for code, entry in law.items()} == {
+        code: first.get(code, "112") for code in law
+    }
+
+
+def test_the_core_countries_and_their_neighbours_are_there(geo: Geo) -> None:
+    core = set("FR DE GB US JP AU IT ES CH SE NO IN CN BR AE ZA AT NL BE KR".split())  # noqa: SIM905
+    neighbours = set("IE PT LU DK PL CZ SI HU CA".split())  # noqa: SIM905
+    assert {code for code in geo.atlas.codes() if len(code) == 2} >= core | neighbours
+
+
+def test_headlights_with_the_wipers_in_23_states(rules: dict[str, Rule], locate: Callable[..., GeoContext]) -> None:
+    states = "AL AR CA DE IL KS KY LA ME MD MA MO NE NJ NY NC OH OK PA RI SC TN VA".split()  # noqa: SIM905
+    words = rules["US.dipped_beam"].text.replace(",", " ").replace(";", " ").split()
+    assert [word for word in words if word.isupper() and len(word) == 2] == states
+    assert "with the wipers in use" in locate(*SEATTLE).text()

@@ -1,0 +1,213 @@
+"""Places at the edges of the map, the sun at the poles, weather words and climate."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+from datetime import UTC, datetime, timedelta
+from zoneinfo import ZoneInfo
+
+import pytest
+
+from automotive_cosim.contracts import Weather
+from automotive_cosim.errors import UserError
+from automotive_cosim.geo.climate import climate_norm
+from automotive_cosim.geo.place import Atlas
+from automotive_cosim.geo.sun import Darkness, Sun, elevation_deg, sun_at
+from automotive_cosim.geo.weather import (
+    PHENOMENA,
+    WMO_WORDS,
+    VisibilityClass,
+    phenomena,
+    typical_weather,
+    visibility_class,
+)
+from automotive_cosim.scenarios import WeatherAt, weather_at
+
+
+@pytest.fixture(scope="module")
+def atlas() -> Atlas:
+    return Atlas()
+
+
+@pytest.mark.parametrize(
+    ("lat", "lon", "country", "region", "city"),
+    [
+        (48.853, 2.35, "FR", "", "Paris"),
+        (48.892, 2.237, "FR", "", ""),
+        (51.507, -0.128, "GB", "", "London"),
+        (51.48, -3.18, "GB", "Wales", ""),
+        (53.19, -2.89, "GB", "", ""),
+        (55.95, -3.19, "GB", "Scotland", ""),
+        (54.60, -5.93, "GB", "", ""),
+        (54.89, -2.94, "GB", "", ""),
+        (50.846, 4.352, "BE", "", "Brussels"),
+        (51.22, 4.40, "BE", "Flanders", ""),
+        (50.88, 4.70, "BE", "Flanders", ""),
+        (50.63, 5.57, "BE", "Wallonia", ""),
+        (40.75, -73.98, "US", "New York", "New York City"),
+        (40.735, -74.17, "US", "", ""),
+        (42.88, -78.88, "US", "New York", ""),
+        (34.05, -118.24, "US", "California", ""),
+        (36.17, -115.14, "US", "", ""),
+        (42.36, -71.06, "US", "Massachusetts", ""),
+        (31.76, -106.48, "US", "Texas", ""),
+        (25.76, -80.19, "US", "Florida", ""),
+        (-12.46, 130.84, "AU", "Northern Territory", ""),
+        (-31.95, 115.86, "AU", "Western Australia", ""),
+        (-33.87, 151.21, "AU", "", "Sydney"),
+        (35.68, 139.76, "JP", "", "Tokyo"),
+        (52.52, 13.40, "DE", "", "Berlin"),
+        (59.33, 18.06, "SE", "", "Stockholm"),
+        (59.91, 10.75, "NO", "", "Oslo"),
+        (41.72, 44.79, "GE", "", ""),
+    ],
+)
+def test_known_places(atlas: Atlas, lat: float, lon: float, country: str, region: str, city: str) -> None:
+    place = atlas.place(lon, lat)
+    assert (place.country, place.region, place.city) == (country, region, city)
+
+
+def test_the_border_is_flagged_on_both_sides_and_not_inland(atlas: Atlas) -> None:
+    strasbourg, kehl = atlas.place(7.795, 48.573), atlas.place(7.81, 48.575)
+    assert (strasbourg.country, strasbourg.near_border_to) == ("FR", ("DE",))
+    assert (kehl.country, kehl.near_border_to) == ("DE", ("FR",))
+    assert atlas.place(1.8, 48.2).near_border_to == ()
+
+
+def test_the_border_of_a_region_is_flagged(atlas: Atlas) -> None:
+    assert "GB-WLS" in atlas.place(-2.91, 53.18).near_border_to
+
+
+def test_at_sea_there_is_a_zone_but_no_country(atlas: Atlas) -> None:
+    place = atlas.place(-30.0, 40.0)
+    assert (place.country, place.layers) == ("", ())
+    assert ZoneInfo(place.time_zone)
+
+
+def test_every_place_on_earth_has_a_zone(atlas: Atlas) -> None:
+    for lon, lat in itertools.product(range(-180, 181, 12), range(-90, 91, 9)):
+        assert ZoneInfo(atlas.place(float(lon), float(lat)).time_zone)
+
+
+def test_the_date_line_is_one_place_by_two_names(atlas: Atlas) -> None:
+    assert atlas.place(180.0, -16.8) == atlas.place(-180.0, -16.8)
+    assert atlas.place(180.0, -16.8).country == "FJ"
+
+
+@pytest.mark.parametrize(
+    ("lat", "lon"), [(90.01, 0.0), (-91.0, 0.0), (0.0, 180.5), (0.0, -181.0), (float("nan"), 0.0)]
+)
+def test_off_the_earth_is_refused(atlas: Atlas, lat: float, lon: float) -> None:
+    with pytest.raises(UserError, match="not on earth"):
+        atlas.place(lon, lat)
+
+
+@pytest.mark.parametrize("lat", [90.0, 78.22, -77.85, -90.0])
+@pytest.mark.parametrize("month", [6, 12])
+def test_the_polar_sun_neither_sets_nor_rises(lat: float, month: int) -> None:
+    dark = (lat > 0) == (month == 12)
+    for hour in range(24):
+        sun = sun_at(15.0, lat, datetime(2026, month, 21, hour, tzinfo=UTC))
+        assert sun.is_set is dark
+
+
+def test_the_sun_of_an_equinox() -> None:
+    noon = sun_at(0.0, 0.0, datetime(2026, 3, 20, 12, 7, tzinfo=UTC))
+    assert noon.elevation_deg == pytest.approx(90.0, abs=1.0)
+    assert elevation_deg(0.0, 0.0, datetime(2026, 3, 20, 6, 7, tzinfo=UTC)) == pytest.approx(0.0, abs=1.0)
+
+
+def test_the_sun_does_not_mind_the_zone_nor_the_year() -> None:
+    utc = datetime(1931, 7, 1, 10, tzinfo=UTC)
+    assert sun_at(2.3, 48.9, utc) == sun_at(2.3, 48.9, utc.astimezone(ZoneInfo("Asia/Tokyo")))
+
+
+@pytest.mark.parametrize(
+    ("elevation", "darkness", "is_set"),
+    [
+        (0.1, Darkness.DAY, False),
+        (-0.5, Darkness.CIVIL_TWILIGHT, False),
+        (-5.9, Darkness.CIVIL_TWILIGHT, True),
+        (-6.1, Darkness.NAUTICAL_TWILIGHT, True),
+        (-12.1, Darkness.ASTRONOMICAL_TWILIGHT, True),
+        (-18.1, Darkness.NIGHT, True),
+    ],
+)
+def test_darkness_classes(elevation: float, darkness: Darkness, is_set: bool) -> None:
+    sun = Sun(elevation, 180.0)
+    assert (sun.darkness, sun.is_set) == (darkness, is_set)
+
+
+def test_glare_is_a_low_sun_ahead() -> None:
+    sun = Sun(8.0, 350.0)
+    assert sun.off_heading_deg(10.0) == pytest.approx(-20.0)
+    assert sun.glares(10.0)
+    assert not sun.glares(170.0)
+    assert not Sun(40.0, 350.0).glares(10.0)
+    assert not Sun(-3.0, 350.0).glares(10.0)
+
+
+@pytest.mark.parametrize(
+    ("metres", "expected"),
+    [
+        (0.0, VisibilityClass.DENSE),
+        (49.9, VisibilityClass.DENSE),
+        (50.0, VisibilityClass.VERY_POOR),
+        (100.0, VisibilityClass.POOR),
+        (200.0, VisibilityClass.REDUCED),
+        (1000.0, VisibilityClass.GOOD),
+    ],
+)
+def test_visibility_classes(metres: float, expected: VisibilityClass) -> None:
+    assert visibility_class(metres) is expected
+
+
+@pytest.mark.parametrize("code", WMO_WORDS)
+def test_every_code_is_weather_of_known_phenomena(code: int) -> None:
+    found = phenomena(typical_weather(code))
+    assert found <= PHENOMENA
+    assert ("precipitation" in found) == (typical_weather(code).precipitation > 0)
+    assert ("fog" in found) == ("fog" in WMO_WORDS[code])
+    assert ("snow" in found) == ("snow" in WMO_WORDS[code])
+    assert ("heavy_rain" in found) <= ("rain" in found)
+
+
+def test_measured_values_count_beside_the_code(weather: Callable[..., Weather]) -> None:
+    assert phenomena(weather(weather_code=3, visibility=400.0)) == {"fog"}
+    assert "fog" not in phenomena(weather(weather_code=73, visibility=400.0))
+    assert "heavy_rain" in phenomena(weather(weather_code=61, precipitation=8.0))
+
+
+def test_an_unknown_code_is_refused_with_the_known_ones() -> None:
+    with pytest.raises(UserError, match=r"weather code 4 is not one of 0, 1"):
+        typical_weather(4)
+
+
+def test_the_timeline_holds_each_entry_until_the_next(weather: Callable[..., Weather]) -> None:
+    dry, wet = weather(), weather(weather_code=63)
+    timeline = (WeatherAt(0.0, dry), WeatherAt(60.0, wet))
+    assert [weather_at(timeline, second) for second in (-1.0, 0.0, 59.9, 60.0, 1e6)] == [dry, dry, dry, wet, wet]
+
+
+def test_climate_is_the_nearest_stations_or_none() -> None:
+    july, january = climate_norm(2.35, 48.85, 7), climate_norm(2.35, 48.85, 1)
+    assert july is not None
+    assert january is not None
+    assert july.station.startswith("Paris")
+    assert july.temperature_c > january.temperature_c + 10
+    assert climate_norm(-30.0, 40.0, 7) is None
+
+
+@pytest.mark.parametrize(("lon", "lat", "hemisphere"), [(151.2, -33.87, "south"), (13.4, 52.52, "north")])
+def test_summer_is_where_it_should_be(lon: float, lat: float, hemisphere: str) -> None:
+    means = [norm.temperature_c for month in range(1, 13) if (norm := climate_norm(lon, lat, month))]
+    assert (means.index(max(means)) + 1 in (12, 1, 2)) == (hemisphere == "south")
+
+
+def test_a_day_of_sun_turns_once() -> None:
+    start = datetime(2026, 5, 5, tzinfo=UTC)
+    azimuths = [sun_at(2.3, 48.9, start + timedelta(minutes=10 * step)).azimuth_deg for step in range(144)]
+    turned = [(b - a) % 360 for a, b in itertools.pairwise(azimuths)]
+    assert all(step < 180 for step in turned)
+    assert sum(turned) == pytest.approx(360, abs=5)

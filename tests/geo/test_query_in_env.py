@@ -1,0 +1,62 @@
+"""Queries in an episode: each stands in the trace with its answer, and its time passes."""
+
+from __future__ import annotations
+
+import itertools
+import json
+from collections.abc import Iterator
+
+import pytest
+
+from automotive_cosim import geo
+from automotive_cosim.contracts import FeedbackCode
+from automotive_cosim.env import CockpitEnv
+from automotive_cosim.geo import sensor
+
+
+@pytest.fixture(scope="module")
+def env() -> Iterator[CockpitEnv]:
+    made = CockpitEnv(task="hvac_fan_max", scenario="border", max_steps=30)
+    yield made
+    made.close()
+
+
+@pytest.fixture(scope="module")
+def asked(env: CockpitEnv) -> CockpitEnv:
+    env.reset(seed=0)
+    for query in ("weather", "horn", "nonsense"):
+        env.step({"action_type": "query", "text": query})
+    return env
+
+
+def test_each_query_is_in_the_trace_with_its_answer(asked: CockpitEnv) -> None:
+    lines = [json.loads(json.dumps(step.as_json())) for step in asked.steps[1:]]
+    assert [line["action"]["text"] for line in lines] == ["weather", "horn", "nonsense"]
+    assert [line["feedback"]["code"] for line in lines] == ["ok", "ok", "refused"]
+    assert "Weather: snow" in lines[0]["feedback"]["text"]
+    assert lines[1]["feedback"]["text"].startswith("Horn: not from 23:30")
+
+
+def test_its_time_passes_on_top_of_the_actions(asked: CockpitEnv) -> None:
+    times = [step.moment.time_s for step in asked.steps]
+    took = [after - before for before, after in itertools.pairwise(times)]
+    assert took == pytest.approx(
+        [1.0 + sensor.OVER_THE_AIR_S["4g"], 1.0 + sensor.ON_BOARD_S, 1.0 + sensor.ON_BOARD_S]
+    )
+
+
+def test_an_agent_without_the_context_cannot_ask(asked: CockpitEnv) -> None:
+    blind = CockpitEnv(
+        task="hvac_fan_max",
+        scenario="border",
+        channels=("elements",),
+        simulations=asked._simulations,
+    )
+    blind.reset(seed=0)
+    blind.step({"action_type": "query", "text": "weather"})
+    assert blind.observation.feedback.code is FeedbackCode.REFUSED
+    blind.close()
+
+
+def test_the_moments_of_an_episode_are_what_judges_check(asked: CockpitEnv) -> None:
+    assert isinstance(geo.violations([*asked.drive, *asked.moments]), tuple)

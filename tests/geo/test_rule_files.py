@@ -1,0 +1,233 @@
+"""Rule files: all that is shipped is well formed; a wrong one is refused with file, entry and reason."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable
+from dataclasses import replace
+from datetime import UTC, datetime
+from importlib.resources import files
+from pathlib import Path
+
+import pytest
+
+from automotive_cosim.contracts import DrivingState, GpsFix, Weather
+from automotive_cosim.errors import GeoDataError
+from automotive_cosim.geo.context import Geo
+from automotive_cosim.geo.place import Atlas
+from automotive_cosim.geo.rules import TOPICS, read_jurisdiction
+from automotive_cosim.geo.situation import CONDITIONS, Situation, all_hold, parse_when
+
+SHIPPED = sorted(Path(str(files("automotive_cosim.geo.data"))).glob("*.toml"))
+
+HEAD = """
+[jurisdiction]
+code = "XX"
+name = "Nowhere"
+status = "knowledge"
+driving_side = "left"
+speed_unit = "mph"
+temperature_unit = "C"
+emergency = ["1"]
+"""
+TOWN = """
+[jurisdiction]
+code = "ZZ-town"
+within = "ZZ"
+kind = "city"
+name = "Town"
+status = "knowledge"
+polygon = [[0, 0], [1, 0], [1, 1]]
+"""
+RULE = """
+[[rules]]
+id = "XX.limit"
+topic = "limit"
+text = "everywhere"
+value = 30
+unit = "mph"
+law = "Act 1"
+as_of = 2026-01-01
+status = "verified"
+"""
+
+
+def _write(folder: Path, text: str, name: str = "XX.toml") -> Path:
+    path = folder / name
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+def test_a_shipped_file_reads(path: Path) -> None:
+    entry = read_jurisdiction(path)
+    assert entry.code == path.stem
+    assert entry.rules or entry.kind == "city"
+    assert list(tomllib.loads(path.read_text(encoding="utf-8"))) in (["jurisdiction", "rules"], ["jurisdiction"])
+
+
+def test_at_least_22_countries_and_no_id_twice() -> None:
+    countries = [path.stem for path in SHIPPED if len(path.stem) == 2]
+    assert len(countries) >= 22
+    ids = [rule.id for path in SHIPPED for rule in read_jurisdiction(path).rules]
+    assert len(ids) == len(set(ids))
+
+
+def test_a_well_formed_file_reads(tmp_path: Path) -> None:
+    entry = read_jurisdiction(_write(tmp_path, HEAD + RULE))
+    assert (entry.code, entry.driving_side, len(entry.rules)) == ("XX", "left", 1)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "right", "reason"),
+    [
+        ('topic = "limit"', 'topic = "limt"', "did you mean 'limit'"),
+        ('id = "XX.limit"', 'id = "YY.limit"', "does not begin with 'XX.'"),
+        ("value = 30", "value = -30", "too small"),
+        ("value = 30", "value = nan", "no number"),
+        ("value = 30", "value = [30]", "wrong type"),
+        ("value = 30", "cases = []", "cases is a list of tables"),
+        ("value = 30", "cases = [30]", "cases is a list of tables"),
+        ('unit = "mph"', "unit = 3", "unit = 3 has the wrong type"),
+        ('unit = "mph"', 'unit = "mph"\nwhen = 3', "when = 3 is no table"),
+        ('unit = "mph"', 'unit = "mph"\nwhen = { visibility_below_m = inf }', "visibility_below_m takes metres"),
+        ('unit = "mph"', 'unit = "mph"\nwhen = { inside = [[0, 0], [1, 1], [200, 0]] }', "inside takes"),
+        ('unit = "mph"', 'unit = "mph"\ncaps = "no"', "caps = 'no'"),
+        ('unit = "mph"', 'unit = "mph"\nbinds = "everyone"', "no road user named 'everyone'"),
+        ('text = "everywhere"', 'text = ""', "no line of text"),
+        ('text = "everywhere"', 'text = "a\\nb"', "no line of text"),
+        ("as_of = 2026-01-01", "as_of = 2026-01-01T10:00:00", "write the date alone"),
+        ("value = 30", 'value = "fast"', "a limit is a number or 'none'"),
+        ('unit = "mph"', 'unit = "mp/h"', "did you mean 'mph'"),
+        ('unit = "mph"', 'unit = "mph"\nwhen = { buildup = true }', "did you mean 'built_up'"),
+        ('unit = "mph"', 'unit = "mph"\nwhen = { built_up = 1 }', "built_up takes true or false, not 1"),
+        ('unit = "mph"', 'unit = "mph"\nwhen = { weather = ["frogs"] }', "weather takes a list of"),
+        ('unit = "mph"', 'unit = "mph"\nwhen = { season = ["13-01", "03-31"] }', "season takes"),
+        ('unit = "mph"', 'unit = "mph"\nwhen = { inside = [[0, 0], [1, 1]] }', "inside takes"),
+        ('unit = "mph"', 'unit = "mph"\ncolour = "red"', "no field named 'colour'"),
+        ('status = "verified"', 'status = "sure"', "sure"),
+        ("as_of = 2026-01-01", 'as_of = "2026"', "as_of"),
+        ('law = "Act 1"\n', "", "lacks 'law'"),
+        ("value = 30\n", "", "either value"),
+        ("value = 30\n", "cases = [{ value = 30 }, { value = 20 }]\n", "each limit is a rule of its own"),
+    ],
+)
+def test_a_wrong_rule_is_refused_with_file_line_and_reason(
+    tmp_path: Path, wrong: str, right: str, reason: str
+) -> None:
+    assert wrong in RULE
+    path = _write(tmp_path, HEAD + RULE.replace(wrong, right))
+    with pytest.raises(GeoDataError) as error:
+        read_jurisdiction(path)
+    assert str(path) in str(error.value)
+    assert "line 11" in str(error.value)
+    assert reason in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("[jurisdiction]\ncode XX\n", "at line 2"),
+        ("", "lacks 'jurisdiction'"),
+        (HEAD.replace('"left"', '"middle"'), "none of left, right"),
+        (HEAD + '[rules]\nid = "XX.limit"\n', "[[rules]]"),
+        (HEAD + RULE + RULE, "stands twice"),
+        (TOWN.replace('within = "ZZ"', 'within = "YY"'), "does not begin with within = 'YY'"),
+        (TOWN.replace("[1, 0], ", ""), "polygon"),
+        (TOWN.replace("[1, 0], ", "[181, 0], "), "not on earth"),
+        (TOWN.replace("[1, 0], ", "[1, 0], [0, 1], "), "edges cross"),
+    ],
+)
+def test_a_wrong_file_is_refused(tmp_path: Path, text: str, reason: str) -> None:
+    with pytest.raises(GeoDataError) as error:
+        read_jurisdiction(_write(tmp_path, text))
+    assert reason in str(error.value)
+
+
+def test_a_users_city_joins_the_shipped_country(
+    tmp_path: Path, drive: Callable[..., DrivingState], weather: Callable[..., Weather]
+) -> None:
+    _write(
+        tmp_path,
+        """
+[jurisdiction]
+code = "FR-tours"
+within = "FR"
+kind = "city"
+name = "Tours"
+status = "knowledge"
+polygon = [[0.6, 47.3], [0.8, 47.3], [0.8, 47.5], [0.6, 47.5]]
+
+[[rules]]
+id = "FR-tours.limit"
+topic = "limit"
+text = "in town"
+value = 30
+unit = "km/h"
+when = { built_up = true }
+law = "order"
+as_of = 2026-01-01
+status = "secondary"
+""",
+        "FR-tours.toml",
+    )
+    geo = Geo([tmp_path])
+    state, fix = drive(road_class="residential"), GpsFix(True, 0.7, 47.4, 3.0, 0.0, 0.0)
+    found = geo.locate(state, fix, weather(), datetime(2026, 10, 5, 12, tzinfo=UTC))
+    assert found.place.city == "Tours"
+    assert [(limit.rule.id, limit.value) for limit in found.default_limits] == [("FR-tours.limit", 30)]
+    assert "Default limit: 30 km/h in town (FR order, secondary 2026-01-01)" in found.text()
+
+
+def test_a_users_country_stands_before_the_shipped_one(tmp_path: Path) -> None:
+    shipped = next(path for path in SHIPPED if path.stem == "FR").read_text(encoding="utf-8")
+    _write(tmp_path, shipped.replace('name = "France"', 'name = "Mine"'), "FR.toml")
+    assert Atlas([tmp_path]).place(1.8, 48.2).country_name == "Mine"
+    assert Atlas().place(1.8, 48.2).country_name == "France"
+
+
+def test_a_users_folder_must_exist_and_hold_whole_countries(tmp_path: Path) -> None:
+    with pytest.raises(GeoDataError, match="is no folder"):
+        Atlas([tmp_path / "none"])
+    _write(tmp_path, HEAD, "YY.toml")
+    with pytest.raises(GeoDataError, match="not the name of the file"):
+        Atlas([tmp_path]).country("YY")
+    _write(tmp_path, TOWN, "ZZ-town.toml")
+    with pytest.raises(GeoDataError, match=r"no ZZ\.toml"):
+        Atlas([tmp_path]).country("ZZ")
+
+
+def test_every_condition_and_topic_is_used_by_a_shipped_rule() -> None:
+    rules = [rule for path in SHIPPED for rule in read_jurisdiction(path).rules]
+    assert {rule.topic for rule in rules} == set(TOPICS)
+    used = {test.word for rule in rules for case in rule.cases for test in case.when}
+    assert used == set(CONDITIONS)
+
+
+def test_conditions_are_three_valued(situation: Callable[..., Situation]) -> None:
+    tests = parse_when({"built_up": True, "weather": ["rain"]})
+    rain = {"phenomena": frozenset({"rain"})}
+    assert all_hold(tests, situation(built_up=True, **rain)) is True
+    assert all_hold(tests, situation(built_up=None, **rain)) is None
+    assert all_hold(tests, situation(built_up=None, phenomena=frozenset())) is False
+    assert all_hold((), situation()) is True
+
+
+@pytest.mark.parametrize(
+    ("when", "holds", "fails"),
+    [
+        ({"season": ["11-01", "03-31"]}, {"month": 12, "day": 24}, {"month": 4, "day": 1}),
+        ({"season": ["04-15", "10-01"]}, {"month": 4, "day": 15}, {"month": 10, "day": 2}),
+        ({"hours": ["22:00", "06:00"]}, {"hour": 23}, {"hour": 6}),
+        ({"hours": ["08:00", "20:00"]}, {"hour": 8}, {"hour": 20}),
+        ({"weekdays": [1, 2, 3, 4, 5]}, {"day": 5}, {"day": 4}),
+    ],
+)
+def test_times_wrap_and_ends_belong_where_the_words_say(
+    situation: Callable[..., Situation], when: dict[str, object], holds: dict[str, int], fails: dict[str, int]
+) -> None:
+    (test,) = parse_when(when)
+    now = situation().local_time
+    assert test.holds(replace(situation(), local_time=now.replace(**holds))) is True  # type: ignore[arg-type]
+    assert test.holds(replace(situation(), local_time=now.replace(**fails))) is False  # type: ignore[arg-type]

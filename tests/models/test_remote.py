@@ -1,0 +1,332 @@
+"""The client against a server that is slow, cut off, malformed or refuses, over a real connection."""
+
+import base64
+import io
+import json
+import logging
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+
+import pytest
+
+from automotive_cosim.agents import ModelAgent
+from automotive_cosim.agents.settings import T3A
+from automotive_cosim.errors import ModelError, SetupError, UserError
+from automotive_cosim.models import Message, make_model
+from automotive_cosim.run.episode import EpisodeSetup, run_episode
+from automotive_cosim.run.record import Recorder
+
+KEY = "sk-a-very-secret-key-0123456789"
+
+Behave = Callable[[BaseHTTPRequestHandler], None]
+
+
+def completion(text: object, finish: str = "stop", **usage: int) -> bytes:
+    counted = {"prompt_tokens": 7, "completion_tokens": 3} | usage
+    choice = {"index": 0, "finish_reason": finish, "message": {"role": "assistant", "content": text}}
+    whole = {"id": "x", "object": "chat.completion", "created": 0, "model": "m", "choices": [choice]}
+    return json.dumps(whole | {"usage": counted}).encode()
+
+
+def send(handler: BaseHTTPRequestHandler, status: int, body: bytes, **headers: str) -> None:
+    handler.send_response(status)
+    handler.send_header("Content-Type", "application/json")
+    handler.send_header("Content-Length", str(len(body)))
+    for name, value in headers.items():
+        handler.send_header(name.replace("_", "-"), value)
+    handler.end_headers()
+    handler.wfile.write(body)
+
+
+class Server:
+    """Answers each request by the next of ``behaviours``, and the last one for ever."""
+
+    def __init__(self) -> None:
+        self.behaviours: list[Behave] = [lambda handler: send(handler, 200, completion("hello"))]
+        self.asked: list[dict] = []
+        self.keys: list[str] = []
+        server = self
+
+        class Handler(BaseHTTPRequestHandler):
+            def do_POST(self) -> None:
+                body = self.rfile.read(int(self.headers["Content-Length"]))
+                server.asked.append({"path": self.path, **json.loads(body)})
+                server.keys.append(self.headers["Authorization"])
+                behave = server.behaviours.pop(0) if len(server.behaviours) > 1 else server.behaviours[0]
+                try:
+                    behave(self)
+                except OSError:  # the client has gone
+                    self.close_connection = True
+
+            def log_message(self, *_: object) -> None: ...
+
+        self._http = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+        self._http.daemon_threads = True
+        self.url = f"http://127.0.0.1:{self._http.server_port}/v1"
+        threading.Thread(target=self._http.serve_forever, args=(0.01,), daemon=True).start()
+
+    def close(self) -> None:
+        self._http.shutdown()
+        self._http.server_close()
+
+
+@pytest.fixture
+def server(monkeypatch: pytest.MonkeyPatch) -> Iterator[Server]:
+    """A server, and the environment that leads ``local/...`` to it."""
+    made = Server()
+    monkeypatch.setenv("LOCAL_API_KEY", KEY)
+    monkeypatch.setenv("LOCAL_BASE_URL", made.url)
+    monkeypatch.setenv("NO_PROXY", "127.0.0.1")
+    yield made
+    made.close()
+
+
+ASK = [Message("user", "hi")]
+QUICK = "local/m?timeout_s=0.3&retries=2"
+
+
+def model(spec: str = "local/m"):
+    """The model, which notes its pauses in place of waiting."""
+    made = make_model(spec)
+    made.pauses = []
+    made._sleep = made.pauses.append
+    return made
+
+
+def test_text_tokens_and_cost_come_back(server):
+    reply = model("local/m?usd_per_million_in=2&usd_per_million_out=10").chat(ASK)
+    assert (reply.text, reply.tokens_in, reply.tokens_out, reply.finish) == ("hello", 7, 3, "stop")
+    assert reply.cost_usd == pytest.approx((7 * 2 + 3 * 10) / 1e6)
+    assert reply.seconds > 0
+
+
+def test_what_is_asked_is_what_the_settings_say(server):
+    model("local/meta/some-model?seed=4&temperature=0.5&max_tokens=50").chat(ASK)
+    asked = server.asked[0]
+    assert asked["path"] == "/v1/chat/completions"
+    assert (asked["model"], asked["seed"], asked["temperature"], asked["max_tokens"]) == (
+        "meta/some-model", 4, 0.5, 50,
+    )  # fmt: skip
+    assert asked["messages"] == [{"role": "user", "content": "hi"}]
+    assert server.keys == [f"Bearer {KEY}"]
+
+
+def test_none_leaves_a_setting_to_the_provider(server):
+    model("local/m?seed=none&temperature=none&max_tokens=none").chat(ASK)
+    assert not {"seed", "temperature", "max_tokens"} & set(server.asked[0])
+
+
+def test_openai_itself_is_asked_in_its_present_words(server, monkeypatch):
+    monkeypatch.setenv("OPENAI_API_KEY", KEY)
+    monkeypatch.setenv("OPENAI_BASE_URL", server.url)
+    model("openai/m").chat(ASK)
+    assert server.asked[0]["max_completion_tokens"] == 1024
+
+
+def test_pictures_go_along_as_they_are(server):
+    model().chat([Message("user", "look", (b"\x89PNG one", b"\x89PNG two"))])
+    parts = server.asked[0]["messages"][0]["content"]
+    assert [part["type"] for part in parts] == ["text", "image_url", "image_url"]
+    sent = [base64.b64decode(part["image_url"]["url"].split(",")[1]) for part in parts[1:]]
+    assert sent == [b"\x89PNG one", b"\x89PNG two"]
+
+
+@pytest.mark.parametrize("status", [408, 409, 429, 500, 502, 503])
+def test_what_may_pass_is_tried_again_with_longer_pauses(server, status):
+    fails = lambda handler: send(handler, status, b'{"error": {"message": "busy"}}')  # noqa: E731
+    server.behaviours = [fails, fails, fails, *server.behaviours]
+    made = model()
+    assert made.chat(ASK).text == "hello"
+    assert len(server.asked) == 4
+    assert made.pauses == sorted(made.pauses)
+    assert len(set(made.pauses)) == 3
+
+
+def test_the_servers_own_wish_for_a_pause_is_kept(server):
+    server.behaviours.insert(0, lambda handler: send(handler, 429, b"{}", Retry_After="7"))
+    made = model()
+    made.chat(ASK)
+    assert made.pauses == [7.0]
+
+
+@pytest.mark.parametrize("status", [400, 401, 403, 404, 422])
+def test_what_will_not_pass_is_not_tried_again(server, status):
+    server.behaviours = [lambda handler: send(handler, status, b'{"error": {"message": "no such model"}}')]
+    with pytest.raises(ModelError, match=str(status)):
+        model().chat(ASK)
+    assert len(server.asked) == 1
+
+
+def test_it_gives_up_after_its_attempts(server):
+    server.behaviours = [lambda handler: send(handler, 500, b"{}")]
+    with pytest.raises(ModelError, match="3 attempts") as caught:
+        model("local/m?retries=2").chat(ASK)
+    assert len(server.asked) == 3
+    assert "\n" not in str(caught.value)
+
+
+def _silent(handler) -> None:
+    time.sleep(1.0)
+
+
+def _trickling(handler) -> None:
+    """Keeps every single wait short and never comes to an end."""
+    handler.send_response(200)
+    handler.send_header("Content-Type", "application/json")
+    handler.send_header("Content-Length", "1000")
+    handler.end_headers()
+    for _ in range(40):
+        handler.wfile.write(b" ")
+        handler.wfile.flush()
+        time.sleep(0.05)
+
+
+def _cut_off(handler) -> None:
+    whole = completion("never whole")
+    handler.send_response(200)
+    handler.send_header("Content-Type", "application/json")
+    handler.send_header("Content-Length", str(len(whole)))
+    handler.end_headers()
+    handler.wfile.write(whole[:40])
+    handler.close_connection = True
+
+
+def _hanging_up(handler) -> None:
+    handler.close_connection = True
+    handler.connection.close()
+
+
+@pytest.mark.parametrize("behave", [_silent, _trickling, _cut_off, _hanging_up], ids=lambda f: f.__name__[1:])
+def test_slow_and_broken_connections_are_tried_again(server, behave):
+    server.behaviours.insert(0, behave)
+    assert model(QUICK).chat(ASK).text == "hello"
+    assert len(server.asked) == 2
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        b"", b"{", b"null", b"[]", b"<html>busy</html>", b'{"choices": []}', b'{"choices": [{}]}',
+        b'{"choices": [{"message": null}]}', b"\xff\xfe", b"[" * 100_000,
+    ],
+    ids=lambda body: body[:20].decode(errors="replace") or "empty",
+)  # fmt: skip
+def test_a_malformed_answer_is_tried_again(server, body):
+    server.behaviours.insert(0, lambda handler: send(handler, 200, body))
+    assert model(QUICK).chat(ASK).text == "hello"
+
+
+@pytest.mark.parametrize(
+    ("content", "text"),
+    [(None, ""), ("", ""), (7, ""), ([{"type": "text", "text": "a"}, {"type": "text", "text": "b"}], "ab")],
+)
+def test_an_answer_without_text_is_an_empty_one(server, content, text):
+    server.behaviours = [lambda handler: send(handler, 200, completion(content))]
+    assert model().chat(ASK).text == text
+
+
+def test_an_answer_that_ran_into_its_limit_says_so(server):
+    server.behaviours = [lambda handler: send(handler, 200, completion("Situ", finish="length"))]
+    assert model().chat(ASK).finish == "length"
+
+
+def test_an_endless_body_is_not_read(server):
+    server.behaviours = [lambda handler: send(handler, 200, b" " * 5_000_000)]
+    with pytest.raises(ModelError, match="bytes"):
+        model("local/m?retries=0").chat(ASK)
+
+
+def test_the_rate_is_kept(server):
+    made = model("local/m?per_minute=30")
+    for _ in range(3):
+        made.chat(ASK)
+    assert len(made.pauses) == 2
+    assert made.pauses[0] == pytest.approx(2.0, abs=0.5)
+
+
+def test_no_server_at_all_is_an_error_that_says_where(server):
+    server.close()
+    with pytest.raises(ModelError, match=r"local/m\S* gave no answer"):
+        model("local/m?retries=1").chat(ASK)
+
+
+def test_the_key_is_nowhere_to_be_read(server, caplog, capfd):
+    caplog.set_level(logging.DEBUG)
+    stream = io.StringIO()
+    handler = logging.StreamHandler(stream)
+    logging.getLogger().addHandler(handler)
+    made = model("local/m?retries=1")
+    said = [repr(made), repr(vars(made)["_endpoint"]), made.name]
+    leak = json.dumps({"error": {"message": f"bad key {KEY}"}}).encode()
+    server.behaviours = [lambda handler: send(handler, 200, completion(f"your key is {KEY}"))]
+    said.append(made.chat(ASK).text)
+    for status in (401, 500):
+        server.behaviours = [lambda handler, status=status: send(handler, status, leak)]
+        with pytest.raises(ModelError) as caught:
+            made.chat(ASK)
+        said += [str(caught.value), repr(caught.value.__cause__)]
+    logging.getLogger().removeHandler(handler)
+    told = capfd.readouterr()
+    everything = "\n".join([*said, stream.getvalue(), caplog.text, told.out, told.err])
+    assert KEY in server.keys[0]
+    assert KEY not in everything
+    assert "***" in everything
+
+
+def test_a_short_word_for_a_local_server_is_left_alone_in_answers(server, monkeypatch):
+    monkeypatch.setenv("LOCAL_API_KEY", "local")
+    server.behaviours = [lambda handler: send(handler, 200, completion("the local law"))]
+    assert model().chat(ASK).text == "the local law"
+
+
+@pytest.mark.parametrize(
+    ("spec", "missing"), [("nowhere/m", "NOWHERE_API_KEY"), ("my-own.host/m", "MY_OWN_HOST_API_KEY")]
+)
+def test_a_missing_key_is_named(spec, missing):
+    with pytest.raises(SetupError, match=missing):
+        make_model(spec)
+
+
+def test_a_missing_address_is_named(monkeypatch):
+    monkeypatch.setenv("NOWHERE_API_KEY", "x")
+    with pytest.raises(SetupError, match="NOWHERE_BASE_URL"):
+        make_model("nowhere/m")
+
+
+@pytest.mark.parametrize(
+    ("query", "said"),
+    [
+        ("sed=1", "seed"),
+        ("seed=x", "whole"),
+        ("timeout_s=0", "above"),
+        ("retries=-1", "from"),
+        ("api_key=x", "setting"),
+    ],
+)
+def test_wrong_settings_are_told(server, query, said):
+    with pytest.raises(UserError, match=said):
+        make_model(f"local/m?{query}")
+
+
+def test_without_the_package_it_says_what_to_install(server, monkeypatch):
+    monkeypatch.setitem(sys.modules, "openai", None)
+    with pytest.raises(SetupError, match=r"automotive-cosim\[llm\]"):
+        make_model("local/m")
+
+
+def test_no_key_is_in_the_record_of_an_episode(server, tmp_path):
+    """The server gives the key away in every answer; the folder must not."""
+    text = f'Situation: {KEY}\nPlan: {KEY}\nAction: {{"action_type": "answer", "text": "{KEY}"}}'
+    server.behaviours = [lambda handler: send(handler, 200, completion(text))]
+    agent = ModelAgent(T3A, make_model("local/m"))
+    setup = EpisodeSetup(task="hvac_fan_max", scenario="grid", model=agent.model, max_steps=3)
+    result = run_episode(setup, agent, [Recorder(tmp_path / "out", setup, {})])
+    assert result.steps == 3
+    assert result.tokens_in == 7 * len(server.asked)
+    files = [path for path in (tmp_path / "out").rglob("*") if path.is_file()]
+    assert files
+    for path in files:
+        assert KEY.encode() not in path.read_bytes()

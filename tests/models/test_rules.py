@@ -1,0 +1,161 @@
+"""The rule model: a pure function of a prompt, which follows its own plan from turn to turn."""
+
+import json
+import re
+
+import numpy as np
+import pytest
+
+from automotive_cosim.agents.answer import labelled, read
+from automotive_cosim.models import Message, Rules
+from automotive_cosim.models.page import Page
+from automotive_cosim.models.skills import SKILLS, Way, call, in_app, opened, say, slide, tap, typed
+from automotive_cosim.tasks import CATALOGUE
+
+
+def prompt(goal: str, **sections: str) -> str:
+    titles = {
+        "screen": "The screen", "car": "The car", "context": "What holds here", "plan": "Your plan",
+        "result": "Last result", "before": "The screen before", "after": "The screen after",
+    }  # fmt: skip
+    whole = {"What the driver said": goal} | {titles[name]: text for name, text in sections.items()}
+    return "\n\n".join(f"## {title}\n{text}" for title, text in whole.items())
+
+
+def row(index: int, resource_id: str, **more: object) -> str:
+    return json.dumps({"index": index, "kind": "Button", "id": resource_id} | more)
+
+
+def ask(text: str):
+    reply = Rules().chat([Message("user", text)])
+    return read(reply.text), reply
+
+
+def follow(goal: str, screen: str, result: str = "ok", most: int = 12, **sections: str) -> list[dict]:
+    """The actions it takes on a screen that never changes, until it declares."""
+    done: list[dict] = []
+    plan = ""
+    while len(done) < most:
+        answer, _ = ask(prompt(goal, screen=screen, plan=plan, result=result if done else "none", **sections))
+        action = answer.action
+        done.append({"type": str(action.action_type), "index": action.index, "status": action.goal_status})
+        plan = answer.plan
+        if action.goal_status:
+            break
+    return done
+
+
+def test_it_is_a_pure_function_of_its_prompt():
+    text = prompt("Turn up the fan")
+    assert ask(text)[1] == ask(text)[1]
+
+
+def test_its_answers_have_the_form_that_is_asked_for():
+    for task in CATALOGUE.values():
+        for template in task.templates:
+            answer, reply = ask(prompt(template, car="speed_kmh: 80"))
+            assert answer.strict, reply.text
+            assert answer.situation
+
+
+def test_a_plan_is_followed_to_its_end():
+    screen = "\n".join([row(4, "hvac.fan.max"), row(5, "other")])
+    steps = follow("fan to max", screen)
+    assert [(step["type"], step["index"]) for step in steps] == [("open_app", None), ("click", 4), ("status", None)]
+    assert steps[-1]["status"] == "complete"
+
+
+def test_a_plan_holds_though_the_situation_changes():
+    """What it decided stands: the speed may fall while it is on its way to the warning."""
+    context = "Speed limit here: 50 km/h (posted)"
+    first, _ = ask(prompt("watch my speed", car="speed_kmh: 80", context=context))
+    screen = row(1, "safety.kind.speed")
+    second, _ = ask(prompt("watch my speed", car="speed_kmh: 50", context=context, plan=first.plan, screen=screen))
+    assert second.action.index == 1
+
+
+@pytest.mark.parametrize("code", ["restricted", "disabled", "refused", "no_such_element"])
+def test_what_the_car_does_not_do_is_declined(code):
+    steps = follow("fan to max", row(4, "hvac.fan.max"), result=code)
+    assert [step["status"] for step in steps] == [None, "infeasible"]
+
+
+def test_it_scrolls_for_what_is_not_in_sight_and_gives_up_in_the_end():
+    steps = follow("fan to max", row(0, "list", scrollable=True))
+    kinds = [step["type"] for step in steps]
+    assert kinds == ["open_app", *["scroll"] * 6, "status"]
+    assert steps[-1]["status"] == "infeasible"
+
+
+def test_every_kind_of_move_is_an_action(monkeypatch):
+    moves = (
+        opened("media"), tap("a"), tap("=Some Text"), slide("s", 0.5), typed("f", "Rue 'x' \"y\""), say("hello"),
+        call("show_alert", kind="speed"),
+    )  # fmt: skip
+    screen = "\n".join(
+        [row(1, "a"), row(2, "", text="some text"), row(3, "s", bounds=[100, 10, 340, 30]), row(4, "f")]
+    )
+    monkeypatch.setattr("automotive_cosim.models.rules.SKILLS", (type(SKILLS[0])((".",), Way("so", moves)),))
+    plan, actions = "", []
+    for _ in range(len(moves) + 1):
+        answer, _ = ask(prompt("x", screen=screen, plan=plan, result="ok"))
+        actions.append(answer.action)
+        plan = answer.plan
+    assert [action.index for action in actions] == [None, 1, 2, None, 4, None, None, None]
+    assert (actions[3].x, actions[3].y) == (220, 20)
+    assert actions[4].text == "Rue 'x' \"y\""
+    assert actions[-1].goal_status == "complete"
+
+
+@pytest.mark.parametrize(("limit", "speed", "warns"), [("30 mph", 60.0, True), ("50 mph", 80.0, False)])
+def test_it_reads_limits_in_miles(limit, speed, warns):
+    text = prompt("Watch my speed", car=f"speed_kmh: {speed}", context=f"Speed limit here: {limit} (posted)")
+    assert (ask(text)[0].action.action_type == "open_app") == warns
+
+
+def test_an_unknown_wish_is_declined():
+    assert ask(prompt("Qwertz uiop"))[0].action.goal_status == "infeasible"
+
+
+def test_asked_to_look_back_it_gives_one_line():
+    text = prompt("x", before=row(1, "a"), after=f"{row(1, 'a')}\n{row(2, 'b')}", result="ok: done")
+    reply = Rules().chat([Message("user", text)])
+    assert labelled(reply.text, "lesson") == "ok; 0 elements gone, 1 new."
+
+
+def test_pictures_change_nothing():
+    text = prompt("fan to max")
+    assert not Rules.sees_pictures
+    assert Rules().chat([Message("user", text, (b"png",))]).text == Rules().chat([Message("user", text)]).text
+
+
+def test_its_tokens_are_counted_by_length():
+    short, long = (ask(prompt("fan", context="x" * count))[1].tokens_in for count in (0, 4000))
+    assert 950 < long - short < 1050
+
+
+def test_random_prompts_never_break_it():
+    rng = np.random.default_rng(0)
+    pieces = ["\n## Your plan\n", '{"moves": [["tap"', "\n## The screen\n", '{"index": ']
+    alphabet = [*'## \n:{}[]"$ab1', *pieces]
+    for _ in range(400):
+        Page.read("".join(rng.choice(alphabet, 60)))
+        assert Rules().chat([Message("user", "".join(rng.choice(alphabet, 60)))]).text
+
+
+def test_no_skill_hides_behind_another():
+    """Each skill is reached by some phrasing that the table was made on."""
+    reached = set()
+    for task in CATALOGUE.values():
+        for template in task.templates:
+            goal = template.lower()
+            reached |= {
+                next(
+                    (n for n, skill in enumerate(SKILLS) if any(re.search(word, goal) for word in skill.words)), -1
+                )
+            }
+    assert set(range(len(SKILLS))) <= reached
+
+
+def test_a_way_through_an_app_opens_it_first():
+    assert in_app("climate", "a", "b", because="so").moves == (opened("climate"), tap("a"), tap("b"))

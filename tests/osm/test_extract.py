@@ -1,0 +1,123 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from automotive_cosim.errors import ImportMapError, SetupError
+from automotive_cosim.osm import extract
+
+OSM = b'<?xml version="1.0"?><osm version="0.6">%s</osm>'
+
+
+def test_every_format_gives_the_same_roads(formats: dict[str, Path]) -> None:
+    plain = extract.read(formats[""])
+    assert plain.ways
+    assert plain.nodes
+    for ending in (".gz", ".bz2", ".pbf", ".xml"):
+        assert extract.read(formats[ending]) == plain
+
+
+def test_the_content_decides_and_not_the_name(formats: dict[str, Path], tmp_path: Path) -> None:
+    for ending, path in formats.items():
+        renamed = tmp_path / f"download{ending.replace('.', '-')}"
+        renamed.write_bytes(path.read_bytes())
+        assert extract.read(renamed) == extract.read(formats[""])
+
+
+def test_only_roads_that_cars_may_use_are_read(formats: dict[str, Path]) -> None:
+    roads = extract.read(formats[""])
+    assert all(way.road_class in extract.ROAD_CLASSES for way in roads.ways)
+    assert not [way for way in roads.ways if way.tags.get("access") == "private"]
+    assert {ref for way in roads.ways for ref in way.nodes} == set(roads.nodes)
+
+
+@pytest.mark.parametrize(
+    ("tags", "may"),
+    [
+        ({}, True),
+        ({"access": "no", "motor_vehicle": "yes"}, True),
+        ({"access": "yes", "motorcar": "no"}, False),
+        ({"access": "destination"}, True),
+        ({"vehicle": "private"}, False),
+    ],
+)
+def test_the_access_key_nearest_to_cars_decides(tags: dict[str, str], may: bool, tmp_path: Path) -> None:
+    rows = "".join(f'<tag k="{key}" v="{value}"/>' for key, value in tags.items())
+    body = (
+        '<node id="1" lat="48" lon="2"/><node id="2" lat="48.01" lon="2"/><way id="1"><nd ref="1"/><nd ref="2"/>'
+        f'<tag k="highway" v="residential"/>{rows}</way>'
+    )
+    file = tmp_path / "one.osm"
+    file.write_bytes(OSM % body.encode())
+    if may:
+        assert len(extract.read(file).ways) == 1
+    else:
+        with pytest.raises(ImportMapError, match="no roads for cars"):
+            extract.read(file)
+
+
+def test_a_way_clipped_by_the_extract_keeps_its_longest_stretch(tmp_path: Path) -> None:
+    nodes = "".join(f'<node id="{n}" lat="48.00{n}" lon="2"/>' for n in (1, 2, 4, 5, 6))
+    refs = "".join(f'<nd ref="{n}"/>' for n in range(1, 7))
+    file = tmp_path / "clipped.osm"
+    file.write_bytes(OSM % f'{nodes}<way id="1">{refs}<tag k="highway" v="primary"/></way>'.encode())
+    assert [way.nodes for way in extract.read(file).ways] == [(4, 5, 6)]
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        (b"", "is empty"),
+        (b"PK\x03\x04rest of it", "zip archive"),
+        (b"once upon a time", "not OSM data"),
+        (b'<?xml version="1.0"?><net version="1.20"><edge id="a"/></net>', "not OSM"),
+        (b"<!DOCTYPE html><html><body>429 Too Many Requests</body></html>", "not OSM"),
+        (b'{"version": 0.6, "elements": []}', "not OSM data"),
+        (OSM % b"", "no roads for cars"),
+        (OSM % b'<node id="1" lat="48" lon="2"/>', "no roads for cars"),
+        (OSM % b'<way id="1"><nd ref="1"/><nd ref="2"/><tag k="highway" v="primary"/></way>', "no roads for cars"),
+    ],
+)
+def test_what_is_no_map_is_refused_on_one_line(content: bytes, says: str, tmp_path: Path) -> None:
+    file = tmp_path / "map.osm"
+    file.write_bytes(content)
+    with pytest.raises(ImportMapError, match=says) as refused:
+        extract.read(file)
+    assert "map.osm" in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize("ending", ["", ".gz", ".bz2", ".pbf"])
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.9, 0.999])
+def test_a_cut_off_file_is_refused(ending: str, share: float, formats: dict[str, Path], tmp_path: Path) -> None:
+    whole = formats[ending].read_bytes()
+    cut = tmp_path / f"cut.osm{ending}"
+    cut.write_bytes(whole[: int(len(whole) * share)])
+    with pytest.raises(ImportMapError, match=r"cut off|damaged") as refused:
+        extract.read(cut)
+    assert "\n" not in str(refused.value)
+
+
+def test_a_missing_file_and_a_folder_are_refused(tmp_path: Path) -> None:
+    for path in (tmp_path / "nowhere.osm", tmp_path):
+        with pytest.raises(ImportMapError, match="give the path of an OSM extract"):
+            extract.read(path)
+
+
+def test_without_osmium_the_mend_is_named(formats: dict[str, Path], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(__import__("sys").modules, "osmium", None)
+    with pytest.raises(SetupError, match=r"pip install 'automotive-cosim\[import\]'"):
+        extract.read(formats[""])
+
+
+def test_town_and_country_are_told_apart(make_village: Callable[..., object], formats: dict[str, Path]) -> None:
+    roads = extract.read(formats[""])
+    towns = extract.town_cells(roads)
+    built_up = {
+        way.tags["name"]: extract.is_built_up(way, roads.nodes, towns) for way in roads.ways if "name" in way.tags
+    }
+    assert built_up["Rue du Lavoir"]
+    assert built_up["Allée 3"]
+    assert not built_up["Route de Villeneuve-l'Étang"]

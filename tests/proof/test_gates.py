@@ -1,0 +1,188 @@
+"""Each gate catches the fault it is there for, planted in a task that is sound otherwise."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import pytest
+
+from automotive_cosim import verdict
+from automotive_cosim.checks import AnyOf, NothingDone, SignalIs
+from automotive_cosim.cockpit.signals import HVAC, SEAT
+from automotive_cosim.contracts import GoalStatus, Reason
+from automotive_cosim.cosim import Moment
+from automotive_cosim.proof import gates
+from automotive_cosim.proof.ground import Ground
+from automotive_cosim.suite import Basis, Module, Open, Start, Tap, Task
+from automotive_cosim.tasks.forms import COMFORT, ON_THE_WAY, asked, decline
+from automotive_cosim.triggers import InTunnel, SignalAbove, Trigger
+
+SAYS = ("Warm my seat.", "Seat heating on.", "My seat, please.", "Heat this seat.")
+GRID = Start("grid", "avenue")
+SOUND = asked(
+    "seat",
+    Module.HVAC,
+    SAYS,
+    SignalIs(SEAT.DRIVER_HEATING, (50.0,)),
+    Open("climate"),
+    Tap("hvac.driver_seat_heating"),
+    start=GRID,
+    deadline=COMFORT,
+    scenarios=("grid",),
+)
+ALWAYS = verdict.Part(True, "whatever")
+
+
+@dataclass(frozen=True)
+class EverHeated:
+    """Held at any time, so that putting it back changes nothing: what no goal may be."""
+
+    writes = frozenset({SEAT.DRIVER_HEATING.path})
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        return any(moment.signals[SEAT.DRIVER_HEATING.path] > 0 for moment in trace)
+
+
+@dataclass(frozen=True)
+class AnySeat:
+    """Does not care which seat."""
+
+    writes = frozenset({SEAT.DRIVER_HEATING.path})
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        return any(now.signals[seat.path] > 0 for seat in (SEAT.DRIVER_HEATING, SEAT.PASSENGER_HEATING))
+
+
+@pytest.fixture
+def ground(simulations):
+    grounds = []
+
+    def reach(task: Task, half: str = "first") -> Ground:
+        grounds.append(Ground.reach(task, half, 0, simulations))
+        return grounds[-1]
+
+    yield reach
+    for made in grounds:
+        made.close()
+
+
+def changed(**fields: object) -> Task:
+    return replace(SOUND, first=replace(SOUND.first, **fields))
+
+
+def right(ground: Ground):
+    return ground.play(ground.oracle())
+
+
+HALF_GATES = ("oracle", "start", "prefix", "late", "random")
+
+
+@pytest.mark.parametrize("gate", HALF_GATES)
+def test_a_sound_task_passes(ground, gate):
+    assert list(getattr(gates, gate)(ground(SOUND))) == []
+
+
+@pytest.mark.parametrize("gate", ["undone", "near", "collateral"])
+def test_a_sound_end_state_passes(ground, gate):
+    stand = ground(SOUND)
+    assert list(getattr(gates, gate)(stand, right(stand))) == []
+
+
+@pytest.mark.parametrize("gate", ["leak", "road", "repeat"])
+def test_a_sound_start_passes(ground, simulations, gate):
+    assert list(getattr(gates, gate)(ground(SOUND), simulations)) == []
+
+
+def test_an_expert_who_fails_is_seen(ground):
+    (wrong,) = gates.oracle(ground(changed(moves=(Open("climate"), Tap("hvac.passenger_seat_heating")))))
+    assert "goal: not reached" in wrong
+
+
+def test_an_expert_who_finds_nothing_to_tap_is_seen(ground):
+    (wrong,) = gates.oracle(ground(changed(moves=(Tap("hvac.no_such_widget"),))))
+    assert "hvac.no_such_widget is not on the screen" in wrong
+
+
+def test_a_second_way_that_fails_is_seen(ground):
+    (wrong,) = gates.oracle(ground(changed(ways=((Open("climate"), Tap("hvac.sync")),))))
+    assert wrong.startswith("way 1")
+
+
+def test_an_expert_too_slow_is_seen(ground):
+    hasty = replace(COMFORT, seconds=2.5)
+    (wrong,) = gates.oracle(ground(changed(deadline=hasty)))
+    assert "of 2.5 s" in wrong
+
+
+def test_a_goal_that_holds_at_the_start_is_seen(ground):
+    (wrong,) = gates.start(ground(changed(goal=SignalIs(SEAT.DRIVER_HEATING, (0.0,)))))
+    assert wrong.startswith("already so")
+
+
+def test_a_widget_named_by_its_number_is_seen(ground):
+    (wrong,) = gates.start(ground(replace(SOUND, templates=tuple(f"{words} (element 12)" for words in SAYS))))
+    assert "by its number" in wrong
+
+
+def test_a_way_longer_than_need_be_is_seen(ground):
+    moves = (Open("climate"), Tap("hvac.driver_seat_heating"), Open("home"))
+    (wrong,) = gates.prefix(ground(changed(moves=moves)))
+    assert wrong == "complete after 2 actions succeeds"
+
+
+def test_a_deadline_that_does_not_count_is_seen(ground, monkeypatch):
+    monkeypatch.setattr(verdict, "_in_time", lambda *_: ALWAYS)
+    (wrong,) = gates.late(ground(SOUND))
+    assert wrong == "succeeds 30 s late"
+
+
+def test_a_goal_that_survives_being_undone_is_seen(ground):
+    stand = ground(changed(goal=EverHeated()))
+    assert list(gates.undone(stand, right(stand))) == ["succeeds with everything put back"]
+
+
+def test_a_goal_that_takes_the_wrong_seat_is_seen(ground):
+    stand = ground(changed(goal=AnySeat(), may_write=frozenset({SEAT.PASSENGER_HEATING.path})))
+    assert any("PassengerSide" in wrong for wrong in gates.near(stand, right(stand)))
+
+
+def test_a_verdict_blind_to_side_effects_is_seen(ground, monkeypatch):
+    stand = ground(SOUND)
+    played = right(stand)
+    monkeypatch.setattr(verdict, "_clean", lambda *_: ALWAYS)
+    assert len(list(gates.collateral(stand, played))) == 3
+
+
+def test_a_task_that_wants_nothing_is_seen(ground):
+    free = changed(goal=AnyOf((SignalIs(HVAC.AUTO, (True,)), NothingDone())), moves=())
+    wrong = list(gates.trivial({"first": ground(free)}))
+    assert "complete wins" in wrong
+
+
+def test_a_task_that_luck_wins_is_seen(ground):
+    everything = frozenset(ground(SOUND).env.moments[0].commands)
+    (wrong,) = gates.random(ground(changed(goal=NothingDone(), moves=(), may_write=everything)))
+    assert wrong.startswith("random actions win 2")
+
+
+def test_a_trigger_without_a_drive_is_seen(ground, simulations):
+    free = changed(trigger=Trigger(SignalAbove(HVAC.CABIN_TEMPERATURE, -50.0), for_s=2.0, within_s=20.0))
+    assert list(gates.road(ground(free), simulations)) == ["its trigger is reached by a parked car"]
+
+
+def test_a_pair_with_one_right_act_is_seen(ground):
+    pair = replace(SOUND, second=SOUND.first, difference="none")
+    grounds = {half: ground(pair, half) for half in pair.halves}
+    assert len(list(gates.law(grounds))) == 2
+
+
+def test_a_pair_that_can_always_be_declined_is_seen(ground):
+    idle = decline(GRID, ON_THE_WAY, COMFORT, Basis.WISH, reasons=(Reason.SAFETY,))
+    pair = replace(SOUND, first=idle, second=idle, difference="none")
+    grounds = {half: ground(pair, half) for half in pair.halves}
+    assert f"{GoalStatus.INFEASIBLE} wins both halves" in list(gates.trivial(grounds))
+
+
+def test_a_scenario_out_of_reach_is_seen(simulations):
+    dark = changed(trigger=Trigger(InTunnel(), for_s=1.0, within_s=5.0))
+    (wrong,) = gates.reach(replace(dark, scenarios=("grid",)), 0, simulations)
+    assert wrong.startswith("grid: ")

@@ -1,0 +1,53 @@
+import re
+from itertools import pairwise
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from automotive_cosim.report.plot import Plot
+
+samples = st.lists(
+    st.tuples(st.floats(0, 250), st.none() | st.sampled_from([30.0, 50.0, 80.0, 130.0])), min_size=1, max_size=60
+)
+
+
+def _plot(rows, width=960, height=300, timeline=()):
+    path = [{"at_s": float(i - 5), "speed_kmh": speed, "limit_kmh": limit} for i, (speed, limit) in enumerate(rows)]
+    return Plot({"path": path, "timeline": list(timeline)}, width, height)
+
+
+def _points(path):
+    return [(float(x), float(y)) for x, y in re.findall(r"([-\d.e]+) ([-\d.e]+)", path)]
+
+
+@given(samples, st.sampled_from([(960, 300), (420, 280)]))
+def test_everything_drawn_lies_within_the_axes(rows, size):
+    plot = _plot(rows, *size)
+    drawn = [plot.speed, *plot.over, *plot.limits]
+    for x, y in (point for path in drawn for point in _points(path)):
+        assert plot.left - 0.1 <= x <= plot.right + 0.1
+        assert plot.top - 0.1 <= y <= plot.bottom + 0.1
+
+
+@given(samples)
+def test_an_area_stands_only_where_the_speed_is_above_the_limit(rows):
+    over = [limit is not None and speed > limit + 1 for speed, limit in rows]
+    runs = sum(a and b and not c for c, a, b in zip([False, *over], over, over[1:], strict=False))
+    assert len(_plot(rows).over) == runs
+
+
+@given(samples)
+def test_times_are_labelled_with_room_between_them(rows):
+    plot = _plot(rows, 420, 280)
+    at = [plot.x(time) for time in plot.times]
+    assert all(b - a >= 40 for a, b in pairwise(at))
+
+
+def test_no_limit_draws_no_limit():
+    assert _plot([(50.0, None), (60.0, None)]).limits == ()
+
+
+def test_the_first_event_of_a_kind_is_marked(episode):
+    plot = Plot(episode(), 960, 300)
+    assert [kind for _, kind, _ in plot.marks] == ["alert", "declared", "limit"]
+    assert plot.marks[0][0] == plot.x(1.0)

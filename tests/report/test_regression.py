@@ -1,0 +1,106 @@
+"""Two evaluations made by hand, compared as a check on a change would."""
+
+from xml.etree import ElementTree
+
+import pytest
+
+from automotive_cosim.errors import UserError
+from automotive_cosim.report.regression import changes, junit, markdown
+from automotive_cosim.run.collect import failed, planned
+from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.store import opened
+
+TASKS = ["road_speed_80_in_50", "hvac_fan_max", "hvac_cold_hands", "hvac_driver_seat_heater"]
+PLAN = make_plan({"agents": ["asurada"], "tasks": TASKS, "seeds": [0, 1]})
+
+
+def write(folder, lost=(), errors=(), agent="asurada"):
+    """An evaluation in which the named episodes are lost or broken, and all others won."""
+    with opened(folder, PLAN.as_json()) as store:
+        for number, job in enumerate(PLAN.jobs()):
+            if number in errors:
+                row = failed(job, "WorkerDied", "its process ended")
+            else:
+                parts = {"goal": number not in lost, "in_time": True}
+                row = planned(job) | {"success": number not in lost, "parts": parts, "error": None}
+            store.append(row | {"agent": agent})
+    return folder
+
+
+def test_the_same_twice_is_as_good(tmp_path):
+    first = write(tmp_path / "a", lost={1})
+    found = changes(first, write(tmp_path / "b", lost={1}))
+    assert [each.unit for each in found] == ["episodes", "pairs"]
+    assert not any(each.is_worse(0.0) for each in found)
+    assert "as good" in markdown(found, 0.0)
+    assert "Lost," not in markdown(found, 0.0)
+
+
+def test_a_fall_is_worse_beyond_what_is_allowed_and_named(tmp_path):
+    found = changes(write(tmp_path / "a", lost={1}), write(tmp_path / "b", lost={1, 2}))
+    episodes = found[0]
+    share = 1 / len(PLAN.jobs())
+    assert episodes.found.difference == pytest.approx(-share)
+    assert episodes.is_worse(0.0)
+    assert episodes.is_worse(share - 0.01)
+    assert not episodes.is_worse(share)
+    told = markdown(found, 0.0)
+    assert PLAN.jobs()[2].task.id in told.partition("**Lost")[2]
+    assert "missing: goal" in told
+
+
+def test_an_improvement_is_not_worse(tmp_path):
+    found = changes(write(tmp_path / "a", lost={0, 1, 2}), write(tmp_path / "b"))
+    assert found[0].count("won") == 3
+    assert not any(each.is_worse(0.0) for each in found)
+
+
+def test_what_is_not_judged_any_more_is_worse_and_hides_nowhere(tmp_path):
+    found = changes(write(tmp_path / "a"), write(tmp_path / "b", errors={0}))
+    assert found[0].count("error") == 1
+    assert found[0].is_worse(1.0)
+    assert "WorkerDied" in markdown(found, 1.0)
+    back = changes(tmp_path / "b", tmp_path / "a")
+    assert len(back[0].cases) == len(found[0].cases) - 1
+
+
+def test_a_pair_with_a_half_that_is_not_judged_is_told_whichever_half_it_is(tmp_path):
+    halves = [number for number, job in enumerate(PLAN.jobs()) if job.pair and job.setup.seed == 0]
+    first = write(tmp_path / "a")
+    for number in halves:
+        pairs = changes(first, write(tmp_path / f"b{number}", errors={number}))[1]
+        (broken,) = [case for case in pairs.cases if case.kind == "error"]
+        assert broken.why
+
+
+def test_junit_counts_what_it_lists(tmp_path):
+    found = changes(write(tmp_path / "a", lost={1}), write(tmp_path / "b", lost={1, 2}, errors={3}))
+    root = ElementTree.fromstring(junit(found))
+    suite = root[0]
+    kinds = [case[0].tag if len(case) else "passed" for case in suite]
+    assert len(kinds) == int(suite.get("tests")) == len(PLAN.jobs())
+    for tag, attribute in (("failure", "failures"), ("error", "errors"), ("skipped", "skipped")):
+        assert kinds.count(tag) == int(suite.get(attribute)) == 1
+
+
+def test_runs_that_share_nothing_are_refused(tmp_path):
+    with pytest.raises(UserError, match="share no agent"):
+        changes(write(tmp_path / "a"), write(tmp_path / "b", agent="t3a"))
+
+
+def test_the_command_tells_by_its_exit_code_and_writes_both_files(tmp_path):
+    from typer.testing import CliRunner
+
+    from automotive_cosim.cli.main import app
+
+    first, second = str(write(tmp_path / "a")), str(write(tmp_path / "b", lost={2}))
+    runner = CliRunner()
+    files = ["--junit", str(tmp_path / "j.xml"), "--markdown", str(tmp_path / "m.md")]
+    worse = runner.invoke(app, ["compare", first, second, *files])
+    assert worse.exit_code == 1
+    assert (tmp_path / "m.md").read_text() == worse.output
+    assert ElementTree.parse(tmp_path / "j.xml").getroot().tag == "testsuites"
+    assert runner.invoke(app, ["compare", first, second, "--threshold", "60"]).exit_code == 0
+    assert runner.invoke(app, ["compare", first, first]).exit_code == 0
+    refused = runner.invoke(app, ["compare", first, second, "--threshold", "-1"])
+    assert isinstance(refused.exception, UserError)

@@ -1,0 +1,142 @@
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.stats import binomtest
+from statsmodels.stats.contingency_tables import mcnemar
+from statsmodels.stats.proportion import proportion_confint
+
+from automotive_cosim.report import stats
+
+
+@pytest.mark.parametrize(("successes", "count"), [(0, 7), (7, 7), (3, 7), (40, 50), (1, 1000), (500, 1000)])
+@pytest.mark.parametrize("confidence", [0.9, 0.95, 0.99])
+def test_wilson_agrees_with_scipy_and_statsmodels(successes, count, confidence):
+    ours = stats.wilson(successes, count, confidence)
+    theirs = binomtest(successes, count).proportion_ci(confidence, method="wilson")
+    assert (ours.low, ours.high) == pytest.approx((theirs.low, theirs.high), abs=1e-9)
+    others = proportion_confint(successes, count, alpha=1 - confidence, method="wilson")
+    assert (ours.low, ours.high) == pytest.approx(others, abs=1e-9)
+
+
+def test_wilson_on_a_published_example():
+    # Newcombe 1998 (Statistics in Medicine 17), table I, method 3: 81/263, 15/148, 0/20, 1/29
+    for successes, count, low, high in [
+        (81, 263, 0.2553, 0.3662),
+        (15, 148, 0.0624, 0.1605),
+        (0, 20, 0, 0.1611),
+        (1, 29, 0.0061, 0.1718),
+    ]:
+        interval = stats.wilson(successes, count)
+        assert (interval.low, interval.high) == pytest.approx((low, high), abs=6e-5)
+
+
+@given(st.lists(st.booleans(), min_size=1, max_size=60))
+def test_without_repeats_the_interval_is_wilsons(outcomes):
+    rate = stats.rate(enumerate(outcomes))
+    plain = stats.wilson(sum(outcomes), len(outcomes))
+    assert rate.interval is not None
+    if 0 < sum(outcomes) < len(outcomes):
+        # The variance between clusters of one is n/(n-1) times the binomial one.
+        assert rate.interval.high - rate.interval.low >= plain.high - plain.low - 1e-12
+        assert rate.interval.low == pytest.approx(plain.low, abs=0.06 if len(outcomes) < 10 else 0.01)
+    else:
+        assert (rate.interval.low, rate.interval.high) == pytest.approx((plain.low, plain.high))
+
+
+@given(st.lists(st.booleans(), min_size=2, max_size=20), st.integers(2, 8))
+def test_seeds_that_only_repeat_a_task_add_nothing(tasks, seeds):
+    once = stats.rate(enumerate(tasks))
+    often = stats.rate((task, success) for task, success in enumerate(tasks) for _ in range(seeds))
+    assert often.judged == seeds * once.judged
+    assert once.interval is not None
+    assert often.interval is not None
+    assert often.interval.low == pytest.approx(once.interval.low, abs=1e-9)
+    assert often.interval.high == pytest.approx(once.interval.high, abs=1e-9)
+
+
+@pytest.mark.parametrize("within", [0.0, 0.3, 1.0])
+def test_intervals_cover_the_truth_as_often_as_they_say(within):
+    """Tasks of differing difficulty, five seeds each; over many benchmarks about 95 in 100 hold the truth."""
+    rng = np.random.default_rng(0)
+    held = 0
+    for _ in range(400):
+        chances = np.where(rng.random(40) < within, (rng.random(40) < 0.6).astype(float), 0.6)
+        outcomes = rng.random((40, 5)) < chances[:, None]
+        interval = stats.rate((task, bool(s)) for task, row in enumerate(outcomes) for s in row).interval
+        assert interval is not None
+        held += interval.low <= 0.6 <= interval.high
+    assert 0.92 <= held / 400 <= 0.99
+
+
+def test_errors_are_neither_failures_nor_lost():
+    rate = stats.rate([("a", True), ("b", None), ("c", False), ("d", None)])
+    assert (rate.successes, rate.judged, rate.errors, rate.value) == (1, 2, 2, 0.5)
+    nothing = stats.rate([("a", None)])
+    assert (nothing.value, nothing.interval, nothing.errors) == (None, None, 1)
+
+
+@pytest.mark.parametrize(("both", "b", "c", "neither"), [(3, 9, 1, 4), (0, 5, 5, 0), (10, 0, 6, 10), (4, 0, 0, 4)])
+def test_paired_comparisons_agree_with_statsmodels(both, b, c, neither):
+    cells = [(True, True)] * both + [(True, False)] * b + [(False, True)] * c + [(False, False)] * neither
+    first = dict(enumerate(one for one, _ in cells))
+    second = dict(enumerate(other for _, other in cells))
+    found = stats.compare(first, second, {i: i for i in first})
+    assert found is not None
+    assert found.p_value == pytest.approx(float(mcnemar([[both, b], [c, neither]], exact=True).pvalue))
+    assert found.difference == pytest.approx((b - c) / len(cells))
+    assert found.interval.low <= found.difference <= found.interval.high
+
+
+def test_the_bootstrap_agrees_with_the_normal_interval_of_many_independent_pairs():
+    rng = np.random.default_rng(1)
+    one, other = rng.random(800) < 0.7, rng.random(800) < 0.55
+    found = stats.compare(
+        dict(enumerate(map(bool, one))), dict(enumerate(map(bool, other))), {i: i for i in range(800)}
+    )
+    assert found is not None
+    differences = one.astype(float) - other
+    reach = 1.96 * differences.std(ddof=1) / np.sqrt(800)
+    assert found.interval.low == pytest.approx(differences.mean() - reach, abs=0.005)
+    assert found.interval.high == pytest.approx(differences.mean() + reach, abs=0.005)
+
+
+def test_only_shared_instances_are_compared():
+    assert stats.compare({1: True}, {2: True}, {1: 1}) is None
+    found = stats.compare({1: True, 2: True}, {2: False, 3: True}, {2: "t"})
+    assert found is not None
+    assert (found.count, found.only_first) == (1, 1)
+
+
+@given(st.lists(st.booleans(), min_size=1, max_size=8), st.integers(1, 8))
+def test_pass_hat_k_is_the_share_of_draws_without_a_failure(trials, k):
+    draws = list(itertools.combinations(trials, k))
+    wanted = sum(map(all, draws)) / len(draws) if draws else None
+    assert stats.pass_hat_k({"x": trials}, k) == (None if wanted is None else pytest.approx(wanted))
+
+
+def test_pass_hat_k_is_taken_over_instances():
+    assert stats.pass_hat_k({1: [True, True], 2: [True, False], 3: [True]}, 2) == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize(
+    ("cells", "low", "high"),
+    # The first is an example of Newcombe 1998 (Statistics in Medicine 17:2635), the others are Wilson's bounds.
+    [((36, 12, 2, 0), 0.0569, 0.3404), ((30, 0, 0, 0), -0.1135, 0.1135), ((0, 0, 30, 0), -1.0, -0.8395)],
+)
+def test_the_score_interval_of_paired_differences_agrees_with_the_paper(cells, low, high):
+    e, f, g, h = cells
+    pairs = [(True, True)] * e + [(True, False)] * f + [(False, True)] * g + [(False, False)] * h
+    interval = stats._newcombe(pairs, len(pairs))
+    assert (interval.low, interval.high) == pytest.approx((low, high), abs=6e-4)
+
+
+def test_three_tasks_that_agree_prove_little():
+    found = stats.compare(
+        dict.fromkeys(range(9), True), dict.fromkeys(range(9), False), {i: i % 3 for i in range(9)}
+    )
+    assert found is not None
+    assert found.interval.low < 0.4
+    assert found.interval.high == 1.0

@@ -1,0 +1,58 @@
+"""Episodes on the small grid, whose warm traffic all tests of a session share."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+
+from automotive_cosim.agents import Agent, make_agent
+from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, Shot, Watcher, run_episode
+from automotive_cosim.run.record import Recorder
+from automotive_cosim.traffic.fork import Simulations
+
+TASK = "hvac_fan_max"
+
+
+@dataclass
+class Memory(Watcher):
+    """Keeps what it was told."""
+
+    shots: list[Shot] = field(default_factory=list)
+    moved_s: list[float] = field(default_factory=list)
+    results: list[EpisodeResult] = field(default_factory=list)
+
+    def moved(self, moment, cockpit):
+        self.moved_s.append(moment.time_s)
+
+    def handed_over(self, env, shot):
+        self.shots.append(shot)
+
+    def stepped(self, shot):
+        self.shots.append(shot)
+
+    def finished(self, result):
+        self.results.append(result)
+
+
+@dataclass
+class Episode:
+    result: EpisodeResult
+    folder: Path
+    memory: Memory
+
+
+@pytest.fixture
+def run(tmp_path: Path, simulations: Simulations) -> Callable[..., Episode]:
+    """Runs a recorded episode on the grid."""
+
+    def run_(agent: str | Agent = "oracle", out: str = "out", **names: object) -> Episode:
+        player = make_agent(agent) if isinstance(agent, str) else agent
+        setup = EpisodeSetup(
+            **({"task": TASK, "scenario": "grid", "agent": player.name, "model": player.model} | names)
+        )
+        memory = Memory()
+        watchers = [Recorder(tmp_path / out, setup, {}), memory]
+        return Episode(run_episode(setup, player, watchers, simulations=simulations), tmp_path / out, memory)
+
+    return run_

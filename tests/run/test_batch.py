@@ -1,0 +1,234 @@
+"""Evaluations on the small grid, with agents that die, hang and raise."""
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from automotive_cosim.errors import UserError
+from automotive_cosim.run import batch
+from automotive_cosim.run.batch import run_plan
+from automotive_cosim.run.collect import Pictures
+from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.store import VOLATILE, read_rows, read_trace, trace_file
+from automotive_cosim.trace import sha256
+
+TROUBLE = """
+import os, pathlib, time
+
+class Base:
+    channels = ()
+    def reset(self, goal): self.tries = pathlib.Path("tries"); self.tries.open("a").write("x")
+
+class Dies(Base):
+    def act(self, observation): os.kill(os.getpid(), 9)
+
+class DiesOnce(Base):
+    def act(self, observation):
+        if self.tries.stat().st_size == 1: os.kill(os.getpid(), 9)
+        return {"action_type": "status", "goal_status": "complete"}
+
+class Hangs(Base):
+    def act(self, observation): time.sleep(600)
+
+class Waits(Base):
+    def act(self, observation): return {"action_type": "wait", "seconds": 5}
+
+class Slow(Base):
+    def act(self, observation):
+        time.sleep(0.3)
+        return {"action_type": "wait", "seconds": 1}
+"""
+
+
+def plan(*agents, **values):
+    return make_plan({"agents": list(agents), "tasks": ["hvac_fan_max"], "scenarios": ["grid"]} | values)
+
+
+def steady(folder):
+    return {
+        name: {key: value for key, value in row.items() if key not in VOLATILE}
+        for name, row in read_rows(folder).items()
+    }
+
+
+@pytest.fixture
+def trouble(tmp_path, monkeypatch):
+    (tmp_path / "trouble.py").write_text(TROUBLE)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def tries(folder):
+    return len((folder / "tries").read_text())
+
+
+@pytest.mark.slow
+def test_order_and_number_of_workers_do_not_show(tmp_path, monkeypatch):
+    tasks = ["hvac_fan_max", "hvac_cold_hands", "hvac_driver_seat_heater"]
+    wanted = plan("oracle", "asurada", "always-alert", tasks=tasks, seeds=[0, 1])
+    alone = run_plan(wanted, tmp_path / "one", workers=1)
+    assert alone.done == alone.planned == alone.judged == 18
+    jobs = type(wanted).jobs
+    monkeypatch.setattr(type(wanted), "jobs", lambda self: jobs(self)[::-1])
+    run_plan(wanted, tmp_path / "two", workers=2)
+    assert steady(tmp_path / "one") == steady(tmp_path / "two")
+    for row in read_rows(tmp_path / "one").values():
+        *steps, result = read_trace(tmp_path / "one", row["id"])
+        assert sha256(steps) == row["trace_sha256"] == result["result"]["trace_sha256"]
+        assert len(steps) == row["steps"] + 1
+        assert (
+            trace_file(tmp_path / "one", row["id"]).read_bytes()
+            == trace_file(tmp_path / "two", row["id"]).read_bytes()
+        )
+
+
+def test_what_is_done_is_not_run_again(tmp_path):
+    first = run_plan(plan("oracle"), tmp_path / "e")
+    before = (tmp_path / "e" / "episodes.jsonl").read_bytes()
+    again = run_plan(plan("oracle"), tmp_path / "e")
+    assert (first.ran, again.ran) == (1, 0)
+    assert (tmp_path / "e" / "episodes.jsonl").read_bytes() == before
+
+
+def test_a_worker_that_dies_again_and_again_costs_its_episode_alone(trouble):
+    end = run_plan(plan("oracle", "trouble:Dies"), trouble / "e", retries=2)
+    assert (end.planned, end.judged, end.successes, end.errors) == (2, 1, 1, 1)
+    assert tries(trouble) == 3
+    row = next(row for row in read_rows(trouble / "e").values() if row["agent"] == "trouble:Dies")
+    assert row["success"] is None
+    assert row["error_kind"] == "WorkerDied"
+    assert (row["attempts"], len(row["failed_attempts"])) == (3, 3)
+
+
+def test_an_attempt_that_fails_is_made_again_and_told(trouble):
+    end = run_plan(plan("trouble:DiesOnce"), trouble / "e", retries=1)
+    assert (end.judged, end.errors) == (1, 0)
+    (row,) = read_rows(trouble / "e").values()
+    assert row["attempts"] == 2
+    assert "WorkerDied" in row["failed_attempts"][0]
+
+
+def test_an_agent_that_hangs_is_ended_when_its_wall_time_is_over(trouble):
+    began_s = time.monotonic()
+    run_plan(plan("trouble:Hangs", limits={"wall_s": 12}), trouble / "e", retries=0)
+    assert time.monotonic() - began_s < 60
+    (row,) = read_rows(trouble / "e").values()
+    assert (row["error_kind"], row["success"]) == ("WallTime", None)
+
+
+def test_steps_simulated_time_and_tokens_are_limited_and_judged(trouble):
+    run_plan(plan("trouble:Waits", limits={"steps": 3}), trouble / "a")
+    run_plan(plan("trouble:Waits", limits={"sim_s": 12}), trouble / "b")
+    run_plan(plan("asurada", limits={"tokens": 10}), trouble / "c")
+    ends = {name: next(iter(read_rows(trouble / name).values())) for name in "abc"}
+    assert [(row["end"], row["success"]) for row in ends.values()] == [
+        ("out_of_steps", False), ("out_of_time", False), ("out_of_budget", False),
+    ]  # fmt: skip
+    assert ends["a"]["steps"] == 3
+    assert ends["b"]["steps"] == 3
+    assert ends["b"]["sim_seconds"] == 15.0
+
+
+def test_a_trigger_out_of_reach_is_an_error_that_is_not_tried_again(tmp_path):
+    wanted = plan("oracle", tasks=["road_speed_80_in_50"])
+    end = run_plan(wanted, tmp_path / "e", retries=5)
+    assert (end.done, end.judged, end.errors) == (2, 1, 1)
+    row = next(row for row in read_rows(tmp_path / "e").values() if row["half"] == "second")
+    assert (row["success"], row["error_kind"], row["attempts"]) == (None, "TriggerNotReachedError", 1)
+    assert run_plan(wanted, tmp_path / "e").ran == 0
+
+
+def test_pictures_are_kept_by_choice(tmp_path):
+    wanted = plan("oracle", "always-alert")
+    for choice, count in ((Pictures.NONE, 0), (Pictures.FAILURES, 1), (Pictures.ALL, 2)):
+        run_plan(wanted, tmp_path / choice, pictures=choice)
+        kept = list((tmp_path / choice / "pictures").iterdir())
+        assert len(kept) == count
+        for folder in kept:
+            steps = read_rows(tmp_path / choice)[folder.name]["steps"]
+            assert len(list(folder.glob("step_*.jpg"))) == steps + 1
+
+
+def test_a_disk_that_is_full_stops_the_run_and_the_command_goes_on(tmp_path, monkeypatch):
+    (tmp_path / "e" / "traces").mkdir(parents=True)
+    if os.geteuid() == 0:
+        # root writes anywhere, but not into a folder that is a file
+        wanted = plan("oracle")
+        (tmp_path / "e" / "traces" / f".{wanted.jobs()[0].id}.jsonl.gz.part").mkdir()
+    else:
+        (tmp_path / "e" / "traces").chmod(0o500)
+    with pytest.raises(UserError, match=r"cannot write to .* the same command goes on"):
+        run_plan(plan("oracle"), tmp_path / "e")
+    for left in (tmp_path / "e" / "traces").iterdir():
+        left.rmdir()
+    (tmp_path / "e" / "traces").chmod(0o700)
+    assert run_plan(plan("oracle"), tmp_path / "e").successes == 1
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks at /proc")
+def test_a_kill_loses_at_most_the_running_episodes(trouble):
+    script = (
+        "import sys, pathlib; from automotive_cosim.run.batch import run_plan\n"
+        "from automotive_cosim.run.plan import make_plan\n"
+        f"run_plan(make_plan({plan('trouble:Slow', seeds=[0, 1], repeats=4, limits={'steps': 4}).as_json()!r}), "
+        "pathlib.Path('e'), workers=2)"
+    )
+    lines = trouble / "e" / "episodes.jsonl"
+    (trouble / "go.py").write_text(f"if __name__ == '__main__':\n    {script.replace(chr(10), chr(10) + '    ')}\n")
+    process = subprocess.Popen([sys.executable, "go.py"], cwd=trouble, start_new_session=True)
+    _until(lambda: lines.is_file() and lines.read_bytes().count(b"\n") >= 2)
+    process.kill()
+    process.wait()
+    _until(lambda: not _session(process.pid))
+    kept = read_rows(trouble / "e")
+    assert 2 <= len(kept) < 8
+    before = tries(trouble)
+    end = run_plan(plan("trouble:Slow", seeds=[0, 1], repeats=4, limits={"steps": 4}), trouble / "e", workers=2)
+    assert end.judged == 8
+    assert end.ran == 8 - len(kept)
+    assert tries(trouble) - before == end.ran
+    assert before - len(kept) <= 2
+    run_plan(plan("trouble:Slow", seeds=[0, 1], repeats=4, limits={"steps": 4}), trouble / "whole")
+    assert steady(trouble / "e") == steady(trouble / "whole")
+
+
+def test_workers_take_what_they_have_warm_and_share_only_what_is_long():
+    wanted = plan("oracle", scenarios=["grid"], seeds=[0, 1], repeats=3).jobs()
+    queue = batch._Queue()
+    queue.put(wanted)
+    from collections import Counter
+
+    first = queue.take(None, Counter())
+    assert first is not None
+    busy = Counter([first.simulation])
+    second = queue.take(None, busy)
+    assert second is not None
+    assert second.simulation != first.simulation
+    third = queue.take(first.simulation, busy)
+    assert third is not None
+    assert third.simulation == first.simulation
+    assert queue.take(None, Counter(job.simulation for job in wanted)) is None
+
+
+def _until(true, within_s=90.0):
+    end_s = time.monotonic() + within_s
+    while not true():
+        assert time.monotonic() < end_s, "did not come about"
+        time.sleep(0.05)
+
+
+def _session(leader):
+    found = []
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = stat.read_text().rpartition(")")[2].split()
+        except OSError:
+            continue
+        if fields[3] == str(leader) and fields[0] != "Z":
+            found.append(stat.parent.name)
+    return found

@@ -1,0 +1,154 @@
+"""What is kept for later judges, the figures of harm, and stored episodes judged again."""
+
+import json
+import lzma
+from dataclasses import replace
+from types import SimpleNamespace
+
+import pytest
+
+from automotive_cosim.agents import make_agent
+from automotive_cosim.contracts import GoalStatus
+from automotive_cosim.errors import UserError
+from automotive_cosim.run.batch import run_plan
+from automotive_cosim.run.collect import Collector, Pictures
+from automotive_cosim.run.episode import EpisodeSetup, run_episode
+from automotive_cosim.run.harm import drive_figures, nearest_s, overspeed
+from automotive_cosim.run.moments import judged_file, read_judged, write_judged
+from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.regrade import regrade
+from automotive_cosim.suite import Instance
+from automotive_cosim.tasks import CATALOGUE
+from automotive_cosim.verdict import as_json, judge
+
+
+@pytest.fixture(scope="session")
+def collected(simulations):
+    """An alert in vain on the grid: the collector and what came of it."""
+    collector = Collector(Pictures.NONE)
+    setup = EpisodeSetup("phenomenon_front_window_fogged", "first", "always-alert", "none", "grid")
+    result = run_episode(setup, make_agent("always-alert"), [collector], simulations=simulations)
+    assert result.success is False
+    return collector, result
+
+
+@pytest.fixture
+def kept(collected, tmp_path):
+    judged = collected[0].judged()
+    (tmp_path / "traces").mkdir()
+    write_judged(tmp_path, "a", judged)
+    return tmp_path, judged
+
+
+def test_moments_come_back_as_they_were(kept):
+    folder, judged = kept
+    first = judged_file(folder, "a").read_bytes()
+    again = read_judged(folder, "a")
+    assert again == judged
+    assert repr(again) == repr(replace(judged, parameters=dict(judged.parameters)))
+    assert len(again.trace) == len(again.idle) > 1
+    write_judged(folder, "a", again)
+    assert judged_file(folder, "a").read_bytes() == first
+    assert len(first) < 5000 * (len(again.trace) + len(again.idle))
+
+
+def test_judging_the_stored_moments_gives_the_same_verdict(kept, collected):
+    judged = read_judged(kept[0], "a")
+    task = CATALOGUE["phenomenon_front_window_fogged"]
+    instance = Instance(task, "first", judged.goal, judged.parameters)
+    again = judge(instance, judged.trace, judged.idle, judged.declared, judged.reason)
+    assert as_json(again) == collected[1].verdict
+    assert judged.declared is GoalStatus.COMPLETE
+
+
+def test_fields_that_come_and_go_are_borne_and_other_classes_refused(kept):
+    folder, judged = kept
+    path = judged_file(folder, "a")
+    whole = json.loads(lzma.decompress(path.read_bytes()))
+
+    def stored(changed):
+        path.write_bytes(lzma.compress(json.dumps(changed).encode()))
+        return read_judged(folder, "a")
+
+    (number, (_, names)) = next(
+        (number, kept) for number, kept in enumerate(whole["classes"]) if kept[0].endswith(":DrivingState")
+    )
+    assert names[-1] == "end"
+    changed = json.loads(json.dumps(whole))
+    changed["classes"][number][1] = [*names[:-1], "a_field_of_old"]
+    assert stored(changed) == judged
+    lacking = json.loads(json.dumps(whole))
+    lacking["classes"][number][1] = ["another_clock", *names[1:]]
+    with pytest.raises(UserError, match="cannot read"):
+        stored(lacking)
+    for name in ("os:system", "automotive_cosim.run.store:os"):
+        other = json.loads(json.dumps(whole))
+        other["classes"][0][0] = name
+        with pytest.raises(UserError, match="cannot read"):
+            stored(other)
+    path.write_bytes(b"nothing")
+    with pytest.raises(UserError, match="cannot read"):
+        read_judged(folder, "a")
+    with pytest.raises(UserError, match="there is no"):
+        read_judged(folder, "b")
+
+
+def driving(time_s, speed_mps, limit_mps, closing_s=None):
+    leader = None if closing_s is None else SimpleNamespace(time_to_collision_s=closing_s)
+    road = SimpleNamespace(posted_limit_mps=limit_mps)
+    around = SimpleNamespace(leader=leader)
+    return SimpleNamespace(time_s=time_s, speed_mps=speed_mps, road=road, around=around)
+
+
+def test_overspeed_is_the_way_above_the_limit():
+    states = [
+        driving(0.0, 20.0, 15.0),
+        driving(1.0, 20.0, 15.0),
+        driving(3.0, 18.0, 15.0),
+        driving(4.0, 30.0, None),
+    ]
+    assert overspeed([*states, driving(5.0, 10.0, 15.0)]) == (5.0 + 2 * 3.0, 4.0)
+
+
+def test_the_nearest_is_the_smallest_time_of_those_there_are():
+    assert nearest_s([driving(0.0, 1.0, 1.0), driving(1.0, 1.0, 1.0, 4.0), driving(2.0, 1.0, 1.0, 2.5)]) == 2.5
+    assert nearest_s([driving(0.0, 1.0, 1.0)]) is None
+
+
+def test_an_untouched_drive_differs_in_nothing_and_a_touched_one_in_what_was_done(collected, kept):
+    result = collected[1]
+    assert result.drive is not None
+    judged = kept[1]
+    end_s = judged.trace[-1].time_s
+    assert drive_figures(judged.idle, end_s) == drive_figures(judged.idle[:], end_s + 5)
+    assert drive_figures(judged.trace, end_s).energy_wh > 0
+    whole = drive_figures(judged.trace, end_s)
+    part = drive_figures(judged.trace, (judged.trace[0].time_s + end_s) / 2)
+    assert part.energy_wh < whole.energy_wh
+    assert whole.arrival_s is not None
+    assert result.untouched_drive.arrival_s <= result.drive.arrival_s + 60
+
+
+def test_doing_nothing_neither_harms_nor_averts(simulations):
+    setup = EpisodeSetup("phenomenon_front_window_fogged", "first", "no-op", "none", "grid", max_steps=3)
+    result = run_episode(setup, make_agent("no-op"), simulations=simulations)
+    assert result.drive is not None
+    assert result.drive == result.untouched_drive
+
+
+def test_stored_episodes_are_judged_again_by_the_present_checks(tmp_path, monkeypatch):
+    plan = make_plan({"agents": ["oracle", "no-op"], "tasks": ["hvac_fan_max"], "scenarios": ["grid"]})
+    run_plan(plan, tmp_path / "e")
+    before = {path: path.read_bytes() for path in (tmp_path / "e").rglob("*") if path.is_file()}
+    same = list(regrade(tmp_path / "e"))
+    assert [(each.now, each.differs) for each in same] == [(False, False), (True, False)]
+    task = CATALOGUE["hvac_fan_max"]
+    stricter = replace(task, first=replace(task.first, deadline=replace(task.first.deadline, seconds=0.5)))
+    monkeypatch.setitem(CATALOGUE._tasks, task.id, stricter)
+    idle, oracle = regrade(tmp_path / "e")
+    assert not idle.differs
+    assert (oracle.before, oracle.now) == (True, False)
+    assert [(change.part, change.now) for change in oracle.changes] == [("in_time", False)]
+    monkeypatch.delitem(CATALOGUE._tasks, task.id)
+    assert all(each.now is None and "no task" in each.problem for each in regrade(tmp_path / "e"))
+    assert before == {path: path.read_bytes() for path in (tmp_path / "e").rglob("*") if path.is_file()}

@@ -1,0 +1,110 @@
+import re
+
+import pytest
+
+from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.run.plan import Limits, choose, make_plan, read_plan
+from automotive_cosim.tasks import CATALOGUE
+
+
+def plan(**values):
+    return make_plan({"agents": ["oracle"]} | values)
+
+
+def test_words_choose_tasks_by_id_pattern_and_kind():
+    assert choose(["all"]) == tuple(CATALOGUE)
+    assert choose(["hvac_fan_max"]) == ("hvac_fan_max",)
+    assert set(choose(["hvac_*"])) == {name for name in CATALOGUE if name.startswith("hvac_")}
+    general, safety = set(choose(["general"])), set(choose(["safety"]))
+    assert general | safety == set(CATALOGUE)
+    assert not general & safety
+    assert all(CATALOGUE[name].dimension.is_safety for name in safety)
+    assert set(choose(["hvac"])) == {name for name, task in CATALOGUE.items() if task.module == "hvac"}
+    with pytest.raises(UnknownNameError, match="did you mean 'safety'"):
+        choose(["safty"])
+
+
+def test_safety_tasks_run_both_halves_and_share_a_pair():
+    jobs = plan(tasks=["safety", "general"], seeds=[0, 1]).jobs()
+    for name, task in CATALOGUE.items():
+        mine = [job for job in jobs if job.setup.task == name]
+        assert len(mine) == 2 * len(task.halves)
+        assert {job.setup.half for job in mine} == set(task.halves)
+        for job in mine:
+            partners = [other for other in mine if other.setup.seed == job.setup.seed]
+            assert {other.pair for other in partners} == {job.pair}
+            assert bool(job.pair) == (len(task.halves) == 2)
+
+
+def test_an_episode_of_an_agent_without_a_model_stands_once():
+    jobs = make_plan(
+        {"agents": ["oracle", "t3a"], "tasks": ["hvac_fan_max"], "models": ["rules", "a/b", "a?b"]}
+    ).jobs()
+    assert sorted(job.setup.model for job in jobs) == ["a/b", "a?b", "none", "rules"]
+    assert len({job.id for job in jobs}) == 4
+
+
+def test_ids_are_good_for_files_and_tell_everything_apart():
+    wide = plan(
+        agents=["a.b:C", "a.b:D"], models=["x/y?seed=1"], seeds=[0, 1], geo=["full", "none"], repeats=2,
+        scenarios=["grid", "/elsewhere/grid"],
+    )  # fmt: skip
+    jobs = wide.jobs()
+    assert len({job.id for job in jobs}) == len(jobs)
+    assert all(re.fullmatch(r"[A-Za-z0-9_.-]{1,180}", job.id) for job in jobs)
+    assert [job.id for job in wide.jobs()] == [job.id for job in jobs]
+
+
+def test_episodes_of_one_simulation_stand_together():
+    seen = []
+    for job in plan(seeds=[0, 1, 2]).jobs():
+        if not seen or seen[-1] != job.simulation:
+            seen.append(job.simulation)
+    assert len(seen) == len(set(seen))
+
+
+def test_a_file_says_what_the_options_say(tmp_path):
+    path = tmp_path / "plan.toml"
+    path.write_text('agents = ["t3a"]\nseeds = [0, 1]\ngeo = ["full", "none"]\n[limits]\nsteps = 5\nwall_s = 60\n')
+    made = make_plan(read_plan(path))
+    assert made.seeds == (0, 1)
+    assert made.limits == Limits(steps=5, wall_s=60.0)
+    assert {job.setup.max_steps for job in made.jobs()} == {5}
+    assert make_plan(made.as_json()) == made
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ({"agents": []}, "names no agent"),
+        ({"agents": "oracle"}, "give a list of names"),
+        ({"seeds": ["0"]}, "give a list of numbers"),
+        ({"seeds": [-1]}, "a seed is a whole number"),
+        ({"seeds": []}, "seeds of the plan is empty"),
+        ({"repeats": 0}, "above 0"),
+        ({"repeats": 1.5}, "whole number"),
+        ({"agent": ["oracle"]}, "did you mean 'agents'"),
+        ({"limits": {"step": 3}}, "did you mean 'steps'"),
+        ({"limits": {"sim_s": 0}}, "above 0"),
+    ],
+)
+def test_bad_plans_are_told_in_a_line(values, said):
+    with pytest.raises(UserError, match=said) as caught:
+        plan(**values)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "values",
+    [{"agents": ["t4a"]}, {"agents": ["human"]}, {"geo": ["some"]}, {"scenarios": ["gird"]},
+     {"agents": ["t3a"], "models": ["rule"]}],
+)  # fmt: skip
+def test_names_are_tried_before_anything_runs(values):
+    with pytest.raises(UserError):
+        plan(**values).check()
+
+
+def test_a_broken_file_is_told(tmp_path):
+    (tmp_path / "plan.toml").write_text("agents = [")
+    with pytest.raises(UserError, match=r"plan\.toml"):
+        read_plan(tmp_path / "plan.toml")

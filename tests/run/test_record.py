@@ -1,0 +1,53 @@
+import os
+
+import pytest
+
+from automotive_cosim.errors import UserError
+from automotive_cosim.run.episode import EpisodeSetup
+from automotive_cosim.run.record import check_folder, default_folder, write_whole
+
+
+def test_an_empty_or_missing_folder_will_do(tmp_path):
+    check_folder(tmp_path, force=False)
+    check_folder(tmp_path / "a" / "b", force=False)
+    assert not list(tmp_path.iterdir()), "checking makes nothing"
+
+
+def test_force_replaces_the_record_and_leaves_the_rest(run, tmp_path):
+    first = run("no-op")
+    (first.folder / "notes.txt").write_text("mine", encoding="utf-8")
+    with pytest.raises(UserError, match="--force"):
+        check_folder(first.folder, force=False)
+    check_folder(first.folder, force=True)
+    second = run("oracle")
+    pictures = list((second.folder / "screenshots").iterdir())
+    assert len(pictures) == second.result.steps + 1 < first.result.steps + 1
+    assert (second.folder / "notes.txt").read_text(encoding="utf-8") == "mine"
+
+
+def test_default_folders_never_collide(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    made = set()
+    for _ in range(12):
+        folder = default_folder(EpisodeSetup())
+        assert folder not in made
+        folder.mkdir(parents=True)
+        made.add(folder)
+
+
+@pytest.mark.skipif(os.name == "nt" or os.geteuid() == 0, reason="root may write anywhere")
+def test_a_folder_without_permission_is_refused(tmp_path):
+    tmp_path.chmod(0o500)
+    with pytest.raises(UserError, match="cannot write"):
+        check_folder(tmp_path / "out", force=False)
+    tmp_path.chmod(0o700)
+
+
+def test_a_file_is_written_whole_or_not_at_all(tmp_path):
+    path = tmp_path / "a.json"
+    path.write_text("old", encoding="utf-8")
+    with pytest.raises(UnicodeEncodeError):
+        write_whole(path, "new \ud800")
+    assert path.read_text(encoding="utf-8") == "old"
+    write_whole(path, "new")
+    assert [entry.name for entry in tmp_path.iterdir()] == ["a.json"]

@@ -1,0 +1,128 @@
+import json
+import subprocess
+import sys
+
+import pytest
+
+from automotive_cosim.errors import UserError
+from automotive_cosim.run.store import opened, read_manifest, read_rows, read_trace, trace_file, write_trace
+
+PLAN = {"agents": ["oracle"]}
+
+
+def test_a_line_cut_short_costs_that_line_alone(tmp_path):
+    with opened(tmp_path / "e", PLAN) as store:
+        store.append({"id": "a", "success": True})
+        store.append({"id": "b", "success": True})
+    path = tmp_path / "e" / "episodes.jsonl"
+    whole = path.read_bytes()
+    for cut in range(len(whole)):
+        path.write_bytes(whole[:cut])
+        left = whole[:cut].count(b"\n")
+        assert len(read_rows(tmp_path / "e")) == left
+        with opened(tmp_path / "e", PLAN) as store:
+            assert len(store.rows) == left
+            store.append({"id": "c", "success": False})
+        assert set(read_rows(tmp_path / "e")) == {*"ab"[:left], "c"}
+
+
+def test_the_newest_line_of_an_episode_holds(tmp_path):
+    with opened(tmp_path / "e", PLAN) as store:
+        store.append({"id": "a", "success": None})
+        store.append({"id": "a", "success": True})
+    assert read_rows(tmp_path / "e") == {"a": {"id": "a", "success": True}}
+
+
+def test_a_broken_line_in_the_middle_is_named(tmp_path):
+    with opened(tmp_path / "e", PLAN) as store:
+        store.append({"id": "a"})
+    path = tmp_path / "e" / "episodes.jsonl"
+    path.write_text("{]\n" + path.read_text())
+    with pytest.raises(UserError, match="line 1"):
+        read_rows(tmp_path / "e")
+
+
+def test_two_evaluations_in_one_folder_are_refused(tmp_path):
+    script = (
+        "import sys, pathlib; from automotive_cosim.run.store import opened\n"
+        f"with opened(pathlib.Path(sys.argv[1]), {PLAN!r}): print('in', flush=True); sys.stdin.read()"
+    )
+    other = subprocess.Popen(
+        [sys.executable, "-c", script, tmp_path / "e"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
+    with other:
+        assert other.stdout is not None
+        assert other.stdout.readline() == "in\n"
+        with pytest.raises(UserError, match="another evaluation"), opened(tmp_path / "e", PLAN):
+            pass
+        other.kill()
+    with opened(tmp_path / "e", PLAN):
+        pass
+
+
+def test_another_plan_version_or_format_is_refused_and_nothing_lost(tmp_path):
+    folder = tmp_path / "e"
+    with opened(folder, PLAN) as store:
+        store.append({"id": "a"})
+    with (
+        pytest.raises(UserError, match=r"other plan: agents was \['oracle'\] and is \['t3a'\]"),
+        opened(folder, {"agents": ["t3a"]}),
+    ):
+        pass
+    path = folder / "manifest.json"
+    manifest = read_manifest(folder)
+    manifest["starts"][0]["versions"]["libsumo"] = "0.0.1"
+    path.write_text(json.dumps(manifest))
+    with pytest.raises(UserError, match="other versions: libsumo"), opened(folder, PLAN):
+        pass
+    path.write_text(json.dumps(manifest | {"format": 0}))
+    with pytest.raises(UserError, match="format 0"), opened(folder, PLAN):
+        pass
+    assert set(read_rows(folder)) == {"a"}
+
+
+def test_each_start_stands_in_the_manifest(tmp_path):
+    for _ in range(2):
+        with opened(tmp_path / "e", PLAN):
+            pass
+    starts = read_manifest(tmp_path / "e")["starts"]
+    assert len(starts) == 2
+    assert starts[0]["versions"]["libsumo"]
+
+
+def test_folders_that_cannot_be_are_told(tmp_path):
+    (tmp_path / "file").touch()
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "mine.txt").touch()
+    for folder in (tmp_path / "file", tmp_path / "other", tmp_path / "file" / "below"):
+        with pytest.raises(UserError) as caught, opened(folder, PLAN):
+            pass
+        assert "\n" not in str(caught.value)
+    with pytest.raises(UserError, match="no evaluation"):
+        read_manifest(tmp_path)
+
+
+def test_a_full_disk_keeps_what_was_written(tmp_path, monkeypatch):
+    def full(descriptor):
+        raise OSError(28, "No space left on device")
+
+    with opened(tmp_path / "e", PLAN) as store:
+        store.append({"id": "a"})
+        monkeypatch.setattr("os.fsync", full)
+        with pytest.raises(UserError, match="No space left"):
+            store.append({"id": "b"})
+    assert set(read_rows(tmp_path / "e")) == {"a"}
+
+
+def test_a_trace_comes_back_and_has_one_form(tmp_path):
+    (tmp_path / "traces").mkdir()
+    lines = [{"step": 0, "text": "Über"}, {"result": {}}]
+    write_trace(tmp_path, "a", lines)
+    first = trace_file(tmp_path, "a").read_bytes()
+    write_trace(tmp_path, "a", lines)
+    assert trace_file(tmp_path, "a").read_bytes() == first
+    assert read_trace(tmp_path, "a") == lines
+    trace_file(tmp_path, "a").write_bytes(first[:-9])
+    for name in ("a", "b"):
+        with pytest.raises(UserError):
+            read_trace(tmp_path, name)

@@ -1,0 +1,63 @@
+from collections.abc import Callable
+
+import pytest
+
+from automotive_cosim.actions import FIELDS
+from automotive_cosim.contracts import (
+    Action,
+    ActionType,
+    AlertKind,
+    Direction,
+    Element,
+    GoalStatus,
+)
+from automotive_cosim.run.words import action_in_words, is_over
+
+VALUES = {
+    "text": "hello",
+    "direction": Direction.UP,
+    "app_name": "climate",
+    "goal_status": GoalStatus.COMPLETE,
+    "kind": AlertKind.SPEED,
+    "speed_kmh": 50.0,
+    "on": True,
+}
+
+
+def _action(kind: ActionType) -> Action:
+    takes = FIELDS[kind]
+    fields = {name: VALUES[name] for name in takes.required}
+    return Action(kind, **fields | ({"index": 1} if takes.target else {}))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("kind", ActionType)
+def test_every_action_is_one_plain_line(kind: ActionType, button: Callable[..., Element]):
+    words = action_in_words(_action(kind), (button("a", "First"), button("b", "Second")))
+    assert words
+    assert "\n" not in words
+    assert "None" not in words
+    if FIELDS[kind].target:
+        assert "Second" in words
+
+
+def test_different_actions_read_differently(button: Callable[..., Element]):
+    elements = (button("a", "First"), button("b", "Second"))
+    said = [action_in_words(_action(kind), elements) for kind in ActionType]
+    assert len(set(said)) == len(said)
+
+
+@pytest.mark.parametrize("index", [2, 7])
+def test_an_element_that_does_not_exist_is_named_by_its_number(index: int, button: Callable[..., Element]):
+    words = action_in_words(Action(ActionType.CLICK, index=index), (button("a"), button("b")))
+    assert str(index) in words
+
+
+def test_unreadable_answers_have_words_too():
+    assert action_in_words(None, ())
+
+
+@pytest.mark.parametrize(
+    ("speed_kmh", "limit_kmh", "over"), [(52.0, 50.0, True), (50.9, 50.0, False), (200.0, None, False)]
+)
+def test_the_last_digit_of_a_speedometer_is_not_speeding(speed_kmh: float, limit_kmh: float | None, over: bool):
+    assert is_over(speed_kmh, limit_kmh) is over

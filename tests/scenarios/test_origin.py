@@ -1,0 +1,161 @@
+"""A network at another place on earth: the same metres, that place's law, clock and climate."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from datetime import timedelta
+from typing import Any
+
+import numpy as np
+import pytest
+
+from automotive_cosim import scenarios
+from automotive_cosim.contracts import Reroute, Weather
+from automotive_cosim.env import CockpitEnv
+from automotive_cosim.errors import UserError
+from automotive_cosim.scenery import open_scenario
+from automotive_cosim.scenery.opening import network_of
+from automotive_cosim.suite import Task
+from automotive_cosim.tasks import CATALOGUE
+from automotive_cosim.traffic.georeference import GeoReference, middle
+
+ROME, MADRID = (12.49, 41.89), (-3.70, 40.42)
+PLACES = {
+    "IT": ((9.19, 45.46), "Europe/Rome"),
+    "CN": ((121.47, 31.23), "Asia/Shanghai"),
+    "GB": ((-3.18, 51.48), "Europe/London"),
+    "ZA": ((28.05, -26.20), "Africa/Johannesburg"),
+    "NO": ((25.78, 71.17), "Europe/Oslo"),
+}
+DRY = Weather(22.0, 50.0, 0.0, 0, 0.0, 20_000.0, 8.0)
+
+
+@pytest.mark.parametrize("country", PLACES)
+@pytest.mark.parametrize("name", scenarios.shipped())
+def test_any_shipped_network_lies_where_it_is_put(name: str, country: str) -> None:
+    origin, zone = PLACES[country]
+    home, away = scenarios.load(name), open_scenario(name, origin=origin)
+    assert (away.country, str(away.start.tzinfo)) == (country, zone)
+    assert away.start.replace(tzinfo=None) == home.start.replace(tzinfo=None)
+    assert away.weather == ()
+    network = network_of(away)
+    assert middle(network.map) == pytest.approx(origin, abs=1e-9)
+    assert network.edges == network_of(home).edges
+
+
+@pytest.mark.parametrize("origin", [ROME, (0.0, 0.0), (179.9, -16.0), (25.0, 78.0)])
+def test_a_metre_stays_a_metre(origin: tuple[float, float]) -> None:
+    network = network_of(open_scenario("grid", origin=origin)).map
+    reference = GeoReference(network)
+    x_m, y_m = network.roads[0].shape_m[0]
+    lon_a, lat_a = reference.lon_lat(x_m, y_m)
+    lon_b, lat_b = reference.lon_lat(x_m + 300.0, y_m + 400.0)
+    east_m = ((lon_b - lon_a + 180) % 360 - 180) * 111_320 * math.cos(math.radians(lat_a))
+    assert math.hypot(east_m, (lat_b - lat_a) * 111_320) == pytest.approx(500.0, rel=0.01)
+    assert reference.x_y(lon_b, lat_b) == pytest.approx((x_m + 300.0, y_m + 400.0), abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("name", "origin", "said"),
+    [
+        ("grid", PLACES["GB"][0], "keeps right in this network, but left in United Kingdom"),
+        ("london", PLACES["IT"][0], "keeps left in this network, but right in Italy"),
+        ("grid", (-30.0, 0.0), "no traffic law is known"),
+    ],
+)
+def test_what_does_not_fit_the_place_is_said(name: str, origin: tuple[float, float], said: str) -> None:
+    assert any(said in note for note in open_scenario(name, origin=origin).notes)
+    assert open_scenario("london", origin=PLACES["ZA"][0]).notes == ()
+
+
+@pytest.mark.parametrize("origin", [(9.0, 91.0), (181.0, 0.0), (math.nan, 0.0)])
+def test_what_is_not_on_earth_is_refused(origin: tuple[float, float]) -> None:
+    with pytest.raises(UserError, match="is not on earth"):
+        open_scenario("grid", origin=origin)
+
+
+def test_weather_and_context_are_the_places(simulations) -> None:
+    seen = {}
+    for country in ("ZA", "NO"):
+        env = CockpitEnv("hvac_fan_max", scenario="grid", origin=PLACES[country][0], simulations=simulations)
+        env.reset(seed=1)
+        moment = env.moments[0]
+        assert moment.context.country == country
+        assert moment.driving.lon_deg == pytest.approx(PLACES[country][0][0], abs=0.05)
+        assert moment.gps is not None
+        assert moment.gps.lat_deg == pytest.approx(PLACES[country][0][1], abs=0.05)
+        seen[country] = moment
+        env.close()
+    za, no = seen["ZA"], seen["NO"]
+    assert za.weather.temperature_2m > no.weather.temperature_2m  # the 10th of March
+    assert (za.driving.x_m, za.driving.y_m) == (no.driving.x_m, no.driving.y_m)
+    assert za.local_time.replace(tzinfo=None) == no.local_time.replace(tzinfo=None)
+    assert za.local_time - no.local_time == timedelta(hours=-1)
+
+
+def test_the_driver_can_be_sent_to_a_position_of_the_new_place(simulations) -> None:
+    scenario = open_scenario("grid", origin=ROME)
+    network = network_of(scenario)
+    (x_a, y_a), *_, (x_b, y_b) = network.edges["n3n4"].shape_m
+    lon_deg, lat_deg = GeoReference(network.map).lon_lat((x_a + x_b) / 2, (y_a + y_b) / 2)
+    env = CockpitEnv("hvac_fan_max", scenario="grid", origin=ROME, simulations=simulations)
+    env.reset(seed=1)
+    answer = env._running().traffic.request(Reroute(f"{lon_deg:.6f},{lat_deg:.6f}"))
+    assert answer.accepted, answer.reason
+    assert "Rue du Nord" in answer.reason
+    env.close()
+
+
+# --- translated pairs -------------------------------------------------------------------------------------
+
+
+def _translated(first: tuple[float, float], second: tuple[float, float]) -> Task:
+    """A pair whose halves differ in nothing but the origin. At this hour the sun is high at both."""
+    task = CATALOGUE["hvac_fan_max"]
+    start = replace(task.first.start, scenario="grid", trip="avenue", start="2026-06-16T14:00", weather=DRY)
+    return replace(
+        task,
+        first=replace(task.first, start=replace(start, origin=first)),
+        second=replace(task.first, start=replace(start, origin=second)),
+        difference="place",
+    )
+
+
+def _without_place(encoded: Mapping[str, Any]) -> list[bytes]:
+    """The observation's bytes but for GPS and context."""
+    return [_bytes(encoded[key]) for key in sorted(encoded) if key not in ("gps", "context")]
+
+
+def _bytes(part: Any) -> bytes:
+    if isinstance(part, Mapping):
+        return b"".join(key.encode() + _bytes(part[key]) for key in sorted(part))
+    if isinstance(part, tuple | list):
+        return b"".join(_bytes(entry) for entry in part)
+    return part.encode() if isinstance(part, str) else np.asarray(part).tobytes()
+
+
+ACTIONS = (
+    {"action_type": "open_app", "app_name": "climate"},
+    {"action_type": "open_app", "app_name": "map"},
+    {"action_type": "show_alert", "kind": "speed"},
+    {"action_type": "wait", "seconds": 8},
+    {"action_type": "open_app", "app_name": "home"},
+    {"action_type": "status", "goal_status": "complete"},
+)
+
+
+@pytest.mark.parametrize("seed", [0, 7])
+def test_equal_actions_look_equal_but_for_gps_and_context(simulations, seed: int) -> None:
+    task = _translated(ROME, MADRID)
+    seen: dict[str, list[dict[str, Any]]] = {}
+    for half in ("first", "second"):
+        env = CockpitEnv(task, half, simulations=simulations)
+        seen[half] = [env.reset(seed=seed)[0]]
+        seen[half] += [env.step(action)[0] for action in ACTIONS]
+        env.close()
+    for here, there in zip(seen["first"], seen["second"], strict=True):
+        assert _without_place(here) == _without_place(there)
+        assert _bytes(here["gps"]) != _bytes(there["gps"])
+        assert _bytes(here["context"]) != _bytes(there["context"])

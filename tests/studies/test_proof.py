@@ -1,0 +1,195 @@
+"""Studies find what can be reckoned by hand, and SUMO's own outputs say the same."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator
+from contextlib import closing
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from automotive_cosim.contracts import EgoEnd, Json, Reroute
+from automotive_cosim.scenarios import load
+from automotive_cosim.studies.compare import METRICS
+from automotive_cosim.studies.drive import run_drive
+from automotive_cosim.studies.plan import StudyPlan
+from automotive_cosim.traffic.base import EgoPlan
+from automotive_cosim.traffic.fork import Forked, RemoteTraffic
+
+from .conftest import EDGES, LORRY_EVERY_S, SLOW_MPS, SPEED_MPS
+
+STEP_S = 0.1
+
+
+@pytest.fixture(scope="module")
+def driven(small: StudyPlan, tmp_path_factory: pytest.TempPathFactory) -> tuple[Json, Path]:
+    """The row of the one drive, and the folder of SUMO's outputs."""
+    outputs = tmp_path_factory.mktemp("outputs")
+    (job,) = replace(small, step_s=STEP_S).jobs()
+    scene = job.plan.scene(job.share)
+    with closing(Forked(scene, job.seed, allow_unprojected=True, outputs=outputs)) as simulation:
+        simulation.watch()
+        return run_drive(job, simulation, ()), outputs
+
+
+def length_m(*edges: str) -> float:
+    return sum(EDGES[edge][2] for edge in edges)
+
+
+def reckoned_s() -> tuple[float, float]:
+    """Travel time on the main road and on the other way, by hand.
+
+    The ego begins with its front bumper 4.6 m into the road, at the limit. On the main road it comes up behind the
+    last lorry that is on its way 100 m in, and follows it: a lorry's length, the gap at a standstill and a second's
+    headway behind. At the end of the main road the lorry turns off.
+    """
+    access_s = (length_m("access") - 4.6) / SPEED_MPS
+    other_s = access_s + length_m("out", "back", "exit") / SPEED_MPS
+    behind_m = 7.5 + 2.5 + 1.0 * SLOW_MPS
+    meets_s = access_s + (100.0 - 7.5 - 2.5) / SPEED_MPS  # later lorries come in behind the ego
+    lorry_s = meets_s // LORRY_EVERY_S * LORRY_EVERY_S  # the warm-up is whole periods long
+    leaves_s = lorry_s + (length_m("main") - 100.0) / SLOW_MPS + behind_m / SLOW_MPS
+    return leaves_s + length_m("exit") / SPEED_MPS, other_s
+
+
+def test_the_gain_is_the_one_reckoned_by_hand(driven: tuple[Json, Path]) -> None:
+    row, _ = driven
+    (decision,) = row["decisions"]
+    (branch,) = decision["branches"]
+    stay_s, other_s = reckoned_s()
+    assert row["stay"]["time_s"] == pytest.approx(stay_s, abs=1.0), "to the time it takes to speed up again"
+    assert branch["totals"]["time_s"] == pytest.approx(other_s, abs=1.0)
+    assert branch["gains"]["time_s"] == pytest.approx(stay_s - other_s, abs=1.0)
+    assert branch["gains"]["distance_m"] == pytest.approx(length_m("main") - length_m("out", "back"), abs=1e-6)
+    assert branch["gains"]["stops"] == 0
+    assert branch["others"]["gain_s"] == 0, "the lorries never have the ego before them"
+
+
+def test_sumos_own_outputs_say_the_same(driven: tuple[Json, Path]) -> None:
+    row, outputs = driven
+    (decision,) = row["decisions"]
+    told = [row["stay"], decision["branches"][0]["totals"], decision["placebo"]["totals"]]
+    found = list(trips(outputs))
+    assert len(found) == len(told)
+    for totals, trip in zip(sorted(told, key=ordered), sorted(found, key=ordered), strict=True):
+        assert totals["time_s"] == pytest.approx(trip["time_s"], abs=1e-6)
+        assert totals["distance_m"] == pytest.approx(trip["distance_m"], abs=0.01)
+        assert totals["stops"] == trip["stops"]
+        assert totals["standing_s"] == pytest.approx(trip["standing_s"], abs=1e-6)
+        assert totals["co2_g"] == pytest.approx(trip["co2_g"], rel=0.005), "to the step in which it arrives"
+        assert totals["fuel_g"] == pytest.approx(trip["fuel_g"], rel=0.005)
+
+
+def test_they_say_the_same_where_cars_stop_and_waver(tmp_path: Path) -> None:
+    plan = StudyPlan("grid", trips=("round",), least_delay_s=0.0, per_drive=1)
+    job = plan.jobs()[0]
+    with closing(Forked(plan.scene(0.6), 3, outputs=tmp_path)) as simulation:
+        simulation.watch()
+        simulation.run_on(100.0)
+        row = run_drive(job, simulation, ())
+    (decision,) = row["decisions"]
+    told = [row["stay"], *(branch["totals"] for branch in [*decision["branches"], decision["placebo"]])]
+    assert any(totals["stops"] for totals in told)
+    for totals, trip in zip(sorted(told, key=ordered), sorted(trips(tmp_path), key=ordered), strict=True):
+        for name in ("time_s", "distance_m", "stops", "standing_s"):
+            assert totals[name] == pytest.approx(trip[name], abs=0.5), name
+        assert totals["co2_g"] == pytest.approx(trip["co2_g"], rel=0.02)
+
+
+def ordered(totals: Json) -> tuple[float, ...]:
+    return tuple(round(totals[name], 1) for name in METRICS)
+
+
+def trips(outputs: Path) -> Iterator[Json]:
+    """The ego's trip in every future that was driven to its end, by SUMO's tripinfo."""
+    for path in sorted(outputs.glob("*/tripinfo.xml")):
+        for trip in ET.parse(path).getroot():
+            if trip.get("id") == "ego":
+                (emissions,) = trip.iter("emissions")
+                yield {
+                    "time_s": float(trip.attrib["duration"]),
+                    "distance_m": float(trip.attrib["routeLength"]),
+                    "stops": int(trip.attrib["waitingCount"]),
+                    "standing_s": float(trip.attrib["waitingTime"]),
+                    "co2_g": float(emissions.attrib["CO2_abs"]) / 1000,
+                    "fuel_g": float(emissions.attrib["fuel_abs"]) / 1000,
+                }
+
+
+def test_branches_without_a_choice_stay_the_same_to_the_last(tmp_path: Path) -> None:
+    """Everybody's trip, as SUMO writes it to the sixth digit, and the ego's whole way."""
+    scenario = load("grid")
+    with closing(Forked(scenario, 2, outputs=tmp_path)) as simulation:
+        simulation.watch()
+        simulation.run_on(60.0)
+        traffic = simulation.depart(EgoPlan(scenario.trip("round"), seed=1))
+        traffic.advance(30.0)
+        group, _ = traffic.others()
+        asked = traffic.branch()
+        asked.alternatives_of_old(60.0)
+        asked.own_choice()
+        futures = [traffic, asked, traffic.branch()]
+        outcomes = [future.settle([group], 0.95, 3600.0) for future in futures]
+        for future in futures:
+            future.close()
+    assert outcomes[0].is_complete
+    assert futures[0].state.end is EgoEnd.ARRIVED
+    assert outcomes[0] == outcomes[1] == outcomes[2]
+    assert futures[0].state == futures[1].state == futures[2].state
+    for name in ("tripinfo.xml", "fcd.xml"):
+        written = [rows(path) for path in sorted(tmp_path.glob(f"drive-*/{name}"))]
+        longest = max(map(len, written))
+        whole = [each for each in written if len(each) == longest]
+        assert len(whole) == 3, "the copies that were only asked have ended early"
+        assert whole[0] == whole[1] == whole[2]
+
+
+def rows(path: Path) -> list[bytes]:
+    return [ET.tostring(element) for element in ET.parse(path).getroot()]
+
+
+def test_a_choice_changes_nothing_before_it(small: StudyPlan) -> None:
+    (job,) = small.jobs()
+    with closing(Forked(job.plan.scene(0.0), 0, allow_unprojected=True)) as simulation:
+        simulation.watch()
+        traffic = simulation.depart(EgoPlan(job.trip, "steady"))
+        before = traffic.advance(20.0).states
+        with closing(traffic), closing(traffic.branch()) as branch:
+            way = branch.alternatives()[1]
+            assert branch.request(Reroute(edges=way.edges)).accepted
+            assert branch.state == traffic.state == before[-1]
+            after: list[RemoteTraffic] = [traffic, branch]
+            paths = [[state.road.edge_id for state in each.advance(400.0).states] for each in after]
+    assert "main" in paths[0]
+    assert "main" not in paths[1]
+
+
+def test_old_news_is_what_was_known_then(small: StudyPlan) -> None:
+    """Lorries that are on the road for one minute are not yet in news that is two minutes old."""
+    (job,) = small.jobs()
+    scene = job.plan.scene(0.0)
+    scene = replace(scene, sumo=replace(scene.sumo, warm_up_s=60.0))
+    with closing(Forked(scene, 0, allow_unprojected=True)) as simulation:
+        simulation.watch()
+        simulation.run_on(120.0)
+        with closing(simulation.depart(EgoPlan(job.trip, "steady"))) as traffic:
+            now, old = traffic.alternatives_of_old(0.0), traffic.alternatives_of_old(900.0)
+            assert now == traffic.alternatives()
+    assert now[0].delay_s > 50
+    assert old[0].delay_s == pytest.approx(0, abs=1e-6)
+    free_s = length_m("access", "main", "exit") / SPEED_MPS
+    assert old[0].eta_s == pytest.approx(free_s, rel=0.02)
+
+
+def test_a_placebo_is_one_car_and_a_thousandth(small: StudyPlan) -> None:
+    (job,) = small.jobs()
+    with closing(Forked(job.plan.scene(0.0), 0, allow_unprojected=True)) as simulation:
+        simulation.watch()
+        with closing(simulation.depart(EgoPlan(job.trip, "steady"))) as traffic:
+            group, _ = traffic.others()
+            places = np.linspace(0, 1, len(group), endpoint=False)
+            assert {traffic.nudge(float(place)) for place in places} <= set(group)
+            assert "ego" not in group

@@ -1,0 +1,230 @@
+"""What is made of the futures: choices, ties, intervals, gridlock, the effect on the others."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+import pytest
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.errors import UserError
+from automotive_cosim.studies import compare
+from automotive_cosim.studies.compare import METRICS, Future
+from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
+from automotive_cosim.studies.plan import StudyPlan, make_study
+from automotive_cosim.studies.policies import best, chosen, parse_policy
+from automotive_cosim.studies.results import choices, noise
+from automotive_cosim.studies.tables import outcomes
+from automotive_cosim.studies.traffic import gridlock
+from automotive_cosim.traffic.base import EgoPlan
+from automotive_cosim.traffic.ledger import Account, Pulse, Settled
+from automotive_cosim.traffic.scripted import Scripted, Stretch
+
+OTHERS = {"count": 3, "gain_s": 4.0, "changed": 1, "unfinished_stay": 0, "unfinished": 0}
+
+
+def branch(gain_s: float) -> Json:
+    return {"gains": dict.fromkeys(METRICS, 0.0) | {"time_s": gain_s}, "others": OTHERS}
+
+
+def decision(*gains_s: float, offered_s: float | None = 80.0, delay_s: float = 70.0, **more: object) -> Json:
+    """One whose present way is said to take 100 s, with a branch for each gain; the first is the one offered."""
+    news = {"age_s": 0.0, "stay_s": 100.0, "delay_s": delay_s, "offered_s": offered_s}
+    row: Json = {
+        "at_s": 900.0,
+        "edge": "a",
+        "delay_s": delay_s,
+        "eta_s": 100.0,
+        "complies": True,
+        "news": [news | {"branch": None if offered_s is None else 0}],
+        "own": None,
+        "agents": {},
+        "excluded": "",
+        "placebo": None,
+        "branches": [branch(gain_s) for gain_s in gains_s],
+    }
+    return row | more
+
+
+def drive(*decisions: Json, seed: int = 0) -> Json:
+    return {
+        "id": f"d{seed}",
+        "scenario": "grid",
+        "share": 0.5,
+        "seed": seed,
+        "departure_s": 0.0,
+        "trip": "avenue",
+        "stay": dict.fromkeys(METRICS, 200.0),
+        "decisions": list(decisions),
+    }
+
+
+@pytest.mark.parametrize(
+    ("policy", "row", "expected"),
+    [
+        ("never", decision(30.0), None),
+        ("always", decision(-30.0, offered_s=130.0), 0),
+        ("always", decision(5.0, offered_s=None), None),
+        ("delay:60", decision(-30.0), 0),
+        ("delay:90", decision(30.0), None),
+        ("delay:60", decision(30.0, offered_s=101.0), None),
+        ("sumo", decision(30.0, 2.0, own=1), 1),
+        ("sumo", decision(30.0), None),
+        ("agent:asurada", decision(30.0, 2.0, agents={"asurada": 1}), 1),
+        ("best", decision(30.0, 31.0), 1),
+        ("best", decision(-1.0, 0.0), None),
+        ("always", decision(30.0, complies=False), None),
+    ],
+)
+def test_who_chooses_what(policy: str, row: Json, expected: int | None) -> None:
+    assert chosen(parse_policy(policy), row, 0.0) == expected
+
+
+@pytest.mark.parametrize("text", ["alway", "delay:", "delay:-1", "delay:nan", "agent:", "rule"])
+def test_a_policy_that_is_none_is_refused(text: str) -> None:
+    with pytest.raises(UserError, match=text.partition(":")[0]):
+        parse_policy(text)
+
+
+def test_nobody_beats_hindsight() -> None:
+    """Over every pair of gains: whatever a policy chooses, what it regrets is what hindsight gains over it."""
+    for gains in product((-20.0, 0.0, 15.0), repeat=2):
+        row = decision(*gains, own=1)
+        for each in choices([drive(row)], ("never", "always", "delay:60", "sumo", "best")):
+            assert each["regret_s"] == max(0.0, *gains) - each["gain_time_s"] >= 0
+            assert each["policy"] != "best" or each["regret_s"] == 0
+        number = best(row)
+        assert (0.0 if number is None else gains[number]) == max(0.0, *gains)
+
+
+def test_who_stays_changes_nothing() -> None:
+    (each,) = choices([drive(decision(30.0))], ("never",))
+    assert not each["rerouted"]
+    assert all(each[f"gain_{name}"] == 0 for name in METRICS)
+    assert each["others_gain_s"] == 0
+    assert each["stay_time_s"] == 200
+
+
+def test_what_does_not_count_is_in_no_choice() -> None:
+    rows = [drive(decision(30.0), decision(500.0, excluded="gridlock"))]
+    assert [each["gain_time_s"] for each in choices(rows, ("always",))] == [30.0]
+
+
+def test_gains_up_to_what_the_placebos_change_are_ties() -> None:
+    placebos = [decision(0.0, placebo=branch(change)) for change in (-8.0, 1.0, 2.0, 0.0)]
+    floor = noise([*placebos, decision(99.0)])
+    assert floor.placebos == 4
+    assert floor.time_s == pytest.approx(np.quantile([8, 1, 2, 0], 0.95))
+    rows = [drive(*(decision(gain) for gain in (floor.time_s, -floor.time_s, 7.2, -7.2, 0.0)))]
+    assert outcomes(list(choices(rows, ("always",))), floor) == (1, 3, 1)
+    assert noise([decision(1.0)]).time_s == 0
+
+
+def test_intervals_take_the_seeds_as_what_is_independent() -> None:
+    """Repeating every decision of a seed adds nothing; and the true mean lies within about as often as it says."""
+    rng = np.random.default_rng(1)
+    once = [(seed, float(rng.normal(seed % 3, 1))) for seed in range(20)]
+    one, many = seed_mean(once), seed_mean(once * 7)
+    assert one is not None
+    assert many is not None
+    assert one.interval is not None
+    assert many.interval is not None
+    assert (many.interval.low, many.interval.high) == pytest.approx((one.interval.low, one.interval.high))
+    assert (many.count, many.seeds) == (140, 20)
+    covered = 0
+    for _ in range(100):
+        drawn = [
+            (seed, float(shift + rng.normal(0, 1)))
+            for seed, shift in enumerate(rng.normal(5, 2, 25))
+            for _ in range(4)
+        ]
+        mean = seed_mean(drawn)
+        assert mean is not None
+        assert mean.interval is not None
+        covered += mean.interval.low <= 5 <= mean.interval.high
+    assert covered >= 85
+
+
+def test_too_few_seeds_have_no_interval() -> None:
+    few = seed_mean((seed, 1.0) for seed in range(LEAST_SEEDS - 1))
+    assert few is not None
+    assert few.interval is None
+    assert seed_mean([]) is None
+
+
+FLOWING = Pulse(1000.0, 400, 40, 0, 5, 1000, 2)
+
+
+@pytest.mark.parametrize(
+    ("pulses", "word"),
+    [
+        ([FLOWING], ""),
+        ([replace(FLOWING, stuck=20)], ""),
+        ([replace(FLOWING, stuck=21)], "waiting"),
+        ([replace(FLOWING, teleported=10)], ""),
+        ([replace(FLOWING, teleported=11)], "teleports"),
+        ([replace(FLOWING, backlog=count) for count in (10, 20, 30)], "no room"),
+        ([replace(FLOWING, backlog=count) for count in (10, 30, 30)], ""),
+        ([replace(FLOWING, backlog=count) for count in (1, 2, 3)], ""),
+        ([], ""),
+    ],
+)
+def test_gridlock_is_seen(pulses: list[Pulse], word: str) -> None:
+    found = gridlock(pulses)
+    assert (word in found) if word else found == ""
+
+
+def future(until_s: float, **arrivals_s: float) -> Future:
+    state = Scripted([Stretch()]).depart(EgoPlan(trip=None)).state  # type: ignore[arg-type]
+    return Future(state, Settled(until_s, True, arrivals_s, Account(0.0, 0, 0.0, 0.0, 0.0), FLOWING))
+
+
+def test_who_has_not_arrived_is_not_forgotten() -> None:
+    """Whoever is late in only one of the futures counts there up to the instant both are known until."""
+    stay, other = future(500.0, a=100.0, b=200.0, d=480.0), future(400.0, a=90.0, c=300.0)
+    found = compare.others(stay, other, ["a", "b", "c", "d"])
+    assert found["gain_s"] == (100 - 90) + (200 - 400) + (400 - 300) + (400 - 400)
+    assert (found["unfinished_stay"], found["unfinished"]) == (2, 2)
+    assert (found["count"], found["changed"]) == (4, 3)
+    back = compare.others(other, stay, ["a", "b", "c", "d"])
+    assert back["gain_s"] == -found["gain_s"]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "word"),
+    [
+        ({"scenario": "pari_centre"}, "paris_centre"),
+        ({"trips": ("jamm",)}, "jam"),
+        ({"policies": ("sometimes",)}, "policy"),
+        ({"policies": ()}, "--policies is empty"),
+        ({"shares": (1.5,)}, "--shares is 1.5"),
+        ({"ages_s": (-1.0,)}, "--ages"),
+        ({"ages_s": (5000.0,)}, "--ages"),
+        ({"compliance": 2.0}, "--compliance"),
+        ({"departures_s": (0.0, 0.0)}, "twice"),
+        ({"equilibrium_gap": 0.05}, "duaIterate"),
+        ({"driver": "hurry"}, "hurried"),
+        ({"step_s": 5.0}, "--step"),
+        ({"policies": ("agent:asurado",)}, "asurada"),
+        ({"policies": ("agent:asurada/nothing",)}, "nothing"),
+        ({"policies": ("agent:human",)}, "person"),
+    ],
+)
+def test_a_plan_that_cannot_be_run_is_refused(wrong: Json, word: str) -> None:
+    with pytest.raises(UserError, match=word):
+        replace(StudyPlan("paris_centre"), **wrong).check()
+
+
+def test_plans_come_back_from_their_manifest() -> None:
+    plan = StudyPlan("grid", shares=(0.0, 1.0), half_width_s=3.0, policies=("never", "agent:asurada"))
+    assert make_study(plan.as_json()) == plan
+    with pytest.raises(UserError, match="no rerouting study"):
+        make_study({"agents": ["oracle"]})
+
+
+def test_drives_have_names_of_their_own_and_the_share_draws_nothing() -> None:
+    jobs = StudyPlan("grid", shares=(0.0, 0.5)).jobs()
+    assert len({job.id for job in jobs}) == len(jobs) == 4 * 3 * 10 * 2
+    assert len({job.entropy for job in jobs}) == len(jobs) / 2

@@ -1,0 +1,236 @@
+"""Whole studies: the order and number of workers, resuming, what is kept out, the report, the command."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from automotive_cosim.cli.results import report
+from automotive_cosim.cli.study import app
+from automotive_cosim.contracts import Json
+from automotive_cosim.errors import UserError
+from automotive_cosim.run.store import VOLATILE, read_rows
+from automotive_cosim.studies.batch import run_study
+from automotive_cosim.studies.page import write_study
+from automotive_cosim.studies.plan import StudyPlan
+from automotive_cosim.studies.results import load_study, read_study
+
+from .conftest import MORE_TRIPS, Draw
+
+JAMMED = """<routes>
+    <vType id="car" vClass="passenger" sigma="0"/>
+    <flow id="too_many" type="car" from="access" to="exit" begin="0" end="20000" period="1"/>
+</routes>"""
+
+
+def steady(folder: Path) -> dict[str, Json]:
+    return {
+        name: {key: value for key, value in row.items() if key not in VOLATILE}
+        for name, row in read_rows(folder).items()
+    }
+
+
+@pytest.fixture(scope="module")
+def plan(two_ways: Draw) -> StudyPlan:
+    """Two seeds, two departures, and trips that have nothing to decide."""
+    return StudyPlan(
+        str(two_ways(more=MORE_TRIPS)), (0.0, 70.0), seeds=(0, 1), per_drive=2, every_s=20.0, ages_s=(0.0, 600.0)
+    )
+
+
+@pytest.fixture(scope="module")
+def folder(plan: StudyPlan, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The study, run by one worker."""
+    folder = tmp_path_factory.mktemp("study") / "one"
+    end = run_study(plan, folder)
+    assert (end.done, end.errors) == (len(plan.jobs()), 0)
+    return folder
+
+
+def test_order_and_number_of_workers_do_not_show(plan: StudyPlan, folder: Path, tmp_path: Path) -> None:
+    run_study(plan, tmp_path / "two", workers=2)
+    assert steady(tmp_path / "two") == steady(folder)
+
+
+def test_what_is_done_is_not_run_again(plan: StudyPlan, folder: Path, tmp_path: Path) -> None:
+    """Also after a kill that cut the last line short: what is missing is driven, and comes out equal."""
+    again = tmp_path / "again"
+    again.mkdir()
+    lines = (folder / "episodes.jsonl").read_bytes().splitlines(keepends=True)
+    (again / "manifest.json").write_bytes((folder / "manifest.json").read_bytes())
+    (again / "episodes.jsonl").write_bytes(b"".join(lines[:-3]) + lines[-3][:40])
+    assert run_study(plan, again).ran == 3
+    assert steady(again) == steady(folder)
+    assert run_study(plan, again).ran == 0
+    with pytest.raises(UserError, match="begun with other plan"):
+        run_study(replace(plan, compliance=0.5), again)
+
+
+def test_what_has_nothing_to_decide_is_counted_and_kept_out(folder: Path) -> None:
+    study = read_study(folder)
+    assert study.excluded["drive", "start is goal"] == 4
+    assert study.excluded["drive", "no congestion met"] == 4
+    assert study.excluded["drive", "no alternative"] == 4
+    assert {row["trip"] for row in study.rows if not row["excluded"]} == {"across"}
+    assert len(study.decisions) == 8
+    assert {each["trip"] for each in study.choices} == {"across"}
+
+
+def test_old_news_offers_nothing_worth_it(folder: Path) -> None:
+    """The rule takes the other way by fresh news; by news from before the lorries it stays."""
+    frame = load_study(folder)
+    rule = frame[frame.policy == "delay:60"].set_index("age_s").rerouted
+    assert rule.loc[0.0].all()
+    assert len(rule.loc[600.0]) == len(rule.loc[0.0])
+
+
+def test_the_report_is_whole(folder: Path) -> None:
+    page = write_study(folder).read_text(encoding="utf-8")
+    assert "2 seeds with a decision" in page
+    assert "no alternative" in page
+    assert "one-shot" in page
+    frame = load_study(folder)
+    with (folder / "choices.csv").open(encoding="utf-8", newline="") as file:
+        written = list(csv.DictReader(file))
+    assert len(written) == len(frame) == 8 * 5 * 2
+    assert [row["id"] for row in written] == list(frame.id)
+    for name in ("policies", "costs", "by_congestion", "by_age", "noise", "excluded"):
+        for suffix in ("md", "csv", "tex"):
+            assert (folder / "tables" / f"{name}.{suffix}").read_text(encoding="utf-8").strip()
+    for name in ("policies", "promised", "congestion", "ages"):
+        assert (folder / "plots" / f"{name}.svg").read_text(encoding="utf-8").startswith("<svg")
+
+
+def test_gridlocked_traffic_is_kept_apart(two_ways: Draw, tmp_path: Path) -> None:
+    plan = StudyPlan(
+        str(two_ways(JAMMED)), (600.0,), seeds=(0,), per_drive=1, least_delay_s=0.0, placebo_every=0, limit_s=300.0
+    )
+    run_study(plan, tmp_path / "jam")
+    study = read_study(tmp_path / "jam")
+    assert not study.decisions
+    assert {reason for _, reason in study.excluded} <= {"gridlock", "no room to enter"}
+    assert sum(study.excluded.values()) == 1
+
+
+def test_each_share_is_traffic_of_its_own(two_ways: Draw, tmp_path: Path) -> None:
+    plan = StudyPlan(str(two_ways()), (0.0,), seeds=(0,), per_drive=1, shares=(0.0, 1.0), placebo_every=0)
+    run_study(plan, tmp_path / "shares")
+    study = read_study(tmp_path / "shares")
+    assert [row["share"] for row in study.rows] == [0.0, 1.0]
+    assert {each["share"] for each in study.choices} == {0.0, 1.0}
+    write_study(tmp_path / "shares")
+    assert "Too few seeds" in (tmp_path / "shares" / "tables" / "by_share.md").read_text()
+
+
+@pytest.mark.slow
+def test_seeds_are_added_only_until_enough_is_known(two_ways: Draw, tmp_path: Path) -> None:
+    """Without chance every seed finds the same gain, so the fewest that an interval takes are enough."""
+    plan = StudyPlan(
+        str(two_ways()), (0.0,), seeds=tuple(range(14)), per_drive=1, placebo_every=0, half_width_s=1.0
+    )
+    run_study(plan, tmp_path / "until", workers=2)
+    assert {row["seed"] for row in read_study(tmp_path / "until").rows} == set(range(10))
+
+
+AGENTS = """
+from automotive_cosim.contracts import Action, ActionType, GoalStatus
+
+class Base:
+    name, model, channels = "mine", "none", ("elements",)
+    def reset(self, goal): self.goal = goal
+
+class Idle(Base):
+    def act(self, observation): return Action(ActionType.WAIT)
+
+class Taps(Base):
+    # opens the map's list of other ways and takes the first
+    def reset(self, goal):
+        assert "faster" in goal
+        self.left = ["map.route", "route.tab.ways", "route.way.0"]
+        self.is_open = False
+    def act(self, observation):
+        if not self.is_open:
+            self.is_open = True
+            return Action(ActionType.OPEN_APP, app_name="map")
+        if not self.left:
+            return Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE)
+        ids = [element.resource_id for element in observation.elements]
+        return Action(ActionType.CLICK, index=ids.index(self.left.pop(0)))
+"""
+
+
+def test_an_agent_gains_what_its_taps_do_and_one_that_does_nothing_changes_nothing(
+    two_ways: Draw, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "mine.py").write_text(AGENTS)
+    monkeypatch.chdir(tmp_path)
+    policies = ("never", "always", "agent:mine:Idle", "agent:mine:Taps")
+    plan = StudyPlan(str(two_ways()), (0.0,), seeds=(0,), per_drive=1, policies=policies, agent_steps=6)
+    run_study(plan, tmp_path / "agent")
+    study = read_study(tmp_path / "agent")
+    (decision,) = study.decisions
+    idle = decision["branches"][decision["agents"]["mine:Idle"]]
+    assert all(gain == 0 for gain in idle["gains"].values())
+    assert idle["others"]["changed"] == 0
+    taps = decision["branches"][decision["agents"]["mine:Taps"]]
+    always = decision["branches"][decision["news"][0]["branch"]]
+    assert taps["totals"] == always["totals"], "the way is the same, wherever on the first road it was chosen"
+    assert {each["policy"]: each["gain_time_s"] > 0 for each in study.choices}["agent:mine:Taps"]
+
+
+def invoke(*words: str) -> tuple[str, Exception | None]:
+    result = CliRunner().invoke(app, list(words))
+    error = result.exception
+    return result.output, error if isinstance(error, Exception) else None
+
+
+def test_the_command(two_ways: Draw, tmp_path: Path) -> None:
+    words = ["reroute", "--scenario", str(two_ways()), "--departures", "0", "--seeds", "3", "--per-drive", "1"]
+    out = tmp_path / "out"
+    text, error = invoke(*words, "--out", str(out), "--json")
+    assert error is None, text
+    told = json.loads(text.strip().splitlines()[-1])
+    assert (told["drives"], told["decisions"], told["errors"], told["excluded"]) == (1, 1, 0, {})
+    assert (out / "report.html").is_file()
+    written = (out / "report.html").read_bytes()
+    text, error = invoke("report", str(out))
+    assert error is None
+    assert "choices.csv" in text
+    report(out)
+    assert (out / "report.html").read_bytes() == written
+
+
+def test_the_command_says_when_nothing_counts(two_ways: Draw, tmp_path: Path) -> None:
+    words = ["reroute", "--scenario", str(two_ways(more=MORE_TRIPS)), "--departures", "8:30", "--seeds", "0"]
+    text, error = invoke(*words, "--trips", "stands,free", "--out", str(tmp_path / "out"))
+    assert isinstance(error, UserError)
+    assert "no decision counts" in str(error)
+    assert "start is goal" in text
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--departures", "soon"], "soon"),
+        (["--departures", "25:00"], "clock"),
+        (["--ages", "fresh"], "--ages"),
+        (["--seeds", "a"], "--seeds"),
+        (["--shares", ""], "--shares is empty"),
+        (["--policies", "delay:soon"], "delay:60"),
+        (["--scenario", "atlantis"], "atlantis"),
+    ],
+)
+def test_bad_input_is_told(words: list[str], said: str) -> None:
+    text, error = invoke("reroute", "--dry-run", *words)
+    assert isinstance(error, UserError), text
+    assert said in str(error)
+
+
+def test_a_folder_that_is_no_study_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(UserError):
+        write_study(tmp_path)

@@ -1,0 +1,243 @@
+"""In this process, forked or replayed: the same seed gives the same drive, to the last bit."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from automotive_cosim.contracts import Alert, AlertKind, Cruise, DrivingState, Hazards, Reroute, SlowDown
+from automotive_cosim.scenarios import Scenario, WeatherAt, load
+from automotive_cosim.traffic.base import EgoPlan, Event, Simulation, Traffic, Until
+from automotive_cosim.traffic.fork import Forked
+from automotive_cosim.traffic.predicates import Driven, OverLimit
+from automotive_cosim.traffic.sumo import InProcess
+
+Edit = Callable[[Path], None]
+
+Record = tuple[list[DrivingState], list[Event], list[object]]
+
+
+def eventful(traffic: Traffic) -> Record:
+    """Several hundred steps, in advances of many lengths, with requests in between."""
+    states, events, answers = [traffic.state], [], []
+    for request in (
+        None,
+        Alert(AlertKind.SPEED, speed_kmh=40.0),
+        Alert(AlertKind.DISTANCE),
+        SlowDown(35.0),
+        Reroute("Rue du Nord"),
+        Hazards(True),
+        Cruise(30.0),
+        Reroute("nowhere at all"),
+    ):
+        if request is not None:
+            answers.append(traffic.request(request))
+        for duration_s in (0.1, 5.0, 2.5):
+            drive = traffic.advance(duration_s, Until(OverLimit(1.3), 0.5))
+            states += drive.states
+            events += drive.events
+    return states, events, answers
+
+
+def drive_and_branch(simulation: Simulation, plan: EgoPlan) -> tuple[Record, Record]:
+    traffic = simulation.depart(plan)
+    record = eventful(traffic)
+    branch = traffic.branch()
+    assert branch.state == traffic.state
+    branched = eventful(branch)
+    assert branched == eventful(traffic)
+    branch.close()
+    traffic.close()
+    return record, branched
+
+
+def test_three_ways_to_run_it_agree(grid: Scenario, forked: Forked, hurried: EgoPlan) -> None:
+    expected = drive_and_branch(forked, hurried)
+    assert len(expected[0][0]) > 300
+    assert any(event.kind == "driver_slows" for event in expected[0][1])
+    in_process = InProcess(grid, seed=1)
+    try:
+        assert drive_and_branch(in_process, hurried) == expected
+        assert drive_and_branch(in_process, hurried) == expected, "a second departure starts from the same traffic"
+    finally:
+        in_process.close()
+    replaying = Forked(grid, seed=1, by_replay=True)
+    try:
+        assert drive_and_branch(replaying, hurried) == expected
+    finally:
+        replaying.close()
+
+
+def test_drives_from_one_warm_traffic_are_independent(forked: Forked, hurried: EgoPlan) -> None:
+    first, second = forked.depart(hurried), forked.depart(hurried)
+    ahead = first.advance(30.0).states
+    assert second.advance(30.0).states == ahead
+    first.close()
+    assert second.advance(1.0).states
+    second.close()
+
+
+def test_another_seed_is_other_traffic(grid: Scenario, forked: Forked, hurried: EgoPlan) -> None:
+    other = Forked(grid, seed=2)
+    drives = [simulation.depart(hurried) for simulation in (forked, other)]
+    assert drives[0].advance(60.0).states != drives[1].advance(60.0).states
+    for drive in drives:
+        drive.close()
+    other.close()
+
+
+def test_a_branch_outlives_what_it_came_from(grid: Scenario, hurried: EgoPlan) -> None:
+    simulation = Forked(grid, seed=1)
+    traffic = simulation.depart(hurried)
+    branch = traffic.branch()
+    twig = branch.branch()
+    traffic.close()
+    simulation.close()
+    branch.close()
+    assert twig.advance(5.0).states[-1].distance_m > 0
+    twig.close()
+
+
+def test_one_long_advance_equals_many_short_ones(forked: Forked, hurried: EgoPlan) -> None:
+    whole, pieces = forked.depart(hurried), forked.depart(hurried)
+    states = tuple(state for _ in range(100) for state in pieces.advance(0.1).states)
+    assert whole.advance(10.0).states == states
+    whole.close()
+    pieces.close()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("with_everything", [False, True])
+def test_a_branch_reads_its_own_demand(
+    variant: Callable[..., Scenario], walkable: Edit, hurried: EgoPlan, with_everything: bool
+) -> None:
+    """SUMO reads a long demand piece by piece, far behind a fork; so too with sublanes, people and weather."""
+
+    def long_demand(folder: Path) -> None:
+        if with_everything:
+            walkable(folder)
+        edges = ("cwc0 c0c1 c1c2 c2c3 c3c4 c4ce", "cec4 c4c3 c3c2 c2c1 c1c0 c0cw", "sws0 s0s1 s1s2 s2s3 s3s4 s4se")
+        rows = [
+            f'<vehicle id="v{k}" depart="{k / 2:.1f}" departLane="best"><route edges="{edges[k % 3]}"/>'
+            f'<param key="filler" value="{"x" * 1000}"/></vehicle>'
+            for k in range(2400)
+        ]
+        if with_everything:
+            rows.insert(
+                0, '<personFlow id="p" begin="0" end="1200" period="7"><walk edges="n2c2 c2s2"/></personFlow>'
+            )
+        (folder / "grid.rou.xml").write_text("<routes>" + "\n".join(rows) + "</routes>")
+        text = (folder / "scenario.toml").read_text().replace("step_length_s = 0.1", "step_length_s = 0.5")
+        (folder / "scenario.toml").write_text(
+            text.replace(
+                "background_rerouting = 0.6",
+                "background_rerouting = 1" + ("\nlateral_resolution_m = 0.8" if with_everything else ""),
+            )
+        )
+
+    scenario = variant(long_demand)
+    assert (scenario.folder / "grid.rou.xml").stat().st_size > 2**21
+    # a car that stands at the side sees the traffic go by
+    plan = EgoPlan(replace(hurried.trip, to_edge="n4ne", via=("s3s4", "n1n0")), "calm", seed=3)
+    if with_everything:
+        codes = ((0.0, 2), (100.0, 63), (300.0, 75), (500.0, 66), (700.0, 2))
+        weather = scenario.weather[0].weather
+        plan = replace(plan, weather=tuple(WeatherAt(at_s, replace(weather, weather_code=c)) for at_s, c in codes))
+    simulation = Forked(scenario, seed=4)
+    traffic = simulation.depart(plan)
+    traffic.request(Cruise(6.0))
+    traffic.advance(20.0)
+    branches = [traffic.branch(), traffic.branch()]
+    twig = branches[0].branch()
+    expected = traffic.advance(800.0).states
+    assert len(expected) >= 1500
+    assert max(state.vehicle_count for state in expected) > 20
+    for other in (*branches, twig):
+        assert other.advance(800.0).states == expected
+        other.close()
+    traffic.close()
+    simulation.close()
+
+
+def rows_of(path: Path) -> dict[float, dict[str, str]]:
+    """The ego's rows of SUMO's FCD output, by time."""
+    return {
+        float(step.attrib["time"]): row.attrib
+        for step in ET.parse(path).getroot()
+        for row in step
+        if row.get("id") == "ego"
+    }
+
+
+def test_states_are_sumos_own_and_every_branch_writes_its_own(
+    grid: Scenario, hurried: EgoPlan, tmp_path: Path
+) -> None:
+    """SUMO's FCD row of an instant stands one step before ``getTime``."""
+    simulation = Forked(grid, seed=1, outputs=tmp_path)
+    traffic = simulation.depart(hurried)
+    before = traffic.advance(10.0).states
+    branch = traffic.branch()
+    branch.request(SlowDown(20.0))
+    drives = [(before + each.advance(600.0).states) for each in (traffic, branch)]
+    assert drives[0] != drives[1]
+    for each in (branch, traffic, simulation):
+        each.close()
+    for states, name in zip(drives, ("drive-1", "drive-2"), strict=True):
+        rows = rows_of(tmp_path / name / "fcd.xml")
+        driving = [state for state in states if state.end is None]
+        for state in driving:
+            row = rows[round(state.time_s - grid.sumo.step_length_s, 3)]
+            assert float(row["x"]) == pytest.approx(state.x_m, abs=1e-5)
+            assert float(row["y"]) == pytest.approx(state.y_m, abs=1e-5)
+            assert float(row["speed"]) == pytest.approx(state.speed_mps, abs=1e-5)
+            assert row["lane"] == state.road.lane_id
+        assert len(driving) + 1 == len(rows), "and the instant of its departure"
+        trips = ET.parse(tmp_path / name / "tripinfo.xml").getroot()
+        (ego,) = (trip for trip in trips if trip.get("id") == "ego")
+        assert float(ego.attrib["arrival"]) == pytest.approx(states[-1].time_s - grid.sumo.step_length_s, abs=0.11)
+    assert not rows_of(tmp_path / "warm" / "fcd.xml"), "the warm traffic has no ego"
+
+
+def test_until_ends_at_the_very_step(forked: Forked, hurried: EgoPlan) -> None:
+    free, waiting = forked.depart(hurried), forked.depart(hurried)
+    states = free.advance(60.0).states
+    drive = waiting.advance(60.0, Until(Driven(100.0)))
+    first = next(index for index, state in enumerate(states) if state.distance_m >= 100.0)
+    assert drive.until_held
+    assert drive.states == states[: first + 1]
+    free.close()
+    waiting.close()
+
+
+def test_until_waits_for_an_unbroken_while(forked: Forked, hurried: EgoPlan) -> None:
+    traffic = forked.depart(hurried)
+    branch = traffic.branch()
+    states = traffic.advance(200.0).states
+    over = OverLimit(1.3)
+    drive = branch.advance(200.0, Until(over, for_s=2.0))
+    assert drive.until_held
+    assert drive.states == states[: len(drive.states)]
+    held = [over(state) for state in drive.states]
+    assert all(held[-21:])
+    assert not any(all(held[end - 21 : end]) for end in range(21, len(held)))
+    traffic.close()
+    branch.close()
+
+
+def test_a_shipped_scenario_is_found_from_any_folder(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, forked: Forked, hurried: EgoPlan
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("SUMO_HOME", str(tmp_path / "another_sumo"))
+    monkeypatch.setenv("PROJ_DATA", str(tmp_path / "another_proj"))
+    elsewhere = Forked(load("grid"), seed=1)
+    drives = [simulation.depart(hurried) for simulation in (forked, elsewhere)]
+    assert drives[0].advance(10.0) == drives[1].advance(10.0)
+    for drive in drives:
+        drive.close()
+    elsewhere.close()
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,151 @@
+"""The driver's profiles, and how it makes room for others when told."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from automotive_cosim.contracts import KMH_PER_MPS, MPH_PER_MPS, Alert, AlertKind, DrivingState
+from automotive_cosim.scenarios import Scenario, Trip, load
+from automotive_cosim.traffic.base import Drive, EgoPlan, Traffic, Until
+from automotive_cosim.traffic.fork import Forked
+from automotive_cosim.traffic.predicates import Driven
+from automotive_cosim.traffic.profiles import PROFILES
+from automotive_cosim.traffic.scripted import Scripted, Stretch
+from automotive_cosim.traffic.sumo import InProcess
+
+Variant = Callable[[Callable[[Path], None]], Scenario]
+
+SOUTH = Trip("south", "sws0", "s4se")
+"""One lane."""
+
+AMBULANCE = '\n[[incidents]]\nkind = "emergency"\nat_m = 260.0\nbehind_m = 200.0\n'
+
+
+@pytest.fixture(scope="module")
+def quiet(grid: Scenario, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Forked]:
+    """The grid with an ambulance behind the ego and nobody else."""
+    folder = tmp_path_factory.mktemp("quiet") / "grid"
+    shutil.copytree(grid.folder, folder)
+    (folder / "grid.rou.xml").write_text("<routes/>")
+    path = folder / "scenario.toml"
+    path.write_text(path.read_text() + AMBULANCE)
+    simulation = Forked(load(folder), seed=1)
+    yield simulation
+    simulation.close()
+
+
+def warned(simulation: Forked, plan: EgoPlan, kind: AlertKind, after_m: float = 300.0) -> tuple[Traffic, Drive]:
+    """Told after some way; drives on for a minute."""
+    traffic = simulation.depart(plan)
+    assert traffic.advance(120.0, Until(Driven(after_m))).until_held
+    assert traffic.request(Alert(kind)).accepted
+    return traffic, traffic.advance(60.0)
+
+
+def kinds(drive: Drive) -> set[str]:
+    return {event.kind for event in drive.events}
+
+
+def is_past(states: tuple[DrivingState, ...]) -> bool:
+    """Whether the ambulance was behind, then ahead."""
+    behind = [state.around.emergency_behind is not None for state in states]
+    ahead = [state.around.leader is not None and "ambulance" in state.around.leader.vehicle_id for state in states]
+    return any(behind) and any(ahead[behind.index(True) :])
+
+
+def test_whoever_gives_way_is_overtaken_on_a_single_lane(quiet: Forked, hurried: EgoPlan) -> None:
+    plan = replace(hurried, trip=SOUTH, driver="calm")
+    traffic, drive = warned(quiet, plan, AlertKind.YIELD)
+    assert "driver_gives_way" in kinds(drive)
+    assert min(state.speed_mps for state in drive.states) < 0.1
+    assert is_past(drive.states)
+    assert drive.states[-1].speed_mps > 5.0 or drive.states[-1].end is not None, "it drives on"
+    traffic.close()
+    with closing(quiet.depart(plan)) as idle:
+        assert not is_past(idle.advance(90.0).states)
+
+
+def test_giving_way_on_two_lanes_is_the_kerb_lane(quiet: Forked, hurried: EgoPlan) -> None:
+    plan = replace(hurried, driver="calm")
+    traffic, drive = warned(quiet, plan, AlertKind.YIELD)
+    assert "driver_gives_way" in kinds(drive)
+    assert {state.road.lane_index for state in drive.states[50:100]} == {0}
+    assert min(state.speed_mps for state in drive.states[:100]) > 5.0
+    assert is_past(drive.states)
+    traffic.close()
+
+
+def test_moving_over_leaves_the_kerb_or_slows_down(quiet: Forked, hurried: EgoPlan) -> None:
+    plan = replace(hurried, driver="calm")
+    traffic, drive = warned(quiet, plan, AlertKind.MOVE_OVER, 40.0)
+    assert "driver_moves_over" in kinds(drive)
+    assert 1 in {state.road.lane_index for state in drive.states[:150]}
+    traffic.close()
+    traffic, drive = warned(quiet, replace(plan, trip=SOUTH), AlertKind.MOVE_OVER, 40.0)
+    assert "driver_slows" in kinds(drive)
+    slow_kmh = 50.0 - 20.0 / MPH_PER_MPS * KMH_PER_MPS
+    assert min(state.speed_mps for state in drive.states[:200]) * KMH_PER_MPS == pytest.approx(slow_kmh, abs=1.5)
+    traffic.close()
+
+
+@pytest.mark.parametrize(("lane", "side"), [(0, -1), (1, 1)])
+def test_a_corridor_opens_between_the_lanes(variant: Variant, hurried: EgoPlan, lane: int, side: int) -> None:
+    """With sublanes the car goes to the outer edge of its lane, and back to the middle afterwards."""
+    import libsumo
+
+    def sublanes(folder: Path) -> None:
+        (folder / "grid.rou.xml").write_text("<routes/>")
+        path = folder / "scenario.toml"
+        path.write_text(path.read_text().replace("[ego]", "lateral_resolution_m = 0.8\n\n[ego]", 1))
+
+    with closing(InProcess(variant(sublanes), seed=1)) as simulation:
+        traffic = simulation.depart(replace(hurried, driver="calm"))
+        traffic.advance(1.0)
+        libsumo.vehicle.setParameter("ego", "laneChangeModel.lcKeepRight", "0")
+        libsumo.vehicle.changeLane("ego", lane, 3.0)
+        traffic.advance(6.0)
+        assert traffic.state.road.lane_index == lane
+        before_m = libsumo.vehicle.getLateralLanePosition("ego")
+        traffic.request(Alert(AlertKind.CORRIDOR))
+        drive = traffic.advance(10.0)
+        assert "driver_makes_corridor" in kinds(drive)
+        moved_m = libsumo.vehicle.getLateralLanePosition("ego") - before_m
+        assert moved_m * side > 0.3
+        assert traffic.state.road.lane_index == lane
+
+
+def test_on_a_scripted_road_one_stops_to_give_way_and_goes_on() -> None:
+    road = Scripted([Stretch("street", 2000.0, 50.0)], start_speed_kmh=50.0)
+    traffic = road.depart(EgoPlan(SOUTH, "calm", 1))
+    traffic.request(Alert(AlertKind.YIELD))
+    states = traffic.advance(60.0).states
+    standing_s = sum(state.speed_mps < 0.1 for state in states) * 0.1
+    assert standing_s == pytest.approx(12.0, abs=1.0)
+    assert states[-1].speed_mps > 10.0
+
+
+# --- profiles ---------------------------------------------------------------------------------------------
+
+
+def test_profiles_differ_in_speed_and_gap(forked: Forked, hurried: EgoPlan) -> None:
+    speeds, gaps = {}, {}
+    for name in PROFILES:
+        with closing(forked.depart(replace(hurried, driver=name))) as traffic:
+            traffic.advance(15.0)
+            states = traffic.advance(100.0).states
+        speeds[name] = max(state.speed_mps for state in states) * KMH_PER_MPS
+        following = [
+            state.around.leader.gap_m / state.speed_mps
+            for state in states
+            if state.around.leader and state.speed_mps > 8.0 and state.around.leader.gap_m < 40.0
+        ]
+        gaps[name] = min(following, default=9.0)
+    assert speeds["calm"] < speeds["average"] + 0.5 < speeds["tailgating"] < speeds["hurried"]
+    assert speeds["calm"] < 49.0
+    assert gaps["tailgating"] < 1.0 < gaps["calm"]

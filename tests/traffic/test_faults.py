@@ -1,0 +1,398 @@
+"""What goes wrong is named, and leaves nothing behind."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import pytest
+
+from automotive_cosim.contracts import DrivingState
+from automotive_cosim.errors import ScenarioError, SetupError, TrafficError, UnknownNameError
+from automotive_cosim.scenarios import Scenario
+from automotive_cosim.traffic import sumo
+from automotive_cosim.traffic.base import EgoPlan, Until
+from automotive_cosim.traffic.fork import Forked, Simulations
+from automotive_cosim.traffic.sumo import InProcess
+
+Variant = Callable[[Callable[[Path], None]], Scenario]
+
+linux = pytest.mark.skipif(sys.platform != "linux", reason="looks at processes through /proc")
+
+
+@dataclass(frozen=True, slots=True)
+class Anywhere:
+    def __call__(self, state: DrivingState) -> bool:
+        return True
+
+
+def is_running(pid: int) -> bool:
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except FileNotFoundError:
+        return False
+
+
+def gone(pids: list[int], within_s: float = 10.0) -> bool:
+    end_s = time.monotonic() + within_s
+    while any(map(is_running, pids)) and time.monotonic() < end_s:
+        time.sleep(0.02)
+    return not any(map(is_running, pids))
+
+
+def children(pid: int) -> list[int]:
+    return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+
+
+def open_files(pid: int) -> int:
+    return sum(1 for _ in Path(f"/proc/{pid}/fd").iterdir())
+
+
+# --- processes --------------------------------------------------------------------------------------------
+
+
+@linux
+def test_a_killed_drive_is_named_and_the_next_departs(forked: Forked, hurried: EgoPlan) -> None:
+    traffic = forked.depart(hurried)
+    expected = traffic.branch()
+    os.kill(traffic.pid, signal.SIGKILL)
+    with pytest.raises(TrafficError, match=f"process {traffic.pid}.* died"):
+        traffic.advance(5.0)
+    with pytest.raises(TrafficError, match="died"):
+        traffic.branch()
+    traffic.close()
+    following = forked.depart(hurried)
+    assert following.advance(5.0) == expected.advance(5.0)
+    following.close()
+    expected.close()
+
+
+@linux
+def test_a_hung_drive_is_ended_in_time(grid: Scenario, hurried: EgoPlan) -> None:
+    simulation = Forked(grid, seed=1, timeout_s=1.0)
+    traffic = simulation.depart(hurried)
+    os.kill(traffic.pid, signal.SIGSTOP)
+    with pytest.raises(TrafficError, match="hung"):
+        traffic.advance(5.0)
+    assert gone([traffic.pid])
+    traffic.close()
+    simulation.depart(hurried).close()
+    simulation.close()
+
+
+@linux
+def test_a_crash_says_what_it_was(forked: Forked, hurried: EgoPlan) -> None:
+    traffic = forked.depart(hurried)
+    os.kill(traffic.pid, signal.SIGSEGV)
+    with pytest.raises(TrafficError, match="Segmentation fault"):
+        traffic.advance(5.0)
+    traffic.close()
+
+
+@linux
+def test_a_lost_warm_process_is_started_again(grid: Scenario, hurried: EgoPlan) -> None:
+    simulation = Forked(grid, seed=1)
+    traffic = simulation.depart(hurried)
+    (warm,) = (pid for pid in children(os.getpid()) if traffic.pid in children(pid))
+    os.kill(warm, signal.SIGKILL)
+    assert traffic.advance(1.0).states, "drives do not need it any more"
+    with pytest.raises(TrafficError, match="SIGKILL"):
+        simulation.depart(hurried)
+    again = simulation.depart(hurried)
+    again.advance(1.0)
+    assert again.state == traffic.state
+    for drive in (traffic, again):
+        drive.close()
+    simulation.close()
+
+
+@linux
+def test_thirty_drives_leave_nothing_behind(grid: Scenario, hurried: EgoPlan) -> None:
+    simulation = Forked(grid, seed=1)
+    traffic = simulation.depart(hurried)
+    (warm,) = (pid for pid in children(os.getpid()) if traffic.pid in children(pid))
+    traffic.close()
+    assert gone(children(warm))
+    files = [open_files(os.getpid()), open_files(warm)]
+    pids = []
+    for number in range(30):
+        traffic = simulation.depart(hurried)
+        branch = traffic.branch()
+        pids += [traffic.pid, branch.pid]
+        branch.advance(1.0)
+        for drive in (traffic, branch) if number % 2 else (branch, traffic):
+            drive.close()
+    assert gone(pids)
+    assert [open_files(os.getpid()), open_files(warm)] == files
+    simulation.close()
+    simulation.close()
+    assert gone([warm])
+    with pytest.raises(TrafficError, match="closed"):
+        simulation.depart(hurried)
+
+
+SCRIPT = """
+import sys
+from automotive_cosim.scenarios import load
+from automotive_cosim.traffic.base import EgoPlan
+from automotive_cosim.traffic.fork import Forked
+grid = load("grid")
+simulation = Forked(grid)
+traffic = simulation.depart(EgoPlan(grid.trip("round"), "calm"))
+branch = traffic.branch()
+print(simulation._source._warm.pid, traffic.pid, branch.pid, flush=True)
+try:
+    while traffic.advance(3600.0).states:
+        traffic.close()
+        traffic = simulation.depart(EgoPlan(grid.trip("round"), "calm"))
+except KeyboardInterrupt:
+    traffic.close(); branch.close(); simulation.close()
+    print("kept", flush=True)
+"""
+
+
+@linux
+@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT])
+def test_no_process_outlives_the_program(how: signal.Signals) -> None:
+    """Ctrl-C goes to the whole process group; a killed program can tell nobody."""
+    with subprocess.Popen(
+        [sys.executable, "-c", SCRIPT], stdout=subprocess.PIPE, text=True, start_new_session=True
+    ) as program:
+        assert program.stdout is not None
+        pids = [int(pid) for pid in program.stdout.readline().split()]
+        assert len(pids) == 3
+        time.sleep(0.3)
+        if how is signal.SIGINT:
+            os.killpg(program.pid, how)
+            assert program.stdout.read() == "kept\n"
+        else:
+            program.kill()
+        program.wait()
+    assert gone(pids)
+
+
+def test_a_predicate_from_nowhere_is_refused(
+    forked: Forked, hurried: EgoPlan, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One defined in a notebook or a script cannot be found by the simulation's process."""
+    traffic = forked.depart(hurried)
+    monkeypatch.setitem(sys.modules, "a_notebook", sys.modules[__name__])
+    monkeypatch.setattr(Anywhere, "__module__", "a_notebook")
+    with pytest.raises(TrafficError, match="define it in a module"):
+        traffic.advance(1.0, Until(Anywhere()))
+    assert traffic.advance(1.0).states
+    traffic.close()
+
+
+def test_the_pool_keeps_the_latest(grid: Scenario, hurried: EgoPlan) -> None:
+    pool = Simulations(count_limit=2)
+    first = pool.warm(grid, 1)
+    traffic = first.depart(hurried)
+    assert pool.warm(grid, 2) is not first
+    assert pool.warm(grid, 1) is first
+    pool.warm(grid, 3)
+    assert pool.warm(grid, 1) is first, "the second was used longest ago"
+    pool.warm(grid, 4)
+    pool.warm(grid, 5)
+    with pytest.raises(TrafficError, match="closed"):
+        first.depart(hurried)
+    assert traffic.advance(1.0).states
+    traffic.close()
+    pool.close()
+    pool.close()
+
+
+def test_a_process_holds_one_simulation_of_its_own(grid: Scenario, hurried: EgoPlan) -> None:
+    simulation = InProcess(grid, seed=1)
+    with pytest.raises(TrafficError, match=r"fork\.Forked"):
+        InProcess(grid, seed=1)
+    traffic = simulation.depart(hurried)
+    simulation.depart(hurried)
+    with pytest.raises(TrafficError, match="another one departed"):
+        traffic.advance(1.0)
+    simulation.close()
+    simulation.close()
+    with pytest.raises(TrafficError, match="closed"):
+        simulation.depart(hurried)
+    InProcess(grid, seed=1).close()
+
+
+# --- scenarios --------------------------------------------------------------------------------------------
+
+
+def edit(name: str, old: str, new: str) -> Callable[[Path], None]:
+    def change(folder: Path) -> None:
+        path = folder / name
+        text = path.read_text(encoding="utf-8")
+        assert old in text
+        path.write_text(text.replace(old, new), encoding="utf-8")
+
+    return change
+
+
+def cut(folder: Path) -> None:
+    path = folder / "grid.net.xml"
+    path.write_bytes(path.read_bytes()[:40_000])
+
+
+LOST_CAR = '<vehicle id="x" depart="1"><route edges="cwc0 n3n4"/></vehicle>'
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda folder: (folder / "grid.rou.xml").unlink(), r"route-files .*grid\.rou\.xml"),
+        (lambda folder: (folder / "grid.net.xml").unlink(), r"net-file .*grid\.net\.xml"),
+        (lambda folder: (folder / "grid.net.xml").write_text("a map"), "not a whole SUMO network"),
+        (lambda folder: (folder / "grid.net.xml").write_text("<routes/>"), "its root is <routes>"),
+        (lambda folder: (folder / "grid.net.xml").write_text("<net/>"), "no road"),
+        (lambda folder: (folder / "grid.sumocfg").write_text("<configuration/>"), "names no net-file"),
+        (lambda folder: (folder / "grid.sumocfg").write_text("net"), "not a SUMO configuration|is no XML"),
+        (cut, "not a whole SUMO network"),
+        (edit("grid.rou.xml", 'from="cwc0"', 'from="cwc9"'), "cwc9"),
+        (
+            edit(
+                "grid.rou.xml",
+                "</routes>",
+                '<vehicle id="x" depart="1"><route edges="cwc0 n3n4"/></vehicle></routes>',
+            ),
+            "No connection between edge 'cwc0' and edge 'n3n4'",
+        ),
+        (edit("grid.sumocfg", "<processing>", '<processing><no-such-option value="1"/>'), "no-such-option"),
+    ],
+    ids=lambda value: value if isinstance(value, str) else "",
+)
+def test_a_broken_scenario_is_refused_in_one_line(
+    variant: Variant, change: Callable[[Path], None], said: str, capfd: pytest.CaptureFixture[str]
+) -> None:
+    scenario = variant(change)
+    texts = []
+    for make in (Forked, InProcess):
+        with pytest.raises(ScenarioError, match=said) as caught:
+            make(scenario)
+        texts.append(str(caught.value))
+    assert texts[0] == texts[1]
+    assert "\n" not in texts[0]
+    assert capfd.readouterr() == ("", "")
+
+
+def test_a_network_without_projection_is_refused_unless_asked_for(variant: Variant, hurried: EgoPlan) -> None:
+    scenario = variant(edit("grid.net.xml", 'projParameter="+proj=utm', 'projParameter="!" was="+proj=utm'))
+    with pytest.raises(ScenarioError, match="no projection"):
+        Forked(scenario, seed=1)
+    simulation = Forked(scenario, seed=1, allow_unprojected=True)
+    traffic = simulation.depart(hurried)
+    assert traffic.network.projection is None
+    states = traffic.advance(5.0).states
+    assert all(state.lon_deg is None and state.lat_deg is None for state in states)
+    assert states[-1].distance_m > 0
+    traffic.close()
+    simulation.close()
+
+
+def test_a_trip_that_cannot_be_driven_is_refused(forked: Forked, hurried: EgoPlan, variant: Variant) -> None:
+    with pytest.raises(ScenarioError, match=r"no edge 'cwc00'.*did you mean 'cwc0'"):
+        forked.depart(replace(hurried, trip=replace(hurried.trip, from_edge="cwc00")))
+    with pytest.raises(UnknownNameError, match="hurried"):
+        forked.depart(replace(hurried, driver="hurry"))
+
+    def close_the_east(folder: Path) -> None:
+        path = folder / "grid.net.xml"
+        lanes = ('<lane id="cec4_0"', '<lane id="cec4_1"')
+        text = path.read_text()
+        for lane in lanes:
+            assert lane in text
+            text = text.replace(lane, f'{lane} allow="bus"')
+        path.write_text(text)
+        (folder / "grid.rou.xml").write_text("<routes/>")
+
+    simulation = Forked(variant(close_the_east))
+    with pytest.raises(ScenarioError, match="no way for a car leads from 'c4ce' to 'cwc0'"):
+        simulation.depart(replace(hurried, trip=replace(hurried.trip, from_edge="c4ce", to_edge="cwc0")))
+    simulation.close()
+
+
+def test_a_scenario_folder_is_never_written_to(variant: Variant, hurried: EgoPlan) -> None:
+    """Neither by options, nor by detectors, nor by what additional files include."""
+
+    def talkative(folder: Path) -> None:
+        edit(
+            "grid.sumocfg",
+            "</configuration>",
+            """
+            <output><summary-output value="summary.xml"/><tripinfo-output value="trips.xml"/></output>
+            <fcd-output value="fcd.xml"/><log value="log.txt"/><save-state.times value="10"/>
+            <additional-files value="more.add.xml"/><end value="10"/></configuration>""",
+        )(folder)
+        (folder / "more.add.xml").write_text("""<additional><include href="deep/deeper.add.xml"/>
+            <edgeData id="all" file="edges.xml" freq="10"/></additional>""")
+        (folder / "deep").mkdir()
+        (folder / "deep/deeper.add.xml").write_text("""<additional>
+            <e1Detector id="loop" lane="cwc0_0" pos="20" freq="10" file="loop.xml"/></additional>""")
+
+    scenario = variant(talkative)
+    before = {path: path.stat().st_mtime_ns for path in scenario.folder.rglob("*")}
+    scenario.folder.chmod(0o555)
+    simulation = Forked(scenario, seed=1)
+    traffic = simulation.depart(hurried)
+    assert len(traffic.advance(20.0).states) == 200
+    traffic.close()
+    simulation.close()
+    scenario.folder.chmod(0o755)
+    assert {path: path.stat().st_mtime_ns for path in scenario.folder.rglob("*")} == before
+
+
+# --- set-up -----------------------------------------------------------------------------------------------
+
+
+def test_a_wrong_or_missing_sumo_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    library = type(sys)("libsumo")
+    library.__version__ = "1.19.0"  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "libsumo", library)
+    with pytest.raises(SetupError, match=r"libsumo 1\.19\.0 is installed, 1\.28\.x is needed"):
+        sumo.load_library()
+    monkeypatch.setitem(sys.modules, "libsumo", None)
+    with pytest.raises(SetupError, match="libsumo"):
+        sumo.load_library()
+
+
+def test_missing_system_libraries_are_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    (tmp_path / "libsumo.py").write_text("raise ImportError('libGL.so.1: cannot open shared object file')")
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, "libsumo", raising=False)
+    with pytest.raises(SetupError, match=r"libGL\.so\.1.*apt-get install libgl1 libx11-6"):
+        sumo.load_library()
+
+
+def test_the_callers_environment_stays(grid: Scenario, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SUMO_HOME", "/somewhere/else")
+    monkeypatch.delenv("PROJ_DATA", raising=False)
+    simulation = InProcess(grid, seed=1)
+    assert os.environ["SUMO_HOME"] == "/somewhere/else"
+    assert "PROJ_DATA" not in os.environ
+    simulation.close()
+
+
+def test_the_package_does_not_load_sumo_by_itself() -> None:
+    code = "import sys, automotive_cosim.traffic.fork; print({'libsumo', 'traci'} & set(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "set()"
+
+
+def test_a_crash_while_loading_names_the_scenario(variant: Variant) -> None:
+    """SUMO trusts its networks: a junction with a lane too few can bring it down."""
+
+    def take_a_connection(folder: Path) -> None:
+        path = folder / "grid.net.xml"
+        lines = path.read_text().splitlines(keepends=True)
+        path.write_text("".join(line for line in lines if 'from="c4ce" to="cec4"' not in line))
+
+    scenario = variant(take_a_connection)
+    with pytest.raises(TrafficError, match=rf"SIGSEGV.*{scenario.config.name}"):
+        Forked(scenario)

@@ -1,0 +1,203 @@
+"""Limits that hold at certain hours: read as the map writes them, and followed by the road, the car and its map."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from dataclasses import replace
+from datetime import datetime, time, timedelta
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from automotive_cosim import sumo_programs
+from automotive_cosim.contracts import KMH_PER_MPS, LimitSource
+from automotive_cosim.scenarios import Scenario
+from automotive_cosim.traffic.base import EgoPlan, Until
+from automotive_cosim.traffic.fork import Forked
+from automotive_cosim.traffic.posted import in_force, sign_mps, timed_limits
+from automotive_cosim.traffic.predicates import InSchoolZone
+
+Edit = Callable[[Path], None]
+Variant = Callable[[Edit], Scenario]
+
+SCHOOL = "30 @ (Mo-Fr 08:00-08:31,14:30-16:00; SH off; PH off)"
+MONDAY = datetime(2026, 3, 9)
+DAYS = ("Mo", "Tu", "We", "Th", "Fr", "Sa", "Su")
+
+
+def at(day: int, clock: str) -> datetime:
+    """An instant of the week, 1 is Monday."""
+    return datetime.combine(MONDAY + timedelta(days=day - 1), time.fromisoformat(clock))
+
+
+@pytest.mark.parametrize(
+    ("sign", "kmh"), [("50", 50), ("50 km/h", 50), ("20 mph", 32.187), ("7.5", 7.5), ("none", None)]
+)
+def test_signs(sign: str, kmh: float | None) -> None:
+    assert sign_mps(sign) == (None if kmh is None else pytest.approx(kmh / 3.6, rel=1e-4))
+
+
+@pytest.mark.parametrize("sign", ["", "fast", "-30", "nan", "inf", "1e9", "30 knots", "50;70"])
+def test_what_is_no_sign(sign: str) -> None:
+    with pytest.raises(ValueError, match="is no maxspeed"):
+        sign_mps(sign)
+
+
+@pytest.mark.parametrize(
+    ("conditional", "words"),
+    [
+        (SCHOOL, ["30 km/h Mo-Fr 08:00-08:31, 14:30-16:00"]),
+        ("20 mph @ (Mo,We 7:30-16:00)", ["20 mph Mo, We 7:30-16:00"]),
+        ("30 @ (22:00-06:00)", ["30 km/h 22:00-06:00"]),
+        ("none @ (19:00-07:00); 80 @ wet", ["no limit 19:00-07:00"]),
+        ("30 @ (Sa 10:00-12:00; Su)", ["30 km/h Sa 10:00-12:00", "30 km/h Su"]),
+        ("80 @ (wet)", []),
+        ("60 @ (22:00-06:00 AND wet)", []),
+        ("60 @ (weight>7.5)", []),
+        ("20 mph @ children_present", []),
+        ("30 @ (sunset-sunrise)", []),
+        ("30 @ (25:00-26:00)", []),
+        ("", []),
+    ],
+)
+def test_hours_in_words(conditional: str, words: list[str]) -> None:
+    limits, unread = timed_limits(conditional)
+    assert [limit.text for limit in limits] == words
+    assert bool(unread) == (conditional.count("@") != len({limit.limit_mps for limit in limits}))
+
+
+def test_nothing_is_lost_in_silence() -> None:
+    """What is neither understood nor told as not understood would be a sign that vanished."""
+    rng = np.random.default_rng(0)
+    parts = ("40 @ (Mo-Fr 08:00-09:00)", "80 @ wet", "rubbish", "@", "50 @ ()", "30 @ (22:00-06:00)", "(", ";;")
+    for _ in range(300):
+        chosen = [parts[index] for index in rng.integers(0, len(parts), int(rng.integers(1, 4)))]
+        limits, unread = timed_limits("; ".join(chosen))
+        assert limits or unread or set(chosen) <= {";;"}, chosen
+
+
+@pytest.mark.parametrize(
+    ("instant", "holds"),
+    [
+        (at(1, "07:59:59"), False),
+        (at(1, "08:00"), True),
+        (at(5, "08:30:59"), True),
+        (at(5, "08:31"), False),
+        (at(3, "15:59"), True),
+        (at(6, "08:10"), False),
+        (at(7, "15:00"), False),
+    ],
+)
+def test_school_hours(instant: datetime, holds: bool) -> None:
+    assert (in_force(timed_limits(SCHOOL)[0], instant) is not None) == holds
+
+
+def test_a_span_past_midnight_belongs_to_the_day_it_begins_on() -> None:
+    limits, _ = timed_limits("30 @ (Fr 22:00-06:00)")
+    assert [
+        bool(in_force(limits, at(day, clock))) for day, clock in [(5, "21:59"), (5, "23:00"), (6, "05:59")]
+    ] == [
+        False,
+        True,
+        True,
+    ]
+    assert not in_force(limits, at(5, "03:00")), "Thursday's night is not meant"
+    assert not in_force(limits, at(6, "06:00"))
+
+
+def test_a_week_as_a_whole_is_what_the_days_say() -> None:
+    """Every hour of a week for every run of days, against plain arithmetic."""
+    for first in range(7):
+        for last in range(7):
+            limits, unread = timed_limits(f"30 @ ({DAYS[first]}-{DAYS[last]} 06:00-22:00)")
+            assert not unread
+            meant = {(first + step) % 7 for step in range((last - first) % 7 + 1)}
+            for hour in range(7 * 24):
+                instant = MONDAY + timedelta(hours=hour)
+                assert (in_force(limits, instant) is not None) == (hour // 24 in meant and 6 <= hour % 24 < 22), (
+                    first,
+                    last,
+                    instant,
+                )
+
+
+def test_of_several_the_last_written_holds() -> None:
+    limits, _ = timed_limits("80 @ (06:00-20:00); 60 @ (08:00-09:00)")
+    held = in_force(limits, at(2, "08:30"))
+    assert held is not None
+    assert held.limit_mps == pytest.approx(60 / 3.6)
+
+
+# --- on the road ------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def school(variant: Variant) -> Iterator[Forked]:
+    """The grid with a school zone on the middle of its avenue."""
+
+    def edit(folder: Path) -> None:
+        edges = folder / "grid.edg.xml"
+        text = edges.read_text()
+        start = text.index('<edge id="c1c2"')
+        end = text.index("</edge>", start)
+        zone = f'<param key="hazard" value="school_zone"/><param key="maxspeed:conditional" value="{SCHOOL}"/>'
+        edges.write_text(text[:end] + zone + text[end:])
+        built, printed = sumo_programs.run(
+            "netconvert",
+            ["-n", folder / "grid.nod.xml", "-e", edges, "--proj.utm", "-o", folder / "grid.net.xml"],
+        )
+        assert built, printed
+        (folder / "grid.rou.xml").write_text("<routes/>")
+
+    with closing(Forked(variant(edit), seed=1)) as simulation:
+        yield simulation
+
+
+def test_the_posted_limit_follows_the_clock_of_the_drive(school: Forked, grid: Scenario) -> None:
+    tuesday = grid.start
+    plan = EgoPlan(grid.trip("avenue"), "average", seed=1)
+    seen = {}
+    for name, start in {
+        "school": tuesday,
+        "evening": tuesday.replace(hour=20),
+        "saturday": tuesday + timedelta(days=4),
+    }.items():
+        with closing(school.depart(replace(plan, start=start.replace(minute=0)))) as traffic:
+            states = traffic.advance(300.0).states
+        inside = [state.road for state in states if state.road.edge_id == "c1c2"]
+        assert inside
+        assert all(road.school_zone and road.limit_source is LimitSource.POSTED for road in inside)
+        assert {road.limit_hours for road in inside} == {"30 km/h Mo-Fr 08:00-08:31, 14:30-16:00"}
+        before = next(state for state in states if state.road.edge_id == "c0c1")
+        limits = {round((road.posted_limit_mps or 0) * KMH_PER_MPS) for road in inside}
+        warned = before.ahead.next_limit_mps is not None
+        fastest_kmh = max(state.speed_mps for state in states if state.road.edge_id == "c1c2") * KMH_PER_MPS
+        seen[name] = limits, {road.limit_by_clock for road in inside}, warned, fastest_kmh > 40
+    assert seen == {
+        "school": ({30}, {True}, True, False),
+        "evening": ({50}, {False}, False, True),
+        "saturday": ({50}, {False}, False, True),
+    }
+
+
+def test_a_limit_ends_while_the_car_is_in_it(school: Forked, grid: Scenario) -> None:
+    """At 8:31 the sign goes dark: the ego sees it within a second and drives on at 50; a branch sees the same."""
+    plan = EgoPlan(grid.trip("avenue"), "average", seed=1)
+    with closing(school.depart(plan)) as traffic:
+        way = traffic.advance(200.0, Until(InSchoolZone()))
+        assert way.until_held
+    way_s = way.states[-1].time_s - way.states[0].time_s
+    start = grid.start.replace(hour=8, minute=31) - timedelta(seconds=way_s + 6)
+    with closing(school.depart(replace(plan, start=start))) as traffic:
+        assert traffic.advance(200.0, Until(InSchoolZone())).until_held
+        with closing(traffic.branch()) as branch:
+            states = traffic.advance(60.0).states
+            assert branch.advance(60.0).states == states
+    inside = [state for state in states if state.road.edge_id == "c1c2"]
+    by_clock = [state for state in inside if state.road.limit_by_clock]
+    assert 0 < len(by_clock) < len(inside)
+    assert by_clock[-1].time_s - states[0].time_s == pytest.approx(6.0, abs=1.1)
+    assert not InSchoolZone()(inside[-1])
+    assert inside[-1].speed_mps > by_clock[-1].speed_mps
