@@ -45,7 +45,7 @@ class SignalIs:
         return now.signals[self.signal.path] in self.values
 
     def __str__(self) -> str:
-        return f"{self.signal.path} is {_either(self.values)}"
+        return f"{self.signal} is {_either(self.values)}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +65,7 @@ class SignalRaised:
         return float(now.signals[self.signal.path]) - float(start.signals[self.signal.path]) >= self.by
 
     def __str__(self) -> str:
-        return f"{self.signal.path} raised by {self.by:g} or more"
+        return f"{self.signal} raised by {self.by:g} or more"
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +85,7 @@ class SignalLowered:
         return float(start.signals[self.signal.path]) - float(now.signals[self.signal.path]) >= self.by
 
     def __str__(self) -> str:
-        return f"{self.signal.path} lowered by {self.by:g} or more"
+        return f"{self.signal} lowered by {self.by:g} or more"
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +106,7 @@ class SignalWithin:
         return self.low - 1e-9 <= float(now.signals[self.signal.path]) <= self.high + 1e-9
 
     def __str__(self) -> str:
-        return f"{self.signal.path} from {self.low:g} to {self.high:g}"
+        return f"{self.signal} from {self.low:g} to {self.high:g}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,7 +125,7 @@ class SignalChanged:
         return bool(now.signals[self.signal.path] != start.signals[self.signal.path])
 
     def __str__(self) -> str:
-        return f"{self.signal.path} is no longer what it was"
+        return f"{self.signal} is no longer what it was"
 
 
 @dataclass(frozen=True, slots=True)
@@ -242,7 +242,7 @@ class EnteredOf:
         return bool(added == [start.signals[self.signal.path]])
 
     def __str__(self) -> str:
-        return f"{self.signal.path}, as it was, added to {self.key}"
+        return f"{self.signal}, as it was, added to {self.key}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -50,6 +50,9 @@ class Signal(Generic[T]):
     overlay: bool = False
     """Not in VSS 6.0."""
 
+    def __str__(self) -> str:
+        return self.path
+
     @property
     def low(self) -> float:
         """The smallest legal number."""

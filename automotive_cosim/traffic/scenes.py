@@ -417,3 +417,7 @@ def scene_of(stage: Stage, incident: incidents.Incident) -> Scene:
         ScenarioError: it does not fit the network.
     """
     return SCENES[type(incident)](stage, incident)
+
+
+def _on(edge: Edge) -> str:
+    return f" on {edge.name}" if edge.name else ""

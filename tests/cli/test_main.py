@@ -52,7 +52,7 @@ def test_version(cli):
 
 def test_tasks_and_agents_are_listed(cli):
     listed = cli("tasks", "list").out.splitlines()
-    assert [line.split()[0] for line in listed] == list(CATALOGUE)
+    assert [line.split()[0] for line in listed[: listed.index("")]] == list(CATALOGUE)
     assert set(AGENTS) <= set(cli("agents").out.split())
 
 

@@ -11,10 +11,12 @@ import pytest
 
 from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, EgoEnd
 from automotive_cosim.errors import ScenarioError, UnknownNameError
+from automotive_cosim.incidents import KINDS
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.base import Drive, EgoPlan, Until
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.predicates import Driven
+from automotive_cosim.traffic.scenes import SCENES
 from automotive_cosim.traffic.sumo import InProcess, InProcessTraffic
 
 Edit = Callable[[Path], None]
@@ -326,3 +328,7 @@ def test_people_cross_and_the_ego_lets_them(
     assert any(edge.startswith(":c2_c") for edge in crossings)
     assert waits > 1, "the ego waits before the crossing"
     assert traffic.state.end is EgoEnd.ARRIVED
+
+
+def test_every_kind_of_incident_is_staged() -> None:
+    assert set(SCENES) == set(KINDS.values())
