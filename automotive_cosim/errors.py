@@ -43,7 +43,7 @@ class UnknownNameError(UserError):
     def __init__(self, kind: str, name: str, known: Iterable[str], hint: str = "") -> None:
         choices = sorted(known)
         close = get_close_matches(name, choices, n=1, cutoff=0.5)
-        mend = f"did you mean {close[0]!r}?" if close else f"there are: {', '.join(choices) or 'none'}."
+        mend = f"did you mean '{close[0]}'?" if close else f"there are: {', '.join(choices) or 'none'}."
         super().__init__(f"no {kind} named {name!r}: {mend}" + (f" List them with `{hint}`." if hint else ""))
         self.kind = kind
         self.name = name

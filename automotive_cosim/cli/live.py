@@ -45,6 +45,8 @@ class Live(Watcher):
         self._thought = ""
         self._hand_over_s: float | None = None
         self._said_s: float | None = None
+        self._begins: Moment | None = None
+        """When the next action begins."""
 
     def loading(self, scenario: Scenario) -> None:
         """What is loaded, and what was assumed of it."""
@@ -82,6 +84,7 @@ class Live(Watcher):
     def handed_over(self, env: CockpitEnv, shot: Shot) -> None:
         """The driver's words."""
         self._hand_over_s = shot.step.moment.time_s
+        self._begins = shot.step.moment
         self._title = "the agent is at work"
         self._goal = env.instance.goal
         if not self._console.is_terminal:
@@ -100,7 +103,9 @@ class Live(Watcher):
             self._show(self._panel(step.moment))
         else:
             because = f" ({self._thought})" if self._thought else ""
-            self._console.print(f"{self._clock(step.moment)}  step {self._action}{because}", soft_wrap=True)
+            began = self._begins or step.moment
+            self._console.print(f"{self._clock(began)}  step {self._action}{because}", soft_wrap=True)
+        self._begins = step.moment
 
     def finished(self, result: EpisodeResult) -> None:
         """The verdict, and what happened when."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import multiprocessing
+import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, field
@@ -32,8 +33,8 @@ GATES = (
     "reach",
 )
 """In the order of the table in ``gates``."""
-SIMULATIONS = 6
-"""Warm ones that a worker keeps: a task's own two and those it can also run in."""
+SIMULATIONS = 16
+"""Warm ones that a worker keeps: the shipped networks and some of them elsewhere on earth."""
 
 
 @dataclass(slots=True)
@@ -48,10 +49,14 @@ class Proof:
     """What went wrong in the machinery, so that nothing is proven either way."""
     oracle_steps: dict[str, int] = field(default_factory=dict)
     """Actions of the expert by half, the declaration included."""
+    seconds: dict[str, float] = field(default_factory=dict)
+    """Wall time by gate."""
 
     def take(self, gate: str, wrong: Iterator[str], half: str = "") -> None:
         """Collects what a gate finds."""
+        began = time.perf_counter()
         self.wrong.setdefault(gate, []).extend(f"{half}: {text}" if half else text for text in wrong)
+        self.seconds[gate] = self.seconds.get(gate, 0.0) + time.perf_counter() - began
 
 
 class Prover:
@@ -176,6 +181,7 @@ def as_json(proofs: Sequence[Proof], task_ids: Sequence[str], seeds: Sequence[in
             }
             for gate in tried
         },
+        "seconds": {gate: round(sum(proof.seconds.get(gate, 0.0) for proof in proofs), 1) for gate in tried},
         "errors": [{"task": proof.task, "seed": proof.seed, "why": proof.error} for proof in proofs if proof.error],
         "oracle_steps": {
             proof.task: proof.oracle_steps for proof in proofs if proof.seed == seeds[0] and proof.oracle_steps
