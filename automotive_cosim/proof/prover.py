@@ -90,6 +90,8 @@ class Prover:
                 proof.take("reach", iter([str(error)]))
             else:
                 proof.error = f"{type(error).__name__}: {error}"
+        except Exception as error:  # a fault in one task must not take the proof of the others with it
+            proof.error = f"{type(error).__name__}: {error}"
         finally:
             for ground in grounds.values():
                 ground.close()
