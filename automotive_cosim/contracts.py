@@ -122,6 +122,26 @@ class RouteOption:
     """``eta_s`` above free flow at the posted limits."""
 
 
+class IncidentKind(StrEnum):
+    """What a live-traffic service tells of beside slow traffic; the values are those of ``incidents.KINDS``."""
+
+    BREAKDOWN = "breakdown"
+    ROADWORKS = "roadworks"
+    JAM = "jam"
+    CLOSURE = "closure"
+    SCHOOL_ZONE = "school_zone"
+
+
+@dataclass(frozen=True, slots=True)
+class RoadIncident:
+    """Something on the road that a live-traffic service tells of."""
+
+    kind: IncidentKind
+    edge_id: str
+    position_m: float
+    """Where one comes upon it, from the start of the edge."""
+
+
 @dataclass(frozen=True, slots=True)
 class RoadAhead:
     """The ego's route from here to its goal."""
@@ -152,6 +172,8 @@ class RoadAhead:
     slow_edges: tuple[tuple[str, float], ...] = ()
     """Edges anywhere in the network driven slower than three quarters of their limit, and their mean speed over
     the limit: what a live-traffic service tells a map."""
+    incidents: tuple[RoadIncident, ...] = ()
+    """Those anywhere in the network that such a service knows of now."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -115,6 +115,7 @@ class SchoolZone(Incident):
     def __post_init__(self) -> None:
         Incident.__post_init__(self)
         _require(self, self.limit_kmh > 0 and self.opens < self.closes, "limit_kmh above 0, opens before closes")
+        _require(self, bool(self.edges), "it needs at least one edge")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

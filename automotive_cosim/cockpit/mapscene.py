@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import math
+from itertools import pairwise
+
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.map import ZOOMS_M_PER_PX, Camera, RoadMap, View, camera_of
 from automotive_cosim.cockpit.mapdraw import Scene
 from automotive_cosim.cockpit.state import State
+from automotive_cosim.contracts import IncidentKind, Road
 
 Ego = tuple[float, float, float]
 """x and y in metres, heading in degrees."""
@@ -36,22 +40,31 @@ def panned(state: State, right: float, down: float) -> tuple[float, float]:
 
 
 def scene(state: State, camera: Camera) -> Scene:
-    """All that is drawn beside the roads."""
+    """All that is drawn beside the roads; of the traffic what was heard last."""
     if state.outside is None:
         return Scene(camera)
     ahead = state.outside.driving.ahead
     others = tuple(other.edges for other in ahead.alternatives)
-    return Scene(camera, ego(state), ahead.route_edges, others, ahead.slow_edges)
+    slow = () if state.heard is None else state.heard.driving.ahead.slow_edges
+    return Scene(camera, ego(state), ahead.route_edges, others, slow)
 
 
 def jam(state: State) -> tuple[float, float] | None:
-    """Where the next jam on the route begins."""
-    if state.outside is None:
+    """Where the next jam on the route begins, as was heard last."""
+    if state.heard is None:
         return None
-    road, ahead = state.outside.driving.road, state.outside.driving.ahead
+    road, ahead = state.heard.driving.road, state.heard.driving.ahead
     if ahead.jam_distance_m is None:
         return None
     return _along(state.roads, ahead.route_edges, road.lane_position_m + ahead.jam_distance_m)
+
+
+def incidents(state: State) -> tuple[tuple[IncidentKind, Road, tuple[float, float]], ...]:
+    """Those that live traffic told of last: what, on which road, and the point where one comes upon it."""
+    if state.heard is None:
+        return ()
+    known = ((one, state.roads.find(one.edge_id)) for one in state.heard.driving.ahead.incidents)
+    return tuple((one.kind, road, _point(road, one.position_m)) for one, road in known if road is not None)
 
 
 def goal(state: State) -> tuple[float, float] | None:
@@ -69,12 +82,23 @@ def box_of(camera: Camera, area: Rect, point_m: tuple[float, float], side: int) 
 
 
 def _along(roads: RoadMap, route: tuple[str, ...], driven_m: float) -> tuple[float, float] | None:
-    """The point of a route so far from its start, at the nearest bend of the road."""
+    """The point of a route so far from its start."""
     for road in map(roads.find, route):
         if road is None:
             continue
         if driven_m < road.length_m:
-            at = round(driven_m / road.length_m * (len(road.shape_m) - 1))
-            return road.shape_m[at]
+            return _point(road, driven_m)
         driven_m -= road.length_m
     return None
+
+
+def _point(road: Road, at_m: float) -> tuple[float, float]:
+    """The point of a road so far from its start; its shape may be longer or shorter than the road is said to be."""
+    steps_m = [math.dist(here, there) for here, there in pairwise(road.shape_m)]
+    left_m = min(1.0, at_m / road.length_m) * sum(steps_m)
+    for (x_m, y_m), (to_x_m, to_y_m), step_m in zip(road.shape_m, road.shape_m[1:], steps_m, strict=False):
+        if left_m <= step_m > 0:
+            share = left_m / step_m
+            return x_m + share * (to_x_m - x_m), y_m + share * (to_y_m - y_m)
+        left_m -= step_m
+    return road.shape_m[-1]

@@ -370,8 +370,10 @@ def _map(canvas: Canvas, view: MapView, palette: Palette) -> None:
 
 
 def _badge(canvas: Canvas, badge: Badge, palette: Palette) -> None:
-    canvas.disc(badge.rect, palette.plate)
-    canvas.icon(badge.rect.centre, badge.icon, 26, palette.text)
+    ground, ink = (palette.warning, palette.on_warning) if badge.warns else (palette.plate, palette.text)
+    canvas.disc(badge.rect, palette.casing)
+    canvas.disc(badge.rect.inset(2), ground)
+    canvas.icon(badge.rect.centre, badge.icon, 26, ink)
 
 
 def _car_view(canvas: Canvas, view: CarView, palette: Palette) -> None:

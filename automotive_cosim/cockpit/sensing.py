@@ -43,6 +43,8 @@ def sense(state: State, surroundings: Surroundings, dt_s: float) -> None:
     before, state.outside = state.outside, surroundings
     driving, weather = surroundings.driving, surroundings.weather
     _motion(state, surroundings)
+    if state.injected.get(LINK.ONLINE.path, state.signals[LINK.ONLINE]):
+        state.heard = surroundings
     _road(state, driving)
     sun = surroundings.sun_elevation_deg
     state.vehicle.follow_light(driving.road.in_tunnel or (sun is not None and sun < DARK_BELOW_DEG))

@@ -105,6 +105,8 @@ class State:
     injected: Mapping[str, Any] = field(default_factory=dict)
     """Sensors that read what they were told to, by path."""
     outside: Surroundings | None = None
+    heard: Surroundings | None = None
+    """What was outside when the car was last online: as of then it knows the live traffic."""
     screen: str = "home"
     past: tuple[tuple[str, str], ...] = ()
     """Screens to go back to, and what was shown on them."""

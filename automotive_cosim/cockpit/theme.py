@@ -252,6 +252,8 @@ class Icon(StrEnum):
     WEATHER = "\U000f0596"
     TRAFFIC = "\U000f052b"
     JAM = "\U000f0b6e"
+    ROADWORKS = "\U000f137c"
+    CLOSURE = "\U000f0376"
     COMPASS = "\U000f018c"
     NAVIGATION = "\U000f0390"
     CORRIDOR = "\U000f00fb"

@@ -270,6 +270,8 @@ class Badge(Widget):
     """A mark on the map."""
 
     icon: Icon
+    warns: bool = False
+    """In the colour of warnings."""
 
     class_name: ClassVar[str] = "ImageView"
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from itertools import islice, pairwise
 from typing import Protocol
 
-from automotive_cosim.contracts import RoadAhead, TrafficLight
+from automotive_cosim.contracts import RoadAhead, RoadIncident, TrafficLight
 from automotive_cosim.traffic.network import Crossing, Edge, Network
 
 SAMPLE_PERIOD_S = 10.0
@@ -160,8 +160,10 @@ class _Leg:
 class Route:
     """A route, with the sums that ``RoadAhead`` needs."""
 
-    def __init__(self, edge_ids: Sequence[str], network: Network, flow: Flow) -> None:
-        """Prepares the sums from the flow of now."""
+    def __init__(
+        self, edge_ids: Sequence[str], network: Network, flow: Flow, incidents: tuple[RoadIncident, ...] = ()
+    ) -> None:
+        """Prepares the sums from the flow of now; the incidents are passed on."""
         self.edge_ids = tuple(edge_ids)
         edges = [network.edges[edge_id] for edge_id in edge_ids]
         ways = [
@@ -181,6 +183,7 @@ class Route:
         )
         self._rest = tuple(self.edge_ids[index:] for index in range(len(edges)))
         self._slow = flow.slow_edges()
+        self._incidents = incidents
         self._legs = _legs(edges, ways, starts_m, network, flow)
 
     def position_m(self, index: int, on_edge_m: float) -> float:
@@ -227,6 +230,7 @@ class Route:
             self._rest[index],
             camera_distance_m=self._camera_m(position_m) if self._cameras_m else None,
             slow_edges=self._slow,
+            incidents=self._incidents,
         )
 
     def _camera_m(self, position_m: float) -> float | None:

@@ -9,8 +9,9 @@ from datetime import datetime
 from typing import Any, Protocol
 
 from automotive_cosim import incidents
-from automotive_cosim.contracts import KMH_PER_MPS
+from automotive_cosim.contracts import KMH_PER_MPS, IncidentKind, RoadIncident
 from automotive_cosim.errors import ScenarioError
+from automotive_cosim.traffic.congestion import JAM_BELOW
 from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.posted import TimedLimit
 from automotive_cosim.traffic.stage import CAR_TYPE, Stage
@@ -49,6 +50,10 @@ class Scene(Protocol):
         """Puts things back; returns what has happened in words."""
         ...
 
+    def reported(self, slow: Mapping[str, float]) -> RoadIncident | None:
+        """What live traffic tells of it while it lasts, as ``Situations.reported``; None if it cannot know."""
+        ...
+
 
 class _Scene:
     """Most scenes do nothing while they last, and need no putting back."""
@@ -61,6 +66,9 @@ class _Scene:
 
     def end(self) -> str:
         return ""
+
+    def reported(self, slow: Mapping[str, float]) -> RoadIncident | None:
+        return None
 
 
 class _Breakdown(_Scene):
@@ -84,6 +92,9 @@ class _Breakdown(_Scene):
         stage.sumo.set_stop(self._car, incident.edge, position_m, lane, incident.to_s - incident.from_s, 0)
         stage.sumo.set_signals(self._car, HAZARD_SIGNAL)
         return f"a car has broken down{_on(stage.edge(incident.edge))}"
+
+    def reported(self, slow: Mapping[str, float]) -> RoadIncident:
+        return RoadIncident(IncidentKind.BREAKDOWN, self._incident.edge, self._incident.position_m)
 
 
 class _Roadworks(_Scene):
@@ -110,6 +121,9 @@ class _Roadworks(_Scene):
         for lane, allowed in self._allowed.items():
             self._stage.sumo.lane.setAllowed(lane, allowed)
         return ""
+
+    def reported(self, slow: Mapping[str, float]) -> RoadIncident:
+        return RoadIncident(IncidentKind.ROADWORKS, self._incident.edge, 0.0)
 
 
 class _Jam(_Scene):
@@ -155,6 +169,11 @@ class _Jam(_Scene):
             if self._stage.sumo.vehicle.isStopped(vehicle) and vehicle != self._stage.ego_id:
                 self._stage.sumo.vehicle.resume(vehicle)
         return ""
+
+    def reported(self, slow: Mapping[str, float]) -> RoadIncident | None:
+        """Known by its speed: from the first of its edges that is jammed."""
+        jammed = (edge for edge in self._incident.edges if slow.get(edge, 1.0) < JAM_BELOW)
+        return next((RoadIncident(IncidentKind.JAM, edge, 0.0) for edge in jammed), None)
 
 
 class _Closure(_Scene):
@@ -209,6 +228,9 @@ class _Closure(_Scene):
         self._stage.route_changed = True
         return f"driver goes round {self._edge.name or self._edge.edge_id}, which is closed"
 
+    def reported(self, slow: Mapping[str, float]) -> RoadIncident:
+        return RoadIncident(IncidentKind.CLOSURE, self._edge.edge_id, 0.0)
+
 
 class _SchoolZone(_Scene):
     """A limit by the clock."""
@@ -232,6 +254,10 @@ class _SchoolZone(_Scene):
     def end(self) -> str:
         self._stage.signs.take_down_zone(self._edges, self._limit)
         return ""
+
+    def reported(self, slow: Mapping[str, float]) -> RoadIncident:
+        """Told of at all hours, like its signs; whether its limit is in force is for the clock to say."""
+        return RoadIncident(IncidentKind.SCHOOL_ZONE, self._edges[0], 0.0)
 
 
 class _RushHour(_Scene):

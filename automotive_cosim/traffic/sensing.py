@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from automotive_cosim.contracts import Around, DrivingState, OtherVehicle, RoadHere, TrafficLight
+from automotive_cosim.contracts import Around, DrivingState, OtherVehicle, RoadHere, RoadIncident, TrafficLight
 from automotive_cosim.traffic.congestion import Congestion, Route
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.network import Edge, Network
@@ -50,7 +50,14 @@ class Sensor:
     """Reads the ego's state. It keeps what SUMO does not: standing time, the route's sums, the last edge."""
 
     def __init__(
-        self, sumo: Sumo, ego_id: str, network: Network, congestion: Congestion, emergency: set[str], step_s: float
+        self,
+        sumo: Sumo,
+        ego_id: str,
+        network: Network,
+        congestion: Congestion,
+        incidents: Callable[[], tuple[RoadIncident, ...]],
+        emergency: set[str],
+        step_s: float,
     ) -> None:
         """Starts with the ego just inserted.
 
@@ -59,6 +66,7 @@ class Sensor:
             ego_id: the ego's vehicle.
             network: the roads.
             congestion: smoothed speeds.
+            incidents: tells of those that live traffic knows of now.
             emergency: vehicles with blue lights, kept up to date by the owner.
             step_s: step length.
         """
@@ -66,6 +74,7 @@ class Sensor:
         self._ego = ego_id
         self._network = network
         self._congestion = congestion
+        self._incidents = incidents
         self._emergency = emergency
         self._step_s = step_s
         self._lon_lat = _converter(sumo, network)
@@ -86,8 +95,8 @@ class Sensor:
         self.refresh()
 
     def refresh(self) -> None:
-        """Takes up a new route, or new congestion."""
-        self.route = Route(self._sumo.route(self._ego), self._network, self._congestion)
+        """Takes up a new route, or new congestion and incidents."""
+        self.route = Route(self._sumo.route(self._ego), self._network, self._congestion, self._incidents())
         self._lanes.clear()
         self._steps = 0
 

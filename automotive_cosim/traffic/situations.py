@@ -6,9 +6,11 @@ taken at whole seconds of the simulation.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 
+from automotive_cosim.contracts import RoadIncident
 from automotive_cosim.incidents import EgoIncident, Incident
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.base import EgoPlan, Event
@@ -63,6 +65,15 @@ class Situations:
                 told += self._proceed(entry, since_s, local_time)
         self._stage.signs.follow(local_time)
         return tuple(Event(now_s, "incident", text) for text in told if text)
+
+    def reported(self, slow: Mapping[str, float]) -> tuple[RoadIncident, ...]:
+        """Those going on that a live-traffic service knows of.
+
+        Args:
+            slow: edges that it knows to be slow, and their speed over the limit.
+        """
+        going_on = (entry.scene for entry in self._entries if entry.has_begun and not entry.is_over)
+        return tuple(seen for scene in going_on if (seen := scene.reported(slow)) is not None)
 
     def _local_time(self, now_s: float) -> datetime:
         """The clock of the place: the scenario's in the warm-up, the ego's once it is under way."""

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from automotive_cosim.contracts import KMH_PER_MPS, LimitSource, RoadNetwork
+from automotive_cosim.contracts import KMH_PER_MPS, IncidentKind, LimitSource, RoadIncident, RoadNetwork
 from automotive_cosim.traffic.congestion import SLOW_BELOW, Route
 from automotive_cosim.traffic.network import Edge, Network, road_of
 
@@ -50,6 +50,8 @@ class Stretch:
     leader: Leader | None = None
     oncoming_gap_m: float | None = None
     """Distance of a vehicle that comes towards the ego, throughout the stretch."""
+    incident: IncidentKind | None = None
+    """What live traffic tells of at the start of the stretch."""
 
     @property
     def free_mps(self) -> float:
@@ -71,7 +73,12 @@ class Layout:
         self.starts_m = tuple(starts_m)
         edges = {f"stretch{index}": self._edge(index) for index in range(len(stretches))}
         self.network = Network(edges, {}, {}, self._map(edges.values()))
-        self.route = Route(tuple(edges), self.network, self)
+        incidents = (
+            RoadIncident(stretch.incident, f"stretch{index}", 0.0)
+            for index, stretch in enumerate(stretches)
+            if stretch.incident is not None
+        )
+        self.route = Route(tuple(edges), self.network, self, tuple(incidents))
 
     def __deepcopy__(self, memo: object) -> Layout:
         return self

@@ -9,7 +9,7 @@ from difflib import get_close_matches
 from itertools import pairwise
 from pathlib import Path
 
-from automotive_cosim.contracts import DrivingState, EgoEnd, RouteOption
+from automotive_cosim.contracts import DrivingState, EgoEnd, RoadIncident, RouteOption
 from automotive_cosim.errors import ScenarioError, TrafficError
 from automotive_cosim.scenarios import Trip
 from automotive_cosim.traffic.base import EgoPlan, Event, Progress
@@ -120,7 +120,9 @@ class World:
             )
         self._forecast = Forecast(plan.weather, self._sumo.time())
         self._sumo.set_parameter(EGO, "laneChangeModel.lcSpeedGain", f"{driver_profile.overtaking:g}")
-        sensor = Sensor(self._sumo, EGO, self.network, self.congestion, self._emergency, self.step_s)
+        sensor = Sensor(
+            self._sumo, EGO, self.network, self.congestion, self._reported, self._emergency, self.step_s
+        )
         self._situations.set_off(plan, sensor, self._sumo.time())
         if self._situations.take_changes():
             sensor.refresh()
@@ -147,6 +149,9 @@ class World:
     def close(self) -> None:
         """Ends the simulation."""
         self._sumo.close()
+
+    def _reported(self) -> tuple[RoadIncident, ...]:
+        return self._situations.reported(dict(self.congestion.slow_edges())) if self._has_incidents else ()
 
     def _notice(self, *, sampling: bool) -> bool:
         sumo = self._sumo

@@ -2,17 +2,30 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
+from datetime import timedelta
 
 import numpy as np
 
 from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.map import Camera, View
 from automotive_cosim.cockpit.places import Kind
 from automotive_cosim.cockpit.render import render
 from automotive_cosim.cockpit.screens import APPS
+from automotive_cosim.cockpit.signals import LINK
+from automotive_cosim.cockpit.theme import DAY
 from automotive_cosim.cockpit.widgets import MapView
-from automotive_cosim.contracts import Direction, FeedbackCode, RouteOption, Surroundings
+from automotive_cosim.contracts import (
+    Direction,
+    FeedbackCode,
+    IncidentKind,
+    RoadIncident,
+    RouteOption,
+    Surroundings,
+)
 
 Make = Callable[..., Cockpit]
 
@@ -72,6 +85,76 @@ def test_the_map_shows_ways_traffic_and_a_jam(make: Make, around: Surroundings) 
     assert scene.alternatives == (("e6_5", "n7_5"),)
     assert scene.route == ahead.route_edges
     assert any(element.resource_id == "map.jam" for element in cockpit.elements())
+
+
+def incidents_seen(cockpit: Cockpit) -> dict[str, str]:
+    found = [one for one in cockpit.elements() if one.resource_id.startswith("map.incident.")]
+    return {element.resource_id: element.content_description for element in found}
+
+
+def with_incidents(around: Surroundings, *incidents: RoadIncident, online: bool = True) -> Surroundings:
+    ahead = replace(around.driving.ahead, incidents=incidents, slow_edges=(("e6_6", 0.2),) if incidents else ())
+    link = replace(around.connectivity, online=online)
+    return replace(around, driving=replace(around.driving, ahead=ahead), connectivity=link)
+
+
+def test_every_kind_of_incident_in_sight_is_marked_and_named(make: Make, around: Surroundings) -> None:
+    marks = set()
+    for kind in IncidentKind:
+        here, far = RoadIncident(kind, "e6_6", 30.0), RoadIncident(kind, "e0_0", 30.0)
+        cockpit = make(surroundings=with_incidents(around, far, here))
+        cockpit.open_app("map")
+        badge = next(widget for widget in cockpit.tree.walk() if widget.key == "map.incident.1")
+        assert incidents_seen(cockpit) == {"map.incident.1": badge.description}, "the far one is out of sight"
+        assert badge.description.endswith(": Pont Neuf"), "its street"
+        expected = View(*_frame(view(cockpit))).pixel(720.0 + 30.0, 720.0)
+        assert math.dist(badge.rect.centre, expected) < 10
+        patch = Rect(badge.rect.x, badge.rect.y, 40, 40)
+        marks.add(cockpit.screenshot()[patch.y : patch.bottom, patch.x : patch.right].tobytes())
+        assert cockpit.screenshot()[badge.rect.y + 6, badge.rect.centre[0]].tolist() == list(DAY.warning)
+    assert len(marks) == len(IncidentKind), "each has a look of its own"
+
+
+def _frame(map_view: MapView) -> tuple[Camera, float, float, float]:
+    rect, camera = map_view.rect, map_view.scene.camera
+    return camera, 1 / camera.metres_per_pixel, rect.x + rect.width / 2, rect.y + rect.height * camera.down
+
+
+def test_incidents_at_one_place_and_on_unknown_roads_break_nothing(make: Make, around: Surroundings) -> None:
+    told = [RoadIncident(kind, "e6_6", 30.0) for kind in reversed(IncidentKind)]
+    cockpit = make(surroundings=with_incidents(around, RoadIncident(IncidentKind.CLOSURE, "gone", 5.0), *told))
+    cockpit.open_app("map")
+    (words,) = incidents_seen(cockpit).values()
+    assert words == "Road closed: Pont Neuf", "the gravest"
+
+
+def test_without_a_link_the_traffic_stays_as_it_was_heard_last(make: Make, around: Surroundings) -> None:
+    closed = RoadIncident(IncidentKind.CLOSURE, "e6_6", 30.0)
+    later = replace(around, local_time=around.local_time + timedelta(minutes=20))
+    cockpit = make(surroundings=with_incidents(around, closed))
+    cockpit.open_app("map")
+    assert "traffic" not in view(cockpit).description
+    for news, online in ((with_incidents(later, online=False), False), (with_incidents(later), True)):
+        cockpit.sense(news, 1.0)
+        assert bool(incidents_seen(cockpit)) is not online
+        assert bool(view(cockpit).scene.slow) is not online
+        assert (", traffic as of 14:05" in view(cockpit).description) is not online
+    never = make(surroundings=with_incidents(around, closed, online=False))
+    never.open_app("map")
+    assert (incidents_seen(never), view(never).scene.slow) == ({}, ())
+
+
+def test_without_mobile_data_no_traffic_is_heard(make: Make, around: Surroundings) -> None:
+    closed = RoadIncident(IncidentKind.CLOSURE, "e6_6", 30.0)
+    cockpit = make(surroundings=with_incidents(around), signals={LINK.MOBILE_DATA.path: False})
+    cockpit.open_app("map")
+    cockpit.sense(with_incidents(around, closed), 1.0)
+    assert not incidents_seen(cockpit)
+    cockpit = make(surroundings=with_incidents(around))
+    cockpit.open_app("map")
+    cockpit.inject(LINK.ONLINE.path, False)
+    cockpit.sense(with_incidents(around, closed), 1.0)
+    assert not incidents_seen(cockpit)
 
 
 def test_a_frame_drawn_in_part_is_the_frame_drawn_anew(make: Make, around: Surroundings) -> None:

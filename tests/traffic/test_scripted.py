@@ -17,9 +17,11 @@ from automotive_cosim.contracts import (
     DrivingState,
     EgoEnd,
     Hazards,
+    IncidentKind,
     LimitSource,
     PullOver,
     Reroute,
+    RoadIncident,
     SlowDown,
 )
 from automotive_cosim.errors import ScenarioError, TrafficError, UnknownNameError
@@ -238,3 +240,10 @@ def test_predicates_mean_what_they_say() -> None:
         soon = leader is not None and closing_mps > 1e-3 and leader.gap_m / closing_mps < 4.0
         assert TimeToCollisionUnder(4.0)(state) == soon
         assert JamWithin(math.inf)(state) == (state.ahead.jam_distance_m is not None)
+
+
+def test_live_traffic_tells_of_incidents() -> None:
+    traffic = depart(Stretch("Rue A"), Stretch("Rue B", incident=IncidentKind.ROADWORKS))
+    expected = (RoadIncident(IncidentKind.ROADWORKS, "stretch1", 0.0),)
+    assert traffic.state.ahead.incidents == expected
+    assert traffic.advance(5.0).states[-1].ahead.incidents == expected

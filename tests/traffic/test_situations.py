@@ -9,11 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, EgoEnd
+from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, EgoEnd, IncidentKind, RoadIncident
 from automotive_cosim.errors import ScenarioError, UnknownNameError
 from automotive_cosim.incidents import KINDS
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.base import Drive, EgoPlan, Until
+from automotive_cosim.traffic.congestion import JAM_BELOW
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.predicates import Driven
 from automotive_cosim.traffic.scenes import SCENES
@@ -264,6 +265,42 @@ def test_all_at_once_in_process_and_forked_alike(staged: Staged, average: EgoPla
     own.advance(15.0)
     assert own.advance(100.0) == expected
     assert told(expected)
+    assert expected.states[-1].ahead.incidents
+
+
+def test_live_traffic_tells_of_what_lasts_and_can_be_known(staged: Staged, average: EgoPlan) -> None:
+    """Within a sample of the traffic, until it is over; of a jam as soon as its edges are that slow."""
+    zone = 'kind = "school_zone"\nedges = ["c2c3"]\nlimit_kmh = 20\nopens = 08:00:00\ncloses = 09:00:00'
+    known = {
+        'kind = "breakdown"\nedge = "s0s1"\nposition_m = 90.0': RoadIncident(IncidentKind.BREAKDOWN, "s0s1", 90.0),
+        'kind = "roadworks"\nedge = "c2c3"\nlimit_kmh = 30': RoadIncident(IncidentKind.ROADWORKS, "c2c3", 0.0),
+        'kind = "closure"\nedge = "s2s3"': RoadIncident(IncidentKind.CLOSURE, "s2s3", 0.0),
+        zone: RoadIncident(IncidentKind.SCHOOL_ZONE, "c2c3", 0.0),
+    }
+    lasting = [f"{incident}\nfrom_s = 20.0\nto_s = 60.0" for incident in known]
+    unknown = 'kind = "tractor"\nfrom_edge = "sws0"\nto_edge = "s3s4"'
+    jam = 'kind = "jam"\nedges = ["n4n3", "n3n2"]\nlength_m = 250.0\nhold_s = 20.0\nfrom_s = 0.0'
+    states = driven(staged(*lasting, unknown, jam), average, 100.0).states
+    for state in states:
+        since_s, told = state.time_s - states[0].time_s, set(state.ahead.incidents)
+        jams = {incident for incident in told if incident.kind is IncidentKind.JAM}
+        slow = dict(state.ahead.slow_edges)
+        jammed = [edge for edge in ("n4n3", "n3n2") if slow.get(edge, 1.0) < JAM_BELOW]
+        assert jams == {RoadIncident(IncidentKind.JAM, edge, 0.0) for edge in jammed[:1]}
+        if 31.0 < since_s < 59.0:
+            assert told - jams == set(known.values())
+        if since_s < 19.0 or since_s > 71.0:
+            assert told == jams
+    assert any(state.ahead.incidents for state in states[-10:]), "the jam is known in the end"
+    assert not [incident for incident in states[1].ahead.incidents if incident.kind is IncidentKind.JAM]
+
+
+def test_an_incident_of_another_trip_is_not_told_of(staged: Staged, grid: Scenario, average: EgoPlan) -> None:
+    other = next(trip.name for trip in grid.ego.trips if trip.name != average.trip.name)
+    works = 'kind = "roadworks"\nedge = "s2s3"\nlimit_kmh = 30'
+    both = staged(f'{works}\ntrip = "{other}"', f'kind = "closure"\nedge = "n2n3"\ntrip = "{average.trip.name}"')
+    (told,) = driven(both, average, 30.0).states[-1].ahead.incidents
+    assert told.kind is IncidentKind.CLOSURE
 
 
 # --- the file ---------------------------------------------------------------------------------------------

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from datetime import timedelta
 
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.map import ZOOMS_M_PER_PX, Camera
-from automotive_cosim.cockpit.mapscene import box_of, goal, jam, map_camera, scene
+from automotive_cosim.cockpit.mapscene import box_of, goal, incidents, jam, map_camera, scene
 from automotive_cosim.cockpit.messages import Follow, Guide, Message, Pick, Set, Show, Zoom
 from automotive_cosim.cockpit.navigation import Turn, turns
 from automotive_cosim.cockpit.screens.parts import CONTENT, choices, distance, heading, rows, search
@@ -24,7 +25,16 @@ from automotive_cosim.cockpit.widgets import (
     Row,
     Widget,
 )
+from automotive_cosim.contracts import IncidentKind, Road, RoadHere
 
+INCIDENTS: Mapping[IncidentKind, tuple[str, Icon]] = {
+    IncidentKind.CLOSURE: ("Road closed", Icon.CLOSURE),
+    IncidentKind.BREAKDOWN: ("Broken-down vehicle", Icon.HAZARD),
+    IncidentKind.ROADWORKS: ("Roadworks", Icon.ROADWORKS),
+    IncidentKind.JAM: ("Traffic jam", Icon.JAM),
+    IncidentKind.SCHOOL_ZONE: ("School zone", Icon.CHILD),
+}
+"""What live traffic tells of, the gravest first: where marks lie over each other the first is shown."""
 _CLASSES = {"motorway": "Motorway", "trunk": "Expressway", "service": "Service road", "residential": "Side street"}
 PANEL = CONTENT.left(372)
 """What stands beside the map."""
@@ -113,7 +123,7 @@ def map_view(
     return MapView(
         rect=rect,
         key=key,
-        description=f"Map around {street(state)}",
+        description=_sight(state),
         roads=state.roads,
         scene=scene(state, camera),
         on_tap=on_tap,
@@ -129,28 +139,45 @@ def map_view(
     )
 
 
+def _sight(state: State) -> str:
+    """What the map shows; while no live traffic comes in, also from when the last is."""
+    around = f"Map around {street(state)}"
+    if state.heard is None or state.heard is state.outside:
+        return around
+    return f"{around}, traffic as of {state.clock_at(state.heard.local_time)}"
+
+
 def _marks(rect: Rect, state: State, camera: Camera, avoid: tuple[Rect, ...]) -> tuple[Widget, ...]:
-    """Where a jam begins and where the route ends, as far as they are in sight."""
-    found: list[Widget] = []
-    for name, words, icon, point in (
+    """Where a jam begins, where the route ends and what live traffic tells of, as far as they are in sight."""
+    known: list[tuple[str, str, Icon, tuple[float, float] | None]] = [
         ("jam", "A jam begins here", Icon.JAM, jam(state)),
         ("goal", "The route ends here", Icon.GOAL, goal(state)),
-    ):
+    ]
+    told = enumerate(incidents(state))
+    for at, (kind, road, point) in sorted(told, key=lambda one: list(INCIDENTS).index(one[1][0])):
+        words, icon = INCIDENTS[kind]
+        known.append((f"incident.{at}", f"{words}: {road_name(road)}", icon, point))
+    found: list[Badge] = []
+    for name, words, icon, point in known:
         if point is None:
             continue
         box = box_of(camera, rect, point, 40)
         taken = (*avoid, *(mark.rect for mark in found))
         if rect.inset(4).encloses(box) and not any(box.overlaps(other) for other in taken):
-            found.append(Badge(rect=box, key=f"map.{name}", description=words, icon=icon))
+            found.append(Badge(rect=box, key=f"map.{name}", description=words, icon=icon, warns=name != "goal"))
     return tuple(found)
+
+
+def road_name(road: Road | RoadHere) -> str:
+    """What a road is called, or what kind it is."""
+    return road.name or _CLASSES.get(road.road_class, "Unnamed road")
 
 
 def street(state: State) -> str:
     """What the road is called, or what kind it is."""
     if state.outside is None:
         return "Locating"
-    road = state.outside.driving.road
-    return road.name or _CLASSES.get(road.road_class, "Unnamed road")
+    return road_name(state.outside.driving.road)
 
 
 def turns_ahead(state: State) -> tuple[tuple[Turn, float], ...]:
