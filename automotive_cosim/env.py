@@ -127,6 +127,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         to_place: str = "",
         channels: frozenset[Channel] | tuple[str, ...] = ALL,
         geo: str = GeoInput.FULL,
+        held_out: bool = False,
         max_steps: int = 20,
         action_cost_s: float = ACTION_COST_S,
         render_mode: str | None = None,
@@ -147,6 +148,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
             to_place: where it ends. If only one of the two is given the other is drawn.
             channels: what the agent is given.
             geo: what of place, as ``controls.GeoInput`` says.
+            held_out: True has the driver say the task's held-out phrasing (``suite.Instance.held_out``).
             max_steps: actions after which an episode is cut off.
             action_cost_s: simulated seconds per action.
             render_mode: ``"rgb_array"`` or None.
@@ -177,6 +179,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         self._elsewhere = bool(from_place or to_place) or self.scenario.name != start.scenario
         self._geo = GeoInput(geo)
         self._channels = frozenset(Channel(name) for name in channels) - self._geo.withheld
+        self._held_out = held_out
         self._max_steps = max_steps
         self._action_cost_s = action_cost_s
         self.render_mode = render_mode
@@ -208,12 +211,12 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         if seed is not None or self._traffic_seed is None:
             self._traffic_seed = int(self.np_random.integers(2**31)) if seed is None else seed % 2**31
         number = int(self.np_random.integers(2**31))
-        self.instance: Instance = draw(self._task, self._half_name, np.random.default_rng([number, 0]))
+        self.instance: Instance = self._draw(number)
         self._half = self.instance.half
         self.drive: list[Moment] = []
         self._world = self._hand_over(int(np.random.default_rng([number, 1]).integers(2**31)))
         content = self._world.cockpit.content
-        self.instance = draw(self._task, self._half_name, np.random.default_rng([number, 0]), content)
+        self.instance = self._draw(number, content)
         self._half = self.instance.half
         if self._mode is Mode.MONITORING:
             after_s = self._trigger_s - self._world.moment.time_s
@@ -300,6 +303,10 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
             self._simulations.close()
 
     # --- inside -------------------------------------------------------------------------------------------
+
+    def _draw(self, number: int, content: Mapping[str, tuple[str, ...]] | None = None) -> Instance:
+        rng = np.random.default_rng([number, 0])
+        return draw(self._task, self._half_name, rng, content, held_out=self._held_out)
 
     def _proceed(
         self, action: Action | None, feedback: Feedback, cost_s: float = 0.0

@@ -336,7 +336,12 @@ class Instance:
 
 
 def draw(
-    task: Task, half_name: str, rng: np.random.Generator, content: Mapping[str, tuple[str, ...]] | None = None
+    task: Task,
+    half_name: str,
+    rng: np.random.Generator,
+    content: Mapping[str, tuple[str, ...]] | None = None,
+    *,
+    held_out: bool = False,
 ) -> Instance:
     """Draws phrasing and parameters. Both halves of a task draw the same from the same generator.
 
@@ -346,16 +351,19 @@ def draw(
         rng: two draws at most per parameter.
         content: what the cockpit holds (``Cockpit.content``); without it a parameter that comes from there is
             its kind in angle brackets.
+        held_out: takes the phrasing that is held out, whatever is drawn; the parameters stay the same.
 
     Raises:
         UnknownNameError: the task has no such half, or the cockpit holds nothing of that kind.
     """
     task.half(half_name)
+    last = len(task.templates) - 1
     number = int(rng.integers(len(task.templates)))
+    number = last if held_out else number
     picks = {name: int(rng.integers(2**31)) for name in task.parameters}
     parameters = {name: _choose(choices, picks[name], content) for name, choices in task.parameters.items()}
     goal = task.templates[number].format_map(parameters)
-    return Instance(task, half_name, goal, parameters, held_out=number == len(task.templates) - 1)
+    return Instance(task, half_name, goal, parameters, held_out=number == last)
 
 
 def _choose(choices: Choices, pick: int, content: Mapping[str, tuple[str, ...]] | None) -> Parameter:

@@ -58,9 +58,10 @@ def train(steps: int, rounds: int, seed: int) -> list[dict[str, float]]:
         seed=seed,
     )  # fmt: skip
     began_s = time.monotonic()
-    curve = [{"steps": 0, "success": measured(model), "seconds": 0.0}]
-    for _ in range(rounds):
-        model.learn(steps // rounds, reset_num_timesteps=False)
+    curve: list[dict[str, float]] = []
+    for number in range(rounds + 1):
+        if number:
+            model.learn(steps // rounds, reset_num_timesteps=False)
         point = {"steps": model.num_timesteps, "success": measured(model), "seconds": time.monotonic() - began_s}
         curve.append(point)
         print(f"{point['steps']:7.0f} steps  {point['success']:4.0%}  {point['seconds']:5.0f} s", flush=True)

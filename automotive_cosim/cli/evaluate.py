@@ -56,6 +56,10 @@ def evaluate(
         int | None,
         typer.Option(help="Runs of each episode.", metavar="N", parser=whole_number(1, 1000), show_default="1"),
     ] = None,
+    held_out: Annotated[
+        bool,
+        typer.Option("--held-out", help="Only each task's last phrasing, which the rule stand-in is not made on."),
+    ] = False,
     workers: Annotated[int, typer.Option(help="Processes.", metavar="N", parser=whole_number(1, 256))] = 1,
     retries: Annotated[
         int,
@@ -80,6 +84,7 @@ def evaluate(
     from rich.console import Console
 
     from automotive_cosim.errors import UnknownNameError
+    from automotive_cosim.report.results import read_results, standings
     from automotive_cosim.run.batch import run_plan
     from automotive_cosim.run.collect import Pictures
     from automotive_cosim.run.plan import make_plan, read_plan
@@ -92,6 +97,7 @@ def evaluate(
     values |= {name: words(name, text) for name, text in named.items() if text is not None}
     values |= {"seeds": seeds_in(seeds)} if seeds is not None else {}
     values |= {"repeats": repeats} if repeats is not None else {}
+    values |= {"held_out": True} if held_out else {}
     plan = make_plan(values)
     folder = out or _folder(plan)
     console = Console(stderr=as_json, highlight=False)
@@ -116,6 +122,8 @@ def evaluate(
         typer.echo(json.dumps(told | {"ran": end.ran, "megabytes": size, "out": str(folder)}))
     else:
         console.print(f"{end.successes} of {end.judged} judged episodes succeeded; {end.errors} errors")
+        for line in standings(read_results(folder)):
+            console.print(f"  {line}", soft_wrap=True)
         for row in errors:
             console.print(f"  error in {row['id']}: {row['error_kind']}: {row['error']}", soft_wrap=True)
         console.print(
@@ -143,7 +151,9 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
     table.add_row("scenarios", ", ".join(sorted({job.scenario for job in jobs})))
     table.add_row("seeds", ", ".join(map(str, plan.seeds)))
     table.add_row("geo controls", ", ".join(plan.geo))
+    table.add_row("modes", ", ".join(plan.modes))
     table.add_row("repeats", str(plan.repeats))
+    table.add_row("phrasings", "held out" if plan.held_out else "any")
     limits = plan.limits
     table.add_row(
         "at most",

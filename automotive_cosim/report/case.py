@@ -53,7 +53,7 @@ def contrast(results: Results) -> tuple[Side, Side] | None:
 
 
 def _key(row: Json) -> tuple[object, ...]:
-    return row["agent"], row["model"], *instance(row)
+    return row["agent"], row["model"], row["mode"], *instance(row)
 
 
 def _has_trace(results: Results, row: Json) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -94,7 +95,7 @@ def place_effect(results: Results) -> Table:
     ranked = [each for each in results.contestants if each.agent not in NOT_RANKED]
     for full in ranked:
         for other in ranked:
-            if full.geo == "full" != other.geo and (full.agent, full.model) == (other.agent, other.model):
+            if full.geo == "full" != other.geo and replace(full, geo=other.geo) == other:
                 told = [_effect(results, full, other, decided) for decided in (True, False)]
                 if any(cell.episodes for cell in told):
                     rows.append((f"{full.method}, {full.base_model}", other.geo, *told))

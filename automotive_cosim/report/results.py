@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import SetupError
 from automotive_cosim.run.store import read_manifest, read_rows
+from automotive_cosim.suite import Mode
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -29,11 +30,12 @@ NESTED = {"parts": "part", "drive": "drive", "untouched_drive": "untouched_drive
 
 @dataclass(frozen=True, slots=True, order=True)
 class Contestant:
-    """What is compared: an agent on a model with an input of place."""
+    """What is compared: an agent on a model with an input of place, prompted or watching."""
 
     agent: str
     model: str
     geo: str
+    mode: str = str(Mode.PROMPTED)
 
     @property
     def base_model(self) -> str:
@@ -51,7 +53,8 @@ class Contestant:
         """All of it on one short line."""
         model = {"rules": "rules stand-in", "none": ""}.get(self.model, self.model)
         geo = "" if self.geo == "full" else f"geo {self.geo}"
-        return ", ".join(part for part in (self.method, model, geo) if part)
+        mode = "" if self.mode == Mode.PROMPTED else self.mode
+        return ", ".join(part for part in (self.method, model, geo, mode) if part)
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +78,32 @@ class Results:
 
 def contestant(row: Json) -> Contestant:
     """Whose episode it is."""
-    return Contestant(row["agent"], row["model"], row["geo"])
+    return Contestant(row["agent"], row["model"], row["geo"], row["mode"])
+
+
+def standings(results: Results) -> list[str]:
+    """A line for each contestant: what it won of what was judged, and what of that in held-out phrasings."""
+    return [f"{each.label}: {_won(results.of(each))}" for each in results.contestants]
+
+
+def _won(rows: Sequence[Json]) -> str:
+    held_out = [row for row in rows if row.get("held_out")]
+    told = _count(rows)
+    if 0 < len(held_out) < len(rows):
+        return f"{told}; of these in held-out phrasings {_count(held_out)}"
+    return f"{told}, all in held-out phrasings" if held_out else told
+
+
+def _count(rows: Sequence[Json]) -> str:
+    counts = []
+    for unit, outcomes in (
+        ("episodes", [row["success"] for row in rows]),
+        ("pairs", [pair["success"] for pair, _ in pairs(rows)]),
+    ):
+        judged = [outcome for outcome in outcomes if outcome is not None]
+        if outcomes:
+            counts.append(f"{sum(judged)} of {len(judged)} {unit}")
+    return ", ".join(counts)
 
 
 def read_results(folder: Path) -> Results:

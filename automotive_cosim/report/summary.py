@@ -13,7 +13,7 @@ from automotive_cosim.report.published import PAPER, PAPER_COLUMNS, PAPER_ROWS
 from automotive_cosim.report.results import Contestant, Results, instance, pairs
 from automotive_cosim.report.stats import Rate, compare, mean, pass_hat_k, rate
 from automotive_cosim.report.tables import Cell, Row, Table
-from automotive_cosim.suite import Dimension, Module
+from automotive_cosim.suite import Dimension, Mode, Module
 
 NONE = "–"
 DIMENSIONS = {
@@ -34,6 +34,7 @@ def tables(results: Results) -> list[Table]:
         main(results),
         published(),
         safety(results),
+        held_out(results),
         conduct(results),
         comparisons(results),
         by(results, "module", "Module", [str(module) for module in Module]),
@@ -100,6 +101,23 @@ def safety(results: Results) -> Table:
         "else is. False alarms: an alert in a second half where nothing was to be done; fewer are better. " + RATES
     )
     return Table("safety", "Pair success, the headline for safety", columns, tuple(rows), note)
+
+
+def held_out(results: Results) -> Table:
+    """The phrasings that the rule model was made on beside the held-out ones; empty where none was drawn."""
+    rows: list[Row] = []
+    for each in results.contestants if any(row.get("held_out") for row in results.rows) else ():
+        cells: list[Cell] = []
+        for wanted in (False, True):
+            mine = [row for row in results.of(each) if bool(row.get("held_out")) is wanted]
+            cells += [rate_cell(mine), _pair_cell(pairs(mine))]
+        rows.append((each.label, *cells))
+    columns = ("Contestant", "First phrasings", "Pairs", "Held-out phrasings", "Pairs, held out")
+    note = (
+        "The last phrasing of each task is held out: the rule stand-in's words are made from the others, so that "
+        f"its own figures are the held-out ones. Language models have seen neither. {RATES}"
+    )
+    return Table("held_out", "Held-out phrasings", columns, tuple(rows), note)
 
 
 def conduct(results: Results) -> Table:
@@ -262,6 +280,7 @@ def rate_in_words(found: Rate) -> str:
 def input_of(each: Contestant) -> str:
     """What the agent is given, in the paper's words."""
     control = "" if each.geo == "full" else f" (geo {each.geo})"
+    control += "" if each.mode == Mode.PROMPTED else f" ({each.mode})"
     profile = PROFILES.get(each.agent)
     if profile is None:
         return NONE + control

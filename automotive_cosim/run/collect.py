@@ -155,6 +155,7 @@ def failed(job: Job, kind: str, why: str) -> Json:
     """The line of an episode that the machinery could not bring to its end."""
     return planned(job) | {
         "success": None,
+        "held_out": job.setup.held_out,
         "reward": 0.0,
         "end": "error",
         "parts": None,

@@ -63,6 +63,8 @@ class EpisodeSetup:
     """When the agent is called (``suite.Mode``)."""
     without: tuple[str, ...] = ()
     """Parts of the agent that are switched off, for the record."""
+    held_out: bool = False
+    """Whether the driver is to use the task's held-out phrasing; else any is drawn."""
 
 
 class End(StrEnum):
@@ -206,6 +208,7 @@ def run_episode(
         to_place=setup.to_place,
         channels=agent.channels,
         geo=setup.geo,
+        held_out=setup.held_out,
         max_steps=setup.max_steps,
         render_mode="rgb_array",
         simulations=simulations,
@@ -346,6 +349,7 @@ class _Episode:
                 verdict=None,
                 timeline=(),
                 path=(),
+                held_out=setup.held_out,
             )
         judged = env.verdict
         moments = [*env.drive, *env.moments[1:], *self._after]

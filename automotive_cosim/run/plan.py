@@ -59,6 +59,8 @@ class Plan:
     """When the agent is called (``suite.Mode``); what is asked for outright is never monitored."""
     repeats: int = 1
     """Of each episode, for models that do not answer the same twice."""
+    held_out: bool = False
+    """Only the phrasing of each task that is held out from the rule model; else any is drawn."""
     limits: Limits = field(default_factory=Limits)
 
     def as_json(self) -> Json:
@@ -114,6 +116,7 @@ class Plan:
                     max_sim_s=self.limits.sim_s,
                     geo=geo,
                     mode=mode,
+                    held_out=self.held_out,
                 )
                 yield Job(setup, repeat, self.limits)
 
@@ -167,6 +170,8 @@ class Job:
         exactly = (
             setup.task, half, setup.agent, setup.model, setup.geo, f"s{setup.seed}", f"r{self.repeat}",
             setup.scenario or "own",
+            *([setup.mode] if setup.mode != Mode.PROMPTED else []),
+            *(["held_out"] if setup.held_out else []),
         )  # fmt: skip
         words = "-".join(re.sub(r"[^A-Za-z0-9_.]+", "_", Path(word).name) for word in exactly)
         return f"{words[:150]}-{hashlib.sha256(canonical(exactly)).hexdigest()[:8]}"
@@ -222,6 +227,9 @@ def make_plan(values: Mapping[str, Any]) -> Plan:
             raise UserError(f"{name} of the plan is empty; leave it out to take the default")
     if "repeats" in values:
         made["repeats"] = int(_positive("repeats", values["repeats"], whole=True))
+    if not isinstance(values.get("held_out", False), bool):
+        raise UserError(f"held_out of the plan is {values['held_out']!r}; give true or false")
+    made["held_out"] = values.get("held_out", False)
     limits = {
         name: _positive(name, value, whole=name in ("steps", "tokens"))
         for name, value in values.get("limits", {}).items()
@@ -229,7 +237,9 @@ def make_plan(values: Mapping[str, Any]) -> Plan:
     return Plan(**made, limits=Limits(**limits))
 
 
-_LISTS = {"agents": str, "tasks": str, "models": str, "scenarios": str, "seeds": int, "geo": str}
+_LISTS = {
+    "agents": str, "tasks": str, "models": str, "scenarios": str, "seeds": int, "geo": str, "modes": str,
+}  # fmt: skip
 
 
 def _list(name: str, value: object) -> tuple[Any, ...]:

@@ -64,6 +64,17 @@ def test_drawing_is_seeded_and_uses_every_phrasing(task):
     assert len(set(drawn)) >= len(task.templates)
 
 
+@pytest.mark.parametrize("task", TASKS, ids=lambda task: task.id)
+def test_the_held_out_phrasing_is_the_last_and_changes_nothing_else(task):
+    for seed in range(4):
+        drawn = draw(task, "first", np.random.default_rng(seed))
+        held_out = draw(task, "first", np.random.default_rng(seed), held_out=True)
+        assert held_out.held_out
+        assert held_out.parameters == drawn.parameters
+        assert held_out.goal == task.templates[-1].format_map(drawn.parameters)
+        assert drawn.held_out == (drawn.goal == held_out.goal)
+
+
 def test_unknown_names_suggest_the_nearest():
     with pytest.raises(UnknownNameError, match="road_speed_80_in_50"):
         CATALOGUE["road_sped_80_in_50"]

@@ -14,8 +14,8 @@ from automotive_cosim.cli import results as commands
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.evaluation import all_tables, write_report
 from automotive_cosim.report.findings import classes
-from automotive_cosim.report.results import load_results, pairs, read_results
-from automotive_cosim.report.summary import main, safety
+from automotive_cosim.report.results import Contestant, load_results, pairs, read_results, standings
+from automotive_cosim.report.summary import held_out, main, safety
 from automotive_cosim.report.tables import Cell, Table
 from automotive_cosim.run.collect import failed, planned
 from automotive_cosim.run.plan import make_plan
@@ -61,7 +61,7 @@ def folder(tmp_path_factory):
                 "min_time_to_collision_s": 4.0, "interaction_s": 2.0, "within_guideline": True, "tokens_in": 900,
                 "prompt_tokens": [400, 500], "drive": DRIVE, "untouched_drive": DRIVE,
                 "tokens_out": 40, "cost_usd": 0.0, "model_seconds": 0.0, "trace_sha256": "ab" * 32, "error": None,
-                "error_kind": None,
+                "error_kind": None, "held_out": job.setup.seed == 1,
             }  # fmt: skip
             store.append(row)
             verdict = {"parts": {name: {"ok": ok, "why": "because"} for name, ok in parts.items()}}
@@ -130,6 +130,25 @@ def test_the_main_table_has_the_papers_shape_and_says_what_rules_is(folder):
     assert set(map(str, rows["Human"][3:])) == {"not measured"}
     # Two tasks of explicit control, two seeds, two repeats; one task's second seed is an error.
     assert str(rows["t3a"][3]).endswith("6/6, 2 errors")
+
+
+def test_held_out_phrasings_stand_apart(folder):
+    found = read_results(folder)
+    rows = {
+        str(row[0]).split(",")[0]: [str(cell).split(", ", 1)[1] for cell in row[1:]] for row in held_out(found).rows
+    }
+    # Nine halves and three pairs a seed, two repeats; t3a has one episode in an error, whose phrasing is not known.
+    assert rows["asurada"] == ["18/18", "6/6", "18/18", "6/6"]
+    assert rows["t3a"] == ["12/18, 2 errors", "0/6", "10/16", "0/6"]
+    lines = standings(found)
+    assert "asurada, rules stand-in: 36 of 36 episodes, 12 of 12 pairs" in lines[0]
+    assert lines[0].endswith("; of these in held-out phrasings 18 of 18 episodes, 6 of 6 pairs")
+
+
+def test_a_watch_is_a_contestant_of_its_own():
+    watching = Contestant("t3a", "rules", "none", "monitoring")
+    assert watching != Contestant("t3a", "rules", "none")
+    assert watching.label == "t3a, rules stand-in, geo none, monitoring"
 
 
 def test_pairs_need_both_halves_and_alarms_are_counted(folder):

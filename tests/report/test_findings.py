@@ -13,7 +13,10 @@ from automotive_cosim.run.store import write_trace
 
 def row(task="t", half="first", geo="full", success=True, **changes):
     agent = changes.get("agent", "asurada")
-    named = {"task": task, "half": half, "geo": geo, "agent": agent, "model": "rules", "seed": 0, "repeat": 0}
+    named = {
+        "task": task, "half": half, "geo": geo, "agent": agent, "model": "rules", "mode": "prompted", "seed": 0,
+        "repeat": 0,
+    }  # fmt: skip
     return named | {
         "id": f"{task}-{half}-{agent}-{geo}", "pair": f"{task}-{agent}-{geo}", "scenario": "grid", "module": "road",
         "dimension": "driving_alignment", "success": success, "tags": [], "skills": [],

@@ -55,6 +55,18 @@ def test_ids_are_good_for_files_and_tell_everything_apart():
     assert [job.id for job in wide.jobs()] == [job.id for job in jobs]
 
 
+def test_modes_and_held_out_phrasings_reach_the_episodes():
+    both = plan(tasks=["road_speed_80_in_50", "hvac_fan_max"], modes=["prompted", "monitoring"], held_out=True)
+    jobs = both.jobs()
+    modes = [job.setup.mode for job in jobs if job.setup.task == "road_speed_80_in_50"]
+    assert sorted(modes) == ["monitoring", "monitoring", "prompted", "prompted"]
+    assert [job.setup.mode for job in jobs if job.setup.task == "hvac_fan_max"] == ["prompted"]
+    assert all(job.setup.held_out for job in jobs)
+    assert len({job.pair for job in jobs if job.pair}) == 2
+    assert make_plan(both.as_json()) == both
+    assert not {job.id for job in jobs} & {job.id for job in plan(tasks=["hvac_fan_max"]).jobs()}
+
+
 def test_episodes_of_one_simulation_stand_together():
     seen = []
     for job in plan(seeds=[0, 1, 2]).jobs():
@@ -83,6 +95,8 @@ def test_a_file_says_what_the_options_say(tmp_path):
         ({"seeds": []}, "seeds of the plan is empty"),
         ({"repeats": 0}, "above 0"),
         ({"repeats": 1.5}, "whole number"),
+        ({"modes": "monitoring"}, "give a list of names"),
+        ({"held_out": "yes"}, "give true or false"),
         ({"agent": ["oracle"]}, "did you mean 'agents'"),
         ({"limits": {"step": 3}}, "did you mean 'steps'"),
         ({"limits": {"sim_s": 0}}, "above 0"),
