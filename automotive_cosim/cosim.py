@@ -102,7 +102,7 @@ class CoSimulation:
         feedback = actions.perform(action, self.cockpit, elements)
         for request in self.cockpit.drain_requests():
             self.cockpit.answered(request, self.traffic.request(request))
-        return feedback
+        return self.cockpit.spoken(feedback)
 
     def advance(self, duration_s: float) -> tuple[Moment, ...]:
         """Lets time pass, in ticks; shorter than asked if the ego's drive ends.

@@ -20,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
-from automotive_cosim.cockpit import accessibility, desk, media, people, places, update, vhal
+from automotive_cosim.cockpit import accessibility, desk, language, media, people, places, update, vhal
 from automotive_cosim.cockpit.arrivals import Arrival, timeline
 from automotive_cosim.cockpit.cabin import CabinStart
 from automotive_cosim.cockpit.drawing import pixels_of
@@ -35,6 +35,7 @@ from automotive_cosim.cockpit.signals import (
     ADAS,
     BODY,
     ENERGY,
+    HMI,
     HVAC,
     LIGHTS,
     MOTION,
@@ -329,8 +330,13 @@ class Cockpit:
         wanted = APP_ALIASES.get(wanted, wanted)
         if wanted not in APPS:
             close = get_close_matches(wanted, APPS, n=1)
-            hint = f"did you mean {close[0]!r}?" if close else "there are " + ", ".join(APPS)
-            return Feedback(FeedbackCode.NO_SUCH_ELEMENT, f"no app is called {name[:40]!r}: {hint}")
+            missing = repr(name[:40])
+            return Feedback(
+                FeedbackCode.NO_SUCH_ELEMENT,
+                f"no app is called {missing}: did you mean {close[0]!r}?"
+                if close
+                else f"no app is called {missing}: there are {', '.join(APPS)}",
+            )
         if wanted in desk.TOOLS and wanted not in self._state.desk.installed:
             return Feedback(FeedbackCode.REFUSED, f"{wanted} is not installed; the store has it")
         self._tree = None
@@ -427,6 +433,10 @@ class Cockpit:
             "fm": tuple(entry.title for entry in entries["FM"]),
             "dab": tuple(entry.title for entry in entries["DAB"]),
         }
+
+    def spoken(self, feedback: Feedback) -> Feedback:
+        """An answer in the language of the screens."""
+        return language.answered(feedback, self.signals[HMI.LANGUAGE])
 
     def commands(self) -> dict[str, Any]:
         """All that can be commanded: actuators by path, app data, and what was sent out."""

@@ -1,8 +1,8 @@
-"""The screens in other languages: the finished widget tree, translated by one table per language.
+"""The cockpit in other languages: the finished widget tree, and its answers, translated by one table per language.
 
 Screens are written in English. A table (``languages/fr.toml`` and so on) gives a text for a text; one with ``{}``
 is a form, in which what varies is translated in turn: "Sent to {}: {}". What no table knows stays as it is: names
-of people, places and music, numbers and units, and what people wrote.
+of people, places and music, numbers and units, what people wrote, and resource ids and signals in an answer.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from importlib.resources import files
 from typing import Any, TypeVar
 
 from automotive_cosim.cockpit.widgets import Field, Row, Tile, Widget
+from automotive_cosim.contracts import Feedback
 
 W = TypeVar("W", bound=Widget)
 
@@ -42,32 +43,38 @@ class Table:
 
 
 @lru_cache
-def table(language: str) -> Table:
-    """The table of a language other than English."""
+def table(language: str, answers: bool = False) -> Table:
+    """The table of a language other than English; with or without what only answers say."""
     given: dict[str, dict[str, str]] = tomllib.loads(
         files("automotive_cosim.cockpit").joinpath("languages", f"{language}.toml").read_text("utf-8")
     )
-    forms = sorted((text for text in given["words"] if "{}" in text), key=_fixed, reverse=True)
+    texts = given["words"] | (given["answers"] if answers else {})
+    forms = sorted((text for text in texts if "{}" in text), key=_fixed, reverse=True)
     return Table(
-        {text: said for text, said in given["words"].items() if "{}" not in text},
+        {text: said for text, said in texts.items() if "{}" not in text},
         given["keys"],
-        tuple((_pattern(form), given["words"][form]) for form in forms),
+        tuple((_pattern(form), texts[form]) for form in forms),
     )
 
 
 @lru_cache(maxsize=16384)
-def said(language: str, text: str) -> str:
-    """A text of the screens in that language; as it is if no table knows it."""
+def said(language: str, text: str, answers: bool = False) -> str:
+    """A text of the screens, or of answers, in that language; as it is if no table knows it."""
     if not _WORD.search(text):
         return text
-    known = table(language)
+    known = table(language, answers)
     if text in known.words:
         return known.words[text]
     for pattern, form in known.forms:
         found = pattern.fullmatch(text)
         if found is not None:
-            return form.format(*(said(language, part) for part in found.groups()))
+            return form.format(*(said(language, part, answers) for part in found.groups()))
     return text
+
+
+def answered(feedback: Feedback, language: str) -> Feedback:
+    """What came of an action, told in that language."""
+    return feedback if language == ENGLISH else replace(feedback, text=said(language, feedback.text, answers=True))
 
 
 def translated(widget: W, language: str) -> W:

@@ -377,15 +377,15 @@ def _asked(state: State, request: RoadRequest) -> tuple[str, Icon]:
         case PullOver():
             return "Asked to pull over", Icon.PULL_OVER
         case Reroute(destination):
-            to = f" to {_place_name(state, destination)}" if destination else ""
-            return (f"Looking for a route{to}" if to else "Looking for a faster route"), Icon.ROUTE
+            name = _place_name(state, destination)
+            return (f"Looking for a route to {name}" if name else "Looking for a faster route"), Icon.ROUTE
         case Cruise(speed_kmh):
             return (
                 "Cruise control off" if speed_kmh is None else f"Cruise control at {speed_kmh:.0f} km/h",
                 Icon.CRUISE,
             )
         case Hazards(on):
-            return f"Hazard lights {'on' if on else 'off'}", Icon.HAZARD
+            return "Hazard lights on" if on else "Hazard lights off", Icon.HAZARD
         case Alert(kind):
             return ADVICE[kind], KINDS[kind][1]
 

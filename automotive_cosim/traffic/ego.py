@@ -221,7 +221,7 @@ class Driver:
             case Hazards(on):
                 self.hazard_lights = on
                 self.pedals.set_hazards(on)
-                return Answer(True, f"hazard lights {'on' if on else 'off'}")
+                return Answer(True, "hazard lights on" if on else "hazard lights off")
             case Reroute():
                 try:
                     return Answer(True, self.pedals.reroute(request, state))

@@ -165,7 +165,7 @@ class SumoPedals:
         self._sensor.refresh()
         length_km = (self._sensor.route.length_m - self._sensor.position_m) / 1000
         name = self._network.edges[edges[-1]].name
-        return f"new route of {length_km:.1f} km" + (f" to {name}" if name else "")
+        return f"new route of {length_km:.1f} km to {name}" if name else f"new route of {length_km:.1f} km"
 
     def _given(self, edge_ids: tuple[str, ...]) -> tuple[str, ...]:
         here, planned = self._fixed()
@@ -191,7 +191,11 @@ class SumoPedals:
             ways = [(route.travelTime, tuple(route.edges)) for route in routes if route.edges]
             if ways:
                 return (*planned[:-1], *min(ways)[1])
-        raise RefusedError(f"there is no way to {destination or 'the goal'} from here")
+        raise RefusedError(
+            f"there is no way to {destination} from here"
+            if destination
+            else "there is no way to the goal from here"
+        )
 
     def _beside(self, edge_id: str) -> tuple[str, ...]:
         """The edges that end next to where that edge ends; none if there is no such edge."""

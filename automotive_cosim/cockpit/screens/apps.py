@@ -70,7 +70,9 @@ def store(state: State) -> tuple[Widget, ...]:
             icon=icon,
             locked=locked,
             on_tap=Put(
-                "desk", state.desk.with_app(name, not there), f"{text} is {'removed' if there else 'installed'}"
+                "desk",
+                state.desk.with_app(name, not there),
+                f"{text} is removed" if there else f"{text} is installed",
             ),
         )
 

@@ -218,7 +218,7 @@ def playlist(state: State) -> tuple[Widget, ...]:
             on_tap=Put(
                 "listening",
                 state.listening.with_track(name, playing.uri, not inside),
-                f"{playing.title} is {'taken out of' if inside else 'added to'} {name}",
+                f"{playing.title} is taken out of {name}" if inside else f"{playing.title} is added to {name}",
             ),
             disabled="" if fits else "Only tracks go into a playlist",
         ),
@@ -317,7 +317,7 @@ def _now(rect: Rect, state: State) -> Widget:
                 Put(
                     "listening",
                     state.listening.with_favourite(entry.uri, not liked),
-                    f"{entry.title} is {'no longer' if liked else 'now'} liked",
+                    f"{entry.title} is no longer liked" if liked else f"{entry.title} is now liked",
                 ),
             ),
             Button(

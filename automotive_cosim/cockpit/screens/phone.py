@@ -432,7 +432,7 @@ def contact(state: State) -> tuple[Widget, ...]:
             on_tap=Put(
                 "phone",
                 state.phone.with_favourite(who, not favourite),
-                f"{who} is {'no longer' if favourite else 'now'} a favourite",
+                f"{who} is no longer a favourite" if favourite else f"{who} is now a favourite",
             ),
         ),
     )

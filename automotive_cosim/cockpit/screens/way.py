@@ -158,7 +158,7 @@ def _place_buttons(rect: Rect, name: str, known: Place | None, state: State) -> 
             on_tap=Put(
                 "navigation",
                 navigation.with_favourite(name, not saved),
-                f"{name} is {'no longer' if saved else 'now'} saved",
+                f"{name} is no longer saved" if saved else f"{name} is now saved",
             ),
         ),
         *extra,
@@ -279,7 +279,7 @@ def _options(rect: Rect, state: State) -> tuple[Widget, ...]:
                 on_tap=Put(
                     "navigation",
                     navigation.with_avoided(name, name not in navigation.avoid),
-                    f"{text} are {'welcome again' if name in navigation.avoid else 'avoided'}",
+                    f"{text} are welcome again" if name in navigation.avoid else f"{text} are avoided",
                 ),
             )
             for cell, (name, (text, icon)) in zip(cells, AVOIDABLE.items(), strict=True)
