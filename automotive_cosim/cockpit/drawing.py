@@ -89,6 +89,8 @@ class Canvas:
     ) -> None:
         """Text in a box, in the middle of its height; smaller if too long, over several lines if allowed.
 
+        What would have to be very small goes over as many lines as the box has room for first.
+
         Args:
             box: where it may lie.
             text: what.
@@ -99,8 +101,8 @@ class Canvas:
         """
         if not text:
             return
-        style, rows, cut = fit(text, style, box.width, lines)
-        pitch = round(style.size * 1.3)
+        style, rows, cut = fit(text, style, box.width, lines, box.height)
+        pitch = style.pitch
         top = box.y + (box.height - pitch * len(rows)) / 2
         for row, words in enumerate(rows):
             line = Rect(box.x, round(top + row * pitch), box.width, pitch)
@@ -155,18 +157,34 @@ def text_width(text: str, style: Type) -> float:
 
 
 @lru_cache(maxsize=4096)
-def fit(text: str, style: Type, width: int, lines: int) -> tuple[Type, tuple[str, ...], bool]:
-    """The largest style in which the text fits, its lines, and whether it had to be cut."""
+def fit(text: str, style: Type, width: int, lines: int, height: int = 0) -> tuple[Type, tuple[str, ...], bool]:
+    """The largest style in which the text fits, its lines, and whether it had to be cut.
+
+    Args:
+        text: what.
+        style: the largest one.
+        width: of the box.
+        lines: at most so many, as long as the text fits on them in some style.
+        height: of the box; before the finest style more lines are taken if it has room for them.
+    """
     text = " ".join(text.split())
-    while True:
-        rows = _wrap(text, style, width) if lines > 1 else [text]
-        if len(rows) <= lines and all(text_width(row, style) <= width for row in rows):
-            return style, tuple(rows), False
-        if style not in SMALLER:
-            break
-        style = SMALLER[style]
+    styles = [style]
+    while styles[-1] in SMALLER:
+        styles.append(SMALLER[styles[-1]])
+    tries = [(one, lines) for one in styles if one is not Type.FINE]
+    tries += [(one, height // one.pitch) for one in styles]
+    tries += [(styles[-1], lines)]
+    for one, most in tries:
+        rows = _wrap(text, one, width) if most > 1 else [text]
+        if len(rows) <= most and all(text_width(row, one) <= width for row in rows):
+            return one, tuple(rows), False
     kept = [*rows[: lines - 1], " ".join(rows[lines - 1 :])]
-    return style, tuple(_cut(row, style, width) for row in kept), True
+    return styles[-1], tuple(_cut(row, styles[-1], width) for row in kept), True
+
+
+def fits(text: str, style: Type, width: int) -> bool:
+    """Whether the text fits on one line in that style or a smaller one."""
+    return not fit(text, style, width, 1)[2]
 
 
 def _wrap(text: str, style: Type, width: int) -> list[str]:

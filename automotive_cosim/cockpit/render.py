@@ -8,7 +8,7 @@ from typing import Any
 from PIL import Image
 
 from automotive_cosim.cockpit.carview import car
-from automotive_cosim.cockpit.drawing import Canvas, text_width
+from automotive_cosim.cockpit.drawing import Canvas, fits, text_width
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.mapdraw import draw
 from automotive_cosim.cockpit.theme import (
@@ -310,19 +310,27 @@ def _row(canvas: Canvas, row: Row, palette: Palette) -> None:
         canvas.icon((right - 14, rect.centre[1]), Icon.LOCK, 24, ink)
         right -= 38
     words = Rect(left, rect.y, right - left, rect.height)
-    top = (rect.height - 52) // 2 if rect.height < 80 else 8
-    upper = Rect(words.x, rect.y + top, words.width, 26) if row.detail else words
+    wide = round(text_width(row.trail, Type.CAPTION)) + 2 if row.trail else 0
+    room = words.width - (wide + 12 if row.trail else 0)
+    tall, low = _shares(row, room, words.width) if rect.height < 80 else (26, 0)
+    top = (rect.height - tall - low - 2) // 2 if rect.height < 80 else 8
+    upper = Rect(words.x, rect.y + top, words.width, tall) if row.detail else words
     if row.trail:
-        wide = round(text_width(row.trail, Type.CAPTION)) + 2
         canvas.text(upper.right_part(wide), row.trail, Type.CAPTION, detail, "right")
-        upper = upper.left(upper.width - wide - 12)
-    canvas.text(upper, row.text, Type.LABEL, ink)
+    canvas.text(upper.left(room), row.text, Type.LABEL, ink)
     if not row.detail:
         return
     if rect.height < 80:
-        canvas.text(Rect(words.x, rect.y + top + 27, words.width, 24), row.detail, Type.CAPTION, detail)
+        canvas.text(Rect(words.x, rect.y + top + tall + 1, words.width, low), row.detail, Type.CAPTION, detail)
     else:
         canvas.text(words.below(36).top(rect.height - 36 - 6), row.detail, Type.CAPTION, detail, lines=2)
+
+
+def _shares(row: Row, room: int, width: int) -> tuple[int, int]:
+    """Height of a row's text and of its detail: the one that is too long for a line gets two."""
+    if not fits(row.text, Type.LABEL, room):
+        return 38, 20
+    return (26, 24) if fits(row.detail, Type.CAPTION, width) else (21, 37)
 
 
 def _rows(canvas: Canvas, rows: Rows, palette: Palette) -> None:

@@ -166,6 +166,11 @@ class Type(Enum):
         """The font's file."""
         return self.value[1]
 
+    @property
+    def pitch(self) -> int:
+        """From one line to the next."""
+        return round(self.size * 1.3)
+
 
 SMALLER = {
     Type.DISPLAY: Type.HEADLINE,

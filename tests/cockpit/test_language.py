@@ -108,7 +108,10 @@ def named(cockpit: Cockpit) -> frozenset[str]:
 
 
 NOTHING = frozenset[str]()
-IDENTIFIER = re.compile(r"\b(?:[A-Za-z0-9_]+(?:\.[A-Za-z0-9_]+)+|[A-Z]+(?:_[A-Z0-9]+)*)\b|^[a-z0-9]+(?= is (?:already )?shown)|(?<= is )\S+$|(?<= already )\S+$")
+IDENTIFIER = re.compile(
+    r"\b(?:[A-Za-z0-9_]+(?:\.[A-Za-z0-9_]+)+|[A-Z]+(?:_[A-Z0-9]+)*)\b"
+    r"|^[a-z0-9]+(?= is (?:already )?shown)|(?<= is )\S+$|(?<= already )\S+$"
+)
 """Resource ids and signals, their values, and screens' names."""
 
 
@@ -236,7 +239,8 @@ def test_every_answer_to_a_tap_is_in_the_tables(make: Make, around: Surroundings
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_an_answer_is_told_in_the_language_of_the_screens(make: Make, language: str) -> None:
     cockpit = make()
-    assert cockpit.spoken(cockpit.hazards(True)) == Feedback(FeedbackCode.OK, "Body.Lights.Hazard.IsSignaling is on")
+    expected = Feedback(FeedbackCode.OK, "Body.Lights.Hazard.IsSignaling is on")
+    assert cockpit.spoken(cockpit.hazards(True)) == expected
     cockpit.inject(HMI.LANGUAGE.path, language)
     for feedback in (cockpit.hazards(False), cockpit.home(), cockpit.back(), cockpit.emergency_call()):
         spoken = cockpit.spoken(feedback)

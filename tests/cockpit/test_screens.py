@@ -23,11 +23,13 @@ from automotive_cosim.cockpit.widgets import Rows, Screen, Slider
 from automotive_cosim.contracts import (
     Alert,
     AlertKind,
+    Answer,
     Connectivity,
     Direction,
     Element,
     FeedbackCode,
     GpsFix,
+    Reroute,
     RoadNetwork,
     Severity,
     Surroundings,
@@ -197,6 +199,40 @@ def test_no_text_is_cut_off_leaves_its_box_or_lies_over_another(screens: list[Co
             assert ink.box.inset(-1, -3).encloses(ink.rect), f"{cockpit.screen}: {ink}"
         for one, other in combinations(inks, 2):
             assert not one.rect.overlaps(other.rect), f"{cockpit.screen}: {one.text} over {other.text}"
+
+
+LONG = (
+    "Place du Maréchal-de-Lattre-de-Tassigny",
+    "Raststätte Gräfenhausen West, Parkplatz",
+    "Chemin de la Vieille Église de Saint-Barthélemy Est",
+    "Upper Saint Bartholomew's Square / Old Harbour Road",
+    "Avenue de la Porte-de-Saint-Cloud",
+    "Boulevard Périphérique Extérieur",
+)
+"""The longest street names of the shipped scenarios, and longer ones than any map at hand has (49 letters)."""
+
+
+@pytest.mark.parametrize("language", ["en", "de", "ja"])
+@pytest.mark.parametrize("parked", [False, True])
+def test_the_longest_street_names_are_not_cut(
+    network: RoadNetwork, around: Surroundings, walker: Any, language: str, parked: bool
+) -> None:
+    """On every screen, as the current road, the goal, a stop, a recent destination, the address of a place."""
+    known = list(dict.fromkeys(road.name for road in network.roads))
+    roads = tuple(replace(road, name=LONG[known.index(road.name) % len(LONG)]) for road in network.roads)
+    signals = _speaking(language) | ({"Vehicle.Powertrain.Transmission.Gear": "P"} if parked else {})
+    for here in LONG[2:4]:
+        home = Cockpit(replace(network, roads=roads), rng=np.random.default_rng(1), signals=signals)
+        speed_mps = 0.0 if parked else around.driving.speed_mps
+        driving = replace(around.driving, road=replace(around.driving.road, name=here), speed_mps=speed_mps)
+        home.sense(replace(around, driving=driving), 0.0)
+        for name in LONG:
+            home.answered(Reroute(name), Answer(True, f"new route of 12.3 km to {name}"))
+        home._state.navigation = replace(home._state.navigation, onward=LONG[2])
+        for view in walker(home):
+            for ink in render(view.cockpit.tree).inks:
+                assert not ink.cut, f"{view.name}: {ink.text}"
+                assert ink.box.inset(-1, -3).encloses(ink.rect), f"{view.name}: {ink}"
 
 
 def test_every_text_on_the_picture_is_in_the_list(screens: list[Cockpit]) -> None:
