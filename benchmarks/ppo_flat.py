@@ -54,7 +54,7 @@ def train(steps: int, rounds: int, seed: int) -> list[dict[str, float]]:
         lambda: FlatEnv(TASKS, CLIMATE, APPS, scenario="grid", goal_bonus=0.5), n_envs=WORKERS, seed=0
     )
     model = PPO(
-        "MlpPolicy", envs, n_steps=256, batch_size=256, n_epochs=8, learning_rate=1e-3, gamma=0.95, ent_coef=0.02,
+        "MlpPolicy", envs, n_steps=64, batch_size=64, n_epochs=8, learning_rate=1e-3, gamma=0.95, ent_coef=0.02,
         seed=seed,
     )  # fmt: skip
     began_s = time.monotonic()

@@ -6,8 +6,11 @@ import json
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import inf
 
 KM_PER_MILE = 1.609344
+HEAVY_RAIN_MMH = 7.6
+"""Heavy rain by the AMS Glossary of Meteorology (over 0.30 inch an hour)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,9 +97,65 @@ class Page:
         return next((found for line in self.context if (found := re.match(pattern, line))), None)
 
     def limit_kmh(self) -> float | None:
-        """The speed limit that the context states, whatever its unit; None without one."""
-        found = self.says(r"Speed limit here: (\d+(?:\.\d+)?) (km/h|mph)")
-        return float(found[1]) * (KM_PER_MILE if found[2] == "mph" else 1.0) if found else None
+        """The speed limit that holds by what the context states: the posted one, else the first by default, less
+        what this weather takes away. None without one."""
+        amount = r"(\d+(?:\.\d+)?) (km/h|mph)\b(.*)"
+        first = self.says(f"Speed limit here: {amount}") or self.says(f"Default limit: (?:none\\b|{amount})")
+        stated = [first] if first and first[1] else []
+        reduced = [found for line in self.context if (found := re.match(f"Reduced limit: {amount}", line))]
+        stated += [found for found in reduced if self._weather_is(found[3], unless_named=False)]
+        return min(
+            (float(found[1]) * (KM_PER_MILE if found[2] == "mph" else 1.0) for found in stated), default=None
+        )
+
+    def visibility_m(self) -> float:
+        """How far one sees, as the weather's line says; far without one."""
+        found = self.says(r"Weather: .*visibility (\d+) m")
+        return float(found[1]) if found else inf
+
+    def sky(self) -> frozenset[str]:
+        """What falls or hangs in the air, in the words that rules use."""
+        found = self.says(r"Weather: ([^,]+)(?:.* (\d+\.\d) mm/h)?")
+        if found is None:
+            return frozenset()
+        words, amount_mmh = found[1], float(found[2] or 0.0)
+        kinds = {kind for kind in ("fog", "snow", "rain", "drizzle", "dust") if kind in words}
+        kinds |= {"rain"} if "drizzle" in kinds else set()
+        kinds |= {"precipitation"} if kinds & {"rain", "snow"} else set()
+        heavy = "heavy" in words or amount_mmh >= HEAVY_RAIN_MMH
+        kinds |= {f"heavy {kind}" for kind in kinds} if heavy else set()
+        kinds |= {"hazardous weather"} if heavy or "fog" in kinds else set()
+        return frozenset(kinds)
+
+    def allows_now(self, lamps: str) -> bool | None:
+        """Whether the rule of that name, e.g. ``Rear fog lamp``, allows or wants them in this weather; None if none
+        is stated."""
+        rule = self.says(f"{lamps}: ([^;(]*)")
+        if rule is None:
+            return None
+        return self._weather_is(re.split(r", (?:not|instead)\b", rule[1])[0], unless_named=True)
+
+    def forbids_high_beam(self) -> bool:
+        """Whether what is said of high beam rules it out on this road under this sky; False if nothing is said."""
+        rule = self.says(r"High beam: ([^(]*)")
+        road = self.says(r"Road: (.*)")
+        if rule is None or road is None:
+            return False
+        told = {part.strip() for part in road[1].split(",")}
+        is_lit = "lit" in told and re.search(r"\blit\b|unlit|lighting", rule[1]) is not None
+        is_town = "built-up" in told and "built-up" in rule[1]
+        return is_lit or is_town or any(kind in rule[1] for kind in self.sky() & {"fog", "snow", "heavy rain"})
+
+    def _weather_is(self, rule: str, *, unless_named: bool) -> bool:
+        """Whether the weather is such as a rule names; ``unless_named`` for one that names none."""
+        named = re.search(r"(?:visibility|generally) under (\d+) m", rule)
+        if named and self.visibility_m() >= float(named[1]):
+            return False
+        kinds = set(re.findall(r"heavy (?:rain|snow|precipitation)|hazardous weather|fog|snow|rain|dust", rule))
+        kinds |= {"precipitation"} if "other precipitation" in rule else set()
+        if not kinds:
+            return bool(named) or unless_named
+        return bool(kinds & self.sky())
 
 
 def _line(text: str) -> Line | None:

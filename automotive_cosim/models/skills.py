@@ -109,6 +109,36 @@ def _watch_speed(page: Page) -> Decision:
     return Decline("not_needed", "already_so", f"{speed:.0f} km/h is within the limit of {limit:.0f}.")
 
 
+def _tell_limit(page: Page) -> Decision:
+    limit = page.limit_kmh()
+    if limit is None:
+        return Decline("not_needed", "none", "There is no limit that I could name.")
+    return Way(f"The limit is {limit:.0f} km/h.", (call("show_alert", kind="speed", speed_kmh=round(limit, 1)),))
+
+
+def _high_beam(page: Page) -> Decision:
+    if page.forbids_high_beam():
+        return Decline("infeasible", "law", "High beam is not allowed on a road like this.")
+    return in_app("vehicle", "lights.high_beam", because="Nothing speaks against high beam here.")
+
+
+def _fog_lamp(rule: str, switch: str) -> Callable[[Page], Decision]:
+    def decide(page: Page) -> Decision:
+        if page.allows_now(rule) is False:
+            return Decline("infeasible", "law", f"{rule}: not allowed in this weather here.")
+        return in_app("vehicle", switch, because=f"{rule}: allowed here.")
+
+    return decide
+
+
+def _rear_fog_left_on(page: Page) -> Decision:
+    if page.is_on("is_rear_fog_on") and page.allows_now("Rear fog lamp") is False:
+        return in_app(
+            "vehicle", "lights.rear_fog", because="The rear fog lamp is not allowed in this weather here."
+        )
+    return Decline("not_needed", "already_so", "The rear fog lamp may stay as it is.")
+
+
 def _windshield(page: Page) -> Decision:
     outside, inside = page.number("ambient_temperature_c"), page.number("cabin_temperature_c")
     if outside is not None and inside is not None and outside > inside:
@@ -124,10 +154,70 @@ def _rear_window(page: Page) -> Decision:
 
 # --- the table ----------------------------------------------------------------------------------------------
 
+_REAR_FOG = r"(rear fogs?\b|fog light at the back|red fog lamp)"
+_FRONT_FOG = r"(front fogs?\b|fog lights at the front)"
+_HIGH_BEAM = r"((high|full|main) (beam|lights)|far lights|high lights|full headlights|\bbrights\b)"
+
 SKILLS: tuple[Skill, ...] = (
-    Skill((r"how i.m driving", r"my driving", r"my speed", r"too fast", r"how fast"), _watch_speed),
-    Skill((r"rear|back window|behind|out of the back",), _rear_window),
-    Skill((r"windshield|windscreen|front window|fogg?", r"steamed up"), _windshield),
+    Skill(
+        (
+            rf"(still burning|leave|keep|put it out|flashed).*{_REAR_FOG}",
+            rf"{_REAR_FOG}.*(still burning|put it out)",
+        ),
+        _rear_fog_left_on,
+    ),
+    Skill((_REAR_FOG,), _fog_lamp("Rear fog lamp", "lights.rear_fog")),
+    Skill((_FRONT_FOG,), _fog_lamp("Front fog lamps", "lights.front_fog")),
+    Skill((_HIGH_BEAM,), _high_beam),
+    Skill(
+        (
+            r"\b(figures?|number|maximum|top speed|which speed|legal speed|real figure|right one)\b",
+            r"limit, now",
+            r"(the|give .*) limits?\b(?! disagrees)",
+            r"give me one",
+            r"\bpost(ed|s)\b",
+            r"\bsign says\b",
+            r"read me mine",
+            r"speed (for here|they want)",
+            r"what.s allowed between",
+            r"how fast (in|one|is|i should)\b",
+        ),
+        _tell_limit,
+    ),
+    Skill(
+        (
+            r"how i.m driving",
+            r"my driving",
+            r"my speed",
+            r"too (fast|quick)",
+            r"how fast",
+            r"\bpace\b",
+            r"within the rules",
+            r"what i.m allowed",
+            r"\bobject\b",
+            r"illegal",
+            r"complain",
+            r"anything against",
+            r"grumble|bark if|pipe up|shout if it",
+            r"not allowed",
+            r"i.m not over",
+            r"ease off",
+            r"breaking a",
+            r"i.m breaking",
+            r"cost me speed",
+            r"law think",
+            r"slow(er)? (for|than this)",
+            r"check what goes",
+            r"still fine like this",
+            r"new rule",
+            r"changed for",
+            r"permitted",
+            r"different limits",
+        ),
+        _watch_speed,
+    ),
+    Skill((r"rear (glass|window)|back window|behind me|out of the back",), _rear_window),
+    Skill((r"windshield|windscreen|front window|fogg(y|ed|ing)", r"steamed.up"), _windshield),
     Skill(
         (r"\bfan\b", r"\bblower\b"),
         in_app("climate", "hvac.fan.max", because="The fan belongs to the climate screen."),

@@ -10,6 +10,7 @@ from automotive_cosim.agents.answer import labelled, read
 from automotive_cosim.models import Message, Rules
 from automotive_cosim.models.page import Page
 from automotive_cosim.models.skills import SKILLS, Way, call, in_app, opened, say, slide, tap, typed
+from automotive_cosim.suite import draw
 from automotive_cosim.tasks import CATALOGUE
 
 
@@ -145,16 +146,115 @@ def test_random_prompts_never_break_it():
 
 def test_no_skill_hides_behind_another():
     """Each skill is reached by some phrasing that the table was made on."""
-    reached = set()
-    for task in CATALOGUE.values():
-        for template in task.templates:
-            goal = template.lower()
-            reached |= {
-                next(
-                    (n for n, skill in enumerate(SKILLS) if any(re.search(word, goal) for word in skill.words)), -1
-                )
-            }
-    assert set(range(len(SKILLS))) <= reached
+    assert set(range(len(SKILLS))) <= {skill_of(goal) for task in CATALOGUE.values() for goal in first_goals(task)}
+
+
+def skill_of(goal: str) -> int:
+    """Place in the table of the skill that a wish reaches; -1 without one."""
+    found = (n for n, skill in enumerate(SKILLS) if any(re.search(word, goal.lower()) for word in skill.words))
+    return next(found, -1)
+
+
+def first_goals(task) -> set[str]:
+    """What the table was made on: every phrasing but the held-out one, its parameters filled in."""
+    drawn = (draw(task, "first", np.random.default_rng(seed)) for seed in range(40))
+    return {instance.goal for instance in drawn if not instance.held_out}
+
+
+RAIN = "Weather: heavy rain, 12 °C, humidity 95 %, 8.0 mm/h, visibility 3000 m (good), wind 12 km/h"
+DRIZZLE = "Weather: light drizzle, 12 °C, humidity 95 %, 0.2 mm/h, visibility 9000 m (good), wind 12 km/h"
+DRY = "Weather: clear sky, 12 °C, humidity 50 %, visibility 20000 m (good), wind 12 km/h"
+FOG = "Weather: fog, 4 °C, humidity 99 %, visibility 120 m (fog), wind 2 km/h"
+THICK = FOG.replace("120 m", "40 m")
+SNOW = "Weather: light snow, -2 °C, humidity 90 %, 0.5 mm/h, visibility 2000 m (good), wind 12 km/h"
+FRANCE = (
+    "Default limit: 130 km/h on motorways (FR x)\n"
+    "Reduced limit: 110 km/h on motorways in rain or other precipitation (FR x)"
+)
+BELOW_50_M = "Speed limit here: 80 km/h (posted)\nReduced limit: 50 km/h with visibility under 50 m (FR x)"
+LIT = "Road: x, lit\nHigh beam: not where lit (SE x)"
+
+
+@pytest.mark.parametrize(
+    ("context", "limit_kmh"),
+    [
+        ("Speed limit here: not posted; the map assumes 31 mph\nDefault limit: 20 mph in town (GB x)", 32.2),
+        ("Speed limit here: 80 km/h (posted on x)\nDefault limit: 100 km/h outside (DE x)", 80),
+        (
+            "Speed limit here: not posted\nDefault limit: none on motorways (DE x)\nDefault limit: 50 km/h (DE x)",
+            None,
+        ),
+        (f"Speed limit here: not posted\n{FRANCE}\n{DRY}", 130),
+        (f"Speed limit here: not posted\n{FRANCE}\n{DRIZZLE}", 110),
+        (
+            f"{BELOW_50_M}\n{FOG}",
+            80,
+        ),
+        (
+            f"{BELOW_50_M}\n{THICK}",
+            50,
+        ),
+        (f"Speed limit here: 80 km/h (posted)\nReduced limit: 60 km/h for novice drivers (FR x)\n{THICK}", 80),
+        ("Default limit: unknown", None),
+        ("", None),
+    ],
+)
+def test_it_reads_the_limit_that_holds(context, limit_kmh):
+    found = Page.read(prompt("x", context=context)).limit_kmh()
+    assert found == (None if limit_kmh is None else pytest.approx(limit_kmh, abs=0.05))
+
+
+@pytest.mark.parametrize(
+    ("rule", "weather", "allowed"),
+    [
+        ("allowed in fog with visibility under 50 m, not otherwise (DE x)", FOG, False),
+        ("allowed in fog with visibility under 50 m, not otherwise (DE x)", THICK, True),
+        ("allowed in fog or snow, not in rain; no visibility is named (FR x)", RAIN, False),
+        ("allowed in fog or snow, not in rain; no visibility is named (FR x)", SNOW, True),
+        ("allowed in fog or heavy precipitation, instead of dipped beam (SE x)", SNOW, False),
+        ("allowed in fog or heavy precipitation, instead of dipped beam (SE x)", RAIN, True),
+        ("allowed where visibility is seriously reduced, generally under 100 m (GB x)", FOG, False),
+        ("in reduced sight (NO x)", FOG, True),
+    ],
+)
+def test_it_reads_what_fog_lamps_are_for(rule, weather, allowed):
+    page = Page.read(prompt("x", context=f"Rear fog lamp: {rule}\n{weather}"))
+    assert page.allows_now("Rear fog lamp") is allowed
+    assert page.allows_now("Front fog lamps") is None
+
+
+@pytest.mark.parametrize(
+    ("rule", "road", "weather", "forbidden"),
+    [
+        ("not where lit, for oncoming traffic (SE x)", "E10, trunk, 1 lane, built-up, lit", DRY, True),
+        ("not where lit, for oncoming traffic (SE x)", "E10, trunk, 1 lane, built-up, unlit", SNOW, False),
+        ("avoided in built-up areas (CH x)", "E10, trunk, 1 lane, outside built-up areas, lit", DRY, False),
+        ("avoided in built-up areas (CH x)", "E10, trunk, 1 lane, built-up, unlit", DRY, True),
+        ("dipped in fog, snow or heavy rain (FR x)", "E10, trunk, 1 lane, unlit", SNOW, True),
+        ("dipped in fog, snow or heavy rain (FR x)", "E10, trunk, 1 lane, unlit", DRIZZLE, False),
+    ],
+)
+def test_it_reads_when_high_beam_is_out_of_place(rule, road, weather, forbidden):
+    context = f"Road: {road}\nHigh beam: {rule}\n{weather}"
+    assert Page.read(prompt("x", context=context)).forbids_high_beam() is forbidden
+
+
+@pytest.mark.parametrize(
+    ("goal", "one", "other"),
+    [
+        ("Is my driving all right?", "Speed limit here: 50 km/h (posted)", "Speed limit here: 80 km/h (posted)"),
+        ("High beam, please.", LIT, LIT.replace(", lit", ", unlit")),
+        ("Rear fog lamp!", f"Rear fog lamp: allowed in fog or snow (FR x)\n{FOG}",
+         f"Rear fog lamp: allowed in fog with visibility under 50 m (DE x)\n{FOG}"),
+        ("What's posted?", "Speed limit here: 20 mph (posted)", "Speed limit here: 30 mph (posted)"),
+    ],
+)  # fmt: skip
+def test_another_context_is_another_act(goal, one, other):
+    acts = {
+        ask(prompt(goal, car="speed_kmh: 80", context=context))[1].text.partition("Action")[2]
+        for context in (one, other)
+    }
+    assert len(acts) == 2
 
 
 def test_a_way_through_an_app_opens_it_first():
