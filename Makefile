@@ -10,7 +10,7 @@ run: $(VENV)/.run
 	$(BIN)/automotive-cosim run
 
 test: $(VENV)/.dev
-	$(BIN)/python -m pytest -n auto
+	$(BIN)/python -m pytest -n auto --dist worksteal
 
 check: $(VENV)/.dev
 	$(BIN)/ruff check .

@@ -225,7 +225,7 @@ class _Watchdog:
 
     def _watch(self) -> None:
         while (left_s := self._until_s - time.monotonic()) > 0:
-            if self._is_over.wait(left_s):
+            if self._is_over.wait(min(left_s, SILENCE_LIMIT_S)):  # its end comes nearer once SUMO has loaded
                 return
         self._has_bitten = True
         self._process.kill()

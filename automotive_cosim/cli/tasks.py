@@ -12,11 +12,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from automotive_cosim.cli.options import TasksFrom
+from automotive_cosim.cli.options import TasksFrom, whole_number
 
 if TYPE_CHECKING:
     from automotive_cosim.parameters import Choices
     from automotive_cosim.suite import Half, Task
+
+PICTURES = (".webp", ".png", ".jpg")
+PICTURE_WIDTH = 640
 
 app = typer.Typer(help="The tasks there are.", no_args_is_help=True)
 
@@ -83,10 +86,22 @@ def export(
 
 @app.command()
 def show(
-    task: Annotated[str, typer.Argument(help="Its id.", show_default=False)], tasks_from: TasksFrom = None
+    task: Annotated[str, typer.Argument(help="Its id.", show_default=False)],
+    tasks_from: TasksFrom = None,
+    picture: Annotated[
+        Path | None,
+        typer.Option(
+            help="Also draw what the expert does, screen by screen, to a .webp, .png or .jpg.", show_default=False
+        ),
+    ] = None,
+    seed: Annotated[int, typer.Option(help="Of the picture.", metavar="N", parser=whole_number(0, 10**6))] = 0,
 ) -> None:
     """What a task says, when it starts, and what is right in it."""
+    from automotive_cosim.errors import UserError
     from automotive_cosim.tasks import CATALOGUE
+
+    if picture is not None and picture.suffix not in PICTURES:
+        raise UserError(f"{picture} is no picture that can be written; name it {', '.join(PICTURES)}")
 
     entry = CATALOGUE[task]
     typer.echo(f"{entry.id}  ({entry.module}, {entry.dimension}, {entry.difficulty}, {entry.optimal_steps} steps)")
@@ -104,6 +119,15 @@ def show(
             typer.echo(f"  {line}")
     if entry.difference:
         typer.echo(f"\ndifference: {entry.difference}")
+    if picture is not None:
+        from automotive_cosim.report.storyboard import picture_of
+
+        drawn = picture_of(entry, tuple(entry.halves), seed, PICTURE_WIDTH)
+        try:
+            drawn.save(picture, quality=85)
+        except OSError as error:
+            raise UserError(f"cannot write {picture}: {error.strerror}") from error
+        typer.echo(f"\n{picture} shows what the expert does, with seed {seed}")
 
 
 def _choices(choices: Choices) -> str:

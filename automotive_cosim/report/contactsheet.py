@@ -1,8 +1,8 @@
-"""All screens of a cockpit on one sheet, by day and by night."""
+"""Screens of a cockpit on one sheet: all of them by day and by night, or those of an episode."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import product
 
 from PIL import Image
@@ -16,6 +16,9 @@ from automotive_cosim.cockpit.theme import DAY, SCREEN_HEIGHT, SCREEN_WIDTH, Typ
 
 COLUMNS, CAPTION_HEIGHT, GAP = 6, 22, 10
 
+Tile = tuple[str, Image.Image | None]
+"""A caption and a screen; None leaves the place empty."""
+
 
 def contact_sheet(cockpit: Cockpit, width: int = 400) -> Image.Image:
     """The sheet, six screens a row, each by day and beside it by night.
@@ -24,14 +27,26 @@ def contact_sheet(cockpit: Cockpit, width: int = 400) -> Image.Image:
         cockpit: is left as it is.
         width: of each screen in pixels.
     """
+    return sheet(tuple(pictures(cockpit)), COLUMNS, width)
+
+
+def sheet(tiles: Sequence[Tile], columns: int, width: int = 400) -> Image.Image:
+    """Screens with a caption above each, row by row.
+
+    Args:
+        tiles: captions and screens.
+        columns: tiles a row.
+        width: of each screen in pixels.
+    """
     size = width, round(width * SCREEN_HEIGHT / SCREEN_WIDTH)
     step_x, step_y = width + GAP, size[1] + CAPTION_HEIGHT + GAP
-    lines = -(-2 * len(SCREENS) // COLUMNS)
-    canvas = Canvas.plain(COLUMNS * step_x + GAP, lines * step_y + GAP, 1.0, DAY.background)
-    for at, (name, picture) in enumerate(pictures(cockpit)):
-        left, top = GAP + at % COLUMNS * step_x, GAP + at // COLUMNS * step_y
+    lines = -(-len(tiles) // columns)
+    canvas = Canvas.plain(columns * step_x + GAP, lines * step_y + GAP, 1.0, DAY.background)
+    for at, (name, picture) in enumerate(tiles):
+        left, top = GAP + at % columns * step_x, GAP + at // columns * step_y
         canvas.text(Rect(left, top, width, CAPTION_HEIGHT), name, Type.SMALL, DAY.text)
-        canvas.image.paste(picture.resize(size, Image.Resampling.LANCZOS), (left, top + CAPTION_HEIGHT))
+        if picture is not None:
+            canvas.image.paste(picture.resize(size, Image.Resampling.LANCZOS), (left, top + CAPTION_HEIGHT))
     return canvas.image
 
 

@@ -2,6 +2,7 @@ import subprocess
 import sys
 
 import pytest
+from PIL import Image
 
 from automotive_cosim import __version__
 from automotive_cosim.agents import AGENTS
@@ -61,6 +62,22 @@ def test_a_task_is_shown_with_its_words_and_halves(cli, task):
     text = cli("tasks", "show", task).out
     assert all(words in text for words in CATALOGUE[task].templates)
     assert all(f"{half} half" in text for half in CATALOGUE[task].halves)
+
+
+@pytest.mark.parametrize("task", ["hvac_fan_max", "road_over_the_line"])
+def test_a_picture_shows_what_the_expert_does(cli, tmp_path, task):
+    path = tmp_path / "task.png"
+    assert f"{path} shows what the expert does" in cli("tasks", "show", task, "--picture", str(path)).out
+    with Image.open(path) as picture:
+        lines = sum(-(-(len(CATALOGUE[task].half(half).moves) + 2) // 3) for half in CATALOGUE[task].halves)
+        assert picture.width > 3 * 640
+        assert picture.height >= lines * 360
+
+
+def test_a_picture_that_cannot_be_written_is_refused_at_once(cli, tmp_path):
+    ran = cli("tasks", "show", "hvac_fan_max", "--picture", str(tmp_path / "task.txt"))
+    assert (ran.code, ran.out) == (2, "")
+    assert "name it .webp, .png, .jpg" in ran.err
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,58 @@
+"""An episode on one sheet: what the screen shows at the hand-over and after every action."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from PIL import Image
+
+from automotive_cosim.agents import make_agent
+from automotive_cosim.env import CockpitEnv
+from automotive_cosim.errors import InfrastructureError
+from automotive_cosim.report.contactsheet import Tile, sheet
+from automotive_cosim.run.episode import EpisodeSetup, Shot, Watcher, run_episode
+from automotive_cosim.run.words import action_in_words
+from automotive_cosim.suite import Task
+from automotive_cosim.traffic.fork import Simulations
+
+COLUMNS = 3
+
+
+class Storyboard(Watcher):
+    """Collects the screens of an episode with what was done."""
+
+    def __init__(self, title: str) -> None:
+        """``title`` stands above the first screen."""
+        self.tiles: list[Tile] = []
+        self._title = title
+
+    def handed_over(self, env: CockpitEnv, shot: Shot) -> None:
+        """The screen as the agent finds it."""
+        self.tiles.append((f"{self._title}: “{env.instance.goal}”", Image.fromarray(shot.screenshot)))
+
+    def stepped(self, shot: Shot) -> None:
+        """The screen after an action."""
+        done = f"{shot.step.number}  {action_in_words(shot.step.action, shot.seen)}"
+        self.tiles.append((done, Image.fromarray(shot.screenshot)))
+
+
+def picture_of(task: Task, halves: Sequence[str], seed: int, width: int) -> Image.Image:
+    """What the expert does in a task, screen by screen, each half from a row of its own.
+
+    Raises:
+        InfrastructureError: the road side failed, or the trigger did not come.
+    """
+    tiles: list[Tile] = []
+    simulations = Simulations()
+    try:
+        for half in halves:
+            board = Storyboard(f"{half} half")
+            setup = EpisodeSetup(task=task.id, half=half, agent="oracle", model="none", seed=seed)
+            result = run_episode(setup, make_agent("oracle"), (board,), simulations=simulations)
+            if result.error:
+                raise InfrastructureError(result.error)
+            tiles += board.tiles
+            tiles += [("", None)] * (-len(tiles) % COLUMNS)
+    finally:
+        simulations.close()
+    return sheet(tiles, COLUMNS, width)
