@@ -2,15 +2,72 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
 
-from automotive_cosim.errors import UserError
+import typer
+
+from automotive_cosim.cli.options import whole_number
+from automotive_cosim.errors import UnknownNameError, UserError
 
 if TYPE_CHECKING:
     from rich.console import Console
 
     from automotive_cosim.run.batch import Progress
+    from automotive_cosim.run.executor import Executor
+
+EXECUTORS = ("processes", "ray")
+
+Workers = Annotated[
+    int | None,
+    typer.Option(
+        help="How many at a time.",
+        metavar="N",
+        parser=whole_number(1, 4096),
+        show_default="1; with ray the CPUs of the cluster",
+    ),
+]
+ExecutorName = Annotated[
+    str, typer.Option("--executor", help="Where the work is done: processes of this machine, or ray for a cluster.")
+]
+RayAddress = Annotated[
+    str | None,
+    typer.Option(
+        help="A running Ray cluster, as in 10.0.0.4:6379.", show_default="RAY_ADDRESS, else one of its own here"
+    ),
+]
+RaySend = Annotated[
+    Path | None,
+    typer.Option(
+        help="A folder of your own agents, tasks or scenarios that every node gets a copy of, to run in it.",
+        metavar="FOLDER",
+        show_default=False,
+    ),
+]
+
+
+def executor_of(name: str, workers: int | None, ray_address: str | None, ray_send: Path | None) -> Executor:
+    """What the options above ask for.
+
+    Raises:
+        UnknownNameError: there is no such executor.
+        UserError: an option of the other one is given.
+        SetupError: ray is not installed.
+    """
+    from automotive_cosim.run.processes import Processes
+
+    if name not in EXECUTORS:
+        raise UnknownNameError("executor", name, EXECUTORS)
+    if name == "ray":
+        from automotive_cosim.run.on_ray import OnRay
+
+        return OnRay(ray_address or os.environ.get("RAY_ADDRESS"), workers, ray_send)
+    for option, value in (("--ray-address", ray_address), ("--ray-send", ray_send)):
+        if value is not None:
+            raise UserError(f"{option} is for --executor ray; give both or neither")
+    return Processes(workers or 1)
 
 
 class View:

@@ -9,7 +9,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from automotive_cosim.cli.batches import View, seeds_in, time_left, words
+from automotive_cosim.cli.batches import (
+    ExecutorName,
+    RayAddress,
+    RaySend,
+    View,
+    Workers,
+    executor_of,
+    seeds_in,
+    time_left,
+    words,
+)
 from automotive_cosim.cli.options import TasksFrom, whole_number
 from automotive_cosim.errors import InfrastructureError
 
@@ -60,7 +70,10 @@ def evaluate(
         bool,
         typer.Option("--held-out", help="Only each task's last phrasing, which the rule stand-in is not made on."),
     ] = False,
-    workers: Annotated[int, typer.Option(help="Processes.", metavar="N", parser=whole_number(1, 256))] = 1,
+    workers: Workers = None,
+    executor: ExecutorName = "processes",
+    ray_address: RayAddress = None,
+    ray_send: RaySend = None,
     retries: Annotated[
         int,
         typer.Option(
@@ -100,16 +113,17 @@ def evaluate(
     values |= {"held_out": True} if held_out else {}
     plan = make_plan(values)
     folder = out or _folder(plan)
+    where = executor_of(executor, workers, ray_address, ray_send)
     console = Console(stderr=as_json, highlight=False)
     plan.check()
     jobs = plan.jobs()
     _announce(console, plan, folder)
     if dry_run:
         return
-    with View(console, "episodes", _said) as view:
+    with where, View(console, "episodes", _said) as view:
         try:
             end = run_plan(
-                plan, folder, workers=workers, retries=retries, pictures=Pictures(pictures), tell=view.tell
+                plan, folder, executor=where, retries=retries, pictures=Pictures(pictures), tell=view.tell
             )
         except KeyboardInterrupt:
             typer.echo(f"what has ended is in {folder}; the same command goes on", err=True)

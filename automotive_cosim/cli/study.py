@@ -9,7 +9,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from automotive_cosim.cli.batches import View, seeds_in, time_left, words
+from automotive_cosim.cli.batches import (
+    ExecutorName,
+    RayAddress,
+    RaySend,
+    View,
+    Workers,
+    executor_of,
+    seeds_in,
+    time_left,
+    words,
+)
 from automotive_cosim.cli.options import whole_number
 from automotive_cosim.errors import InfrastructureError, UserError
 
@@ -73,7 +83,10 @@ def reroute(
             help="Stop adding seeds once the mean gain is known to +- so many seconds.", show_default=False
         ),
     ] = None,
-    workers: Annotated[int, typer.Option(help="Processes.", metavar="N", parser=whole_number(1, 256))] = 1,
+    workers: Workers = None,
+    executor: ExecutorName = "processes",
+    ray_address: RayAddress = None,
+    ray_send: RaySend = None,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -119,6 +132,7 @@ def reroute(
     )
     plan.check()
     folder = out or _folder(plan)
+    where = executor_of(executor, workers, ray_address, ray_send)
     console = Console(stderr=as_json, highlight=False)
     _announce(console, plan, folder)
     if dry_run:
@@ -129,9 +143,9 @@ def reroute(
         errors = f", {progress.errors} errors" if progress.errors else ""
         return f"{count} decisions{errors}{time_left(progress)}"
 
-    with View(console, "drives", said) as view:
+    with where, View(console, "drives", said) as view:
         try:
-            run_study(plan, folder, workers=workers, tell=view.tell)
+            run_study(plan, folder, executor=where, tell=view.tell)
         except KeyboardInterrupt:
             typer.echo(f"what has ended is in {folder}; the same command goes on", err=True)
             raise

@@ -1,51 +1,36 @@
-"""Runs jobs in worker processes; what is done stays done, whatever ends the run.
+"""Runs jobs in workers; what is done stays done, whatever ends the run.
 
-Jobs depend on nothing but their setup, so neither their order nor the number of workers shows in the results.
+Jobs depend on nothing but their setup, so neither their order, nor the number of workers, nor where they are shows
+in the results.
 """
 
 from __future__ import annotations
 
-import multiprocessing
 import time
 from collections import Counter, defaultdict, deque
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
-from multiprocessing import connection
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.errors import TriggerNotReachedError
+from automotive_cosim.errors import InfrastructureError, TriggerNotReachedError
 from automotive_cosim.run import worker
 from automotive_cosim.run.collect import Pictures, failed
+from automotive_cosim.run.executor import CannotWrite, Executor, Job, LostError, Opener, Worker
 from automotive_cosim.run.plan import Plan
+from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.store import Store, cannot_write, opened
 
 FINAL_KINDS = frozenset({TriggerNotReachedError.__name__})
 """Errors that come again for certain, so that trying again is no use."""
 SHARED_FROM = 4
 """So many episodes must be left of a simulation for a second worker to warm it up too."""
-
-
-class Job(Protocol):
-    """Something to run that depends on nothing but itself. It is sent to a worker."""
-
-    @property
-    def id(self) -> str:
-        """Of its row."""
-        ...
-
-    @property
-    def simulation(self) -> tuple[str, int]:
-        """What warm simulation it starts from; a worker does those of one after the other."""
-        ...
-
-    @property
-    def wall_s(self) -> float:
-        """Wall time that it may take."""
-        ...
+PATIENCE_S = 600.0
+"""Wall time that a batch waits for its first worker, or for another one when all are lost."""
+STILLBORN = 3
+"""So often all workers in a row may be lost before they are ready."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +58,7 @@ def run_plan(
     plan: Plan,
     folder: Path,
     *,
-    workers: int = 1,
+    executor: Executor = Processes(),  # noqa: B008, frozen
     retries: int = 2,
     pictures: Pictures = Pictures.NONE,
     tell: Callable[[Progress], None] = lambda progress: None,
@@ -83,29 +68,30 @@ def run_plan(
     Args:
         plan: what to run.
         folder: where the results are or go.
-        workers: processes.
+        executor: where to run it.
         retries: how often an episode that the machinery broke is tried again before it is put down as an error.
         pictures: which to keep.
         tell: called at the start and after every episode.
 
     Raises:
         UserError: the plan names what does not exist, or the folder cannot take its results.
+        InfrastructureError: there is no worker to be had.
         KeyboardInterrupt: passed on; the running episodes are lost, and no other.
     """
     plan.check()
     jobs = plan.jobs()
     with opened(folder, plan.as_json()) as store:
-        opener = partial(worker.episodes, folder, pictures)
-        return run_jobs(jobs, store, opener, failed, workers=workers, retries=retries, tell=tell)
+        opener = partial(worker.episodes, pictures)
+        return run_jobs(jobs, store, opener, failed, executor=executor, retries=retries, tell=tell)
 
 
 def run_jobs(
     jobs: Sequence[Job],
     store: Store,
-    opener: worker.Opener,
+    opener: Opener,
     failed: Callable[[Any, str, str], Json],
     *,
-    workers: int = 1,
+    executor: Executor = Processes(),  # noqa: B008, frozen
     retries: int = 2,
     tell: Callable[[Progress], None] = lambda progress: None,
 ) -> Progress:
@@ -116,48 +102,35 @@ def run_jobs(
         store: where the rows are and go.
         opener: makes what runs them, in each worker.
         failed: the row of a job whose worker is no more, from the job, the kind of error and why.
-        workers: processes.
+        executor: where to run them.
         retries: how often a job that ended in an error is tried again before its row is put down.
         tell: called at the start and after every job.
 
     Raises:
         as ``run_plan``.
     """
-    batch = _Batch(store, jobs, opener, failed, retries, tell)
+    batch = _Batch(store, jobs, opener, failed, executor, retries, tell)
     try:
-        batch.run(workers)
+        batch.run()
     finally:
         batch.close()
     return batch.progress
 
 
-class _Worker:
-    """One process, and the job it has."""
+@dataclass(eq=False)
+class _Place:
+    """A worker, and the job it has."""
 
-    def __init__(self, opener: worker.Opener) -> None:
-        context = multiprocessing.get_context("spawn")
-        self.pipe, theirs = context.Pipe()
-        self.process = context.Process(target=worker.work, args=(theirs, opener), daemon=False)
-        self.process.start()
-        theirs.close()
-        self.job: Job | None = None
-        self.since_s = 0.0
+    worker: Worker
+    job: Job | None = None
+    since_s: float = 0.0
+    """When it was given the job, monotonic."""
+    warm: tuple[str, int] | None = None
+    """The simulation it ran last."""
 
     def give(self, job: Job) -> None:
-        """Sends it a job; one that has died meanwhile is found out when its answer is waited for."""
-        self.job, self.since_s = job, time.monotonic()
-        with suppress(OSError):
-            self.pipe.send(job)
-
-    def end(self, *, at_once: bool) -> None:
-        """Ends it."""
-        if at_once:
-            self.process.kill()
-        else:
-            with suppress(OSError):
-                self.pipe.send(None)
-        self.process.join()
-        self.pipe.close()
+        self.job, self.since_s, self.warm = job, time.monotonic(), job.simulation
+        self.worker.give(job)
 
 
 @dataclass
@@ -188,37 +161,38 @@ class _Batch:
         self,
         store: Store,
         jobs: Sequence[Job],
-        opener: worker.Opener,
+        opener: Opener,
         failed: Callable[[Any, str, str], Json],
+        executor: Executor,
         retries: int,
         tell: Callable[[Progress], None],
     ) -> None:
         self._store = store
         self._opener = opener
         self._failed = failed
+        self._executor = executor
         self._jobs = {job.id: job for job in jobs}
         self._retries = retries
         self._tell = tell
         self._began_s = time.monotonic()
-        self._ran = self._given_up = 0
+        self._ran = self._given_up = self._stillborn = 0
         self._failures: dict[str, list[str]] = defaultdict(list)
-        self._workers: list[_Worker] = []
-        self._warm: dict[_Worker, tuple[str, int]] = {}
+        self._places: list[_Place] = []
         self._queue = _Queue()
         self._queue.put(job for job in jobs if _is_open(store.rows.get(job.id)))
 
-    def run(self, count: int) -> None:
+    def run(self) -> None:
         self._tell(self.progress)
-        while self._queue or any(worker.job for worker in self._workers):
-            while self._queue and len(self._workers) < count:
-                self._workers.append(_Worker(self._opener))
+        while self._queue or any(place.job for place in self._places):
+            while self._queue and len(self._places) < self._executor.count:
+                self._places.append(_Place(self._executor.start(self._opener, self._store.folder)))
             self._hand_out()
             self._wait()
 
     def close(self) -> None:
-        for each in self._workers:
-            each.end(at_once=each.job is not None)
-        self._workers.clear()
+        for place in self._places:
+            place.worker.end(at_once=place.job is not None)
+        self._places.clear()
 
     @property
     def progress(self) -> Progress:
@@ -235,50 +209,53 @@ class _Batch:
         )
 
     def _hand_out(self) -> None:
-        for each in self._workers:
-            if each.job is None:
-                busy = Counter(other.job.simulation for other in self._workers if other.job)
-                job = self._queue.take(self._warm.get(each), busy)
+        for place in self._places:
+            if place.job is None and place.worker.is_ready:
+                busy = Counter(other.job.simulation for other in self._places if other.job)
+                job = self._queue.take(place.warm, busy)
                 if job is not None:
-                    self._warm[each] = job.simulation
-                    each.give(job)
+                    place.give(job)
 
     def _wait(self) -> None:
-        """Waits for an answer, a death, or the end of somebody's time."""
-        busy = [each for each in self._workers if each.job is not None]
+        """Waits for an answer, a death, a worker that becomes ready, or the end of somebody's time."""
+        awaited = [place for place in self._places if place.job or not place.worker.is_ready]
+        handles = {handle: place for place in awaited for handle in place.worker.handles}
         now_s = time.monotonic()
-        ends_s = [each.since_s + each.job.wall_s for each in busy if each.job]
-        handles = {handle: each for each in busy for handle in (each.pipe, each.process.sentinel)}
-        ready = connection.wait(list(handles), max(0.0, min(ends_s) - now_s))
-        for each in {handles[handle]: None for handle in ready}:  # type: ignore[index]
-            self._answered(each)
-        for each in busy:
-            if each.job and time.monotonic() - each.since_s >= each.job.wall_s:
-                self._lost(each, "WallTime", f"took longer than {each.job.wall_s:g} s of wall time")
+        ends_s = [place.since_s + place.job.wall_s for place in awaited if place.job]
+        ready = self._executor.wait(list(handles), max(0.0, min(ends_s, default=now_s + PATIENCE_S) - now_s))
+        if not ends_s and not ready:
+            raise InfrastructureError(f"no worker has become ready in {PATIENCE_S:g} s; the same command goes on")
+        for place in {handles[handle]: None for handle in ready}:
+            self._answered(place)
+        for place in awaited:
+            if place.job and time.monotonic() - place.since_s >= place.job.wall_s:
+                self._lost(place, "WallTime", f"took longer than {place.job.wall_s:g} s of wall time")
 
-    def _answered(self, each: _Worker) -> None:
-        assert each.job is not None
+    def _answered(self, place: _Place) -> None:
         try:
-            answer = each.pipe.recv() if each.pipe.poll() else None
-        except (EOFError, OSError):
-            answer = None
-        if answer is None:
-            each.process.join()
-            self._lost(each, "WorkerDied", f"its process ended with code {each.process.exitcode}")
+            answer = place.worker.answer()
+        except LostError as error:
+            self._lost(place, "WorkerDied", str(error))
             return
-        if isinstance(answer, worker.CannotWrite):
+        if isinstance(answer, CannotWrite):
             raise cannot_write(self._store.folder, answer.error)
-        job, each.job = each.job, None
-        self._ended(job, answer)
+        job, place.job = place.job, None
+        if answer is None:
+            self._stillborn = 0
+        elif job is not None:
+            self._ended(job, answer)
 
-    def _lost(self, each: _Worker, kind: str, why: str) -> None:
+    def _lost(self, place: _Place, kind: str, why: str) -> None:
         """Puts down the job of a worker that is no more."""
-        job, each.job = each.job, None
-        assert job is not None
-        self._workers.remove(each)
-        self._warm.pop(each, None)
-        each.end(at_once=True)
-        self._ended(job, self._failed(job, kind, why))
+        job, place.job = place.job, None
+        self._places.remove(place)
+        place.worker.end(at_once=True)
+        if job is not None:
+            self._ended(job, self._failed(job, kind, why))
+            return
+        self._stillborn += 1
+        if self._stillborn >= STILLBORN * self._executor.count:
+            raise InfrastructureError(f"no worker gets ready: {why}; the same command goes on")
 
     def _ended(self, job: Job, row: Json) -> None:
         failures = self._failures[job.id]

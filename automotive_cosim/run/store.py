@@ -15,7 +15,7 @@ import os
 import platform
 import subprocess
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from datetime import datetime
 from importlib.metadata import PackageNotFoundError, version
@@ -146,6 +146,7 @@ def trace_file(folder: Path, episode: str) -> Path:
 def write_trace(folder: Path, episode: str, lines: Iterable[Json]) -> None:
     """Keeps a trace, whole or not at all; the same lines make the same bytes."""
     path = trace_file(folder, episode)
+    path.parent.mkdir(exist_ok=True)
     text = "".join(json.dumps(line, ensure_ascii=False) + "\n" for line in lines)
     draft = path.with_name(f".{path.name}.part")
     draft.write_bytes(gzip.compress(text.encode(), compresslevel=1, mtime=0))
@@ -167,6 +168,35 @@ def read_trace(folder: Path, episode: str) -> list[Json]:
         raise UserError(f"cannot read {path}: {error}") from error
 
 
+def stamp() -> Json:
+    """What the results depend on beside the plan: versions, platform and state of the code here."""
+    versions = {"python": platform.python_version()}
+    for name in (*STAMPED, *ALSO_STAMPED):
+        try:
+            versions[name] = version(name)
+        except PackageNotFoundError:
+            versions[name] = "not installed"
+    return {"versions": versions, "platform": platform.platform(), "git": _git()}
+
+
+def keep_files(folder: Path, files: Mapping[str, bytes]) -> None:
+    """Writes what an episode left elsewhere, each file whole or not at all.
+
+    Args:
+        folder: the evaluation's.
+        files: contents by path below it, with ``/`` between its parts.
+
+    Raises:
+        OSError: they cannot be written.
+    """
+    for name, content in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        draft = path.with_name(f".{path.name}.part")
+        draft.write_bytes(content)
+        draft.replace(path)
+
+
 def megabytes(folder: Path) -> float:
     """What the files of a folder take together."""
     return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file()) / 1e6
@@ -186,7 +216,7 @@ def _check(folder: Path) -> None:
 
 def _manifest(folder: Path, plan: Json) -> None:
     """Writes the manifest, or adds this start to the one there is."""
-    now = {"started": datetime.now().astimezone().isoformat(timespec="seconds"), **_stamp()}
+    now = {"started": datetime.now().astimezone().isoformat(timespec="seconds"), **stamp()}
     if not (folder / "manifest.json").exists():
         manifest: Json = {"format": FORMAT, "plan": plan, "starts": [now]}
     else:
@@ -202,16 +232,6 @@ def _same(what: str, before: Json, now: Json, folder: Path) -> None:
     if changed:
         told = "; ".join(f"{name} was {before.get(name)!r} and is {now.get(name)!r}" for name in sorted(changed))
         raise UserError(f"{folder} was begun with other {what}: {told}. Give --out another folder")
-
-
-def _stamp() -> Json:
-    versions = {"python": platform.python_version()}
-    for name in (*STAMPED, *ALSO_STAMPED):
-        try:
-            versions[name] = version(name)
-        except PackageNotFoundError:
-            versions[name] = "not installed"
-    return {"versions": versions, "platform": platform.platform(), "git": _git()}
 
 
 def _git() -> Json | None:

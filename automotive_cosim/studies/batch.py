@@ -10,8 +10,9 @@ from pathlib import Path
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import CosimError
 from automotive_cosim.run.batch import Progress, run_jobs
+from automotive_cosim.run.executor import Executor, Runner
+from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.store import opened
-from automotive_cosim.run.worker import Runner
 from automotive_cosim.studies.drive import run_drive
 from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
 from automotive_cosim.studies.plan import DriveJob, StudyPlan
@@ -29,7 +30,7 @@ def run_study(
     plan: StudyPlan,
     folder: Path,
     *,
-    workers: int = 1,
+    executor: Executor = Processes(),  # noqa: B008, frozen
     retries: int = 1,
     tell: Callable[[Progress], None] = lambda progress: None,
 ) -> Progress:
@@ -38,7 +39,7 @@ def run_study(
     Args:
         plan: what to run.
         folder: where the results are or go.
-        workers: processes; the results do not depend on their number.
+        executor: where to run it; the results do not depend on it.
         retries: how often a drive that the machinery broke is tried again.
         tell: called at the start and after every drive.
 
@@ -52,7 +53,7 @@ def run_study(
 
         def run(seeds: tuple[int, ...]) -> Progress:
             jobs = [job for job in plan.jobs() if job.seed in seeds]
-            return run_jobs(jobs, store, drives, failed, workers=workers, retries=retries, tell=tell)
+            return run_jobs(jobs, store, drives, failed, executor=executor, retries=retries, tell=tell)
 
         progress = run(first)
         for seeds in more:
@@ -82,7 +83,7 @@ def drives() -> Iterator[Runner]:
     """What runs the drives in a worker."""
     warm = _Warm()
     try:
-        yield warm.run
+        yield lambda job, folder: warm.run(job)  # nothing but the row is kept of a drive
     finally:
         warm.close()
 

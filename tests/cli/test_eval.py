@@ -53,6 +53,9 @@ def test_errors_are_listed_and_set_the_exit_code(cli):
         (("--agents", "t3a", "--tasks", "nothing_*"), "no task"),
         (("--agents", "t3a", "--pictures", "some"), "no choice of pictures"),
         (("--agents", "t3a", "--workers", "0"), "whole number"),
+        (("--agents", "t3a", "--executor", "rya"), "did you mean 'ray'?"),
+        (("--agents", "t3a", "--ray-address", "10.0.0.4:6379"), "--ray-address is for --executor ray"),
+        (("--agents", "t3a", "--ray-send", "."), "--ray-send is for --executor ray"),
         (("--agents", "t3a", "--scenarios", ""), "--scenarios is empty"),
         (("--plan", "none.toml"), "none.toml"),
     ],
@@ -63,6 +66,16 @@ def test_bad_input_is_one_line(cli, arguments, said, tmp_path):
     assert ran.err.startswith("error: ")
     assert ran.err.count("\n") == 1
     assert said in ran.err
+    assert not list(tmp_path.iterdir())
+
+
+def test_without_ray_the_command_that_installs_it_is_named(cli, monkeypatch, tmp_path):
+    monkeypatch.delitem(sys.modules, "automotive_cosim.run.on_ray", raising=False)
+    monkeypatch.setitem(sys.modules, "ray", None)
+    ran = cli("eval", "--agents", "oracle", *GRID, "--executor", "ray")
+    assert (ran.code, ran.err) == (
+        2, "error: the ray package is missing; install it with `pip install 'automotive-cosim[ray]'`\n"
+    )  # fmt: skip
     assert not list(tmp_path.iterdir())
 
 

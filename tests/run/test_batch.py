@@ -8,11 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from automotive_cosim.errors import UserError
+from automotive_cosim.errors import InfrastructureError, UserError
 from automotive_cosim.run import batch
 from automotive_cosim.run.batch import run_plan
 from automotive_cosim.run.collect import Pictures
+from automotive_cosim.run.executor import LostError
 from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.store import VOLATILE, read_rows, read_trace, trace_file
 from automotive_cosim.trace import sha256
 
@@ -70,11 +72,11 @@ def tries(folder):
 def test_order_and_number_of_workers_do_not_show(tmp_path, monkeypatch):
     tasks = ["hvac_fan_max", "hvac_cold_hands", "hvac_driver_seat_heater"]
     wanted = plan("oracle", "asurada", "always-alert", tasks=tasks, seeds=[0, 1])
-    alone = run_plan(wanted, tmp_path / "one", workers=1)
+    alone = run_plan(wanted, tmp_path / "one")
     assert alone.done == alone.planned == alone.judged == 18
     jobs = type(wanted).jobs
     monkeypatch.setattr(type(wanted), "jobs", lambda self: jobs(self)[::-1])
-    run_plan(wanted, tmp_path / "two", workers=2)
+    run_plan(wanted, tmp_path / "two", executor=Processes(2))
     assert steady(tmp_path / "one") == steady(tmp_path / "two")
     for row in read_rows(tmp_path / "one").values():
         *steps, result = read_trace(tmp_path / "one", row["id"])
@@ -175,8 +177,9 @@ def test_a_kill_loses_at_most_the_running_episodes(trouble):
     script = (
         "import sys, pathlib; from automotive_cosim.run.batch import run_plan\n"
         "from automotive_cosim.run.plan import make_plan\n"
+        "from automotive_cosim.run.processes import Processes\n"
         f"run_plan(make_plan({plan('trouble:Slow', seeds=[0, 1], repeats=4, limits={'steps': 4}).as_json()!r}), "
-        "pathlib.Path('e'), workers=2)"
+        "pathlib.Path('e'), executor=Processes(2))"
     )
     lines = trouble / "e" / "episodes.jsonl"
     (trouble / "go.py").write_text(f"if __name__ == '__main__':\n    {script.replace(chr(10), chr(10) + '    ')}\n")
@@ -188,12 +191,13 @@ def test_a_kill_loses_at_most_the_running_episodes(trouble):
     kept = read_rows(trouble / "e")
     assert 2 <= len(kept) < 8
     before = tries(trouble)
-    end = run_plan(plan("trouble:Slow", seeds=[0, 1], repeats=4, limits={"steps": 4}), trouble / "e", workers=2)
+    wanted = plan("trouble:Slow", seeds=[0, 1], repeats=4, limits={"steps": 4})
+    end = run_plan(wanted, trouble / "e", executor=Processes(2))
     assert end.judged == 8
     assert end.ran == 8 - len(kept)
     assert tries(trouble) - before == end.ran
     assert before - len(kept) <= 2
-    run_plan(plan("trouble:Slow", seeds=[0, 1], repeats=4, limits={"steps": 4}), trouble / "whole")
+    run_plan(wanted, trouble / "whole")
     assert steady(trouble / "e") == steady(trouble / "whole")
 
 
@@ -213,6 +217,47 @@ def test_workers_take_what_they_have_warm_and_share_only_what_is_long():
     assert third is not None
     assert third.simulation == first.simulation
     assert queue.take(None, Counter(job.simulation for job in wanted)) is None
+
+
+class Poor:
+    """An executor whose workers never become ready, or are lost before they do."""
+
+    count = 2
+    is_ready = False
+
+    def __init__(self, *, loses):
+        self.loses, self.started, self.ended, self.waited_s = loses, 0, 0, []
+
+    def start(self, opener, folder):
+        self.started += 1
+        return self
+
+    @property
+    def handles(self):
+        return [object()]
+
+    def wait(self, handles, timeout_s):
+        self.waited_s.append(timeout_s)
+        return handles[:1] if self.loses else []
+
+    def answer(self):
+        raise LostError("its node is gone")
+
+    def end(self, *, at_once):
+        self.ended += 1
+
+
+@pytest.mark.parametrize(
+    ("loses", "said", "started"), [(False, "has become ready in 600 s", 2), (True, "its node is gone", 7)]
+)
+def test_workers_that_never_get_ready_end_the_run_and_the_command_goes_on(tmp_path, loses, said, started):
+    poor = Poor(loses=loses)
+    with pytest.raises(InfrastructureError, match=f"{said}.*; the same command goes on"):
+        run_plan(plan("oracle"), tmp_path / "e", executor=poor)
+    assert (poor.started, poor.ended) == (started, started)
+    assert all(599 < each_s <= 600 for each_s in poor.waited_s)
+    assert not read_rows(tmp_path / "e")
+    assert run_plan(plan("oracle"), tmp_path / "e").successes == 1
 
 
 def _until(true, within_s=90.0):

@@ -14,6 +14,7 @@ from automotive_cosim.cli.results import report
 from automotive_cosim.cli.study import app
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
+from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.store import VOLATILE, read_rows
 from automotive_cosim.studies.batch import run_study
 from automotive_cosim.studies.page import write_study
@@ -53,7 +54,7 @@ def folder(plan: StudyPlan, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_order_and_number_of_workers_do_not_show(plan: StudyPlan, folder: Path, tmp_path: Path) -> None:
-    run_study(plan, tmp_path / "two", workers=2)
+    run_study(plan, tmp_path / "two", executor=Processes(2))
     assert steady(tmp_path / "two") == steady(folder)
 
 
@@ -133,7 +134,7 @@ def test_seeds_are_added_only_until_enough_is_known(two_ways: Draw, tmp_path: Pa
     plan = StudyPlan(
         str(two_ways()), (0.0,), seeds=tuple(range(14)), per_drive=1, placebo_every=0, half_width_s=1.0
     )
-    run_study(plan, tmp_path / "until", workers=2)
+    run_study(plan, tmp_path / "until", executor=Processes(2))
     assert {row["seed"] for row in read_study(tmp_path / "until").rows} == set(range(10))
 
 

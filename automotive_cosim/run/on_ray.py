@@ -1,0 +1,230 @@
+"""Jobs in actors of a Ray cluster, each with a CPU of its own; the only module that imports Ray.
+
+No file system need be shared: an actor runs a job in a folder of its own and sends back the row and the files, and
+the driver writes them. docs/cluster.md says what has to be where.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+import socket
+import tempfile
+from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.errors import SetupError, UserError
+from automotive_cosim.run.executor import CannotWrite, Job, LostError, Opener, Runner
+from automotive_cosim.run.store import keep_files, stamp
+from automotive_cosim.tasks.folder import VARIABLE
+
+# Read when Ray is imported or started: it reports nothing to its makers, and does not print into our output.
+os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
+os.environ.setdefault("RAY_DEDUP_LOGS_SKIP_REGEX", "^")
+try:
+    import ray
+    from ray.exceptions import RayActorError, RayError, RayTaskError, RuntimeEnvSetupError
+except ImportError as error:
+    raise SetupError("the ray package is missing; install it with `pip install 'automotive-cosim[ray]'`") from error
+
+OBJECT_STORE_BYTES = 256 * 1024**2
+"""Of a cluster of our own, in shared memory: the files of an episode and its pictures take a few megabytes."""
+PROBE_S = 10.0
+"""Wall time in which the head node has to take a connection."""
+NEVER_SENT = (".git", ".venv", "__pycache__", "runs")
+"""Of a folder that is sent to the workers."""
+
+
+class OnRay:
+    """A Ray cluster; while it is entered, this process is its driver."""
+
+    def __init__(self, address: str | None = None, workers: int | None = None, sent: Path | None = None) -> None:
+        """Nothing is started or reached before it is entered.
+
+        Args:
+            address: of a running cluster, e.g. ``10.0.0.4:6379``; by default one of our own on this machine.
+            workers: actors to have; None takes what CPUs the cluster has at any moment.
+            sent: a folder that the workers get a copy of, to run in it.
+        """
+        self._address = address or "local"
+        self._workers = workers
+        self._sent = sent
+
+    def __enter__(self) -> OnRay:
+        """Connects.
+
+        Raises:
+            SetupError: there is no such cluster, or it runs another version of Python or Ray.
+            UserError: the folder to send is none.
+        """
+        if self._sent is not None and not self._sent.is_dir():
+            raise UserError(f"{self._sent} is no folder; give one that the workers get a copy of")
+        _probe(self._address)
+        own: Mapping[str, Any] = {}
+        if self._address == "local":
+            own = {
+                "num_cpus": self._workers or os.cpu_count(),
+                "include_dashboard": False,
+                "object_store_memory": OBJECT_STORE_BYTES,
+            }
+        try:
+            ray.init(
+                self._address,
+                runtime_env=self._environment(),
+                log_to_driver=False,
+                logging_level=logging.ERROR,
+                **own,
+            )
+        except (RayError, ConnectionError, RuntimeError, ValueError) as error:
+            why = " ".join(str(error).split())
+            raise SetupError(
+                f"cannot use a Ray cluster at {self._address}: {why}; start one with `ray start --head`, or give "
+                "no address"
+            ) from error
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        """Lets go of the cluster, and ends it if it is our own."""
+        ray.shutdown()
+
+    @property
+    def count(self) -> int:
+        """As many as were asked for, else a worker a CPU: nodes that join get some too."""
+        return self._workers or max(1, int(ray.cluster_resources().get("CPU", 0)))
+
+    def start(self, opener: Opener, folder: Path) -> _Actor:
+        """As ``Executor.start``; it becomes ready when a node has a CPU to spare."""
+        return _Actor(opener, folder)
+
+    def wait(self, handles: Sequence[Any], timeout_s: float) -> Sequence[Any]:
+        """As ``Executor.wait``."""
+        ready: Sequence[Any]
+        ready, _ = ray.wait(list(handles), num_returns=1, timeout=timeout_s, fetch_local=False)
+        return ready
+
+    def _environment(self) -> Json:
+        """What Ray sets up for every worker."""
+        tasks = os.environ.get(VARIABLE)
+        if self._sent is None:
+            return {"env_vars": {VARIABLE: tasks}} if tasks else {}
+        sent = self._sent.resolve()
+        made: Json = {"working_dir": str(sent), "excludes": list(NEVER_SENT)}
+        if tasks:
+            # Relative, a worker finds it in its own copy.
+            inside = Path(tasks).is_relative_to(sent)
+            made["env_vars"] = {VARIABLE: Path(tasks).relative_to(sent).as_posix() if inside else tasks}
+        return made
+
+
+class _Actor:
+    def __init__(self, opener: Opener, folder: Path) -> None:
+        self._folder = folder
+        self._actor = _ACTOR.remote(opener)
+        self._asked = self._actor.stamp.remote()
+        self.is_ready = False
+
+    @property
+    def handles(self) -> Sequence[Any]:
+        return (self._asked,)
+
+    def give(self, job: Job) -> None:
+        self._asked = self._actor.run.remote(job)
+
+    def answer(self) -> Json | CannotWrite | None:
+        try:
+            answered = ray.get(self._asked)
+        except RuntimeEnvSetupError as error:
+            raise UserError(f"Ray cannot set a worker up: {_line(error)}") from error
+        except RayTaskError as error:
+            raise LostError(f"on its node: {_line(error.cause)}") from error
+        except RayActorError as error:
+            raise LostError(_line(error)) from error
+        if not self.is_ready:
+            _check_same(*answered)
+            self.is_ready = True
+            return None
+        row: Json = answered[0]
+        try:
+            keep_files(self._folder, answered[1])
+        except OSError as error:
+            return CannotWrite(error)
+        return row
+
+    def end(self, *, at_once: bool) -> None:
+        ray.kill(self._actor)  # its simulations end with it
+
+
+def _probe(address: str) -> None:
+    """Refuses an address where nobody listens, at which Ray would try for minutes.
+
+    Raises:
+        SetupError: it is not to be reached.
+    """
+    if address in ("local", "auto"):
+        return
+    host, colon, port = address.rpartition(":")
+    if not colon or not port.isdigit() or "/" in host:
+        raise SetupError(f"{address!r} is no address of a Ray cluster; give HOST:PORT of its head node, or auto")
+    try:
+        socket.create_connection((host.strip("[]"), int(port)), PROBE_S).close()
+    except (OSError, OverflowError) as error:
+        raise SetupError(
+            f"no Ray cluster answers at {address}: {error}; start one with `ray start --head`, or give no address"
+        ) from error
+
+
+def _check_same(node: str, theirs: Json) -> None:
+    """Refuses a node whose results would be others than ours.
+
+    Raises:
+        UserError: it has other versions.
+    """
+    here, there = _compared(stamp()), _compared(theirs)
+    for name in here.keys() & there.keys():  # a checkout here and a wheel there: the version has to do
+        if here[name] != there[name]:
+            raise UserError(
+                f"node {node} has {name} {there[name]} and this machine {here[name]}; install the same on both"
+            )
+
+
+def _compared(stamp: Json) -> Json:
+    commit = {} if stamp["git"] is None else {"commit": stamp["git"]["commit"]}
+    return {**stamp["versions"], **commit}
+
+
+def _line(error: BaseException) -> str:
+    """An error of Ray's without its pages of advice."""
+    said = " ".join(str(error).split())
+    return f"{type(error).__name__}: {said[:300]}"
+
+
+# --- in the actor -----------------------------------------------------------------------------------------
+
+
+class _Runs:
+    """Runs one job at a time."""
+
+    def __init__(self, opener: Opener) -> None:
+        self._opener = opener
+        self._open = ExitStack()
+        self._runner: Runner | None = None
+
+    def stamp(self) -> tuple[str, Json]:
+        """The node's address, and what is installed on it."""
+        return ray.util.get_node_ip_address(), stamp()
+
+    def run(self, job: Job) -> tuple[Json, dict[str, bytes]]:
+        """The row of a job, and the files it wrote by their paths."""
+        if self._runner is None:
+            self._runner = self._open.enter_context(self._opener())
+        with tempfile.TemporaryDirectory(prefix="automotive-cosim-") as name:
+            folder = Path(name)
+            row = self._runner(job, folder)
+            files = sorted(path for path in folder.rglob("*") if path.is_file())
+            return row, {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
+
+
+_ACTOR: Any = ray.remote(num_cpus=1, max_restarts=0, max_task_retries=0, scheduling_strategy="SPREAD")(_Runs)

@@ -1,0 +1,103 @@
+"""Jobs in processes of this machine."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from multiprocessing import connection, parent_process
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.run.executor import CannotWrite, Job, LostError, Opener
+
+
+@dataclass(frozen=True, slots=True)
+class Processes:
+    """So many processes, each with its own warm simulations."""
+
+    count: int = 1
+
+    def __enter__(self) -> Processes:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        """Nothing is left to end: a batch ends its workers."""
+
+    def start(self, opener: Opener, folder: Path) -> _Process:
+        """As ``Executor.start``."""
+        return _Process(opener, folder)
+
+    def wait(self, handles: Sequence[Any], timeout_s: float) -> Sequence[Any]:
+        """As ``Executor.wait``."""
+        return connection.wait(handles, timeout_s)
+
+
+class _Process:
+    is_ready = True
+
+    def __init__(self, opener: Opener, folder: Path) -> None:
+        context = multiprocessing.get_context("spawn")
+        self._pipe, theirs = context.Pipe()
+        self._process = context.Process(target=_work, args=(theirs, opener, folder), daemon=False)
+        self._process.start()
+        theirs.close()
+
+    @property
+    def handles(self) -> Sequence[Any]:
+        return self._pipe, self._process.sentinel
+
+    def give(self, job: Job) -> None:
+        with suppress(OSError):
+            self._pipe.send(job)
+
+    def answer(self) -> Json | CannotWrite:
+        try:
+            answer: Json | CannotWrite | None = self._pipe.recv() if self._pipe.poll() else None
+        except (EOFError, OSError):
+            answer = None
+        if answer is None:
+            self._process.join()
+            raise LostError(f"its process ended with code {self._process.exitcode}")
+        return answer
+
+    def end(self, *, at_once: bool) -> None:
+        if at_once:
+            self._process.kill()
+        else:
+            with suppress(OSError):
+                self._pipe.send(None)
+        self._process.join()
+        self._pipe.close()
+
+
+# --- in the process ---------------------------------------------------------------------------------------
+
+
+def _work(jobs: Connection, opener: Opener, folder: Path) -> None:
+    """Answers each job with its row, until None comes.
+
+    Ctrl-C is the parent's to handle; when the parent is gone, this process ends at once.
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+    with opener() as run:
+        while (job := jobs.recv()) is not None:
+            try:
+                answer: Json | CannotWrite = run(job, folder)
+            except OSError as error:
+                answer = CannotWrite(error)
+            jobs.send(answer)
+
+
+def _end_with_parent() -> None:
+    parent = parent_process()
+    if parent is not None:
+        connection.wait([parent.sentinel])
+        os._exit(1)
