@@ -117,7 +117,7 @@ class _Environment:
     def __init__(self) -> None:
         self.interaction_cache = ""
         self.seen: queue.Queue[Observation | None] = queue.Queue()
-        self.done: queue.Queue[Action | _Over | Exception] = queue.Queue()
+        self.done: queue.Queue[Action | _Over | Exception | SystemExit] = queue.Queue()
         self.acted = False
         self._now: Observation | None = None
 
@@ -194,7 +194,7 @@ class AndroidWorldAgent:
             return done
         if isinstance(done, ActionError):
             raise done
-        if isinstance(done, Exception):
+        if isinstance(done, Exception | SystemExit):
             raise ActionError(f"agent {self.name!r} raised {type(done).__name__}: {done}") from done
         if not done.declared:
             raise ActionError(f"agent {self.name!r} took no action in this step")
@@ -206,12 +206,12 @@ class AndroidWorldAgent:
             env.now()
             while True:
                 env.acted = False
-                outcome: _Over | Exception
+                outcome: _Over | Exception | SystemExit
                 try:
                     agent = agent or self._make(env)
                     result = agent.step(goal)
                     outcome = _Over(bool(getattr(result, "done", False)), getattr(result, "data", None))
-                except Exception as error:
+                except (Exception, SystemExit) as error:  # without an answer `act` would wait for ever
                     outcome = error
                 handed_over = isinstance(outcome, _Over) and env.acted and not outcome.declared
                 if not handed_over:

@@ -22,6 +22,8 @@ from automotive_cosim.errors import ActionError, CosimError, UserError
 from automotive_cosim.observe import ALL, Channel
 
 FORM = "package.module:Class"
+FAULTS = (Exception, SystemExit)
+"""What somebody's code may raise; ``sys.exit`` in it, too, must not end this program."""
 
 
 class Guest:
@@ -39,7 +41,7 @@ class Guest:
         try:
             self.channels = frozenset(Channel(name) for name in getattr(agent, "channels", ALL))
         except (TypeError, ValueError) as error:
-            raise UserError(f"agent {self.name!r}: {error}; its channels are of {', '.join(ALL)}") from error
+            raise UserError(f"agent {self.name!r}: {error}; its channels are of {', '.join(Channel)}") from error
 
     def reset(self, goal: str) -> None:
         """Passes it on.
@@ -51,7 +53,7 @@ class Guest:
             self._agent.reset(goal)
         except CosimError:
             raise
-        except Exception as error:
+        except FAULTS as error:
             raise UserError(f"agent {self.name!r} raised {_told(error)} in reset") from error
 
     def act(self, observation: Observation) -> Action:
@@ -64,7 +66,7 @@ class Guest:
             returned = self._agent.act(observation)
         except CosimError:
             raise
-        except Exception as error:
+        except FAULTS as error:
             raise ActionError(f"agent {self.name!r} raised {_told(error)}") from error
         if isinstance(returned, Action):
             return check(returned)
@@ -103,7 +105,7 @@ def _found(spec: str, module_name: str, class_name: str) -> Any:
         module = importlib.import_module(module_name)
     except ImportError as error:
         raise UserError(f"agent {spec!r}: cannot import {module_name}: {error}") from error
-    except Exception as error:
+    except FAULTS as error:
         raise UserError(f"agent {spec!r}: importing {module_name} raised {_told(error)}") from error
     try:
         return getattr(module, class_name)
@@ -129,11 +131,11 @@ def _check_call(spec: str, method: Callable[..., Any], name: str, given: int) ->
 def _made(spec: str, made: type) -> Any:
     try:
         return made()
-    except Exception as error:
+    except FAULTS as error:
         raise UserError(
             f"agent {spec!r}: {made.__name__}() raised {_told(error)}; it is made without arguments"
         ) from error
 
 
-def _told(error: Exception) -> str:
+def _told(error: BaseException) -> str:
     return f"{type(error).__name__}: {' '.join(str(error).split())[:200]}"

@@ -60,8 +60,9 @@ def test_it_may_say_its_name_and_channels(module):
         ("class Other: ...\n", "has no Mine; it has Other"),
         ("import nothing_of_that_name\n", "cannot import"),
         ("1 / 0\n", "ZeroDivisionError"),
+        ("raise SystemExit\n", "SystemExit"),
         ("class Mine\n", "SyntaxError"),
-        (WHOLE + "    channels = ('radar',)\n", "radar"),
+        (WHOLE + "    channels = ('radar',)\n", "radar.* of screenshot, elements, "),
         (WHOLE + "    channels = 3\n", "channels"),
     ],
 )  # fmt: skip
@@ -81,6 +82,7 @@ def test_a_name_that_leads_nowhere_is_told(name):
     ("body", "said"),
     [
         ("raise KeyError('x')", "raised KeyError"),
+        ("raise SystemExit(3)", "raised SystemExit"),
         ("return None", "returned NoneType"),
         ("return 7", "returned int"),
         ("return '{'", "not JSON"),
@@ -127,6 +129,8 @@ class Foreign:
         said = self.left.pop(0) if self.left else "raise"
         if said == "raise":
             raise RuntimeError("out of script")
+        if said == "exit":
+            raise SystemExit("enough")
         if said is None:
             return Result(False, {})
         if said.action_type == "status":
@@ -161,9 +165,9 @@ def test_done_without_a_word_is_complete(observation):
 
 
 def test_its_faults_cost_it_the_step_and_no_more(observation):
-    agent = foreign(None, Said("unknown"), Said("click", index=0), "raise", Said("navigate_home"))
+    agent = foreign(None, Said("unknown"), Said("click", index=0), "raise", Said("navigate_home"), "exit")
     said = []
-    for _ in range(5):
+    for _ in range(6):
         try:
             said.append(agent.act(observation("x")).action_type)
         except ActionError as error:
@@ -173,6 +177,7 @@ def test_its_faults_cost_it_the_step_and_no_more(observation):
     assert said[2] == "click"
     assert "RuntimeError" in said[3]
     assert said[4] == "navigate_home"
+    assert "SystemExit: enough" in said[5]
 
 
 def test_one_that_cannot_be_made_costs_every_step(observation):
