@@ -378,7 +378,7 @@ def _choose(choices: Choices, pick: int, content: Mapping[str, tuple[str, ...]] 
 
 
 HELD = {
-    "contacts": 60,
+    "contacts": 21,
     "favourite_contacts": 6,
     "threads": 8,
     "places": 80,

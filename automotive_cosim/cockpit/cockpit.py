@@ -28,7 +28,7 @@ from automotive_cosim.cockpit.map import road_map
 from automotive_cosim.cockpit.messages import Message, Pan
 from automotive_cosim.cockpit.navigation import Navigation
 from automotive_cosim.cockpit.render import render, repaint
-from automotive_cosim.cockpit.restrictions import REASONS, Restriction
+from automotive_cosim.cockpit.restrictions import ENTRIES_LIMIT, REASONS, Restriction
 from automotive_cosim.cockpit.screens import APPS, SCREENS, picture
 from automotive_cosim.cockpit.sensing import sense
 from automotive_cosim.cockpit.signals import (
@@ -413,14 +413,15 @@ class Cockpit:
     def content(self) -> dict[str, tuple[str, ...]]:
         """Names of what this cockpit holds, by kind, for tasks that ask for one of them.
 
-        ``contacts``, ``favourite_contacts``, ``threads`` and ``unread`` (who wrote, and whose messages were not
-        read yet), ``places``, ``favourite_places``, ``streets`` (neither among these nor hidden behind another
-        when searched for), ``playlists``, ``tracks``, ``podcasts``, ``fm``, ``dab`` (stations).
+        ``contacts`` (those that the list shows while driving, too), ``favourite_contacts``, ``threads`` and
+        ``unread`` (who wrote, and whose messages were not read yet), ``places``, ``favourite_places``, ``streets``
+        (neither among these nor hidden behind another when searched for), ``playlists``, ``tracks``, ``podcasts``,
+        ``fm``, ``dab`` (stations).
         """
         state = self._state
         entries = state.library.sources
         return {
-            "contacts": tuple(contact.name for contact in state.directory.contacts),
+            "contacts": tuple(contact.name for contact in state.directory.contacts[:ENTRIES_LIMIT]),
             "favourite_contacts": state.directory.favourites,
             "threads": tuple(thread.who for thread in state.directory.threads),
             "unread": state.directory.unread(state.phone),

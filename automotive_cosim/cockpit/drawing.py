@@ -171,9 +171,10 @@ def fit(text: str, style: Type, width: int, lines: int, height: int = 0) -> tupl
     styles = [style]
     while styles[-1] in SMALLER:
         styles.append(SMALLER[styles[-1]])
-    tries = [(one, lines) for one in styles if one is not Type.FINE]
+    tries: list[tuple[Type, int]] = [(one, lines) for one in styles if one is not Type.FINE]
     tries += [(one, height // one.pitch) for one in styles]
     tries += [(styles[-1], lines)]
+    rows: list[str] = []
     for one, most in tries:
         rows = _wrap(text, one, width) if most > 1 else [text]
         if len(rows) <= most and all(text_width(row, one) <= width for row in rows):

@@ -28,6 +28,7 @@ class Restriction(IntFlag):
 REASONS = {
     Restriction.NO_DIALPAD: "The keypad is locked while driving",
     Restriction.NO_KEYBOARD: "Typing is locked while driving",
+    Restriction.LIMIT_CONTENT: "Long lists end here while driving",
     Restriction.NO_SETUP: "This is set up while parked",
     Restriction.NO_TEXT_MESSAGE: "Messages are read out while driving",
 }
@@ -36,6 +37,8 @@ STANDING_KMH = 0.5
 """Slower than this the car stands."""
 STRING_LIMIT = 120
 """Characters of a text shown while ``LIMIT_STRING_LENGTH`` holds; the platform's default."""
+ENTRIES_LIMIT = 21
+"""Entries of a list shown while ``LIMIT_CONTENT`` holds; the platform's default."""
 
 
 class Motion(StrEnum):

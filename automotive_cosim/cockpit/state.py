@@ -15,7 +15,7 @@ from automotive_cosim.cockpit.media import Library, Listening
 from automotive_cosim.cockpit.navigation import Navigation
 from automotive_cosim.cockpit.people import Directory, Phone
 from automotive_cosim.cockpit.places import Atlas
-from automotive_cosim.cockpit.restrictions import REASONS, Restriction, restrictions
+from automotive_cosim.cockpit.restrictions import ENTRIES_LIMIT, REASONS, Restriction, restrictions
 from automotive_cosim.cockpit.signals import HMI, MOTION, Signals
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.cockpit.tyres import Tyres
@@ -169,6 +169,11 @@ class State:
     def restrictions(self) -> Restriction:
         """What is locked now."""
         return restrictions(self.signals[MOTION.GEAR], self.signals[MOTION.SPEED])
+
+    @property
+    def entries_limit(self) -> int | None:
+        """How many entries of a list are shown now; None: all."""
+        return ENTRIES_LIMIT if Restriction.LIMIT_CONTENT in self.restrictions else None
 
     def locked(self, restriction: Restriction) -> str:
         """Why that is locked now; empty if it is not."""

@@ -297,6 +297,34 @@ def test_every_list_scrolls_through_all_it_has(make: Make, around: Surroundings,
             assert next(w for w in cockpit.tree.walk() if w.key == rows.key).first == 0  # type: ignore[attr-defined]
 
 
+def test_long_lists_end_early_while_driving(make: Make, around: Surroundings, walker: Any) -> None:
+    """Android's limit of 21; the end is seen, locked and says why, and is gone as soon as the car stands."""
+    cut = set()
+    still = replace(around, driving=replace(around.driving, speed_mps=0.0))
+    for view in walker(make()):
+        for rows in [widget for widget in view.cockpit.tree.walk() if isinstance(widget, Rows)]:
+            cockpit = view.cockpit.copy()
+            seen = set[str]()
+            while True:
+                here = next(widget for widget in cockpit.tree.walk() if widget.key == rows.key)
+                seen |= {child.key for child in here.children}
+                if cockpit.scroll(rows.key, Direction.DOWN).code is not FeedbackCode.OK:
+                    break
+            if f"{rows.key}.rest" not in seen:
+                assert len(seen) <= 21
+                continue
+            cut.add(rows.key)
+            assert len(seen) == 21 + 1
+            last = next(one for one in cockpit.elements() if one.resource_id == f"{rows.key}.rest")
+            assert not last.is_enabled
+            assert "while driving" in last.content_description
+            assert press(cockpit, f"{rows.key}.rest") is FeedbackCode.RESTRICTED
+            cockpit.sense(still, 1.0)
+            assert all(element.resource_id != f"{rows.key}.rest" for element in cockpit.elements())
+            assert cockpit.scroll(rows.key, Direction.DOWN).code is FeedbackCode.OK
+    assert cut >= {"phone.contacts", "media.entries"}
+
+
 def test_same_state_same_bytes_and_another_state_other_bytes(make: Make, around: Surroundings, walker: Any) -> None:
     slow = replace(around, driving=replace(around.driving, speed_mps=0.0))
     for one, other in zip(walker(make()), walker(make()), strict=True):

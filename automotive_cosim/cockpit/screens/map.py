@@ -10,6 +10,7 @@ from automotive_cosim.cockpit.map import ZOOMS_M_PER_PX, Camera
 from automotive_cosim.cockpit.mapscene import box_of, goal, incidents, jam, map_camera, scene
 from automotive_cosim.cockpit.messages import Follow, Guide, Message, Pick, Set, Show, Zoom
 from automotive_cosim.cockpit.navigation import Turn, turns
+from automotive_cosim.cockpit.restrictions import ENTRIES_LIMIT
 from automotive_cosim.cockpit.screens.parts import CONTENT, choices, distance, heading, rows, search
 from automotive_cosim.cockpit.signals import VOICE
 from automotive_cosim.cockpit.state import State
@@ -38,7 +39,7 @@ INCIDENTS: Mapping[IncidentKind, tuple[str, Icon]] = {
 _CLASSES = {"motorway": "Motorway", "trunk": "Expressway", "service": "Service road", "residential": "Side street"}
 PANEL = CONTENT.left(372)
 """What stands beside the map."""
-RESULTS = 21
+RESULTS = ENTRIES_LIMIT
 
 
 def map_screen(state: State) -> tuple[Widget, ...]:
@@ -154,9 +155,9 @@ def _marks(rect: Rect, state: State, camera: Camera, avoid: tuple[Rect, ...]) ->
         ("goal", "The route ends here", Icon.GOAL, goal(state)),
     ]
     told = enumerate(incidents(state))
-    for at, (kind, road, point) in sorted(told, key=lambda one: list(INCIDENTS).index(one[1][0])):
+    for at, (kind, road, place) in sorted(told, key=lambda one: list(INCIDENTS).index(one[1][0])):
         words, icon = INCIDENTS[kind]
-        known.append((f"incident.{at}", f"{words}: {road_name(road)}", icon, point))
+        known.append((f"incident.{at}", f"{words}: {road_name(road)}", icon, place))
     found: list[Badge] = []
     for name, words, icon, point in known:
         if point is None:

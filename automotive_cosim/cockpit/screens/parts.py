@@ -298,7 +298,7 @@ def rows(
     height: int = 64,
     gap: int = 8,
 ) -> Rows:
-    """A scrolling list or grid of ``total`` entries, cut at whole rows.
+    """A scrolling list or grid of ``total`` entries, cut at whole rows; while driving it ends early.
 
     Args:
         rect: where it is; the rightmost 16 pixels are left to the scroll bar.
@@ -313,11 +313,21 @@ def rows(
     """
     if state.is_typing:  # above the keyboard, but for a row at least
         rect = rect.top(min(rect.height, max(height, KEYBOARD.y - gap - rect.y)))
+    limit = state.entries_limit
+    if limit is not None and total > limit:
+        total = limit + 1
+    else:
+        limit = total
     lines = -(-total // columns)
     shown = max(1, (rect.height + gap) // (height + gap))
     first = min(state.scrolled.get(key, 0), max(0, lines - shown))
     room = Rect(rect.x, rect.y, rect.width - (16 if lines > shown else 0), rect.height)
     cells = room.top(height).columns(columns, gap)
+
+    def entry(index: int) -> Widget:
+        cell = cells[index % columns].moved(0, (index // columns - first) * (height + gap))
+        return row(index, cell) if index < limit else _rest(cell, key, state)
+
     return Rows(
         rect=rect,
         key=key,
@@ -325,10 +335,19 @@ def rows(
         first=first,
         shown=shown,
         total=lines,
-        children=tuple(
-            row(index, cells[index % columns].moved(0, (index // columns - first) * (height + gap)))
-            for index in range(first * columns, min(total, (first + shown) * columns))
-        ),
+        children=tuple(entry(index) for index in range(first * columns, min(total, (first + shown) * columns))),
+    )
+
+
+def _rest(rect: Rect, key: str, state: State) -> Row:
+    """Where a long list ends while driving."""
+    return Row(
+        rect=rect,
+        key=f"{key}.rest",
+        text="The rest at a stop",
+        icon=Icon.INFO,
+        on_tap=Show(state.screen),
+        locked=state.locked(Restriction.LIMIT_CONTENT),
     )
 
 

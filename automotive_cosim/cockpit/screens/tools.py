@@ -331,7 +331,7 @@ def trip(state: State) -> tuple[Widget, ...]:
     per_100 = 100 * unit_m * used_kwh / driven_m if driven_m > 100 else 0.0
     tiles = (
         ("trip.distance", "Distance", distance(signals, driven_m), Icon.ROUTE),
-        ("trip.time", "Time", minutes(took_s), Icon.CLOCK),
+        ("trip.time", "Driving time", minutes(took_s), Icon.CLOCK),
         ("trip.speed", "Mean speed", f"{speed(signals, mean_kmh)} {speed_unit(signals)}", Icon.SPEED),
         ("trip.energy", "Energy", f"{used_kwh:.2f} kWh", Icon.BATTERY),
         ("trip.consumption", "Consumption", f"{per_100:.1f} kWh/100 {unit}", Icon.CHARGING),
