@@ -6,6 +6,7 @@ import copy
 from collections.abc import Mapping
 from dataclasses import replace
 from datetime import datetime
+from itertools import product
 from typing import Any, Protocol
 
 import gymnasium as gym
@@ -51,6 +52,9 @@ s)."""
 
 WATCH_S = 30.0
 """A watch begins at least so long before its trigger, and up to twice that."""
+WAITS_S = (0.0, 41.0, 113.0)
+"""Departures that may bring a task's situation about, each only where the one before did not; out of step with
+the usual cycles of traffic lights."""
 PARKED: Mapping[str, Any] = {MOTION.GEAR.path: "P", DRIVE.PARKING_BRAKE.path: True}
 """Signals of a car that is parked."""
 
@@ -332,7 +336,10 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         )
 
     def _hand_over(self, seed: int) -> CoSimulation:
-        """Drives until the trigger holds. In a scenario that is not the task's own any of its trips may do."""
+        """Drives until the trigger holds, if need be departing later into the same traffic.
+
+        In a scenario that is not the task's own any of its trips may do.
+        """
         assert self._traffic_seed is not None
         if self._listener is not None:
             self._listener.loading(self.scenario)
@@ -341,8 +348,9 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         trips = self.scenario.ego.trips if self._elsewhere else (self.scenario.trip(start.trip),)
         if self.scenario.ego.any_trip:
             trips = tuple(trips[index] for index in np.random.default_rng([seed, 3]).permutation(len(trips)))
-        for trip in trips:
-            plan = self._plan(trip, seed)
+        waits_s = WAITS_S[:1] if start.parked else WAITS_S
+        for trip, wait_s in product(trips, waits_s):
+            plan = self._plan(trip, seed, wait_s)
             traffic = simulation.depart(plan)
             if not plan.weather:  # the climate of the place where it departs
                 plan = replace(plan, weather=drawn_weather(traffic.state, plan.start or self.scenario.start, seed))
@@ -362,8 +370,9 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         trigger = self._half.trigger
         raise TriggerNotReachedError(
             f"task {self._task.id!r}: {trigger.condition} did not hold for {trigger.for_s:g} s within "
-            f"{trigger.within_s:g} s of any of the trips {', '.join(trip.name for trip in trips)} of scenario "
-            f"{self.scenario.name!r} (traffic seed {self._traffic_seed}); try another seed, trip or scenario"
+            f"{trigger.within_s:g} s of {len(waits_s)} departures on any of the trips "
+            f"{', '.join(trip.name for trip in trips)} of scenario {self.scenario.name!r} (traffic seed "
+            f"{self._traffic_seed}); try another seed, trip or scenario"
         )
 
     def _hand_over_early(self, traffic: Traffic, plan: EgoPlan) -> CoSimulation:
@@ -385,14 +394,14 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
             self.drive += self._heard(world, world.advance(TICK_S))
         return world
 
-    def _plan(self, trip: Trip, seed: int) -> EgoPlan:
+    def _plan(self, trip: Trip, seed: int, wait_s: float) -> EgoPlan:
         start = self._half.start
         departure = self.scenario.start
         if start.start is not None:
             departure = datetime.fromisoformat(start.start).replace(tzinfo=departure.tzinfo)
         weather = self.scenario.weather if start.weather is None else (WeatherAt(0.0, start.weather),)
         driver = start.driver or self.scenario.ego.driver
-        return EgoPlan(trip, driver, seed, weather, departure, parked=start.parked)
+        return EgoPlan(trip, driver, seed, weather, departure, parked=start.parked, wait_s=wait_s)
 
     def _couple(self, traffic: Traffic, plan: EgoPlan, lures: tuple[Arrival, ...] = ()) -> CoSimulation:
         start = self._half.start

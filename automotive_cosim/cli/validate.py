@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from automotive_cosim.proof.prover import Proof
 
 FAILED = 1
+TABLE_WIDTH = 170
+"""Of a table that goes into a file: every gate's name is whole."""
 
 
 def validate(
@@ -66,7 +68,8 @@ def validate(
     if as_json:
         typer.echo(json.dumps(result))
     else:
-        Console().print(_table(proofs, chosen))
+        shown = Console()
+        shown.print(_table(proofs, chosen), width=None if shown.is_terminal else TABLE_WIDTH, no_wrap=True)
         failed = sum(bool(entry["failed"]) for entry in result["gates"].values())
         typer.echo(
             f"{len(task_ids)} tasks, {len(numbers)} seeds: {failed} gates failed, {len(result['errors'])} errors"

@@ -33,6 +33,8 @@ class EgoPlan:
     """Local time at departure, zone-aware; None takes the scenario's own."""
     parked: bool = False
     """Stands beside the first lane of its trip and stays there."""
+    wait_s: float = 0.0
+    """Traffic that passes before it departs, so that it meets other cars and other lights."""
 
 
 class Predicate(Protocol):

@@ -107,6 +107,10 @@ class World:
         """
         driver_profile = profile(plan.driver)
         plan = replace(plan, weather=plan.weather or self._scenario.weather)
+        for _ in range(round(plan.wait_s / self.step_s)):
+            self.step()
+            if beat is not None:
+                beat()
         self._add_ego(self._trip_edges(plan.trip), driver_profile, parked=plan.parked)
         for _ in range(round(INSERTION_LIMIT_S / self.step_s)):
             self.step()

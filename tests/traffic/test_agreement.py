@@ -56,6 +56,7 @@ def drive_and_branch(simulation: Simulation, plan: EgoPlan) -> tuple[Record, Rec
 
 
 def test_three_ways_to_run_it_agree(grid: Scenario, forked: Forked, hurried: EgoPlan) -> None:
+    hurried = replace(hurried, wait_s=3.0)
     expected = drive_and_branch(forked, hurried)
     assert len(expected[0][0]) > 300
     assert any(event.kind == "driver_slows" for event in expected[0][1])
@@ -70,6 +71,15 @@ def test_three_ways_to_run_it_agree(grid: Scenario, forked: Forked, hurried: Ego
         assert drive_and_branch(replaying, hurried) == expected
     finally:
         replaying.close()
+
+
+def test_a_later_departure_meets_other_traffic(forked: Forked, hurried: EgoPlan) -> None:
+    now, later = forked.depart(hurried), forked.depart(replace(hurried, wait_s=41.0))
+    assert later.state.time_s - now.state.time_s == pytest.approx(41.0, abs=10.0)
+    speeds = [[state.speed_mps for state in drive.advance(60.0).states] for drive in (now, later)]
+    assert speeds[0] != speeds[1]
+    now.close()
+    later.close()
 
 
 def test_drives_from_one_warm_traffic_are_independent(forked: Forked, hurried: EgoPlan) -> None:
