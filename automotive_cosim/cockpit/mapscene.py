@@ -59,11 +59,21 @@ def jam(state: State) -> tuple[float, float] | None:
     return _along(state.roads, ahead.route_edges, road.lane_position_m + ahead.jam_distance_m)
 
 
-def incidents(state: State) -> tuple[tuple[IncidentKind, Road, tuple[float, float]], ...]:
-    """Those that live traffic told of last: what, on which road, and the point where one comes upon it."""
+def incidents(
+    state: State, *, besides_jam: bool = False
+) -> tuple[tuple[IncidentKind, Road, tuple[float, float]], ...]:
+    """Those that live traffic told of last: what, on which road, and the point where one comes upon it.
+
+    Args:
+        state: of the cockpit.
+        besides_jam: without jams on the route, of which the next has a mark of its own.
+    """
     if state.heard is None:
         return ()
-    known = ((one, state.roads.find(one.edge_id)) for one in state.heard.driving.ahead.incidents)
+    ahead = state.heard.driving.ahead
+    marked = frozenset(ahead.route_edges) if besides_jam else frozenset()
+    told = (one for one in ahead.incidents if one.kind is not IncidentKind.JAM or one.edge_id not in marked)
+    known = ((one, state.roads.find(one.edge_id)) for one in told)
     return tuple((one.kind, road, _point(road, one.position_m)) for one, road in known if road is not None)
 
 

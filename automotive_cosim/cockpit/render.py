@@ -121,6 +121,8 @@ def _card(canvas: Canvas, card: Card, palette: Palette) -> None:
         canvas.box(card.rect, palette.surface, CARD_RADIUS)
     elif card.look == "raised":
         canvas.box(card.rect, palette.raised, BUTTON_RADIUS + 4)
+    elif card.look == "plate":
+        canvas.box(card.rect, palette.plate, CARD_RADIUS)
 
 
 def _label(canvas: Canvas, label: Label, palette: Palette) -> None:

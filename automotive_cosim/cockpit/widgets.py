@@ -81,7 +81,7 @@ class Screen(Widget):
 class Card(Widget):
     """A surface that holds others together."""
 
-    look: Literal["surface", "raised", "none"] = "surface"
+    look: Literal["surface", "raised", "plate", "none"] = "surface"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

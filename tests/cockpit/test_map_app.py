@@ -128,6 +128,25 @@ def test_incidents_at_one_place_and_on_unknown_roads_break_nothing(make: Make, a
     assert words == "Road closed: Pont Neuf", "the gravest"
 
 
+def test_a_mark_does_not_cover_the_car(make: Make, around: Surroundings) -> None:
+    cockpit = make(surroundings=with_incidents(around, RoadIncident(IncidentKind.CLOSURE, "e6_5", 60.0)))
+    cockpit.open_app("map")
+    badge = next(widget for widget in cockpit.tree.walk() if widget.key == "map.incident.0")
+    x, y = View(*_frame(view(cockpit))).pixel(around.driving.x_m, around.driving.y_m)
+    assert not badge.rect.overlaps(Rect(round(x) - 20, round(y) - 20, 40, 40))
+    assert math.dist(badge.rect.centre, (x, y)) < 80
+
+
+def test_of_two_marks_of_one_jam_the_route_s_is_shown(make: Make, around: Surroundings) -> None:
+    for jam_distance_m, marked in ((None, False), (80.0, True)):
+        news = with_incidents(around, RoadIncident(IncidentKind.JAM, "e6_6", 90.0))
+        ahead = replace(news.driving.ahead, jam_distance_m=jam_distance_m)
+        cockpit = make(surroundings=replace(news, driving=replace(news.driving, ahead=ahead)))
+        cockpit.open_app("map")
+        assert any(element.resource_id == "map.jam" for element in cockpit.elements()) is marked
+        assert bool(incidents_seen(cockpit)) is not marked
+
+
 def test_without_a_link_the_traffic_stays_as_it_was_heard_last(make: Make, around: Surroundings) -> None:
     closed = RoadIncident(IncidentKind.CLOSURE, "e6_6", 30.0)
     later = replace(around, local_time=around.local_time + timedelta(minutes=20))

@@ -63,6 +63,7 @@ def _map_card(rect: Rect, state: State) -> Widget:
             view,
             Card(
                 rect=plate,
+                look="plate",
                 children=(
                     Glyph(
                         rect=Rect(plate.x + 14, plate.y + 14, 36, 36),

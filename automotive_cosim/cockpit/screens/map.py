@@ -7,7 +7,7 @@ from datetime import timedelta
 
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.map import ZOOMS_M_PER_PX, Camera
-from automotive_cosim.cockpit.mapscene import box_of, goal, incidents, jam, map_camera, scene
+from automotive_cosim.cockpit.mapscene import box_of, ego, goal, incidents, jam, map_camera, scene
 from automotive_cosim.cockpit.messages import Follow, Guide, Message, Pick, Set, Show, Zoom
 from automotive_cosim.cockpit.navigation import Turn, turns
 from automotive_cosim.cockpit.restrictions import ENTRIES_LIMIT
@@ -149,20 +149,27 @@ def _sight(state: State) -> str:
 
 
 def _marks(rect: Rect, state: State, camera: Camera, avoid: tuple[Rect, ...]) -> tuple[Widget, ...]:
-    """Where a jam begins, where the route ends and what live traffic tells of, as far as they are in sight."""
+    """Where a jam begins, where the route ends and what live traffic tells of, as far as they are in sight.
+
+    A mark that would cover the car stands beside it.
+    """
     known: list[tuple[str, str, Icon, tuple[float, float] | None]] = [
         ("jam", "A jam begins here", Icon.JAM, jam(state)),
         ("goal", "The route ends here", Icon.GOAL, goal(state)),
     ]
-    told = enumerate(incidents(state))
+    told = enumerate(incidents(state, besides_jam=known[0][3] is not None))
     for at, (kind, road, place) in sorted(told, key=lambda one: list(INCIDENTS).index(one[1][0])):
         words, icon = INCIDENTS[kind]
         known.append((f"incident.{at}", f"{words}: {road_name(road)}", icon, place))
+    here = ego(state)
+    car = None if here is None else box_of(camera, rect, here[:2], 48)
     found: list[Badge] = []
     for name, words, icon, point in known:
         if point is None:
             continue
         box = box_of(camera, rect, point, 40)
+        if car is not None and box.overlaps(car):
+            box = box.moved(car.right - box.x, 0)
         taken = (*avoid, *(mark.rect for mark in found))
         if rect.inset(4).encloses(box) and not any(box.overlaps(other) for other in taken):
             found.append(Badge(rect=box, key=f"map.{name}", description=words, icon=icon, warns=name != "goal"))
@@ -199,6 +206,7 @@ def _turn_plate(rect: Rect, ahead: tuple[Turn, float], state: State) -> Widget:
     turn, away_m = ahead
     return Card(
         rect=rect,
+        look="plate",
         children=(
             Glyph(rect=Rect(rect.x + 14, rect.y + 14, 44, 44), icon=turn.icon, size=42, tone="accent"),
             Label(
@@ -224,6 +232,7 @@ def _street_plate(rect: Rect, state: State) -> Widget:
     tunnel = state.outside is not None and state.outside.driving.road.in_tunnel
     return Card(
         rect=rect,
+        look="plate",
         children=(
             Glyph(
                 rect=Rect(rect.x + 16, rect.y + 14, 28, 28),
