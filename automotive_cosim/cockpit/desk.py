@@ -95,6 +95,8 @@ MANUAL: tuple[tuple[str, Icon, str], ...] = (
     ),
 )
 """Topic, icon and text."""
+FILM_S = 40.0
+"""Length of a topic's film."""
 APPOINTMENTS = 4
 _OCCASIONS = (
     ("Check-up", Kind.HOSPITAL),
@@ -167,6 +169,8 @@ class Desk:
     installed: tuple[str, ...] = PREINSTALLED
     memos: tuple[str, ...] = ()
     recording_since_s: float | None = None
+    film: tuple[int, float] | None = None
+    """The topic of the manual whose film plays, and since when."""
     zone: str = ZONES[0]
     minutes: int = 60
     tickets: tuple[Ticket, ...] = ()
@@ -195,6 +199,7 @@ class Desk:
             "apps.installed": list(self.installed),
             "apps.memos": list(self.memos),
             "apps.recording": self.recording_since_s is not None,
+            "apps.film": "" if self.film is None else MANUAL[self.film[0]][0],
             "parking.zone": self.zone,
             "parking.minutes": self.minutes,
             "payments": [{"zone": t.zone, "minutes": t.minutes, "price": t.price} for t in self.tickets],

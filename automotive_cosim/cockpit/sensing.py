@@ -7,6 +7,7 @@ from datetime import datetime
 
 from automotive_cosim.cockpit.cabin import Air, Cabin
 from automotive_cosim.cockpit.calls import receive
+from automotive_cosim.cockpit.desk import FILM_S
 from automotive_cosim.cockpit.errands import odometer, play_on
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.signals import (
@@ -57,6 +58,7 @@ def sense(state: State, surroundings: Surroundings, dt_s: float) -> None:
         state.desk = replace(state.desk, trip_from=odometer(state))
     else:
         _prepare_climate(state, before.local_time, surroundings.local_time)
+    _end_film(state)
     receive(state)
     state.signals[DRIVE.HORN] = False
     if Restriction.NO_KEYBOARD in state.restrictions:
@@ -138,6 +140,13 @@ def _prepare_climate(state: State, before: datetime, now: datetime) -> None:
     if timer.on and _minute(before) < timer.minute <= _minute(now):
         state.vehicle.command(HVAC.AUTO, True)
         state.notify(f"The cabin is being prepared, as set for {timer.shown}", Icon.CLIMATE)
+
+
+def _end_film(state: State) -> None:
+    """A film ends at its end, and where the car leaves park."""
+    film = state.desk.film
+    if film is not None and (Restriction.NO_VIDEO in state.restrictions or state.time_s - film[1] >= FILM_S):
+        state.desk = replace(state.desk, film=None)
 
 
 def _minute(time: datetime) -> float:

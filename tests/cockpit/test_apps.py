@@ -13,6 +13,7 @@ from automotive_cosim.cockpit import media, people, places
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.map import RoadMap
 from automotive_cosim.cockpit.navigation import turns
+from automotive_cosim.cockpit.render import render
 from automotive_cosim.cockpit.signals import (
     ADAS,
     BODY,
@@ -437,6 +438,33 @@ def test_the_cabin_is_prepared_at_the_time_that_was_set(cockpit: Cockpit, around
     for minutes, expected in ((24, False), (26, True)):
         cockpit.sense(replace(around, local_time=around.local_time + timedelta(minutes=minutes)), 1.0)
         assert cockpit.signals[HVAC.AUTO] is expected
+
+
+def test_a_film_of_the_manual_plays_while_parked_alone(parked: Cockpit, around: Surroundings) -> None:
+    still = replace(around, driving=replace(around.driving, speed_mps=0.0))
+    parked.open_app("manual")
+    assert press(parked, "manual.film") is FeedbackCode.OK
+    assert parked.commands()["apps.film"] == "Windows are fogged"
+    before = parked.screenshot()
+    assert not [ink.text for ink in render(parked.tree).inks if ink.cut]
+    parked.sense(replace(still, driving=replace(still.driving, time_s=still.driving.time_s + 3)), 3.0)
+    picture = next(one for one in parked.elements() if one.resource_id == "manual.film.picture")
+    assert picture.content_description == "The film is at 0:03 of 0:40"
+    assert (parked.screenshot() != before).any(), "it moves"
+    ended = parked.copy()
+    ended.sense(replace(still, driving=replace(still.driving, time_s=still.driving.time_s + 41)), 38.0)
+    assert ended.commands()["apps.film"] == ""
+    stopped = parked.copy()
+    assert press(stopped, "manual.film") is FeedbackCode.OK
+    assert stopped.commands()["apps.film"] == ""
+    parked.inject("Vehicle.Powertrain.Transmission.Gear", "D")
+    for surroundings in (still, around):
+        parked.sense(surroundings, 1.0)
+        assert parked.commands()["apps.film"] == "", "standing in gear and moving"
+        assert press(parked, "manual.film") is FeedbackCode.RESTRICTED
+        button = next(one for one in parked.elements() if one.resource_id == "manual.film")
+        assert "Films play while parked" in button.content_description
+        assert not button.is_enabled
 
 
 def test_the_manual_is_searched_in_its_text(parked: Cockpit) -> None:

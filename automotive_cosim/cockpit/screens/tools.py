@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.cockpit.desk import MANUAL, ZONES
+from automotive_cosim.cockpit.desk import FILM_S, MANUAL, ZONES
 from automotive_cosim.cockpit.errands import odometer, price
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.messages import Message, Pay, Pick, Put, Record, ResetTrip, Show
 from automotive_cosim.cockpit.places import Kind
+from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.screens.map import destination
 from automotive_cosim.cockpit.screens.media import minutes
 from automotive_cosim.cockpit.screens.parts import (
@@ -206,6 +207,49 @@ def parking(state: State) -> tuple[Widget, ...]:
     )
 
 
+def _film(rect: Rect, topic: int, icon: Icon, state: State) -> tuple[Widget, ...]:
+    """The topic as a film: its picture and how far it is while it plays, and the button."""
+    desk, button = state.desk, rect.bottom_part(64).left(320)
+    if desk.film is None or desk.film[0] != topic:
+        start = Put("desk", replace(desk, film=(topic, state.time_s)), "The film plays")
+        return (
+            Button(
+                rect=button,
+                key="manual.film",
+                text="Watch the film",
+                icon=Icon.PLAY,
+                on_tap=start,
+                locked=state.locked(Restriction.NO_VIDEO),
+            ),
+        )
+    played_s = state.time_s - desk.film[1]
+    frame = rect.top(128)
+    return (
+        Card(
+            rect=frame,
+            look="raised",
+            children=(
+                Glyph(
+                    rect=frame.middle(96, 96),
+                    key="manual.film.picture",
+                    description=f"The film is at {minutes(played_s)} of {minutes(FILM_S)}",
+                    icon=icon,
+                    size=64 + 8 * (int(played_s) % 5),
+                    tone="accent",
+                ),
+                Bar(rect=frame.inset(20, 12).bottom_part(8), share=round(played_s / FILM_S, 2)),
+            ),
+        ),
+        Button(
+            rect=button,
+            key="manual.film",
+            text="Stop the film",
+            icon=Icon.STOP,
+            on_tap=Put("desk", replace(desk, film=None), "The film is stopped"),
+        ),
+    )
+
+
 def manual(state: State) -> tuple[Widget, ...]:
     """Topics of the handbook and what it says of one."""
     wanted = state.typed.get("manual.search", "").casefold().strip()
@@ -256,6 +300,7 @@ def manual(state: State) -> tuple[Widget, ...]:
                     style=Type.BODY,
                     lines=5,
                 ),
+                *_film(inner.bottom_part(208), chosen, icon, state),
             ),
         ),
     )
