@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import time
 from collections import Counter, defaultdict, deque
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Hashable, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -178,7 +178,10 @@ class _Batch:
         self._ran = self._given_up = self._stillborn = 0
         self._failures: dict[str, list[str]] = defaultdict(list)
         self._places: list[_Place] = []
+        self._out_of_reach: dict[Hashable, Json] = {}
         self._queue = _Queue()
+        for job in jobs:
+            self._note(job, store.rows.get(job.id))
         self._queue.put(job for job in jobs if _is_open(store.rows.get(job.id)))
 
     def run(self) -> None:
@@ -211,14 +214,30 @@ class _Batch:
     def _hand_out(self) -> None:
         for place in self._places:
             if place.job is None and place.worker.is_ready:
-                busy = Counter(other.job.simulation for other in self._places if other.job)
-                job = self._queue.take(place.warm, busy)
+                job = self._next(place)
                 if job is not None:
                     place.give(job)
+
+    def _next(self, place: _Place) -> Job | None:
+        """What to run there; what is known to be out of reach is put down as such, without another try."""
+        busy = Counter(other.job.simulation for other in self._places if other.job)
+        while (job := self._queue.take(place.warm, busy)) is not None:
+            known = self._out_of_reach.get(job.situation)
+            if known is None:
+                return job
+            row = known | self._failed(job, known["error_kind"], known["error"])
+            self._ended(job, row | {"wall_seconds": 0.0})
+        return None
+
+    def _note(self, job: Job, row: Json | None) -> None:
+        if row is not None and row["error_kind"] in FINAL_KINDS:
+            self._out_of_reach[job.situation] = row
 
     def _wait(self) -> None:
         """Waits for an answer, a death, a worker that becomes ready, or the end of somebody's time."""
         awaited = [place for place in self._places if place.job or not place.worker.is_ready]
+        if not awaited:  # the last ones were known to be out of reach
+            return
         handles = {handle: place for place in awaited for handle in place.worker.handles}
         now_s = time.monotonic()
         ends_s = [place.since_s + place.job.wall_s for place in awaited if place.job]
@@ -264,6 +283,7 @@ class _Batch:
             if len(failures) <= self._retries and row["error_kind"] not in FINAL_KINDS:
                 self._queue.put([job])
                 return
+        self._note(job, row)
         attempts = len(failures) + (row["error"] is None)
         self._store.append(row | {"attempts": attempts, "failed_attempts": failures})
         self._ran += 1

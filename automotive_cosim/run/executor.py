@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,6 +22,11 @@ class Job(Protocol):
     @property
     def simulation(self) -> tuple[str, int]:
         """What warm simulation it starts from; a worker does those of one after the other."""
+        ...
+
+    @property
+    def situation(self) -> Hashable:
+        """What has to come about before anybody acts: where it does not for one job, it does not for its likes."""
         ...
 
     @property

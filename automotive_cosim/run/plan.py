@@ -5,8 +5,8 @@ from __future__ import annotations
 import hashlib
 import re
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, fields
+from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, fields, replace
 from fnmatch import fnmatchcase
 from itertools import product
 from pathlib import Path
@@ -86,9 +86,12 @@ class Plan:
             scenarios.load(name)
 
     def jobs(self) -> tuple[Job, ...]:
-        """Every episode, those that share a warm simulation together."""
+        """Every episode, those that share a warm simulation together.
+
+        Of these a contestant's come after another's: a situation that does not come about for one is known by then.
+        """
         jobs = {job.id: job for job in self._each()}
-        return tuple(sorted(jobs.values(), key=lambda job: (*job.simulation, job.id)))
+        return tuple(sorted(jobs.values(), key=lambda job: (*job.simulation, *job.contestant, job.id)))
 
     def _each(self) -> Iterator[Job]:
         chosen = [CATALOGUE[task_id] for task_id in choose(self.tasks)]
@@ -148,6 +151,18 @@ class Job:
     def simulation(self) -> tuple[str, int]:
         """What warm simulation it starts from: scenario and seed."""
         return self.scenario, self.setup.seed
+
+    @property
+    def contestant(self) -> tuple[str, str, str, int]:
+        """Who acts on what, for which time."""
+        return self.setup.agent, self.setup.model, self.setup.geo, self.repeat
+
+    @property
+    def situation(self) -> Hashable:
+        """The drive up to the hand-over, on which nobody acts; in a watch the agent does."""
+        if self.setup.mode == Mode.MONITORING:
+            return self.id
+        return replace(self.setup, agent="", model="", geo="", without=())
 
     @property
     def wall_s(self) -> float:

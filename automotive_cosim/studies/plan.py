@@ -179,6 +179,11 @@ class DriveJob:
         return f"{self.share:g}", self.seed
 
     @property
+    def situation(self) -> str:
+        """A drive waits for nothing, so that no other is like it."""
+        return self.id
+
+    @property
     def wall_s(self) -> float:
         """Wall time that it may take: agents think for a while."""
         return 7_200.0 if self.plan.agents else 1_800.0

@@ -144,6 +144,18 @@ def test_a_trigger_out_of_reach_is_an_error_that_is_not_tried_again(tmp_path):
     assert run_plan(wanted, tmp_path / "e").ran == 0
 
 
+@pytest.mark.slow
+def test_a_trigger_out_of_reach_is_sought_once_for_all_contestants(tmp_path):
+    tasks = ["road_speed_80_in_50"]
+    end = run_plan(plan("no-op", "always-alert", tasks=tasks), tmp_path / "both")
+    assert (end.planned, end.done, end.ran, end.errors) == (4, 4, 4, 2)
+    rows = [row for row in read_rows(tmp_path / "both").values() if row["error"]]
+    assert sorted(row["wall_seconds"] > 0 for row in rows) == [False, True]
+    assert {row["attempts"] for row in rows} == {1}
+    run_plan(plan("no-op", tasks=tasks), tmp_path / "alone")
+    assert steady(tmp_path / "alone").items() <= steady(tmp_path / "both").items()
+
+
 def test_pictures_are_kept_by_choice(tmp_path):
     wanted = plan("oracle", "always-alert")
     for choice, count in ((Pictures.NONE, 0), (Pictures.FAILURES, 1), (Pictures.ALL, 2)):
