@@ -138,7 +138,7 @@ def random(ground: Ground) -> Wrong:
     """Random actions."""
     wins = 0
     for number in range(RANDOM_RUNS):
-        wins += ground.play(ground.agent(Random(number))).success
+        wins += ground.play(ground.agent(Random(number)), give_up=True).success
         if wins > RANDOM_WINS:
             yield f"random actions win {wins} of {number + 1}"
             return
@@ -155,10 +155,10 @@ def _wins(ground: Ground, right: Played, moments: tuple[object, ...]) -> bool:
 
 
 def _strategies(grounds: dict[str, Ground]) -> Iterator[tuple[str, Strategy]]:
-    yield "no-op", lambda ground: ground.play(ground.agent(NoOp()))
+    yield "no-op", lambda ground: ground.play(ground.agent(NoOp()), give_up=True)
     for status in GoalStatus:
         yield str(status), partial(Ground.declares, status=status)
-    yield "press-everything", lambda ground: ground.play(ground.agent(PressEverything()), PRESSES)
+    yield "press-everything", lambda ground: ground.play(ground.agent(PressEverything()), PRESSES, give_up=True)
     for kind in AlertKind:
         yield f"always {kind}", partial(_alerts, kind=kind)
     if len(grounds) > 1:
@@ -167,7 +167,7 @@ def _strategies(grounds: dict[str, Ground]) -> Iterator[tuple[str, Strategy]]:
 
 
 def _alerts(ground: Ground, kind: AlertKind) -> Played:
-    return ground.play(ground.agent(AlwaysAlert(kind)))
+    return ground.play(ground.agent(AlwaysAlert(kind)), give_up=True)
 
 
 def _reads_context(ground: Ground, acting: Ground) -> Played:

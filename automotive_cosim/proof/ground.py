@@ -105,9 +105,9 @@ class Ground:
         """The half with its parameters filled in."""
         return self.env.instance.half
 
-    def play(self, actor: Actor, max_steps: int = 20) -> Played:
-        """An episode from the hand-over."""
-        return finish(self.env.branch(max_steps), actor)
+    def play(self, actor: Actor, max_steps: int = 20, *, give_up: bool = False) -> Played:
+        """An episode from the hand-over; with ``give_up`` it ends as soon as it can no longer succeed."""
+        return finish(self.env.branch(max_steps), actor, give_up=give_up)
 
     def oracle(self, moves: Sequence[Move] | None = None) -> Oracle:
         """An oracle that knows this instance."""
@@ -132,10 +132,28 @@ class Ground:
         self.env.close()
 
 
-def finish(env: CockpitEnv, actor: Actor) -> Played:
-    """Plays an episode to its end and closes it."""
+SENT = frozenset({"alerts", "requests", "horn", "washer"})
+"""Of a cockpit's commands what nobody can take back."""
+
+
+def is_lost(env: CockpitEnv) -> bool:
+    """Whether an episode can no longer succeed, whatever comes: by side effects that stay, or by its deadline."""
+    half = env.instance.half
+    start, now = env.moments[0], env.moments[-1]
+    if any(now.commands[key] != start.commands[key] for key in SENT - half.goal.writes - half.may_write):
+        return True
+    if now.time_s - start.time_s <= half.deadline.seconds:
+        return False
+    return half.declares is not GoalStatus.COMPLETE or not half.goal.holds(start, now, env.moments)
+
+
+def finish(env: CockpitEnv, actor: Actor, *, give_up: bool = False) -> Played:
+    """Plays an episode to its end, with ``give_up`` until it is lost, and closes it."""
     done, stuck = False, ""
     while not done:
+        if give_up and is_lost(env):
+            env.cut_off()
+            break
         try:
             action = actor.act(env.observation)
         except ActionError as error:

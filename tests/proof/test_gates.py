@@ -6,12 +6,13 @@ from dataclasses import dataclass, replace
 import pytest
 
 from automotive_cosim import verdict
+from automotive_cosim.agents.trivial import Random
 from automotive_cosim.checks import AnyOf, NothingDone, SignalIs
 from automotive_cosim.cockpit.signals import HVAC, SEAT
-from automotive_cosim.contracts import GoalStatus, Reason
+from automotive_cosim.contracts import Action, ActionType, AlertKind, GoalStatus, Reason
 from automotive_cosim.cosim import Moment
 from automotive_cosim.proof import gates
-from automotive_cosim.proof.ground import Ground
+from automotive_cosim.proof.ground import Ground, Script
 from automotive_cosim.suite import Basis, Module, Open, Start, Tap, Task
 from automotive_cosim.tasks.forms import COMFORT, ON_THE_WAY, asked, decline
 from automotive_cosim.triggers import InTunnel, SignalAbove, Trigger
@@ -162,6 +163,24 @@ def test_a_task_that_luck_wins_is_seen(ground):
     everything = frozenset(ground(SOUND).env.moments[0].commands)
     (wrong,) = gates.random(ground(changed(goal=NothingDone(), moves=(), may_write=everything)))
     assert wrong.startswith("random actions win 2")
+
+
+def test_only_what_is_lost_is_given_up(ground):
+    """Luck that ends in success without giving up does so with it, and the other way round."""
+    easy = ground(replace(SOUND, first=replace(SOUND.first, goal=AnyOf((SOUND.first.goal, NothingDone())))))
+    for at in (easy, ground(SOUND)):
+        for number in range(8):
+            whole, short = (at.play(at.agent(Random(number)), give_up=give_up) for give_up in (False, True))
+            assert whole.success == short.success
+            assert len(short.actions) <= len(whole.actions)
+    assert easy.play(easy.oracle(), give_up=True).success
+
+
+def test_a_side_effect_that_stays_ends_a_hopeless_run(ground):
+    at = ground(SOUND)
+    alerts = Script((Action(ActionType.SHOW_ALERT, kind=AlertKind.SPEED), Action(ActionType.WAIT, seconds=1)))
+    assert len(at.play(alerts, give_up=True).actions) == 1
+    assert len(at.play(alerts).actions) > 1
 
 
 def test_a_trigger_without_a_drive_is_seen(ground, simulations):
