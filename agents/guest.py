@@ -138,4 +138,5 @@ def _made(spec: str, made: type) -> Any:
 
 
 def _told(error: BaseException) -> str:
-    return f"{type(error).__name__}: {' '.join(str(error).split())[:200]}"
+    said = " ".join(str(error).split())[:200]
+    return f"{type(error).__name__}: {said}".encode("utf-8", "replace").decode()

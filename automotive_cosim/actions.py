@@ -163,8 +163,12 @@ def check(action: Action) -> Action:
         raise ActionError(
             f"{name} takes no {', '.join(sorted(surplus))}; it takes {', '.join(allowed) or 'no fields'}"
         )
-    if action.text is not None and len(action.text) > TEXT_LIMIT:
-        raise ActionError(f"{name}: text has {len(action.text)} characters; at most {TEXT_LIMIT} are allowed")
+    for field in ("text", "app_name", "destination"):
+        said = getattr(action, field) or ""
+        if len(said) > TEXT_LIMIT:
+            raise ActionError(f"{name}: {field} has {len(said)} characters; at most {TEXT_LIMIT} are allowed")
+        if any("\ud800" <= character <= "\udfff" for character in said):
+            raise ActionError(f"{name}: {field} holds half a surrogate pair, which is no character")
     if action.seconds is not None and not 1 <= action.seconds <= SECONDS_LIMIT:
         raise ActionError(f"{name}: seconds is {action.seconds}; it goes from 1 to {SECONDS_LIMIT}")
     if action.distance_px is not None and not 1 <= action.distance_px <= DISTANCE_LIMIT_PX:

@@ -243,7 +243,8 @@ class Remote:
             raise _PassingError(f"the answer is no chat completion: {shown!r}") from None
         settings = self._settings
         cost_usd = (tokens_in * settings.usd_per_million_in + tokens_out * settings.usd_per_million_out) / 1e6
-        text = self._endpoint.clean(_text(content))
+        # Half a surrogate pair is valid JSON and no text: it could not be written into a record.
+        text = self._endpoint.clean(_text(content)).encode("utf-8", "replace").decode()
         return Reply(text, tokens_in, tokens_out, cost_usd, finish=finish)
 
 

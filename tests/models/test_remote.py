@@ -221,7 +221,13 @@ def test_a_malformed_answer_is_tried_again(server, body):
 
 @pytest.mark.parametrize(
     ("content", "text"),
-    [(None, ""), ("", ""), (7, ""), ([{"type": "text", "text": "a"}, {"type": "text", "text": "b"}], "ab")],
+    [
+        (None, ""),
+        ("", ""),
+        (7, ""),
+        ("a\ud800b", "a?b"),
+        ([{"type": "text", "text": "a"}, {"type": "text", "text": "b"}], "ab"),
+    ],
 )
 def test_an_answer_without_text_is_an_empty_one(server, content, text):
     server.behaviours = [lambda handler: send(handler, 200, completion(content))]
