@@ -80,7 +80,7 @@ def plot(curve: list[dict[str, float]], path: Path) -> None:
     axes.axhline(90, color="#999999", linestyle=":", linewidth=1)
     axes.set(xlabel="steps of training", ylabel="success on unseen seeds in %", ylim=(0, 102), xlim=(0, None))
     axes.spines[["top", "right"]].set_visible(False)
-    figure.savefig(path)
+    figure.savefig(path, metadata={"Date": None} if path.suffix == ".svg" else None)
 
 
 def main() -> None:
