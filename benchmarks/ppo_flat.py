@@ -74,9 +74,8 @@ def plot(curve: list[dict[str, float]], path: Path) -> None:
 
     figure = Figure(figsize=(6, 3.4), layout="constrained")
     axes = figure.subplots()
-    axes.plot(
-        [point["steps"] for point in curve], [100 * point["success"] for point in curve], "o-", color="#1f6fb4"
-    )
+    steps, success = [point["steps"] for point in curve], [100 * point["success"] for point in curve]
+    axes.plot(steps, success, "o-", color="#1f6fb4", clip_on=False)
     axes.axhline(90, color="#999999", linestyle=":", linewidth=1)
     axes.set(xlabel="steps of training", ylabel="success on unseen seeds in %", ylim=(0, 102), xlim=(0, None))
     axes.spines[["top", "right"]].set_visible(False)
