@@ -128,7 +128,8 @@ def _sources(
                 number = None
                 if isinstance(cell, Cell) and cell.episodes:
                     number = len(sources)
-                    named = ", ".join(map(str, row[: table.heads]))
+                    # An error is named by its kind; what it says stands at its episode.
+                    named = str(row[1]) if table.name == "errors" else ", ".join(map(str, row[: table.heads]))
                     title = f"{table.title}: {named}" + ("" if table.name == "errors" else f", {column}")
                     sources.append(Source(number, title, cell.text, tuple(rows[name] for name in cell.episodes)))
                 told.append((str(cell), number))
