@@ -126,9 +126,10 @@ def across(
     speed_kmh: float,
     difference: str,
     other_kmh: float | None = None,
+    at: str = NOON,
 ) -> Task:
     """The same drive in two countries: too fast ``there``; lawful ``here``, or above ``other_kmh``."""
-    start = replace(start, start=NOON, sign_camera=False)
+    start = replace(start, start=at, sign_camera=False)
     away, home = replace(start, origin=there), replace(start, origin=here)
     if other_kmh is None:
         first = warned(away, trigger, SOON, Basis.LAW, rules[0], speed_kmh=speed_kmh)
@@ -328,6 +329,7 @@ LIMITS_BY_PLACE = (
         ("JP.limit.no_centre_line", "FR.limit.built_up"),
         30.0,
         "a street without centre line, where Japanese law says 30 km/h and French law 50; 45 on both",
+        at="2026-09-17T12:30:00",  # the Japanese limit holds from 1 September 2026 on
     ),
 )
 
