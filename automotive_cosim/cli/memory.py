@@ -33,4 +33,4 @@ def show(
         typer.echo(f"  when    {strategy.trigger}")
         typer.echo(f"  did     {strategy.steps}")
         typer.echo(f"  worked  {strategy.worked} of {strategy.worked + strategy.failed}")
-    typer.echo(f"{len(kept)} strategies")
+    typer.echo("1 strategy" if len(kept) == 1 else f"{len(kept)} strategies")
