@@ -58,7 +58,7 @@ def reroute(
     policies: Annotated[
         str,
         typer.Option(
-            help="Who decides, with commas: never, always, delay:SECONDS, sumo, best, agent:NAME[/MODEL]."
+            help="Who decides, with commas: never, always, delay:SECONDS, sumo, best, agent:NAME, agent:NAME/MODEL."
         ),
     ] = "never,always,delay:60,sumo,best",
     driver: Annotated[str, typer.Option(help="Driver profile of the ego.", show_default="scenario's")] = "",

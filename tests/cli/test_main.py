@@ -3,9 +3,11 @@ import sys
 
 import pytest
 from PIL import Image
+from typer.main import get_command
 
 from automotive_cosim import __version__
 from automotive_cosim.agents import AGENTS
+from automotive_cosim.cli.main import app
 from automotive_cosim.errors import TriggerNotReachedError
 from automotive_cosim.tasks import CATALOGUE
 
@@ -39,9 +41,16 @@ def test_help_names_every_command_and_loads_nothing_heavy():
         assert command in done.stdout
 
 
-@pytest.mark.parametrize("command", [*COMMANDS, "tasks show"])
+def every_command(command=None, path=()):
+    command = command or get_command(app)
+    yield path
+    for name, below in getattr(command, "commands", {}).items():
+        yield from every_command(below, (*path, name))
+
+
+@pytest.mark.parametrize("command", list(every_command()), ids=" ".join)
 def test_every_command_explains_itself(cli, command):
-    ran = cli(*command.split(), "--help")
+    ran = cli(*command, "--help")
     assert ran.code == 0
     assert "Usage" in ran.out
     assert ran.err == ""
