@@ -9,7 +9,7 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, field
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.errors import InfrastructureError, ScenarioError, TriggerNotReachedError
+from automotive_cosim.errors import TriggerNotReachedError
 from automotive_cosim.proof import gates
 from automotive_cosim.proof.ground import Ground
 from automotive_cosim.tasks import CATALOGUE
@@ -85,11 +85,8 @@ class Prover:
                 proof.take("reach", gates.reach(CATALOGUE[task_id], seed, self._simulations))
             if "residue" in self._chosen:
                 proof.take("residue", self._residue(grounds["first"]))
-        except (InfrastructureError, ScenarioError, TriggerNotReachedError) as error:
-            if isinstance(error, TriggerNotReachedError):
-                proof.take("reach", iter([str(error)]))
-            else:
-                proof.error = f"{type(error).__name__}: {error}"
+        except TriggerNotReachedError as error:
+            proof.take("reach", iter([str(error)]))
         except Exception as error:  # a fault in one task must not take the proof of the others with it
             proof.error = f"{type(error).__name__}: {error}"
         finally:

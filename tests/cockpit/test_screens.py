@@ -281,16 +281,21 @@ def test_children_lie_within_their_parents(screens: list[Cockpit]) -> None:
                 assert widget.rect.encloses(child.rect), f"{child.key or child.text} beyond {widget.key}"
 
 
+def seen_to_the_end(cockpit: Cockpit, key: str) -> set[str]:
+    """What a list shows while it is scrolled down as far as it goes."""
+    seen = set[str]()
+    while True:
+        here = next(widget for widget in cockpit.tree.walk() if widget.key == key)
+        seen |= {child.key for child in here.children}
+        if cockpit.scroll(key, Direction.DOWN).code is not FeedbackCode.OK:
+            return seen
+
+
 def test_every_list_scrolls_through_all_it_has(make: Make, around: Surroundings, walker: Any) -> None:
     for view in walker(CASES["parked"](make, around)):
         for rows in [widget for widget in view.cockpit.tree.walk() if isinstance(widget, Rows)]:
             cockpit = view.cockpit.copy()
-            seen = set[str]()
-            while True:
-                here = next(widget for widget in cockpit.tree.walk() if widget.key == rows.key)
-                seen |= {child.key for child in here.children}
-                if cockpit.scroll(rows.key, Direction.DOWN).code is not FeedbackCode.OK:
-                    break
+            seen = seen_to_the_end(cockpit, rows.key)
             assert len(seen) >= rows.total
             while cockpit.scroll(rows.key, Direction.UP).code is FeedbackCode.OK:
                 pass
@@ -304,12 +309,7 @@ def test_long_lists_end_early_while_driving(make: Make, around: Surroundings, wa
     for view in walker(make()):
         for rows in [widget for widget in view.cockpit.tree.walk() if isinstance(widget, Rows)]:
             cockpit = view.cockpit.copy()
-            seen = set[str]()
-            while True:
-                here = next(widget for widget in cockpit.tree.walk() if widget.key == rows.key)
-                seen |= {child.key for child in here.children}
-                if cockpit.scroll(rows.key, Direction.DOWN).code is not FeedbackCode.OK:
-                    break
+            seen = seen_to_the_end(cockpit, rows.key)
             if f"{rows.key}.rest" not in seen:
                 assert len(seen) <= 21
                 continue
