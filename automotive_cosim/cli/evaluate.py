@@ -49,8 +49,12 @@ def evaluate(
         ),
     ] = None,
     scenarios: Annotated[
-        str | None, typer.Option(help="In place of the tasks' own, with commas.", show_default=False)
+        str | None,
+        typer.Option(help="In place of the tasks' own, for those that can run there.", show_default=False),
     ] = None,
+    everywhere: Annotated[
+        bool, typer.Option("--everywhere", help="Take tasks also to scenarios that they do not name.")
+    ] = False,
     seeds: Annotated[str | None, typer.Option(help="As in 0-4 or 0,3,7.", show_default="0")] = None,
     geo: Annotated[
         str | None,
@@ -111,6 +115,7 @@ def evaluate(
     values |= {"seeds": seeds_in(seeds)} if seeds is not None else {}
     values |= {"repeats": repeats} if repeats is not None else {}
     values |= {"held_out": True} if held_out else {}
+    values |= {"everywhere": True} if everywhere else {}
     plan = make_plan(values)
     folder = out or _folder(plan)
     where = executor_of(executor, workers, ray_address, ray_send)
@@ -163,6 +168,8 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
     table.add_row("agents", ", ".join(sorted({f"{job.setup.agent} ({job.setup.model})" for job in jobs})))
     table.add_row("tasks", f"{len({job.setup.task for job in jobs})}, pairs in both halves")
     table.add_row("scenarios", ", ".join(sorted({job.scenario for job in jobs})))
+    if left_out := plan.left_out():
+        table.add_row("left out", f"{len(left_out)} tasks that cannot run there; --everywhere takes them along")
     table.add_row("seeds", ", ".join(map(str, plan.seeds)))
     table.add_row("geo controls", ", ".join(plan.geo))
     table.add_row("modes", ", ".join(plan.modes))

@@ -52,7 +52,10 @@ class Plan:
     models: tuple[str, ...] = ("rules",)
     """For the agents that have one."""
     scenarios: tuple[str, ...] = ()
-    """In place of the tasks' own; none leaves each where it belongs."""
+    """In place of the tasks' own, for those that can run there (``Task.runs_in``); in one that is not shipped, for
+    all. None leaves each where it belongs."""
+    everywhere: bool = False
+    """Takes tasks to the scenarios that they do not name too; the situation may not come about there."""
     seeds: tuple[int, ...] = (0,)
     geo: tuple[str, ...] = ("full",)
     modes: tuple[str, ...] = (str(Mode.PROMPTED),)
@@ -71,8 +74,13 @@ class Plan:
         """Tries every name before anything runs.
 
         Raises:
-            UserError: a name that does not exist, a model that cannot be used, or an agent that needs a person.
+            UserError: a name that does not exist, a model that cannot be used, an agent that needs a person, or
+                nothing to run.
         """
+        for name in self.scenarios:
+            scenarios.load(name)
+        if not self.jobs():
+            raise UserError(f"the plan has nothing to run: {self._why_empty()}")
         for agent, model in {(job.setup.agent, job.model) for job in self.jobs()}:
             if agent == "human":
                 raise UserError("agent 'human' needs a person; use `automotive-cosim run --agent human`")
@@ -82,8 +90,6 @@ class Plan:
         for name in self.modes:
             if name not in set(Mode):
                 raise UnknownNameError("mode", name, Mode)
-        for name in {job.scenario for job in self.jobs()}:
-            scenarios.load(name)
 
     def jobs(self) -> tuple[Job, ...]:
         """Every episode, those that share a warm simulation together.
@@ -93,13 +99,36 @@ class Plan:
         jobs = {job.id: job for job in self._each()}
         return tuple(sorted(jobs.values(), key=lambda job: (*job.simulation, *job.contestant, job.id)))
 
-    def _each(self) -> Iterator[Job]:
+    def left_out(self) -> tuple[str, ...]:
+        """Ids of the chosen tasks that cannot run in any of the scenarios."""
+        placed = {task.id for task, _ in self._placed()}
+        return tuple(task_id for task_id in choose(self.tasks) if task_id not in placed)
+
+    def _why_empty(self) -> str:
+        if self._placed():
+            return "only safety tasks can be monitored; choose some, or take the mode prompted"
+        return (
+            f"none of the tasks can run in {', '.join(self.scenarios)}; `automotive-cosim tasks show` tells where "
+            "each can, and --everywhere takes them there all the same"
+        )
+
+    def _placed(self) -> list[tuple[Task, str | None]]:
+        """Each task with each scenario that it goes to; None for its own."""
         chosen = [CATALOGUE[task_id] for task_id in choose(self.tasks)]
-        for agent, model, task, scenario, seed, geo, mode, repeat in product(
+        if not self.scenarios:
+            return [(task, None) for task in chosen]
+        shipped = scenarios.shipped()
+        return [
+            (task, name)
+            for task, name in product(chosen, self.scenarios)
+            if self.everywhere or name not in shipped or name in task.runs_in
+        ]
+
+    def _each(self) -> Iterator[Job]:
+        for agent, model, (task, scenario), seed, geo, mode, repeat in product(
             self.agents,
             self.models,
-            chosen,
-            self.scenarios or (None,),
+            self._placed(),
             self.seeds,
             self.geo,
             self.modes,
@@ -242,9 +271,10 @@ def make_plan(values: Mapping[str, Any]) -> Plan:
             raise UserError(f"{name} of the plan is empty; leave it out to take the default")
     if "repeats" in values:
         made["repeats"] = int(_positive("repeats", values["repeats"], whole=True))
-    if not isinstance(values.get("held_out", False), bool):
-        raise UserError(f"held_out of the plan is {values['held_out']!r}; give true or false")
-    made["held_out"] = values.get("held_out", False)
+    for name in ("everywhere", "held_out"):
+        made[name] = values.get(name, False)
+        if not isinstance(made[name], bool):
+            raise UserError(f"{name} of the plan is {made[name]!r}; give true or false")
     limits = {
         name: _positive(name, value, whole=name in ("steps", "tokens"))
         for name, value in values.get("limits", {}).items()
