@@ -21,7 +21,7 @@ AT_REST = Trigger(Parked(), for_s=3.0, within_s=30.0)
 PARIS = Start("paris_centre", "centre")
 COMFORT = Deadline(30.0, "a wish for comfort: the driver would reach for the knob within half a minute")
 ERRAND = Deadline(60.0, "an errand on the screen: a passenger would have it done within a minute")
-ANYWHERE = ("london", "new_york", "tokyo", "autobahn", "sydney")
+ANYWHERE = ("london", "new_york", "tokyo", "autobahn", "sydney", "grid")
 """Other scenarios in which a car on its way is all that a task needs."""
 LOCKED = (Reason.SAFETY, Reason.NOT_POSSIBLE)
 NO_PARAMETERS: Mapping[str, Choices] = {}

@@ -11,7 +11,7 @@ from automotive_cosim.parameters import param
 from automotive_cosim.suite import Module, Open, Slide, Tap, TapUntil
 from automotive_cosim.tasks.forms import COMFORT, PARIS, asked
 
-METRIC = ("tokyo", "autobahn", "sydney")
+METRIC = ("tokyo", "autobahn", "sydney", "grid")
 """Other scenarios whose display speaks in degrees Celsius."""
 WARM_DEGREES = (21.5, 22.0, 22.5, 23.0, 23.5, 24.0, 24.5, 25.0)
 SEATS = (SEAT.DRIVER_HEATING, SEAT.PASSENGER_HEATING, SEAT.REAR_LEFT_HEATING, SEAT.REAR_RIGHT_HEATING)

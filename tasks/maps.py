@@ -31,7 +31,9 @@ def named(*kinds: Kind) -> tuple[str, ...]:
 SETS_OUT = TapUntil("place.start", "place.start", "You are already on the way there", at_most=8)
 """Again if need be: inside a junction the way is fixed."""
 STOPS_THERE = TapUntil("place.stop", "place.stop", "You are already on the way there", at_most=8)
-TOWNS = ("london", "new_york", "tokyo")
+CITIES = ("london", "new_york", "tokyo")
+"""Scenarios with places of every kind."""
+TOWNS = (*CITIES, "grid")
 """Scenarios with streets in every direction."""
 SPOKEN: dict[str, Kind] = {
     "supermarket": Kind.SHOP,
@@ -123,7 +125,7 @@ EXPLICIT = (
         Tap(text="{place}"),
         Tap("place.save"),
         parameters={"place": tuple(ALL_NAMED)},
-        scenarios=TOWNS,
+        scenarios=CITIES,
     ),
     asked(
         "maps_forget_place",
@@ -280,7 +282,7 @@ EXPLICIT = (
         parameters={"park": named(Kind.PARKING), "stay": ("two hours", "four hours")},
         may_write=frozenset({"parking.zone"}),
         tags=frozenset({"two_modules"}),
-        scenarios=TOWNS,
+        scenarios=CITIES,
     ),
     asked(
         "maps_go_and_tell",

@@ -16,15 +16,17 @@
 | law | what is right in one half fails in the other |
 | repeat | the same seed gives the same words and trace; other seeds others |
 | residue | after another task's episode a task gives its own trace |
-| reach | the trigger comes in time in every scenario the task names |
+| reach | the trigger comes in time in every scenario the task names, and the expert succeeds there |
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
+from contextlib import closing
 from dataclasses import replace
 from functools import partial
+from itertools import product
 
 import numpy as np
 
@@ -34,7 +36,7 @@ from automotive_cosim.contracts import Action, ActionType, AlertKind, GoalStatus
 from automotive_cosim.env import CockpitEnv
 from automotive_cosim.errors import ScenarioError, TriggerNotReachedError
 from automotive_cosim.proof import mutations
-from automotive_cosim.proof.ground import CHANNELS, Ground, Played, Script, finish, sha256
+from automotive_cosim.proof.ground import Ground, Played, Script, finish, sha256
 from automotive_cosim.suite import Basis, Half, Task
 from automotive_cosim.traffic.fork import Simulations
 from automotive_cosim.triggers import Parked, Standing
@@ -288,12 +290,14 @@ def hash_of_oracle(ground: Ground) -> str:
 
 
 def reach(task: Task, seed: int, simulations: Simulations) -> Wrong:
-    """Every further scenario."""
-    for scenario in task.scenarios:
-        env = CockpitEnv(task, scenario=scenario, channels=CHANNELS, simulations=simulations)
+    """Every further scenario, in each half."""
+    for scenario, half in product(task.scenarios, task.halves):
         try:
-            env.reset(seed=seed)
+            ground = Ground.reach(task, half, seed, simulations, scenario)
         except (TriggerNotReachedError, ScenarioError) as error:
-            yield f"{scenario}: {error}"
-        finally:
-            env.close()
+            yield f"{half} in {scenario}: {error}"
+            continue
+        with closing(ground):
+            played = ground.play(ground.oracle())
+        if not played.success:
+            yield f"{half} in {scenario}: {played.why}"

@@ -85,13 +85,15 @@ class Ground:
     env: CockpitEnv
 
     @classmethod
-    def reach(cls, task: Task, half_name: str, seed: int, simulations: Simulations) -> Ground:
-        """Drives up to the hand-over.
+    def reach(
+        cls, task: Task, half_name: str, seed: int, simulations: Simulations, scenario: str | None = None
+    ) -> Ground:
+        """Drives up to the hand-over, in the task's own scenario or another.
 
         Raises:
             TriggerNotReachedError, TrafficError: as ``CockpitEnv.reset``.
         """
-        env = CockpitEnv(task, half_name, channels=CHANNELS, simulations=simulations)
+        env = CockpitEnv(task, half_name, scenario=scenario, channels=CHANNELS, simulations=simulations)
         env.reset(seed=seed)
         return cls(task, half_name, seed, env)
 

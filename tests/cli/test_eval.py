@@ -37,7 +37,18 @@ def test_a_run_is_told_and_the_same_command_finds_it_done(cli, tmp_path):
 
 
 def test_errors_are_listed_and_set_the_exit_code(cli):
-    ran = cli("eval", "--agents", "oracle", "--tasks", "road_speed_80_in_50", "--scenarios", "grid", "--out", "e")
+    ran = cli(
+        "eval",
+        "--agents",
+        "oracle",
+        "--tasks",
+        "road_speed_80_in_50",
+        "--scenarios",
+        "grid",
+        "--everywhere",
+        "--out",
+        "e",
+    )
     assert ran.code == 3
     assert "TriggerNotReachedError" in ran.out
     assert "1 of 1 judged episodes succeeded; 1 errors" in ran.out

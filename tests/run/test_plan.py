@@ -44,6 +44,34 @@ def test_an_episode_of_an_agent_without_a_model_stands_once():
     assert len({job.id for job in jobs}) == 4
 
 
+def test_tasks_go_to_the_scenarios_they_can_run_in():
+    chosen = {"tasks": ["road_speed_80_in_50", "hvac_fan_max"], "scenarios": ["grid", "london"]}
+    there = plan(**chosen)
+    assert {(job.setup.task, job.scenario) for job in there.jobs()} == {
+        ("hvac_fan_max", "grid"), ("hvac_fan_max", "london"),
+    }  # fmt: skip
+    assert there.left_out() == ("road_speed_80_in_50",)
+    wide = plan(**chosen, everywhere=True)
+    assert {job.setup.task for job in wide.jobs()} == set(chosen["tasks"])
+    assert wide.left_out() == ()
+    foreign = plan(tasks=chosen["tasks"], scenarios=["/elsewhere/grid"])
+    assert {job.setup.task for job in foreign.jobs()} == set(chosen["tasks"])
+    for scenario in CATALOGUE["hvac_fan_max"].runs_in:
+        assert plan(tasks=["hvac_fan_max"], scenarios=[scenario]).jobs()
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ({"tasks": ["road_speed_80_in_50"], "scenarios": ["grid"]}, "can run in grid.*--everywhere"),
+        ({"tasks": ["hvac_fan_max"], "modes": ["monitoring"]}, "only safety tasks can be monitored"),
+    ],
+)
+def test_a_plan_with_nothing_to_run_says_why(values, said):
+    with pytest.raises(UserError, match=said):
+        plan(**values).check()
+
+
 def test_ids_are_good_for_files_and_tell_everything_apart():
     wide = plan(
         agents=["a.b:C", "a.b:D"], models=["x/y?seed=1"], seeds=[0, 1], geo=["full", "none"], repeats=2,
@@ -97,6 +125,7 @@ def test_a_file_says_what_the_options_say(tmp_path):
         ({"repeats": 1.5}, "whole number"),
         ({"modes": "monitoring"}, "give a list of names"),
         ({"held_out": "yes"}, "give true or false"),
+        ({"everywhere": 1}, "give true or false"),
         ({"agent": ["oracle"]}, "did you mean 'agents'"),
         ({"limits": {"step": 3}}, "did you mean 'steps'"),
         ({"limits": {"sim_s": 0}}, "above 0"),
