@@ -35,7 +35,9 @@ app = typer.Typer(help="Studies: what rerouting gains in the very same traffic."
 
 @app.command()
 def reroute(
-    scenario: Annotated[str, typer.Option(help="Name or folder; `scenarios list` names them.")] = "paris_centre",
+    scenario: Annotated[
+        str, typer.Option(help="Name as in `scenarios list`, folder, .sumocfg or .net.xml.")
+    ] = "paris_centre",
     departures: Annotated[
         str | None,
         typer.Option(
@@ -46,6 +48,12 @@ def reroute(
     trips: Annotated[
         str | None, typer.Option(help="Ego trips of the scenario, with commas.", show_default="all")
     ] = None,
+    from_place: Annotated[
+        str, typer.Option("--from", help="Where the ego's way begins: an edge, a street or LON,LAT.")
+    ] = "",
+    to_place: Annotated[
+        str, typer.Option("--to", help="Where it ends; with one of the two the other is drawn.")
+    ] = "",
     seeds: Annotated[
         str, typer.Option(help="Of the traffic, as in 0-9; 10 for an interval, 30 to publish.")
     ] = "0-9",
@@ -120,6 +128,8 @@ def reroute(
     values |= {"shares": tuple(_numbers("shares", shares))} if shares is not None else {}
     plan = StudyPlan(
         scenario,
+        from_place=from_place,
+        to_place=to_place,
         compliance=compliance,
         driver=driver,
         least_delay_s=delay,
@@ -210,7 +220,7 @@ def _announce(console: Console, plan: StudyPlan, folder: Path) -> None:
 
 def _departures(scenario: str, text: str) -> tuple[float, ...]:
     """Seconds after the warm-up; clock times count from the scenario's."""
-    from automotive_cosim.scenarios import load
+    from automotive_cosim.scenery import open_scenario
 
     found = []
     for word in words("departures", text):
@@ -218,7 +228,7 @@ def _departures(scenario: str, text: str) -> tuple[float, ...]:
         if not colon:
             found += _numbers("departures", word)
         elif hours.isdigit() and minutes.isdigit() and int(hours) < 24 and int(minutes) < 60:
-            start = load(scenario).start
+            start = open_scenario(scenario).start
             at = start.replace(hour=int(hours), minute=int(minutes), second=0)
             found.append((at - start).total_seconds())
         else:

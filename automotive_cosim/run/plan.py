@@ -18,6 +18,7 @@ from automotive_cosim.agents.settings import geo_input
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.run.episode import EpisodeSetup
+from automotive_cosim.scenery import open_scenario
 from automotive_cosim.suite import Mode, Task
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.trace import canonical
@@ -78,7 +79,7 @@ class Plan:
                 nothing to run.
         """
         for name in self.scenarios:
-            scenarios.load(name)
+            open_scenario(name)
         if not self.jobs():
             raise UserError(f"the plan has nothing to run: {self._why_empty()}")
         for agent, model in {(job.setup.agent, job.model) for job in self.jobs()}:

@@ -5,14 +5,15 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields, replace
+from functools import lru_cache
 from itertools import product
 from typing import Any
 
-from automotive_cosim import scenarios
 from automotive_cosim.agents import make_agent
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.scenarios import Scenario, Trip
+from automotive_cosim.scenery import open_scenario
 from automotive_cosim.studies.policies import AGENT, parse_policy
 from automotive_cosim.traffic.congestion import OLDEST_NEWS_S
 from automotive_cosim.traffic.profiles import profile
@@ -47,11 +48,15 @@ class StudyPlan:
     """A rerouting study; times in seconds."""
 
     scenario: str
-    """Name or folder."""
+    """Name or folder, a ``.sumocfg`` or a network."""
     departures_s: tuple[float, ...] = (0.0, 300.0, 600.0, 900.0)
     """When the ego sets out, after the warm-up; each in its own copy of the traffic."""
     trips: tuple[str, ...] = ()
     """Names of the scenario's trips; none takes all."""
+    from_place: str = ""
+    """Where the ego's way begins in place of the trips: an edge, a street or ``LON,LAT``."""
+    to_place: str = ""
+    """Where it ends; if only one of the two is given the other is drawn, several times."""
     seeds: tuple[int, ...] = tuple(range(10))
     """Of the traffic; decisions of one seed are not independent of each other."""
     shares: tuple[float, ...] = ()
@@ -133,7 +138,7 @@ class StudyPlan:
         Raises:
             ScenarioError: it cannot be read.
         """
-        scenario = scenarios.load(self.scenario)
+        scenario = self.opened
         sumo = replace(scenario.sumo, step_length_s=self.step_s, background_rerouting=share)
         sumo = replace(sumo, action_step_length_s=max(self.step_s, sumo.action_step_length_s))
         return replace(scenario, sumo=sumo if self.scale is None else replace(sumo, scale=self.scale))
@@ -152,9 +157,18 @@ class StudyPlan:
             return "one-shot: routes by free flow at departure, kept to the end"
         return f"rerouting: {' / '.join(f'{share:.0%}' for share in told)} of the cars reroute by current times"
 
+    @property
+    def opened(self) -> Scenario:
+        """The scenario with the ego's ways, as it is by itself.
+
+        Raises:
+            ScenarioError: it cannot be read, or has no such way.
+        """
+        return _opened(self.scenario, self.from_place, self.to_place)
+
     def jobs(self) -> tuple[DriveJob, ...]:
         """Every drive, those of one simulation together in the order they depart."""
-        scenario = scenarios.load(self.scenario)
+        scenario = self.opened
         shares = self.shares or (scenario.sumo.background_rerouting,)
         trips = [trip for trip in scenario.ego.trips if not self.trips or trip.name in self.trips]
         return tuple(
@@ -198,6 +212,12 @@ class DriveJob:
     def entropy(self) -> tuple[int, ...]:
         """What everything random of this drive is drawn from; the share has no part in it."""
         return self.seed, round(self.departure_s * 10), *self.trip.name.encode()
+
+
+@lru_cache(maxsize=4)
+def _opened(name: str, from_place: str, to_place: str) -> Scenario:
+    """Kept, as every drive asks and a foreign network takes a second to read."""
+    return open_scenario(name, from_place=from_place, to_place=to_place)
 
 
 def named(agent: str) -> tuple[str, str]:

@@ -235,3 +235,18 @@ def test_bad_input_is_told(words: list[str], said: str) -> None:
 def test_a_folder_that_is_no_study_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UserError):
         write_study(tmp_path)
+
+
+def test_a_sumo_configuration_is_studied_as_it_is_between_places(two_ways: Draw, tmp_path: Path) -> None:
+    configuration = two_ways() / "two.sumocfg"
+    plan = StudyPlan(
+        str(configuration), (0.0,), seeds=(0,), per_drive=1, from_place="access", to_place="exit", least_delay_s=0.0
+    )
+    plan.check()
+    before = {path.name: path.read_bytes() for path in configuration.parent.iterdir()}
+    run_study(plan, tmp_path / "s")
+    study = read_study(tmp_path / "s")
+    assert [(row["trip"], len(row["decisions"])) for row in study.rows] == [("chosen", 1)]
+    assert {path.name: path.read_bytes() for path in configuration.parent.iterdir()} == before
+    with pytest.raises(UserError, match="no street or edge 'nowhere'"):
+        replace(plan, from_place="nowhere").check()
