@@ -1,0 +1,104 @@
+"""Triggers: which situation on the road a task starts from. Pure questions about one moment, no effects.
+
+Each condition is a frozen dataclass, so that it can be compared and stored; ``str`` says it in words. What a
+condition cannot know (no leader, no limit, no place) does not hold.
+
+base          what a trigger is; all of several, not
+motion        how the car moves
+road          what road it is on, and what comes next on it
+others        who else is on the road
+surroundings  sky, place, position fix and connection
+car           the car's own signals
+"""
+
+from automotive_cosim.triggers.base import All, Condition, Not, Trigger
+from automotive_cosim.triggers.car import SignalAbove, SignalBelow, SignalHas
+from automotive_cosim.triggers.motion import Driving, OverPosted, Parked, SpeedAbove, SpeedBetween, Standing
+from automotive_cosim.triggers.others import (
+    BlueLightWithin,
+    CollisionWithin,
+    DelayAbove,
+    FlowBelow,
+    FollowerWithin,
+    HeadwayBelow,
+    JamWithin,
+    LeaderWithin,
+    OncomingWithin,
+    OtherWayKnown,
+    RedLight,
+    SlowLeaderWithin,
+)
+from automotive_cosim.triggers.road import (
+    BuiltUp,
+    CentreLine,
+    GoalWithin,
+    InSchoolZone,
+    InTunnel,
+    Lanes,
+    LessGripThan,
+    Lit,
+    LowerLimitWithin,
+    OnRoadClass,
+    OnStreet,
+    OutOfRange,
+    TunnelWithin,
+    Unposted,
+)
+from automotive_cosim.triggers.surroundings import (
+    AirBetween,
+    Dark,
+    GpsLost,
+    InCountry,
+    Offline,
+    RainBetween,
+    VisibilityBetween,
+)
+
+__all__ = [
+    "AirBetween",
+    "All",
+    "BlueLightWithin",
+    "BuiltUp",
+    "CentreLine",
+    "CollisionWithin",
+    "Condition",
+    "Dark",
+    "DelayAbove",
+    "Driving",
+    "FlowBelow",
+    "FollowerWithin",
+    "GoalWithin",
+    "GpsLost",
+    "HeadwayBelow",
+    "InCountry",
+    "InSchoolZone",
+    "InTunnel",
+    "JamWithin",
+    "Lanes",
+    "LeaderWithin",
+    "LessGripThan",
+    "Lit",
+    "LowerLimitWithin",
+    "Not",
+    "Offline",
+    "OnRoadClass",
+    "OnStreet",
+    "OncomingWithin",
+    "OtherWayKnown",
+    "OutOfRange",
+    "OverPosted",
+    "Parked",
+    "RainBetween",
+    "RedLight",
+    "SignalAbove",
+    "SignalBelow",
+    "SignalHas",
+    "SlowLeaderWithin",
+    "SpeedAbove",
+    "SpeedBetween",
+    "Standing",
+    "Trigger",
+    "TunnelWithin",
+    "Unposted",
+    "VisibilityBetween",
+]

@@ -1,0 +1,104 @@
+"""How the car moves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from automotive_cosim.cockpit.restrictions import Motion, motion
+from automotive_cosim.cockpit.signals import MOTION
+from automotive_cosim.contracts import KMH_PER_MPS
+from automotive_cosim.cosim import Moment
+from automotive_cosim.triggers.base import ANY, STANDING_MPS, WALKING_MPS
+
+
+@dataclass(frozen=True, slots=True)
+class Driving:
+    """The ego is on its way, faster than walking pace."""
+
+    def __call__(self, moment: Moment) -> bool:
+        """Above 2 m/s."""
+        return moment.driving.speed_mps > WALKING_MPS
+
+    def __str__(self) -> str:
+        return "the car is on its way"
+
+
+@dataclass(frozen=True, slots=True)
+class Parked:
+    """The ego stands in park."""
+
+    def __call__(self, moment: Moment) -> bool:
+        """Looks at the gear."""
+        return (
+            motion(moment.signals[MOTION.GEAR.path], moment.signals[MOTION.SPEED.path]) is Motion.PARKED
+            and moment.driving.speed_mps < STANDING_MPS
+        )
+
+    def __str__(self) -> str:
+        return "the car is parked"
+
+
+@dataclass(frozen=True, slots=True)
+class Standing:
+    """The ego stands, in gear or not."""
+
+    def __call__(self, moment: Moment) -> bool:
+        """Below 0.1 m/s."""
+        return moment.driving.speed_mps < STANDING_MPS
+
+    def __str__(self) -> str:
+        return "the car stands"
+
+
+@dataclass(frozen=True, slots=True)
+class SpeedAbove:
+    """Faster than that, on a road with a posted limit between the two given (km/h, inclusive)."""
+
+    speed_kmh: float
+    limit_from_kmh: float
+    limit_to_kmh: float
+
+    def __call__(self, moment: Moment) -> bool:
+        """Compares speed and limit."""
+        limit_mps = moment.driving.road.posted_limit_mps
+        return (
+            moment.driving.speed_mps * KMH_PER_MPS > self.speed_kmh
+            and limit_mps is not None
+            and self.limit_from_kmh <= round(limit_mps * KMH_PER_MPS, 1) <= self.limit_to_kmh
+        )
+
+    def __str__(self) -> str:
+        limits = f"{self.limit_from_kmh:g} to {self.limit_to_kmh:g}"
+        return f"faster than {self.speed_kmh:g} km/h where {limits} km/h are posted"
+
+
+@dataclass(frozen=True, slots=True)
+class SpeedBetween:
+    """Faster than the one and no faster than the other, whatever is posted."""
+
+    from_kmh: float
+    to_kmh: float = ANY
+
+    def __call__(self, moment: Moment) -> bool:
+        """Compares the speed."""
+        return self.from_kmh < moment.driving.speed_mps * KMH_PER_MPS <= self.to_kmh
+
+    def __str__(self) -> str:
+        return f"faster than {self.from_kmh:g}" + (
+            " km/h" if self.to_kmh == ANY else f", up to {self.to_kmh:g} km/h"
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class OverPosted:
+    """Faster than the posted limit by so much of it."""
+
+    share: float
+
+    def __call__(self, moment: Moment) -> bool:
+        """Compares speed and limit."""
+        limit_mps = moment.driving.road.posted_limit_mps
+        return limit_mps is not None and moment.driving.speed_mps > (1 + self.share) * limit_mps
+
+    def __str__(self) -> str:
+        return f"{self.share:.0%} above the posted limit"

@@ -1,0 +1,106 @@
+"""Sky, place, position fix and connection."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from automotive_cosim.cosim import Moment
+from automotive_cosim.triggers.base import ANY
+
+
+@dataclass(frozen=True, slots=True)
+class VisibilityBetween:
+    """Visibility in metres from the one to below the other."""
+
+    from_m: float
+    to_m: float
+
+    def __call__(self, moment: Moment) -> bool:
+        """Looks at the weather."""
+        return self.from_m <= moment.weather.visibility < self.to_m
+
+    def __str__(self) -> str:
+        return f"visibility {self.from_m:g} to {self.to_m:g} m"
+
+
+@dataclass(frozen=True, slots=True)
+class RainBetween:
+    """Precipitation in mm/h from the one to below the other."""
+
+    from_mm_h: float
+    to_mm_h: float = ANY
+
+    def __call__(self, moment: Moment) -> bool:
+        """Looks at the weather."""
+        return self.from_mm_h <= moment.weather.precipitation < self.to_mm_h
+
+    def __str__(self) -> str:
+        to = "more" if self.to_mm_h == ANY else f"{self.to_mm_h:g}"
+        return f"{self.from_mm_h:g} to {to} mm/h of rain or snow"
+
+
+@dataclass(frozen=True, slots=True)
+class AirBetween:
+    """Air temperature outside in degrees Celsius from the one to below the other."""
+
+    from_c: float
+    to_c: float
+
+    def __call__(self, moment: Moment) -> bool:
+        """Looks at the weather."""
+        return self.from_c <= moment.weather.temperature_2m < self.to_c
+
+    def __str__(self) -> str:
+        return f"{self.from_c:g} to {self.to_c:g} degrees outside"
+
+
+@dataclass(frozen=True, slots=True)
+class Dark:
+    """Between sunset and sunrise, or not."""
+
+    dark: bool = True
+
+    def __call__(self, moment: Moment) -> bool:
+        """Looks at the sun."""
+        return moment.context.sun is not None and moment.context.sun.is_set is self.dark
+
+    def __str__(self) -> str:
+        return "in the dark" if self.dark else "by day"
+
+
+@dataclass(frozen=True, slots=True)
+class InCountry:
+    """On the soil of that country (ISO 3166-1 code)."""
+
+    code: str
+
+    def __call__(self, moment: Moment) -> bool:
+        """As the context has it."""
+        return moment.context.country == self.code
+
+    def __str__(self) -> str:
+        return f"in {self.code}"
+
+
+@dataclass(frozen=True, slots=True)
+class GpsLost:
+    """The receiver has no fix."""
+
+    def __call__(self, moment: Moment) -> bool:
+        """Looks at the receiver."""
+        return moment.gps is not None and not moment.gps.has_fix
+
+    def __str__(self) -> str:
+        return "no GPS"
+
+
+@dataclass(frozen=True, slots=True)
+class Offline:
+    """The car has no link to the outside."""
+
+    def __call__(self, moment: Moment) -> bool:
+        """Looks at the modem."""
+        return not moment.connectivity.online
+
+    def __str__(self) -> str:
+        return "no connection"
