@@ -1,0 +1,101 @@
+"""The nouns that flow through the co-simulation, once round the loop.
+
+    SUMO -> DrivingState -> GpsFix -> GeoContext -> vehicle signals -> Element -> Observation -> Action
+      ^                                                                                            |
+      +----------------------------------------- RoadRequest <-------------------------------------+
+
+Everything here is frozen data without behaviour of its own. Units stand in the field names: ``_s`` seconds,
+``_m`` metres, ``_mps`` metres per second, ``_mps2`` metres per second squared, ``_deg`` degrees, ``_kmh``
+kilometres per hour, ``_c`` degrees Celsius, ``_pct`` per cent. ``None`` means that there is no such thing
+(no leader, no limit, no projection), never zero.
+
+driving      what the car does on the road, and what is around and ahead of it
+roads        the network as a map draws it
+place        weather, position fix, connection, surroundings
+observation  what an agent sees
+action       what an agent does
+requests     what the cockpit asks of the road, and the answer
+plain        factors between units, and JSON
+"""
+
+from automotive_cosim.contracts.action import Action, ActionType, Direction, GoalStatus, Reason
+from automotive_cosim.contracts.driving import (
+    Around,
+    DrivingState,
+    EgoEnd,
+    IncidentKind,
+    LimitSource,
+    OtherVehicle,
+    RoadAhead,
+    RoadHere,
+    RoadIncident,
+    RouteOption,
+    TrafficLight,
+)
+from automotive_cosim.contracts.observation import (
+    BoundingBox,
+    Element,
+    Feedback,
+    FeedbackCode,
+    Observation,
+    VehicleState,
+)
+from automotive_cosim.contracts.place import Connectivity, GpsFix, Surroundings, Weather
+from automotive_cosim.contracts.plain import KMH_PER_MPS, MPH_PER_MPS, Json
+from automotive_cosim.contracts.requests import (
+    Alert,
+    AlertKind,
+    Answer,
+    Cruise,
+    Hazards,
+    PullOver,
+    Reroute,
+    RoadRequest,
+    Severity,
+    SlowDown,
+)
+from automotive_cosim.contracts.roads import Road, RoadNetwork
+
+__all__ = [
+    "KMH_PER_MPS",
+    "MPH_PER_MPS",
+    "Action",
+    "ActionType",
+    "Alert",
+    "AlertKind",
+    "Answer",
+    "Around",
+    "BoundingBox",
+    "Connectivity",
+    "Cruise",
+    "Direction",
+    "DrivingState",
+    "EgoEnd",
+    "Element",
+    "Feedback",
+    "FeedbackCode",
+    "GoalStatus",
+    "GpsFix",
+    "Hazards",
+    "IncidentKind",
+    "Json",
+    "LimitSource",
+    "Observation",
+    "OtherVehicle",
+    "PullOver",
+    "Reason",
+    "Reroute",
+    "Road",
+    "RoadAhead",
+    "RoadHere",
+    "RoadIncident",
+    "RoadNetwork",
+    "RoadRequest",
+    "RouteOption",
+    "Severity",
+    "SlowDown",
+    "Surroundings",
+    "TrafficLight",
+    "VehicleState",
+    "Weather",
+]

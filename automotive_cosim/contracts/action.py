@@ -1,0 +1,85 @@
+"""What an agent does."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from automotive_cosim.contracts.requests import AlertKind, Severity
+
+
+class ActionType(StrEnum):
+    """AndroidWorld's action types, the car's safety calls, and two for places. The order is that of the
+    action space."""
+
+    CLICK = "click"
+    DOUBLE_TAP = "double_tap"
+    LONG_PRESS = "long_press"
+    INPUT_TEXT = "input_text"
+    SCROLL = "scroll"
+    SWIPE = "swipe"
+    KEYBOARD_ENTER = "keyboard_enter"
+    NAVIGATE_HOME = "navigate_home"
+    NAVIGATE_BACK = "navigate_back"
+    OPEN_APP = "open_app"
+    WAIT = "wait"
+    ANSWER = "answer"
+    STATUS = "status"
+    SHOW_ALERT = "show_alert"
+    HAZARD_LIGHTS = "hazard_lights"
+    EMERGENCY_CALL = "emergency_call"
+    REQUEST_SLOW_DOWN = "request_slow_down"
+    REQUEST_REROUTE = "request_reroute"
+    PULL_OVER = "pull_over"
+    QUERY = "query"
+    ESTIMATE_POSITION = "estimate_position"
+
+
+class GoalStatus(StrEnum):
+    """What ``status`` declares."""
+
+    COMPLETE = "complete"
+    INFEASIBLE = "infeasible"
+    NOT_NEEDED = "not_needed"
+
+
+class Reason(StrEnum):
+    """Why a task is declined."""
+
+    NONE = "none"
+    LAW = "law"
+    SAFETY = "safety"
+    ALREADY_SO = "already_so"
+    NOT_POSSIBLE = "not_possible"
+
+
+class Direction(StrEnum):
+    """Of ``scroll`` and ``swipe``."""
+
+    UP = "up"
+    DOWN = "down"
+    LEFT = "left"
+    RIGHT = "right"
+
+
+@dataclass(frozen=True, slots=True)
+class Action:
+    """One thing an agent does; ``actions.parse`` reads it from JSON and says which fields each type takes."""
+
+    action_type: ActionType
+    index: int | None = None
+    x: int | None = None
+    y: int | None = None
+    text: str | None = None
+    direction: Direction | None = None
+    distance_px: int | None = None
+    app_name: str | None = None
+    goal_status: GoalStatus | None = None
+    reason: Reason | None = None
+    clear_text: bool | None = None
+    seconds: int | None = None
+    kind: AlertKind | None = None
+    severity: Severity | None = None
+    speed_kmh: float | None = None
+    on: bool | None = None
+    destination: str | None = None

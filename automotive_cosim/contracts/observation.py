@@ -1,0 +1,118 @@
+"""What an agent sees."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+from automotive_cosim.contracts.place import Connectivity, GpsFix
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+
+@dataclass(frozen=True, slots=True)
+class BoundingBox:
+    """Pixels, the maxima exclusive, as AndroidWorld's ``bbox_pixels``."""
+
+    x_min: int
+    y_min: int
+    x_max: int
+    y_max: int
+
+
+@dataclass(frozen=True, slots=True)
+class Element:
+    """One entry of the accessibility tree, AndroidWorld's ``UIElement``. Its place in the list is its index."""
+
+    text: str
+    content_description: str
+    class_name: str
+    bbox_pixels: BoundingBox
+    resource_id: str
+    package_name: str
+    hint_text: str = ""
+    is_checked: bool = False
+    is_checkable: bool = False
+    is_clickable: bool = False
+    is_editable: bool = False
+    is_enabled: bool = True
+    is_focused: bool = False
+    is_focusable: bool = False
+    is_long_clickable: bool = False
+    is_scrollable: bool = False
+    is_selected: bool = False
+    is_visible: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class VehicleState:
+    """What the car's own sensors and switches tell an agent. A field the car does not have is None."""
+
+    speed_kmh: float
+    gear: str
+    """``"P"``, ``"R"``, ``"N"`` or ``"D"``."""
+    restrictions: int
+    """Android ``CarUxRestrictions`` bits; 0 while parked."""
+    ambient_temperature_c: float
+    cabin_temperature_c: float
+    cabin_humidity_pct: float
+    rain_intensity_pct: float
+    driver_temperature_set_c: float
+    fan_speed_pct: float
+    is_low_beam_on: bool
+    is_high_beam_on: bool
+    is_front_fog_on: bool
+    is_rear_fog_on: bool
+    is_hazard_on: bool
+    energy_level_pct: float
+    range_km: float
+    speed_limit_sign_kmh: float | None
+    """Read by the sign camera; None where the car has none or no sign stands."""
+    leader_gap_m: float | None
+    leader_time_to_collision_s: float | None
+
+
+class FeedbackCode(StrEnum):
+    """How an action went. The order is that of the observation space."""
+
+    NONE = "none"
+    """Nothing has been done yet."""
+    OK = "ok"
+    NO_EFFECT = "no_effect"
+    """Well formed and possible, but nothing changed (e.g. a tap beside every widget)."""
+    NO_SUCH_ELEMENT = "no_such_element"
+    DISABLED = "disabled"
+    RESTRICTED = "restricted"
+    """Locked while driving."""
+    REFUSED = "refused"
+    """The road or the car could not do it; the text says why."""
+    MALFORMED = "malformed"
+
+
+@dataclass(frozen=True, slots=True)
+class Feedback:
+    """What came of the last action, in a code and in words."""
+
+    code: FeedbackCode
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Observation:
+    """All an agent gets. A channel it is not given is None."""
+
+    goal: str
+    time_s: float
+    """Seconds since the hand-over."""
+    feedback: Feedback
+    elements: tuple[Element, ...] | None = None
+    screenshot: npt.NDArray[np.uint8] | None = None
+    """(height, width, 3), RGB."""
+    vehicle: VehicleState | None = None
+    connectivity: Connectivity | None = None
+    gps: GpsFix | None = None
+    context: str | None = None
+    """The geo-context as text: facts and rules that apply here, never a judgement."""

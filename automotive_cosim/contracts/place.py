@@ -1,0 +1,67 @@
+"""Where the car is: weather, fix, connection, surroundings."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import datetime
+
+from automotive_cosim.contracts.driving import DrivingState
+
+
+@dataclass(frozen=True, slots=True)
+class Weather:
+    """The weather at the car, in Open-Meteo's field names and units, WMO 4677 codes."""
+
+    temperature_2m: float
+    """Degrees Celsius."""
+    relative_humidity_2m: float
+    """Per cent."""
+    precipitation: float
+    """Millimetres per hour."""
+    weather_code: int
+    cloud_cover: float
+    """Per cent."""
+    visibility: float
+    """Metres."""
+    wind_speed_10m: float
+    """Kilometres per hour."""
+
+
+@dataclass(frozen=True, slots=True)
+class GpsFix:
+    """What the receiver reports. Without a fix it repeats the last one, ageing."""
+
+    has_fix: bool
+    lon_deg: float
+    lat_deg: float
+    accuracy_m: float
+    """One standard deviation of the horizontal error."""
+    age_s: float
+    """Since the fix was taken."""
+    heading_deg: float
+
+
+@dataclass(frozen=True, slots=True)
+class Connectivity:
+    """The car's link to the outside."""
+
+    online: bool
+    kind: str
+    """``"none"``, ``"4g"`` or ``"5g"``."""
+    signal_bars: int
+    """0 to 4."""
+
+
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """Everything outside the cockpit at one instant, as the cockpit's sensors meet it."""
+
+    driving: DrivingState
+    weather: Weather
+    local_time: datetime
+    """Zone-aware."""
+    sun_elevation_deg: float | None
+    """None where the position is not known."""
+    gps: GpsFix | None
+    """None in a network without projection."""
+    connectivity: Connectivity

@@ -1,0 +1,95 @@
+"""What the cockpit asks of the road, and the answer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class AlertKind(StrEnum):
+    """What an alert to the driver is about. The order is that of the action space."""
+
+    SPEED = "speed"
+    DISTANCE = "distance"
+    COLLISION = "collision"
+    LANE = "lane"
+    FATIGUE = "fatigue"
+    DISTRACTION = "distraction"
+    SEAT_BELT = "seat_belt"
+    VISIBILITY = "visibility"
+    SLIPPERY = "slippery"
+    WEATHER = "weather"
+    TRAFFIC = "traffic"
+    CORRIDOR = "corridor"
+    YIELD = "yield"
+    MOVE_OVER = "move_over"
+    SCHOOL = "school"
+    TUNNEL = "tunnel"
+    VEHICLE = "vehicle"
+
+
+class Severity(StrEnum):
+    """How loudly an alert is given."""
+
+    INFO = "info"
+    WARNING = "warning"
+    CRITICAL = "critical"
+
+
+@dataclass(frozen=True, slots=True)
+class Alert:
+    """Tells the driver something; a driver who complies slows down or opens the gap."""
+
+    kind: AlertKind
+    severity: Severity = Severity.WARNING
+    text: str = ""
+    speed_kmh: float | None = None
+    """The speed advised; None leaves it to the posted limit."""
+
+
+@dataclass(frozen=True, slots=True)
+class SlowDown:
+    """Asks the driver to go no faster than this."""
+
+    speed_kmh: float
+
+
+@dataclass(frozen=True, slots=True)
+class Cruise:
+    """Cruise control: hold at most this speed; None switches it off."""
+
+    speed_kmh: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Hazards:
+    """The hazard lights, seen by the others."""
+
+    on: bool
+
+
+@dataclass(frozen=True, slots=True)
+class PullOver:
+    """Asks the driver to stop at the side as soon as that is safe."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reroute:
+    """Asks for another route: to a street, edge or lon/lat, or along given edges."""
+
+    destination: str = ""
+    """Edge id or street name; empty keeps the goal."""
+    edges: tuple[str, ...] = ()
+    """The whole route from the current edge on, what lies behind left out; empty lets the router choose."""
+
+
+RoadRequest = Alert | SlowDown | Cruise | Hazards | PullOver | Reroute
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """The road's answer to a request."""
+
+    accepted: bool
+    reason: str
+    """Why not, or what will happen, in words."""

@@ -1,0 +1,37 @@
+"""The roads as a map draws them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from automotive_cosim.contracts.driving import LimitSource
+
+
+@dataclass(frozen=True, slots=True)
+class Road:
+    """One edge of the network, as a map draws it."""
+
+    edge_id: str
+    name: str
+    road_class: str
+    lane_count: int
+    length_m: float
+    limit_mps: float | None
+    limit_source: LimitSource
+    in_tunnel: bool
+    shape_m: tuple[tuple[float, float], ...]
+    """Centre line, network coordinates (x, y)."""
+
+
+@dataclass(frozen=True, slots=True)
+class RoadNetwork:
+    """The drivable network a scenario runs on."""
+
+    roads: tuple[Road, ...]
+    bounds_m: tuple[float, float, float, float]
+    """(x_min, y_min, x_max, y_max)."""
+    projection: str | None
+    """PROJ string of the network's location tag; None if it has none."""
+    offset_m: tuple[float, float]
+    """``netOffset``: added to projected coordinates."""
+    left_hand: bool
