@@ -6,6 +6,7 @@ CosimError                 anything a caller may want to catch at once
 │   ├── ScenarioError      a scenario's files are missing, broken or contradict each other
 │   ├── GeoDataError       a file of places and traffic rules is broken
 │   ├── ImportMapError     a map extract cannot be turned into a scenario
+│   ├── CountsError        a file of traffic counts cannot be read, or does not fit the scenario
 │   ├── ActionError        an action is malformed (wrong type, missing or surplus fields)
 │   ├── SignalError        a vehicle signal was given a value it cannot have
 │   └── SetupError         the installation lacks something (SUMO's version, system libraries, an extra)
@@ -59,6 +60,10 @@ class GeoDataError(UserError):
 
 class ImportMapError(UserError):
     """A map extract that cannot be imported."""
+
+
+class CountsError(UserError):
+    """Counts of a road that cannot be read, or that a scenario's traffic cannot be scaled to."""
 
 
 class ActionError(UserError):

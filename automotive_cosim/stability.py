@@ -137,7 +137,7 @@ def measure(
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-stability-") as scratch:
         setup = Setup(replace(scenario, sumo=sumo), seed=seed)
         options = _options(setup, end_s, Path(scratch))
-        with closing(_run(scenario.config.name, options, Path(scratch))) as steps:
+        with closing(summary(scenario.config.name, options, Path(scratch))) as steps:
             for step in steps:
                 minute_is_over = tally.add(step)
                 if minute_is_over and on_progress:
@@ -161,8 +161,19 @@ def _options(setup: Setup, end_s: float, scratch: Path) -> list[str]:
 _ATTRIBUTE = re.compile(r'(\w+)="(-?[\d.]+)"')
 
 
-def _run(config: str, options: Sequence[str], scratch: Path) -> Generator[Step, None, None]:
-    """SUMO's summary, second by second. Closing the iterator ends SUMO."""
+def summary(config: str, options: Sequence[str], scratch: Path) -> Generator[Step, None, None]:
+    """Runs SUMO and yields its summary as it comes. Closing the iterator ends SUMO.
+
+    Args:
+        config: the scenario's configuration, for error texts.
+        options: SUMO's, with ``--summary-output stdout`` among them.
+        scratch: the folder it runs in.
+
+    Raises:
+        ScenarioError: SUMO refuses the scenario; the text is SUMO's.
+        TrafficError: SUMO hung or was killed.
+        SetupError: eclipse-sumo is not installed.
+    """
     with (
         tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as complaints,
         subprocess.Popen(

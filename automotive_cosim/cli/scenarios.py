@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from rich.text import Text
 
     from automotive_cosim.osm import ImportReport
+    from automotive_cosim.osm.day import Day
     from automotive_cosim.osm.importer import Progress
     from automotive_cosim.scenarios import Scenario
     from automotive_cosim.scenery.check import Proof
@@ -195,6 +196,75 @@ def import_scenario(
     _print_report(report, folder, time.monotonic() - started_s)
 
 
+@app.command("day")
+def scale_to_a_day(
+    folder: Annotated[Path, typer.Argument(help="Folder that `scenarios import` made.")],
+    counts: Annotated[
+        Path,
+        typer.Option(
+            help="Hourly counts: Open Data Paris' CSV as it is (medians over Mondays to Fridays, by local hour), or"
+            " hour,vehicles_per_hour[,occupancy]."
+        ),
+    ],
+    edge: Annotated[
+        str, typer.Option(metavar="ID", help="The counted road: an edge, or the number of its OpenStreetMap way.")
+    ],
+    arc: Annotated[
+        str, typer.Option(metavar="ID", help="Which detector of a file of several.", show_default="the only one")
+    ] = "",
+    out: Annotated[
+        Path | None, typer.Option(help="Folder to make.", show_default="FOLDER with _day at its end")
+    ] = None,
+    at: Annotated[
+        int, typer.Option(parser=whole_number(1, 23), metavar="HOUR", help="Local hour at which the ego departs.")
+    ] = 8,
+    background: Annotated[
+        float,
+        typer.Option(
+            parser=number(0, 10),
+            metavar="X",
+            help="Traffic elsewhere in the busiest hour, as a share of the import's.",
+        ),
+    ] = 1.0,
+    days: Annotated[
+        int, typer.Option(parser=whole_number(1, 50), metavar="N", help="Days that are simulated at most.")
+    ] = 4,
+    minutes: Annotated[
+        float,
+        typer.Option(
+            parser=number(5, 60),
+            metavar="M",
+            help="Simulated of each hour: fewer are faster, their figures noisier.",
+        ),
+    ] = 60.0,
+    seed: Annotated[int, typer.Option(parser=whole_number(0, 2**31 - 2), metavar="N", help="Of the day.")] = 0,
+    force: Annotated[bool, typer.Option("--force", help="Replace the scenario in --out.")] = False,
+) -> None:
+    """Scale an imported scenario's traffic over a day to the counts of one road.
+
+    This is no calibration: one road is met, and what all others carry stays random. Days are simulated until every
+    hour is near its count; one takes five to fifteen minutes for a district of a city.
+    """
+    from automotive_cosim.osm.day import DayOptions, make_day
+    from automotive_cosim.report.day import require_plots, write_day
+
+    require_plots()
+    target = out or folder.with_name(f"{folder.resolve().name}_day")
+    options = DayOptions(
+        edge=edge,
+        arc=arc,
+        at_hour=at,
+        background=background,
+        days=days,
+        minutes=minutes,
+        seed=seed,
+        replace=force,
+    )
+    with _progress() as tell:
+        day = make_day(folder, counts, target, options, tell)
+    _print_day(day, target, write_day(target))
+
+
 @app.command("download")
 def download_map(
     bbox: Annotated[str, typer.Option(metavar="W,S,E,N", help="West, south, east and north, in degrees.")],
@@ -230,6 +300,41 @@ def download_map(
     if found.note:
         typer.echo(found.note)
     typer.echo(f"turn it into a scenario: automotive-cosim scenarios import {out}")
+
+
+def _print_day(day: Day, folder: Path, page: Path) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    from automotive_cosim.osm.day import NO_CALIBRATION
+    from automotive_cosim.report.day import findings
+
+    table = Table(
+        "hour",
+        "counted",
+        "simulated",
+        "GEH",
+        "occupancy",
+        "simulated",
+        box=None,
+        header_style="bold",
+        pad_edge=False,
+    )
+    for column in table.columns:
+        column.justify = "right"
+    for each in day.hours:
+        counted = "" if each.counted_occupancy is None else f"{each.counted_occupancy:.1%}"
+        table.add_row(
+            str(each.hour),
+            f"{each.counted_per_h:.0f}",
+            f"{each.simulated_per_h:.0f}",
+            f"{each.geh:.1f}",
+            counted,
+            f"{each.simulated_occupancy:.1%}",
+        )
+    Console().print(table)
+    for line in (*findings(day), NO_CALIBRATION, f"scenario: {folder}", f"page: {page}"):
+        typer.echo(line)
 
 
 @contextmanager

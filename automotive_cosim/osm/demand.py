@@ -20,7 +20,7 @@ import numpy.typing as npt
 from automotive_cosim.errors import ImportMapError
 from automotive_cosim.osm.network import Built
 from automotive_cosim.sumo_programs import first_error, run
-from automotive_cosim.traffic.network import Edge
+from automotive_cosim.traffic.network import Edge, Network
 
 OUTSIDE_SHARE = 0.5
 """Share of trips that come from, and as many that go to, beyond the map's edge."""
@@ -46,6 +46,8 @@ class Journey:
     depart_s: float
     way: tuple[Edge, ...]
     """The fastest on empty roads."""
+    via: str = ""
+    """An edge that it drives over however it reroutes."""
 
     @property
     def length_m(self) -> float:
@@ -93,7 +95,7 @@ def write(journeys: Sequence[Journey], target: Path) -> None:
     """Writes the traffic as SUMO trips (gzip); SUMO routes each by the travel times when it departs."""
     rows = (
         f'    <trip id="{number}" type="car" depart="{journey.depart_s:.2f}" departLane="best" departSpeed="max"'
-        f" {_ends(journey.way[0], journey.way[-1])}/>"
+        f" {_ends(journey.way[0], journey.way[-1])}{_via(journey)}/>"
         for number, journey in enumerate(journeys)
     )
     text = "\n".join(("<routes>", f"    {CAR}", *rows, "</routes>", ""))
@@ -102,6 +104,10 @@ def write(journeys: Sequence[Journey], target: Path) -> None:
 
 def _ends(start: Edge, goal: Edge) -> str:
     return f"from={quoteattr(start.edge_id)} to={quoteattr(goal.edge_id)}"
+
+
+def _via(journey: Journey) -> str:
+    return f" via={quoteattr(journey.via)}" if journey.via else ""
 
 
 def _pairs(built: Built, count: int, rng: np.random.Generator) -> npt.NDArray[np.int64]:
@@ -135,13 +141,26 @@ def _weights(edges: Sequence[Edge], fringe: frozenset[str]) -> npt.NDArray[np.fl
 
 
 def _routed(pairs: npt.NDArray[np.int64], built: Built, net_file: Path, scratch: Path) -> list[tuple[Edge, ...]]:
-    """The fastest way for each pair that has one."""
+    ends = [(built.edges[start], built.edges[goal]) for start, goal in pairs.tolist()]
+    return [way for way in fastest_ways(ends, built.network, net_file, scratch) if way]
+
+
+def fastest_ways(
+    ends: Sequence[tuple[Edge, Edge]], network: Network, net_file: Path, scratch: Path
+) -> list[tuple[Edge, ...]]:
+    """The fastest way on empty roads for each start and goal, by SUMO's duarouter; empty where there is none.
+
+    Args:
+        ends: first and last edge of each way.
+        network: theirs.
+        net_file: the same, as SUMO reads it.
+        scratch: a folder for intermediate files.
+
+    Raises:
+        ImportMapError: duarouter refuses the network.
+    """
     asked, routed = scratch / "asked.trips.xml", scratch / "routed.rou.xml"
-    edges = built.edges
-    rows = (
-        f'<trip id="{number}" depart="0" {_ends(edges[start], edges[goal])}/>'
-        for number, (start, goal) in enumerate(pairs.tolist())
-    )
+    rows = (f'<trip id="{number}" depart="0" {_ends(*pair)}/>' for number, pair in enumerate(ends))
     asked.write_text("\n".join(("<routes>", *rows, "</routes>")), encoding="utf-8")
     ok, printed = run(
         "duarouter",
@@ -157,13 +176,17 @@ def _routed(pairs: npt.NDArray[np.int64], built: Built, net_file: Path, scratch:
     )
     if not ok:
         raise ImportMapError(f"SUMO's duarouter cannot route on this map: {first_error(printed)}")
-    return list(_read_ways(routed, built))
+    found = dict(_read_ways(routed, network))
+    return [found.get(number, ()) for number in range(len(ends))]
 
 
-def _read_ways(file: Path, built: Built) -> Iterator[tuple[Edge, ...]]:
+def _read_ways(file: Path, network: Network) -> Iterator[tuple[int, tuple[Edge, ...]]]:
     for _, element in ElementTree.iterparse(file):
         if element.tag == "vehicle":
             route = element.find("route")
             if route is not None:
-                yield tuple(built.network.edges[edge] for edge in route.get("edges", "").split())
+                yield (
+                    int(element.get("id", "")),
+                    tuple(network.edges[edge] for edge in route.get("edges", "").split()),
+                )
             element.clear()

@@ -1,14 +1,18 @@
-"""The text files of an imported scenario's folder."""
+"""An imported scenario's folder, which appears whole or not at all, and its text files."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+import shutil
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict
 from datetime import datetime
 from pathlib import Path
 
 from automotive_cosim.contracts import Weather
+from automotive_cosim.errors import ImportMapError
 from automotive_cosim.scenarios import Sumo, Trip
 
 ATTRIBUTION = "Map data © OpenStreetMap contributors, Open Database License (ODbL) 1.0"
@@ -28,14 +32,52 @@ WEATHER = Weather(
 )
 
 
-def write_config(target: Path, net: str, routes: str, sumo: Sumo) -> None:
+@contextmanager
+def appearing(out: Path, *, replaces: bool) -> Iterator[Path]:
+    """An empty folder that becomes ``out`` if the block ends well; whatever happens, nothing else is left.
+
+    Raises:
+        ImportMapError: ``out`` exists and is not to be replaced, is no scenario's folder, or cannot be written.
+    """
+    if out.exists() and not replaces:
+        raise ImportMapError(f"{out} exists; choose another --out, or --force to replace the scenario in it")
+    if out.exists() and not (out / "scenario.toml").is_file():
+        raise ImportMapError(f"{out} is not a scenario's folder, so it is not replaced; choose another --out")
+    try:
+        scratch = Path(tempfile.mkdtemp(prefix=f".{out.name}-", dir=out.absolute().parent))
+    except OSError as error:
+        raise ImportMapError(f"{out} cannot be made ({error.strerror}); choose another --out") from error
+    try:
+        building = scratch / "scenario"
+        building.mkdir()
+        yield building
+        _put_in_place(building, out, scratch / "replaced")
+    except OSError as error:
+        raise ImportMapError(f"{out} cannot be written ({error.strerror}); choose another --out") from error
+    finally:
+        shutil.rmtree(scratch, ignore_errors=True)
+
+
+def _put_in_place(building: Path, out: Path, replaced: Path) -> None:
+    if not out.exists():
+        building.rename(out)
+        return
+    out.rename(replaced)
+    try:
+        building.rename(out)
+    except BaseException:
+        replaced.rename(out)
+        raise
+
+
+def write_config(target: Path, net: str, routes: str, sumo: Sumo, begin_s: float = 0.0) -> None:
     """Writes the ``.sumocfg``: it runs in sumo-gui as the scenario runs here.
 
     Others reroute, and push through a junction blocked for 20 s, because random traffic otherwise locks up.
     """
     sections: dict[str, dict[str, object]] = {
         "input": {"net-file": net, "route-files": routes},
-        "time": {"step-length": sumo.step_length_s},
+        "time": {"begin": begin_s, "step-length": sumo.step_length_s},
         "processing": {
             "default.action-step-length": sumo.action_step_length_s,
             "scale": sumo.scale,
@@ -68,10 +110,11 @@ def write_scenario(
     time_zone: str,
     sumo: Sumo,
     trips: Sequence[Trip],
+    start: datetime = START,
 ) -> None:
-    """Writes ``scenario.toml``."""
+    """Writes ``scenario.toml``; ``start`` is local."""
     blocks: list[str | dict[str, object]] = [
-        {"name": name, "title": title, "about": about, "country": country, "time_zone": time_zone, "start": START},
+        {"name": name, "title": title, "about": about, "country": country, "time_zone": time_zone, "start": start},
         "[sumo]",
         asdict(sumo),
         "[ego]",

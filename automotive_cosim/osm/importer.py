@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-import shutil
-import tempfile
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -89,7 +86,7 @@ def import_map(
     options = replace(options, name=options.name or scenario_name(source), country=options.country.upper())
     _check(options)
     tell = on_progress or (lambda _stage, _share: None)
-    with _appearing(out, replaces=options.replace) as building:
+    with folder.appearing(out, replaces=options.replace) as building:
         tell("reading the map", None)
         roads = extract.read(source)
         if options.area is not None:
@@ -145,40 +142,6 @@ def _check(options: ImportOptions) -> None:
         )
     if options.seed < 0:
         raise ImportMapError(f"seed {options.seed} is below zero; give a whole number from 0 on")
-
-
-@contextmanager
-def _appearing(out: Path, *, replaces: bool) -> Iterator[Path]:
-    """An empty folder that becomes ``out`` if the block ends well; whatever happens, nothing else is left."""
-    if out.exists() and not replaces:
-        raise ImportMapError(f"{out} exists; choose another --out, or --force to replace the scenario in it")
-    if out.exists() and not (out / "scenario.toml").is_file():
-        raise ImportMapError(f"{out} is not a scenario's folder, so it is not replaced; choose another --out")
-    try:
-        scratch = Path(tempfile.mkdtemp(prefix=f".{out.name}-", dir=out.absolute().parent))
-    except OSError as error:
-        raise ImportMapError(f"{out} cannot be made ({error.strerror}); choose another --out") from error
-    try:
-        building = scratch / "scenario"
-        building.mkdir()
-        yield building
-        _put_in_place(building, out, scratch / "replaced")
-    except OSError as error:
-        raise ImportMapError(f"{out} cannot be written ({error.strerror}); choose another --out") from error
-    finally:
-        shutil.rmtree(scratch, ignore_errors=True)
-
-
-def _put_in_place(building: Path, out: Path, replaced: Path) -> None:
-    if not out.exists():
-        building.rename(out)
-        return
-    out.rename(replaced)
-    try:
-        building.rename(out)
-    except BaseException:
-        replaced.rename(out)
-        raise
 
 
 def _title(options: ImportOptions) -> str:
