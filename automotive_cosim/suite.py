@@ -306,9 +306,14 @@ class Task:
 
     @property
     def runs_in(self) -> tuple[str, ...]:
-        """Every scenario it can run in, its own first."""
+        """Every scenario it can run in, its own first; halves that are translated may each have their own."""
         own = [self.half(half).start.scenario for half in self.halves]
         return tuple(dict.fromkeys([*own, *self.scenarios]))
+
+    def runs_whole_in(self, scenario: str) -> bool:
+        """Whether every half can run there."""
+        own = [self.half(half).start.scenario for half in self.halves]
+        return scenario in self.scenarios or all(scenario == each for each in own)
 
 
 @dataclass(frozen=True)

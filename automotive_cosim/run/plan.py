@@ -53,8 +53,8 @@ class Plan:
     models: tuple[str, ...] = ("rules",)
     """For the agents that have one."""
     scenarios: tuple[str, ...] = ()
-    """In place of the tasks' own, for those that can run there (``Task.runs_in``); in one that is not shipped, for
-    all. None leaves each where it belongs."""
+    """In place of the tasks' own, for those that can run there (``Task.runs_whole_in``); one that is not shipped is
+    for all. None leaves each where it belongs."""
     everywhere: bool = False
     """Takes tasks to the scenarios that they do not name too; the situation may not come about there."""
     seeds: tuple[int, ...] = (0,)
@@ -122,7 +122,7 @@ class Plan:
         return [
             (task, name)
             for task, name in product(chosen, self.scenarios)
-            if self.everywhere or name not in shipped or name in task.runs_in
+            if self.everywhere or name not in shipped or task.runs_whole_in(name)
         ]
 
     def _each(self) -> Iterator[Job]:
@@ -138,12 +138,13 @@ class Plan:
             if mode == Mode.MONITORING and not task.is_safety:
                 continue
             for half in task.halves:
+                is_own = scenario == task.half(half).start.scenario  # which may be moved to another place
                 setup = EpisodeSetup(
                     task.id,
                     half,
                     agent,
                     model if agent in PROFILES else NO_MODEL,
-                    scenario,
+                    None if is_own else scenario,
                     seed=seed,
                     max_steps=self.limits.steps if mode == Mode.PROMPTED else self.limits.steps + WATCH_STEPS,
                     max_sim_s=self.limits.sim_s,

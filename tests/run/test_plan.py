@@ -2,6 +2,7 @@ import re
 
 import pytest
 
+from automotive_cosim import scenarios
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.run.plan import Limits, choose, make_plan, read_plan
 from automotive_cosim.tasks import CATALOGUE
@@ -58,6 +59,18 @@ def test_tasks_go_to_the_scenarios_they_can_run_in():
     assert {job.setup.task for job in foreign.jobs()} == set(chosen["tasks"])
     for scenario in CATALOGUE["hvac_fan_max"].runs_in:
         assert plan(tasks=["hvac_fan_max"], scenarios=[scenario]).jobs()
+
+
+@pytest.mark.parametrize("scenario", scenarios.shipped())
+def test_a_scenario_gets_whole_pairs_and_leaves_its_own_tasks_as_they_are(scenario):
+    own = {(job.setup.task, job.setup.half) for job in plan(seeds=[3]).jobs() if job.scenario == scenario}
+    there = plan(seeds=[3], scenarios=[scenario]).jobs()
+    assert {job.scenario for job in there} <= {scenario}
+    for task in {job.setup.task for job in there}:
+        mine = [job for job in there if job.setup.task == task]
+        assert {job.setup.half for job in mine} == set(CATALOGUE[task].halves)
+        for job in mine:
+            assert (job.setup.scenario is None) == ((task, job.setup.half) in own)
 
 
 @pytest.mark.parametrize(
