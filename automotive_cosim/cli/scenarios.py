@@ -219,13 +219,14 @@ def scale_to_a_day(
         int, typer.Option(parser=whole_number(1, 23), metavar="HOUR", help="Local hour at which the ego departs.")
     ] = 8,
     background: Annotated[
-        float,
+        float | None,
         typer.Option(
             parser=number(0, 10),
             metavar="X",
-            help="Traffic elsewhere in the busiest hour, as a share of the import's.",
+            help="Traffic that passes elsewhere in the busiest hour, as a share of the import's.",
+            show_default="what the traffic past the road leaves of it",
         ),
-    ] = 1.0,
+    ] = None,
     days: Annotated[
         int, typer.Option(parser=whole_number(1, 50), metavar="N", help="Days that are simulated at most.")
     ] = 4,
@@ -243,7 +244,7 @@ def scale_to_a_day(
     """Scale an imported scenario's traffic over a day to the counts of one road.
 
     This is no calibration: one road is met, and what all others carry stays random. Days are simulated until every
-    hour is near its count; one takes five to fifteen minutes for a district of a city.
+    hour is near its count; one takes ten to fifteen minutes of a core for a district of a city.
     """
     from automotive_cosim.osm.day import DayOptions, make_day
     from automotive_cosim.report.day import require_plots, write_day

@@ -1,10 +1,10 @@
 """An imported scenario with a day of traffic, scaled by the hour until one counted road carries what was counted.
 
-This is no calibration: one road is met and nothing is known of all others. The rest of the traffic follows the
-counted road's profile, its busiest hour at the scale at which the import found that traffic flows. To scale that
-too until the one road is met would lock up the network, as hardly any random trip passes there. So only the trips
-that pass the counted road are repeated, as often in each hour as its count asks for, and never leave that road out
-when they reroute. A day is simulated, what was short or over is made up in proportion, and the next is simulated.
+This is no calibration: one road is met and nothing is known of all others. To scale all traffic until the one road
+is met would lock up the network, as hardly any random trip passes there. So only the trips that pass the counted
+road are repeated, as often in each hour as its count asks for, and never leave that road out when they reroute. All
+others follow the counted road's profile, so that both together are in the busiest hour what the import found to
+flow. A day is simulated, what was short or over is made up in proportion, and the next is simulated.
 """
 
 from __future__ import annotations
@@ -73,8 +73,9 @@ class DayOptions:
     """Which detector of the counts' file; needed if it has several."""
     at_hour: int = 8
     """When the ego departs, 1 to 23, local time."""
-    background: float = 1.0
-    """Traffic that does not pass the counted road, in the busiest hour, as a share of the import's."""
+    background: float | None = None
+    """Traffic that does not pass the counted road, in the busiest hour, as a share of the import's; None takes what
+    the traffic past the road leaves of the import's."""
     days: int = 4
     """Simulated at most."""
     minutes: float = 60.0
@@ -132,6 +133,7 @@ class Day:
     routes: int
     """Different trips of the import that pass there, which the day repeats."""
     background: float
+    """Other traffic in the busiest hour, as a share of the import's."""
     minutes: float
     """Simulated of each hour."""
     seed: int
@@ -214,7 +216,7 @@ def make_day(
             edges=tuple(edge.edge_id for edge in counted),
             road=counted[0].name,
             routes=len(demand.passing),
-            background=options.background,
+            background=demand.background,
             minutes=options.minutes,
             seed=options.seed,
             met=met,
@@ -283,6 +285,8 @@ class _Demand:
     others: tuple[Journey, ...]
     counted: tuple[Edge, ...]
     counts: Counts
+    background: float
+    """The others of the busiest hour, as a share of the import's."""
     others_per_h: tuple[int, ...]
     seed: int
 
@@ -323,13 +327,17 @@ def _demand(
             # SUMO strikes a via off when it is driven onto, which one that departs there never does.
             passing.append(Journey(-lead_s, way, via=way[first].edge_id if first else ""))
     busiest = max(counts.flow_per_h)
-    others_per_h = per_h * len(others) / len(ways) * options.background
+    others_per_h = per_h * len(others) / len(ways)
+    background = options.background
+    if background is None:
+        background = round(max(0.0, per_h - busiest) / others_per_h, 2) if others else 0.0
     return _Demand(
         passing=tuple(passing),
         others=tuple(others),
         counted=tuple(counted),
         counts=counts,
-        others_per_h=tuple(round(others_per_h * flow / busiest) for flow in counts.flow_per_h),
+        background=background,
+        others_per_h=tuple(round(others_per_h * background * flow / busiest) for flow in counts.flow_per_h),
         seed=options.seed,
     )
 

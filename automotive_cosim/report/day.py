@@ -80,7 +80,8 @@ def findings(day: Day) -> tuple[str, ...]:
         f" worst ({worst.hour} h).",
         f"At {EVENING} h the simulated occupancy is {simulated}{counted}.",
         f"At most {busiest.halted_share:.0%} of the network's vehicles stood ({busiest.hour} h, mean of the hour);"
-        f" {sum(each.teleports for each in day.hours)} were moved on by SUMO in the whole day.",
+        f" {sum(each.teleports for each in day.hours)} were moved on by SUMO in all.",
+        *((f"Of each hour {day.minutes:g} minutes were simulated.",) if day.minutes < 60 else ()),
     )
 
 
