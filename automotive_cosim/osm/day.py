@@ -49,8 +49,8 @@ CHANGE_MAX = 2.0
 """An hour's trips are at most doubled or halved from one day to the next, and never more than twice what was
 counted: a road that carries no more when more is sent there is full, and what is sent stands on other roads."""
 
-LOOK_EVERY_S = 10.0
-"""How often it is looked how many vehicles stand."""
+LOOK_EVERY_S = 1.0
+"""How often it is looked how many vehicles stand; SUMO's lines are also its signs of life, which come in bunches."""
 
 DAY_FILE, TRIPS = "day.json", "day.trips.xml.gz"
 
