@@ -156,9 +156,13 @@ class _Drive:
                 numbers[edges] = len(branches)
                 branches.append(future)
         agents: Json = {}
+        turned: list[str] = []
         for agent in plan.agents:
             agents[agent] = len(branches)
-            branches.append(self._agents(agent, group))
+            future, edges = self._agents(agent, group)
+            branches.append(future)
+            if now.ahead.route_edges[-len(edges) :] != edges:
+                turned.append(agent)
         if not branches:
             self.looks += 1
             return False
@@ -173,6 +177,7 @@ class _Drive:
             "news": told,
             "own": numbers.get(own),
             "agents": agents,
+            "agents_rerouted": turned,
         }
         point = _Point(row, group, pulse, branches)
         if not self.points and self._has_placebo():
@@ -196,11 +201,12 @@ class _Drive:
         with closing(self.traffic.branch()) as branch:
             return self._left(branch, group) if branch.request(Reroute(edges=edges)).accepted else None
 
-    def _agents(self, agent: str, group: Sequence[str]) -> Future:
-        """The future in which an agent does what it likes."""
+    def _agents(self, agent: str, group: Sequence[str]) -> tuple[Future, tuple[str, ...]]:
+        """The future in which an agent does what it likes, and the way ahead once it has."""
         with closing(self.traffic.branch()) as branch:
             decided(agent, self.job, branch)
-            return self._left(branch, group)
+            edges = branch.state.ahead.route_edges
+            return self._left(branch, group), edges
 
     def _left(self, branch: RemoteTraffic, group: Sequence[str]) -> Future:
         """Drives it to its end."""

@@ -15,7 +15,7 @@ from automotive_cosim.errors import SetupError
 from automotive_cosim.run.store import read_manifest, read_rows
 from automotive_cosim.studies.compare import METRICS
 from automotive_cosim.studies.plan import StudyPlan, make_study
-from automotive_cosim.studies.policies import best, chosen, parse_policy
+from automotive_cosim.studies.policies import Policy, best, chosen, parse_policy
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -132,7 +132,7 @@ def choices(rows: Iterable[Json], policies: Sequence[str]) -> Iterator[Json]:
                     "age_s": news["age_s"],
                     "policy": policy.text,
                     "complies": decision["complies"],
-                    "rerouted": number is not None,
+                    "rerouted": _took_another(policy, decision) if policy.agent else number is not None,
                     "promised_s": None
                     if news["offered_s"] is None
                     else round(news["stay_s"] - news["offered_s"], 1),
@@ -145,6 +145,11 @@ def choices(rows: Iterable[Json], policies: Sequence[str]) -> Iterator[Json]:
                     "unfinished_stay": 0 if others is None else others["unfinished_stay"],
                     "unfinished": 0 if others is None else others["unfinished"],
                 }
+
+
+def _took_another(policy: Policy, decision: Json) -> bool:
+    """Whether an agent's branch, in which it may do anything, left the way."""
+    return bool(decision["complies"]) and policy.agent in decision["agents_rerouted"]
 
 
 def noise(decisions: Iterable[Json]) -> Noise:

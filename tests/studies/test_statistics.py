@@ -41,6 +41,7 @@ def decision(*gains_s: float, offered_s: float | None = 80.0, delay_s: float = 7
         "news": [news | {"branch": None if offered_s is None else 0}],
         "own": None,
         "agents": {},
+        "agents_rerouted": [],
         "excluded": "",
         "placebo": None,
         "branches": [branch(gain_s) for gain_s in gains_s],

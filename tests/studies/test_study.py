@@ -182,6 +182,9 @@ def test_an_agent_gains_what_its_taps_do_and_one_that_does_nothing_changes_nothi
     always = decision["branches"][decision["news"][0]["branch"]]
     assert taps["totals"] == always["totals"], "the way is the same, wherever on the first road it was chosen"
     assert {each["policy"]: each["gain_time_s"] > 0 for each in study.choices}["agent:mine:Taps"]
+    turned = {each["policy"]: each["rerouted"] for each in study.choices}
+    assert turned["agent:mine:Taps"]
+    assert not turned["agent:mine:Idle"]
 
 
 def invoke(*words: str) -> tuple[str, Exception | None]:
