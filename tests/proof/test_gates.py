@@ -204,4 +204,11 @@ def test_a_pair_that_can_always_be_declined_is_seen(ground):
 def test_a_scenario_out_of_reach_is_seen(simulations):
     dark = changed(trigger=Trigger(InTunnel(), for_s=1.0, within_s=5.0))
     (wrong,) = gates.reach(replace(dark, scenarios=("grid",)), 0, simulations)
-    assert wrong.startswith("grid: ")
+    assert wrong.startswith("first in grid: ")
+
+
+def test_an_expert_who_fails_in_another_scenario_is_seen(simulations):
+    lost = changed(moves=())
+    (wrong,) = gates.reach(replace(lost, scenarios=("grid",)), 0, simulations)
+    assert wrong.startswith("first in grid: goal: ")
+    assert list(gates.reach(replace(changed(), scenarios=("grid",)), 0, simulations)) == []
