@@ -50,7 +50,7 @@ CHANGE_MAX = 2.0
 counted: a road that carries no more when more is sent there is full, and what is sent stands on other roads."""
 
 LOOK_EVERY_S = 1.0
-"""How often it is looked how many vehicles stand; SUMO's lines are also its signs of life, which come in bunches."""
+"""How often it is looked how many vehicles stand; SUMO's lines are its signs of life too, and come in bunches."""
 
 DAY_FILE, TRIPS = "day.json", "day.trips.xml.gz"
 
