@@ -136,7 +136,7 @@ def test_steps_simulated_time_and_tokens_are_limited_and_judged(trouble):
 
 
 def test_a_trigger_out_of_reach_is_an_error_that_is_not_tried_again(tmp_path):
-    wanted = plan("oracle", tasks=["road_speed_80_in_50"])
+    wanted = plan("oracle", tasks=["road_speed_80_in_50"], everywhere=True)
     end = run_plan(wanted, tmp_path / "e", retries=5)
     assert (end.done, end.judged, end.errors) == (2, 1, 1)
     row = next(row for row in read_rows(tmp_path / "e").values() if row["half"] == "second")
@@ -146,13 +146,13 @@ def test_a_trigger_out_of_reach_is_an_error_that_is_not_tried_again(tmp_path):
 
 @pytest.mark.slow
 def test_a_trigger_out_of_reach_is_sought_once_for_all_contestants(tmp_path):
-    tasks = ["road_speed_80_in_50"]
-    end = run_plan(plan("no-op", "always-alert", tasks=tasks), tmp_path / "both")
+    there = {"tasks": ["road_speed_80_in_50"], "everywhere": True}
+    end = run_plan(plan("no-op", "always-alert", **there), tmp_path / "both")
     assert (end.planned, end.done, end.ran, end.errors) == (4, 4, 4, 2)
     rows = [row for row in read_rows(tmp_path / "both").values() if row["error"]]
     assert sorted(row["wall_seconds"] > 0 for row in rows) == [False, True]
     assert {row["attempts"] for row in rows} == {1}
-    run_plan(plan("no-op", tasks=tasks), tmp_path / "alone")
+    run_plan(plan("no-op", **there), tmp_path / "alone")
     assert steady(tmp_path / "alone").items() <= steady(tmp_path / "both").items()
 
 
