@@ -78,7 +78,7 @@ class Reroute:
     """Asks for another route: to a street, edge or lon/lat, or along given edges."""
 
     destination: str = ""
-    """Edge id or street name; empty keeps the goal."""
+    """Edge id, street name or ``lon,lat``; empty keeps the goal, and the way where none is quicker now."""
     edges: tuple[str, ...] = ()
     """The whole route from the current edge on, what lies behind left out; empty lets the router choose."""
 

@@ -227,6 +227,10 @@ SKILLS: tuple[Skill, ...] = (
         in_app("climate", "hvac.driver_seat_heating", because="The driver's seat is heated on the climate screen."),
     ),
     Skill(
+        (r"(faster|quicker) (route|way)", r"get there faster", r"recalculate"),
+        in_app("map", "map.faster_route", because="The map knows the traffic and the other ways."),
+    ),
+    Skill(
         (r"hands|fingers",),
         in_app("climate", "hvac.steering_wheel_heating", because="Cold hands want a warm wheel."),
     ),

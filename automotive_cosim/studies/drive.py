@@ -141,7 +141,7 @@ class _Drive:
         plan, traffic = self.job.plan, self.traffic
         if now.road.edge_id.startswith(":"):
             return False
-        news = {age_s: traffic.alternatives_of_old(age_s) for age_s in plan.ages_s}
+        news = {age_s: traffic.alternatives(age_s) for age_s in plan.ages_s}
         own = traffic.own_choice() if Rule.SUMO in self._rules else now.ahead.route_edges
         ways = _ways(now, news, own)
         if not ways and not plan.agents:

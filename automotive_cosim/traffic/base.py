@@ -107,9 +107,12 @@ class Traffic(Protocol):
         """Asks something of the driver or the car. What cannot be done safely is refused with a reason."""
         ...
 
-    def alternatives(self) -> tuple[RouteOption, ...]:
+    def alternatives(self, age_s: float = 0.0) -> tuple[RouteOption, ...]:
         """The way that is being driven and up to three others, the quickest first, with the times that the traffic
         of the last five minutes took. Nothing of it is left in the simulation. Empty where the way is fixed.
+
+        Args:
+            age_s: how long ago those five minutes ended, at most ``congestion.OLDEST_NEWS_S``.
 
         Raises:
             TrafficError: the simulation failed.

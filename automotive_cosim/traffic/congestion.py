@@ -103,15 +103,15 @@ class Congestion:
         self._samples.append(seen)
         self._slow = tuple(slow)
 
-    def forget(self, age_s: float) -> None:
-        """Drops what was seen in the last seconds, so that travel times are news of that age."""
-        for _ in range(min(len(self._samples), round(age_s / SAMPLE_PERIOD_S))):
-            self._samples.pop()
+    def window_speeds_mps(self, age_s: float = 0.0) -> dict[str, float]:
+        """Mean speeds, weighted by vehicles, of edges with ``SEEN_AT_LEAST`` of them in ``WINDOW_S``.
 
-    def window_speeds_mps(self) -> dict[str, float]:
-        """Mean speeds of the last ``WINDOW_S``, weighted by vehicles, of edges with ``SEEN_AT_LEAST`` of them."""
+        Args:
+            age_s: how long ago that time ended, at most ``OLDEST_NEWS_S``.
+        """
         sums: dict[str, tuple[int, float]] = {}
-        for seen in islice(reversed(self._samples), round(WINDOW_S / SAMPLE_PERIOD_S)):
+        newest, count = round(age_s / SAMPLE_PERIOD_S), round(WINDOW_S / SAMPLE_PERIOD_S)
+        for seen in islice(reversed(self._samples), newest, newest + count):
             for edge_id, (count, flow) in seen.items():
                 before = sums.get(edge_id, (0, 0.0))
                 sums[edge_id] = (before[0] + count, before[1] + flow)

@@ -22,8 +22,8 @@ class Road(Protocol):
         """The state after one step, and what happened in it; the last state has its end set."""
         ...
 
-    def alternatives(self) -> tuple[RouteOption, ...]:
-        """As ``Traffic.alternatives``, but it may spoil the road for driving on."""
+    def alternatives(self, age_s: float) -> tuple[RouteOption, ...]:
+        """As ``Traffic.alternatives``."""
         ...
 
 
@@ -69,9 +69,9 @@ class EgoDrive:
         """As ``Traffic.request``."""
         return self._driver.request(request, self.state)
 
-    def alternatives(self) -> tuple[RouteOption, ...]:
-        """As ``Traffic.alternatives``, but it may spoil the drive: call it on a copy."""
-        return () if self.state.end is not None else self._road.alternatives()
+    def alternatives(self, age_s: float) -> tuple[RouteOption, ...]:
+        """As ``Traffic.alternatives``."""
+        return () if self.state.end is not None else self._road.alternatives(age_s)
 
     def replay(self, calls: Sequence[Call], beat: Callable[[], None] | None = None) -> None:
         """Repeats what was done on an equal drive."""

@@ -153,17 +153,10 @@ class RemoteTraffic:
         self._remember(request)
         return answer
 
-    def alternatives(self) -> tuple[RouteOption, ...]:
-        """As ``Traffic.alternatives``; found by a copy that is thrown away."""
-        with closing(self.branch()) as copy:
-            options: tuple[RouteOption, ...] = copy._process.call("alternatives")
-            return options
-
-    def alternatives_of_old(self, age_s: float) -> tuple[RouteOption, ...]:
-        """As ``alternatives``, with the times that the traffic took that long ago, at most ``OLDEST_NEWS_S``."""
-        with closing(self.branch()) as copy:
-            options: tuple[RouteOption, ...] = copy._process.call("alternatives_of_old", age_s)
-            return options
+    def alternatives(self, age_s: float = 0.0) -> tuple[RouteOption, ...]:
+        """As ``Traffic.alternatives``."""
+        options: tuple[RouteOption, ...] = self._process.call("alternatives", age_s)
+        return options
 
     def own_choice(self) -> tuple[str, ...]:
         """The way that SUMO's rerouting device would take now, from the present edge on."""

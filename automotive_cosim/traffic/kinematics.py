@@ -79,7 +79,7 @@ class Car:
         self.state = self._sense(hazard_lights=hazard_lights)
         return self.state, ()
 
-    def alternatives(self) -> tuple[RouteOption, ...]:
+    def alternatives(self, age_s: float) -> tuple[RouteOption, ...]:
         """There is only one way."""
         return ()
 

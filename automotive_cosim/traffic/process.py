@@ -132,10 +132,10 @@ class Server:
         assert self._drive is not None
         return self._drive.request(request)
 
-    def do_alternatives(self) -> tuple[RouteOption, ...]:
-        """Looks for other ways; nothing else may be asked of this process afterwards."""
+    def do_alternatives(self, age_s: float) -> tuple[RouteOption, ...]:
+        """Looks for other ways by news of that age."""
         assert self._drive is not None
-        return self._drive.alternatives()
+        return self._drive.alternatives(age_s)
 
     def do_replay(self, calls: Sequence[Call]) -> Packed:
         """Repeats the calls of a drive; returns the state it ends in."""
@@ -171,12 +171,6 @@ class Server:
         assert self._ledger is not None
         outcome = settle(self._world, self._drive, self._ledger, groups, share, limit_s, self._after_step)
         return pack_state(self._drive.state), outcome
-
-    def do_alternatives_of_old(self, age_s: float) -> tuple[RouteOption, ...]:
-        """As ``alternatives``, by news of that age."""
-        assert self._world is not None
-        self._world.congestion.forget(age_s)
-        return self.do_alternatives()
 
     def do_own_choice(self) -> tuple[str, ...]:
         """SUMO's own; nothing else may be asked of this process afterwards."""

@@ -99,9 +99,9 @@ class ScriptedTraffic:
         """As ``Traffic.request``."""
         return self._open().request(request)
 
-    def alternatives(self) -> tuple[RouteOption, ...]:
+    def alternatives(self, age_s: float = 0.0) -> tuple[RouteOption, ...]:
         """As ``Traffic.alternatives``."""
-        return self._open().alternatives()
+        return self._open().alternatives(age_s)
 
     def branch(self) -> ScriptedTraffic:
         """As ``Traffic.branch``."""

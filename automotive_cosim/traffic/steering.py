@@ -6,13 +6,14 @@ import math
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from automotive_cosim.contracts import DrivingState, Reroute
+from automotive_cosim.contracts import DrivingState, Reroute, RouteOption
 from automotive_cosim.traffic.ego import RefusedError
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.network import Network
 from automotive_cosim.traffic.road_weather import G_MPS2
 
 if TYPE_CHECKING:
+    from automotive_cosim.traffic.router import Router
     from automotive_cosim.traffic.sensing import Sensor
     from automotive_cosim.traffic.sumo import Sumo
 
@@ -50,12 +51,12 @@ WALK_M = 400.0
 class SumoPedals:
     """Implements ``ego.Pedals``."""
 
-    def __init__(self, sumo: Sumo, ego_id: str, type_id: str, network: Network, sensor: Sensor) -> None:
+    def __init__(self, sumo: Sumo, ego_id: str, network: Network, sensor: Sensor, router: Router) -> None:
         self._sumo = sumo
         self._ego = ego_id
-        self._type = type_id
         self._network = network
         self._sensor = sensor
+        self._router = router
         self._service_mps2: float = sumo.vehicle.getDecel(ego_id)
         self._factor = 1.0
         self._top_mps = self._set_mps = FASTEST_MPS
@@ -158,6 +159,8 @@ class SumoPedals:
         if state.road.edge_id.startswith(":"):
             raise RefusedError("inside a junction the way is fixed; ask again behind it")
         edges = self._given(request.edges) if request.edges else self._found(request.destination, state)
+        if request == Reroute() and edges == self._rest():
+            return "this is the quickest way"
         try:
             self._sumo.set_route(self._ego, edges)
         except self._sumo.refusals as error:
@@ -184,13 +187,13 @@ class SumoPedals:
         return edge_ids
 
     def _found(self, destination: str, state: DrivingState) -> tuple[str, ...]:
-        """The quickest way to the destination; where no way leads there, to an edge within a short walk of it."""
+        """The quickest way now to the destination; where none leads there, to an edge within a short walk of it."""
         _, planned = self._fixed()
         for goals in (self._goals(destination, state), self._beside(destination)):
-            routes = [self._sumo.find_route(planned[-1], goal, self._type) for goal in goals]
-            ways = [(route.travelTime, tuple(route.edges)) for route in routes if route.edges]
-            if ways:
-                return (*planned[:-1], *min(ways)[1])
+            if way := self._router.quickest(planned[-1], goals):
+                found, rest = (*planned[:-1], *way), self._rest()
+                is_better = bool(destination) or self._router.is_quicker(found, rest, self._driven_m())
+                return found if is_better else rest
         raise RefusedError(
             f"there is no way to {destination} from here"
             if destination
@@ -206,11 +209,19 @@ class SumoPedals:
         near = sorted((other for other in away_m if away_m[other] <= WALK_M), key=away_m.__getitem__)
         return tuple(near[: STREET_CANDIDATES + 1])
 
-    def fixed(self) -> tuple[int, int] | None:
-        """Where on the route the car is, and how many of its edges can no longer be changed; None in a junction."""
+    def alternatives(self, age_s: float) -> tuple[RouteOption, ...]:
+        """As ``drive.Road``; empty inside a junction."""
         if self._sumo.edge_of(self._ego).startswith(":"):
-            return None
-        return self._sumo.route_index(self._ego), len(self._fixed()[1])
+            return ()
+        return self._router.alternatives(self._rest(), len(self._fixed()[1]), self._driven_m(), age_s)
+
+    def _rest(self) -> tuple[str, ...]:
+        """The route from the present edge on."""
+        return self._sensor.route.edge_ids[self._sumo.route_index(self._ego) :]
+
+    def _driven_m(self) -> float:
+        """What lies behind of the present edge."""
+        return self._sumo.lane_position(self._ego)
 
     def _fixed(self) -> tuple[str, tuple[str, ...]]:
         """The edge the car is on, and the edges that can no longer be changed."""

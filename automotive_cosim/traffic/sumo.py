@@ -11,7 +11,7 @@ import re
 import sys
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import closing, contextmanager
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from automotive_cosim.errors import ScenarioError, SetupError, TrafficError
@@ -58,7 +58,7 @@ class Sumo:
         self.collisions: Callable[[], Sequence[Any]] = _direct(simulation.getCollisions)
         self.to_lon_lat: Callable[[float, float], tuple[float, float]] = _direct(simulation.convertGeo)
         self.find_road: Callable[[float, float, bool, str], tuple[str, float, int]] = simulation.convertRoad
-        self.find_route: Callable[[str, str, str], Any] = simulation.findRoute
+        self.find_route: Callable[..., Any] = simulation.findRoute
         self.position: Callable[[str], tuple[float, float]] = _direct(vehicle.getPosition)
         self.angle: Callable[[str], float] = _direct(vehicle.getAngle)
         self.speed: Callable[[str], float] = _direct(vehicle.getSpeed)
@@ -98,7 +98,7 @@ class Sumo:
         self.lane_speed: Callable[[str], float] = lane.getMaxSpeed
         self.edge_vehicle_count: Callable[[str], int] = _direct(edge.getLastStepVehicleNumber)
         self.edge_mean_speed: Callable[[str], float] = _direct(edge.getLastStepMeanSpeed)
-        self.adapt_travel_time: Callable[[str, float], None] = edge.adaptTraveltime
+        self.adapt_travel_time: Callable[[str, float, float, float], None] = edge.adaptTraveltime
         self.edge_ids: Callable[[], Sequence[str]] = edge.getIDList
         self.edge_vehicles: Callable[[str], Sequence[str]] = edge.getLastStepVehicleIDs
 
@@ -309,10 +309,10 @@ class InProcessTraffic:
         self._log.append(request)
         return self._drive.request(request)
 
-    def alternatives(self) -> tuple[RouteOption, ...]:
-        """As ``Traffic.alternatives``; found by a copy in a process of its own, which replays the drive so far."""
-        with closing(self.branch()) as copy:
-            return copy.alternatives()
+    def alternatives(self, age_s: float = 0.0) -> tuple[RouteOption, ...]:
+        """As ``Traffic.alternatives``."""
+        self._check()
+        return self._drive.alternatives(age_s)
 
     def branch(self) -> Traffic:
         """A copy in a process of its own, which replays the drive so far."""

@@ -13,7 +13,6 @@ from automotive_cosim.contracts import DrivingState, EgoEnd, RoadIncident, Route
 from automotive_cosim.errors import ScenarioError, TrafficError
 from automotive_cosim.scenarios import Trip
 from automotive_cosim.traffic.base import EgoPlan, Event, Progress
-from automotive_cosim.traffic.choices import find
 from automotive_cosim.traffic.conflicts import LOOK_S, Conflicts
 from automotive_cosim.traffic.congestion import MEMORY_S, SAMPLE_PERIOD_S, WINDOW_S, Congestion
 from automotive_cosim.traffic.drive import EgoDrive
@@ -22,6 +21,7 @@ from automotive_cosim.traffic.network import read_network
 from automotive_cosim.traffic.options import Setup, command_line, read_configuration
 from automotive_cosim.traffic.profiles import Profile, profile
 from automotive_cosim.traffic.road_weather import G_MPS2, Forecast, Surface
+from automotive_cosim.traffic.router import Router
 from automotive_cosim.traffic.sensing import Sensor
 from automotive_cosim.traffic.situations import Situations
 from automotive_cosim.traffic.stage import TEMPLATE_TYPE, Stage
@@ -130,7 +130,8 @@ class World:
         self._situations.set_off(plan, sensor, self._sumo.time())
         if self._situations.take_changes():
             sensor.refresh()
-        pedals = SumoPedals(self._sumo, EGO, EGO_TYPE, self.network, sensor)
+        router = Router(self._sumo, self.network, self.congestion, EGO_TYPE)
+        pedals = SumoPedals(self._sumo, EGO, self.network, sensor, router)
         road = EgoRoad(self, self._sumo, sensor, pedals)
         return EgoDrive(road, Driver(plan, pedals, self.step_s), road.state)
 
@@ -267,15 +268,9 @@ class EgoRoad:
             self.state = replace(self.state, time_s=self._sumo.time(), end=end)
         return self.state, events
 
-    def alternatives(self) -> tuple[RouteOption, ...]:
+    def alternatives(self, age_s: float) -> tuple[RouteOption, ...]:
         """As ``drive.Road``."""
-        planned = self._pedals.fixed()
-        if planned is None:
-            return ()
-        index, fixed = planned
-        world, route = self._world, self._sensor.route.edge_ids[index:]
-        driven_m = self._sensor.position_m - self._sensor.route.position_m(index, 0.0)
-        return find(self._sumo, world.network, world.congestion.window_speeds_mps(), route, fixed, driven_m)
+        return self._pedals.alternatives(age_s)
 
     def _mishaps(self) -> tuple[EgoEnd | None, tuple[Event, ...]]:
         """Why the ego's drive ended in this step, if it did, and what befell the others."""

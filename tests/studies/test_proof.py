@@ -129,7 +129,7 @@ def test_branches_without_a_choice_stay_the_same_to_the_last(tmp_path: Path) -> 
         traffic.advance(30.0)
         group, _ = traffic.others()
         asked = traffic.branch()
-        asked.alternatives_of_old(60.0)
+        asked.alternatives(60.0)
         asked.own_choice()
         futures = [traffic, asked, traffic.branch()]
         outcomes = [future.settle([group], 0.95, 3600.0) for future in futures]
@@ -176,7 +176,7 @@ def test_old_news_is_what_was_known_then(small: StudyPlan) -> None:
         simulation.watch()
         simulation.run_on(120.0)
         with closing(simulation.depart(EgoPlan(job.trip, "steady"))) as traffic:
-            now, old = traffic.alternatives_of_old(0.0), traffic.alternatives_of_old(900.0)
+            now, old = traffic.alternatives(0.0), traffic.alternatives(900.0)
             assert now == traffic.alternatives()
     assert now[0].delay_s > 50
     assert old[0].delay_s == pytest.approx(0, abs=1e-6)

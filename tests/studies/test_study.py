@@ -187,6 +187,22 @@ def test_an_agent_gains_what_its_taps_do_and_one_that_does_nothing_changes_nothi
     assert not turned["agent:mine:Idle"]
 
 
+@pytest.mark.parametrize("name", ["t3a", "asurada"])
+def test_the_reference_agents_get_there_faster(name: str, two_ways: Draw, tmp_path: Path) -> None:
+    """They hear the question, open the map and tap: the car takes the way that the news called quicker."""
+    policies = ("never", "always", "best", f"agent:{name}")
+    plan = StudyPlan(str(two_ways()), (0.0,), seeds=(0,), per_drive=1, policies=policies)
+    run_study(plan, tmp_path / "agent")
+    study = read_study(tmp_path / "agent")
+    (decision,) = study.decisions
+    agents = decision["branches"][decision["agents"][name]]
+    always = decision["branches"][decision["news"][0]["branch"]]
+    assert agents["totals"] == always["totals"]
+    choice = {each["policy"]: each for each in study.choices}[f"agent:{name}"]
+    assert choice["rerouted"]
+    assert choice["gain_time_s"] > 0
+
+
 def invoke(*words: str) -> tuple[str, Exception | None]:
     result = CliRunner().invoke(app, list(words))
     error = result.exception

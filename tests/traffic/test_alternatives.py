@@ -51,15 +51,20 @@ def test_what_is_offered(grid: Scenario, forked: Forked, average: EgoPlan) -> No
 
 
 def test_asking_leaves_nothing_behind(grid: Scenario, forked: Forked, average: EgoPlan) -> None:
+    """Neither a weight nor a random number: the traffic goes on as if nobody had asked, here and in a copy."""
     with closing(forked.depart(average)) as asking, closing(forked.depart(average)) as silent:
-        for _ in range(4):
-            asking.alternatives()
+        for age_s in (0.0, 300.0, 0.0, 900.0):
+            asking.alternatives(age_s)
             assert asking.advance(15.0) == silent.advance(15.0)
         expected = asking.alternatives()
-    with closing(InProcess(grid, seed=1)) as simulation:
-        own = simulation.depart(average)
-        own.advance(60.0)
-        assert own.alternatives() == expected
+        with closing(InProcess(grid, seed=1)) as simulation:
+            own = simulation.depart(average)
+            own.advance(30.0)
+            own.alternatives()
+            own.advance(30.0)
+            assert own.alternatives() == expected
+            with closing(own.branch()) as replayed:
+                assert own.advance(60.0) == silent.advance(60.0) == replayed.advance(60.0)
 
 
 def test_a_chosen_way_is_driven(forked: Forked, average: EgoPlan) -> None:
@@ -86,6 +91,10 @@ def test_a_jam_makes_another_way_quicker(variant: Variant, average: EgoPlan) -> 
         traffic.advance(10.0)
         now, best, *_ = traffic.alternatives()
         assert best.eta_s < now.eta_s
+        with closing(traffic.branch()) as asked:
+            assert asked.request(Reroute()).accepted
+            asked.advance(0.1)
+            assert asked.alternatives()[0].eta_s <= best.eta_s, "who asks for a faster way gets it"
         arrivals = []
         for option in (now, best):
             with closing(traffic.branch()) as branch:
@@ -94,6 +103,16 @@ def test_a_jam_makes_another_way_quicker(variant: Variant, average: EgoPlan) -> 
                 assert branch.state.end is EgoEnd.ARRIVED
                 arrivals.append(branch.state.time_s)
     assert arrivals[1] < arrivals[0]
+
+
+def test_who_is_on_the_quickest_way_stays_on_it(forked: Forked, average: EgoPlan) -> None:
+    with closing(forked.depart(average)) as traffic:
+        traffic.advance(5.0)
+        assert traffic.request(Reroute()).accepted
+        before = traffic.advance(0.1).states[-1].ahead.route_edges
+        answer = traffic.request(Reroute())
+        assert (answer.accepted, answer.reason) == (True, "this is the quickest way")
+        assert traffic.advance(0.1).states[-1].ahead.route_edges == before
 
 
 def test_the_ego_does_not_reroute_by_itself(variant: Variant, average: EgoPlan) -> None:

@@ -1,0 +1,165 @@
+"""Ways to a goal, with honest times: SUMO's router over what the traffic did in the last five minutes.
+
+An edge's time is its length over the mean speed there weighted by vehicles, so that standing in a queue counts and
+empty intervals do not; where too few were seen it is free flow and, at a signal, the wait of whoever comes at
+random.
+
+The times that SUMO's router takes stay behind and are there for every vehicle, so they are written for a time that
+no simulation reaches, and the router is asked for a departure then. The vehicle it asks for is the ego's type: its
+speed does not deviate, so that no random number is drawn either.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+from automotive_cosim.contracts import RouteOption
+from automotive_cosim.traffic.network import Crossing, Network
+
+if TYPE_CHECKING:
+    from automotive_cosim.traffic.congestion import Congestion
+    from automotive_cosim.traffic.sumo import Sumo
+
+NEVER_S = 1e8
+"""Three years of simulated time; the edges' times are written for as long from there on."""
+
+MOST = 3
+"""Alternatives offered."""
+
+SAME_AT_MOST = 0.75
+"""Share of an alternative's length that another way may have in common with it."""
+
+PENALTY = 1.5
+"""What the time of an edge already offered is multiplied by, so that the router looks elsewhere."""
+
+TRIES = 12
+
+LONGEST = 2.0
+"""Ways that take more than this times the quickest are not offered."""
+
+SIGNAL_WAIT_S = 13.6
+"""Wait at a signal without a queue: 0.5 C (1 - g/C)^2, the uniform delay of the Highway Capacity Manual, for a
+cycle of 90 s that is green for 45 % of it."""
+
+SLOWEST_MPS = 0.5
+
+
+class TravelTimes:
+    """Seconds that edges and the ways between them take."""
+
+    def __init__(self, network: Network, speeds_mps: Mapping[str, float]) -> None:
+        """Takes the mean speeds of the edges where enough vehicles were seen."""
+        self._network = network
+        self._speeds_mps = speeds_mps
+        signalled = {
+            edge for edge, ways in network.crossings.items() if any(way.has_signal for way in ways.values())
+        }
+        self.edges_s = {edge_id: self._edge_s(edge_id, edge_id in signalled) for edge_id in network.edges}
+
+    def of(self, edges: Sequence[str], driven_m: float) -> tuple[float, float, float]:
+        """Length, time and free time of a way, without what has been driven of its first edge."""
+        network = self._network
+        first = network.edges[edges[0]]
+        left = max(0.0, 1.0 - driven_m / first.length_m)
+        length_m, time_s = first.length_m * left, self.edges_s[edges[0]] * left
+        free_s = length_m / first.speed_mps
+        for here, there in pairwise(edges):
+            edge = network.edges[there]
+            way = network.crossings.get(here, {}).get(there, Crossing(0.0, edge.speed_mps))
+            way_s = way.length_m / max(SLOWEST_MPS, way.speed_mps)
+            length_m += way.length_m + edge.length_m
+            time_s += way_s + self.edges_s[there]
+            free_s += way_s + edge.length_m / edge.speed_mps
+        return length_m, time_s, free_s
+
+    def _edge_s(self, edge_id: str, has_signal: bool) -> float:
+        edge = self._network.edges[edge_id]
+        seen_mps = self._speeds_mps.get(edge_id)
+        if seen_mps is None:
+            return edge.length_m / edge.speed_mps + (SIGNAL_WAIT_S if has_signal else 0.0)
+        return edge.length_m / max(SLOWEST_MPS, min(edge.speed_mps, seen_mps))
+
+
+class Router:
+    """Finds ways for the ego and leaves nothing behind."""
+
+    def __init__(self, sumo: Sumo, network: Network, congestion: Congestion, type_id: str) -> None:
+        """Takes a running simulation.
+
+        Args:
+            sumo: the simulation.
+            network: its roads.
+            congestion: knows how fast they are.
+            type_id: vehicle type without speed deviation or rerouting device.
+        """
+        self._sumo = sumo
+        self._network = network
+        self._congestion = congestion
+        self._type = type_id
+
+    def quickest(self, start: str, goals: Iterable[str]) -> tuple[str, ...]:
+        """The quickest way now from an edge to the goal that is reached first; empty if none can be reached."""
+        self._write(self._times().edges_s)
+        routes = [self._route(start, goal) for goal in goals]
+        found = min((route for route in routes if route.edges), key=lambda route: route.travelTime, default=None)
+        return () if found is None else tuple(found.edges)
+
+    def is_quicker(self, way: Sequence[str], other: Sequence[str], driven_m: float) -> bool:
+        """Whether one way takes less time now than another from the same edge, of which ``driven_m`` lie behind."""
+        times = self._times()
+        return times.of(way, driven_m)[1] < times.of(other, driven_m)[1]
+
+    def alternatives(
+        self, route: Sequence[str], fixed: int, driven_m: float, age_s: float = 0.0
+    ) -> tuple[RouteOption, ...]:
+        """The way that is being driven, and up to ``MOST`` others, the quickest first.
+
+        Args:
+            route: edges of the ego's route from the present one on.
+            fixed: how many of them it is too late to change.
+            driven_m: of the first edge.
+            age_s: of the news, at most ``congestion.OLDEST_NEWS_S``.
+        """
+        network, times = self._network, self._times(age_s)
+        weights = dict(times.edges_s)
+        self._write(weights)
+        found = tuple(route)
+        taken = [found]
+        for _ in range(TRIES):
+            for edge_id in found:
+                weights[edge_id] *= PENALTY
+                self._sumo.adapt_travel_time(edge_id, weights[edge_id], NEVER_S, 2 * NEVER_S)
+            way = self._route(route[fixed - 1], route[-1]).edges
+            if not way or len(taken) > MOST:
+                break
+            found = (*route[: fixed - 1], *way)
+            if all(_shared(found, other, network) <= SAME_AT_MOST for other in taken):
+                taken.append(found)
+        options = [_option(edges, times, driven_m) for edges in taken]
+        quick_s = LONGEST * min(option.eta_s for option in options)
+        others = sorted((each for each in options[1:] if each.eta_s <= quick_s), key=lambda option: option.eta_s)
+        return (options[0], *others)
+
+    def _times(self, age_s: float = 0.0) -> TravelTimes:
+        return TravelTimes(self._network, self._congestion.window_speeds_mps(age_s))
+
+    def _write(self, edges_s: Mapping[str, float]) -> None:
+        for edge_id, seconds in edges_s.items():
+            self._sumo.adapt_travel_time(edge_id, seconds, NEVER_S, 2 * NEVER_S)
+
+    def _route(self, start: str, goal: str) -> Any:
+        return self._sumo.find_route(start, goal, self._type, NEVER_S)
+
+
+def _option(edges: tuple[str, ...], times: TravelTimes, driven_m: float) -> RouteOption:
+    length_m, time_s, free_s = times.of(edges, driven_m)
+    return RouteOption(edges, length_m, time_s, max(0.0, time_s - free_s))
+
+
+def _shared(way: Sequence[str], other: Sequence[str], network: Network) -> float:
+    """Share of a way's length that lies on another one."""
+    on_other = frozenset(other)
+    length_m = sum(network.edges[edge].length_m for edge in way)
+    return sum(network.edges[edge].length_m for edge in way if edge in on_other) / length_m
