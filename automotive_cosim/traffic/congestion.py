@@ -9,13 +9,14 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import islice, pairwise
 from typing import Protocol
 
 from automotive_cosim.contracts import RoadAhead, RoadIncident, TrafficLight
 from automotive_cosim.traffic.network import Crossing, Edge, Network
+from automotive_cosim.traffic.records import make_ahead
 
 SAMPLE_PERIOD_S = 10.0
 """Time between samples of all edges."""
@@ -32,6 +33,9 @@ OLDEST_NEWS_S = 900.0
 
 FREE_WEIGHT = 0.1
 """Vehicles that an edge counts at free flow beside those seen, so that an empty one is free."""
+
+FORGOTTEN = 1e-6
+"""Smoothed vehicles under which an edge is empty."""
 
 JAM_BELOW = 0.25
 """Relative speed under which an edge is jammed."""
@@ -61,19 +65,19 @@ class Flow(Protocol):
 class Congestion:
     """Smoothed speed of every edge."""
 
-    def __init__(self, network: Network, counts: Callable[[str], int], speeds: Callable[[str], float]) -> None:
+    def __init__(self, network: Network, vehicles: Callable[[], Iterable[tuple[str, float]]]) -> None:
         """Starts at free flow.
 
         Args:
             network: whose edges.
-            counts: vehicles on an edge now.
-            speeds: their mean speed in m/s.
+            vehicles: for each that is driving now, its edge, inside a junction or not, and its speed in m/s.
         """
         self._edges = network.edges
-        self._counts = counts
-        self._speeds = speeds
-        self._vehicles = dict.fromkeys(network.edges, 0.0)
-        self._flow = dict.fromkeys(network.edges, 0.0)
+        self._order = {edge_id: number for number, edge_id in enumerate(network.edges)}
+        self._driving = vehicles
+        self._vehicles: dict[str, float] = {}
+        """Smoothed number on each edge, and of their speeds' sum; of those where somebody was of late."""
+        self._flow: dict[str, float] = {}
         self._keep = math.exp(-SAMPLE_PERIOD_S / MEMORY_S)
         self._slow: tuple[tuple[str, float], ...] = ()
         self._samples: deque[dict[str, tuple[int, float]]] = deque(
@@ -82,26 +86,24 @@ class Congestion:
 
     def sample(self) -> None:
         """Takes the speeds of now into account; called every ``SAMPLE_PERIOD_S``."""
-        keep, vehicles, flow, counts, edges = self._keep, self._vehicles, self._flow, self._counts, self._edges
+        keep, vehicles, flow, edges = self._keep, self._vehicles, self._flow, self._edges
         seen: dict[str, tuple[int, float]] = {}
+        for edge_id, speed_mps in self._driving():
+            if edge_id in edges:
+                count, total_mps = seen.get(edge_id, (0, 0.0))
+                seen[edge_id] = (count + 1, total_mps + speed_mps)
         slow: list[tuple[str, float]] = []
-        for edge_id, before in vehicles.items():
-            count = counts(edge_id)
-            if count:
-                speed_mps = self._speeds(edge_id)
-                seen[edge_id] = (count, count * speed_mps)
-                vehicles[edge_id] = before * keep + count * (1 - keep)
-                flow[edge_id] = flow[edge_id] * keep + count * speed_mps * (1 - keep)
-            elif before > 1e-6:
-                vehicles[edge_id] = before * keep
-                flow[edge_id] *= keep
-            else:
-                continue
-            weight, free_mps = vehicles[edge_id] + FREE_WEIGHT, edges[edge_id].speed_mps
-            if flow[edge_id] + FREE_WEIGHT * free_mps < SLOW_BELOW * weight * free_mps:
+        for edge_id in {**vehicles, **seen}:
+            count, total_mps = seen.get(edge_id, (0, 0.0))
+            weight = vehicles[edge_id] = vehicles.get(edge_id, 0.0) * keep + count * (1 - keep)
+            flow[edge_id] = flow.get(edge_id, 0.0) * keep + total_mps * (1 - keep)
+            free_mps = edges[edge_id].speed_mps
+            if flow[edge_id] + FREE_WEIGHT * free_mps < SLOW_BELOW * (weight + FREE_WEIGHT) * free_mps:
                 slow.append((edge_id, round(self.relative_speed(edge_id), 2)))
+            if weight < FORGOTTEN:
+                del vehicles[edge_id], flow[edge_id]
         self._samples.append(seen)
-        self._slow = tuple(slow)
+        self._slow = tuple(sorted(slow, key=lambda row: self._order[row[0]]))
 
     def window_speeds_mps(self, age_s: float = 0.0) -> dict[str, float]:
         """Mean speeds, weighted by vehicles, of edges with ``SEEN_AT_LEAST`` of them in ``WINDOW_S``.
@@ -120,7 +122,8 @@ class Congestion:
     def speed_mps(self, edge_id: str) -> float:
         """Mean speed driven on an edge."""
         free_mps = self._edges[edge_id].speed_mps
-        driven = (self._flow[edge_id] + FREE_WEIGHT * free_mps) / (self._vehicles[edge_id] + FREE_WEIGHT)
+        vehicles, flow_mps = self._vehicles.get(edge_id, 0.0), self._flow.get(edge_id, 0.0)
+        driven = (flow_mps + FREE_WEIGHT * free_mps) / (vehicles + FREE_WEIGHT)
         return max(SLOWEST_MPS, min(free_mps, driven))
 
     def relative_speed(self, edge_id: str) -> float:
@@ -215,7 +218,7 @@ class Route:
         free_s = on_edge_m / leg.edge.speed_mps + leg.free_after_s
         relative_m = on_edge_m * leg.relative_speed + leg.relative_after_m
         edges_left_m = on_edge_m + leg.length_after_m
-        return RoadAhead(
+        return make_ahead(
             left_m,
             eta_s,
             max(0.0, eta_s - free_s),
@@ -228,9 +231,10 @@ class Route:
             0.0 if leg.edge.in_tunnel else None if leg.tunnel_m is None else max(0.0, leg.tunnel_m - position_m),
             None if leg.exit_m is None else max(0.0, leg.exit_m - position_m),
             self._rest[index],
-            camera_distance_m=self._camera_m(position_m) if self._cameras_m else None,
-            slow_edges=self._slow,
-            incidents=self._incidents,
+            (),
+            self._camera_m(position_m) if self._cameras_m else None,
+            self._slow,
+            self._incidents,
         )
 
     def _camera_m(self, position_m: float) -> float | None:

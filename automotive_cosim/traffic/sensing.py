@@ -7,10 +7,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from automotive_cosim.contracts import Around, DrivingState, OtherVehicle, RoadHere, RoadIncident, TrafficLight
+from automotive_cosim.contracts import DrivingState, OtherVehicle, RoadHere, RoadIncident, TrafficLight
 from automotive_cosim.traffic.congestion import Congestion, Route
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.network import Edge, Network
+from automotive_cosim.traffic.records import make_around, make_light, make_other, make_road, make_state
 
 if TYPE_CHECKING:
     from automotive_cosim.traffic.sumo import Sumo
@@ -123,7 +124,7 @@ class Sensor:
             self._look_for_light()
         if is_looking:
             self._oncoming_id = self._look_for_oncoming(index)
-        return DrivingState(
+        return make_state(
             sumo.time(),
             x_m,
             y_m,
@@ -136,7 +137,7 @@ class Sensor:
             odometer_m,
             self._road(edge_id, lane_position_m),
             self.route.ahead(index, self.position_m, self._next_light()),
-            Around(
+            make_around(
                 self._leader(speed_mps),
                 self._follower(speed_mps),
                 self._oncoming(index, x_m, y_m, speed_mps) if self._oncoming_id else None,
@@ -145,6 +146,7 @@ class Sensor:
             ),
             hazard_lights,
             vehicle_count,
+            None,
         )
 
     def _road(self, edge_id: str, lane_position_m: float) -> RoadHere:
@@ -154,7 +156,7 @@ class Sensor:
         lane = self._lanes.get(lane_id)
         if lane is None:
             lane = self._lanes[lane_id] = self._read_lane(lane_id)
-        return RoadHere(
+        return make_road(
             edge_id,
             lane_id,
             lane.index,
@@ -192,7 +194,7 @@ class Sensor:
         if self._light is None:
             return None
         tls_id, link, stop_line_m = self._light
-        return TrafficLight(tls_id, self._sumo.light_state(tls_id)[link], max(0.0, stop_line_m - self.position_m))
+        return make_light(tls_id, self._sumo.light_state(tls_id)[link], max(0.0, stop_line_m - self.position_m))
 
     def _leader(self, speed_mps: float) -> OtherVehicle | None:
         """SUMO's gap begins at the minimum gap before the ego's bumper."""
@@ -280,6 +282,6 @@ def other_vehicle(vehicle_id: str, gap_m: float, speed_mps: float, closing_mps: 
     """Adds time to collision and DRAC; ``closing_mps`` is positive while the gap shrinks."""
     gap_m = max(0.0, gap_m)
     if closing_mps <= 1e-3:
-        return OtherVehicle(vehicle_id, gap_m, speed_mps, None)
+        return make_other(vehicle_id, gap_m, speed_mps, None, None)
     drac_mps2 = closing_mps**2 / (2 * max(TOUCHING_M, gap_m))
-    return OtherVehicle(vehicle_id, gap_m, speed_mps, gap_m / closing_mps, drac_mps2)
+    return make_other(vehicle_id, gap_m, speed_mps, gap_m / closing_mps, drac_mps2)

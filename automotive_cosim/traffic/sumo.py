@@ -96,11 +96,17 @@ class Sumo:
         self.light_state: Callable[[str], str] = _direct(library.trafficlight.getRedYellowGreenState)
         self.friction: Callable[[str], float] = lane.getFriction
         self.lane_speed: Callable[[str], float] = lane.getMaxSpeed
-        self.edge_vehicle_count: Callable[[str], int] = _direct(edge.getLastStepVehicleNumber)
-        self.edge_mean_speed: Callable[[str], float] = _direct(edge.getLastStepMeanSpeed)
         self.adapt_travel_time: Callable[[str, float, float, float], None] = edge.adaptTraveltime
         self.edge_ids: Callable[[], Sequence[str]] = edge.getIDList
         self.edge_vehicles: Callable[[str], Sequence[str]] = edge.getLastStepVehicleIDs
+        self.vehicle_ids: Callable[[], Sequence[str]] = vehicle.getIDList
+
+    def on_edges(self) -> Iterator[tuple[str, float]]:
+        """The edge and speed of every vehicle in a lane; those parked or off the road are in none."""
+        lane_of, speed = self.lane_of, self.speed
+        for vehicle in self.vehicle_ids():
+            if lane := lane_of(vehicle):
+                yield lane.rpartition("_")[0], speed(vehicle)
 
 
 Function = TypeVar("Function", bound=Callable[..., Any])

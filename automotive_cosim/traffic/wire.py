@@ -8,6 +8,14 @@ from typing import Any, TypeAlias
 
 from automotive_cosim.contracts import Around, DrivingState, OtherVehicle, RoadAhead, RoadHere, TrafficLight
 from automotive_cosim.traffic.base import Drive, Event
+from automotive_cosim.traffic.records import (
+    make_ahead,
+    make_around,
+    make_light,
+    make_other,
+    make_road,
+    make_state,
+)
 
 Packed: TypeAlias = tuple[Any, ...]
 
@@ -41,12 +49,12 @@ def unpack_state(packed: Packed) -> DrivingState:
     """The state that was packed."""
     row, ahead, around = list(packed), list(packed[_AHEAD_AT]), packed[_AROUND_AT]
     light = ahead[_LIGHT_AT]
-    ahead[_LIGHT_AT] = light and TrafficLight(*light)
-    row[_ROAD_AT] = RoadHere(*row[_ROAD_AT])
-    row[_AHEAD_AT] = RoadAhead(*ahead)
-    others: Packed = tuple(other and OtherVehicle(*other) for other in around[:_OTHERS])
-    row[_AROUND_AT] = Around(*others, *around[_OTHERS:])
-    return DrivingState(*row)
+    ahead[_LIGHT_AT] = light and make_light(*light)
+    row[_ROAD_AT] = make_road(*row[_ROAD_AT])
+    row[_AHEAD_AT] = make_ahead(*ahead)
+    others: Packed = tuple(other and make_other(*other) for other in around[:_OTHERS])
+    row[_AROUND_AT] = make_around(*others, *around[_OTHERS:])
+    return make_state(*row)
 
 
 def pack_drive(drive: Drive) -> Packed:

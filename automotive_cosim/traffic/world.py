@@ -69,7 +69,7 @@ class World:
         self._sumo.copy_type("DEFAULT_VEHTYPE", TEMPLATE_TYPE)
         self._surface = Surface(self._sumo, self.network, (EGO_TYPE, TEMPLATE_TYPE))
         self._forecast = Forecast(scenario.weather[:1], scenario.sumo.warm_up_s)
-        self.congestion = Congestion(self.network, self._sumo.edge_vehicle_count, self._sumo.edge_mean_speed)
+        self.congestion = Congestion(self.network, self._sumo.on_edges)
         self._situations = Situations(Stage(self._sumo, self.network, self._surface, EGO), scenario)
         self._has_incidents = self._situations.are_left
         self._second_steps = max(1, round(1.0 / self.step_s))

@@ -155,7 +155,7 @@ SAMPLES = round(6 * MEMORY_S / SAMPLE_PERIOD_S)
 
 
 def jammed(network: Network, *edges: str, speed_mps: float = 1.0, vehicles: int = 20) -> Congestion:
-    congestion = Congestion(network, lambda edge: vehicles if edge in edges else 0, lambda edge: speed_mps)
+    congestion = Congestion(network, lambda: [(edge, speed_mps) for edge in edges] * vehicles)
     for _ in range(SAMPLES):
         congestion.sample()
     return congestion
@@ -174,7 +174,7 @@ def test_a_red_light_is_no_jam(town: Network) -> None:
     """Half a cycle of standing, half a cycle of free flow."""
     phase = iter([0.0] * 4 + [12.0] * 4 for _ in range(20))
     speeds = [speed for cycle in phase for speed in cycle]
-    congestion = Congestion(town, lambda edge: 5 if edge == "c3c4" else 0, lambda edge: speeds[0])
+    congestion = Congestion(town, lambda: [("c3c4", speeds[0])] * 5)
     seen = []
     while speeds:
         congestion.sample()
@@ -184,8 +184,8 @@ def test_a_red_light_is_no_jam(town: Network) -> None:
 
 
 def test_a_jam_clears_when_its_vehicles_have_gone(town: Network) -> None:
-    rows = {"c3c4": 20}
-    congestion = Congestion(town, lambda edge: rows.get(edge, 0), lambda edge: 0.5)
+    rows = [("c3c4", 0.5)] * 20
+    congestion = Congestion(town, lambda: rows)
     for _ in range(SAMPLES):
         congestion.sample()
     assert congestion.relative_speed("c3c4") < 0.1

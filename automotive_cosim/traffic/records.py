@@ -1,0 +1,34 @@
+"""The parts of a driving state, made quickly.
+
+A frozen dataclass sets each of its fields through ``object.__setattr__``, which for a whole driving state takes
+longer than reading it from SUMO. Here an unfrozen twin is filled and then given the frozen class: the same object,
+in a fifth of the time.
+"""
+
+from __future__ import annotations
+
+from dataclasses import fields, make_dataclass
+from typing import Any, TypeVar, cast
+
+from automotive_cosim.contracts import Around, DrivingState, OtherVehicle, RoadAhead, RoadHere, TrafficLight
+
+Record = TypeVar("Record")
+
+
+def maker(kind: type[Record]) -> type[Record]:
+    """What makes records of a frozen dataclass with slots from all their fields, in order.
+
+    It is typed as the class, so that its arguments are checked, but knows neither defaults nor names.
+    """
+    twin = make_dataclass(f"{kind.__name__}Twin", [field.name for field in fields(cast(Any, kind))], slots=True)
+
+    def make(*values: object) -> object:
+        record = twin(*values)
+        record.__class__ = kind
+        return record
+
+    return cast("type[Record]", make)
+
+
+make_state, make_road, make_ahead = maker(DrivingState), maker(RoadHere), maker(RoadAhead)
+make_around, make_other, make_light = maker(Around), maker(OtherVehicle), maker(TrafficLight)
