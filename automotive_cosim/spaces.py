@@ -20,7 +20,9 @@ Action (``Dict``): see ``action_space``; every sample is well formed.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from copy import copy
 from dataclasses import fields
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -105,7 +107,7 @@ class AnyText(spaces.Text):
 def observation_space(channels: frozenset[Channel], width: int, height: int) -> spaces.Dict:
     """The space of what an agent with these channels gets; see the module's table."""
     known: dict[Channel, spaces.Space[Any]] = {
-        Channel.SCREENSHOT: spaces.Box(0, 255, (height, width, 3), np.uint8),
+        Channel.SCREENSHOT: _bytes_space(height, width, 3),
         Channel.ELEMENTS: _elements_space(),
         Channel.VEHICLE: _vehicle_space(),
         Channel.GPS: _gps_space(),
@@ -241,11 +243,11 @@ def _elements_space() -> spaces.Dict:
         {
             "count": spaces.Discrete(many + 1),
             "bbox": spaces.Box(-32768, 32767, (many, 4), np.int16),
-            "kind": spaces.Box(0, 255, (many,), np.uint8),
+            "kind": _bytes_space(many),
             "flags": spaces.MultiBinary((many, len(FLAGS))),
-            "text": spaces.Box(0, 255, (many, ELEMENT_TEXT_BYTES), np.uint8),
-            "description": spaces.Box(0, 255, (many, ELEMENT_TEXT_BYTES), np.uint8),
-            "resource_id": spaces.Box(0, 255, (many, RESOURCE_ID_BYTES), np.uint8),
+            "text": _bytes_space(many, ELEMENT_TEXT_BYTES),
+            "description": _bytes_space(many, ELEMENT_TEXT_BYTES),
+            "resource_id": _bytes_space(many, RESOURCE_ID_BYTES),
         }
     )
 
@@ -382,8 +384,15 @@ def _decode_connectivity(encoded: Mapping[str, Any]) -> Connectivity:
 # --- texts ------------------------------------------------------------------------------------------------
 
 
-def _bytes_space(size: int) -> spaces.Box:
-    return spaces.Box(0, 255, (size,), np.uint8)
+def _bytes_space(*shape: int) -> spaces.Box:
+    """A box of bytes. Those of one shape share their bounds: a screenshot's take four times its own size."""
+    return copy(_first_bytes(shape))
+
+
+@cache
+def _first_bytes(shape: tuple[int, ...]) -> spaces.Box:
+    """Nobody samples from this one, so that copies have random generators of their own."""
+    return spaces.Box(0, 255, shape, np.uint8)
 
 
 def _bytes(text: str, size: int) -> npt.NDArray[np.uint8]:
