@@ -11,6 +11,7 @@ speed does not deviate, so that no random number is drawn either.
 
 from __future__ import annotations
 
+from collections import ChainMap
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
@@ -46,42 +47,6 @@ cycle of 90 s that is green for 45 % of it."""
 SLOWEST_MPS = 0.5
 
 
-class TravelTimes:
-    """Seconds that edges and the ways between them take."""
-
-    def __init__(self, network: Network, speeds_mps: Mapping[str, float]) -> None:
-        """Takes the mean speeds of the edges where enough vehicles were seen."""
-        self._network = network
-        self._speeds_mps = speeds_mps
-        signalled = {
-            edge for edge, ways in network.crossings.items() if any(way.has_signal for way in ways.values())
-        }
-        self.edges_s = {edge_id: self._edge_s(edge_id, edge_id in signalled) for edge_id in network.edges}
-
-    def of(self, edges: Sequence[str], driven_m: float) -> tuple[float, float, float]:
-        """Length, time and free time of a way, without what has been driven of its first edge."""
-        network = self._network
-        first = network.edges[edges[0]]
-        left = max(0.0, 1.0 - driven_m / first.length_m)
-        length_m, time_s = first.length_m * left, self.edges_s[edges[0]] * left
-        free_s = length_m / first.speed_mps
-        for here, there in pairwise(edges):
-            edge = network.edges[there]
-            way = network.crossings.get(here, {}).get(there, Crossing(0.0, edge.speed_mps))
-            way_s = way.length_m / max(SLOWEST_MPS, way.speed_mps)
-            length_m += way.length_m + edge.length_m
-            time_s += way_s + self.edges_s[there]
-            free_s += way_s + edge.length_m / edge.speed_mps
-        return length_m, time_s, free_s
-
-    def _edge_s(self, edge_id: str, has_signal: bool) -> float:
-        edge = self._network.edges[edge_id]
-        seen_mps = self._speeds_mps.get(edge_id)
-        if seen_mps is None:
-            return edge.length_m / edge.speed_mps + (SIGNAL_WAIT_S if has_signal else 0.0)
-        return edge.length_m / max(SLOWEST_MPS, min(edge.speed_mps, seen_mps))
-
-
 class Router:
     """Finds ways for the ego and leaves nothing behind."""
 
@@ -98,18 +63,28 @@ class Router:
         self._network = network
         self._congestion = congestion
         self._type = type_id
+        signalled = {
+            edge for edge, ways in network.crossings.items() if any(way.has_signal for way in ways.values())
+        }
+        self._free_s = {
+            edge.edge_id: edge.length_m / edge.speed_mps + (SIGNAL_WAIT_S if edge.edge_id in signalled else 0.0)
+            for edge in network.edges.values()
+        }
+        self._changed: tuple[str, ...] = ()
+        """Edges whose weight is another than on free roads."""
+        self._write(self._free_s)
 
     def quickest(self, start: str, goals: Iterable[str]) -> tuple[str, ...]:
         """The quickest way now from an edge to the goal that is reached first; empty if none can be reached."""
-        self._write(self._times().edges_s)
+        self._put(self._seen_s(0.0))
         routes = [self._route(start, goal) for goal in goals]
         found = min((route for route in routes if route.edges), key=lambda route: route.travelTime, default=None)
         return () if found is None else tuple(found.edges)
 
     def is_quicker(self, way: Sequence[str], other: Sequence[str], driven_m: float) -> bool:
         """Whether one way takes less time now than another from the same edge, of which ``driven_m`` lie behind."""
-        times = self._times()
-        return times.of(way, driven_m)[1] < times.of(other, driven_m)[1]
+        seen_s = self._seen_s(0.0)
+        return self._option(way, seen_s, driven_m).eta_s < self._option(other, seen_s, driven_m).eta_s
 
     def alternatives(
         self, route: Sequence[str], fixed: int, driven_m: float, age_s: float = 0.0
@@ -122,28 +97,54 @@ class Router:
             driven_m: of the first edge.
             age_s: of the news, at most ``congestion.OLDEST_NEWS_S``.
         """
-        network, times = self._network, self._times(age_s)
-        weights = dict(times.edges_s)
-        self._write(weights)
+        seen_s = self._seen_s(age_s)
+        network, weights = self._network, dict(seen_s)
         found = tuple(route)
         taken = [found]
         for _ in range(TRIES):
             for edge_id in found:
-                weights[edge_id] *= PENALTY
-                self._sumo.adapt_travel_time(edge_id, weights[edge_id], NEVER_S, 2 * NEVER_S)
+                weights[edge_id] = PENALTY * weights.get(edge_id, self._free_s[edge_id])
+            self._put(weights)
             way = self._route(route[fixed - 1], route[-1]).edges
             if not way or len(taken) > MOST:
                 break
             found = (*route[: fixed - 1], *way)
             if all(_shared(found, other, network) <= SAME_AT_MOST for other in taken):
                 taken.append(found)
-        options = [_option(edges, times, driven_m) for edges in taken]
+        options = [self._option(edges, seen_s, driven_m) for edges in taken]
         quick_s = LONGEST * min(option.eta_s for option in options)
         others = sorted((each for each in options[1:] if each.eta_s <= quick_s), key=lambda option: option.eta_s)
         return (options[0], *others)
 
-    def _times(self, age_s: float = 0.0) -> TravelTimes:
-        return TravelTimes(self._network, self._congestion.window_speeds_mps(age_s))
+    def _seen_s(self, age_s: float) -> dict[str, float]:
+        """Times of the edges where enough vehicles were seen."""
+        return {
+            edge_id: edge.length_m / max(SLOWEST_MPS, min(edge.speed_mps, speed_mps))
+            for edge_id, speed_mps in self._congestion.window_speeds_mps(age_s).items()
+            for edge in (self._network.edges[edge_id],)
+        }
+
+    def _option(self, edges: Sequence[str], seen_s: dict[str, float], driven_m: float) -> RouteOption:
+        """A way without what has been driven of its first edge."""
+        network, edges_s = self._network, ChainMap(seen_s, self._free_s)
+        first = network.edges[edges[0]]
+        left = max(0.0, 1.0 - driven_m / first.length_m)
+        length_m, time_s = first.length_m * left, edges_s[edges[0]] * left
+        free_s = length_m / first.speed_mps
+        for here, there in pairwise(edges):
+            edge = network.edges[there]
+            way = network.crossings.get(here, {}).get(there, Crossing(0.0, edge.speed_mps))
+            way_s = way.length_m / max(SLOWEST_MPS, way.speed_mps)
+            length_m += way.length_m + edge.length_m
+            time_s += way_s + edges_s[there]
+            free_s += way_s + edge.length_m / edge.speed_mps
+        return RouteOption(tuple(edges), length_m, time_s, max(0.0, time_s - free_s))
+
+    def _put(self, edges_s: Mapping[str, float]) -> None:
+        """Sets the weights of these edges; all others are as on free roads."""
+        self._write({edge_id: self._free_s[edge_id] for edge_id in self._changed if edge_id not in edges_s})
+        self._write(edges_s)
+        self._changed = tuple(edges_s)
 
     def _write(self, edges_s: Mapping[str, float]) -> None:
         for edge_id, seconds in edges_s.items():
@@ -151,11 +152,6 @@ class Router:
 
     def _route(self, start: str, goal: str) -> Any:
         return self._sumo.find_route(start, goal, self._type, NEVER_S)
-
-
-def _option(edges: tuple[str, ...], times: TravelTimes, driven_m: float) -> RouteOption:
-    length_m, time_s, free_s = times.of(edges, driven_m)
-    return RouteOption(edges, length_m, time_s, max(0.0, time_s - free_s))
 
 
 def _shared(way: Sequence[str], other: Sequence[str], network: Network) -> float:

@@ -70,6 +70,7 @@ class World:
         self._surface = Surface(self._sumo, self.network, (EGO_TYPE, TEMPLATE_TYPE))
         self._forecast = Forecast(scenario.weather[:1], scenario.sumo.warm_up_s)
         self.congestion = Congestion(self.network, self._sumo.on_edges)
+        self._router = Router(self._sumo, self.network, self.congestion, EGO_TYPE)
         self._situations = Situations(Stage(self._sumo, self.network, self._surface, EGO), scenario)
         self._has_incidents = self._situations.are_left
         self._second_steps = max(1, round(1.0 / self.step_s))
@@ -130,8 +131,7 @@ class World:
         self._situations.set_off(plan, sensor, self._sumo.time())
         if self._situations.take_changes():
             sensor.refresh()
-        router = Router(self._sumo, self.network, self.congestion, EGO_TYPE)
-        pedals = SumoPedals(self._sumo, EGO, self.network, sensor, router)
+        pedals = SumoPedals(self._sumo, EGO, self.network, sensor, self._router)
         road = EgoRoad(self, self._sumo, sensor, pedals)
         return EgoDrive(road, Driver(plan, pedals, self.step_s), road.state)
 
