@@ -77,6 +77,8 @@ class Conflicts:
         self._length_m = sumo.length(ego_id)
         self._crossings: dict[str, tuple[_Crossing, ...]] = {}
         self._ways: dict[str, _Way] = {}
+        self._coming: tuple[str, tuple[str, ...], str] = ("", (), "")
+        """Lane, this edge and the next of the route, and the lane through the junction between them."""
 
     def look(self, state: DrivingState) -> tuple[Event, ...]:
         """Called every ``LOOK_S``; tells what is sure by now."""
@@ -106,8 +108,11 @@ class Conflicts:
         """The lane that the ego will take through the next junction."""
         if not self._is_near(state):
             return ""
-        links = self._sumo.vehicle.getNextLinks(self._ego)
-        return links[0][4] if links else ""
+        lane, edges = state.road.lane_id, state.ahead.route_edges[:2]
+        if self._coming[:2] != (lane, edges):
+            links = self._sumo.vehicle.getNextLinks(self._ego)
+            self._coming = (lane, edges, links[0][4] if links else "")
+        return self._coming[2]
 
     def _see(self, way: _Way, state: DrivingState) -> None:
         sumo = self._sumo

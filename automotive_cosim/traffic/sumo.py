@@ -55,6 +55,7 @@ class Sumo:
         self.departed_count: Callable[[], int] = _direct(simulation.getDepartedNumber)
         self.teleporting: Callable[[], Sequence[str]] = _direct(simulation.getStartingTeleportIDList)
         self.teleporting_count: Callable[[], int] = _direct(simulation.getStartingTeleportNumber)
+        self.colliding_count: Callable[[], int] = _direct(simulation.getCollidingVehiclesNumber)
         self.collisions: Callable[[], Sequence[Any]] = _direct(simulation.getCollisions)
         self.to_lon_lat: Callable[[float, float], tuple[float, float]] = _direct(simulation.convertGeo)
         self.find_road: Callable[[float, float, bool, str], tuple[str, float, int]] = simulation.convertRoad

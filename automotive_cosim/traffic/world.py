@@ -275,12 +275,11 @@ class EgoRoad:
     def _mishaps(self) -> tuple[EgoEnd | None, tuple[Event, ...]]:
         """Why the ego's drive ended in this step, if it did, and what befell the others."""
         sumo = self._sumo
-        collisions, teleporting = sumo.collisions(), sumo.teleporting_count()
-        if not (collisions or teleporting or self._world.arrived):
+        if not (sumo.colliding_count() or sumo.teleporting_count() or self._world.arrived):
             return None, ()
         end: EgoEnd | None = None
         events: list[Event] = []
-        for collision in collisions:
+        for collision in sumo.collisions():
             text = f"{collision.collider} hits {collision.victim}"
             events.append(Event(sumo.time(), "collision", text))
             if EGO in (collision.collider, collision.victim):
