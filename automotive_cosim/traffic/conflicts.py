@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 
 from shapely import LineString, Point
 
-from automotive_cosim.contracts import DrivingState
 from automotive_cosim.traffic.base import Event
 
 if TYPE_CHECKING:
+    from automotive_cosim.traffic.instant import Seen
     from automotive_cosim.traffic.sumo import Sumo
 
 LOOK_S = 0.5
@@ -80,47 +80,47 @@ class Conflicts:
         self._coming: tuple[str, tuple[str, ...], str] = ("", (), "")
         """Lane, this edge and the next of the route, and the lane through the junction between them."""
 
-    def look(self, state: DrivingState) -> tuple[Event, ...]:
+    def look(self, now: Seen) -> tuple[Event, ...]:
         """Called every ``LOOK_S``; tells what is sure by now."""
-        inside = state.road.lane_id if state.road.edge_id.startswith(":") else ""
-        if not inside and not self._ways and not self._is_near(state):
+        inside = now.lane_id if now.edge_id.startswith(":") else ""
+        if not inside and not self._ways and not self._is_near(now):
             return ()
-        coming = inside or self._next_lane(state)
+        coming = inside or self._next_lane(now)
         if coming and coming not in self._ways and self._crossings_of(coming):
             self._ways[coming] = _Way(self._crossings_of(coming))
         events: list[Event] = []
         for lane, way in list(self._ways.items()):
-            self._see(way, state)
+            self._see(way, now)
             if lane == inside:
-                way.ego = _Sight(state.time_s, state.road.lane_position_m, state.speed_mps, self._length_m)
+                way.ego = _Sight(now.time_s, now.lane_position_m, now.speed_mps, self._length_m)
             elif way.ego is not None:
-                events += self._told(way, state.time_s)
-            is_past = way.ego is not None and state.time_s > way.ego.time_s + 2 * LONGEST_PET_S
+                events += self._told(way, now.time_s)
+            is_past = way.ego is not None and now.time_s > way.ego.time_s + 2 * LONGEST_PET_S
             if is_past or (way.ego is None and lane != coming):
                 del self._ways[lane]
         return tuple(events)
 
-    def _is_near(self, state: DrivingState) -> bool:
-        lane_m: float = self._sumo.lane.getLength(state.road.lane_id)
-        return lane_m - state.road.lane_position_m < max(NEAR_M, LONGEST_PET_S * state.speed_mps)
+    def _is_near(self, now: Seen) -> bool:
+        lane_m: float = self._sumo.lane.getLength(now.lane_id)
+        return lane_m - now.lane_position_m < max(NEAR_M, LONGEST_PET_S * now.speed_mps)
 
-    def _next_lane(self, state: DrivingState) -> str:
+    def _next_lane(self, now: Seen) -> str:
         """The lane that the ego will take through the next junction."""
-        if not self._is_near(state):
+        if not self._is_near(now):
             return ""
-        lane, edges = state.road.lane_id, state.ahead.route_edges[:2]
+        lane, edges = now.lane_id, now.route.edge_ids[now.index : now.index + 2]
         if self._coming[:2] != (lane, edges):
             links = self._sumo.vehicle.getNextLinks(self._ego)
             self._coming = (lane, edges, links[0][4] if links else "")
         return self._coming[2]
 
-    def _see(self, way: _Way, state: DrivingState) -> None:
+    def _see(self, way: _Way, now: Seen) -> None:
         sumo = self._sumo
         for crossing in way.crossings:
             for vehicle in sumo.lane.getLastStepVehicleIDs(crossing.foe_lane):
                 if vehicle != self._ego:
                     way.foes[crossing.foe_lane, vehicle] = _Sight(
-                        state.time_s, sumo.lane_position(vehicle), sumo.speed(vehicle), sumo.length(vehicle)
+                        now.time_s, sumo.lane_position(vehicle), sumo.speed(vehicle), sumo.length(vehicle)
                     )
 
     def _told(self, way: _Way, now_s: float) -> list[Event]:

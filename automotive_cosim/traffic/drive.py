@@ -8,6 +8,7 @@ from typing import Protocol
 from automotive_cosim.contracts import Answer, DrivingState, RoadRequest, RouteOption
 from automotive_cosim.traffic.base import Drive, Event, Until
 from automotive_cosim.traffic.ego import Driver
+from automotive_cosim.traffic.instant import Instant
 
 Call = int | RoadRequest
 """One call of a drive, as a replay repeats it: a number of steps or a request."""
@@ -18,8 +19,8 @@ class Road(Protocol):
 
     step_s: float
 
-    def step(self, *, hazard_lights: bool) -> tuple[DrivingState, tuple[Event, ...]]:
-        """The state after one step, and what happened in it; the last state has its end set."""
+    def step(self, *, hazard_lights: bool) -> tuple[Instant, tuple[Event, ...]]:
+        """The instant after one step, and what happened in it; the last has its end set."""
         ...
 
     def alternatives(self, age_s: float) -> tuple[RouteOption, ...]:
@@ -28,42 +29,47 @@ class Road(Protocol):
 
 
 class EgoDrive:
-    """One drive on a road, from its first state on."""
+    """One drive on a road, from its first instant on."""
 
-    def __init__(self, road: Road, driver: Driver, state: DrivingState) -> None:
-        """Takes over at ``state``, and lets the driver set the pedals."""
+    def __init__(self, road: Road, driver: Driver, now: Instant) -> None:
+        """Takes over, and lets the driver set the pedals."""
         self._road = road
         self._driver = driver
-        self.state = state
-        driver.tick(state)
+        self._now = now
+        driver.tick(now)
+
+    @property
+    def state(self) -> DrivingState:
+        """The newest state."""
+        return self._now.state
 
     def advance(
         self, duration_s: float, until: Until | None = None, beat: Callable[[], None] | None = None
     ) -> Drive:
         """As ``Traffic.advance``; ``beat`` is called after every step."""
         road, driver = self._road, self._driver
-        states: list[DrivingState] = []
+        passed: list[Instant] = []
         events: list[Event] = []
         held_since_s: float | None = None
         for _ in range(round(duration_s / road.step_s)):
-            if self.state.end is not None:
+            if self._now.end is not None:
                 break
-            state, happened = road.step(hazard_lights=driver.hazard_lights)
-            self.state = state
-            states.append(state)
+            self._now, happened = road.step(hazard_lights=driver.hazard_lights)
+            now = self._now
+            passed.append(now)
             events += happened
-            if state.end is None:
-                events += driver.tick(state)
+            if now.end is None:
+                events += driver.tick(now)
             if beat is not None:
                 beat()
             if until is not None:
-                if not until.predicate(state):
+                if not until.predicate(now.state):
                     held_since_s = None
                 else:
-                    held_since_s = state.time_s if held_since_s is None else held_since_s
-                    if state.time_s - held_since_s >= until.for_s - 1e-9:
-                        return Drive(tuple(states), tuple(events), until_held=True)
-        return Drive(tuple(states), tuple(events), until_held=False)
+                    held_since_s = now.time_s if held_since_s is None else held_since_s
+                    if now.time_s - held_since_s >= until.for_s - 1e-9:
+                        return Drive(_states(passed), tuple(events), until_held=True)
+        return Drive(_states(passed), tuple(events), until_held=False)
 
     def request(self, request: RoadRequest) -> Answer:
         """As ``Traffic.request``."""
@@ -71,7 +77,7 @@ class EgoDrive:
 
     def alternatives(self, age_s: float) -> tuple[RouteOption, ...]:
         """As ``Traffic.alternatives``."""
-        return () if self.state.end is not None else self._road.alternatives(age_s)
+        return () if self._now.end is not None else self._road.alternatives(age_s)
 
     def replay(self, calls: Sequence[Call], beat: Callable[[], None] | None = None) -> None:
         """Repeats what was done on an equal drive."""
@@ -80,3 +86,7 @@ class EgoDrive:
                 self.advance(call * self._road.step_s, beat=beat)
             else:
                 self.request(call)
+
+
+def _states(passed: Sequence[Instant]) -> tuple[DrivingState, ...]:
+    return tuple(now.state for now in passed)

@@ -29,6 +29,7 @@ from automotive_cosim.contracts import (
     SlowDown,
 )
 from automotive_cosim.traffic.base import EgoPlan, Event
+from automotive_cosim.traffic.instant import Instant
 from automotive_cosim.traffic.profiles import Profile, profile
 from automotive_cosim.traffic.road_weather import DRY, Condition, Forecast
 
@@ -228,22 +229,22 @@ class Driver:
                 except RefusedError as refusal:
                     return Answer(False, str(refusal))
 
-    def tick(self, state: DrivingState) -> tuple[Event, ...]:
+    def tick(self, now: Instant) -> tuple[Event, ...]:
         """Does what is due and holds the speed; what it does acts from the next step on."""
         events: tuple[Event, ...] = ()
         if self._forecast is None:
-            self._forecast = Forecast(self.plan.weather, state.time_s)
-        if state.time_s >= self._forecast.until_s:
-            self._meet(self._forecast.read(state.time_s))
+            self._forecast = Forecast(self.plan.weather, now.time_s)
+        if now.time_s >= self._forecast.until_s:
+            self._meet(self._forecast.read(now.time_s))
         if self._intents:
-            due = [intent for intent in self._intents if intent.due_s <= state.time_s + 1e-9]
+            due = [intent for intent in self._intents if intent.due_s <= now.time_s + 1e-9]
             if due:
                 self._intents = [intent for intent in self._intents if intent not in due]
-                events = tuple(event for intent in due for event in self._act(intent, state))
-        if state.time_s >= self._corridor_until_s:
+                events = tuple(event for intent in due for event in self._act(intent, now.state))
+        if now.time_s >= self._corridor_until_s:
             self._corridor_until_s = math.inf
             self.pedals.leave_corridor(False)
-        self._hold_speed(state)
+        self._hold_speed(now)
         return events
 
     def _hear(self, request: Alert | SlowDown | PullOver, state: DrivingState, reason: str) -> Answer:
@@ -381,18 +382,18 @@ class Driver:
         bound_mps = self._bound_mps()
         return bound_mps if limit_mps is None else min(bound_mps, self._chosen_factor(limit_mps) * limit_mps)
 
-    def _hold_speed(self, state: DrivingState) -> None:
+    def _hold_speed(self, now: Instant) -> None:
         """Sets factor and upper bound; from a higher speed both come down at ``_easing_mps2``."""
-        limit_mps = state.road.posted_limit_mps
+        limit_mps = now.limit_mps
         bounds = self._bounds
         if bounds.advised < math.inf and (
-            limit_mps != bounds.advised_under or state.time_s >= bounds.advised_until_s
+            limit_mps != bounds.advised_under or now.time_s >= bounds.advised_until_s
         ):
             bounds.advised = math.inf
         factor, top_mps = self._chosen_factor(limit_mps), self._bound_mps()
         wanted_mps = top_mps if limit_mps is None else min(top_mps, factor * limit_mps)
-        if state.speed_mps > wanted_mps + 0.1:
-            top_mps = max(wanted_mps, state.speed_mps - self._easing_mps2 * self.step_s)
+        if now.speed_mps > wanted_mps + 0.1:
+            top_mps = max(wanted_mps, now.speed_mps - self._easing_mps2 * self.step_s)
             if limit_mps is not None:
                 factor = max(factor, top_mps / limit_mps)
         if factor != self._factor:

@@ -67,7 +67,7 @@ class Scripted:
         """
         start_mps = 0.0 if plan.parked else self._start_mps
         car = Car(self._layout, profile(plan.driver), self._step_s, self._start_s, start_mps, parked=plan.parked)
-        return ScriptedTraffic(EgoDrive(car, Driver(plan, car, self._step_s), car.state), self.network)
+        return ScriptedTraffic(EgoDrive(car, Driver(plan, car, self._step_s), car.now), self.network)
 
     def close(self) -> None:
         """There is nothing to free."""

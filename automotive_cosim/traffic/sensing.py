@@ -1,23 +1,19 @@
-"""What SUMO knows of the ego and its road, read into a ``DrivingState`` once per step."""
+"""What SUMO knows of the ego and its road, read once per step."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from automotive_cosim.contracts import DrivingState, OtherVehicle, RoadHere, RoadIncident, TrafficLight
+from automotive_cosim.contracts import RoadIncident
 from automotive_cosim.traffic.congestion import Congestion, Route
 from automotive_cosim.traffic.georeference import GeoReference
+from automotive_cosim.traffic.instant import Lane, Light, Other, Seen
 from automotive_cosim.traffic.network import Edge, Network
-from automotive_cosim.traffic.records import make_around, make_light, make_other, make_road, make_state
 
 if TYPE_CHECKING:
     from automotive_cosim.traffic.sumo import Sumo
-
-TOUCHING_M = 0.1
-"""Gaps count as at least this in the DRAC, so that it stays finite."""
 
 STANDING_BELOW_MPS = 0.1
 """Slower than this is standing, as SUMO counts halted vehicles."""
@@ -34,17 +30,6 @@ NO_GAP_M = 1e6
 
 INVALID_M = -1e6
 """SUMO puts the coordinates of a vehicle that is on no road below this (INVALID_DOUBLE_VALUE)."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Lane:
-    """What the state needs of a lane."""
-
-    index: int
-    """Among the edge's lanes for cars."""
-    limit_mps: float | None
-    friction: float
-    limit_hours: str
 
 
 class Sensor:
@@ -87,7 +72,7 @@ class Sensor:
         self._min_gap_m = sumo.min_gap(ego_id)
         self._look_steps = max(1, round(LOOK_S / step_s))
         self._steps = 0
-        self._lanes: dict[str, _Lane] = {}
+        self._lanes: dict[str, Lane] = {}
         self._light: tuple[str, int, float] | None = None
         """The next signal: id, index of the ego's link, and where its stop line is on the route."""
         self._oncoming_id = ""
@@ -101,12 +86,11 @@ class Sensor:
         self._lanes.clear()
         self._steps = 0
 
-    def read(self, *, hazard_lights: bool, vehicle_count: int) -> DrivingState:
-        """The state now, with what others keep of it."""
+    def read(self, *, hazard_lights: bool, vehicle_count: int) -> Seen:
+        """The instant, with what others keep of it."""
         sumo, ego = self._sumo, self._ego
         x_m, y_m = sumo.position(ego)
-        lon_deg, lat_deg = self._lon_lat(x_m, y_m)
-        speed_mps = sumo.speed(ego)
+        heading_deg, speed_mps = sumo.angle(ego), sumo.speed(ego)
         self._standing_s = self._standing_s + self._step_s if speed_mps < STANDING_BELOW_MPS else 0.0
         odometer_m = sumo.driven(ego)
         index = sumo.route_index(ego)
@@ -118,100 +102,78 @@ class Sensor:
             self._edge = self._network.edges[edge_id]
             self.position_m = self.route.position_m(index, lane_position_m)
         self._odometer_m = odometer_m
+        lane_id = sumo.lane_of(ego) or self._edge.lane_ids[0]  # parked beside the kerb it is on none
+        lane = self._lanes.get(lane_id)
+        if lane is None:
+            lane = self._lanes[lane_id] = self._read_lane(lane_id)
         is_looking = self._steps % self._look_steps == 0
         self._steps += 1
         if is_looking or (self._light and self._light[2] <= self.position_m):
             self._look_for_light()
         if is_looking:
             self._oncoming_id = self._look_for_oncoming(index)
-        return make_state(
+        return Seen(
             sumo.time(),
+            speed_mps,
             x_m,
             y_m,
-            lon_deg,
-            lat_deg,
-            sumo.angle(ego),
-            speed_mps,
+            heading_deg,
             sumo.acceleration(ego),
             self._standing_s,
             odometer_m,
-            self._road(edge_id, lane_position_m),
-            self.route.ahead(index, self.position_m, self._next_light()),
-            make_around(
-                self._leader(speed_mps),
-                self._follower(speed_mps),
-                self._oncoming(index, x_m, y_m, speed_mps) if self._oncoming_id else None,
-                self._emergency_behind(x_m, y_m, speed_mps) if self._emergency else None,
-                self.route.relative_speed(index),
-            ),
-            hazard_lights,
-            vehicle_count,
-            None,
-        )
-
-    def _road(self, edge_id: str, lane_position_m: float) -> RoadHere:
-        """The road under the car; inside a junction its signs are those of the edge it comes from."""
-        edge = self._edge
-        lane_id = self._sumo.lane_of(self._ego) or edge.lane_ids[0]  # parked beside the kerb it is on none
-        lane = self._lanes.get(lane_id)
-        if lane is None:
-            lane = self._lanes[lane_id] = self._read_lane(lane_id)
-        return make_road(
             edge_id,
             lane_id,
-            lane.index,
-            len(edge.lane_ids),
             lane_position_m,
-            edge.name,
-            edge.road_class,
-            lane.limit_mps,
-            edge.limit_source,
-            edge.in_tunnel,
-            edge.lit,
-            edge.built_up,
-            edge.centre_line,
-            lane.friction,
-            edge.school_zone,
-            lane.limit_hours,
-            edge.timed_limit is not None and edge.limit_mps == edge.timed_limit.limit_mps,
-            edge.bus_lane,
+            self._edge,
+            lane,
+            self.route,
+            index,
+            self.position_m,
+            self._next_light(),
+            self._leader(speed_mps),
+            self._follower(speed_mps),
+            self._oncoming(index, x_m, y_m, heading_deg, speed_mps) if self._oncoming_id else None,
+            self._emergency_behind(x_m, y_m, heading_deg, speed_mps) if self._emergency else None,
+            hazard_lights,
+            vehicle_count,
+            self._lon_lat,
         )
 
-    def _read_lane(self, lane_id: str) -> _Lane:
+    def _read_lane(self, lane_id: str) -> Lane:
         """What does not change while the ego is on the lane, but for weather and signs, which cause a refresh."""
         sumo, edge = self._sumo, self._edge
         friction = sumo.friction(lane_id)
         if lane_id in edge.lane_ids:
             limit_mps = None if edge.limit_mps is None else sumo.lane_speed(lane_id)
-            return _Lane(edge.lane_ids.index(lane_id), limit_mps, friction, edge.limit_hours)
-        return _Lane(sumo.lane_index(self._ego), edge.limit_mps, friction, edge.limit_hours)
+            return Lane(edge.lane_ids.index(lane_id), limit_mps, friction, edge.limit_hours)
+        return Lane(sumo.lane_index(self._ego), edge.limit_mps, friction, edge.limit_hours)
 
     def _look_for_light(self) -> None:
         lights = self._sumo.next_lights(self._ego)
         self._light = (lights[0][0], lights[0][1], self.position_m + lights[0][2]) if lights else None
 
-    def _next_light(self) -> TrafficLight | None:
+    def _next_light(self) -> Light | None:
         if self._light is None:
             return None
         tls_id, link, stop_line_m = self._light
-        return make_light(tls_id, self._sumo.light_state(tls_id)[link], max(0.0, stop_line_m - self.position_m))
+        return tls_id, self._sumo.light_state(tls_id)[link], max(0.0, stop_line_m - self.position_m)
 
-    def _leader(self, speed_mps: float) -> OtherVehicle | None:
+    def _leader(self, speed_mps: float) -> Other | None:
         """SUMO's gap begins at the minimum gap before the ego's bumper."""
         found = self._sumo.leader(self._ego, LEADER_RANGE_M)
         if found is None or not found[0] or abs(found[1]) > NO_GAP_M:
             return None
         other_mps = self._sumo.speed(found[0])
-        return other_vehicle(found[0], found[1] + self._min_gap_m, other_mps, speed_mps - other_mps)
+        return found[0], found[1] + self._min_gap_m, other_mps, speed_mps - other_mps
 
-    def _follower(self, speed_mps: float) -> OtherVehicle | None:
+    def _follower(self, speed_mps: float) -> Other | None:
         found_id, gap_m = self._sumo.follower(self._ego, LEADER_RANGE_M)
         if not found_id or abs(gap_m) > NO_GAP_M:
             return None
         if found_id != self._follower_id:
             self._follower_id, self._follower_min_gap_m = found_id, self._sumo.min_gap(found_id)
         other_mps = self._sumo.speed(found_id)
-        return other_vehicle(found_id, gap_m + self._follower_min_gap_m, other_mps, other_mps - speed_mps)
+        return found_id, gap_m + self._follower_min_gap_m, other_mps, other_mps - speed_mps
 
     def _look_for_oncoming(self, index: int) -> str:
         """The nearest vehicle on the opposite edges of the route's next edges that is still ahead."""
@@ -232,10 +194,10 @@ class Sensor:
                 return nearest
         return ""
 
-    def _oncoming(self, index: int, x_m: float, y_m: float, speed_mps: float) -> OtherVehicle | None:
+    def _oncoming(self, index: int, x_m: float, y_m: float, heading_deg: float, speed_mps: float) -> Other | None:
         """The one found, as long as it is on the road and ahead; then the next."""
         sumo = self._sumo
-        heading = math.radians(sumo.angle(self._ego))
+        heading = math.radians(heading_deg)
         for _ in range(2):
             try:
                 other_x_m, other_y_m = sumo.position(self._oncoming_id)
@@ -244,16 +206,15 @@ class Sensor:
             dx_m, dy_m = other_x_m - x_m, other_y_m - y_m
             if other_x_m > INVALID_M and dx_m * math.sin(heading) + dy_m * math.cos(heading) > 0:
                 other_mps = sumo.speed(self._oncoming_id)
-                return other_vehicle(self._oncoming_id, math.hypot(dx_m, dy_m), other_mps, speed_mps + other_mps)
+                return self._oncoming_id, math.hypot(dx_m, dy_m), other_mps, speed_mps + other_mps
             self._oncoming_id = self._look_for_oncoming(index)
             if not self._oncoming_id:
                 break
         return None
 
-    def _emergency_behind(self, x_m: float, y_m: float, speed_mps: float) -> OtherVehicle | None:
+    def _emergency_behind(self, x_m: float, y_m: float, heading_deg: float, speed_mps: float) -> Other | None:
         """The nearest blue light behind that heads roughly the same way."""
         sumo = self._sumo
-        heading_deg = sumo.angle(self._ego)
         east, north = math.sin(math.radians(heading_deg)), math.cos(math.radians(heading_deg))
         nearest: tuple[float, str] | None = None
         for vehicle in sorted(self._emergency):
@@ -268,7 +229,7 @@ class Sensor:
             return None
         other_mps = sumo.speed(nearest[1])
         gap_m = nearest[0] - sumo.length(self._ego)
-        return other_vehicle(nearest[1], gap_m, other_mps, other_mps - speed_mps)
+        return nearest[1], gap_m, other_mps, other_mps - speed_mps
 
 
 def _converter(sumo: Sumo, network: Network) -> Callable[[float, float], tuple[float | None, float | None]]:
@@ -276,12 +237,3 @@ def _converter(sumo: Sumo, network: Network) -> Callable[[float, float], tuple[f
     if network.map.projection is None:
         return lambda x_m, y_m: (None, None)
     return GeoReference(network.map).lon_lat if network.moved else sumo.to_lon_lat
-
-
-def other_vehicle(vehicle_id: str, gap_m: float, speed_mps: float, closing_mps: float) -> OtherVehicle:
-    """Adds time to collision and DRAC; ``closing_mps`` is positive while the gap shrinks."""
-    gap_m = max(0.0, gap_m)
-    if closing_mps <= 1e-3:
-        return make_other(vehicle_id, gap_m, speed_mps, None, None)
-    drac_mps2 = closing_mps**2 / (2 * max(TOUCHING_M, gap_m))
-    return make_other(vehicle_id, gap_m, speed_mps, gap_m / closing_mps, drac_mps2)

@@ -9,7 +9,7 @@ from difflib import get_close_matches
 from itertools import pairwise
 from pathlib import Path
 
-from automotive_cosim.contracts import DrivingState, EgoEnd, RoadIncident, RouteOption
+from automotive_cosim.contracts import EgoEnd, RoadIncident, RouteOption
 from automotive_cosim.errors import ScenarioError, TrafficError
 from automotive_cosim.scenarios import Trip
 from automotive_cosim.traffic.base import EgoPlan, Event, Progress
@@ -17,6 +17,7 @@ from automotive_cosim.traffic.conflicts import LOOK_S, Conflicts
 from automotive_cosim.traffic.congestion import MEMORY_S, SAMPLE_PERIOD_S, WINDOW_S, Congestion
 from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.ego import FOR_GOOD_S, Driver
+from automotive_cosim.traffic.instant import Instant, Known
 from automotive_cosim.traffic.network import read_network
 from automotive_cosim.traffic.options import Setup, command_line, read_configuration
 from automotive_cosim.traffic.profiles import Profile, profile
@@ -133,7 +134,7 @@ class World:
             sensor.refresh()
         pedals = SumoPedals(self._sumo, EGO, self.network, sensor, self._router)
         road = EgoRoad(self, self._sumo, sensor, pedals)
-        return EgoDrive(road, Driver(plan, pedals, self.step_s), road.state)
+        return EgoDrive(road, Driver(plan, pedals, self.step_s), road.now)
 
     def step(self) -> bool:
         """One step of the traffic; true if what lies ahead of the ego has to be seen anew.
@@ -245,28 +246,28 @@ class EgoRoad:
         self._conflicts = Conflicts(sumo, EGO)
         self._look_steps = max(1, round(LOOK_S / self.step_s))
         self._steps = 0
-        self.state = sensor.read(hazard_lights=False, vehicle_count=world.vehicle_count)
-        """The newest state."""
+        self.now: Instant = sensor.read(hazard_lights=False, vehicle_count=world.vehicle_count)
+        """The newest instant."""
 
-    def step(self, *, hazard_lights: bool) -> tuple[DrivingState, tuple[Event, ...]]:
+    def step(self, *, hazard_lights: bool) -> tuple[Instant, tuple[Event, ...]]:
         """As ``drive.Road``."""
         self._pedals.apply()
         sampled = self._world.step()
         end, events = self._mishaps()
         events += self._world.happened
+        self._steps += 1
         if end is None:
             try:
                 if sampled:
                     self._sensor.refresh()
-                self.state = self._sensor.read(hazard_lights=hazard_lights, vehicle_count=self._world.vehicle_count)
+                now = self._sensor.read(hazard_lights=hazard_lights, vehicle_count=self._world.vehicle_count)
             except self._sumo.refusals:
                 end = EgoEnd.REMOVED
-        self._steps += 1
-        if end is None and self._steps % self._look_steps == 0:
-            events += self._conflicts.look(self.state)
-        if end is not None:
-            self.state = replace(self.state, time_s=self._sumo.time(), end=end)
-        return self.state, events
+            else:
+                self.now = now
+                return now, events + self._conflicts.look(now) if self._steps % self._look_steps == 0 else events
+        self.now = Known(replace(self.now.state, time_s=self._sumo.time(), end=end))
+        return self.now, events
 
     def alternatives(self, age_s: float) -> tuple[RouteOption, ...]:
         """As ``drive.Road``."""

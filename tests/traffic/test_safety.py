@@ -14,7 +14,7 @@ from shapely import LineString, Point
 from automotive_cosim.scenarios import Scenario, Trip
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
-from automotive_cosim.traffic.sensing import other_vehicle
+from automotive_cosim.traffic.instant import other_vehicle
 from automotive_cosim.traffic.sumo import InProcess
 
 Variant = Callable[[Callable[[Path], None]], Scenario]

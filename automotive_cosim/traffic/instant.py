@@ -1,0 +1,198 @@
+"""One instant of the drive: what the driver needs of it on every step, and the whole state for whoever asks.
+
+A step of SUMO throws everything else out of the processor's caches, so that whatever runs between two steps is
+slow. Therefore only SUMO's plain answers are kept then (``Seen``). The states of a message are made of them
+afterwards, in a row, which takes a third of the time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+from automotive_cosim.contracts import DrivingState, EgoEnd, OtherVehicle
+from automotive_cosim.traffic.congestion import Route
+from automotive_cosim.traffic.network import Edge
+from automotive_cosim.traffic.records import make_around, make_light, make_other, make_road, make_state
+
+TOUCHING_M = 0.1
+"""Gaps count as at least this in the DRAC, so that it stays finite."""
+
+
+class Instant(Protocol):
+    """One instant of a drive."""
+
+    @property
+    def time_s(self) -> float:
+        """SUMO's simulation time."""
+        ...
+
+    @property
+    def speed_mps(self) -> float:
+        """Of the ego."""
+        ...
+
+    @property
+    def limit_mps(self) -> float | None:
+        """As ``RoadHere.posted_limit_mps``."""
+        ...
+
+    @property
+    def end(self) -> EgoEnd | None:
+        """As ``DrivingState.end``."""
+        ...
+
+    @property
+    def state(self) -> DrivingState:
+        """All of it."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """An instant whose state has been made already."""
+
+    state: DrivingState
+
+    @property
+    def time_s(self) -> float:
+        """As ``Instant``; likewise the others."""
+        return self.state.time_s
+
+    @property
+    def speed_mps(self) -> float:
+        """Of the ego."""
+        return self.state.speed_mps
+
+    @property
+    def limit_mps(self) -> float | None:
+        """Of the lane."""
+        return self.state.road.posted_limit_mps
+
+    @property
+    def end(self) -> EgoEnd | None:
+        """Why the drive ended, if it did."""
+        return self.state.end
+
+
+@dataclass(frozen=True, slots=True)
+class Lane:
+    """What the state needs of a lane; it changes only with weather and signs."""
+
+    index: int
+    """Among the edge's lanes for cars."""
+    limit_mps: float | None
+    friction: float
+    limit_hours: str
+
+
+Light = tuple[str, str, float]
+"""Id, SUMO's letter for the ego's link, and the distance to the stop line."""
+
+Other = tuple[str, float, float, float]
+"""Id, gap, speed and closing speed of another vehicle."""
+
+
+@dataclass(slots=True)
+class Seen:
+    """An instant as SUMO told of it. Everything in it is its own or never changes."""
+
+    time_s: float
+    speed_mps: float
+    x_m: float
+    y_m: float
+    heading_deg: float
+    acceleration_mps2: float
+    standing_s: float
+    distance_m: float
+    edge_id: str
+    lane_id: str
+    lane_position_m: float
+    edge: Edge
+    """The one the ego is on; in a junction the one it comes from."""
+    lane: Lane
+    route: Route
+    index: int
+    """Of that edge on the route."""
+    position_m: float
+    """Along the route."""
+    light: Light | None
+    leader: Other | None
+    follower: Other | None
+    oncoming: Other | None
+    emergency_behind: Other | None
+    hazard_lights: bool
+    vehicle_count: int
+    lon_lat: Callable[[float, float], tuple[float | None, float | None]]
+    made: DrivingState | None = None
+
+    end = None
+
+    @property
+    def limit_mps(self) -> float | None:
+        """As ``Instant``."""
+        return self.lane.limit_mps
+
+    @property
+    def state(self) -> DrivingState:
+        """As ``Instant``."""
+        if self.made is None:
+            self.made = self._make()
+        return self.made
+
+    def _make(self) -> DrivingState:
+        edge, lane, route = self.edge, self.lane, self.route
+        lon_deg, lat_deg = self.lon_lat(self.x_m, self.y_m)
+        return make_state(
+            self.time_s,
+            self.x_m,
+            self.y_m,
+            lon_deg,
+            lat_deg,
+            self.heading_deg,
+            self.speed_mps,
+            self.acceleration_mps2,
+            self.standing_s,
+            self.distance_m,
+            make_road(
+                self.edge_id,
+                self.lane_id,
+                lane.index,
+                len(edge.lane_ids),
+                self.lane_position_m,
+                edge.name,
+                edge.road_class,
+                lane.limit_mps,
+                edge.limit_source,
+                edge.in_tunnel,
+                edge.lit,
+                edge.built_up,
+                edge.centre_line,
+                lane.friction,
+                edge.school_zone,
+                lane.limit_hours,
+                edge.timed_limit is not None and edge.limit_mps == edge.timed_limit.limit_mps,
+                edge.bus_lane,
+            ),
+            route.ahead(self.index, self.position_m, self.light and make_light(*self.light)),
+            make_around(
+                self.leader and other_vehicle(*self.leader),
+                self.follower and other_vehicle(*self.follower),
+                self.oncoming and other_vehicle(*self.oncoming),
+                self.emergency_behind and other_vehicle(*self.emergency_behind),
+                route.relative_speed(self.index),
+            ),
+            self.hazard_lights,
+            self.vehicle_count,
+            None,
+        )
+
+
+def other_vehicle(vehicle_id: str, gap_m: float, speed_mps: float, closing_mps: float) -> OtherVehicle:
+    """Adds time to collision and DRAC; ``closing_mps`` is positive while the gap shrinks."""
+    gap_m = max(0.0, gap_m)
+    if closing_mps <= 1e-3:
+        return make_other(vehicle_id, gap_m, speed_mps, None, None)
+    drac_mps2 = closing_mps**2 / (2 * max(TOUCHING_M, gap_m))
+    return make_other(vehicle_id, gap_m, speed_mps, gap_m / closing_mps, drac_mps2)
