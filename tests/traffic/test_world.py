@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from contextlib import closing
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -25,11 +26,11 @@ from automotive_cosim.contracts import (
     Severity,
     SlowDown,
 )
-from automotive_cosim.scenarios import Scenario
+from automotive_cosim.scenarios import Scenario, load
 from automotive_cosim.traffic.base import Drive, EgoPlan, Traffic, Until
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.predicates import Driven, InTunnel, OnRoad, SpeedAbove, Standing
-from automotive_cosim.traffic.sumo import InProcess
+from automotive_cosim.traffic.sumo import InProcess, load_library
 
 Variant = Callable[[Callable[[Path], None]], Scenario]
 
@@ -38,8 +39,6 @@ Variant = Callable[[Callable[[Path], None]], Scenario]
 def empty(grid: Scenario, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Forked]:
     """The grid without other traffic."""
     import shutil
-
-    from automotive_cosim.scenarios import load
 
     folder = tmp_path_factory.mktemp("empty") / "grid"
     shutil.copytree(grid.folder, folder)
@@ -404,3 +403,21 @@ def test_nobody_corners_at_the_speed_of_the_straight(empty: Forked, hurried: Ego
         peaks.append(max(sideways_mps2(*pair) for pair in inside if pair[0].road.edge_id.startswith(":")))
         traffic.close()
     assert peaks[1] < 1.3 * peaks[0]
+
+
+def test_congestion_goes_by_vehicles_and_not_by_lanes() -> None:
+    """SUMO's own mean of an edge takes its empty lanes for free flow; nobody drives in those."""
+    import libsumo
+
+    scenario = load("paris_centre")
+    with closing(InProcess(scenario, seed=1)) as simulation:
+        simulation.depart(EgoPlan(scenario.ego.trips[0])).advance(10.0)
+        found: dict[str, list[float]] = {}
+        for edge_id, speed_mps in load_library().on_edges():
+            found.setdefault(edge_id, []).append(speed_mps)
+        diluted = 0
+        for edge_id in libsumo.edge.getIDList():
+            own = [libsumo.vehicle.getSpeed(vehicle) for vehicle in libsumo.edge.getLastStepVehicleIDs(edge_id)]
+            assert sorted(found.get(edge_id, [])) == sorted(own), edge_id
+            diluted += bool(own) and libsumo.edge.getLastStepMeanSpeed(edge_id) > max(own) + 1.0
+        assert diluted, "nowhere would it have mattered"
