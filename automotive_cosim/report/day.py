@@ -5,12 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import jinja2
-
 from automotive_cosim.osm.counts import GOOD_GEH
 from automotive_cosim.osm.day import NO_CALIBRATION, Day, read_day
 from automotive_cosim.report.charts import INK, NARROW_IN, PALETTE, WIDE_IN, Drawing, drawn, legend
 from automotive_cosim.report.tables import Table
+from automotive_cosim.report.templates import render
 from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.store import cannot_write
 
@@ -33,15 +32,8 @@ def write_day(folder: Path) -> Path:
     """
     day = read_day(folder)
     made, plots = table(day), charts(day)
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("automotive_cosim", "report"),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    text = environment.get_template("day.html").render(
-        day=day, table=made, plots=plots, findings=findings(day), no_calibration=NO_CALIBRATION
+    text = render(
+        "report/day.html", day=day, table=made, plots=plots, findings=findings(day), no_calibration=NO_CALIBRATION
     )
     page = folder / "day.html"
     try:

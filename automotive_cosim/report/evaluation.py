@@ -6,8 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import jinja2
-
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.report import findings
@@ -18,6 +16,7 @@ from automotive_cosim.report.page import PARTS
 from automotive_cosim.report.results import Results, contestant, read_results
 from automotive_cosim.report.summary import errors, tables
 from automotive_cosim.report.tables import Cell, Table
+from automotive_cosim.report.templates import render
 from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.store import cannot_write, megabytes, read_trace, trace_file
 
@@ -81,17 +80,11 @@ def _page(
     plots: dict[str, tuple[str, str, str]],
     found: Mapping[str, FailureClass],
 ) -> str:
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("automotive_cosim", "report"),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
     numbers = {row["id"]: number for number, row in enumerate(results.rows)}
     sources, linked = _sources(results, made)
     starts = results.manifest["starts"]
-    return environment.get_template("evaluation.html").render(
+    return render(
+        "report/evaluation.html",
         results=results,
         tables=[table for table in linked if table[0].name not in ("published", "errors")],
         published=next(table for table in made if table.name == "published"),

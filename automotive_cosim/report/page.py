@@ -9,12 +9,12 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-import jinja2
 from PIL import Image
 
 from automotive_cosim.actions import parse
 from automotive_cosim.contracts import BoundingBox, Element, Json
 from automotive_cosim.report.plot import Plot
+from automotive_cosim.report.templates import render
 from automotive_cosim.run.record import screenshot, write_whole
 from automotive_cosim.run.words import action_in_words
 
@@ -38,14 +38,8 @@ def write_page(folder: Path) -> Path:
     episode = json.loads((folder / "episode.json").read_text(encoding="utf-8"))
     lines = (folder / "steps.jsonl").read_text(encoding="utf-8").splitlines()
     film = folder / "episode.webp"
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("automotive_cosim", "report"),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    text = environment.get_template("page.html").render(
+    text = render(
+        "report/page.html",
         episode=episode,
         parts=PARTS,
         plots={"wide": Plot(episode, 960, 300), "narrow": Plot(episode, 420, 280)},

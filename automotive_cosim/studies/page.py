@@ -7,12 +7,11 @@ from collections.abc import Sequence
 from io import StringIO
 from pathlib import Path
 
-import jinja2
-
 from automotive_cosim.agents import PROFILES
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.charts import INK
+from automotive_cosim.report.templates import render
 from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.store import cannot_write
 from automotive_cosim.studies.charts import charts
@@ -43,16 +42,8 @@ def write_study(folder: Path) -> Path:
             write_whole(folder / "plots" / f"{name}.svg", wide.replace("currentColor", INK))
         write_whole(folder / "choices.csv", as_csv(study.choices))
         page = folder / "report.html"
-        environment = jinja2.Environment(
-            loader=jinja2.ChoiceLoader(
-                [jinja2.PackageLoader("automotive_cosim", name) for name in ("studies", "report")]
-            ),
-            autoescape=True,
-            undefined=jinja2.StrictUndefined,
-            trim_blocks=True,
-            lstrip_blocks=True,
-        )
-        text = environment.get_template("study.html").render(
+        text = render(
+            "studies/study.html",
             study=study,
             count=len(study.decisions),
             tables=made,

@@ -37,6 +37,18 @@ def test_the_links_point_to_the_mapped_folders(project):
             assert (ROOT / name.replace(".", "/")).resolve() == (ROOT / folder).resolve()
 
 
+def test_every_template_and_style_is_package_data(project):
+    packed = {
+        file
+        for package, patterns in project["tool"]["setuptools"]["package-data"].items()
+        for pattern in patterns
+        for file in ROOT.joinpath(*package.split(".")).glob(pattern)
+    }
+    shown = {file for kind in ("html", "css") for file in (ROOT / "automotive_cosim").rglob(f"*.{kind}")}
+    assert shown
+    assert not shown - packed
+
+
 def test_the_version_is_stated_once(project):
     assert automotive_cosim.__version__ == project["project"]["version"]
 
