@@ -11,6 +11,12 @@
     report      the figures
     importer    all of it in order, atomically
 
+An imported scenario -> one with a day of traffic:
+
+    counts      what one road carries in each hour
+    fit         trips, simulated until the road carries that
+    day         the folder and its figures, atomically
+
 The network's edges keep the OSM tags that geo and tasks ask for as parameters. An edge without ``maxspeed`` among
 them has a limit that was assumed, not posted.
 """
