@@ -246,7 +246,7 @@ class EgoRoad:
         self._conflicts = Conflicts(sumo, EGO)
         self._look_steps = max(1, round(LOOK_S / self.step_s))
         self._steps = 0
-        self.now: Instant = sensor.read(hazard_lights=False, vehicle_count=world.vehicle_count)
+        self.now: Instant = Known(sensor.read(hazard_lights=False, vehicle_count=world.vehicle_count).state)
         """The newest instant."""
 
     def step(self, *, hazard_lights: bool) -> tuple[Instant, tuple[Event, ...]]:
