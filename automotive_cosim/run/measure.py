@@ -11,7 +11,7 @@ import re
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import closing, contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -35,8 +35,6 @@ TASK = "hvac_fan_max"
 SECOND = Action(ActionType.WAIT, seconds=1)
 EXTRA_ENVS = 3
 REPEATS = 3
-BARE_REPEATS = 5
-"""More, since the difference of two long runs carries the noise of both."""
 RESETS = 9
 
 
@@ -141,7 +139,7 @@ def measure(scenario: str, steps: int, say: Callable[[str], None]) -> Figures:
 
 
 def _bare(scenario: Scenario, steps: int) -> tuple[float | None, str | None]:
-    """The ``sumo`` program: the time of warm-up and steps less the time of the warm-up alone."""
+    """The ``sumo`` program, going on from the state that it saved after the warm-up."""
     try:
         program = sumo_programs.program("sumo")
     except SetupError as error:
@@ -150,24 +148,24 @@ def _bare(scenario: Scenario, steps: int) -> tuple[float | None, str | None]:
     warm_s = begin_s + scenario.sumo.warm_up_s
     end_s = warm_s + steps * scenario.sumo.step_length_s
     with _command(scenario) as command:
-        command[0] = str(program)
-        command[command.index("--duration-log.disable") + 1] = "false"
-        command.append("--verbose")
-        pairs = [
-            [_seconds_of_program(command, begin_s, until_s) for until_s in (warm_s, end_s)]
-            for _ in range(BARE_REPEATS)
-        ]
-    return max(0.0, median(whole - warm_up for warm_up, whole in pairs)) / steps, None
+        options = dict(zip(command[1::2], command[2::2], strict=True)) | {"--duration-log.disable": "false"}
+        with tempfile.TemporaryDirectory(prefix="automotive-cosim-bench-") as scratch:
+            state = str(Path(scratch) / "warm.xml.gz")
+            saving = {"--save-state.times": f"{warm_s:g}", "--save-state.files": state, "--save-state.rng": "true"}
+            _seconds_of_program(program, options | saving | {"--end": f"{warm_s + 1:g}"}, warm_s)
+            going_on = {"--load-state": state, "--begin": f"{warm_s:g}", "--end": f"{end_s:g}"}
+            found = [_seconds_of_program(program, options | going_on, end_s - warm_s) for _ in range(REPEATS)]
+    return median(found) / steps, None
 
 
-def _seconds_of_program(command: list[str], begin_s: float, end_s: float) -> float:
+def _seconds_of_program(program: Path, options: Mapping[str, str], simulated_s: float) -> float:
     """What SUMO says it took, loading left out; its real time factor has more digits than its duration."""
-    until = [*command, "--end", f"{end_s:g}"]
-    done = subprocess.run(until, env=sumo_programs.environment(), capture_output=True, text=True, check=False)
+    command = [str(program), "--verbose", *(word for option in options.items() for word in option)]
+    done = subprocess.run(command, env=sumo_programs.environment(), capture_output=True, text=True, check=False)
     factor = re.search(r"Real time factor: ([\d.]+)", done.stdout)
     if done.returncode != 0 or factor is None:
         raise TrafficError("sumo failed: " + sumo_programs.first_error(done.stderr + done.stdout))
-    return (end_s - begin_s) / float(factor.group(1))
+    return simulated_s / float(factor.group(1))
 
 
 def _plain(scenario: Scenario, steps: int) -> float:
