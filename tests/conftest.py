@@ -1,6 +1,8 @@
 """Builders of observations for tests that need no simulation, and warm simulations for those that do."""
 
+import time
 from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import pytest
 
@@ -84,3 +86,34 @@ def simulations() -> Iterator[Simulations]:
     shared = Simulations()
     yield shared
     shared.close()
+
+
+@pytest.fixture(scope="session")
+def until() -> Callable[[Callable[[], object]], None]:
+    """Waits until something is so, for a minute and a half."""
+
+    def wait(true: Callable[[], object]) -> None:
+        end_s = time.monotonic() + 90.0
+        while not true():
+            assert time.monotonic() < end_s, "did not come about"
+            time.sleep(0.05)
+
+    return wait
+
+
+@pytest.fixture(scope="session")
+def session() -> Callable[[int], list[str]]:
+    """The processes that live in a session, by its leader."""
+
+    def found(leader: int) -> list[str]:
+        living = []
+        for stat in Path("/proc").glob("[0-9]*/stat"):
+            try:
+                fields = stat.read_text().rpartition(")")[2].split()
+            except OSError:
+                continue
+            if fields[3] == str(leader) and fields[0] != "Z":
+                living.append(stat.parent.name)
+        return living
+
+    return found

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from automotive_cosim.cli.batches import words
 from automotive_cosim.cli.options import TasksFrom, whole_number
+from automotive_cosim.errors import InfrastructureError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -36,22 +39,27 @@ def validate(
         str, typer.Option(help="Gates to try, with commas; `all` or names as the table has them.")
     ] = "all",
     workers: Annotated[int, typer.Option(help="Processes.", metavar="N", parser=whole_number(1, 256))] = 1,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Folder of the proofs; the same one goes on. None keeps nothing.", show_default=False),
+    ] = None,
     tasks_from: TasksFrom = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")] = False,
 ) -> None:
-    """Prove tasks: solvable by public actions, free for nobody, clean, repeatable. Exit code 1 if a gate fails."""
+    """Prove tasks: solvable by public actions, free for nobody, clean, repeatable.
+
+    Exit code 1 if a gate fails, else 3 if a proof broke off. With --out the same command goes on where it stopped.
+    """
     from rich.console import Console
 
-    from automotive_cosim.errors import UnknownNameError
-    from automotive_cosim.proof.prover import GATES, prove
+    from automotive_cosim.proof.batch import prove
+    from automotive_cosim.proof.prover import GATES
     from automotive_cosim.proof.prover import as_json as json_of
     from automotive_cosim.run.plan import choose
 
-    chosen = GATES if gates == "all" else tuple(word.strip() for word in gates.split(","))
-    for gate in chosen:
-        if gate not in GATES:
-            raise UnknownNameError("gate", gate, GATES)
-    task_ids = choose(word.strip() for word in tasks.split(","))
+    chosen = GATES if gates == "all" else tuple(words("gates", gates))
+    asked = words("tasks", tasks)
+    task_ids = choose(asked)
     numbers = tuple(range(first_seed, first_seed + seeds))
     console = Console(stderr=True)
 
@@ -63,7 +71,12 @@ def validate(
         for fault in faults:
             console.print(f"    {fault}", highlight=False, markup=False, soft_wrap=True)
 
-    proofs = prove(task_ids, numbers, chosen, workers=workers, tell=tell)
+    try:
+        proofs = prove(asked, numbers, chosen, workers=workers, out=out, tell=tell)
+    except KeyboardInterrupt:
+        if out is not None:
+            typer.echo(f"what has been proven is in {out}; the same command goes on", err=True)
+        raise
     result = json_of(proofs, task_ids, numbers)
     if as_json:
         typer.echo(json.dumps(result))
@@ -74,8 +87,12 @@ def validate(
         typer.echo(
             f"{len(task_ids)} tasks, {len(numbers)} seeds: {failed} gates failed, {len(result['errors'])} errors"
         )
-    if result["errors"] or any(entry["failed"] for entry in result["gates"].values()):
+    if any(entry["failed"] for entry in result["gates"].values()):
         raise typer.Exit(FAILED)
+    if result["errors"]:
+        raise InfrastructureError(
+            f"{len(result['errors'])} of {len(proofs)} proofs ended in an error; nothing is proven by them"
+        )
 
 
 def _table(proofs: Sequence[Proof], gates: Sequence[str]) -> Table:

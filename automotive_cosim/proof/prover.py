@@ -1,15 +1,14 @@
-"""Runs the gates over tasks and seeds, in worker processes if wanted."""
+"""Runs the gates over one task after the other."""
 
 from __future__ import annotations
 
-import multiprocessing
 import time
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from collections.abc import Iterator, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.errors import TriggerNotReachedError
+from automotive_cosim.errors import TrafficError, TriggerNotReachedError
 from automotive_cosim.proof import gates
 from automotive_cosim.proof.ground import Ground
 from automotive_cosim.tasks import CATALOGUE
@@ -66,14 +65,21 @@ class Prover:
         """Tries these gates."""
         self._chosen = frozenset(chosen)
         self._simulations = Simulations(count_limit=SIMULATIONS)
-        self._before: tuple[str, str, int, str] | None = None
-        """Task, half, seed and hash of the expert's episode that was proven last."""
+        self._last: tuple[str, int, str] | None = None
+        """Task, seed and hash of the expert's episode that was proven last."""
 
-    def prove(self, task_id: str, seed: int) -> Proof:
-        """One task with one seed."""
+    def prove(self, task_id: str, seed: int, after: str = "") -> Proof:
+        """One task with one seed.
+
+        Args:
+            task_id: of the catalogue.
+            seed: a traffic, a drive and a drawing of words and parameters.
+            after: another task, which has to give its own trace after this one as before it; none tries no residue.
+        """
         proof = Proof(task_id, seed)
         grounds: dict[str, Ground] = {}
         try:
+            before = self._trace_before(after, seed) if after and "residue" in self._chosen else ""
             for half in CATALOGUE[task_id].halves:
                 grounds[half] = Ground.reach(CATALOGUE[task_id], half, seed, self._simulations)
             for half, ground in grounds.items():
@@ -84,7 +90,7 @@ class Prover:
             if "reach" in self._chosen:
                 proof.take("reach", gates.reach(CATALOGUE[task_id], seed, self._simulations))
             if "residue" in self._chosen:
-                proof.take("residue", self._residue(grounds["first"]))
+                proof.take("residue", self._residue(after, before, grounds["first"]))
         except TriggerNotReachedError as error:
             proof.take("reach", iter([str(error)]))
         except Exception as error:  # a fault in one task must not take the proof of the others with it
@@ -111,56 +117,26 @@ class Prover:
             if gate in self._chosen:
                 proof.take(gate, getattr(gates, gate)(ground, self._simulations), half)
 
-    def _residue(self, ground: Ground) -> Iterator[str]:
-        """The task before once more, now that this one has been at the same simulations."""
-        if self._before is not None:
-            task_id, half, seed, digest = self._before
-            again = Ground.reach(CATALOGUE[task_id], half, seed, self._simulations)
-            if gates.hash_of_oracle(again) != digest:
-                yield f"{task_id} gives another trace after it"
-            again.close()
-        self._before = ground.task.id, ground.half_name, ground.seed, gates.hash_of_oracle(ground)
+    def _trace_before(self, task_id: str, seed: int) -> str:
+        """The hash of a task's expert episode; empty if it cannot be played, which its own proof tells."""
+        if self._last is not None and self._last[:2] == (task_id, seed):
+            return self._last[2]
+        try:
+            return self._trace(task_id, seed)
+        except TrafficError:
+            raise
+        except Exception:  # a fault in one task must not take the proof of the others with it
+            return ""
 
+    def _residue(self, after: str, before: str, ground: Ground) -> Iterator[str]:
+        """The other task once more, now that this one has been at the same simulations."""
+        if before and self._trace(after, ground.seed) != before:
+            yield f"{after} gives another trace after it"
+        self._last = ground.task.id, ground.seed, gates.hash_of_oracle(ground)
 
-def prove(
-    task_ids: Sequence[str],
-    seeds: Sequence[int],
-    chosen: Sequence[str] = GATES,
-    *,
-    workers: int = 1,
-    tell: Callable[[Proof, int, int], None] = lambda proof, done, planned: None,
-) -> list[Proof]:
-    """Proves every task with every seed.
-
-    Args:
-        task_ids: of the catalogue.
-        seeds: each is a traffic, a drive and a drawing of words and parameters.
-        chosen: gates to try.
-        workers: processes; the result does not depend on their number.
-        tell: hears each proof as it comes, how many are done and how many there are.
-
-    Returns:
-        Sorted by task, in the catalogue's order, then seed.
-    """
-    groups = _groups(task_ids, seeds)
-    planned, done = len(task_ids) * len(seeds), 0
-    proofs: list[Proof] = []
-    if workers == 1:
-        for group in groups:
-            for proof in _prove_group(group, chosen):
-                done += 1
-                tell(proof, done, planned)
-                proofs.append(proof)
-    else:
-        context = multiprocessing.get_context("spawn")
-        with ProcessPoolExecutor(workers, mp_context=context) as pool:
-            for future in as_completed([pool.submit(_listed, group, chosen) for group in groups]):
-                for proof in future.result():
-                    done += 1
-                    tell(proof, done, planned)
-                    proofs.append(proof)
-    order = {task_id: number for number, task_id in enumerate(CATALOGUE)}
-    return sorted(proofs, key=lambda proof: (order[proof.task], proof.seed))
+    def _trace(self, task_id: str, seed: int) -> str:
+        with closing(Ground.reach(CATALOGUE[task_id], "first", seed, self._simulations)) as ground:
+            return gates.hash_of_oracle(ground)
 
 
 def as_json(proofs: Sequence[Proof], task_ids: Sequence[str], seeds: Sequence[int]) -> Json:
@@ -186,30 +162,3 @@ def as_json(proofs: Sequence[Proof], task_ids: Sequence[str], seeds: Sequence[in
             proof.task: proof.oracle_steps for proof in proofs if proof.seed == seeds[0] and proof.oracle_steps
         },
     }
-
-
-def _groups(task_ids: Sequence[str], seeds: Sequence[int]) -> list[list[tuple[str, int]]]:
-    """Tasks that share a warm simulation, in pieces small enough to share out."""
-    by_traffic: dict[tuple[str, int], list[tuple[str, int]]] = {}
-    for seed in seeds:
-        for task_id in task_ids:
-            key = CATALOGUE[task_id].first.start.scenario, seed
-            by_traffic.setdefault(key, []).append((task_id, seed))
-    pieces = [jobs[at : at + PIECE] for jobs in by_traffic.values() for at in range(0, len(jobs), PIECE)]
-    return sorted(pieces, key=len, reverse=True)
-
-
-PIECE = 12
-
-
-def _prove_group(jobs: Sequence[tuple[str, int]], chosen: Sequence[str]) -> Iterator[Proof]:
-    prover = Prover(chosen)
-    try:
-        for task_id, seed in jobs:
-            yield prover.prove(task_id, seed)
-    finally:
-        prover.close()
-
-
-def _listed(jobs: Sequence[tuple[str, int]], chosen: Sequence[str]) -> list[Proof]:
-    return list(_prove_group(jobs, chosen))

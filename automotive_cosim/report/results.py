@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import SetupError
-from automotive_cosim.run.store import read_manifest, read_rows
+from automotive_cosim.run.store import read_evaluation, read_rows
 from automotive_cosim.suite import Mode
 
 if TYPE_CHECKING:
@@ -112,7 +112,7 @@ def read_results(folder: Path) -> Results:
     Raises:
         UserError: it is no evaluation's, or is broken.
     """
-    manifest = read_manifest(folder)
+    manifest = read_evaluation(folder)
     rows = read_rows(folder)
     return Results(folder, manifest, tuple(rows[name] for name in sorted(rows)))
 

@@ -47,6 +47,8 @@ class Progress:
     """Jobs that ended since this start."""
     seconds: float
     """Wall time since this start."""
+    ended: Json | None
+    """The row of the job that ended just now; None at the start."""
 
     @property
     def left_s(self) -> float | None:
@@ -176,6 +178,7 @@ class _Batch:
         self._tell = tell
         self._began_s = time.monotonic()
         self._ran = self._given_up = self._stillborn = 0
+        self._newest: Json | None = None
         self._failures: dict[str, list[str]] = defaultdict(list)
         self._places: list[_Place] = []
         self._out_of_reach: dict[Hashable, Json] = {}
@@ -209,6 +212,7 @@ class _Batch:
             errors=len(rows) - len(judged),
             ran=self._ran,
             seconds=time.monotonic() - self._began_s,
+            ended=self._newest,
         )
 
     def _hand_out(self) -> None:
@@ -285,7 +289,8 @@ class _Batch:
                 return
         self._note(job, row)
         attempts = len(failures) + (row["error"] is None)
-        self._store.append(row | {"attempts": attempts, "failed_attempts": failures})
+        self._newest = row | {"attempts": attempts, "failed_attempts": failures}
+        self._store.append(self._newest)
         self._ran += 1
         self._given_up += _is_open(row)
         self._tell(self.progress)

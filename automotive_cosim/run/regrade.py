@@ -9,7 +9,7 @@ from pathlib import Path
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import CosimError
 from automotive_cosim.run.moments import read_judged
-from automotive_cosim.run.store import read_manifest, read_rows, read_trace
+from automotive_cosim.run.store import read_evaluation, read_rows, read_trace
 from automotive_cosim.suite import Instance
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.verdict import as_json, judge
@@ -50,7 +50,7 @@ def regrade(folder: Path) -> Iterator[Regraded]:
     Raises:
         UserError: it is no evaluation's folder, or is broken.
     """
-    read_manifest(folder)
+    read_evaluation(folder)
     rows = read_rows(folder)
     for name in sorted(rows):
         if rows[name]["success"] is not None:

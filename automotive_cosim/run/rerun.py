@@ -17,7 +17,7 @@ from automotive_cosim.observe import Channel
 from automotive_cosim.run.collect import Collector, Pictures
 from automotive_cosim.run.episode import run_episode
 from automotive_cosim.run.plan import make_plan
-from automotive_cosim.run.store import read_manifest, read_rows, read_trace
+from automotive_cosim.run.store import read_evaluation, read_rows, read_trace
 from automotive_cosim.trace import HASHED, canonical
 
 MISSING: Json = {}
@@ -46,11 +46,12 @@ def rerun(folder: Path, episode: str) -> list[Compared]:
         UserError: no such episode, several of them, or its trace cannot be read.
         InfrastructureError: the machinery failed.
     """
+    manifest = read_evaluation(folder)
     rows = read_rows(folder)
     matching = [name for name in rows if name == episode] or [name for name in rows if name.startswith(episode)]
     if len(matching) != 1:
         raise UnknownNameError(f"one episode in {folder}", episode, rows)
-    plan = make_plan(read_manifest(folder)["plan"])
+    plan = make_plan(manifest["plan"])
     job = next(job for job in plan.jobs() if job.id == matching[0])
     stored = [line for line in read_trace(folder, job.id) if "step" in line]
     settings = AgentSettings(geo_input(job.setup.geo), seed=job.setup.seed)

@@ -30,7 +30,7 @@ from automotive_cosim.run.record import STAMPED, write_whole
 FORMAT = 1
 """Of the folder; another one is refused, never guessed at."""
 ALSO_STAMPED = ("openai", "pyproj", "shapely")
-VOLATILE = ("wall_seconds", "model_seconds", "attempts", "failed_attempts")
+VOLATILE = ("wall_seconds", "gate_seconds", "model_seconds", "attempts", "failed_attempts")
 """Fields of a row that may differ between two runs of one plan."""
 
 
@@ -135,6 +135,18 @@ def read_manifest(folder: Path) -> Json:
         raise UserError(
             f"{path} is of format {found!r} and this version reads {FORMAT}; read it with the version that wrote it"
         )
+    return manifest
+
+
+def read_evaluation(folder: Path) -> Json:
+    """The manifest of an evaluation of agents; studies and proofs keep theirs in the same form.
+
+    Raises:
+        UserError: there is none, or it is of something else or another format.
+    """
+    manifest = read_manifest(folder)
+    if "agents" not in manifest["plan"]:
+        raise UserError(f"{folder} holds no episodes of agents; give a folder that `automotive-cosim eval` made")
     return manifest
 
 

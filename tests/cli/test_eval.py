@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from automotive_cosim.run.store import read_trace, write_trace
+from automotive_cosim.run.store import opened, read_trace, write_trace
 
 GRID = ("--tasks", "hvac_fan_max", "--scenarios", "grid")
 PROGRAM = (sys.executable, "-c", "from automotive_cosim.cli.main import main; main()")
@@ -140,8 +140,14 @@ def test_a_stored_episode_is_run_again_and_compared_step_by_step(cli, tmp_path):
     assert (tmp_path / "e" / "report.html").is_file()
 
 
-def test_a_folder_that_is_no_evaluation_is_told(cli):
-    for command in (("report", "."), ("replay", ".", "x"), ("regrade", ".")):
+@pytest.mark.parametrize(
+    ("plan", "said"), [(None, "is no evaluation"), ({"tasks": ["all"]}, "no episodes of agents")]
+)
+def test_a_folder_that_is_no_evaluation_is_told(cli, tmp_path, plan, said):
+    if plan is not None:
+        with opened(tmp_path / "f", plan, parts=()):
+            pass
+    for command in (("report", "f"), ("replay", "f", "x"), ("regrade", "f"), ("compare", "f", "f")):
         ran = cli(*command)
-        assert ran.code == 2
-        assert ran.err.startswith("error: ")
+        assert (ran.code, ran.err.count("\n")) == (2, 1)
+        assert said in ran.err

@@ -185,7 +185,7 @@ def test_a_disk_that_is_full_stops_the_run_and_the_command_goes_on(tmp_path, mon
 
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks at /proc")
-def test_a_kill_loses_at_most_the_running_episodes(trouble):
+def test_a_kill_loses_at_most_the_running_episodes(trouble, until, session):
     script = (
         "import sys, pathlib; from automotive_cosim.run.batch import run_plan\n"
         "from automotive_cosim.run.plan import make_plan\n"
@@ -196,10 +196,10 @@ def test_a_kill_loses_at_most_the_running_episodes(trouble):
     lines = trouble / "e" / "episodes.jsonl"
     (trouble / "go.py").write_text(f"if __name__ == '__main__':\n    {script.replace(chr(10), chr(10) + '    ')}\n")
     process = subprocess.Popen([sys.executable, "go.py"], cwd=trouble, start_new_session=True)
-    _until(lambda: lines.is_file() and lines.read_bytes().count(b"\n") >= 2)
+    until(lambda: lines.is_file() and lines.read_bytes().count(b"\n") >= 2)
     process.kill()
     process.wait()
-    _until(lambda: not _session(process.pid))
+    until(lambda: not session(process.pid))
     kept = read_rows(trouble / "e")
     assert 2 <= len(kept) < 8
     before = tries(trouble)
@@ -270,22 +270,3 @@ def test_workers_that_never_get_ready_end_the_run_and_the_command_goes_on(tmp_pa
     assert all(599 < each_s <= 600 for each_s in poor.waited_s)
     assert not read_rows(tmp_path / "e")
     assert run_plan(plan("oracle"), tmp_path / "e").successes == 1
-
-
-def _until(true, within_s=90.0):
-    end_s = time.monotonic() + within_s
-    while not true():
-        assert time.monotonic() < end_s, "did not come about"
-        time.sleep(0.05)
-
-
-def _session(leader):
-    found = []
-    for stat in Path("/proc").glob("[0-9]*/stat"):
-        try:
-            fields = stat.read_text().rpartition(")")[2].split()
-        except OSError:
-            continue
-        if fields[3] == str(leader) and fields[0] != "Z":
-            found.append(stat.parent.name)
-    return found

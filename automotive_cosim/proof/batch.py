@@ -1,0 +1,178 @@
+"""The proofs of many tasks with many seeds, in parallel and resumed."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.errors import UnknownNameError
+from automotive_cosim.proof.prover import GATES, Proof, Prover
+from automotive_cosim.run.batch import Progress, run_jobs
+from automotive_cosim.run.executor import Runner
+from automotive_cosim.run.plan import choose
+from automotive_cosim.run.processes import Processes
+from automotive_cosim.run.store import opened
+from automotive_cosim.tasks import CATALOGUE
+from automotive_cosim.tasks.folder import digest
+
+PIECE = 12
+"""Tasks of one simulation that a worker takes together; each is tried for what it leaves of the one before it."""
+WALL_LIMIT_S = 3_600.0
+"""Wall time that the proof of one task with one seed may take; a slow one takes a minute."""
+
+
+@dataclass(frozen=True, slots=True)
+class ProofPlan:
+    """What is proven: every task with every seed."""
+
+    tasks: tuple[str, ...]
+    """Ids, patterns, tags and so on, as ``run.plan.choose`` takes them."""
+    seeds: tuple[int, ...]
+    gates: tuple[str, ...] = GATES
+
+    def as_json(self) -> Json:
+        """The plan as a JSON object, for the manifest; what was proven of other files says nothing of these."""
+        return {
+            "tasks": list(self.tasks),
+            "seeds": list(self.seeds),
+            "gates": [gate for gate in GATES if gate in self.gates],
+            "task_files": digest(),
+        }
+
+    def check(self) -> None:
+        """Tries every name before anything runs.
+
+        Raises:
+            UnknownNameError: no such gate, or no such task.
+        """
+        for gate in self.gates:
+            if gate not in GATES:
+                raise UnknownNameError("gate", gate, GATES)
+        choose(self.tasks)
+
+    def jobs(self) -> tuple[ProofJob, ...]:
+        """Every task with every seed, those of one simulation together."""
+        by_traffic: dict[tuple[str, int], list[str]] = {}
+        for seed in self.seeds:
+            for task_id in choose(self.tasks):
+                by_traffic.setdefault((CATALOGUE[task_id].first.start.scenario, seed), []).append(task_id)
+        return tuple(
+            ProofJob(task_id, seed, (f"{scenario} {at // PIECE}", seed), task_ids[at - 1] if at % PIECE else "")
+            for (scenario, seed), task_ids in by_traffic.items()
+            for at, task_id in enumerate(task_ids)
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class ProofJob:
+    """One task with one seed."""
+
+    task: str
+    seed: int
+    simulation: tuple[str, int]
+    """Scenario, which piece of its tasks, and seed."""
+    after: str
+    """As ``Prover.prove`` takes it. It goes by the plan and not by what a worker has just done, so that who proves
+    what does not show."""
+
+    @property
+    def situation(self) -> str:
+        """Nothing is known of a task before it is tried."""
+        return self.id
+
+    @property
+    def wall_s(self) -> float:
+        """Wall time that it may take."""
+        return WALL_LIMIT_S
+
+    @property
+    def id(self) -> str:
+        """Its name."""
+        return f"{self.task}-seed{self.seed}"
+
+
+def prove(
+    tasks: Sequence[str],
+    seeds: Sequence[int],
+    chosen: Sequence[str] = GATES,
+    *,
+    workers: int = 1,
+    out: Path | None = None,
+    tell: Callable[[Proof, int, int], None] = lambda proof, done, planned: None,
+) -> list[Proof]:
+    """Proves every task with every seed; what ended in an error is tried once more.
+
+    Args:
+        tasks: ids of the catalogue, or what else ``run.plan.choose`` takes.
+        seeds: each is a traffic, a drive and a drawing of words and parameters.
+        chosen: gates to try.
+        workers: processes; the result does not depend on their number.
+        out: folder of the proofs, where the same call goes on; None keeps nothing.
+        tell: hears each proof as it comes, those that were there before first, how many are done and how many
+            there are.
+
+    Returns:
+        Sorted by task, in the catalogue's order, then seed.
+
+    Raises:
+        UserError: there is no such gate or task, or the folder cannot take the proofs.
+        InfrastructureError: there is no worker to be had.
+        KeyboardInterrupt: passed on; the running proofs are lost, and no other.
+    """
+    plan = ProofPlan(tuple(tasks), tuple(seeds), tuple(chosen))
+    plan.check()
+    jobs = plan.jobs()
+    with (
+        tempfile.TemporaryDirectory(prefix="automotive-cosim-proof-") as scratch,
+        opened(out or Path(scratch), plan.as_json(), parts=()) as store,
+    ):
+
+        def heard(progress: Progress) -> None:
+            if progress.ended is not None:
+                tell(_proof(progress.ended), progress.done, progress.planned)
+
+        kept = [row for job in jobs if (row := store.rows.get(job.id)) and row["error"] is None]
+        for done, row in enumerate(kept, start=1):
+            tell(_proof(row), done, len(jobs))
+        opener = partial(proofs, plan.gates)
+        run_jobs(jobs, store, opener, failed, executor=Processes(workers), retries=1, tell=heard)
+        rows = [store.rows[job.id] for job in jobs]
+    order = {task_id: number for number, task_id in enumerate(CATALOGUE)}
+    return sorted(map(_proof, rows), key=lambda proof: (order[proof.task], proof.seed))
+
+
+@contextmanager
+def proofs(chosen: Sequence[str]) -> Iterator[Runner]:
+    """What proves tasks in a worker."""
+    with closing(Prover(chosen)) as prover:
+        # Nothing but the row is kept of a proof.
+        yield lambda job, folder: _row(job, prover.prove(job.task, job.seed, job.after))
+
+
+def failed(job: ProofJob, kind: str, why: str) -> Json:
+    """The row of a proof that the machinery could not bring to its end."""
+    return _row(job, Proof(job.task, job.seed, error=f"{kind}: {why}"))
+
+
+def _row(job: ProofJob, proof: Proof) -> Json:
+    return {
+        "id": job.id,
+        "task": proof.task,
+        "seed": proof.seed,
+        "wrong": proof.wrong,
+        "oracle_steps": proof.oracle_steps,
+        "error": proof.error or None,
+        "error_kind": proof.error.partition(":")[0] or None,
+        "gate_seconds": proof.seconds,
+    }
+
+
+def _proof(row: Json) -> Proof:
+    return Proof(
+        row["task"], row["seed"], row["wrong"], row["error"] or "", row["oracle_steps"], row["gate_seconds"]
+    )

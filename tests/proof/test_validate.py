@@ -1,0 +1,260 @@
+"""The command that proves tasks, on tasks of one's own on the grid: resumed, killed, with tasks that go wrong."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from automotive_cosim.errors import TrafficError
+from automotive_cosim.proof import batch, gates, prover
+from automotive_cosim.proof.batch import ProofPlan
+from automotive_cosim.proof.prover import Prover
+from automotive_cosim.run.store import read_rows
+
+PROGRAM = (sys.executable, "-c", "from automotive_cosim.cli.main import main; main()", "validate")
+OWN = """
+import os, time
+from dataclasses import dataclass
+from pathlib import Path
+from automotive_cosim.checks import SignalIs
+from automotive_cosim.cockpit.signals import HVAC, SEAT
+from automotive_cosim.suite import Module, Open, Start, Tap
+from automotive_cosim.tasks.forms import asked
+
+class Trouble:
+    writes = frozenset({HVAC.SYNC.path})
+
+class Waits(Trouble):
+    def holds(self, start, now, trace):
+        Path("reached").touch()
+        while Path("wait").exists():
+            time.sleep(0.1)
+        return SignalIs(HVAC.SYNC, (False,)).holds(start, now, trace)
+
+class Raises(Trouble):
+    def holds(self, start, now, trace): raise RuntimeError("no such thing")
+
+class Dies(Trouble):
+    def holds(self, start, now, trace): os.kill(os.getpid(), 9)
+
+def sync(name, goal, *more):
+    words = tuple(f"{said} {name.replace('_', ' ')}" for said in ("Sync off.", "One each.", "Split it.", "Apart."))
+    start = Start("grid", "avenue")
+    ways = Open("climate"), Tap("hvac.sync"), *more
+    return asked(name, Module.HVAC, words, goal, *ways, start=start, scenarios=("grid",))
+
+RIGHT = SignalIs(HVAC.SYNC, (False,))
+TASKS = (
+    sync("own_one", RIGHT),
+    sync("own_two", RIGHT),
+    sync("own_waits", Waits()),
+    sync("own_raises", Raises()),
+    sync("own_dies", Dies()),
+    sync("own_twice", RIGHT, Tap("hvac.sync")),
+)
+"""
+
+
+@pytest.fixture
+def command(tmp_path, monkeypatch):
+    """The command's words, for an empty folder beside one with tasks."""
+    (tmp_path / "tasks").mkdir()
+    (tmp_path / "tasks" / "own.py").write_text(OWN)
+    monkeypatch.chdir(tmp_path)
+
+    def words(tasks, *more, only="oracle,start,residue"):
+        return [*PROGRAM, "--tasks-from", "tasks", "--tasks", tasks, "--gates", only, *more]
+
+    return words
+
+
+@pytest.fixture
+def validate(command):
+    def run(*words, **named):
+        return subprocess.run(command(*words, **named), capture_output=True, text=True, check=False)
+
+    return run
+
+
+def told(ran):
+    return {name: value for name, value in json.loads(ran.stdout).items() if name != "seconds"}
+
+
+@pytest.mark.slow
+def test_neither_workers_nor_a_stop_show_and_what_is_proven_is_not_proven_again(validate, tmp_path):
+    whole = validate("own_one,own_two", "--seeds", "2", "--json", "--out", "whole")
+    assert whole.returncode == 0, whole.stderr
+    assert told(whole)["gates"].keys() == {"oracle", "start", "residue"}
+    assert {entry["checked"] for entry in told(whole)["gates"].values()} == {4}
+    assert [line.split()[1] for line in whole.stderr.splitlines()] == ["1/4", "2/4", "3/4", "4/4"]
+    shared = validate("own_one,own_two", "--seeds", "2", "--json", "--workers", "2")
+    assert told(shared) == told(whole)
+    assert {path.name for path in tmp_path.iterdir()} == {"tasks", "whole"}
+
+    cut = tmp_path / "cut"
+    cut.mkdir()
+    (cut / "manifest.json").write_bytes((tmp_path / "whole" / "manifest.json").read_bytes())
+    lines = (tmp_path / "whole" / "episodes.jsonl").read_bytes().splitlines(keepends=True)
+    (cut / "episodes.jsonl").write_bytes(lines[0] + lines[1][:40])
+    again = validate("own_one,own_two", "--seeds", "2", "--json", "--out", "cut")
+    assert told(again) == told(whole)
+    written = (cut / "episodes.jsonl").read_bytes().splitlines(keepends=True)
+    assert written[0] == lines[0]
+    assert len(written) == 4
+    assert [line.split()[1] for line in again.stderr.splitlines()] == ["1/4", "2/4", "3/4", "4/4"]
+
+
+@pytest.mark.slow
+def test_another_plan_or_a_changed_task_wants_another_folder(validate, tmp_path):
+    assert validate("own_one", "--seeds", "1", "--out", "f").returncode == 0
+    other = validate("own_one", "--seeds", "2", "--out", "f")
+    assert other.returncode == 2
+    assert "begun with other plan: seeds was [0] and is [0, 1]" in other.stderr
+    (tmp_path / "tasks" / "own.py").write_text(OWN.replace("Split it.", "Part it."))
+    changed = validate("own_one", "--seeds", "1", "--out", "f")
+    assert (changed.returncode, changed.stderr.count("\n")) == (2, 1)
+    assert "other plan: task_files was" in changed.stderr
+    assert len(read_rows(tmp_path / "f")) == 1
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks at /proc")
+@pytest.mark.parametrize("how", ["kill", "ctrl-c"])
+def test_however_it_is_ended_no_worker_is_left_and_the_command_goes_on(command, tmp_path, until, session, how):
+    (tmp_path / "wait").touch()
+    words = command("own_one,own_waits", "--seeds", "1", "--workers", "2", "--out", "f", only="oracle,start")
+    process = subprocess.Popen(words, stderr=subprocess.PIPE, text=True, start_new_session=True)
+    lines = tmp_path / "f" / "episodes.jsonl"
+    try:
+        until(lambda: lines.is_file() and lines.read_bytes().endswith(b"\n") and (tmp_path / "reached").exists())
+        assert len(session(process.pid)) > 2, "the task that waits has a worker and a simulation"
+        if how == "kill":
+            process.kill()
+        else:
+            os.killpg(process.pid, signal.SIGINT)
+        until(lambda: not session(process.pid))
+    finally:
+        (tmp_path / "wait").unlink()  # so that what is left ends whatever came of it
+        _, said = process.communicate()
+    if how == "ctrl-c":
+        assert process.returncode == 130
+        assert "what has been proven is in f; the same command goes on" in said
+        assert "Traceback" not in said
+    kept = lines.read_bytes()
+    again = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert again.returncode == 0, again.stderr
+    assert lines.read_bytes().startswith(kept)
+    assert read_rows(tmp_path / "f").keys() == {"own_one-seed0", "own_waits-seed0"}
+
+
+def test_a_task_that_breaks_the_proof_costs_that_one_alone_and_is_tried_again(validate, tmp_path):
+    ran = validate("own_one,own_raises,own_dies", "--seeds", "1", "--out", "f", only="oracle,start")
+    assert ran.returncode == 3
+    assert "own_raises, seed 0\n    RuntimeError: no such thing\n" in ran.stderr
+    assert "own_dies, seed 0\n    WorkerDied: its process ended with code -9\n" in ran.stderr
+    assert ran.stderr.endswith("error: 2 of 3 proofs ended in an error; nothing is proven by them\n")
+    assert ran.stdout.endswith("3 tasks, 1 seeds: 0 gates failed, 2 errors\n")
+    attempts = {row["task"]: row["attempts"] for row in read_rows(tmp_path / "f").values()}
+    assert attempts == {"own_one": 1, "own_raises": 2, "own_dies": 2}
+
+
+def test_a_gate_that_fails_is_told_beneath_its_task_and_sets_the_exit_code(validate):
+    ran = validate("own_twice", "--seeds", "1", "--json")
+    assert ran.returncode == 1
+    first, *faults = ran.stderr.splitlines()
+    assert first.endswith("1/1 own_twice, seed 0")
+    (failed,) = told(ran)["gates"]["oracle"]["failed"]
+    assert faults == [f"    oracle: {failed['why']}"]
+    assert "goal" in failed["why"]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--gates", "orakel"), "did you mean 'oracle'?"),
+        (("--gates", ","), "--gates is empty"),
+        (("--tasks", "nothing_*"), "no task"),
+        (("--workers", "0"), "whole number"),
+        (("--out", "file"), "file is a file"),
+    ],
+)
+def test_bad_input_is_one_line(tmp_path, monkeypatch, words, said):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "file").touch()
+    ran = subprocess.run([*PROGRAM, *words], capture_output=True, text=True, check=False)
+    assert (ran.returncode, ran.stderr.count("\n")) == (2, 1)
+    assert ran.stderr.startswith("error: ")
+    assert said in ran.stderr
+
+
+def test_pieces_go_together_and_each_task_comes_after_one_of_its_piece():
+    jobs = ProofPlan(("all",), (0, 1)).jobs()
+    assert len({job.id for job in jobs}) == len(jobs)
+    pieces = {}
+    for job in jobs:
+        pieces.setdefault(job.simulation, []).append(job)
+    assert max(map(len, pieces.values())) == batch.PIECE
+    for piece in pieces.values():
+        assert [job.after for job in piece] == ["", *(job.task for job in piece[:-1])]
+        assert {job.seed for job in piece} == {piece[0].simulation[1]}
+
+
+@pytest.fixture
+def proving(monkeypatch):
+    """Proves tasks of these names on the grid, all alike, whose expert's traces have the hashes given."""
+
+    def make(hashes):
+        given = iter(hashes)
+        monkeypatch.setattr(prover.Ground, "reach", lambda task, half, seed, simulations: Standing(task, seed))
+        monkeypatch.setattr(prover, "CATALOGUE", {"a": Named("a"), "b": Named("b")})
+        monkeypatch.setattr(gates, "hash_of_oracle", lambda ground: next(given))
+        monkeypatch.setattr(Prover, "_prove_half", lambda self, proof, half, ground: None)
+        return Prover(("residue",))
+
+    return make
+
+
+class Named:
+    halves = ("first",)
+
+    def __init__(self, name):
+        self.id = name
+
+
+class Standing:
+    def __init__(self, task, seed):
+        self.task, self.seed = task, seed
+
+    def close(self):
+        pass
+
+
+@pytest.mark.parametrize(("later", "wrong"), [("a1", []), ("a2", ["a gives another trace after it"])])
+def test_what_a_task_leaves_is_seen_whether_or_not_the_other_was_proven_here(proving, later, wrong):
+    here = proving(["a1", later, "b1"])
+    assert here.prove("a", 0).wrong == {"residue": []}
+    assert here.prove("b", 0, "a").wrong == {"residue": wrong}
+    alone = proving(["a1", later, "b1"])
+    assert alone.prove("b", 0, "a").wrong == {"residue": wrong}
+    other_seed = proving(["a1", "a3", later.replace("1", "3"), "b1"])
+    other_seed.prove("a", 1)
+    assert other_seed.prove("b", 0, "a").wrong == {"residue": wrong}
+
+
+def test_another_task_that_cannot_be_played_is_no_fault_of_this_one(proving):
+    assert proving(["b1"]).prove("b", 0, "no_such_task").wrong == {"residue": []}
+
+
+def test_a_simulation_that_dies_beforehand_proves_nothing(proving, monkeypatch):
+    here = proving(["b1"])
+
+    def dies(*_):
+        raise TrafficError("the simulation died")
+
+    monkeypatch.setattr(Prover, "_trace", dies)
+    proof = here.prove("b", 0, "a")
+    assert (proof.error, proof.wrong) == ("TrafficError: the simulation died", {})
