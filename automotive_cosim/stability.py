@@ -8,6 +8,7 @@ held against one law: after the warm-up, under a quarter of the vehicles halted 
 
 from __future__ import annotations
 
+import os
 import re
 import signal
 import subprocess
@@ -38,10 +39,21 @@ BACKLOG_SHARE_LIMIT = 0.05
 """Vehicles still waiting to enter at the end, among all that wanted to since the start."""
 
 SILENCE_LIMIT_S = 120.0
-"""Wall time without a second of traffic after which SUMO counts as hung; one takes it milliseconds."""
+"""Processor time without a second of traffic after which SUMO counts as hung; one takes it milliseconds. Where a
+system does not tell processor time, wall time stands in for it."""
 
 LOADING_LIMIT_S = 600.0
 """Likewise before the first one: reading a country's network takes minutes."""
+
+STANDSTILL_LIMIT_S = 1800.0
+"""Wall time without any use of the processor after which it counts as hung: a program that wants to go on gets some
+of it by then, however busy the machine, and one that waits for ever does not."""
+
+LOOK_EVERY_S = 1.0
+"""Wall time between two looks at the program's processor time."""
+
+PROC = Path("/proc")
+"""Where Linux tells processor time."""
 
 WINDOW_S = 60.0
 """The halted share is averaged over this, about one cycle of the signals."""
@@ -203,19 +215,23 @@ def summary(config: str, options: Sequence[str], scratch: Path) -> Generator[Ste
 
 
 class _Watchdog:
-    """Kills a process that gives no sign of life for too long."""
+    """Kills a process that has had its time and gives no sign of life."""
 
     def __init__(self, process: subprocess.Popen[str]) -> None:
         self._process = process
-        self._until_s = time.monotonic() + LOADING_LIMIT_S
+        self._stat = PROC / str(process.pid) / "stat"
+        self._is_told = self._stat.is_file()
+        """Whether processor time can be had."""
+        self._signs = 0
+        """Of life, so far."""
         self._is_over = threading.Event()
         self._has_bitten = False
         self._thread = threading.Thread(target=self._watch, daemon=True)
         self._thread.start()
 
     def alive(self) -> None:
-        """A sign of life. While its taker looks at it nothing is awaited, so the clock starts anew each time."""
-        self._until_s = time.monotonic() + SILENCE_LIMIT_S
+        """A sign of life. While its taker looks at it SUMO may have to wait, which takes no processor time."""
+        self._signs += 1
 
     def judge(self, config: str) -> None:
         """Why the process ended, if it was not its own doing.
@@ -235,11 +251,31 @@ class _Watchdog:
         self._thread.join()
 
     def _watch(self) -> None:
-        while (left_s := self._until_s - time.monotonic()) > 0:
-            if self._is_over.wait(min(left_s, SILENCE_LIMIT_S)):  # its end comes nearer once SUMO has loaded
+        signs, limit_s = 0, LOADING_LIMIT_S
+        used_s = at_sign_s = self._used_s()
+        moved_at_s = time.monotonic()
+        while not self._is_over.wait(LOOK_EVERY_S):
+            now_s, before_s, used_s = time.monotonic(), used_s, self._used_s()
+            if used_s is None or at_sign_s is None:  # it has ended by itself
                 return
-        self._has_bitten = True
-        self._process.kill()
+            if used_s != before_s:
+                moved_at_s = now_s
+            if self._signs != signs:
+                signs, limit_s, at_sign_s, moved_at_s = self._signs, SILENCE_LIMIT_S, used_s, now_s
+            if used_s - at_sign_s >= limit_s or now_s - moved_at_s >= STANDSTILL_LIMIT_S:
+                self._has_bitten = True
+                self._process.kill()
+                return
+
+    def _used_s(self) -> float | None:
+        """Processor time that it has used, the wall clock where the system does not tell; None once it is gone."""
+        if not self._is_told:
+            return time.monotonic()
+        try:
+            fields = self._stat.read_text(encoding="utf-8", errors="replace").rpartition(")")[2].split()
+        except OSError:
+            return None
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 @dataclass(slots=True)

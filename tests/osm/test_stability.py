@@ -103,14 +103,60 @@ def _stand_in(folder: Path, script: str, monkeypatch: pytest.MonkeyPatch) -> Non
 STEP = 'print(\'<step time="1.00" running="1" halting="0" waiting="0" inserted="1"/>\', flush=True)'
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="the stand-in is a script with a first line of its own")
-@pytest.mark.parametrize("script", ["time.sleep(600)", f"{STEP}\ntime.sleep(600)"], ids=["loading", "driving"])
+SCRIPTS = pytest.mark.skipif(
+    sys.platform == "win32", reason="the stand-in is a script with a first line of its own"
+)
+TOLD = pytest.mark.skipif(not stability.PROC.is_dir(), reason="no processor time is told")
+BUSY, ASLEEP = "while True: pass", "time.sleep(600)"
+
+
+@SCRIPTS
+@pytest.mark.parametrize(
+    ("script", "limit"),
+    [
+        pytest.param(BUSY, "LOADING_LIMIT_S", id="busy loading"),
+        pytest.param(f"{STEP}\n{BUSY}", "SILENCE_LIMIT_S", id="busy driving"),
+        pytest.param(ASLEEP, "STANDSTILL_LIMIT_S", id="asleep loading", marks=TOLD),
+        pytest.param(f"{STEP}\n{ASLEEP}", "STANDSTILL_LIMIT_S", id="asleep driving", marks=TOLD),
+    ],
+)
 def test_a_sumo_that_hangs_is_ended(
-    script: str, imported: Imported, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    script: str, limit: str, imported: Imported, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By the one limit that is for it: the others are minutes."""
+    _stand_in(tmp_path, script, monkeypatch)
+    monkeypatch.setattr(stability, "LOOK_EVERY_S", 0.05)
+    monkeypatch.setattr(stability, limit, 0.5)
+    with pytest.raises(TrafficError, match=r"hung in village\.sumocfg"):
+        measure(load(imported[0]), observe_s=60)
+
+
+@SCRIPTS
+@TOLD
+def test_a_sumo_that_gets_no_processor_does_not_hang(
+    imported: Imported, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is silent for three times the limit, before its first step and after it, and goes on."""
+    _stand_in(tmp_path, f"time.sleep(1.5)\n{STEP}\ntime.sleep(1.5)\n{STEP}", monkeypatch)
+    monkeypatch.setattr(stability, "LOOK_EVERY_S", 0.05)
+    for limit in ("LOADING_LIMIT_S", "SILENCE_LIMIT_S"):
+        monkeypatch.setattr(stability, limit, 0.5)
+    assert not measure(load(imported[0]), observe_s=60).vehicles_max
+
+
+@SCRIPTS
+@pytest.mark.parametrize(
+    ("script", "limit"),
+    [(ASLEEP, "LOADING_LIMIT_S"), (f"{STEP}\n{ASLEEP}", "SILENCE_LIMIT_S")],
+    ids=["loading", "driving"],
+)
+def test_where_no_processor_time_is_told_wall_time_counts(
+    script: str, limit: str, imported: Imported, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     _stand_in(tmp_path, script, monkeypatch)
-    monkeypatch.setattr(stability, "SILENCE_LIMIT_S", 0.3)
-    monkeypatch.setattr(stability, "LOADING_LIMIT_S", 0.3 if "step" not in script else 30.0)
+    monkeypatch.setattr(stability, "PROC", tmp_path)
+    monkeypatch.setattr(stability, "LOOK_EVERY_S", 0.05)
+    monkeypatch.setattr(stability, limit, 0.5)
     with pytest.raises(TrafficError, match=r"hung in village\.sumocfg"):
         measure(load(imported[0]), observe_s=60)
 
