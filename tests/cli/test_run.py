@@ -3,7 +3,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -106,7 +105,7 @@ def test_ctrl_c_while_the_command_line_loads_ends_it_in_silence(tmp_path):
 
 
 @pytest.fixture
-def long_run(tmp_path):
+def long_run(tmp_path, until):
     """A run of minutes in a session of its own, far enough to have recorded two steps."""
     wait = json.dumps({"action_type": "wait", "seconds": 10})
     (tmp_path / "a.jsonl").write_text("\n".join([wait] * 30), encoding="utf-8")
@@ -115,7 +114,7 @@ def long_run(tmp_path):
         cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
     )  # fmt: skip
     steps = tmp_path / "out" / "steps.jsonl"
-    _until(lambda: steps.is_file() and steps.read_text(encoding="utf-8").count("\n") >= 2)
+    until(lambda: steps.is_file() and steps.read_text(encoding="utf-8").count("\n") >= 2)
     yield process
     process.kill()
     process.communicate()
@@ -123,7 +122,7 @@ def long_run(tmp_path):
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for another process")
 @pytest.mark.parametrize("to_group", [True, False], ids=["as a terminal does", "to the program alone"])
-def test_ctrl_c_keeps_what_was_recorded_and_ends_every_process(long_run, tmp_path, to_group):
+def test_ctrl_c_keeps_what_was_recorded_and_ends_every_process(long_run, tmp_path, to_group, until, session):
     (os.killpg if to_group else os.kill)(long_run.pid, signal.SIGINT)
     _, err = long_run.communicate(timeout=30)
     assert long_run.returncode == 130
@@ -133,33 +132,13 @@ def test_ctrl_c_keeps_what_was_recorded_and_ends_every_process(long_run, tmp_pat
     assert [json.loads(line)["step"] for line in lines] == list(range(len(lines)))
     assert json.loads((tmp_path / "out" / "episode.json").read_text(encoding="utf-8"))["end"] == "interrupted"
     assert (tmp_path / "out" / "summary.html").is_file()
-    _until(lambda: not _session(long_run.pid))
+    until(lambda: not session(long_run.pid))
 
 
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks at /proc")
-def test_a_kill_keeps_the_steps_and_leaves_no_process(long_run, tmp_path):
+def test_a_kill_keeps_the_steps_and_leaves_no_process(long_run, tmp_path, until, session):
     long_run.kill()
     long_run.communicate()
     for line in (tmp_path / "out" / "steps.jsonl").read_text(encoding="utf-8").splitlines()[:-1]:
         json.loads(line)
-    _until(lambda: not _session(long_run.pid))
-
-
-def _until(holds, seconds=60.0):
-    end_s = time.monotonic() + seconds
-    while not holds():
-        assert time.monotonic() < end_s, "did not come about"
-        time.sleep(0.05)
-
-
-def _session(leader):
-    """Living processes of the session, as /proc tells; none where there is no /proc."""
-    living = []
-    for stat in Path("/proc").glob("[0-9]*/stat"):
-        try:
-            fields = stat.read_text().rpartition(")")[2].split()
-        except OSError:
-            continue
-        if int(fields[3]) == leader and fields[0] != "Z":
-            living.append(stat.parent.name)
-    return living
+    until(lambda: not session(long_run.pid))
