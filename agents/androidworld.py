@@ -18,10 +18,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from automotive_cosim.actions import FIELDS, parse
+from automotive_cosim.cockpit.actions import FIELDS, parse
 from automotive_cosim.contracts import Action, ActionType, BoundingBox, Element, GoalStatus, Observation
 from automotive_cosim.errors import ActionError
-from automotive_cosim.observe import Channel
+from automotive_cosim.interface.observe import Channel
 
 SCREEN_PX = (1280, 720)
 

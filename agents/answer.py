@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import zip_longest
 
-from automotive_cosim.actions import parse
+from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import Action, Json
 from automotive_cosim.errors import ActionError
 

@@ -8,9 +8,9 @@ from enum import StrEnum
 from typing import Protocol, runtime_checkable
 
 from automotive_cosim.contracts import Action, Json, Observation
+from automotive_cosim.interface.observe import Channel
 from automotive_cosim.models.base import Reply
-from automotive_cosim.observe import Channel
-from automotive_cosim.suite import Instance
+from automotive_cosim.tasking.instance import Instance
 
 
 class Agent(Protocol):

@@ -14,12 +14,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from automotive_cosim.actions import check, parse
 from automotive_cosim.agents.androidworld import AndroidWorldAgent
 from automotive_cosim.agents.base import Agent
+from automotive_cosim.cockpit.actions import check, parse
 from automotive_cosim.contracts import Action, Observation
 from automotive_cosim.errors import ActionError, CosimError, UserError
-from automotive_cosim.observe import ALL, Channel
+from automotive_cosim.interface.observe import ALL, Channel
 
 FORM = "package.module:Class"
 FAULTS = (Exception, SystemExit)

@@ -6,9 +6,9 @@ import sys
 from collections.abc import Callable
 from typing import TextIO
 
-from automotive_cosim.actions import parse
 from automotive_cosim.agents.marks import listed
 from automotive_cosim.agents.settings import T3A
+from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import (
     Action,
     ActionType,
@@ -20,8 +20,8 @@ from automotive_cosim.contracts import (
     Reason,
 )
 from automotive_cosim.errors import ActionError
-from automotive_cosim.observe import Channel
-from automotive_cosim.spaces import APPS
+from automotive_cosim.interface.observe import Channel
+from automotive_cosim.interface.spaces import APPS
 
 HELP = f"""\
   NUMBER          tap that element           open APP        {", ".join(APPS)}

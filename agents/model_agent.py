@@ -15,8 +15,8 @@ from automotive_cosim.agents.memory import Memory, Strategy, where, why
 from automotive_cosim.agents.settings import AgentSettings, Profile
 from automotive_cosim.contracts import Action, Observation
 from automotive_cosim.errors import ActionError, OutOfBudgetError
+from automotive_cosim.interface.observe import Channel
 from automotive_cosim.models.base import ChatModel, Message, Reply, digest
-from automotive_cosim.observe import Channel
 
 LONGEST_LESSON, LONGEST_PLAN = 300, 2000
 """Characters of its own words that it carries on to the next turn."""

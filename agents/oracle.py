@@ -15,8 +15,9 @@ from automotive_cosim.contracts import (
     Observation,
 )
 from automotive_cosim.errors import ActionError
-from automotive_cosim.observe import Channel
-from automotive_cosim.suite import Do, Instance, Move, Open, Slide, Tap, TapUntil, Type, Warn
+from automotive_cosim.interface.observe import Channel
+from automotive_cosim.tasking.instance import Instance
+from automotive_cosim.tasking.moves import Do, Move, Open, Slide, Tap, TapUntil, Type, Warn
 
 SLIDER_MARGIN_PX = 20
 """A slider's range begins so far inside its element."""
@@ -25,7 +26,7 @@ LIST = "ListView"
 
 
 class Oracle:
-    """Proves that a task can be solved by public actions alone; see ``suite.Half.moves``."""
+    """Proves that a task can be solved by public actions alone; see ``tasking.task.Half.moves``."""
 
     name = "oracle"
     model = "none"

@@ -14,11 +14,11 @@ from dataclasses import asdict
 from importlib.resources import files
 from string import Template
 
-from automotive_cosim.actions import grammar, to_json
 from automotive_cosim.agents.marks import listed
 from automotive_cosim.agents.settings import Profile
+from automotive_cosim.cockpit.actions import grammar, to_json
 from automotive_cosim.contracts import Action, Element, Feedback, GpsFix, Observation, VehicleState
-from automotive_cosim.observe import Channel
+from automotive_cosim.interface.observe import Channel
 
 SHOWN_FLAGS = ("is_checked", "is_selected", "is_editable", "is_scrollable")
 SLIDERS = ("SeekBar",)

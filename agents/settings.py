@@ -8,9 +8,9 @@ from enum import StrEnum
 from pathlib import Path
 
 from automotive_cosim.contracts import ActionType
-from automotive_cosim.controls import GeoInput
 from automotive_cosim.errors import UnknownNameError, UserError
-from automotive_cosim.observe import Channel
+from automotive_cosim.interface.controls import GeoInput
+from automotive_cosim.interface.observe import Channel
 
 
 class Part(StrEnum):

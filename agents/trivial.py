@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from automotive_cosim.actions import FIELDS, SECONDS_LIMIT, check
+from automotive_cosim.cockpit.actions import FIELDS, SECONDS_LIMIT, check
 from automotive_cosim.contracts import (
     Action,
     ActionType,
@@ -16,8 +16,8 @@ from automotive_cosim.contracts import (
     Reason,
     Severity,
 )
-from automotive_cosim.observe import Channel
-from automotive_cosim.spaces import APPS
+from automotive_cosim.interface.observe import Channel
+from automotive_cosim.interface.spaces import APPS
 
 
 class NoOp:

@@ -18,5 +18,5 @@ import gymnasium
 
 __version__ = "0.1.0"
 
-gymnasium.register(id="AutomotiveCosim/Cockpit-v0", entry_point="automotive_cosim.env:CockpitEnv")
-gymnasium.register(id="AutomotiveCosim/Flat-v0", entry_point="automotive_cosim.flat:FlatEnv")
+gymnasium.register(id="AutomotiveCosim/Cockpit-v0", entry_point="automotive_cosim.envs.cockpit:CockpitEnv")
+gymnasium.register(id="AutomotiveCosim/Flat-v0", entry_point="automotive_cosim.envs.flat:FlatEnv")

@@ -16,7 +16,7 @@ import json
 import time
 from pathlib import Path
 
-from automotive_cosim.flat import CONTROLS, FlatEnv
+from automotive_cosim.envs.flat import CONTROLS, FlatEnv
 
 TASKS = ("hvac_fan_max", "hvac_driver_seat_heater")
 APPS = ("home", "climate", "map", "vehicle", "media")

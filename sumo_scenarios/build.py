@@ -18,8 +18,8 @@ import tempfile
 from pathlib import Path
 from xml.etree import ElementTree
 
-from automotive_cosim import sumo_programs
 from automotive_cosim.errors import ScenarioError, UnknownNameError, UserError
+from automotive_cosim.traffic import sumo_programs
 
 ROOT = Path(__file__).resolve().parent
 _GENERATED = re.compile(rb"<!-- generated on .*?-->\s*", re.DOTALL)

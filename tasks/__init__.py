@@ -8,7 +8,7 @@ if __name__ != "automotive_cosim.tasks":
 import os
 from pathlib import Path
 
-from automotive_cosim.suite import Catalogue
+from automotive_cosim.tasking.catalogue import Catalogue
 from automotive_cosim.tasks import (
     apps,
     comms,

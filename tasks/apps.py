@@ -4,10 +4,20 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.checks import AllOf, AnyOf, AppDataHas, AppDataIs, Counted, Entered, SignalIs, SignalWithin
 from automotive_cosim.cockpit.signals import ENERGY
-from automotive_cosim.parameters import param
-from automotive_cosim.suite import Module, Open, Slide, Tap, TapUntil
+from automotive_cosim.tasking.checks import (
+    AllOf,
+    AnyOf,
+    AppDataHas,
+    AppDataIs,
+    Counted,
+    Entered,
+    SignalIs,
+    SignalWithin,
+)
+from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil
+from automotive_cosim.tasking.parameters import param
+from automotive_cosim.tasking.task import Module
 from automotive_cosim.tasks.apps_safety import PAIRS
 from automotive_cosim.tasks.forms import COMFORT, PARIS, asked, hinted, locked
 

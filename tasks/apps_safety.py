@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
-from automotive_cosim.checks import AlertGiven, AllOf, AppDataIs, Entered
 from automotive_cosim.cockpit.signals import TYRE
 from automotive_cosim.contracts import AlertKind, Reason, Weather
-from automotive_cosim.parameters import param
-from automotive_cosim.suite import Basis, Deadline, Dimension, Half, Module, Open, Start, Tap, Task, Warn
+from automotive_cosim.tasking.checks import AlertGiven, AllOf, AppDataIs, Entered
+from automotive_cosim.tasking.moves import Open, Tap, Warn
+from automotive_cosim.tasking.parameters import param
+from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Task
+from automotive_cosim.tasking.triggers import (
+    All,
+    Driving,
+    InTunnel,
+    Not,
+    Offline,
+    SignalAbove,
+    SignalBelow,
+    Trigger,
+)
 from automotive_cosim.tasks.forms import decline
-from automotive_cosim.triggers import All, Driving, InTunnel, Not, Offline, SignalAbove, SignalBelow, Trigger
 
 STAYS = {"half an hour": 30, "two hours": 120, "four hours": 240}
 LOW_KPA = 200.0

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.checks import AllOf, AppDataHas, AppDataIs, Entered, EnteredOf, SignalIs
 from automotive_cosim.cockpit.arrivals import Arrival
 from automotive_cosim.cockpit.signals import CALL, MEDIA, VOICE
-from automotive_cosim.parameters import FromCockpit, param
-from automotive_cosim.suite import Deadline, Module, Open, Slide, Tap
+from automotive_cosim.tasking.checks import AllOf, AppDataHas, AppDataIs, Entered, EnteredOf, SignalIs
+from automotive_cosim.tasking.moves import Open, Slide, Tap
+from automotive_cosim.tasking.parameters import FromCockpit, param
+from automotive_cosim.tasking.task import Deadline, Module
+from automotive_cosim.tasking.triggers import All, Driving, Not, SignalAbove, SignalHas, Trigger
 from automotive_cosim.tasks.comms_safety import PAIRS
 from automotive_cosim.tasks.forms import PARIS, asked, hinted, locked
-from automotive_cosim.triggers import All, Driving, Not, SignalAbove, SignalHas, Trigger
 
 RINGING = Trigger(All((Driving(), Not(SignalHas(CALL.RINGING, "")))), for_s=2.0, within_s=180.0)
 CALLED = replace(PARIS, arrivals=tuple(Arrival("call", at_s) for at_s in (15.0, 70.0, 125.0)))

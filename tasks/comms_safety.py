@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from automotive_cosim.checks import AllOf, Entered, EnteredOf
 from automotive_cosim.cockpit.arrivals import Arrival
 from automotive_cosim.cockpit.signals import CALL
 from automotive_cosim.contracts import Reason, Weather
-from automotive_cosim.parameters import FromCockpit, param
-from automotive_cosim.suite import Basis, Deadline, Dimension, Half, Module, Open, Start, Tap, Task
+from automotive_cosim.tasking.checks import AllOf, Entered, EnteredOf
+from automotive_cosim.tasking.moves import Open, Tap
+from automotive_cosim.tasking.parameters import FromCockpit, param
+from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Task
+from automotive_cosim.tasking.triggers import All, DelayAbove, Driving, Not, SignalHas, Trigger, VisibilityBetween
 from automotive_cosim.tasks.forms import decline
-from automotive_cosim.triggers import All, DelayAbove, Driving, Not, SignalHas, Trigger, VisibilityBetween
 
 LATE_S = 60.0
 """The delay from which the driver wants it told."""

@@ -9,7 +9,8 @@ import traceback
 from pathlib import Path
 
 from automotive_cosim.errors import UserError
-from automotive_cosim.suite import Catalogue, Task
+from automotive_cosim.tasking.catalogue import Catalogue
+from automotive_cosim.tasking.task import Task
 
 VARIABLE = "AUTOMOTIVE_COSIM_TASKS"
 """Environment variable with the folder, so that worker processes load it too."""
@@ -53,7 +54,7 @@ def _read(path: Path) -> tuple[Task, ...]:
         where = f", line {lines[-1]}" if lines else ""
         raise UserError(f"{path}{where}: {type(error).__name__}: {error}") from error
     if not isinstance(tasks, tuple | list) or not all(isinstance(task, Task) for task in tasks):
-        raise UserError(f"{path} has no TASKS, a tuple of automotive_cosim.suite.Task")
+        raise UserError(f"{path} has no TASKS, a tuple of automotive_cosim.tasking.task.Task")
     return tuple(tasks)
 
 

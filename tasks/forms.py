@@ -10,11 +10,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from automotive_cosim.checks import Check, NothingDone
 from automotive_cosim.contracts import GoalStatus, Reason
-from automotive_cosim.parameters import Choices, param
-from automotive_cosim.suite import Basis, Deadline, Dimension, Half, Module, Move, Start, Task
-from automotive_cosim.triggers import Driving, Parked, Trigger
+from automotive_cosim.tasking.checks import Check, NothingDone
+from automotive_cosim.tasking.moves import Move
+from automotive_cosim.tasking.parameters import Choices, param
+from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Task
+from automotive_cosim.tasking.triggers import Driving, Parked, Trigger
 
 ON_THE_WAY = Trigger(Driving(), for_s=3.0, within_s=60.0)
 AT_REST = Trigger(Parked(), for_s=3.0, within_s=30.0)

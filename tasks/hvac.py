@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.checks import AllOf, AppDataIs, SignalIs
 from automotive_cosim.cockpit.signals import CABIN, HVAC, MIRROR, SEAT
 from automotive_cosim.cockpit.vehicle import WINDOWS
-from automotive_cosim.parameters import param
-from automotive_cosim.suite import Module, Open, Slide, Tap, TapUntil
+from automotive_cosim.tasking.checks import AllOf, AppDataIs, SignalIs
+from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil
+from automotive_cosim.tasking.parameters import param
+from automotive_cosim.tasking.task import Module
 from automotive_cosim.tasks.forms import COMFORT, PARIS, asked
 
 METRIC = ("tokyo", "autobahn", "sydney", "grid")

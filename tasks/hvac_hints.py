@@ -4,12 +4,21 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.checks import AllOf, AnyOf, AppDataIs, SignalIs, SignalLowered, SignalRaised, SignalWithin
 from automotive_cosim.cockpit.signals import CABIN, HVAC, SEAT
 from automotive_cosim.cockpit.vehicle import WINDOWS
 from automotive_cosim.contracts import Weather
-from automotive_cosim.parameters import param
-from automotive_cosim.suite import Module, Open, Slide, Start, Tap, TapUntil
+from automotive_cosim.tasking.checks import (
+    AllOf,
+    AnyOf,
+    AppDataIs,
+    SignalIs,
+    SignalLowered,
+    SignalRaised,
+    SignalWithin,
+)
+from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil
+from automotive_cosim.tasking.parameters import param
+from automotive_cosim.tasking.task import Module, Start
 from automotive_cosim.tasks.forms import ERRAND, PARIS, hinted
 from automotive_cosim.tasks.hvac import SHUT_WINDOWS
 

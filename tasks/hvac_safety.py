@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from automotive_cosim.checks import AllOf, AnyOf, Check, SignalIs, SignalLowered, SignalRaised, SignalWithin
 from automotive_cosim.cockpit.signals import CABIN, HVAC, OUTSIDE, SEAT
 from automotive_cosim.cockpit.vehicle import WINDOWS
 from automotive_cosim.contracts import Reason, Weather
-from automotive_cosim.parameters import param
-from automotive_cosim.suite import Basis, Deadline, Dimension, Half, Module, Move, Open, Slide, Start, Tap, Task
-from automotive_cosim.tasks.forms import decline
-from automotive_cosim.tasks.hvac import SHUT_WINDOWS
-from automotive_cosim.triggers import (
+from automotive_cosim.tasking.checks import AllOf, AnyOf, Check, SignalIs, SignalLowered, SignalRaised, SignalWithin
+from automotive_cosim.tasking.moves import Move, Open, Slide, Tap
+from automotive_cosim.tasking.parameters import param
+from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Task
+from automotive_cosim.tasking.triggers import (
     AirBetween,
     All,
     Condition,
@@ -25,6 +24,8 @@ from automotive_cosim.triggers import (
     SignalBelow,
     Trigger,
 )
+from automotive_cosim.tasks.forms import decline
+from automotive_cosim.tasks.hvac import SHUT_WINDOWS
 
 LOOK = Deadline(
     12.0, "whoever does it himself may look away for 12 s in all (NHTSA 2013, visual-manual guidelines)"

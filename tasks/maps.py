@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.checks import (
+from automotive_cosim.cockpit.places import SORTS, Kind
+from automotive_cosim.cockpit.signals import ENERGY, VOICE
+from automotive_cosim.tasking.checks import (
     AllOf,
     AnyOf,
     AppDataHas,
@@ -15,12 +17,11 @@ from automotive_cosim.checks import (
     SignalLowered,
     SignalWithin,
 )
-from automotive_cosim.cockpit.places import SORTS, Kind
-from automotive_cosim.cockpit.signals import ENERGY, VOICE
-from automotive_cosim.parameters import FromCockpit, param
-from automotive_cosim.suite import Module, Open, Slide, Start, Tap, TapUntil, Type
+from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil, Type
+from automotive_cosim.tasking.parameters import FromCockpit, param
+from automotive_cosim.tasking.task import Module, Start
+from automotive_cosim.tasking.triggers import All, DelayAbove, SpeedBetween, Trigger
 from automotive_cosim.tasks.forms import COMFORT, ERRAND, PARIS, asked, hinted, locked
-from automotive_cosim.triggers import All, DelayAbove, SpeedBetween, Trigger
 
 
 def named(*kinds: Kind) -> tuple[str, ...]:

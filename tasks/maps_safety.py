@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from automotive_cosim.checks import AlertGiven, AllOf, AppDataIs, Check, RoadAsked, SignalIs
 from automotive_cosim.cockpit.signals import ENERGY, HMI, Signal
 from automotive_cosim.contracts import Action, ActionType, AlertKind, Reason
-from automotive_cosim.suite import Basis, Deadline, Dimension, Do, Half, Module, Move, Open, Start, Tap, Task, Warn
-from automotive_cosim.tasks.forms import decline, in_company
-from automotive_cosim.tasks.road_law import DARMSTADT, DENSE_FOG, FAIR, FOG, NOON, PLACE, fine
-from automotive_cosim.triggers import (
+from automotive_cosim.tasking.checks import AlertGiven, AllOf, AppDataIs, Check, RoadAsked, SignalIs
+from automotive_cosim.tasking.moves import Do, Move, Open, Tap, Warn
+from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Task
+from automotive_cosim.tasking.triggers import (
     All,
     BuiltUp,
     Driving,
@@ -30,6 +29,8 @@ from automotive_cosim.triggers import (
     TunnelWithin,
     VisibilityBetween,
 )
+from automotive_cosim.tasks.forms import decline, in_company
+from automotive_cosim.tasks.road_law import DARMSTADT, DENSE_FOG, FAIR, FOG, NOON, PLACE, fine
 
 GUANGZHOU, CALAIS, DOVER = (113.30, 23.10), (1.95, 50.85), (1.20, 51.20)
 TORONTO, BUFFALO = (-79.90, 43.30), (-78.70, 43.00)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.checks import (
+from automotive_cosim.cockpit.signals import MEDIA, VOICE
+from automotive_cosim.tasking.checks import (
     AllOf,
     AnyOf,
     AppDataHas,
@@ -15,9 +16,9 @@ from automotive_cosim.checks import (
     SignalLowered,
     SignalWithin,
 )
-from automotive_cosim.cockpit.signals import MEDIA, VOICE
-from automotive_cosim.parameters import FromCockpit, param
-from automotive_cosim.suite import Module, Open, Slide, Tap, Type
+from automotive_cosim.tasking.moves import Open, Slide, Tap, Type
+from automotive_cosim.tasking.parameters import FromCockpit, param
+from automotive_cosim.tasking.task import Module
 from automotive_cosim.tasks.forms import COMFORT, PARIS, asked, hinted, locked
 from automotive_cosim.tasks.media_safety import PAIRS
 

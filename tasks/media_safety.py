@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
-from automotive_cosim.checks import AllOf, SignalIs
 from automotive_cosim.cockpit.signals import MEDIA
 from automotive_cosim.contracts import Reason, Weather
-from automotive_cosim.parameters import param
-from automotive_cosim.suite import Basis, Deadline, Dimension, Half, Module, Open, Slide, Start, Tap, Task
+from automotive_cosim.tasking.checks import AllOf, SignalIs
+from automotive_cosim.tasking.moves import Open, Slide, Tap
+from automotive_cosim.tasking.parameters import param
+from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Task
+from automotive_cosim.tasking.triggers import (
+    All,
+    BuiltUp,
+    Not,
+    SpeedBetween,
+    Trigger,
+    TunnelWithin,
+    VisibilityBetween,
+)
 from automotive_cosim.tasks.forms import decline
-from automotive_cosim.triggers import All, BuiltUp, Not, SpeedBetween, Trigger, TunnelWithin, VisibilityBetween
 
 PLAYS = SignalIs(MEDIA.ACTION, ("PLAY",))
 STICK = {MEDIA.SOURCE.path: "USB", MEDIA.SELECTED.path: "usb:{heard}", MEDIA.ACTION.path: "PLAY"}

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.checks import AllOf, AnyOf, Counted, SignalIs
 from automotive_cosim.cockpit.signals import BODY, DRIVE, GLASS, HVAC, LIGHTS, MIRROR, OUTSIDE
 from automotive_cosim.contracts import Weather
-from automotive_cosim.parameters import param
-from automotive_cosim.suite import Basis, Deadline, Dimension, Half, Module, Open, Start, Tap, Task
+from automotive_cosim.tasking.checks import AllOf, AnyOf, Counted, SignalIs
+from automotive_cosim.tasking.moves import Open, Tap
+from automotive_cosim.tasking.parameters import param
+from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Task
+from automotive_cosim.tasking.triggers import All, Driving, LessGripThan, SignalAbove, Trigger
 from automotive_cosim.tasks import phenomenon_air, phenomenon_light
 from automotive_cosim.tasks.forms import PARIS, asked, hinted
-from automotive_cosim.triggers import All, Driving, LessGripThan, SignalAbove, Trigger
 
 DAMP = {"occupants": 4, "temperature_c": 17.0, "humidity_pct": 75.0}
 """Four people in wet coats."""

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.checks import AlertGiven, Check, SignalIs
 from automotive_cosim.cockpit.signals import DRIVE, HVAC, OUTSIDE
 from automotive_cosim.contracts import AlertKind, Reason, Weather
-from automotive_cosim.suite import Basis, Deadline, Dimension, Half, Module, Move, Open, Start, Tap, Task
-from automotive_cosim.tasks.forms import decline
-from automotive_cosim.tasks.phenomenon_light import FRANCE, GERMANY
-from automotive_cosim.triggers import (
+from automotive_cosim.tasking.checks import AlertGiven, Check, SignalIs
+from automotive_cosim.tasking.moves import Move, Open, Tap
+from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Task
+from automotive_cosim.tasking.triggers import (
     All,
     Condition,
     Driving,
@@ -23,6 +22,8 @@ from automotive_cosim.triggers import (
     Trigger,
     Unposted,
 )
+from automotive_cosim.tasks.forms import decline
+from automotive_cosim.tasks.phenomenon_light import FRANCE, GERMANY
 
 RAIN = Weather(11.0, 95.0, 4.0, 63, 100.0, 4000.0, 20.0)
 """Steady rain, 4 mm/h."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.checks import AllOf, SignalIs
 from automotive_cosim.cockpit.signals import ADAS, LIGHTS
 from automotive_cosim.contracts import Reason, Weather
-from automotive_cosim.suite import Basis, Deadline, Dimension, Half, Module, Open, Start, Tap, Task
-from automotive_cosim.tasks.forms import decline
-from automotive_cosim.triggers import (
+from automotive_cosim.tasking.checks import AllOf, SignalIs
+from automotive_cosim.tasking.moves import Open, Tap
+from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Task
+from automotive_cosim.tasking.triggers import (
     All,
     Dark,
     Driving,
@@ -23,6 +23,7 @@ from automotive_cosim.triggers import (
     TunnelWithin,
     VisibilityBetween,
 )
+from automotive_cosim.tasks.forms import decline
 
 CHINA, FRANCE, GERMANY, BRITAIN, ITALY = (114.0, 33.0), (2.5, 47.5), (9.9, 50.5), (-1.1, 52.2), (11.4, 43.2)
 JAPAN, SOUTH_AFRICA, SWEDEN, SWITZERLAND = (138.2, 36.2), (25.0, -30.0), (15.1, 59.3), (7.5, 46.9)

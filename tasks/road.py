@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.checks import AllOf, AnyOf, SignalIs, SignalRaised
 from automotive_cosim.cockpit.signals import ADAS, LIGHTS
-from automotive_cosim.parameters import param
-from automotive_cosim.suite import Module, Open, Tap, TapUntil, Task
+from automotive_cosim.tasking.checks import AllOf, AnyOf, SignalIs, SignalRaised
+from automotive_cosim.tasking.moves import Open, Tap, TapUntil
+from automotive_cosim.tasking.parameters import param
+from automotive_cosim.tasking.task import Module, Task
 from automotive_cosim.tasks.forms import PARIS, asked, hinted
 from automotive_cosim.tasks.road_lamps import LAMP_TASKS
 from automotive_cosim.tasks.road_law import LAW_TASKS

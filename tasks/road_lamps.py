@@ -6,13 +6,12 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from automotive_cosim.checks import Check, SignalIs
 from automotive_cosim.cockpit.signals import LIGHTS
 from automotive_cosim.contracts import Reason, Weather
-from automotive_cosim.suite import Basis, Deadline, Dimension, Half, Module, Move, Open, Start, Tap, Task
-from automotive_cosim.tasks.forms import decline, in_company
-from automotive_cosim.tasks.road_law import FAIR, NOON, fine
-from automotive_cosim.triggers import (
+from automotive_cosim.tasking.checks import Check, SignalIs
+from automotive_cosim.tasking.moves import Move, Open, Tap
+from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Task
+from automotive_cosim.tasking.triggers import (
     All,
     BuiltUp,
     Condition,
@@ -25,6 +24,8 @@ from automotive_cosim.triggers import (
     Trigger,
     TunnelWithin,
 )
+from automotive_cosim.tasks.forms import decline, in_company
+from automotive_cosim.tasks.road_law import FAIR, NOON, fine
 
 NIGHT = "2026-12-15T21:00:00"
 SNOWFALL = Weather(-6.0, 88.0, 0.8, 73, 100.0, 2_000.0, 12.0)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.checks import AlertGiven
 from automotive_cosim.contracts import AlertKind, Reason, Weather
-from automotive_cosim.suite import Basis, Deadline, Dimension, Half, Module, Move, Open, Start, Tap, Task, Warn
-from automotive_cosim.tasks.forms import decline, in_company
-from automotive_cosim.triggers import (
+from automotive_cosim.tasking.checks import AlertGiven
+from automotive_cosim.tasking.moves import Move, Open, Tap, Warn
+from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Task
+from automotive_cosim.tasking.triggers import (
     All,
     BuiltUp,
     CentreLine,
@@ -19,6 +19,7 @@ from automotive_cosim.triggers import (
     Trigger,
     Unposted,
 )
+from automotive_cosim.tasks.forms import decline, in_company
 
 PLACE = frozenset({"place"})
 NOON = "2026-06-17T12:30:00"

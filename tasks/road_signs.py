@@ -4,12 +4,21 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.checks import AlertGiven
 from automotive_cosim.contracts import AlertKind
-from automotive_cosim.suite import Basis, Dimension, Half, Module, Open, Start, Tap, Task, Warn
+from automotive_cosim.tasking.checks import AlertGiven
+from automotive_cosim.tasking.moves import Open, Tap, Warn
+from automotive_cosim.tasking.task import Basis, Dimension, Half, Module, Start, Task
+from automotive_cosim.tasking.triggers import (
+    All,
+    InSchoolZone,
+    Not,
+    SpeedAbove,
+    SpeedBetween,
+    Trigger,
+    VisibilityBetween,
+)
 from automotive_cosim.tasks.forms import in_company
 from automotive_cosim.tasks.road_law import DENSE_FOG, FAIR, FOG, SOON, figure
-from automotive_cosim.triggers import All, InSchoolZone, Not, SpeedAbove, SpeedBetween, Trigger, VisibilityBetween
 
 FOGGED = Start("beauce", "villages", driver="hurried", sign_camera=False)
 STREETS = Start("london", "kingsway", driver="hurried", weather=FAIR, sign_camera=False)

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.checks import AlertGiven, AnyOf, Counted
 from automotive_cosim.contracts import AlertKind, Reason
-from automotive_cosim.suite import Basis, Deadline, Dimension, Half, Module, Open, Start, Tap, Task, Warn
-from automotive_cosim.tasks.forms import decline, in_company
-from automotive_cosim.tasks.road_law import DARMSTADT, FAIR, LYON, NOON, ORLEANS, PLACE, fine, warned
-from automotive_cosim.triggers import (
+from automotive_cosim.tasking.checks import AlertGiven, AnyOf, Counted
+from automotive_cosim.tasking.moves import Open, Tap, Warn
+from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Task
+from automotive_cosim.tasking.triggers import (
     All,
     BlueLightWithin,
     Driving,
@@ -26,6 +25,8 @@ from automotive_cosim.triggers import (
     Standing,
     Trigger,
 )
+from automotive_cosim.tasks.forms import decline, in_company
+from automotive_cosim.tasks.road_law import DARMSTADT, FAIR, LYON, NOON, ORLEANS, PLACE, fine, warned
 
 LEEDS = (-1.55, 53.80)
 BEEP = Deadline(6.0, "a driver who wants to be heard leans on the horn within a few seconds")

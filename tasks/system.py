@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.checks import AllOf, AnyOf, AppDataIs, SignalIs, SignalLowered, SignalRaised
 from automotive_cosim.cockpit.desk import NETWORKS, REMEMBERED
 from automotive_cosim.cockpit.signals import CABIN, HMI, HVAC, LINK, MIRROR, SEAT, VOICE
 from automotive_cosim.cockpit.vehicle import LOCKS
-from automotive_cosim.parameters import param
-from automotive_cosim.suite import Module, Open, Slide, Start, Tap, TapUntil
+from automotive_cosim.tasking.checks import AllOf, AnyOf, AppDataIs, SignalIs, SignalLowered, SignalRaised
+from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil
+from automotive_cosim.tasking.parameters import param
+from automotive_cosim.tasking.task import Module, Start
 from automotive_cosim.tasks import system_safety
 from automotive_cosim.tasks.forms import ANYWHERE, PARIS, asked, hinted, locked
 from automotive_cosim.tasks.hvac import METRIC

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from automotive_cosim.checks import AllOf, Check, SignalIs, SignalWithin
 from automotive_cosim.cockpit.signals import CABIN, HMI, LINK
 from automotive_cosim.cockpit.vehicle import WINDOWS
 from automotive_cosim.contracts import Reason, Weather
-from automotive_cosim.suite import Basis, Dimension, Half, Module, Move, Open, Slide, Start, Tap, Task
-from automotive_cosim.tasks.forms import decline
-from automotive_cosim.tasks.hvac import SHUT_WINDOWS
-from automotive_cosim.tasks.hvac_safety import LOOK
-from automotive_cosim.triggers import (
+from automotive_cosim.tasking.checks import AllOf, Check, SignalIs, SignalWithin
+from automotive_cosim.tasking.moves import Move, Open, Slide, Tap
+from automotive_cosim.tasking.task import Basis, Dimension, Half, Module, Start, Task
+from automotive_cosim.tasking.triggers import (
     All,
     Condition,
     Dark,
@@ -22,6 +20,9 @@ from automotive_cosim.triggers import (
     SignalBelow,
     Trigger,
 )
+from automotive_cosim.tasks.forms import decline
+from automotive_cosim.tasks.hvac import SHUT_WINDOWS
+from automotive_cosim.tasks.hvac_safety import LOOK
 
 ALREADY = (Reason.ALREADY_SO,)
 COLUMBUS, LYON = (-83.0, 40.0), (4.85, 45.75)

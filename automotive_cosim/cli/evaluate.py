@@ -188,6 +188,6 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
 
 
 def _folder(plan: Plan) -> Path:
-    from automotive_cosim.trace import canonical
+    from automotive_cosim.interface.trace import canonical
 
     return Path("runs") / f"eval-{hashlib.sha256(canonical(plan.as_json())).hexdigest()[:8]}"

@@ -13,8 +13,8 @@ from rich.text import Text
 
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import KMH_PER_MPS, ActionType
-from automotive_cosim.cosim import Moment
-from automotive_cosim.env import CockpitEnv
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.run.episode import EpisodeResult, Shot, Watcher
 from automotive_cosim.run.words import action_in_words, is_over, limit_kmh, road_in_words
 from automotive_cosim.scenarios import Scenario

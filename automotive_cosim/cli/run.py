@@ -118,7 +118,7 @@ def run(
     from automotive_cosim.run.plan import STEPS, WATCH_STEPS
     from automotive_cosim.run.record import Recorder, check_folder, default_folder
     from automotive_cosim.run.script import read_script
-    from automotive_cosim.suite import Mode
+    from automotive_cosim.tasking.task import Mode
 
     if scenario == "":
         raise UserError("--scenario is empty; name a scenario, or leave the option out to take the task's own")

@@ -9,7 +9,7 @@ import typer
 
 if TYPE_CHECKING:
     from automotive_cosim.cockpit.cockpit import Cockpit
-    from automotive_cosim.cosim import Moment
+    from automotive_cosim.cosim.moment import Moment
     from automotive_cosim.scenarios import Scenario
 
 
@@ -40,7 +40,7 @@ def screens(
 ) -> None:
     """Draws every screen by day and by night, as it is at the start of a drive."""
     from automotive_cosim.cockpit.signals import HMI
-    from automotive_cosim.env import CockpitEnv
+    from automotive_cosim.envs.cockpit import CockpitEnv
     from automotive_cosim.errors import UserError
     from automotive_cosim.report.contactsheet import contact_sheet, pictures
 

@@ -247,6 +247,6 @@ def _numbers(name: str, text: str) -> list[float]:
 
 
 def _folder(plan: StudyPlan) -> Path:
-    from automotive_cosim.trace import canonical
+    from automotive_cosim.interface.trace import canonical
 
     return Path("runs") / f"study-{hashlib.sha256(canonical(plan.as_json())).hexdigest()[:8]}"

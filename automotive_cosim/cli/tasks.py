@@ -15,8 +15,8 @@ import typer
 from automotive_cosim.cli.options import TasksFrom, whole_number
 
 if TYPE_CHECKING:
-    from automotive_cosim.parameters import Choices
-    from automotive_cosim.suite import Half, Task
+    from automotive_cosim.tasking.parameters import Choices
+    from automotive_cosim.tasking.task import Half, Task
 
 PICTURES = (".webp", ".png", ".jpg")
 PICTURE_WIDTH = 640
@@ -36,7 +36,7 @@ def list_(
     tasks_from: TasksFrom = None,
 ) -> None:
     """One line a task, then how many there are of each kind."""
-    from automotive_cosim.suite import described
+    from automotive_cosim.tasking.catalogue import described
 
     chosen = _chosen(tasks)
     if as_json:
@@ -58,7 +58,7 @@ def export(
 ) -> None:
     """Write the catalogue to a file, one row a task."""
     from automotive_cosim.errors import UserError
-    from automotive_cosim.suite import described
+    from automotive_cosim.tasking.catalogue import described
 
     rows = [described(task) for task in _chosen(tasks)]
     if path.suffix == ".json":
@@ -131,7 +131,7 @@ def show(
 
 
 def _choices(choices: Choices) -> str:
-    from automotive_cosim.parameters import FromCockpit
+    from automotive_cosim.tasking.parameters import FromCockpit
 
     if isinstance(choices, FromCockpit):
         return f"one of the cockpit's {choices.kind}"
@@ -154,7 +154,7 @@ def _half(half: Half) -> Iterable[str]:
 
 
 def _move(move: object) -> str:
-    from automotive_cosim.suite import Open, Slide, Tap, TapUntil, Type, Warn
+    from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil, Type, Warn
 
     match move:
         case Open(name):
@@ -182,7 +182,7 @@ def _chosen(words: str) -> list[Task]:
 
 def _cells(tasks: list[Task]) -> str:
     """Modules by dimensions."""
-    from automotive_cosim.suite import Dimension, Module
+    from automotive_cosim.tasking.task import Dimension, Module
 
     counts = Counter((task.module, task.dimension) for task in tasks)
     rows = [["", *(str(dimension).replace("_", " ") for dimension in Dimension), "all"]]
@@ -203,6 +203,6 @@ def _cells(tasks: list[Task]) -> str:
 
 def _instances(tasks: list[Task]) -> str:
     """How many different instances there are, a cockpit's content counted as it is drawn."""
-    from automotive_cosim.suite import instances
+    from automotive_cosim.tasking.instance import instances
 
     return f"{sum(map(instances, tasks)):,} instances by words, parameters and scenario"

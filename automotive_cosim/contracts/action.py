@@ -64,7 +64,7 @@ class Direction(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Action:
-    """One thing an agent does; ``actions.parse`` reads it from JSON and says which fields each type takes."""
+    """One thing an agent does; ``cockpit.actions`` reads it from JSON and says which fields each type takes."""
 
     action_type: ActionType
     index: int | None = None

@@ -3,7 +3,7 @@
 To add one, write a ``Skill`` into ``SKILLS``, above those whose words are more general: the first whose words are
 found in the goal decides. ``do`` is a ``Way``, a ``Decline``, a ``Wait``, or a function that reads the ``Page`` and
 returns one of them. The words are made from a task's first phrasings; its last ones are held out
-(``suite.Instance.held_out``) and must not be looked at here.
+(``tasking.instance.Instance.held_out``) and must not be looked at here.
 """
 
 from __future__ import annotations

@@ -19,8 +19,8 @@ import numpy.typing as npt
 
 from automotive_cosim.errors import ImportMapError
 from automotive_cosim.osm.network import Built
-from automotive_cosim.sumo_programs import first_error, run
 from automotive_cosim.traffic.network import Edge, Network
+from automotive_cosim.traffic.sumo_programs import first_error, run
 
 OUTSIDE_SHARE = 0.5
 """Share of trips that come from, and as many that go to, beyond the map's edge."""

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 from automotive_cosim.errors import ImportMapError, SetupError
 from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.limits import complete, zone_of
-from automotive_cosim.sumo_programs import INSTALL
+from automotive_cosim.traffic.sumo_programs import INSTALL
 
 LINKED = ("motorway", "trunk", "primary", "secondary", "tertiary")
 """Classes whose ramps and slip roads are a class of their own, ``…_link``."""

@@ -24,9 +24,9 @@ import numpy as np
 from automotive_cosim.osm.counts import GOOD_GEH, HOURS, Counts, geh
 from automotive_cosim.osm.demand import Journey, write
 from automotive_cosim.scenarios import Scenario
-from automotive_cosim.stability import Step, summary
 from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.options import Setup, command_line, read_configuration
+from automotive_cosim.traffic.stability import Step, summary
 
 HOUR_S = 3600.0
 

@@ -18,7 +18,7 @@ from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.country import country_codes
 from automotive_cosim.osm.report import ImportReport, make_report
 from automotive_cosim.scenarios import Scenario, Sumo, Trip, load
-from automotive_cosim.stability import HALTED_SHARE_LIMIT, Stability, measure
+from automotive_cosim.traffic.stability import HALTED_SHARE_LIMIT, Stability, measure
 
 DEMAND_S = 7200.0
 """Traffic sets out for two hours: the warm-up, an hour, and time to spare."""

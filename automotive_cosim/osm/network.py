@@ -14,9 +14,9 @@ import shapely
 from automotive_cosim.errors import ImportMapError
 from automotive_cosim.osm.country import LEFT_HAND
 from automotive_cosim.osm.extract import Position
-from automotive_cosim.sumo_programs import first_error, home, run
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.network import Edge, Network, read_network
+from automotive_cosim.traffic.sumo_programs import first_error, home, run
 
 KEPT_TAGS = (
     "bridge",

@@ -14,9 +14,9 @@ from automotive_cosim.osm.country import LEFT_HAND, LIMITS
 from automotive_cosim.osm.extract import Extract
 from automotive_cosim.osm.folder import ATTRIBUTION
 from automotive_cosim.osm.network import Built
-from automotive_cosim.stability import Stability
 from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.posted import timed_limits
+from automotive_cosim.traffic.stability import Stability
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,16 +31,16 @@ from itertools import product
 import numpy as np
 
 from automotive_cosim.agents.trivial import AlwaysAlert, NoOp, PressEverything, Random
-from automotive_cosim.checks import NothingDone
 from automotive_cosim.contracts import Action, ActionType, AlertKind, GoalStatus, Observation
-from automotive_cosim.env import CockpitEnv
+from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.errors import ScenarioError, TriggerNotReachedError
 from automotive_cosim.proof import mutations
 from automotive_cosim.proof.ground import Ground, Played, Script, finish, sha256
-from automotive_cosim.suite import Basis, Half, Task
+from automotive_cosim.tasking.checks import NothingDone
+from automotive_cosim.tasking.task import Basis, Half, Task
+from automotive_cosim.tasking.triggers import Parked, Standing
+from automotive_cosim.tasking.verdict import judge
 from automotive_cosim.traffic.fork import Simulations
-from automotive_cosim.triggers import Parked, Standing
-from automotive_cosim.verdict import judge
 
 PACE = 0.7
 """Of the deadline: what an expert may take, so that others have a chance."""

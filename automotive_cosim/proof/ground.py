@@ -6,17 +6,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from automotive_cosim import trace
 from automotive_cosim.agents.base import Agent, Privileged
 from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.contracts import Action, ActionType, FeedbackCode, GoalStatus, Observation
-from automotive_cosim.cosim import Moment
-from automotive_cosim.env import CockpitEnv
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.errors import ActionError
-from automotive_cosim.observe import Channel
-from automotive_cosim.suite import Half, Instance, Move, Task
+from automotive_cosim.interface import trace
+from automotive_cosim.interface.observe import Channel
+from automotive_cosim.tasking.instance import Instance
+from automotive_cosim.tasking.moves import Move
+from automotive_cosim.tasking.task import Half, Task
+from automotive_cosim.tasking.verdict import Verdict
 from automotive_cosim.traffic.fork import Simulations
-from automotive_cosim.verdict import Verdict
 
 CHANNELS = (Channel.ELEMENTS, Channel.VEHICLE, Channel.CONNECTIVITY, Channel.GPS, Channel.CONTEXT)
 """Everything but the picture, which shows what the elements list."""

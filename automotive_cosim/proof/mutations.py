@@ -10,8 +10,8 @@ import numpy as np
 
 from automotive_cosim.cockpit.signals import ACTUATORS, Signal, named
 from automotive_cosim.cockpit.vehicle import COUPLED
-from automotive_cosim.cosim import Moment
-from automotive_cosim.suite import Half
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.tasking.task import Half
 
 SIBLINGS = (("Driver", "Passenger"), ("Front", "Rear"), ("Left", "Right"), ("Row1", "Row2"), ("Low", "High"))
 """Words of signal paths that change places: the other seat, window, side, row or beam."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
-from automotive_cosim.actions import parse
+from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import Json
 from automotive_cosim.report.findings import PLACE
 from automotive_cosim.report.page import element, embedded

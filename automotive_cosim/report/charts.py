@@ -12,7 +12,7 @@ from automotive_cosim.report.findings import NAMES
 from automotive_cosim.report.results import NOT_RANKED, Contestant, Results, pairs
 from automotive_cosim.report.stats import Rate
 from automotive_cosim.report.summary import DIMENSIONS, rate_of
-from automotive_cosim.suite import Module
+from automotive_cosim.tasking.task import Module
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -26,8 +26,9 @@ from itertools import pairwise
 
 from automotive_cosim.contracts import ActionType, AlertKind, FeedbackCode, GoalStatus, Json, Reason
 from automotive_cosim.errors import UnknownNameError
-from automotive_cosim.parameters import bind
-from automotive_cosim.suite import Basis, Do, Half, Move, Slide, Tap, TapUntil, Task, Type, Warn
+from automotive_cosim.tasking.moves import Do, Move, Slide, Tap, TapUntil, Type, Warn
+from automotive_cosim.tasking.parameters import bind
+from automotive_cosim.tasking.task import Basis, Half, Task
 from automotive_cosim.tasks import CATALOGUE
 
 SAME_SCREEN = 0.5

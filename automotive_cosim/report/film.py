@@ -15,8 +15,8 @@ from automotive_cosim.cockpit.drawing import Canvas
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.map import RoadMap
 from automotive_cosim.cockpit.theme import NIGHT, Colour, Type
-from automotive_cosim.cosim import Moment
-from automotive_cosim.env import CockpitEnv
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.report.filmplot import speed_plot
 from automotive_cosim.report.filmroad import draw_road
 from automotive_cosim.run.episode import EpisodeResult, Shot, Watcher

@@ -14,7 +14,7 @@ from automotive_cosim.report.stats import clustered_mean, compare
 from automotive_cosim.report.summary import DIMENSIONS, NONE, RATES, rate_cell
 from automotive_cosim.report.tables import Cell, Row, Table
 from automotive_cosim.run.store import read_trace, trace_file
-from automotive_cosim.suite import Module
+from automotive_cosim.tasking.task import Module
 
 PLACE = "place"
 """Tag of the pairs whose halves differ in where the car is, and in nothing that the screens show."""

@@ -11,7 +11,7 @@ from typing import Any
 
 from PIL import Image
 
-from automotive_cosim.actions import parse
+from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import BoundingBox, Element, Json
 from automotive_cosim.report.plot import Plot
 from automotive_cosim.report.templates import render

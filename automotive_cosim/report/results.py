@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import SetupError
 from automotive_cosim.run.store import read_evaluation, read_rows
-from automotive_cosim.suite import Mode
+from automotive_cosim.tasking.task import Mode
 
 if TYPE_CHECKING:
     import pandas as pd

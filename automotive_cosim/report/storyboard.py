@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from PIL import Image
 
 from automotive_cosim.agents import make_agent
-from automotive_cosim.env import CockpitEnv
+from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.errors import InfrastructureError
 from automotive_cosim.report.contactsheet import Tile, sheet
 from automotive_cosim.run.episode import EpisodeSetup, Shot, Watcher, run_episode
 from automotive_cosim.run.words import action_in_words
-from automotive_cosim.suite import Task
+from automotive_cosim.tasking.task import Task
 from automotive_cosim.traffic.fork import Simulations
 
 COLUMNS = 3

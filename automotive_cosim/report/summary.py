@@ -8,12 +8,12 @@ from itertools import combinations
 
 from automotive_cosim.agents import PROFILES
 from automotive_cosim.contracts import Json
-from automotive_cosim.observe import Channel
+from automotive_cosim.interface.observe import Channel
 from automotive_cosim.report.published import PAPER, PAPER_COLUMNS, PAPER_ROWS
 from automotive_cosim.report.results import Contestant, Results, instance, pairs
 from automotive_cosim.report.stats import Rate, compare, mean, pass_hat_k, rate
 from automotive_cosim.report.tables import Cell, Row, Table
-from automotive_cosim.suite import Dimension, Mode, Module
+from automotive_cosim.tasking.task import Dimension, Mode, Module
 
 NONE = "–"
 DIMENSIONS = {

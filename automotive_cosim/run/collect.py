@@ -12,8 +12,8 @@ from PIL import Image
 
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import DrivingState, Json
-from automotive_cosim.cosim import Moment
-from automotive_cosim.env import CockpitEnv
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.run.episode import EpisodeResult, Shot, Watcher
 from automotive_cosim.run.harm import nearest_s, overspeed
 from automotive_cosim.run.moments import Judged

@@ -14,22 +14,24 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from automotive_cosim import geo, trace, verdict
-from automotive_cosim.actions import check
+from automotive_cosim import geo
 from automotive_cosim.agents import Agent, Learner, Privileged, Stage, StageName, Thinker
+from automotive_cosim.cockpit.actions import check
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import Element, Json
-from automotive_cosim.cosim import Moment
-from automotive_cosim.env import CockpitEnv
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.errors import ActionError, InfrastructureError, OutOfBudgetError
 from automotive_cosim.geo.breaches import Violation
+from automotive_cosim.interface import trace
 from automotive_cosim.models import Reply
 from automotive_cosim.run.estimates import PositionEstimate, estimates
 from automotive_cosim.run.harm import DriveFigures, drive_figures
 from automotive_cosim.run.load import DriverLoad, driver_load
 from automotive_cosim.run.timeline import Entry, Sample, samples, timeline
 from automotive_cosim.scenarios import Scenario
-from automotive_cosim.suite import Mode
+from automotive_cosim.tasking import verdict
+from automotive_cosim.tasking.task import Mode
 from automotive_cosim.traffic.fork import Simulations
 
 AFTERMATH_S = 12.0
@@ -58,9 +60,9 @@ class EpisodeSetup:
     max_sim_s: float | None = None
     """Simulated seconds from the hand-over after which it is cut off; None leaves that to ``max_steps``."""
     geo: str = "full"
-    """What the agent is told of where it is (``controls.GeoInput``)."""
+    """What the agent is told of where it is (``interface.controls.GeoInput``)."""
     mode: str = str(Mode.PROMPTED)
-    """When the agent is called (``suite.Mode``)."""
+    """When the agent is called (``tasking.task.Mode``)."""
     without: tuple[str, ...] = ()
     """Parts of the agent that are switched off, for the record."""
     held_out: bool = False

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from automotive_cosim.actions import position
+from automotive_cosim.cockpit.actions import position
 from automotive_cosim.contracts import ActionType
-from automotive_cosim.cosim import Moment
+from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.geo.place import METRES_PER_DEGREE, metres_per_degree_east
 from automotive_cosim.geo.reckoning import reckon
-from automotive_cosim.trace import Step
+from automotive_cosim.interface.trace import Step
 
 
 @dataclass(frozen=True, slots=True)

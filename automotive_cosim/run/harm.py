@@ -15,7 +15,7 @@ import numpy as np
 from automotive_cosim.cockpit.signals import ENERGY
 from automotive_cosim.cockpit.vehicle import BATTERY_KWH
 from automotive_cosim.contracts import DrivingState, EgoEnd
-from automotive_cosim.cosim import Moment
+from automotive_cosim.cosim.moment import Moment
 
 TOLERANCE_S = 1e-6
 """Between times that are sums of the same steps."""

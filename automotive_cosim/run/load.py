@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from automotive_cosim.contracts import ActionType
-from automotive_cosim.trace import Step
+from automotive_cosim.interface.trace import Step
 
 GLANCE_S, TASK_S = 2.0, 12.0
 WORDS_PER_S = 238 / 60

@@ -18,14 +18,14 @@ from pathlib import Path
 from statistics import median
 from time import perf_counter
 
-from automotive_cosim import sumo_programs
 from automotive_cosim.contracts import Action, ActionType, Json
-from automotive_cosim.env import CockpitEnv
+from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.errors import SetupError, TrafficError
-from automotive_cosim.observe import ALL, Channel
+from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.run import memory
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.scenery import open_scenario
+from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Simulations
 from automotive_cosim.traffic.options import Setup, command_line, read_configuration

@@ -25,7 +25,7 @@ from typing import Any
 from zoneinfo import ZoneInfo
 
 from automotive_cosim.contracts import GoalStatus, Json, Reason
-from automotive_cosim.cosim import Moment
+from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.errors import UserError
 from automotive_cosim.geo.context import Geo
 

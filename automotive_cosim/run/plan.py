@@ -17,11 +17,11 @@ from automotive_cosim.agents import PROFILES, make_agent
 from automotive_cosim.agents.settings import geo_input
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.interface.trace import canonical
 from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.scenery import open_scenario
-from automotive_cosim.suite import Mode, Task
+from automotive_cosim.tasking.task import Mode, Task
 from automotive_cosim.tasks import CATALOGUE
-from automotive_cosim.trace import canonical
 
 NO_MODEL = "none"
 STEPS = 20
@@ -60,7 +60,7 @@ class Plan:
     seeds: tuple[int, ...] = (0,)
     geo: tuple[str, ...] = ("full",)
     modes: tuple[str, ...] = (str(Mode.PROMPTED),)
-    """When the agent is called (``suite.Mode``); what is asked for outright is never monitored."""
+    """When the agent is called (``tasking.task.Mode``); what is asked for outright is never monitored."""
     repeats: int = 1
     """Of each episode, for models that do not answer the same twice."""
     held_out: bool = False

@@ -22,7 +22,7 @@ from typing import IO
 from PIL import Image
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.env import CockpitEnv
+from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, Shot, Watcher
 

@@ -10,9 +10,9 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.errors import CosimError
 from automotive_cosim.run.moments import read_judged
 from automotive_cosim.run.store import read_evaluation, read_rows, read_trace
-from automotive_cosim.suite import Instance
+from automotive_cosim.tasking.instance import Instance
+from automotive_cosim.tasking.verdict import as_json, judge
 from automotive_cosim.tasks import CATALOGUE
-from automotive_cosim.verdict import as_json, judge
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,17 +8,17 @@ from dataclasses import dataclass
 from itertools import zip_longest
 from pathlib import Path
 
-from automotive_cosim.actions import parse
 from automotive_cosim.agents import AgentSettings, make_agent
 from automotive_cosim.agents.settings import geo_input
+from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import Action, Json, Observation
 from automotive_cosim.errors import ActionError, InfrastructureError, OutOfBudgetError, UnknownNameError
-from automotive_cosim.observe import Channel
+from automotive_cosim.interface.observe import Channel
+from automotive_cosim.interface.trace import HASHED, canonical
 from automotive_cosim.run.collect import Collector, Pictures
 from automotive_cosim.run.episode import run_episode
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.store import read_evaluation, read_rows, read_trace
-from automotive_cosim.trace import HASHED, canonical
 
 MISSING: Json = {}
 """Stands for a step that one of two runs does not have."""

@@ -6,10 +6,10 @@ from collections import deque
 from collections.abc import Sequence
 from pathlib import Path
 
-from automotive_cosim.actions import parse
+from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import Action, ActionType, Observation
 from automotive_cosim.errors import ActionError
-from automotive_cosim.observe import ALL
+from automotive_cosim.interface.observe import ALL
 
 
 class Script:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from automotive_cosim.contracts import KMH_PER_MPS, ActionType
-from automotive_cosim.cosim import Moment
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.interface.trace import Step
 from automotive_cosim.run.words import ROUNDING_KMH, action_in_words, limit_kmh, road_in_words
-from automotive_cosim.trace import Step
 
 QUIET = frozenset({ActionType.WAIT, ActionType.STATUS})
 

@@ -10,20 +10,19 @@ from contextlib import closing
 from dataclasses import dataclass
 from functools import partial
 
-from automotive_cosim import incidents
 from automotive_cosim.contracts import EgoEnd, Json, LimitSource
 from automotive_cosim.errors import ScenarioError, TrafficError
 from automotive_cosim.geo.place import Atlas, Place
-from automotive_cosim.incidents import Incident
-from automotive_cosim.scenarios import Scenario, Street, Trip
+from automotive_cosim.scenarios import Scenario, Street, Trip, incidents
+from automotive_cosim.scenarios.incidents import Incident
 from automotive_cosim.scenery.opening import network_of
 from automotive_cosim.scenery.relocation import zone_of
-from automotive_cosim.stability import measure
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.georeference import GeoReference, middle
 from automotive_cosim.traffic.network import Edge, Network
 from automotive_cosim.traffic.posted import sign_mps
+from automotive_cosim.traffic.stability import measure
 from automotive_cosim.traffic.ways import way_through
 
 UNPOSTED = "unposted"

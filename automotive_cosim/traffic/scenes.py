@@ -8,9 +8,9 @@ from contextlib import suppress
 from datetime import datetime
 from typing import Any, Protocol
 
-from automotive_cosim import incidents
 from automotive_cosim.contracts import KMH_PER_MPS, IncidentKind, RoadIncident
 from automotive_cosim.errors import ScenarioError
+from automotive_cosim.scenarios import incidents
 from automotive_cosim.traffic.congestion import JAM_BELOW
 from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.posted import TimedLimit

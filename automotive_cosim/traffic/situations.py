@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 
 from automotive_cosim.contracts import RoadIncident
-from automotive_cosim.incidents import EgoIncident, Incident
 from automotive_cosim.scenarios import Scenario
+from automotive_cosim.scenarios.incidents import EgoIncident, Incident
 from automotive_cosim.traffic.base import EgoPlan, Event
 from automotive_cosim.traffic.scenes import Scene, scene_of
 from automotive_cosim.traffic.sensing import Sensor

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from automotive_cosim.actions import to_json
 from automotive_cosim.agents.answer import labelled, read
+from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import Action, ActionType
 from automotive_cosim.errors import ActionError
 

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import pytest
 
-from automotive_cosim.actions import check
 from automotive_cosim.agents import Human, PressEverything, Random
 from automotive_cosim.agents.human import understood
+from automotive_cosim.cockpit.actions import check
 from automotive_cosim.contracts import Action, ActionType, Direction, GoalStatus, Reason
 from automotive_cosim.errors import ActionError
 

@@ -7,10 +7,10 @@ import pytest
 
 from automotive_cosim import scenarios
 from automotive_cosim.agents import AgentSettings, make_agent
-from automotive_cosim.controls import SPOTS, GeoInput, unrelated
-from automotive_cosim.env import CockpitEnv
+from automotive_cosim.envs.cockpit import CockpitEnv
+from automotive_cosim.interface.controls import SPOTS, GeoInput, unrelated
+from automotive_cosim.interface.observe import Channel
 from automotive_cosim.models.skills import SKILLS
-from automotive_cosim.observe import Channel
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
 
 QUICK = {"task": "hvac_fan_max", "scenario": "grid"}

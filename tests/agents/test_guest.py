@@ -9,7 +9,7 @@ from automotive_cosim.agents import make_agent
 from automotive_cosim.agents.androidworld import AndroidWorldAgent, translated
 from automotive_cosim.contracts import Action, ActionType, GoalStatus
 from automotive_cosim.errors import ActionError, UserError
-from automotive_cosim.observe import ALL, Channel
+from automotive_cosim.interface.observe import ALL, Channel
 
 STEPS = "class Mine:\n    def __init__(self, env): ...\n    def step(self, goal): ...\n"
 WHOLE = """

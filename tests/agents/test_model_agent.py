@@ -9,10 +9,10 @@ import pytest
 from automotive_cosim.agents import PROFILES, AgentSettings, ModelAgent, Part, StageName, make_agent
 from automotive_cosim.agents.memory import Memory
 from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCode, GoalStatus, Observation
-from automotive_cosim.controls import GeoInput
 from automotive_cosim.errors import ActionError, OutOfBudgetError, UnknownNameError
+from automotive_cosim.interface.controls import GeoInput
+from automotive_cosim.interface.observe import Channel
 from automotive_cosim.models import Message, Reply
-from automotive_cosim.observe import Channel
 
 COUNTRY = "Place: Beauce, France\nSpeed limit here: 80 km/h (posted on D 24)"
 TAP = 'Situation: speeding\nPlan: then warn\nAction: {"action_type": "click", "index": 0}'

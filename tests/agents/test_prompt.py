@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import pytest
 
-from automotive_cosim.actions import grammar
 from automotive_cosim.agents import PROFILES, AgentSettings, Part
 from automotive_cosim.agents.prompt import action_words, look_back, summary, turn
+from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCode, GpsFix
-from automotive_cosim.controls import GeoInput
 from automotive_cosim.geo.text import Line, within_budget
+from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.models.page import Page
 
 NAMES = [

@@ -2,8 +2,8 @@ import json
 
 import pytest
 
-from automotive_cosim import sumo_programs
 from automotive_cosim.errors import SetupError
+from automotive_cosim.traffic import sumo_programs
 
 KEYS = {
     "scenario", "vehicles", "bare_sumo_s_per_step", "libsumo_s_per_step", "env_s_per_step", "in_process_s_per_step",

@@ -11,7 +11,6 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from automotive_cosim import spaces
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.screens import APPS, DOCK
 from automotive_cosim.cockpit.signals import ADAS, ENERGY, GLASS, HVAC, LIGHTS, MEDIA, MOTION, difference
@@ -35,6 +34,7 @@ from automotive_cosim.contracts import (
     Weather,
 )
 from automotive_cosim.errors import SignalError, UnknownNameError
+from automotive_cosim.interface import spaces
 
 Make = Callable[..., Cockpit]
 OK, NO_EFFECT = FeedbackCode.OK, FeedbackCode.NO_EFFECT

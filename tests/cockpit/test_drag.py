@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from automotive_cosim.actions import parse, perform
+from automotive_cosim.cockpit.actions import parse, perform
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.widgets import Rows, Slider
 from automotive_cosim.contracts import Direction, FeedbackCode, Surroundings

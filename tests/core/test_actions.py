@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from automotive_cosim.actions import FIELDS, check, grammar, parse, to_json
+from automotive_cosim.cockpit.actions import FIELDS, check, grammar, parse, to_json
 from automotive_cosim.contracts import Action, ActionType, AlertKind, Direction, GoalStatus, Severity
 from automotive_cosim.errors import ActionError
 

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from automotive_cosim.contracts import GoalStatus
-from automotive_cosim.suite import Basis, Dimension, Module, Task, draw, instances
+from automotive_cosim.tasking.instance import draw, instances
+from automotive_cosim.tasking.task import Basis, Dimension, Module, Task
 from automotive_cosim.tasks import CATALOGUE
 
 TASKS = list(CATALOGUE.values())

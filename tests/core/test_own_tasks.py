@@ -3,13 +3,14 @@
 import pytest
 
 from automotive_cosim.errors import UserError
-from automotive_cosim.suite import Catalogue
+from automotive_cosim.tasking.catalogue import Catalogue
 from automotive_cosim.tasks.folder import add_folder
 
 OWN = """
-from automotive_cosim.checks import SignalIs
+from automotive_cosim.tasking.checks import SignalIs
 from automotive_cosim.cockpit.signals import HVAC
-from automotive_cosim.suite import Module, Open, Tap
+from automotive_cosim.tasking.moves import Open, Tap
+from automotive_cosim.tasking.task import Module
 from automotive_cosim.tasks.forms import asked
 
 TASKS = (

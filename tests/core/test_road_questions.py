@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from automotive_cosim.checks import AlertGiven
 from automotive_cosim.cockpit.signals import ENERGY
 from automotive_cosim.contracts import AlertKind, OtherVehicle
-from automotive_cosim.triggers import OutOfRange, SlowLeaderWithin
+from automotive_cosim.tasking.checks import AlertGiven
+from automotive_cosim.tasking.triggers import OutOfRange, SlowLeaderWithin
 
 
 def moment(leader: OtherVehicle | None = None, range_m: float = 0.0, left_m: float = 0.0) -> Any:

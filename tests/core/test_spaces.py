@@ -8,10 +8,10 @@ from gymnasium.utils.env_checker import data_equivalence
 from hypothesis import given
 from hypothesis import strategies as st
 
-from automotive_cosim.actions import check
+from automotive_cosim.cockpit.actions import check
 from automotive_cosim.contracts import ActionType, GpsFix
-from automotive_cosim.observe import ALL, Channel
-from automotive_cosim.spaces import action_space, decode, decode_action, encode, observation_space
+from automotive_cosim.interface.observe import ALL, Channel
+from automotive_cosim.interface.spaces import action_space, decode, decode_action, encode, observation_space
 
 SCREEN = np.zeros((720, 1280, 3), np.uint8)
 

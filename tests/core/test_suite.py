@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 
 from automotive_cosim import scenarios
-from automotive_cosim.checks import SignalIs
 from automotive_cosim.cockpit.signals import CATALOGUE as SIGNALS
 from automotive_cosim.contracts import GoalStatus
 from automotive_cosim.errors import UnknownNameError
-from automotive_cosim.suite import Basis, Catalogue, Dimension, draw
+from automotive_cosim.tasking.catalogue import Catalogue
+from automotive_cosim.tasking.checks import SignalIs
+from automotive_cosim.tasking.instance import draw
+from automotive_cosim.tasking.task import Basis, Dimension
 from automotive_cosim.tasks import CATALOGUE
 
 TASKS = list(CATALOGUE.values())

@@ -9,9 +9,9 @@ from gymnasium.utils.env_checker import check_env, data_equivalence
 
 import automotive_cosim  # noqa: F401, registers the environment
 from automotive_cosim.contracts import ActionType, FeedbackCode, GoalStatus, Observation
-from automotive_cosim.env import CockpitEnv
+from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.errors import ActionError, ScenarioError, UnknownNameError
-from automotive_cosim.spaces import decode
+from automotive_cosim.interface.spaces import decode
 
 ID = "AutomotiveCosim/Cockpit-v0"
 QUICK = {"task": "hvac_fan_max", "scenario": "grid"}

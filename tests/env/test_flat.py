@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
+from automotive_cosim.envs.flat import CONTROLS, ENDS, FlatEnv
 from automotive_cosim.errors import UnknownNameError, UserError
-from automotive_cosim.flat import CONTROLS, ENDS, FlatEnv
-from automotive_cosim.spaces import APPS
+from automotive_cosim.interface.spaces import APPS
 
 TASKS = ("hvac_fan_max", "hvac_driver_seat_heater")
 FIRST_CONTROL = len(APPS)

@@ -5,9 +5,9 @@ from dataclasses import replace
 import pytest
 
 from automotive_cosim.cockpit.restrictions import Motion
-from automotive_cosim.env import CockpitEnv
+from automotive_cosim.envs.cockpit import CockpitEnv
+from automotive_cosim.tasking.triggers import Trigger
 from automotive_cosim.tasks import CATALOGUE
-from automotive_cosim.triggers import Trigger
 
 
 class Always:

@@ -7,12 +7,12 @@ import pytest
 
 from automotive_cosim.agents import Agent, Privileged, make_agent
 from automotive_cosim.contracts import ActionType
-from automotive_cosim.env import CockpitEnv
+from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.errors import ActionError
 from automotive_cosim.proof.prover import GATES, Prover
-from automotive_cosim.suite import Task
+from automotive_cosim.tasking.task import Task
+from automotive_cosim.tasking.verdict import Verdict
 from automotive_cosim.tasks import CATALOGUE
-from automotive_cosim.verdict import Verdict
 
 pytestmark = pytest.mark.slow
 

@@ -4,9 +4,9 @@ import pytest
 
 from automotive_cosim.agents import make_agent
 from automotive_cosim.contracts import Action, ActionType, AlertKind
-from automotive_cosim.env import WATCH_S, CockpitEnv
+from automotive_cosim.envs.cockpit import WATCH_S, CockpitEnv
 from automotive_cosim.errors import UserError
-from automotive_cosim.suite import STANDING_ORDER
+from automotive_cosim.tasking.task import STANDING_ORDER
 
 pytestmark = pytest.mark.slow
 TASK = "road_speed_80_in_50"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from automotive_cosim.contracts import Action, ActionType, Reroute
-from automotive_cosim.env import CockpitEnv
+from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.traffic.road_weather import condition_of
 
 WAIT = Action(ActionType.WAIT, seconds=1)

@@ -13,7 +13,8 @@ import sumolib
 from automotive_cosim import geo as geography
 from automotive_cosim import scenarios
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cosim import TICK_S, CoSimulation, Moment
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.cosim.simulation import TICK_S, CoSimulation
 from automotive_cosim.geo.context import Geo
 from automotive_cosim.geo.gps import Gps
 from automotive_cosim.geo.place import NEAR_BORDER_M

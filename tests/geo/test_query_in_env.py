@@ -10,7 +10,7 @@ import pytest
 
 from automotive_cosim import geo
 from automotive_cosim.contracts import FeedbackCode
-from automotive_cosim.env import CockpitEnv
+from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.geo import sensor
 
 

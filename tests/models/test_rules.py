@@ -10,7 +10,7 @@ from automotive_cosim.agents.answer import labelled, read
 from automotive_cosim.models import Message, Rules
 from automotive_cosim.models.page import Page
 from automotive_cosim.models.skills import SKILLS, Way, call, in_app, opened, say, slide, tap, typed
-from automotive_cosim.suite import draw
+from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasks import CATALOGUE
 
 

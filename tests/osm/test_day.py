@@ -16,7 +16,6 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from automotive_cosim import stability
 from automotive_cosim.cli.scenarios import app
 from automotive_cosim.errors import CountsError, ImportMapError, ScenarioError, UnknownNameError, UserError
 from automotive_cosim.osm import ImportReport, day
@@ -24,6 +23,7 @@ from automotive_cosim.osm.day import DayOptions, make_day, read_day
 from automotive_cosim.osm.demand import fastest_ways
 from automotive_cosim.report.day import findings, write_day
 from automotive_cosim.scenarios import load
+from automotive_cosim.traffic import stability
 from automotive_cosim.traffic.network import read_network
 
 Imported = tuple[Path, ImportReport]

@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from automotive_cosim import sumo_programs
 from automotive_cosim.contracts import LimitSource
 from automotive_cosim.errors import ImportMapError, SetupError
 from automotive_cosim.osm import ImportOptions, ImportReport, demand, import_map
 from automotive_cosim.scenarios import Scenario, load
-from automotive_cosim.stability import HALTED_SHARE_LIMIT, measure
+from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.network import Edge, read_network
+from automotive_cosim.traffic.stability import HALTED_SHARE_LIMIT, measure
 
 Imported = tuple[Path, ImportReport]
 

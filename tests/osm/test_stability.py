@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from automotive_cosim import stability
 from automotive_cosim.errors import ScenarioError, TrafficError
 from automotive_cosim.osm import ImportReport
 from automotive_cosim.scenarios import load
-from automotive_cosim.stability import BACKLOG_SHARE_LIMIT, HALTED_SHARE_LIMIT, Stability, measure
+from automotive_cosim.traffic import stability
+from automotive_cosim.traffic.stability import BACKLOG_SHARE_LIMIT, HALTED_SHARE_LIMIT, Stability, measure
 
 Imported = tuple[Path, ImportReport]
 

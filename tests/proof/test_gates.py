@@ -5,17 +5,18 @@ from dataclasses import dataclass, replace
 
 import pytest
 
-from automotive_cosim import verdict
 from automotive_cosim.agents.trivial import Random
-from automotive_cosim.checks import AnyOf, NothingDone, SignalIs
 from automotive_cosim.cockpit.signals import HVAC, SEAT
 from automotive_cosim.contracts import Action, ActionType, AlertKind, GoalStatus, Reason
-from automotive_cosim.cosim import Moment
+from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.proof import gates
 from automotive_cosim.proof.ground import Ground, Script
-from automotive_cosim.suite import Basis, Module, Open, Start, Tap, Task
+from automotive_cosim.tasking import verdict
+from automotive_cosim.tasking.checks import AnyOf, NothingDone, SignalIs
+from automotive_cosim.tasking.moves import Open, Tap
+from automotive_cosim.tasking.task import Basis, Module, Start, Task
+from automotive_cosim.tasking.triggers import InTunnel, SignalAbove, Trigger
 from automotive_cosim.tasks.forms import COMFORT, ON_THE_WAY, asked, decline
-from automotive_cosim.triggers import InTunnel, SignalAbove, Trigger
 
 SAYS = ("Warm my seat.", "Seat heating on.", "My seat, please.", "Heat this seat.")
 GRID = Start("grid", "avenue")

@@ -20,7 +20,7 @@ OWN = """
 import os, time
 from dataclasses import dataclass
 from pathlib import Path
-from automotive_cosim.checks import SignalIs
+from automotive_cosim.tasking.checks import SignalIs
 from automotive_cosim.cockpit.signals import HVAC, SEAT
 from automotive_cosim.suite import Module, Open, Start, Tap
 from automotive_cosim.tasks.forms import asked

@@ -10,11 +10,11 @@ import pytest
 
 from automotive_cosim.agents import Oracle, Stage, StageName
 from automotive_cosim.contracts import Action, ActionType, AlertKind, Direction, GoalStatus, Observation, Reason
-from automotive_cosim.observe import Channel
+from automotive_cosim.interface.observe import Channel
 from automotive_cosim.report.failures import FailureClass, failure_class
 from automotive_cosim.run.collect import Collector, Pictures
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
-from automotive_cosim.suite import draw
+from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from automotive_cosim.errors import InfrastructureError, UserError
+from automotive_cosim.interface.trace import sha256
 from automotive_cosim.run import batch
 from automotive_cosim.run.batch import run_plan
 from automotive_cosim.run.collect import Pictures
@@ -16,7 +17,6 @@ from automotive_cosim.run.executor import LostError
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.store import VOLATILE, read_rows, read_trace, trace_file
-from automotive_cosim.trace import sha256
 
 TROUBLE = """
 import os, pathlib, time

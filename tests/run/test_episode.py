@@ -7,10 +7,10 @@ from itertools import pairwise
 
 import pytest
 
-from automotive_cosim import trace
 from automotive_cosim.agents import make_agent
 from automotive_cosim.contracts import Action, ActionType
 from automotive_cosim.errors import ActionError, TrafficError, UnknownNameError
+from automotive_cosim.interface import trace
 from automotive_cosim.run.episode import End, EpisodeSetup, run_episode
 from automotive_cosim.run.script import Script
 

@@ -17,9 +17,9 @@ from automotive_cosim.run.harm import drive_figures, nearest_s, overspeed
 from automotive_cosim.run.moments import judged_file, read_judged, write_judged
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.regrade import regrade
-from automotive_cosim.suite import Instance
+from automotive_cosim.tasking.instance import Instance
+from automotive_cosim.tasking.verdict import as_json, judge
 from automotive_cosim.tasks import CATALOGUE
-from automotive_cosim.verdict import as_json, judge
 
 
 @pytest.fixture(scope="session")

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from automotive_cosim.actions import to_json
+from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import Action, ActionType, AlertKind
 from automotive_cosim.errors import ActionError
 from automotive_cosim.run.script import Script, read_script

@@ -2,7 +2,7 @@ from collections.abc import Callable
 
 import pytest
 
-from automotive_cosim.actions import FIELDS
+from automotive_cosim.cockpit.actions import FIELDS
 from automotive_cosim.contracts import (
     Action,
     ActionType,

@@ -13,9 +13,10 @@ from typing import Any
 import pytest
 import sumolib
 
-from automotive_cosim import scenarios, sumo_programs
+from automotive_cosim import scenarios
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.sumo_scenarios import build
+from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.fork import Simulations
 
 WARM_S, END_S = 900, 4500

@@ -8,12 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from automotive_cosim import scenarios, stability
+from automotive_cosim import scenarios
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.incidents import Breakdown, EmergencyVehicle, Incident
 from automotive_cosim.scenarios import Ego, Scenario, Street, Trip
+from automotive_cosim.scenarios.incidents import Breakdown, EmergencyVehicle, Incident
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.scenery.check import Proof, check
+from automotive_cosim.traffic import stability
 
 GRID = scenarios.load("grid")
 

@@ -11,7 +11,7 @@ import numpy as np
 from automotive_cosim import scenarios
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import Connectivity
-from automotive_cosim.cosim import CoSimulation
+from automotive_cosim.cosim.simulation import CoSimulation
 from automotive_cosim.geo.connectivity import ATTACH_S
 from automotive_cosim.geo.context import Geo
 from automotive_cosim.geo.gps import Gps

@@ -12,7 +12,7 @@ import pytest
 
 from automotive_cosim import scenarios
 from automotive_cosim.contracts import EgoEnd
-from automotive_cosim.env import CockpitEnv
+from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.errors import ScenarioError, UnknownNameError
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.scenery import open_scenario

@@ -14,7 +14,7 @@ itself), above the noise of an allocator."""
 
 PROGRAM = """
 import gc, json, os
-from automotive_cosim.env import CockpitEnv
+from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.run import memory
 from automotive_cosim.traffic.fork import Simulations
 

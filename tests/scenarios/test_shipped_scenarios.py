@@ -9,10 +9,11 @@ from typing import Any
 import pytest
 from shapely import LineString, Point, STRtree
 
-from automotive_cosim import scenarios, sumo_programs
+from automotive_cosim import scenarios
 from automotive_cosim.errors import ScenarioError, UnknownNameError
 from automotive_cosim.geo.place import Atlas
 from automotive_cosim.sumo_scenarios import build
+from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.network import NO_LIMIT_FROM_MPS
 
 Net = Callable[[str], Any]

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from automotive_cosim import sumo_programs
 from automotive_cosim.studies.plan import StudyPlan
+from automotive_cosim.traffic import sumo_programs
 
 NODES = {
     "start": (0, 0),

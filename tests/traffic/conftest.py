@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from automotive_cosim import sumo_programs
 from automotive_cosim.scenarios import Scenario, load
+from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
 

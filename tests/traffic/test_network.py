@@ -258,7 +258,7 @@ def test_exits_of_a_motorway(town: Network) -> None:
 
 def test_the_shipped_network_is_what_its_sources_make(grid: Scenario, town: Network, tmp_path: Path) -> None:
     pytest.importorskip("sumo", reason="needs eclipse-sumo")
-    from automotive_cosim import sumo_programs
+    from automotive_cosim.traffic import sumo_programs
 
     for name in ("grid.nod.xml", "grid.edg.xml"):
         shutil.copy(grid.folder / name, tmp_path)

@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from automotive_cosim import sumo_programs
 from automotive_cosim.contracts import KMH_PER_MPS, LimitSource
 from automotive_cosim.scenarios import Scenario
+from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.base import EgoPlan, Until
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.posted import in_force, sign_mps, timed_limits

@@ -28,11 +28,11 @@ import numpy as np
 import numpy.typing as npt
 
 from automotive_cosim.contracts import Action, ActionType, GoalStatus, Observation
-from automotive_cosim.env import CockpitEnv
+from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.errors import UserError
-from automotive_cosim.observe import Channel
-from automotive_cosim.spaces import APPS, BOUNDS, OPTIONAL
-from automotive_cosim.suite import Task
+from automotive_cosim.interface.observe import Channel
+from automotive_cosim.interface.spaces import APPS, BOUNDS, OPTIONAL
+from automotive_cosim.tasking.task import Task
 from automotive_cosim.traffic.fork import Simulations
 
 GOAL_SLOTS = 48

@@ -6,26 +6,22 @@ advance:  road -> receiver and sky -> cockpit -> place and law, once every simul
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
-from typing import Any
 
-from automotive_cosim import actions
+from automotive_cosim.cockpit import actions
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import (
     Action,
-    Connectivity,
     DrivingState,
     Element,
     Feedback,
-    GpsFix,
     RouteOption,
     Surroundings,
-    Weather,
 )
+from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.geo.connectivity import Modem
-from automotive_cosim.geo.context import Geo, GeoContext
+from automotive_cosim.geo.context import Geo
 from automotive_cosim.geo.gps import Gps
 from automotive_cosim.geo.sun import elevation_deg
 from automotive_cosim.scenarios import LinkAt, WeatherAt, weather_at
@@ -37,28 +33,6 @@ WAYS_EVERY_S = 60.0
 
 TICK_S = 1.0
 """The cockpit, the receiver and the place are updated this often; the road runs on SUMO's own step."""
-
-
-@dataclass(frozen=True, slots=True)
-class Moment:
-    """The whole state at one instant, as judges see it; an agent sees an ``Observation`` made from it."""
-
-    time_s: float
-    """SUMO simulation time."""
-    local_time: datetime
-    driving: DrivingState
-    passed: tuple[DrivingState, ...]
-    """Every SUMO step since the moment before, ``driving`` the last of them."""
-    events: tuple[Event, ...]
-    """What happened on the road since the moment before."""
-    weather: Weather
-    gps: GpsFix | None
-    connectivity: Connectivity
-    context: GeoContext
-    signals: Mapping[str, Any]
-    """Every VSS path and its value."""
-    commands: Mapping[str, Any]
-    """What can be commanded: actuator signals, app data, what was sent out."""
 
 
 class CoSimulation:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from automotive_cosim.cosim import Moment
-from automotive_cosim.triggers.base import ANY
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.tasking.triggers.base import ANY
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,27 +1,25 @@
-"""Tasks: their form, their catalogue, and how an instance is drawn.
+"""The form of a task.
 
 A ``Task`` is data: what the driver says, where it can be said, which situation starts it, what is right then
-and how an expert does it. A safety task is a pair: two halves with the same words and screens and one declared
+and the reference solution. A safety task is a pair: two halves with the same words and screens and one declared
 difference; what is right in one is wrong in the other.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
-from functools import cached_property
 from typing import Any
 
-import numpy as np
-
-from automotive_cosim.checks import Check
 from automotive_cosim.cockpit.arrivals import Arrival
 from automotive_cosim.cockpit.restrictions import Motion
-from automotive_cosim.contracts import Action, AlertKind, GoalStatus, Reason, Severity, Weather
+from automotive_cosim.contracts import GoalStatus, Reason, Weather
 from automotive_cosim.errors import UnknownNameError
-from automotive_cosim.parameters import Choices, FromCockpit, Parameter, bind, names
-from automotive_cosim.triggers import Trigger
+from automotive_cosim.tasking.checks import Check
+from automotive_cosim.tasking.moves import Move, Open, Slide, Tap, TapUntil, Type
+from automotive_cosim.tasking.parameters import Choices, names
+from automotive_cosim.tasking.triggers import Trigger
 
 
 class Module(StrEnum):
@@ -78,80 +76,6 @@ STANDING_ORDER = (
     "otherwise leave everything as it is."
 )
 """All that is said in ``Mode.MONITORING``."""
-
-
-# --- what an expert does ----------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True, slots=True)
-class Open:
-    """Opens a screen by its name."""
-
-    app: str
-
-
-@dataclass(frozen=True, slots=True)
-class Tap:
-    """Taps an element, scrolling to it if need be: the one with this resource id, the first clickable one that
-    reads so, or the one with both."""
-
-    resource_id: str = ""
-    times: int = 1
-    text: str = ""
-    """What stands on it, its first line or its description."""
-
-
-@dataclass(frozen=True, slots=True)
-class TapUntil:
-    """Taps an element until another one reads so, as one presses plus until the number is right."""
-
-    resource_id: str
-    shown: str
-    """Resource id of what shows the value."""
-    text: str
-    at_most: int = 40
-
-
-@dataclass(frozen=True, slots=True)
-class Slide:
-    """Taps a slider where a value lies."""
-
-    resource_id: str
-    value: float
-    low: float = 0.0
-    high: float = 100.0
-
-
-@dataclass(frozen=True, slots=True)
-class Type:
-    """Types into a text field."""
-
-    resource_id: str
-    text: str
-    enter: bool = False
-    """Presses enter afterwards."""
-
-
-@dataclass(frozen=True, slots=True)
-class Warn:
-    """Alerts the driver through the safety call."""
-
-    kind: AlertKind
-    severity: Severity = Severity.WARNING
-    speed_kmh: float | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Do:
-    """Any action that needs no element: back, wait, a safety call."""
-
-    action: Action
-
-
-Move = Open | Tap | TapUntil | Slide | Type | Warn | Do
-
-
-# --- the form of a task -----------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
@@ -314,161 +238,3 @@ class Task:
         """Whether every half can run there."""
         own = [self.half(half).start.scenario for half in self.halves]
         return scenario in self.scenarios or all(scenario == each for each in own)
-
-
-@dataclass(frozen=True)
-class Instance:
-    """A task with its words and parameters drawn."""
-
-    task: Task
-    half_name: str
-    goal: str
-    parameters: Mapping[str, Parameter]
-    held_out: bool = False
-    """Whether its phrasing is the task's last, which the rule model's words are not made from."""
-    trigger_after_s: float = 0.0
-    """Seconds from the hand-over to the trigger; for the oracle alone."""
-
-    @cached_property
-    def half(self) -> Half:
-        """The half it plays, its parameters filled in."""
-        return bind(self.task.half(self.half_name), self.parameters)
-
-    @property
-    def moves(self) -> tuple[Move, ...]:
-        """The expert's way with the parameters filled in."""
-        return self.half.moves
-
-
-def draw(
-    task: Task,
-    half_name: str,
-    rng: np.random.Generator,
-    content: Mapping[str, tuple[str, ...]] | None = None,
-    *,
-    held_out: bool = False,
-) -> Instance:
-    """Draws phrasing and parameters. Both halves of a task draw the same from the same generator.
-
-    Args:
-        task: what is asked.
-        half_name: ``first`` or ``second``.
-        rng: two draws at most per parameter.
-        content: what the cockpit holds (``Cockpit.content``); without it a parameter that comes from there is
-            its kind in angle brackets.
-        held_out: takes the phrasing that is held out, whatever is drawn; the parameters stay the same.
-
-    Raises:
-        UnknownNameError: the task has no such half, or the cockpit holds nothing of that kind.
-    """
-    task.half(half_name)
-    last = len(task.templates) - 1
-    number = int(rng.integers(len(task.templates)))
-    number = last if held_out else number
-    picks = {name: int(rng.integers(2**31)) for name in task.parameters}
-    parameters = {name: _choose(choices, picks[name], content) for name, choices in task.parameters.items()}
-    goal = task.templates[number].format_map(parameters)
-    return Instance(task, half_name, goal, parameters, held_out=number == last)
-
-
-def _choose(choices: Choices, pick: int, content: Mapping[str, tuple[str, ...]] | None) -> Parameter:
-    if not isinstance(choices, FromCockpit):
-        return choices[pick % len(choices)]
-    if content is None:
-        return f"<{choices.kind}>"
-    held = content.get(choices.kind, ())
-    if not held:
-        raise UnknownNameError("content of the cockpit", choices.kind, content)
-    return held[pick % len(held)]
-
-
-HELD = {
-    "contacts": 21,
-    "favourite_contacts": 6,
-    "threads": 8,
-    "places": 80,
-    "favourite_places": 8,
-    "playlists": 8,
-    "tracks": 140,
-    "podcasts": 8,
-    "fm": 20,
-    "dab": 20,
-}
-"""How many of each kind a cockpit holds at least (``Cockpit.content``)."""
-
-
-def instances(task: Task) -> int:
-    """Distinct phrasings, parameters and scenarios; what seeds vary beside them is not counted."""
-    ways = 1
-    for choices in task.parameters.values():
-        ways *= HELD.get(choices.kind, 1) if isinstance(choices, FromCockpit) else len(choices)
-    return len(task.templates) * ways * len(task.runs_in)
-
-
-def described(task: Task) -> dict[str, Any]:
-    """A task as one row of plain values, for lists and exports; the second half is no row of its own."""
-    return {
-        "id": task.id,
-        "module": str(task.module),
-        "dimension": str(task.dimension),
-        "safety": task.is_safety,
-        "implicit": task.is_implicit,
-        "goal_templates": list(task.templates),
-        "parameters": {
-            name: f"<{choices.kind}>" if isinstance(choices, FromCockpit) else list(choices)
-            for name, choices in task.parameters.items()
-        },
-        "scenarios": list(task.runs_in),
-        "tags": sorted(task.tags),
-        "skills": sorted(task.skills),
-        "difficulty": task.difficulty,
-        "basis": str(task.first.basis),
-        "rule": task.first.rule,
-        "optimal_steps": task.optimal_steps,
-        "pair": task.second is not None,
-        "difference": task.difference,
-        "instances": instances(task),
-    }
-
-
-class Catalogue(Mapping[str, Task]):
-    """Tasks by id; a duplicate or ill-formed one is refused when it is added."""
-
-    def __init__(self) -> None:
-        self._tasks: dict[str, Task] = {}
-
-    def add(self, *tasks: Task) -> None:
-        """Adds tasks.
-
-        Raises:
-            ValueError: an id stands twice, a safety task is no pair, a pair states no difference, a task has fewer
-                than four phrasings, or uses a parameter that it does not declare.
-        """
-        for task in tasks:
-            if task.id in self._tasks:
-                raise ValueError(f"task {task.id!r} stands twice in the catalogue")
-            if len(set(task.templates)) < 4:
-                raise ValueError(f"task {task.id!r} has {len(set(task.templates))} phrasings; it needs four")
-            lacking = sorted(names((task.templates, task.first, task.second)) - task.parameters.keys())
-            if lacking:
-                raise ValueError(f"task {task.id!r} uses parameters that it does not declare: {', '.join(lacking)}")
-            if task.dimension.is_safety and task.second is None:
-                raise ValueError(f"safety task {task.id!r} has no second half")
-            if task.second is not None and not task.difference:
-                raise ValueError(f"task {task.id!r} does not say what its second half changes")
-            self._tasks[task.id] = task
-
-    def __getitem__(self, task_id: str) -> Task:
-        try:
-            return self._tasks[task_id]
-        except KeyError:
-            raise UnknownNameError("task", task_id, self._tasks, "automotive-cosim tasks list") from None
-
-    def __contains__(self, task_id: object) -> bool:
-        return task_id in self._tasks
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._tasks)
-
-    def __len__(self) -> int:
-        return len(self._tasks)

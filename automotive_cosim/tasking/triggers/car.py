@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from automotive_cosim.cockpit.signals import Signal
-from automotive_cosim.cosim import Moment
+from automotive_cosim.cosim.moment import Moment
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol
 
-from automotive_cosim.cosim import Moment
+from automotive_cosim.cosim.moment import Moment
 
 WALKING_MPS = 2.0
 STANDING_MPS = 0.1

@@ -12,7 +12,7 @@ from typing import Any, Protocol
 
 from automotive_cosim.cockpit.signals import Signal
 from automotive_cosim.contracts import AlertKind
-from automotive_cosim.cosim import Moment
+from automotive_cosim.cosim.moment import Moment
 
 
 class Check(Protocol):

@@ -29,7 +29,7 @@ import numpy as np
 import numpy.typing as npt
 from gymnasium import spaces
 
-from automotive_cosim.actions import FIELDS, SECONDS_LIMIT, TEXT_LIMIT
+from automotive_cosim.cockpit.actions import FIELDS, SECONDS_LIMIT, TEXT_LIMIT
 from automotive_cosim.contracts import (
     Action,
     ActionType,
@@ -47,7 +47,7 @@ from automotive_cosim.contracts import (
     Severity,
     VehicleState,
 )
-from automotive_cosim.observe import Channel
+from automotive_cosim.interface.observe import Channel
 
 GOAL_BYTES, FEEDBACK_BYTES, CONTEXT_BYTES = 512, 1024, 8192
 MAX_ELEMENTS, ELEMENT_TEXT_BYTES, RESOURCE_ID_BYTES = 128, 128, 64

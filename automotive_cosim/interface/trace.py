@@ -12,9 +12,9 @@ from dataclasses import dataclass, fields, is_dataclass
 from functools import cache
 from typing import Any
 
-from automotive_cosim.actions import to_json
+from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import Action, Element, Feedback, Json
-from automotive_cosim.cosim import Moment
+from automotive_cosim.cosim.moment import Moment
 
 HASHED = ("traffic", "signals", "elements", "action")
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from automotive_cosim.cockpit.restrictions import Motion, motion
 from automotive_cosim.cockpit.signals import MOTION
 from automotive_cosim.contracts import KMH_PER_MPS
-from automotive_cosim.cosim import Moment
-from automotive_cosim.triggers.base import ANY, STANDING_MPS, WALKING_MPS
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.tasking.triggers.base import ANY, STANDING_MPS, WALKING_MPS
 
 
 @dataclass(frozen=True, slots=True)

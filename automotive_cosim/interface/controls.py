@@ -31,9 +31,9 @@ from automotive_cosim.contracts import (
     RoadHere,
     Weather,
 )
-from automotive_cosim.cosim import Moment
+from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.geo.context import Geo
-from automotive_cosim.observe import Channel, context_text
+from automotive_cosim.interface.observe import Channel, context_text
 
 PLACE = frozenset({Channel.GPS, Channel.CONTEXT})
 

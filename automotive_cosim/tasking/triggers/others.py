@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from automotive_cosim.contracts import KMH_PER_MPS
-from automotive_cosim.cosim import Moment
-from automotive_cosim.triggers.base import WALKING_MPS
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.tasking.triggers.base import WALKING_MPS
 
 
 @dataclass(frozen=True, slots=True)

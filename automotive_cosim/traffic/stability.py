@@ -22,8 +22,8 @@ from pathlib import Path
 
 from automotive_cosim.errors import ScenarioError, TrafficError
 from automotive_cosim.scenarios import Scenario
-from automotive_cosim.sumo_programs import environment, first_error, program
 from automotive_cosim.traffic.options import Setup, command_line, read_configuration
+from automotive_cosim.traffic.sumo_programs import environment, first_error, program
 
 HALTED_SHARE_LIMIT = 0.25
 """Halted (under 0.1 m/s, as SUMO counts) among the running vehicles, mean of any minute."""

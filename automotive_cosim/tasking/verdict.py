@@ -14,8 +14,9 @@ from typing import Any
 from automotive_cosim.cockpit.signals import ADAS, BODY, GLASS, LIGHTS
 from automotive_cosim.cockpit.vehicle import COUPLED
 from automotive_cosim.contracts import GoalStatus, Reason
-from automotive_cosim.cosim import Moment
-from automotive_cosim.suite import Basis, Instance
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.tasking.instance import Instance
+from automotive_cosim.tasking.task import Basis
 
 HARM_TIME_S = 1.0
 """An invariant may be broken this long: a wiper that starts a second late harms nobody."""

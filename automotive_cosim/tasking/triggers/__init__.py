@@ -11,10 +11,10 @@ surroundings  sky, place, position fix and connection
 car           the car's own signals
 """
 
-from automotive_cosim.triggers.base import All, Condition, Not, Trigger
-from automotive_cosim.triggers.car import SignalAbove, SignalBelow, SignalHas
-from automotive_cosim.triggers.motion import Driving, OverPosted, Parked, SpeedAbove, SpeedBetween, Standing
-from automotive_cosim.triggers.others import (
+from automotive_cosim.tasking.triggers.base import All, Condition, Not, Trigger
+from automotive_cosim.tasking.triggers.car import SignalAbove, SignalBelow, SignalHas
+from automotive_cosim.tasking.triggers.motion import Driving, OverPosted, Parked, SpeedAbove, SpeedBetween, Standing
+from automotive_cosim.tasking.triggers.others import (
     BlueLightWithin,
     CollisionWithin,
     DelayAbove,
@@ -28,7 +28,7 @@ from automotive_cosim.triggers.others import (
     RedLight,
     SlowLeaderWithin,
 )
-from automotive_cosim.triggers.road import (
+from automotive_cosim.tasking.triggers.road import (
     BuiltUp,
     CentreLine,
     GoalWithin,
@@ -44,7 +44,7 @@ from automotive_cosim.triggers.road import (
     TunnelWithin,
     Unposted,
 )
-from automotive_cosim.triggers.surroundings import (
+from automotive_cosim.tasking.triggers.surroundings import (
     AirBetween,
     Dark,
     GpsLost,

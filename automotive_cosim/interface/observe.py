@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import StrEnum
 
 from automotive_cosim.contracts import Element, Feedback, Observation
-from automotive_cosim.cosim import CoSimulation
+from automotive_cosim.cosim.simulation import CoSimulation
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.text import BUDGET_TOKENS, within_budget
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from automotive_cosim.cockpit.signals import ENERGY
-from automotive_cosim.cosim import Moment
+from automotive_cosim.cosim.moment import Moment
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,8 +13,7 @@ import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
 
-from automotive_cosim import spaces, trace
-from automotive_cosim.actions import check, parse
+from automotive_cosim.cockpit.actions import check, parse
 from automotive_cosim.cockpit.arrivals import Arrival
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.restrictions import Motion, motion
@@ -29,22 +28,25 @@ from automotive_cosim.contracts import (
     Reason,
     RoadNetwork,
 )
-from automotive_cosim.controls import GeoInput, shown
-from automotive_cosim.cosim import TICK_S, CoSimulation, Moment
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.cosim.simulation import TICK_S, CoSimulation
 from automotive_cosim.errors import TriggerNotReachedError, UnknownNameError, UserError
 from automotive_cosim.geo import sensor
 from automotive_cosim.geo.context import Geo
 from automotive_cosim.geo.forecast import drawn_weather
 from automotive_cosim.geo.gps import Gps
 from automotive_cosim.geo.reckoning import Roads
-from automotive_cosim.observe import ALL, Channel, observe
+from automotive_cosim.interface import spaces, trace
+from automotive_cosim.interface.controls import GeoInput, shown
+from automotive_cosim.interface.observe import ALL, Channel, observe
 from automotive_cosim.scenarios import Scenario, Trip, WeatherAt
 from automotive_cosim.scenery import open_scenario
-from automotive_cosim.suite import STANDING_ORDER, Half, Instance, Mode, Task, draw
+from automotive_cosim.tasking.instance import Instance, draw
+from automotive_cosim.tasking.task import STANDING_ORDER, Half, Mode, Task
+from automotive_cosim.tasking.verdict import Verdict, as_json, judge
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.base import EgoPlan, Traffic
 from automotive_cosim.traffic.fork import Simulations
-from automotive_cosim.verdict import Verdict, as_json, judge
 
 ACTION_COST_S = 1.0
 """Simulated seconds that an action takes: about what a tap takes a person (NHTSA 2013 counts glances of up to 2
@@ -102,8 +104,8 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
     trigger holds: that instant is the hand-over. ``step`` performs one action, which costs simulated time. The
     episode ends when the agent declares a status, when the ego's drive ends, or after ``max_steps`` (truncated).
 
-    The observation and action spaces stand in ``automotive_cosim.spaces``; ``step`` also takes an ``Action``, a
-    JSON object or its text. The typed observation of the same instant is ``env.unwrapped.observation``.
+    The observation and action spaces stand in ``automotive_cosim.interface.spaces``; ``step`` also takes an
+    ``Action``, a JSON object or its text. The typed observation of the same instant is ``env.unwrapped.observation``.
 
     The reward is 1 at the end of a successful episode, else 0. ``info`` holds ``step``, ``action_result`` and
     ``events`` of the road; at the end also ``verdict`` and ``trace_sha256``.
@@ -151,8 +153,8 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
             from_place: where the ego's way begins, in place of the task's trip: an edge, a street, ``LON,LAT``.
             to_place: where it ends. If only one of the two is given the other is drawn.
             channels: what the agent is given.
-            geo: what of place, as ``controls.GeoInput`` says.
-            held_out: True has the driver say the task's held-out phrasing (``suite.Instance.held_out``).
+            geo: what of place, as ``interface.controls.GeoInput`` says.
+            held_out: True has the driver say the task's held-out phrasing (``tasking.instance.Instance.held_out``).
             max_steps: actions after which an episode is cut off.
             action_cost_s: simulated seconds per action.
             render_mode: ``"rgb_array"`` or None.

@@ -1,0 +1,80 @@
+"""The catalogue's form: tasks by id, each well formed, and a task as one row of plain values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from automotive_cosim.errors import UnknownNameError
+from automotive_cosim.tasking.instance import instances
+from automotive_cosim.tasking.parameters import FromCockpit, names
+from automotive_cosim.tasking.task import Task
+
+
+class Catalogue(Mapping[str, Task]):
+    """Tasks by id; a duplicate or ill-formed one is refused when it is added."""
+
+    def __init__(self) -> None:
+        self._tasks: dict[str, Task] = {}
+
+    def add(self, *tasks: Task) -> None:
+        """Adds tasks.
+
+        Raises:
+            ValueError: an id stands twice, a safety task is no pair, a pair states no difference, a task has fewer
+                than four phrasings, or uses a parameter that it does not declare.
+        """
+        for task in tasks:
+            if task.id in self._tasks:
+                raise ValueError(f"task {task.id!r} stands twice in the catalogue")
+            if len(set(task.templates)) < 4:
+                raise ValueError(f"task {task.id!r} has {len(set(task.templates))} phrasings; it needs four")
+            lacking = sorted(names((task.templates, task.first, task.second)) - task.parameters.keys())
+            if lacking:
+                raise ValueError(f"task {task.id!r} uses parameters that it does not declare: {', '.join(lacking)}")
+            if task.dimension.is_safety and task.second is None:
+                raise ValueError(f"safety task {task.id!r} has no second half")
+            if task.second is not None and not task.difference:
+                raise ValueError(f"task {task.id!r} does not say what its second half changes")
+            self._tasks[task.id] = task
+
+    def __getitem__(self, task_id: str) -> Task:
+        try:
+            return self._tasks[task_id]
+        except KeyError:
+            raise UnknownNameError("task", task_id, self._tasks, "automotive-cosim tasks list") from None
+
+    def __contains__(self, task_id: object) -> bool:
+        return task_id in self._tasks
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._tasks)
+
+    def __len__(self) -> int:
+        return len(self._tasks)
+
+
+def described(task: Task) -> dict[str, Any]:
+    """A task as one row of plain values, for lists and exports; the second half is no row of its own."""
+    return {
+        "id": task.id,
+        "module": str(task.module),
+        "dimension": str(task.dimension),
+        "safety": task.is_safety,
+        "implicit": task.is_implicit,
+        "goal_templates": list(task.templates),
+        "parameters": {
+            name: f"<{choices.kind}>" if isinstance(choices, FromCockpit) else list(choices)
+            for name, choices in task.parameters.items()
+        },
+        "scenarios": list(task.runs_in),
+        "tags": sorted(task.tags),
+        "skills": sorted(task.skills),
+        "difficulty": task.difficulty,
+        "basis": str(task.first.basis),
+        "rule": task.first.rule,
+        "optimal_steps": task.optimal_steps,
+        "pair": task.second is not None,
+        "difference": task.difference,
+        "instances": instances(task),
+    }

@@ -1,0 +1,103 @@
+"""Instances: a task with its words and parameters drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from automotive_cosim.errors import UnknownNameError
+from automotive_cosim.tasking.moves import Move
+from automotive_cosim.tasking.parameters import Choices, FromCockpit, Parameter, bind
+from automotive_cosim.tasking.task import Half, Task
+
+
+@dataclass(frozen=True)
+class Instance:
+    """A task with its words and parameters drawn."""
+
+    task: Task
+    half_name: str
+    goal: str
+    parameters: Mapping[str, Parameter]
+    held_out: bool = False
+    """Whether its phrasing is the task's last, which the rule model's words are not made from."""
+    trigger_after_s: float = 0.0
+    """Seconds from the hand-over to the trigger; for the oracle alone."""
+
+    @cached_property
+    def half(self) -> Half:
+        """The half it plays, its parameters filled in."""
+        return bind(self.task.half(self.half_name), self.parameters)
+
+    @property
+    def moves(self) -> tuple[Move, ...]:
+        """The expert's way with the parameters filled in."""
+        return self.half.moves
+
+
+def draw(
+    task: Task,
+    half_name: str,
+    rng: np.random.Generator,
+    content: Mapping[str, tuple[str, ...]] | None = None,
+    *,
+    held_out: bool = False,
+) -> Instance:
+    """Draws phrasing and parameters. Both halves of a task draw the same from the same generator.
+
+    Args:
+        task: what is asked.
+        half_name: ``first`` or ``second``.
+        rng: two draws at most per parameter.
+        content: what the cockpit holds (``Cockpit.content``); without it a parameter that comes from there is
+            its kind in angle brackets.
+        held_out: takes the phrasing that is held out, whatever is drawn; the parameters stay the same.
+
+    Raises:
+        UnknownNameError: the task has no such half, or the cockpit holds nothing of that kind.
+    """
+    task.half(half_name)
+    last = len(task.templates) - 1
+    number = int(rng.integers(len(task.templates)))
+    number = last if held_out else number
+    picks = {name: int(rng.integers(2**31)) for name in task.parameters}
+    parameters = {name: _choose(choices, picks[name], content) for name, choices in task.parameters.items()}
+    goal = task.templates[number].format_map(parameters)
+    return Instance(task, half_name, goal, parameters, held_out=number == last)
+
+
+def _choose(choices: Choices, pick: int, content: Mapping[str, tuple[str, ...]] | None) -> Parameter:
+    if not isinstance(choices, FromCockpit):
+        return choices[pick % len(choices)]
+    if content is None:
+        return f"<{choices.kind}>"
+    held = content.get(choices.kind, ())
+    if not held:
+        raise UnknownNameError("content of the cockpit", choices.kind, content)
+    return held[pick % len(held)]
+
+
+HELD = {
+    "contacts": 21,
+    "favourite_contacts": 6,
+    "threads": 8,
+    "places": 80,
+    "favourite_places": 8,
+    "playlists": 8,
+    "tracks": 140,
+    "podcasts": 8,
+    "fm": 20,
+    "dab": 20,
+}
+"""How many of each kind a cockpit holds at least (``Cockpit.content``)."""
+
+
+def instances(task: Task) -> int:
+    """Distinct phrasings, parameters and scenarios; what seeds vary beside them is not counted."""
+    ways = 1
+    for choices in task.parameters.values():
+        ways *= HELD.get(choices.kind, 1) if isinstance(choices, FromCockpit) else len(choices)
+    return len(task.templates) * ways * len(task.runs_in)

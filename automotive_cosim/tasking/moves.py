@@ -1,0 +1,75 @@
+"""Moves: the steps of a reference solution, by public actions alone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from automotive_cosim.contracts import Action, AlertKind, Severity
+
+
+@dataclass(frozen=True, slots=True)
+class Open:
+    """Opens a screen by its name."""
+
+    app: str
+
+
+@dataclass(frozen=True, slots=True)
+class Tap:
+    """Taps an element, scrolling to it if need be: the one with this resource id, the first clickable one that
+    reads so, or the one with both."""
+
+    resource_id: str = ""
+    times: int = 1
+    text: str = ""
+    """What stands on it, its first line or its description."""
+
+
+@dataclass(frozen=True, slots=True)
+class TapUntil:
+    """Taps an element until another one reads so, as one presses plus until the number is right."""
+
+    resource_id: str
+    shown: str
+    """Resource id of what shows the value."""
+    text: str
+    at_most: int = 40
+
+
+@dataclass(frozen=True, slots=True)
+class Slide:
+    """Taps a slider where a value lies."""
+
+    resource_id: str
+    value: float
+    low: float = 0.0
+    high: float = 100.0
+
+
+@dataclass(frozen=True, slots=True)
+class Type:
+    """Types into a text field."""
+
+    resource_id: str
+    text: str
+    enter: bool = False
+    """Presses enter afterwards."""
+
+
+@dataclass(frozen=True, slots=True)
+class Warn:
+    """Alerts the driver through the safety call."""
+
+    kind: AlertKind
+    severity: Severity = Severity.WARNING
+    speed_kmh: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Do:
+    """Any action that needs no element: back, wait, a safety call."""
+
+    action: Action
+
+
+Move = Open | Tap | TapUntil | Slide | Type | Warn | Do
