@@ -105,7 +105,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
     episode ends when the agent declares a status, when the ego's drive ends, or after ``max_steps`` (truncated).
 
     The observation and action spaces stand in ``automotive_cosim.interface.spaces``; ``step`` also takes an
-    ``Action``, a JSON object or its text. The typed observation of the same instant is ``env.unwrapped.observation``.
+    ``Action``, a JSON object or its text. The typed observation of that instant is ``env.unwrapped.observation``.
 
     The reward is 1 at the end of a successful episode, else 0. ``info`` holds ``step``, ``action_result`` and
     ``events`` of the road; at the end also ``verdict`` and ``trace_sha256``.

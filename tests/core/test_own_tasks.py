@@ -39,9 +39,9 @@ def test_a_folder_joins(tmp_path):
         ("TASKS = (", r"own.py, line 1: '\(' was never closed"),
         ("\n\nTASKS = (undefined,)", r"own.py, line 3: NameError"),
         ("TASKS = (1, 2)", r"own.py has no TASKS"),
-        (OWN.replace('"Sync off.", ', ""), r"own.py, line 9: .* has 3 phrasings"),
-        (OWN.replace("Sync off.", "Sync {how}."), r"own.py, line 9: .* does not declare: how"),
-        (OWN.replace("    ),\n)", "    ),\n) * 2"), r"own.py, line 9: .* stands twice"),
+        (OWN.replace('"Sync off.", ', ""), r"own.py, line 10: .* has 3 phrasings"),
+        (OWN.replace("Sync off.", "Sync {how}."), r"own.py, line 10: .* does not declare: how"),
+        (OWN.replace("    ),\n)", "    ),\n) * 2"), r"own.py, line 10: .* stands twice"),
     ],
     ids=["syntax", "name", "no tasks", "phrasings", "parameter", "twice"],
 )
