@@ -22,7 +22,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from automotive_cosim.tasking.checks import SignalIs
 from automotive_cosim.cockpit.signals import HVAC, SEAT
-from automotive_cosim.suite import Module, Open, Start, Tap
+from automotive_cosim.tasking.moves import Open, Tap
+from automotive_cosim.tasking.task import Module, Start
 from automotive_cosim.tasks.forms import asked
 
 class Trouble:
