@@ -324,7 +324,7 @@ def _loaded(modules: Sequence[str]) -> str:
 
 
 def test_what_an_agent_can_reach_does_not_even_load_the_checks() -> None:
-    reach = ["automotive_cosim.observe", "automotive_cosim.geo.sensor", "automotive_cosim.agents"]
+    reach = ["automotive_cosim.interface.observe", "automotive_cosim.geo.sensor", "automotive_cosim.agents"]
     assert _loaded(reach) == "False"
     assert _loaded(["automotive_cosim.geo.breaches"]) == "True"
 

@@ -159,21 +159,21 @@ except KeyboardInterrupt:
 
 @linux
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT])
-def test_no_process_outlives_the_program(how: signal.Signals) -> None:
+def test_no_process_outlives_the_program(
+    program: Callable[..., subprocess.Popen[str]], how: signal.Signals
+) -> None:
     """Ctrl-C goes to the whole process group; a killed program can tell nobody."""
-    with subprocess.Popen(
-        [sys.executable, "-c", SCRIPT], stdout=subprocess.PIPE, text=True, start_new_session=True
-    ) as program:
-        assert program.stdout is not None
-        pids = [int(pid) for pid in program.stdout.readline().split()]
-        assert len(pids) == 3
-        time.sleep(0.3)
-        if how is signal.SIGINT:
-            os.killpg(program.pid, how)
-            assert program.stdout.read() == "kept\n"
-        else:
-            program.kill()
-        program.wait()
+    process = program(sys.executable, "-c", SCRIPT, stdout=subprocess.PIPE)
+    assert process.stdout is not None
+    pids = [int(pid) for pid in process.stdout.readline().split()]
+    assert len(pids) == 3
+    time.sleep(0.3)
+    if how is signal.SIGINT:
+        os.killpg(process.pid, how)
+        assert process.communicate(timeout=60)[0] == "kept\n"
+    else:
+        process.kill()
+        process.wait()
     assert gone(pids)
 
 

@@ -9,7 +9,7 @@ import pytest
 
 import automotive_cosim
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[1]
 
 
 @pytest.fixture(scope="module")
