@@ -32,9 +32,9 @@ from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation
 from automotive_cosim.errors import TriggerNotReachedError, UnknownNameError, UserError
 from automotive_cosim.geo import sensor
-from automotive_cosim.geo.context import Geo
 from automotive_cosim.geo.forecast import drawn_weather
 from automotive_cosim.geo.gps import Gps
+from automotive_cosim.geo.locate import Geo
 from automotive_cosim.geo.reckoning import Roads
 from automotive_cosim.interface import spaces, trace
 from automotive_cosim.interface.controls import GeoInput, shown

@@ -11,9 +11,9 @@ from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import ActionType, Feedback, FeedbackCode
 from automotive_cosim.cosim.simulation import TICK_S, WAYS_FROM_S, CoSimulation
 from automotive_cosim.errors import ActionError, OutOfBudgetError
-from automotive_cosim.geo.context import Geo
 from automotive_cosim.geo.forecast import drawn_weather
 from automotive_cosim.geo.gps import Gps
+from automotive_cosim.geo.locate import Geo
 from automotive_cosim.interface.observe import observe
 from automotive_cosim.studies.plan import DriveJob, named
 from automotive_cosim.traffic.base import Traffic

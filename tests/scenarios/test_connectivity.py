@@ -13,8 +13,8 @@ from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import Connectivity
 from automotive_cosim.cosim.simulation import CoSimulation
 from automotive_cosim.geo.connectivity import ATTACH_S
-from automotive_cosim.geo.context import Geo
 from automotive_cosim.geo.gps import Gps
+from automotive_cosim.geo.locate import Geo
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
 
