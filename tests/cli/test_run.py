@@ -98,10 +98,28 @@ def test_ctrl_c_while_the_command_line_loads_ends_it_in_silence(tmp_path):
     (tmp_path / "gymnasium.py").write_text(
         "import os, signal\nos.kill(os.getpid(), signal.SIGINT)\nwhile True: pass\n"
     )
-    program = f"import sys; sys.argv[0] = 'automotive-cosim'; {PROGRAM[-1]}"
-    done = subprocess.run([sys.executable, "-c", program], cwd=tmp_path, capture_output=True, timeout=60)
+    done = subprocess.run(
+        [sys.executable, "-c", "from automotive_cosim_main import main; main()"],
+        cwd=tmp_path,
+        capture_output=True,
+        timeout=60,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )
     assert done.returncode == -signal.SIGINT
     assert done.stdout + done.stderr == b""
+
+
+@pytest.mark.parametrize("handler", ["default_int_handler", "SIG_IGN", "SIG_DFL"])
+def test_the_console_script_leaves_ctrl_c_as_it_was(handler):
+    program = f"""
+import signal, sys
+signal.signal(signal.SIGINT, signal.{handler})
+sys.argv = ["automotive-cosim", "--version"]
+from automotive_cosim_main import main
+try: main()
+finally: assert signal.getsignal(signal.SIGINT) is signal.{handler}, signal.getsignal(signal.SIGINT)
+"""
+    subprocess.run([sys.executable, "-c", program], check=True, capture_output=True)
 
 
 @pytest.fixture
