@@ -232,6 +232,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         self._shown = shown(self._geo, Geo(), self.drive[0])
         self.moments: list[Moment] = [self._world.moment]
         self.steps: list[trace.Step] = []
+        self._hash = trace.Hash()
         self.verdict = None
         self._hand_over_s = self._world.moment.time_s
         self._declared: GoalStatus | None = None
@@ -286,6 +287,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         twin._is_branch = True
         twin._owns_simulations = False
         twin.drive, twin.moments, twin.steps = list(self.drive), list(self.moments), list(self.steps)
+        twin._hash = self._hash.copy()
         return twin
 
     def untouched(self, time_s: float) -> tuple[Moment, ...]:
@@ -450,6 +452,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         world = self._running()
         self.observed_elements = world.cockpit.elements()
         self.steps.append(trace.Step(len(self.steps), world.moment, self.observed_elements, action, feedback))
+        self._hash.add(self.steps[-1])
         seen = observe(
             world, self.instance.goal, self._hand_over_s, self.observed_elements, feedback, self._channels
         )
@@ -490,7 +493,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         }
         if self.verdict is not None:
             info["verdict"] = as_json(self.verdict)
-            info["trace_sha256"] = trace.sha256([step.as_json() for step in self.steps])
+            info["trace_sha256"] = self._hash.hex
         return info
 
     def _running(self, *, ended: bool = False) -> CoSimulation:
