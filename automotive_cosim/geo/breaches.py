@@ -2,7 +2,7 @@
 
     from automotive_cosim import geo
 
-    for found in geo.violations(env.unwrapped.moments):
+    for found in geo.violations(env.unwrapped.episode.moments):
         print(found.from_s, found.to_s, found.rule, found.law, found.margin, found.unit)
 
 Only what the context is certain of is checked: a limit that the network leaves open, or a lamp whose signal the car

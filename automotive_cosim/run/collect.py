@@ -13,7 +13,7 @@ from PIL import Image
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import DrivingState, Json
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.envs.cockpit import CockpitEnv
+from automotive_cosim.episode.episode import Episode
 from automotive_cosim.run.episode import EpisodeResult, Shot, Watcher
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.harm import nearest_s, overspeed
@@ -38,20 +38,20 @@ class Collector(Watcher):
 
     def __init__(self, pictures: Pictures) -> None:
         self._pictures = pictures
-        self._env: CockpitEnv | None = None
+        self._episode: Episode | None = None
         self._states: list[DrivingState] = []
         self._lines: list[Json] = []
         self._shown: list[bytes] = []
 
     def moved(self, moment: Moment, cockpit: Cockpit) -> None:
         """Keeps what the road did from the hand-over on."""
-        if self._env is not None:
+        if self._episode is not None:
             self._states += moment.passed
 
-    def handed_over(self, env: CockpitEnv, shot: Shot) -> None:
+    def handed_over(self, episode: Episode, shot: Shot) -> None:
         """From here on everything counts."""
-        self._env = env
-        self._states = [env.moments[0].driving]
+        self._episode = episode
+        self._states = [episode.moments[0].driving]
         self.stepped(shot)
 
     def stepped(self, shot: Shot) -> None:
@@ -69,18 +69,18 @@ class Collector(Watcher):
 
     def judged(self) -> Judged | None:
         """What the verdict was made from; None without one."""
-        env = self._env
-        if env is None or env.verdict is None:
+        episode = self._episode
+        if episode is None or episode.verdict is None:
             return None
-        last = env.steps[-1].action
+        last = episode.steps[-1].action
         return Judged(
-            env.instance.goal,
-            env.instance.parameters,
+            episode.instance.goal,
+            episode.instance.parameters,
             last.goal_status if last else None,
             last.reason if last else None,
-            tuple(env.moments),
-            env.idle_moments,
-            env.watched_from_s,
+            tuple(episode.moments),
+            episode.baseline_moments,
+            episode.watched_from_s,
         )
 
     def keep_pictures(self, folder: Path, result: EpisodeResult) -> None:
@@ -93,19 +93,19 @@ class Collector(Watcher):
 
     def row(self, job: Job, result: EpisodeResult) -> EpisodeRow:
         """The episode's row, without what the batch adds."""
-        env, judged, load = self._env, result.verdict, result.load
+        episode, judged, load = self._episode, result.verdict, result.load
         return replace(
             planned(job),
             scenario=result.scenario,
-            parameters=None if env is None else dict(env.instance.parameters),
-            country="" if env is None else env.moments[0].context.country,
+            parameters=None if episode is None else dict(episode.instance.parameters),
+            country="" if episode is None else episode.moments[0].context.country,
             success=result.success,
             reward=result.reward,
             end=str(result.end),
             parts=PartsHeld(**{name: part["ok"] for name, part in judged["parts"].items()}) if judged else None,
             goal_s=judged["goal_s"] if judged else None,
             reason_fits=judged["reason_fits"] if judged else None,
-            alerts=None if env is None else _alerts(env),
+            alerts=None if episode is None else _alerts(episode),
             steps=result.steps,
             sim_seconds=result.sim_seconds,
             speed_compliance=compliance(self._states),
@@ -169,6 +169,6 @@ def compliance(states: Sequence[DrivingState]) -> float | None:
     return None if whole_s == 0 else round(max(0.0, 1 - over_m / (OVERSPEED_SCALE_MPS * whole_s)), 6)
 
 
-def _alerts(env: CockpitEnv) -> int:
+def _alerts(episode: Episode) -> int:
     """Alerts that the agent gave."""
-    return len(env.moments[-1].commands["alerts"]) - len(env.moments[0].commands["alerts"])
+    return len(episode.moments[-1].commands["alerts"]) - len(episode.moments[0].commands["alerts"])

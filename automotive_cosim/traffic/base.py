@@ -95,6 +95,15 @@ class Traffic(Protocol):
         """The newest state."""
         ...
 
+    def start(self, duration_s: float) -> None:
+        """Begins in the background what the next call asks for, which must be ``advance`` of that duration, while
+        the caller does something else. Does nothing where it runs in this process, or has been started already.
+
+        Raises:
+            TrafficError: the simulation died.
+        """
+        ...
+
     def advance(self, duration_s: float, until: Until | None = None) -> Drive:
         """Lets the traffic run for ``duration_s``, or until the predicate holds or the ego's drive ends.
 

@@ -122,6 +122,7 @@ class RemoteTraffic:
         self._plan = plan
         self._calls = list(calls)
         self._state = unpack_state(state)
+        self._started_s: float | None = None
 
     @property
     def network(self) -> RoadNetwork:
@@ -138,10 +139,21 @@ class RemoteTraffic:
         """The process that runs it."""
         return self._process.pid
 
+    def start(self, duration_s: float) -> None:
+        """As ``Traffic.start``."""
+        if self._started_s is None:
+            self._process.send("advance", duration_s, None)
+            self._started_s = duration_s
+
     def advance(self, duration_s: float, until: Until | None = None) -> Drive:
         """As ``Traffic.advance``; the predicate must be defined in a module that can be imported."""
-        pickled = None if until is None else pickle.dumps(until)
-        drive = unpack_drive(self._process.call("advance", duration_s, pickled))
+        if self._started_s is None:
+            pickled = None if until is None else pickle.dumps(until)
+            drive = unpack_drive(self._process.call("advance", duration_s, pickled))
+        else:
+            assert (duration_s, until) == (self._started_s, None), "another advance was started"
+            self._started_s = None
+            drive = unpack_drive(self._process.receive())
         if drive.states:
             self._state = drive.states[-1]
         self._remember(len(drive.states))

@@ -125,6 +125,15 @@ class RemoteProcess:
         Raises:
             TrafficError: it died or hung; or what the method raised.
         """
+        self.send(name, *arguments, hand_over=hand_over)
+        return self.receive(progress, timeout_s)
+
+    def send(self, name: str, *arguments: object, hand_over: socket.socket | None = None) -> None:
+        """Begins a call whose answer ``receive`` waits for; the process works on it meanwhile.
+
+        Raises:
+            TrafficError: it died.
+        """
         if self._broken:
             raise TrafficError(self._broken)
         try:
@@ -133,7 +142,6 @@ class RemoteProcess:
                 self._channel.send_socket(hand_over)
         except ClosedError:
             self._give_up(self._death())
-        return self.receive(progress, timeout_s)
 
     def receive(self, progress: Progress | None = None, timeout_s: float | None = None) -> Any:
         """Waits for an answer; raises as ``call``."""

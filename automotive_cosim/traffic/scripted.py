@@ -91,6 +91,9 @@ class ScriptedTraffic:
         """The newest state."""
         return self._drive.state
 
+    def start(self, duration_s: float) -> None:
+        """As ``Traffic.start``: nothing to do."""
+
     def advance(self, duration_s: float, until: Until | None = None) -> Drive:
         """As ``Traffic.advance``."""
         return self._open().advance(duration_s, until)

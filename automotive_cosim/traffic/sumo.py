@@ -299,6 +299,9 @@ class InProcessTraffic:
         """The newest state."""
         return self._drive.state
 
+    def start(self, duration_s: float) -> None:
+        """As ``Traffic.start``: nothing to do."""
+
     def advance(self, duration_s: float, until: Until | None = None) -> Drive:
         """As ``Traffic.advance``."""
         self._check()
