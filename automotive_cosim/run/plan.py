@@ -184,6 +184,11 @@ class Job:
         return self.setup.agent, self.setup.model, self.setup.geo, self.repeat
 
     @property
+    def kind(self) -> Hashable:
+        """Who acts, and when: what tells how long it takes."""
+        return self.setup.agent, self.setup.model, self.setup.mode
+
+    @property
     def situation(self) -> Hashable:
         """The drive up to the hand-over, on which nobody acts; in a watch the agent does."""
         if self.setup.mode == Mode.MONITORING:
