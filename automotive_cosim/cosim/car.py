@@ -9,8 +9,8 @@ from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import DrivingState, RouteOption, Surroundings
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.geo.connectivity import Modem
-from automotive_cosim.geo.context import Geo
 from automotive_cosim.geo.gps import Gps
+from automotive_cosim.geo.locate import Geo
 from automotive_cosim.geo.sun import elevation_deg
 from automotive_cosim.scenarios import WeatherAt, weather_at
 from automotive_cosim.traffic.base import Event, Traffic

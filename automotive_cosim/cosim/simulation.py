@@ -17,8 +17,8 @@ from automotive_cosim.contracts import Action, Element, Feedback
 from automotive_cosim.cosim.car import Car
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.geo.connectivity import Modem
-from automotive_cosim.geo.context import Geo
 from automotive_cosim.geo.gps import Gps
+from automotive_cosim.geo.locate import Geo
 from automotive_cosim.scenarios import LinkAt, Scenario, WeatherAt
 from automotive_cosim.traffic.base import Traffic
 from automotive_cosim.traffic.shadow import SharedTraffic

@@ -28,7 +28,7 @@ from automotive_cosim.cosim.simulation import CoSimulation
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.specification import Conditions, End
 from automotive_cosim.geo import sensor
-from automotive_cosim.geo.context import Geo
+from automotive_cosim.geo.locate import Geo
 from automotive_cosim.geo.reckoning import Roads
 from automotive_cosim.interface import trace
 from automotive_cosim.interface.controls import Shown, shown

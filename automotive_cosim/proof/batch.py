@@ -156,7 +156,7 @@ def proofs(chosen: Sequence[str]) -> Iterator[Runner]:
 
 def failed(job: ProofJob, kind: str, why: str) -> Json:
     """The row of a proof that the machinery could not bring to its end."""
-    return _row(job, Proof(job.task, job.seed, error=f"{kind}: {why}"))
+    return _row(job, Proof(job.task, job.seed, error=f"{kind}: {why}", error_kind=kind))
 
 
 def _row(job: ProofJob, proof: Proof) -> Json:
@@ -167,12 +167,18 @@ def _row(job: ProofJob, proof: Proof) -> Json:
         "wrong": proof.wrong,
         "oracle_steps": proof.oracle_steps,
         "error": proof.error or None,
-        "error_kind": proof.error.partition(":")[0] or None,
+        "error_kind": proof.error_kind or None,
         "gate_seconds": proof.seconds,
     }
 
 
 def _proof(row: Json) -> Proof:
     return Proof(
-        row["task"], row["seed"], row["wrong"], row["error"] or "", row["oracle_steps"], row["gate_seconds"]
+        row["task"],
+        row["seed"],
+        wrong=row["wrong"],
+        error=row["error"] or "",
+        error_kind=row["error_kind"] or "",
+        oracle_steps=row["oracle_steps"],
+        seconds=row["gate_seconds"],
     )

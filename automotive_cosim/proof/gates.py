@@ -38,7 +38,7 @@ from automotive_cosim.proof import mutations
 from automotive_cosim.proof.ground import Ground, Played, Script, finish
 from automotive_cosim.tasking.checks import NothingDone
 from automotive_cosim.tasking.task import Basis, Half, Task
-from automotive_cosim.tasking.triggers import Parked, Standing
+from automotive_cosim.tasking.triggers import All, Condition, Parked, Standing
 from automotive_cosim.tasking.verdict import judge
 from automotive_cosim.traffic.fork import Simulations
 
@@ -186,11 +186,7 @@ def _reads_context(ground: Ground, acting: Ground) -> Played:
 
 
 def _topics(ground: Ground, ids: set[str]) -> set[str]:
-    return {
-        applied.rule.topic
-        for applied in ground.episode.moments[0].context.rules
-        if any(applied.rule.id in text for text in ids)
-    }
+    return {applied.rule.topic for applied in ground.episode.moments[0].context.rules if applied.rule.id in ids}
 
 
 def trivial(grounds: dict[str, Ground]) -> Wrong:
@@ -253,7 +249,7 @@ def _observed(episode: Episode, actions: list[Action]) -> list[str]:
 def road(ground: Ground, simulations: Simulations) -> Wrong:
     """The same task with the car parked; one that asks for standing is left out."""
     half = ground.task.half(ground.half_name)
-    if half.start.parked or "Parked" in str(half.trigger.condition) or _stands(half):
+    if half.start.parked or _stands(half.trigger.condition):
         return
     parked = replace(half, start=replace(half.start, parked=True))
     changed = {"first": parked} if ground.half_name == "first" else {"second": parked}
@@ -264,9 +260,11 @@ def road(ground: Ground, simulations: Simulations) -> Wrong:
     yield "its trigger is reached by a parked car"
 
 
-def _stands(half: Half) -> bool:
-    conditions = getattr(half.trigger.condition, "conditions", (half.trigger.condition,))
-    return any(isinstance(condition, Parked | Standing) for condition in conditions)
+def _stands(condition: Condition) -> bool:
+    """Whether it holds of a standing car alone."""
+    if isinstance(condition, All):
+        return any(map(_stands, condition.conditions))
+    return isinstance(condition, Parked | Standing)
 
 
 def repeat(ground: Ground, simulations: Simulations) -> Wrong:

@@ -46,6 +46,8 @@ class Proof:
     """By gate that was tried; an empty list is a pass."""
     error: str = ""
     """What went wrong in the machinery, so that nothing is proven either way."""
+    error_kind: str = ""
+    """Its class."""
     oracle_steps: dict[str, int] = field(default_factory=dict)
     """Actions of the expert by half, the declaration included."""
     seconds: dict[str, float] = field(default_factory=dict)
@@ -94,7 +96,8 @@ class Prover:
         except TriggerNotReachedError as error:
             proof.take("reach", iter([str(error)]))
         except Exception as error:  # a fault in one task must not take the proof of the others with it
-            proof.error = f"{type(error).__name__}: {error}"
+            proof.error_kind = type(error).__name__
+            proof.error = f"{proof.error_kind}: {error}"
         finally:
             for ground in grounds.values():
                 ground.close()

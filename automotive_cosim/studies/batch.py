@@ -19,8 +19,8 @@ from automotive_cosim.studies.plan import DriveJob, StudyPlan
 from automotive_cosim.studies.policies import Rule
 from automotive_cosim.studies.results import choices
 from automotive_cosim.studies.traffic import PULSE_S
+from automotive_cosim.traffic.accounts import Pulse
 from automotive_cosim.traffic.fork import Forked
-from automotive_cosim.traffic.ledger import Pulse
 
 STRIDE = 5
 """Seeds that are added at a time once there are the fewest that an interval takes."""

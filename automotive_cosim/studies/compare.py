@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from automotive_cosim.contracts import DrivingState, EgoEnd, Json
-from automotive_cosim.traffic.ledger import Settled
+from automotive_cosim.traffic.accounts import Settled
 
 METRICS = ("time_s", "distance_m", "stops", "standing_s", "co2_g", "fuel_g")
 """Of the ego, over its whole drive, as SUMO's tripinfo counts them."""

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from automotive_cosim.contracts import DrivingState, Json, Reroute, RouteOption
-from automotive_cosim.errors import TrafficError
+from automotive_cosim.errors import NoRoomError
 from automotive_cosim.geo.forecast import drawn_weather
 from automotive_cosim.studies import compare
 from automotive_cosim.studies.compare import Future
@@ -22,9 +22,9 @@ from automotive_cosim.studies.driver import decided
 from automotive_cosim.studies.plan import DriveJob
 from automotive_cosim.studies.policies import Rule, parse_policy
 from automotive_cosim.studies.traffic import gridlock
+from automotive_cosim.traffic.accounts import Pulse
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked, RemoteTraffic
-from automotive_cosim.traffic.ledger import Pulse
 
 LOOK_S = 10.0
 """Time between two looks whether a decision is due; the traffic's speeds are sampled as often."""
@@ -70,9 +70,7 @@ def run_drive(job: DriveJob, simulation: Forked, history: Sequence[Pulse]) -> Js
         }
     try:
         traffic = depart(job, simulation)
-    except TrafficError as error:
-        if "found no gap" not in str(error):
-            raise
+    except NoRoomError as error:
         return found | {"excluded": NO_ROOM, "why": str(error)}
     with closing(traffic):
         drive = _Drive(job, traffic)
