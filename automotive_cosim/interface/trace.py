@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Hashable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, fields, is_dataclass
 from functools import cache, lru_cache
 from typing import Any
@@ -90,7 +90,7 @@ _LEAVES = frozenset((str, int, float, bool, type(None)))
 
 def plain(value: Any) -> Any:
     """Frozen data as JSON has it. As ``dataclasses.asdict``, which is ten times slower because it copies leaves."""
-    kind = type(value)
+    kind: type = type(value)
     if kind in _LEAVES:
         return value
     names = _names(kind)
@@ -102,7 +102,7 @@ def plain(value: Any) -> Any:
 
 
 @cache
-def _names(kind: Hashable) -> tuple[str, ...] | None:
+def _names(kind: type) -> tuple[str, ...] | None:
     """The fields of a dataclass; None of any other class."""
     return tuple(field.name for field in fields(kind)) if is_dataclass(kind) else None
 
