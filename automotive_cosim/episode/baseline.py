@@ -11,7 +11,7 @@ class Baseline:
     """Driven beside the episode, and only as far as that has come; its branches share it."""
 
     def __init__(self, world: CoSimulation) -> None:
-        """Takes over a branch of the hand-over."""
+        """Takes over a shadow of the hand-over's world."""
         self._world = world
         self._moments: list[Moment] = [world.moment]
 

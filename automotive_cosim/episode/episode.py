@@ -49,7 +49,7 @@ class Episode(Session):
             instance=instance,
             mode=hand_over.mode,
             trigger_s=hand_over.trigger_s,
-            baseline=Baseline(world.branch()),
+            baseline=Baseline(world.shadow()),
         )
 
     def branch(self, max_steps: int | None = None) -> Episode:
@@ -68,6 +68,7 @@ class Episode(Session):
             conditions=conditions,
             moments=list(self.moments),
             steps=list(self.steps),
+            hashed=self.hashed.copy(),
             owns_baseline=False,
         )
 
@@ -77,9 +78,9 @@ class Episode(Session):
 
     def close(self) -> None:
         """Ends the drive and, if it is its own, the baseline run; harmless when called again."""
-        self.world.close()
         if self.owns_baseline:
             self.baseline.close()
+        self.world.close()
 
     @property
     def watched_from_s(self) -> float | None:

@@ -63,6 +63,8 @@ class Session:
     """The code it gave with that."""
     end: End | None = None
     """Why it is over; None while it is not."""
+    hashed: trace.Hash = field(default_factory=trace.Hash, repr=False)
+    """Of the steps that somebody has asked the hash of."""
     _roads: Roads | None = field(default=None, repr=False)
 
     @classmethod
@@ -128,7 +130,9 @@ class Session:
     @property
     def trace_sha256(self) -> str:
         """The hash of what happened so far."""
-        return trace.sha256([step.as_json() for step in self.steps])
+        for step in self.steps[self.hashed.count :]:
+            self.hashed.add(step)
+        return self.hashed.hex
 
     def screenshot(self) -> npt.NDArray[np.uint8]:
         """The cockpit's screen, (height, width, 3)."""

@@ -16,7 +16,7 @@ from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import MAX_STEPS, Conditions, EpisodeSpec, SeedSource
 from automotive_cosim.errors import ActionError, OutOfBudgetError
 from automotive_cosim.interface.observe import ALL, Channel
-from automotive_cosim.interface.trace import Step, sha256
+from automotive_cosim.interface.trace import Hash, Step
 from automotive_cosim.tasking.instance import Instance
 from automotive_cosim.tasking.moves import Move
 from automotive_cosim.tasking.task import Half, Task
@@ -51,7 +51,7 @@ class Played:
     @property
     def trace_sha256(self) -> str:
         """The hash of what happened."""
-        return sha256([step.as_json() for step in self.steps])
+        return Hash(self.steps).hex
 
     @property
     def success(self) -> bool:
