@@ -1,6 +1,7 @@
 """``automotive-cosim``: the commands, and what an error looks like.
 
-Exit codes: 0 done, 1 a check failed, 2 an error that the user can fix, 3 an infrastructure error, 130 interrupted.
+Exit codes: 0 done, 1 a check failed, 2 an error that the user can fix, 3 an infrastructure error,
+130 interrupted, 143 terminated.
 """
 
 from __future__ import annotations
@@ -35,6 +36,8 @@ from automotive_cosim.errors import InfrastructureError, UserError
 
 INTERRUPTED = 130
 """Typer's exit code for Ctrl-C: 128 plus the signal's number, as in shells."""
+TERMINATED = 143
+"""The same for SIGTERM: ``kill``, a container that is stopped, a batch system whose time is up."""
 
 app = typer.Typer(
     name="automotive-cosim",
@@ -84,8 +87,13 @@ def _options(
 
 def main() -> None:
     """Runs the command line and ends the process; an error is one line on stderr."""
-    if signal.getsignal(signal.SIGINT) is signal.SIG_DFL:  # see the package's __init__
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+    terminations: list[int] = []
+
+    def terminate(number: int, frame: object) -> None:
+        terminations.append(number)
+        raise KeyboardInterrupt  # ends as after Ctrl-C, which may be ignored from the start (nohup)
+
+    signal.signal(signal.SIGTERM, terminate)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # a street's name must not end a run under an ASCII locale
             stream.reconfigure(errors="replace")
@@ -105,4 +113,5 @@ def main() -> None:
         code = 2
     if code == INTERRUPTED:
         print("error: interrupted", file=sys.stderr)
+        code = TERMINATED if terminations else INTERRUPTED
     sys.exit(code)

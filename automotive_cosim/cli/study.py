@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from automotive_cosim.run.batch import Progress
     from automotive_cosim.studies.plan import StudyPlan
     from automotive_cosim.studies.results import Study
+    from automotive_cosim.studies.rows import DriveRow
 
 app = typer.Typer(help="Studies: how much rerouting gains in identical traffic.", no_args_is_help=True)
 
@@ -121,7 +122,8 @@ def reroute(
     from automotive_cosim.studies.batch import run_study
     from automotive_cosim.studies.page import write_study
     from automotive_cosim.studies.plan import StudyPlan
-    from automotive_cosim.studies.results import all_decisions, read_study
+    from automotive_cosim.studies.results import read_study
+    from automotive_cosim.studies.rows import DriveRow
 
     values: dict[str, Any] = {
         "seeds": tuple(seeds_in(seeds)),
@@ -155,8 +157,8 @@ def reroute(
     if dry_run:
         return
 
-    def said(progress: Progress) -> str:
-        count = sum(1 for _ in all_decisions(read_rows(folder).values()))
+    def said(progress: Progress[DriveRow]) -> str:
+        count = sum(len(row.decisions) for row in read_rows(folder, DriveRow).values())
         errors = f", {counted(progress.errors, 'error')}" if progress.errors else ""
         return f"{counted(count, 'decision')}{errors}{time_left(progress)}"
 
@@ -199,8 +201,8 @@ def _tell(console: Console, study: Study, page: Path, *, as_json: bool) -> None:
     if errors:
         first = errors[0]
         raise InfrastructureError(
-            f"{len(errors)} of {counted(len(study.rows), 'drive')} ended in an error, the first one {first['id']}: "
-            f"{first['error_kind']}: {first['error']}; rerun the command to retry them"
+            f"{len(errors)} of {counted(len(study.rows), 'drive')} ended in an error, the first one {first.id}: "
+            f"{first.error_kind}: {first.error}; rerun the command to retry them"
         )
     if not count:
         told_why = ", ".join(f"{number} {name}" for name, number in kept_out.items())
