@@ -15,7 +15,7 @@ place        weather, position fix, connection, surroundings
 observation  what an agent sees
 action       what an agent does
 requests     what the cockpit asks of the road, and the answer
-plain        factors between units, JSON, and how progress is told
+plain        factors between units, JSON, numbers in texts, and how progress is told
 """
 
 from automotive_cosim.contracts.action import Action, ActionType, Direction, GoalStatus, Reason

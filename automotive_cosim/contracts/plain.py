@@ -1,4 +1,4 @@
-"""Factors between units, JSON, and how progress is told."""
+"""Factors between units, JSON, numbers in texts, and how progress is told."""
 
 from __future__ import annotations
 
@@ -13,3 +13,13 @@ Json = dict[str, Any]
 
 Tell = Callable[[str, float | None], None]
 """Told what is being done, and the share of it that is done (0 to 1), None where that is not known."""
+
+
+def counted(number: int, noun: str, plural: str = "") -> str:
+    """A number with its noun: ``1 step``, ``2,460 episodes``; ``plural`` is for nouns that add more than an "s"."""
+    return f"{number:,} {noun if number == 1 else plural or noun + 's'}"
+
+
+def megabytes_in_words(size_mb: float) -> str:
+    """A size to a tenth of a megabyte, never as zero."""
+    return "less than 0.1 MB" if size_mb < 0.1 else f"{size_mb:,.1f} MB"

@@ -43,6 +43,10 @@ class SharedTraffic:
         """As ``Traffic.state``."""
         return self._traffic.state
 
+    def start(self, duration_s: float) -> None:
+        """As ``Traffic.start``."""
+        self._traffic.start(duration_s)
+
     def advance(self, duration_s: float) -> Advance:
         """As ``Traffic.advance``."""
         passed = self._traffic.advance(duration_s)
@@ -67,11 +71,11 @@ class SharedTraffic:
         """As ``Traffic.branch``; it has no shadows."""
         return SharedTraffic(self._traffic.branch(), self._step_s)
 
-    def shadow(self) -> Shadow:
+    def shadow(self) -> SharedTraffic:
         """An exact copy from this instant on, for somebody who asks nothing of the road."""
         shadow = Shadow(self, self._step_s)
         self._shadows.add(shadow)
-        return shadow
+        return SharedTraffic(shadow, self._step_s)
 
     def dismiss(self, shadow: Shadow) -> None:
         """Tells it nothing more."""
@@ -104,6 +108,11 @@ class Shadow:
     def state(self) -> DrivingState:
         """As ``Traffic.state``."""
         return self._state
+
+    def start(self, duration_s: float) -> None:
+        """As ``Traffic.start``; does nothing for as long as it is told."""
+        if self._own is not None and not self._ahead:
+            self._own.start(duration_s)
 
     def advance(self, duration_s: float) -> Advance:
         """As ``Traffic.advance``. What the other has not driven yet is driven in a simulation of its own."""
