@@ -28,7 +28,10 @@ class CosimError(Exception):
 
 
 class UserError(CosimError):
-    """What came, what was expected, what to do, on one line."""
+    """What came, what was expected, what to do: one line for each problem, as which it is given."""
+
+    def __str__(self) -> str:
+        return "\n".join(map(str, self.args))
 
 
 class UnknownNameError(UserError):
