@@ -15,7 +15,7 @@ place        weather, position fix, connection, surroundings
 observation  what an agent sees
 action       what an agent does
 requests     what the cockpit asks of the road, and the answer
-plain        factors between units, and JSON
+plain        factors between units, JSON, and numbers in texts
 """
 
 from automotive_cosim.contracts.action import Action, ActionType, Direction, GoalStatus, Reason

@@ -1,4 +1,4 @@
-"""Factors between units, and JSON."""
+"""Factors between units, JSON, and numbers in texts."""
 
 from __future__ import annotations
 
@@ -9,3 +9,13 @@ MPH_PER_MPS = 3600 / 1609.344
 
 Json = dict[str, Any]
 """A JSON object: the edge of the package, where types end."""
+
+
+def counted(number: int, noun: str, plural: str = "") -> str:
+    """A number with its noun: ``1 step``, ``2,460 episodes``; ``plural`` is for nouns that add more than an "s"."""
+    return f"{number:,} {noun if number == 1 else plural or noun + 's'}"
+
+
+def megabytes_in_words(size_mb: float) -> str:
+    """A size to a tenth of a megabyte, never as zero."""
+    return "less than 0.1 MB" if size_mb < 0.1 else f"{size_mb:,.1f} MB"

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation
-
-ROUNDING_S = 1e-9
+from automotive_cosim.episode.specification import ROUNDING_S
 
 
 class Baseline:

@@ -7,11 +7,11 @@ from typing import Any
 
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S
-from automotive_cosim.episode.baseline import ROUNDING_S, Baseline
+from automotive_cosim.episode.baseline import Baseline
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.session import Session, beginning
 from automotive_cosim.episode.situation import HandOver
-from automotive_cosim.episode.specification import Conditions, End
+from automotive_cosim.episode.specification import ROUNDING_S, Conditions, End
 from automotive_cosim.tasking.instance import Instance
 from automotive_cosim.tasking.task import Mode
 from automotive_cosim.tasking.verdict import Verdict, judge

@@ -26,7 +26,7 @@ from automotive_cosim.contracts import (
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import CoSimulation
 from automotive_cosim.episode.listener import Listener
-from automotive_cosim.episode.specification import Conditions, End
+from automotive_cosim.episode.specification import ROUNDING_S, Conditions, End
 from automotive_cosim.geo import sensor
 from automotive_cosim.geo.locate import Geo
 from automotive_cosim.geo.reckoning import Roads
@@ -180,7 +180,7 @@ class Session:
         if len(self.steps) > self.conditions.max_steps:
             return End.OUT_OF_STEPS
         most_s = self.conditions.max_sim_s
-        return End.OUT_OF_TIME if most_s is not None and self.seconds >= most_s else None
+        return End.OUT_OF_TIME if most_s is not None and self.seconds >= most_s - ROUNDING_S else None
 
     def _finish(self, end: End) -> None:
         self.end = end

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import replace
 from enum import StrEnum
 from io import BytesIO
 from pathlib import Path
@@ -15,6 +15,7 @@ from automotive_cosim.contracts import DrivingState, Json
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.run.episode import EpisodeResult, Shot, Watcher
+from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.harm import nearest_s, overspeed
 from automotive_cosim.run.moments import Judged
 from automotive_cosim.run.plan import Job
@@ -90,80 +91,72 @@ class Collector(Watcher):
         for number, data in enumerate(self._shown):
             (folder / f"step_{number:03d}.jpg").write_bytes(data)
 
-    def row(self, job: Job, result: EpisodeResult) -> Json:
-        """The episode's line in ``episodes.jsonl``, without what the batch adds."""
-        judged = result.verdict
-        episode = self._episode
-        return planned(job) | {
-            "scenario": result.scenario,
-            "parameters": None if episode is None else dict(episode.instance.parameters),
-            "country": "" if episode is None else episode.moments[0].context.country,
-            "success": result.success,
-            "reward": result.reward,
-            "end": str(result.end),
-            "parts": {name: part["ok"] for name, part in judged["parts"].items()} if judged else None,
-            "goal_s": judged["goal_s"] if judged else None,
-            "reason_fits": judged["reason_fits"] if judged else None,
-            "alerts": None if episode is None else _alerts(episode),
-            "steps": result.steps,
-            "sim_seconds": result.sim_seconds,
-            "speed_compliance": compliance(self._states),
-            "min_time_to_collision_s": nearest_s(self._states),
-            "drive": None if result.drive is None else asdict(result.drive),
-            "untouched_drive": None if result.untouched_drive is None else asdict(result.untouched_drive),
-            "interaction_s": result.load.interaction_s if result.load else None,
-            "within_guideline": result.load.within_guideline if result.load else None,
-            "prompt_tokens": [
+    def row(self, job: Job, result: EpisodeResult) -> EpisodeRow:
+        """The episode's row, without what the batch adds."""
+        episode, judged, load = self._episode, result.verdict, result.load
+        return replace(
+            planned(job),
+            scenario=result.scenario,
+            parameters=None if episode is None else dict(episode.instance.parameters),
+            country="" if episode is None else episode.moments[0].context.country,
+            success=result.success,
+            reward=result.reward,
+            end=str(result.end),
+            parts=PartsHeld(**{name: part["ok"] for name, part in judged["parts"].items()}) if judged else None,
+            goal_s=judged["goal_s"] if judged else None,
+            reason_fits=judged["reason_fits"] if judged else None,
+            alerts=None if episode is None else _alerts(episode),
+            steps=result.steps,
+            sim_seconds=result.sim_seconds,
+            speed_compliance=compliance(self._states),
+            min_time_to_collision_s=nearest_s(self._states),
+            drive=result.drive,
+            baseline_drive=result.untouched_drive,
+            interaction_s=load.interaction_s if load else None,
+            within_guideline=load.within_guideline if load else None,
+            prompt_tokens=tuple(
                 stage["reply"]["tokens_in"] for line in self._lines for stage in line["stages"] if stage["reply"]
-            ],
-            "tokens_in": result.tokens_in,
-            "tokens_out": result.tokens_out,
-            "cost_usd": result.cost_usd,
-            "held_out": result.held_out,
-            "trace_sha256": result.trace_sha256,
-            "error": result.error,
-            "error_kind": result.error_kind,
-            "model_seconds": result.model_seconds,
-        }
+            ),
+            tokens_in=result.tokens_in,
+            tokens_out=result.tokens_out,
+            cost_usd=result.cost_usd,
+            held_out=result.held_out,
+            trace_sha256=result.trace_sha256,
+            error=result.error,
+            error_kind=result.error_kind,
+            model_seconds=result.model_seconds,
+        )
 
 
-def planned(job: Job) -> Json:
+def planned(job: Job) -> EpisodeRow:
     """What is known of an episode before it runs."""
     setup, task = job.setup, job.task
-    return {
-        "id": job.id,
-        "task": task.id,
-        "half": setup.half,
-        "pair": job.pair,
-        "dimension": str(task.dimension),
-        "module": str(task.module),
-        "basis": str(task.half(setup.half).basis),
-        "tags": sorted(task.tags),
-        "skills": sorted(task.skills),
-        "declines": not task.half(setup.half).moves,
-        "scenario": job.scenario,
-        "agent": setup.agent,
-        "model": setup.model,
-        "geo": setup.geo,
-        "seed": setup.seed,
-        "repeat": job.repeat,
-        "mode": setup.mode,
-    }
+    half = task.half(setup.half)
+    return EpisodeRow(
+        id=job.id,
+        task=task.id,
+        half=setup.half,
+        pair=job.pair,
+        dimension=task.dimension,
+        module=task.module,
+        basis=str(half.basis),
+        tags=tuple(sorted(task.tags)),
+        skills=tuple(sorted(task.skills)),
+        declines=not half.moves,
+        scenario=job.scenario,
+        agent=setup.agent,
+        model=setup.model,
+        geo=setup.geo,
+        seed=setup.seed,
+        repeat=job.repeat,
+        mode=setup.mode,
+        held_out=setup.held_out,
+    )
 
 
-def failed(job: Job, kind: str, why: str) -> Json:
-    """The line of an episode that the machinery could not bring to its end."""
-    return planned(job) | {
-        "success": None,
-        "held_out": job.setup.held_out,
-        "reward": 0.0,
-        "end": "error",
-        "parts": None,
-        "steps": 0,
-        "trace_sha256": None,
-        "error": why,
-        "error_kind": kind,
-    }
+def failed(job: Job, kind: str, why: str) -> EpisodeRow:
+    """The row of an episode that ended in an infrastructure error."""
+    return replace(planned(job), error=why, error_kind=kind)
 
 
 def compliance(states: Sequence[DrivingState]) -> float | None:
