@@ -22,7 +22,7 @@ class SharedPool:
         self._begin()
 
     def join(self, user: object) -> tuple[Simulations, Callable[[], object]]:
-        """The simulations, and what the user calls when it needs them no more; that is harmless when called again."""
+        """The simulations, and what the user calls when it needs them no more, also more than once."""
         with self._lock:
             if self._process != os.getpid():  # forked: what is kept belongs to the process before
                 self._begin()

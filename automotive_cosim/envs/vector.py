@@ -14,17 +14,18 @@ from gymnasium.vector.utils import iterate
 
 from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.envs.flat import FlatEnv
+from automotive_cosim.episode.specification import SEED_LIMIT
 
 
 class ConcurrentVectorEnv(SyncVectorEnv):
     """gymnasium's ``SyncVectorEnv``, except that the environments step at the same time, each on a thread.
 
-    Threads of one process share the cockpit's side, which Python does one after the other, while each environment's
-    SUMO runs in a process of its own: two processors are busy, not one.
+    Python runs their cockpits one after the other, but each environment's SUMO has a process of its own.
 
-    Seeds: ``reset(seed=s)`` warms the traffic of seed ``s``, once and for all environments, and draws everything else
-    of environment ``i`` from ``s + i``; alone, that is ``env.reset(seed=s + i, options={"traffic_seed": s})``. A list
-    of seeds gives each environment traffic of its own. Without a seed each keeps its traffic.
+    Seeds: ``reset(seed=s)`` warms the traffic of seed ``s``, once for all environments, and draws everything else
+    of environment ``i`` from ``s + i``; alone, that is ``env.reset(seed=s + i, options={"traffic_seed": s})``. A
+    list of seeds gives each environment traffic of its own. Without a seed each keeps its traffic; the first time
+    they share one that is drawn.
     """
 
     def __init__(
@@ -40,13 +41,17 @@ class ConcurrentVectorEnv(SyncVectorEnv):
         """
         super().__init__([partial(_ahead, make) for make in makers], autoreset_mode=autoreset_mode)
         self._threads = ThreadPoolExecutor(len(makers), thread_name_prefix="env")
+        self._is_warm = False
 
     def reset(
-        self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
+        self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Any, dict[str, Any]]:
         """As in ``SyncVectorEnv``; see the class for seeds."""
-        if isinstance(seed, int | np.integer):
-            options = {"traffic_seed": int(seed)} | (options or {})
+        if seed is None and not self._is_warm:
+            seed = int(np.random.default_rng().integers(SEED_LIMIT))
+        if isinstance(seed, int):
+            options = {"traffic_seed": seed} | (options or {})
+        self._is_warm = True
         return super().reset(seed=seed, options=options)
 
     def step(self, actions: Any) -> Any:
@@ -102,12 +107,12 @@ def _ahead(make: Callable[[], gym.Env[Any, Any]]) -> _Ahead:
 
 
 def cockpits(num_envs: int = 1, **options: Any) -> ConcurrentVectorEnv:
-    """What ``gym.make_vec("AutomotiveCosim/Cockpit-v0", num_envs)`` makes; ``options`` as ``CockpitEnv`` takes them."""
+    """What ``gym.make_vec("AutomotiveCosim/Cockpit-v0", num_envs)`` makes, with the options of ``CockpitEnv``."""
     return _made(CockpitEnv, num_envs, options)
 
 
 def flats(num_envs: int = 1, **options: Any) -> ConcurrentVectorEnv:
-    """What ``gym.make_vec("AutomotiveCosim/Flat-v0", num_envs)`` makes; ``options`` as ``FlatEnv`` takes them."""
+    """What ``gym.make_vec("AutomotiveCosim/Flat-v0", num_envs)`` makes, with the options of ``FlatEnv``."""
     return _made(FlatEnv, num_envs, options)
 
 
