@@ -97,7 +97,7 @@ class Plan:
                 raise UserError("agent 'human' needs a person; use `automotive-cosim run --agent human`")
             make_agent(agent, model)
 
-    def jobs(self) -> tuple[Job, ...]:
+    def jobs(self) -> tuple[EpisodeJob, ...]:
         """Every episode, those that share a warm simulation together.
 
         Of these a contestant's come after another's: a situation that does not come about for one is known by then.
@@ -130,7 +130,7 @@ class Plan:
             if self.everywhere or name not in shipped or task.runs_whole_in(name)
         ]
 
-    def _each(self) -> Iterator[Job]:
+    def _each(self) -> Iterator[EpisodeJob]:
         for agent, model, (task, scenario), seed, geo, mode, repeat in product(
             self.agents,
             self.models,
@@ -157,11 +157,11 @@ class Plan:
                     mode=Mode(mode),
                     held_out=self.held_out,
                 )
-                yield Job(setup, repeat, self.limits)
+                yield EpisodeJob(setup, repeat, self.limits)
 
 
 @dataclass(frozen=True, slots=True)
-class Job:
+class EpisodeJob:
     """One episode of a plan."""
 
     setup: EpisodeSetup
