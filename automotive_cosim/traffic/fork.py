@@ -336,7 +336,7 @@ class Simulations:
         return self._kept[setup]
 
     @contextmanager
-    def held(self, scenario: Scenario, seed: int, progress: Progress | None = None) -> Iterator[Forked]:
+    def held(self, scenario: Scenario, seed: int, progress: WarmUpProgress | None = None) -> Iterator[Forked]:
         """As ``warm``, for threads: while one makes a simulation the others wait, and none is ended while held.
 
         Raises:
