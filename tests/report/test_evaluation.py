@@ -215,7 +215,7 @@ def test_a_folder_without_episodes_is_told(tmp_path):
         write_report(tmp_path)
     with opened(tmp_path / "e", PLAN.as_json()):
         pass
-    with pytest.raises(UserError, match="no episode yet"):
+    with pytest.raises(UserError, match="no episodes yet"):
         commands.report(tmp_path / "e")
 
 
