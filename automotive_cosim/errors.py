@@ -29,7 +29,10 @@ class CosimError(Exception):
 
 
 class UserError(CosimError):
-    """An error that the user can fix: what came, what was expected and what to do, on one line."""
+    """An error that the user can fix: what came, what was expected and what to do, one line for each problem."""
+
+    def __str__(self) -> str:
+        return "\n".join(map(str, self.args))
 
 
 class UnknownNameError(UserError):

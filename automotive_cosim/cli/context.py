@@ -17,7 +17,8 @@ from automotive_cosim.errors import UnknownNameError, UserError
 
 if TYPE_CHECKING:
     from automotive_cosim.contracts import DrivingState, Json, Weather
-    from automotive_cosim.geo.context import AppliedRule, GeoContext
+    from automotive_cosim.geo.applied import AppliedRule
+    from automotive_cosim.geo.context import GeoContext
 
 FASTEST_KMH = 1000.0
 """No car is faster."""

@@ -26,6 +26,7 @@ from automotive_cosim.cli import (
     results,
     run,
     scenarios,
+    schema,
     screens,
     signals,
     study,
@@ -57,6 +58,7 @@ app.command()(results.regrade)
 app.command()(bench.bench)
 app.command()(playback.playback)
 app.command()(screens.screens)
+app.command()(schema.schema)
 app.command(context_settings=context.COMMAND_SETTINGS)(context.context)
 app.add_typer(study.app, name="study")
 app.add_typer(scenarios.app, name="scenarios")
@@ -102,9 +104,9 @@ def main() -> None:
     except (UserError, InfrastructureError, typer.TyperException) as error:
         if os.environ.get("AUTOMOTIVE_COSIM_DEBUG"):
             raise
-        message = error.format_message() if isinstance(error, typer.TyperException) else str(error)
-        if message:  # without a command, the help has been printed instead
-            print("error: " + " ".join(message.split()), file=sys.stderr)
+        problems = [error.format_message()] if isinstance(error, typer.TyperException) else error.args
+        for problem in filter(None, map(str, problems)):  # none: the help for a missing command has been printed
+            print("error: " + " ".join(problem.split()), file=sys.stderr)
         code = 3 if isinstance(error, InfrastructureError) else 2
     except OSError as error:
         if os.environ.get("AUTOMOTIVE_COSIM_DEBUG"):

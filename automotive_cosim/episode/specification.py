@@ -17,6 +17,8 @@ ACTION_COST_S = 1.0
 s)."""
 MAX_STEPS = 20
 """Actions that an episode may take."""
+ROUNDING_S = 1e-9
+"""Sums of simulated seconds are equal up to this."""
 SEED_LIMIT = 2**31
 """SUMO takes seeds below this."""
 

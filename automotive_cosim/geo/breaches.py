@@ -18,7 +18,8 @@ from enum import StrEnum
 from typing import Any, Protocol
 
 from automotive_cosim.contracts import KMH_PER_MPS, STANDING_BELOW_MPS, DrivingState, LimitSource
-from automotive_cosim.geo.context import AppliedRule, GeoContext
+from automotive_cosim.geo.applied import AppliedRule
+from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.rules import Rule, Status
 from automotive_cosim.geo.text import KM_PER_MILE
 

@@ -61,8 +61,8 @@ Strategy = Callable[[Ground], Played]
 
 def oracle(ground: Ground) -> Wrong:
     """Every way of the expert."""
-    for number, way in enumerate((ground.instance.moves, *ground.half.ways)):
-        played = ground.play(ground.oracle(way))
+    others = (ground.play(ground.oracle(way)) for way in ground.half.ways)
+    for number, played in enumerate((ground.reference, *others)):
         if not played.success:
             yield f"way {number}: {played.why}"
         elif played.seconds > PACE * ground.half.deadline.seconds:
@@ -279,7 +279,7 @@ def repeat(ground: Ground, simulations: Simulations) -> Wrong:
 
 def hash_of_oracle(ground: Ground) -> str:
     """The hash of the expert's episode."""
-    return ground.play(ground.oracle()).trace_sha256
+    return ground.reference.trace_sha256
 
 
 def reach(task: Task, seed: int, simulations: Simulations) -> Wrong:

@@ -1,9 +1,9 @@
 """How long the rest of a batch takes, from what its jobs have taken so far.
 
-A worker that turns to another simulation warms it up first: that job is *cold* and takes the warm-up beside its own
-time. The own time goes by the kind of job (who acts) and by the scenario. So a job is expected to take the mean of the
-warm ones of its kind in its scenario, drawn towards the mean of its kind while few are known, and a warm-up what the
-cold ones took beyond that. The sum is shared among as many workers as there is work for.
+A worker that turns to another simulation warms it up first: that job is *cold* and takes the warm-up beside its
+own time. The own time depends on the kind of job (who acts) and on the scenario. So a job is expected to take
+the mean of the warm ones of its kind in its scenario, drawn towards the mean of its kind while few are known,
+and a warm-up what the cold ones took beyond that. The sum is shared among as many workers as there is work for.
 """
 
 from __future__ import annotations
