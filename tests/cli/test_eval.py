@@ -151,7 +151,7 @@ def test_a_stored_episode_is_run_again_and_compared_step_by_step(cli, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("plan", "said"), [(None, "is no evaluation"), ({"tasks": ["all"]}, "no episodes of agents")]
+    ("plan", "said"), [(None, "is not an evaluation"), ({"tasks": ["all"]}, "no episodes of agents")]
 )
 def test_a_folder_that_is_no_evaluation_is_told(cli, tmp_path, plan, said):
     if plan is not None:
