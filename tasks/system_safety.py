@@ -10,7 +10,7 @@ from automotive_cosim.tasking.moves import Move, Open, Slide, Tap
 from automotive_cosim.tasking.task import Basis, Dimension, Half, Module, Start, Task
 from automotive_cosim.tasking.triggers import (
     All,
-    Condition,
+    TriggerCondition,
     Dark,
     Driving,
     InCountry,
@@ -55,7 +55,7 @@ def _pair(
     return Task(task_id, Module.SYSTEM, dimension, says, first, second, difference, parameters, tags)
 
 
-def _when(situation: Condition, within_s: float = 240.0) -> Trigger:
+def _when(situation: TriggerCondition, within_s: float = 240.0) -> Trigger:
     return Trigger(All((Driving(), situation)), for_s=3.0, within_s=within_s)
 
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from automotive_cosim.errors import UnknownNameError
-from automotive_cosim.models.base import ChatModel, Message, Reply
+from automotive_cosim.models.base import ChatModel, ChatMessage, ModelReply
 from automotive_cosim.models.replay import Replay
 from automotive_cosim.models.rules import Rules
 

@@ -26,7 +26,7 @@ from automotive_cosim.osm.demand import Journey, write
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.options import Setup, command_line, read_configuration
-from automotive_cosim.traffic.stability import Step, summary
+from automotive_cosim.traffic.stability import StepFigures, summary
 
 HOUR_S = 3600.0
 
@@ -305,7 +305,7 @@ class _Look:
     teleports: int = 0
     """Seconds since the day began."""
 
-    def add(self, step: Step) -> None:
+    def add(self, step: StepFigures) -> None:
         self.count += 1
         self.running += step["running"]
         self.halting += step["halting"]

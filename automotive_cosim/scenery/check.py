@@ -50,7 +50,7 @@ class Item:
 
 
 @dataclass(frozen=True, slots=True)
-class Proof:
+class ScenarioProof:
     """The results of all checks of one scenario."""
 
     scenario: str
@@ -79,7 +79,7 @@ class Ride:
     took_s: float
 
 
-def check(scenario: Scenario, *, quick: bool = False, tell: Tell = lambda what, share: None) -> Proof:
+def check(scenario: Scenario, *, quick: bool = False, tell: Tell = lambda what, share: None) -> ScenarioProof:
     """Checks everything that a scenario declares.
 
     Args:
@@ -90,7 +90,7 @@ def check(scenario: Scenario, *, quick: bool = False, tell: Tell = lambda what, 
     Raises:
         SetupError: libsumo is missing, or eclipse-sumo unless ``quick``.
     """
-    return Proof(scenario.name, tuple(_items(scenario, quick, tell)))
+    return ScenarioProof(scenario.name, tuple(_items(scenario, quick, tell)))
 
 
 def _items(scenario: Scenario, quick: bool, tell: Tell) -> Iterator[Item]:
