@@ -17,7 +17,8 @@ from automotive_cosim.errors import UnknownNameError, UserError
 
 if TYPE_CHECKING:
     from automotive_cosim.contracts import DrivingState, Json, Weather
-    from automotive_cosim.geo.context import AppliedRule, GeoContext
+    from automotive_cosim.geo.applied import AppliedRule
+    from automotive_cosim.geo.context import GeoContext
 
 FASTEST_KMH = 1000.0
 """More is no car's speed."""
@@ -66,7 +67,7 @@ def context(
 ) -> None:
     """Print what traffic law, sky and climate say of a place."""
     from automotive_cosim.contracts import GpsFix
-    from automotive_cosim.geo.context import Geo
+    from automotive_cosim.geo.locate import Geo
 
     _check(road, rules or ())
     geo = Geo(rules or ())

@@ -86,8 +86,6 @@ def _options(
 
 def main() -> None:
     """Runs the command line and ends the process; an error is one line on stderr."""
-    if signal.getsignal(signal.SIGINT) is signal.SIG_DFL:  # see the package's __init__
-        signal.signal(signal.SIGINT, signal.default_int_handler)
     terminations: list[int] = []
 
     def terminate(number: int, frame: object) -> None:

@@ -43,6 +43,13 @@ def validate(
         Path | None,
         typer.Option(help="Folder of the proofs; the same one goes on. None keeps nothing.", show_default=False),
     ] = None,
+    against: Annotated[
+        Path | None,
+        typer.Option(
+            help="What --json printed before: the reference solutions must still give the same traces.",
+            show_default=False,
+        ),
+    ] = None,
     tasks_from: TasksFrom = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")] = False,
 ) -> None:
@@ -53,7 +60,7 @@ def validate(
     from rich.console import Console
 
     from automotive_cosim.proof.batch import prove
-    from automotive_cosim.proof.prover import GATES
+    from automotive_cosim.proof.prover import GATES, changed_traces, read_traces
     from automotive_cosim.proof.prover import as_json as json_of
     from automotive_cosim.run.plan import choose
 
@@ -61,6 +68,7 @@ def validate(
     asked = words("tasks", tasks)
     task_ids = choose(asked)
     numbers = tuple(range(first_seed, first_seed + seeds))
+    before = None if against is None else read_traces(against)
     console = Console(stderr=True)
 
     def tell(proof: Proof, done: int, planned: int) -> None:
@@ -78,6 +86,9 @@ def validate(
             typer.echo(f"what has been proven is in {out}; the same command goes on", err=True)
         raise
     result = json_of(proofs, task_ids, numbers)
+    changed = changed_traces(before, result["traces"]) if before is not None else ()
+    for name, why in changed:
+        console.print(f"[red]✗[/] {name}: {why}", highlight=False)
     if as_json:
         typer.echo(json.dumps(result))
     else:
@@ -87,7 +98,7 @@ def validate(
         typer.echo(
             f"{len(task_ids)} tasks, {len(numbers)} seeds: {failed} gates failed, {len(result['errors'])} errors"
         )
-    if any(entry["failed"] for entry in result["gates"].values()):
+    if changed or any(entry["failed"] for entry in result["gates"].values()):
         raise typer.Exit(FAILED)
     if result["errors"]:
         raise InfrastructureError(

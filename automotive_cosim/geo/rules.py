@@ -28,6 +28,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import date, datetime
 from enum import StrEnum
+from functools import lru_cache
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -189,8 +190,17 @@ def read_jurisdiction(path: Path) -> Jurisdiction:
     """
     try:
         text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise GeoDataError(f"{path}: {error}") from error
+    return _parsed(text, path)
+
+
+@lru_cache(maxsize=256)
+def _parsed(text: str, path: Path) -> Jurisdiction:
+    """Of a file's text, which is parsed once in a process: that takes longer than a second of simulation."""
+    try:
         table = tomllib.loads(text)
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+    except tomllib.TOMLDecodeError as error:
         raise GeoDataError(f"{path}: {error}") from error
     entry = f"{path} [jurisdiction]"
     try:

@@ -16,7 +16,9 @@ from automotive_cosim import scenarios
 from automotive_cosim.agents import PROFILES, make_agent
 from automotive_cosim.agents.settings import geo_input
 from automotive_cosim.contracts import Json
+from automotive_cosim.episode.specification import MAX_STEPS, mode_of
 from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.interface.trace import canonical
 from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.scenery import open_scenario
@@ -24,8 +26,6 @@ from automotive_cosim.tasking.task import Mode, Task
 from automotive_cosim.tasks import CATALOGUE
 
 NO_MODEL = "none"
-STEPS = 20
-"""Actions that an episode may take."""
 WATCH_STEPS = 60
 """More steps for a watch, which begins up to a minute before its trigger."""
 
@@ -34,7 +34,7 @@ WATCH_STEPS = 60
 class Limits:
     """What one episode may take."""
 
-    steps: int = STEPS
+    steps: int = MAX_STEPS
     sim_s: float = 600.0
     """Simulated seconds from the hand-over; when they are over the episode is judged as it stands."""
     wall_s: float = 900.0
@@ -86,11 +86,6 @@ class Plan:
             if agent == "human":
                 raise UserError("agent 'human' needs a person; use `automotive-cosim run --agent human`")
             make_agent(agent, model)
-        for name in self.geo:
-            geo_input(name)
-        for name in self.modes:
-            if name not in set(Mode):
-                raise UnknownNameError("mode", name, Mode)
 
     def jobs(self) -> tuple[Job, ...]:
         """Every episode, those that share a warm simulation together.
@@ -142,14 +137,14 @@ class Plan:
                 setup = EpisodeSetup(
                     task.id,
                     half,
-                    agent,
-                    model if agent in PROFILES else NO_MODEL,
                     None if is_own else scenario,
+                    agent=agent,
+                    model=model if agent in PROFILES else NO_MODEL,
                     seed=seed,
                     max_steps=self.limits.steps if mode == Mode.PROMPTED else self.limits.steps + WATCH_STEPS,
                     max_sim_s=self.limits.sim_s,
-                    geo=geo,
-                    mode=mode,
+                    geo=geo_input(geo),
+                    mode=mode_of(mode),
                     held_out=self.held_out,
                 )
                 yield Job(setup, repeat, self.limits)
@@ -189,11 +184,16 @@ class Job:
         return self.setup.agent, self.setup.model, self.setup.geo, self.repeat
 
     @property
+    def kind(self) -> Hashable:
+        """Who acts, and when: what tells how long it takes."""
+        return self.setup.agent, self.setup.model, self.setup.mode
+
+    @property
     def situation(self) -> Hashable:
         """The drive up to the hand-over, on which nobody acts; in a watch the agent does."""
         if self.setup.mode == Mode.MONITORING:
             return self.id
-        return replace(self.setup, agent="", model="", geo="", without=())
+        return replace(self.setup, agent="", model="", geo=GeoInput.FULL, without=())
 
     @property
     def wall_s(self) -> float:

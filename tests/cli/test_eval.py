@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.store import opened, read_trace, write_trace
 
 GRID = ("--tasks", "hvac_fan_max", "--scenarios", "grid")
@@ -154,7 +155,7 @@ def test_a_stored_episode_is_run_again_and_compared_step_by_step(cli, tmp_path):
 )
 def test_a_folder_that_is_no_evaluation_is_told(cli, tmp_path, plan, said):
     if plan is not None:
-        with opened(tmp_path / "f", plan, parts=()):
+        with opened(tmp_path / "f", plan, JobRow, parts=()):
             pass
     for command in (("report", "f"), ("replay", "f", "x"), ("regrade", "f"), ("compare", "f", "f")):
         ran = cli(*command)

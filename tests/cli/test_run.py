@@ -98,10 +98,23 @@ def test_ctrl_c_while_the_command_line_loads_ends_it_in_silence(program, tmp_pat
     (tmp_path / "gymnasium.py").write_text(
         "import os, signal\nos.kill(os.getpid(), signal.SIGINT)\nwhile True: pass\n"
     )
-    code = f"import sys; sys.argv[0] = 'automotive-cosim'; {PROGRAM[-1]}"
+    code = "from automotive_cosim_main import main; main()"
     process = program(sys.executable, "-c", code, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     said, _ = process.communicate(timeout=60)
     assert (process.returncode, said) == (-signal.SIGINT, "")
+
+
+@pytest.mark.parametrize("handler", ["default_int_handler", "SIG_IGN", "SIG_DFL"])
+def test_the_console_script_leaves_ctrl_c_as_it_was(handler):
+    program = f"""
+import signal, sys
+signal.signal(signal.SIGINT, signal.{handler})
+sys.argv = ["automotive-cosim", "--version"]
+from automotive_cosim_main import main
+try: main()
+finally: assert signal.getsignal(signal.SIGINT) is signal.{handler}, signal.getsignal(signal.SIGINT)
+"""
+    subprocess.run([sys.executable, "-c", program], check=True, capture_output=True)
 
 
 @pytest.fixture

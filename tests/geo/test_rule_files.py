@@ -13,7 +13,7 @@ import pytest
 
 from automotive_cosim.contracts import DrivingState, GpsFix, Weather
 from automotive_cosim.errors import GeoDataError
-from automotive_cosim.geo.context import Geo
+from automotive_cosim.geo.locate import Geo
 from automotive_cosim.geo.place import Atlas
 from automotive_cosim.geo.rules import TOPICS, read_jurisdiction
 from automotive_cosim.geo.situation import CONDITIONS, Situation, all_hold, parse_when

@@ -18,7 +18,8 @@ from hypothesis import strategies as st
 from automotive_cosim import geo
 from automotive_cosim.contracts import DrivingState, GpsFix, LimitSource, OtherVehicle, Weather
 from automotive_cosim.geo.breaches import Violation
-from automotive_cosim.geo.context import Geo, GeoContext
+from automotive_cosim.geo.context import GeoContext
+from automotive_cosim.geo.locate import Geo
 
 PARIS, BEAUCE, BERLIN, BEIJING, DUBAI, WALES = (
     (48.873, 2.285),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter, deque
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -12,8 +13,10 @@ from automotive_cosim.agents import Oracle, Stage, StageName
 from automotive_cosim.contracts import Action, ActionType, AlertKind, Direction, GoalStatus, Observation, Reason
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.report.failures import FailureClass, failure_class
-from automotive_cosim.run.collect import Collector, Pictures
+from automotive_cosim.run.collect import Collector, Pictures, planned
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
+from automotive_cosim.run.episode_row import PartsHeld
+from automotive_cosim.run.plan import Job, Limits
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
@@ -131,18 +134,11 @@ PLANTED: dict[FailureClass, list[tuple[str, str, Sequence[Any], str]]] = {
 
 def classified(task: str, half: str, moves: Sequence[Any], thought: str, simulations: Simulations) -> FailureClass:
     collector = Collector(Pictures.NONE)
-    setup = EpisodeSetup(task, half, "planted", "planted", "grid")
+    setup = EpisodeSetup(task, half, "grid", agent="planted", model="planted")
     result = run_episode(setup, Planted(moves, thought), [collector], simulations=simulations)
     assert result.verdict is not None, result.error
     assert result.success is False
-    row = {
-        "task": task,
-        "half": half,
-        "parts": {name: part["ok"] for name, part in result.verdict["parts"].items()},
-    }
-    judged = collector.judged()
-    assert judged is not None
-    return failure_class(row | {"parameters": judged.parameters}, collector.trace(result))
+    return failure_class(collector.row(Job(setup, 0, Limits()), result), collector.trace(result))
 
 
 @pytest.mark.slow
@@ -157,7 +153,7 @@ def test_of_five_planted_faults_of_a_class_four_are_told(planted, simulations):
 def test_doing_nothing_is_of_no_class():
     step = {"step": 0, "elements": [], "action": None, "feedback": {"code": "none"}, "thought": ""}
     wait = step | {"step": 1, "action": {"action_type": "wait"}, "feedback": {"code": "ok"}}
-    parts = dict.fromkeys(("goal", "in_time", "declared"), False) | {"clean": True, "safe": True}
-    row = {"task": FAN, "half": "first", "parts": parts}
+    parts = PartsHeld(goal=False, clean=True, safe=True, in_time=False, declared=False)
+    row = replace(planned(Job(EpisodeSetup(FAN), 0, Limits())), success=False, parts=parts)
     assert failure_class(row, [step, wait, {"result": {}}]) is FailureClass.UNCLASSIFIED
-    assert failure_class(row | {"task": "gone"}, [step]) is FailureClass.UNCLASSIFIED
+    assert failure_class(replace(row, task="gone"), [step]) is FailureClass.UNCLASSIFIED
