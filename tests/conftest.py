@@ -28,6 +28,7 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.traffic.fork import Simulations
 
+OTHERS = "AUTOMOTIVE_COSIM_TEST_DATA"
 NO_LIBSUMO = Path(__file__).parent / "no_libsumo"
 """What the children of a test find in the place of libsumo."""
 _forbidden = False
@@ -52,11 +53,13 @@ def _without_sumo() -> Iterator[None]:
     global _forbidden
     path = os.environ.get("PYTHONPATH")
     os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (str(NO_LIBSUMO), path)))
+    sys.path.insert(0, str(NO_LIBSUMO))  # which multiprocessing hands on
     _forbidden = True
     try:
         yield
     finally:
         _forbidden = False
+        sys.path.remove(str(NO_LIBSUMO))
         if path is None:
             del os.environ["PYTHONPATH"]
         else:
@@ -151,6 +154,21 @@ def simulations(sumo: None) -> Iterator[Simulations]:
     shared = Simulations()
     yield shared
     shared.close()
+
+
+@pytest.fixture(scope="session")
+def data_of_others() -> Callable[[str], Path]:
+    """A file of the networks, maps and counts that some tests try beside what the repository holds."""
+
+    def find(name: str) -> Path:
+        folder = os.environ.get(OTHERS)
+        if folder is None:
+            pytest.skip(f"{OTHERS} is not set: the folder with the networks, maps and counts of others")
+        if not (found := Path(folder) / name).exists():
+            pytest.skip(f"{found} is not there")
+        return found
+
+    return find
 
 
 @pytest.fixture
