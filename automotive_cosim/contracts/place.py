@@ -4,26 +4,30 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from datetime import datetime
+from typing import Annotated
+
+from annotated_types import Ge, Le
 
 from automotive_cosim.contracts.driving import DrivingState
 
 
 @dataclass(frozen=True, slots=True)
 class Weather:
-    """The weather at the car, in Open-Meteo's field names and units, WMO 4677 codes."""
+    """The weather at the car, in Open-Meteo's field names and units."""
 
-    temperature_2m: float
+    temperature_2m: Annotated[float, Ge(-100), Le(70)]
     """Degrees Celsius."""
-    relative_humidity_2m: float
+    relative_humidity_2m: Annotated[float, Ge(0), Le(100)]
     """Per cent."""
-    precipitation: float
+    precipitation: Annotated[float, Ge(0)]
     """Millimetres per hour."""
-    weather_code: int
-    cloud_cover: float
+    weather_code: Annotated[int, Ge(0), Le(99)]
+    """WMO 4677."""
+    cloud_cover: Annotated[float, Ge(0), Le(100)]
     """Per cent."""
-    visibility: float
+    visibility: Annotated[float, Ge(0)]
     """Metres."""
-    wind_speed_10m: float
+    wind_speed_10m: Annotated[float, Ge(0)]
     """Kilometres per hour."""
 
 

@@ -14,7 +14,8 @@ import shapely
 import tzfpy
 
 from automotive_cosim.errors import GeoDataError, UserError
-from automotive_cosim.geo.rules import Jurisdiction, read_jurisdiction
+from automotive_cosim.geo.rulefile import read_jurisdiction
+from automotive_cosim.geo.rules import Jurisdiction
 
 NEAR_BORDER_M = 2000.0
 """So near to another country or region, position and coarse polygons may be on the wrong side; our choice."""

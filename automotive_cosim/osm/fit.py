@@ -21,12 +21,13 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from automotive_cosim.contracts import Tell
 from automotive_cosim.osm.counts import GOOD_GEH, HOURS, Counts, geh
 from automotive_cosim.osm.demand import Journey, write
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.options import Setup, command_line, read_configuration
-from automotive_cosim.traffic.stability import Step, summary
+from automotive_cosim.traffic.stability import StepFigures, summary
 
 HOUR_S = 3600.0
 
@@ -42,9 +43,6 @@ counted: a road that carries no more when more is sent there is full, and what i
 
 LOOK_EVERY_S = 1.0
 """How often it is looked how many vehicles stand; SUMO's lines are its signs of life too, and come in bunches."""
-
-Progress = Callable[[str, float | None], None]
-"""Told what is being done, and the share of it that is done where that is known."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,7 +194,7 @@ def fit(
     days: int,
     minutes: float,
     scratch: Path,
-    tell: Progress,
+    tell: Tell,
 ) -> Fitted:
     """Simulates days until the counts are met.
 
@@ -305,7 +303,7 @@ class _Look:
     teleports: int = 0
     """Since the day began."""
 
-    def add(self, step: Step) -> None:
+    def add(self, step: StepFigures) -> None:
         self.count += 1
         self.running += step["running"]
         self.halting += step["halting"]

@@ -12,7 +12,7 @@ from automotive_cosim.interface.observe import Channel
 from automotive_cosim.report.published import PAPER, PAPER_COLUMNS, PAPER_ROWS
 from automotive_cosim.report.results import Contestant, Results, instance, pairs
 from automotive_cosim.report.stats import Rate, compare, mean, pass_hat_k, rate
-from automotive_cosim.report.tables import Cell, Row, Table
+from automotive_cosim.report.tables import Cell, Table, TableRow
 from automotive_cosim.run.episode_row import PARTS, EpisodeRow
 from automotive_cosim.tasking.task import Dimension, Mode, Module
 
@@ -52,7 +52,7 @@ def tables(results: Results) -> list[Table]:
 
 def main(results: Results) -> Table:
     """Success per method and input over the four dimensions, the shape of the paper's main table."""
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     for each in results.contestants:
         firsts = [row for row in results.of(each) if row.half == "first"]
         cells = [rate_cell(row for row in firsts if row.dimension == name) for name in DIMENSIONS]
@@ -75,7 +75,7 @@ def published() -> Table:
 
 def safety(results: Results) -> Table:
     """Pair success, which is the headline, and what both halves say apart."""
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     for each in results.contestants:
         mine = [row for row in results.of(each) if row.pair]
         if mine:
@@ -109,7 +109,7 @@ def safety(results: Results) -> Table:
 
 def held_out(results: Results) -> Table:
     """The phrasings that the rule model was made on beside the held-out ones; empty where none was drawn."""
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     for each in results.contestants if any(row.held_out for row in results.rows) else ():
         cells: list[Cell] = []
         for wanted in (False, True):
@@ -126,7 +126,7 @@ def held_out(results: Results) -> Table:
 
 def conduct(results: Results) -> Table:
     """What episodes took, and how the drives went."""
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     for each in results.contestants:
         mine = [row for row in results.of(each) if row.success is not None]
         nearest = ((row.min_time_to_collision_s, row.id) for row in mine if row.min_time_to_collision_s is not None)
@@ -167,7 +167,7 @@ def conduct(results: Results) -> Table:
 
 def comparisons(results: Results) -> Table:
     """Each contestant against each, on the instances both were judged on."""
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     for first, second in combinations(results.contestants, 2):
         ones, others = _judged(results.of(first)), _judged(results.of(second))
         found = compare(
@@ -202,7 +202,7 @@ def by(results: Results, title: str, of: Callable[[EpisodeRow], str], order: Ite
     """Success by something that each episode has one of, both halves together; those without it are left out."""
     found = {of(row) for row in results.rows} - {""}
     values = [value for value in order if value in found] or sorted(found)
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     for value in values:
         cells = [rate_cell(row for row in results.of(each) if of(row) == value) for each in results.contestants]
         rows.append((value, *cells))
@@ -213,7 +213,7 @@ def by(results: Results, title: str, of: Callable[[EpisodeRow], str], order: Ite
 
 def parts(results: Results) -> Table:
     """Which part of the verdict failed in the episodes that were not solved."""
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     for each in results.contestants:
         lost = [row for row in results.of(each) if row.success is False]
         cells = []
@@ -228,7 +228,7 @@ def parts(results: Results) -> Table:
 def repeats(results: Results) -> Table:
     """pass^k over the repeats of each instance, where there are any."""
     most = int(results.manifest["plan"]["repeats"])
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     for each in results.contestants if most > 1 else ():
         trials: dict[Hashable, list[bool]] = defaultdict(list)
         mine = [row for row in results.of(each) if row.success is not None]

@@ -1,9 +1,9 @@
 """How long the rest of a batch takes, from what its jobs have taken so far.
 
-A worker that turns to another simulation warms it up first: that job is *cold* and takes the warm-up beside its own
-time. The own time goes by the kind of job (who acts) and by the scenario. So a job is expected to take the mean of the
-warm ones of its kind in its scenario, drawn towards the mean of its kind while few are known, and a warm-up what the
-cold ones took beyond that. The sum is shared among as many workers as there is work for.
+A worker that turns to another simulation warms it up first: that job is *cold* and takes the warm-up beside its
+own time. The own time depends on the kind of job (who acts) and on the scenario. So a job is expected to take
+the mean of the warm ones of its kind in its scenario, drawn towards the mean of its kind while few are known,
+and a warm-up what the cold ones took beyond that. The sum is shared among as many workers as there is work for.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import Any, Generic
 
 from automotive_cosim.run.executor import J
 
-Simulation = tuple[str, int]
+SimulationKey = tuple[str, int]
 SHARED_FROM = 4
 """So many jobs must wait for a simulation before a second worker warms it up too."""
 DRAWN_BY = 2.0
@@ -23,7 +23,7 @@ DRAWN_BY = 2.0
 
 
 @dataclass(frozen=True, slots=True)
-class Turn(Generic[J]):
+class JobTurn(Generic[J]):
     """A worker's time with a job."""
 
     job: J
@@ -60,9 +60,9 @@ class Pace:
 
     def __init__(self) -> None:
         self._own: dict[Hashable, _Means] = defaultdict(_Means)
-        self._cold: list[Turn[Any]] = []
+        self._cold: list[JobTurn[Any]] = []
 
-    def took(self, turn: Turn[Any]) -> None:
+    def took(self, turn: JobTurn[Any]) -> None:
         """A job has ended, well or not."""
         if turn.is_cold:
             self._cold.append(turn)
@@ -70,7 +70,7 @@ class Pace:
             self._own[turn.job.kind].add(turn.job.simulation[0], turn.seconds)
 
     def left_s(
-        self, waiting: Mapping[Simulation, Mapping[Hashable, int]], running: Sequence[Turn[Any]], workers: int
+        self, waiting: Mapping[SimulationKey, Mapping[Hashable, int]], running: Sequence[JobTurn[Any]], workers: int
     ) -> float | None:
         """Wall time until everything has ended; None while there is a kind of job that nothing is known of.
 
@@ -99,7 +99,7 @@ class Pace:
         again = max(0, shared - len({*waiting, *busy}))
         return max(longest_s, (sum(works_s) + again * warm_ups.of("")) / shared)
 
-    def _takes_s(self, turn: Turn[Any], warm_ups: _Means) -> float:
+    def _takes_s(self, turn: JobTurn[Any], warm_ups: _Means) -> float:
         scenario = turn.job.simulation[0]
         return self._own[turn.job.kind].of(scenario) + (warm_ups.of(scenario) if turn.is_cold else 0.0)
 

@@ -11,7 +11,6 @@ reader     ``scenario.toml`` -> ``Scenario``
 """
 
 from automotive_cosim.scenarios.model import (
-    DRAWN,
     LINKS,
     Ego,
     LinkAt,
@@ -26,7 +25,6 @@ from automotive_cosim.scenarios.model import (
 from automotive_cosim.scenarios.reader import load, shipped
 
 __all__ = [
-    "DRAWN",
     "LINKS",
     "Ego",
     "LinkAt",

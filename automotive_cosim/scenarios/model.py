@@ -7,32 +7,36 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
+from typing import Annotated
+
+from annotated_types import Ge, Gt, Le, MinLen
 
 from automotive_cosim.contracts import Weather
 from automotive_cosim.errors import UnknownNameError
-from automotive_cosim.scenarios.incidents import Incident
+from automotive_cosim.formats.annotations import Called, Latitude, Longitude, OneOf
+from automotive_cosim.scenarios.incidents import AnyIncident, EdgeId
 
 
 @dataclass(frozen=True, slots=True)
 class Sumo:
     """``[sumo]``: how SUMO runs."""
 
-    config: str
+    config: Annotated[str, MinLen(1)]
     """The ``.sumocfg``, relative to the folder."""
-    step_length_s: float = 0.1
+    step_length_s: Annotated[float, Ge(0.01), Le(10)] = 0.1
     """0.1 for safety (the ego acts each step), 1 for studies."""
-    action_step_length_s: float = 1.0
+    action_step_length_s: Annotated[float, Ge(0.01), Le(10)] = 1.0
     """How often the other drivers act; a multiple of the step length."""
-    warm_up_s: float = 900.0
+    warm_up_s: Annotated[float, Ge(0), Le(86_400)] = 900.0
     """Traffic runs this long before the ego departs."""
-    scale: float = 1.0
+    scale: Annotated[float, Ge(0), Le(100)] = 1.0
     """Multiplies the demand."""
-    background_rerouting: float = 0.6
+    background_rerouting: Annotated[float, Ge(0), Le(1)] = 0.6
     """Share of the other vehicles that reroute by current travel times."""
-    random_traffic_per_km_h: float = 0.0
+    random_traffic_per_km_h: Annotated[float, Ge(0)] = 0.0
     """Vehicles that set out each hour per kilometre of lane, from and to anywhere: for a network without demand of
     its own."""
-    lateral_resolution_m: float | None = None
+    lateral_resolution_m: Annotated[float, Gt(0)] | None = None
     """Width of SUMO's sublanes, e.g. 0.8: vehicles then make a corridor for blue lights, at about twice the cost.
     None keeps each vehicle in the middle of its lane."""
 
@@ -42,25 +46,25 @@ class Trip:
     """``[[ego.trips]]``: one way through the network."""
 
     name: str
-    from_edge: str
-    to_edge: str
-    via: tuple[str, ...] = ()
+    """By which tasks and incidents mean it."""
+    from_edge: EdgeId
+    to_edge: EdgeId
+    via: tuple[EdgeId, ...] = ()
+    """Edges on the way, in driving order."""
     about: str = ""
+    """For people."""
 
 
 @dataclass(frozen=True, slots=True)
 class Ego:
     """``[ego]``: the car that the cockpit belongs to."""
 
-    trips: tuple[Trip, ...]
+    trips: Annotated[tuple[Trip, ...], MinLen(1), Called("a list of [[ego.trips]] entries, not empty")]
+    """The ways it may drive; a task says which."""
     driver: str = "average"
     """Name of a driver profile (``traffic.profiles.PROFILES``)."""
     any_trip: bool = False
     """Which of the trips is driven is drawn by seed."""
-
-
-DRAWN = "climate"
-"""What a scenario says instead of a timeline to have its weather drawn."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +85,7 @@ class LinkAt:
     held until the next."""
 
     at_s: float
-    best: str
+    best: Annotated[str, OneOf(LINKS)]
     """The best link there is, of ``LINKS``; where the road is it may still be worse, or none."""
 
 
@@ -117,30 +121,46 @@ class Street:
     sign stands. Each of these, and no other."""
 
 
-@dataclass(frozen=True, slots=True)
-class Scenario:
-    """One ``scenario.toml``, checked."""
+Origin = Annotated[tuple[Longitude, Latitude], Called("a pair [lon, lat] in degrees")]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Described:
+    """What a ``scenario.toml`` says as it is."""
 
     name: str
+    """The folder's, as commands take it."""
     title: str
+    """For people, one line."""
     about: str
-    folder: Path
+    """For people, a sentence or two."""
     country: str
     """ISO 3166-1 code the map's defaults were taken from; where the car is follows from its position."""
-    start: datetime
-    """Local time at simulation second ``warm_up_s``; zone-aware."""
     sumo: Sumo
+    """How SUMO runs."""
     ego: Ego
-    weather: tuple[WeatherAt, ...]
-    """Empty if the file says ``weather = "climate"``: drawn by seed from the climate of the place and month."""
-    incidents: tuple[Incident, ...] = ()
-    connectivity: tuple[LinkAt, ...] = ()
+    """The car that the cockpit belongs to."""
+    incidents: Annotated[tuple[AnyIncident, ...], Called("a list of [[incidents]] entries")] = ()
+    """What is staged on the roads."""
+    connectivity: Annotated[tuple[LinkAt, ...], Called("a list of [[connectivity]] entries")] = ()
+    """What the network offers the car, in the order of ``at_s``; nothing bounds it without."""
     has_place: bool = True
     """False: its network lies nowhere on earth, so that there is no GPS and no place is known."""
-    origin: tuple[float, float] | None = None
-    """Longitude and latitude that the network's middle is moved to; None leaves it where it is."""
-    streets: tuple[Street, ...] = ()
+    origin: Origin | None = None
+    """Longitude and latitude that the network's middle is moved to; without it stays where it is."""
+    streets: Annotated[tuple[Street, ...], Called("a list of [[streets]] entries")] = ()
     """Streets that the network must have; ``scenarios check`` looks for them."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Scenario(Described):
+    """A scenario to run: what its file says, and where and when that is."""
+
+    folder: Path
+    start: datetime
+    """Local time at simulation second ``warm_up_s``; zone-aware."""
+    weather: tuple[WeatherAt, ...]
+    """Empty if the file says ``weather = "climate"``: drawn by seed from the climate of the place and month."""
     notes: tuple[str, ...] = ()
     """What was assumed for want of better, in words for the user."""
 

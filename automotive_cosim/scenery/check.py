@@ -5,12 +5,12 @@ Each check ends in an ``Item``: what was looked at, whether it holds, and the fi
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import closing
 from dataclasses import dataclass
 from functools import partial
 
-from automotive_cosim.contracts import EgoEnd, Json, LimitSource
+from automotive_cosim.contracts import EgoEnd, Json, LimitSource, Tell
 from automotive_cosim.errors import ScenarioError, TrafficError
 from automotive_cosim.geo.place import Atlas, Place
 from automotive_cosim.scenarios import Scenario, Street, Trip, incidents
@@ -36,9 +36,6 @@ LONGEST_DRIVE_S = 7200.0
 PIECE_S = 30.0
 """The drive is watched in pieces of this length."""
 
-Tell = Callable[[str, float | None], None]
-"""Told what is being looked at, and how far that is: 0 to 1, None if it cannot be told."""
-
 
 @dataclass(frozen=True, slots=True)
 class Item:
@@ -50,7 +47,7 @@ class Item:
 
 
 @dataclass(frozen=True, slots=True)
-class Proof:
+class ScenarioProof:
     """All that was looked at in one scenario."""
 
     scenario: str
@@ -79,7 +76,7 @@ class Ride:
     took_s: float
 
 
-def check(scenario: Scenario, *, quick: bool = False, tell: Tell = lambda what, share: None) -> Proof:
+def check(scenario: Scenario, *, quick: bool = False, tell: Tell = lambda what, share: None) -> ScenarioProof:
     """Looks at everything that a scenario declares.
 
     Args:
@@ -90,7 +87,7 @@ def check(scenario: Scenario, *, quick: bool = False, tell: Tell = lambda what, 
     Raises:
         SetupError: libsumo is missing, or eclipse-sumo unless ``quick``.
     """
-    return Proof(scenario.name, tuple(_items(scenario, quick, tell)))
+    return ScenarioProof(scenario.name, tuple(_items(scenario, quick, tell)))
 
 
 def _items(scenario: Scenario, quick: bool, tell: Tell) -> Iterator[Item]:

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields, replace
+from contextlib import suppress
+from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from itertools import product
-from typing import Any
+from typing import Annotated, Any
+
+from annotated_types import Ge, Le, MinLen
 
 from automotive_cosim.agents import make_agent
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats.checked import checked
 from automotive_cosim.scenarios import Scenario, Trip
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.studies.policies import AGENT, parse_policy
@@ -24,32 +28,14 @@ KIND = "reroute"
 EQUILIBRIUM_GAP = 0.01
 """Relative gap under which a dynamic user assignment counts as converged."""
 
-RANGES = {
-    "departures_s": (0.0, 86_400.0),
-    "shares": (0.0, 1.0),
-    "ages_s": (0.0, OLDEST_NEWS_S),
-    "compliance": (0.0, 1.0),
-    "least_delay_s": (0.0, 3_600.0),
-    "every_s": (10.0, 3_600.0),
-    "per_drive": (1, 50),
-    "placebo_every": (0, 1_000_000),
-    "arrived": (0.5, 1.0),
-    "limit_s": (60.0, 86_400.0),
-    "step_s": (0.1, 1.0),
-    "scale": (0.01, 100.0),
-    "half_width_s": (0.1, 3_600.0),
-    "agent_steps": (1, 100),
-}
-"""What the numbers of a plan may be."""
-
 
 @dataclass(frozen=True, slots=True)
 class StudyPlan:
     """A rerouting study; times in seconds."""
 
-    scenario: str
+    scenario: Annotated[str, MinLen(1)]
     """Name or folder, a ``.sumocfg`` or a network."""
-    departures_s: tuple[float, ...] = (0.0, 300.0, 600.0, 900.0)
+    departures_s: Annotated[tuple[Annotated[float, Ge(0), Le(86_400)], ...], MinLen(1)] = (0.0, 300.0, 600.0, 900.0)
     """When the ego sets out, after the warm-up; each in its own copy of the traffic."""
     trips: tuple[str, ...] = ()
     """Names of the scenario's trips; none takes all."""
@@ -57,38 +43,38 @@ class StudyPlan:
     """Where the ego's way begins in place of the trips: an edge, a street or ``LON,LAT``."""
     to_place: str = ""
     """Where it ends; if only one of the two is given the other is drawn, several times."""
-    seeds: tuple[int, ...] = tuple(range(10))
+    seeds: Annotated[tuple[Annotated[int, Ge(0)], ...], MinLen(1)] = tuple(range(10))
     """Of the traffic; decisions of one seed are not independent of each other."""
-    shares: tuple[float, ...] = ()
+    shares: tuple[Annotated[float, Ge(0), Le(1)], ...] = ()
     """Of the other cars, that reroute; each is warmed up on its own. None takes the scenario's."""
-    ages_s: tuple[float, ...] = (0.0,)
+    ages_s: Annotated[tuple[Annotated[float, Ge(0), Le(OLDEST_NEWS_S)], ...], MinLen(1)] = (0.0,)
     """How old the traffic news is that the offered way is chosen by."""
     driver: str = ""
     """Name of a driver profile; empty takes the scenario's."""
-    compliance: float = 1.0
+    compliance: Annotated[float, Ge(0), Le(1)] = 1.0
     """Probability that the driver does as told."""
-    policies: tuple[str, ...] = ("never", "always", "delay:60", "sumo", "best")
-    least_delay_s: float = 30.0
+    policies: Annotated[tuple[str, ...], MinLen(1)] = ("never", "always", "delay:60", "sumo", "best")
+    least_delay_s: Annotated[float, Ge(0), Le(3_600)] = 30.0
     """A decision is due while the expected delay on the way ahead is at least this."""
-    every_s: float = 60.0
+    every_s: Annotated[float, Ge(10), Le(3_600)] = 60.0
     """Time between two decisions of one drive."""
-    per_drive: int = 5
+    per_drive: Annotated[int, Ge(1), Le(50)] = 5
     """Decisions of one drive at most."""
-    placebo_every: int = 1
+    placebo_every: Annotated[int, Ge(0), Le(1_000_000)] = 1
     """One placebo in every so many drives with a decision; 0 makes none."""
-    arrived: float = 0.95
+    arrived: Annotated[float, Ge(0.5), Le(1)] = 0.95
     """Share of those who were there at the decision that must arrive before a future is left alone."""
-    limit_s: float = 7_200.0
+    limit_s: Annotated[float, Ge(60), Le(86_400)] = 7_200.0
     """Simulated time after which it is left alone anyway."""
-    step_s: float = 1.0
+    step_s: Annotated[float, Ge(0.1), Le(1)] = 1.0
     """SUMO's step length."""
-    scale: float | None = None
+    scale: Annotated[float, Ge(0.01), Le(100)] | None = None
     """Multiplies the demand; None takes the scenario's."""
     equilibrium_gap: float | None = None
     """Relative gap of the assignment (duaIterate) that the demand's routes come from; None if from none."""
-    half_width_s: float | None = None
+    half_width_s: Annotated[float, Ge(0.1), Le(3_600)] | None = None
     """Seeds are added only until the interval of the mean gain is this narrow to either side; None runs all."""
-    agent_steps: int = 12
+    agent_steps: Annotated[int, Ge(1), Le(100)] = 12
     """Actions that an agent has for a decision."""
 
     def as_json(self) -> Json:
@@ -102,15 +88,7 @@ class StudyPlan:
         Raises:
             UserError: one that does not exist or is out of its range.
         """
-        for name, (low, high) in RANGES.items():
-            value = getattr(self, name)
-            values = value if isinstance(value, tuple) else () if value is None else (value,)
-            for each in values:
-                if not low <= each <= high:
-                    raise UserError(f"{_option(name)} is {each:g}; it goes from {low:g} to {high:g}")
-        for name in ("departures_s", "seeds", "ages_s", "policies"):
-            if not getattr(self, name):
-                raise UserError(f"{_option(name)} is empty; give at least one")
+        _check(asdict(self))
         for name in ("departures_s", "seeds", "shares", "ages_s", "policies", "trips"):
             values = getattr(self, name)
             if len(set(values)) < len(values):
@@ -237,13 +215,16 @@ def make_study(values: Mapping[str, Any]) -> StudyPlan:
     Raises:
         UserError: it is of another kind of study, or of another version.
     """
-    known = {field.name for field in fields(StudyPlan)}
-    given: dict[str, Any] = {
-        name: tuple(value) if isinstance(value, list) else value for name, value in values.items()
-    }
-    if given.pop("study", None) != KIND or not given.keys() <= known:
-        raise UserError("the folder holds no rerouting study of this version; read it with the one that wrote it")
-    return StudyPlan(**given)
+    plan = dict(values)
+    if plan.pop("study", None) == KIND:
+        with suppress(UserError):  # whose line would name options that nobody has given
+            return _check(plan)
+    raise UserError("the folder holds no rerouting study of this version; read it with the one that wrote it")
+
+
+def _check(values: Mapping[str, Any]) -> StudyPlan:
+    """What is wrong is called by its option."""
+    return checked(StudyPlan, values, lambda steps: ("the study", _option(str(steps[0])) if steps else ""))
 
 
 def _option(name: str) -> str:

@@ -20,7 +20,7 @@ from automotive_cosim.contracts import Answer, DrivingState, RoadNetwork, RoadRe
 from automotive_cosim.errors import SetupError, TrafficError
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.accounts import Pulse, Settled
-from automotive_cosim.traffic.base import Advance, EgoPlan, Progress
+from automotive_cosim.traffic.base import Advance, EgoPlan, WarmUpProgress
 from automotive_cosim.traffic.drive import Call
 from automotive_cosim.traffic.options import Setup
 from automotive_cosim.traffic.profiles import profile
@@ -38,7 +38,7 @@ class Forked:
         self,
         scenario: Scenario,
         seed: int = 0,
-        progress: Progress | None = None,
+        progress: WarmUpProgress | None = None,
         *,
         allow_unprojected: bool = False,
         timeout_s: float = TIMEOUT_S,
@@ -217,7 +217,7 @@ class _Source:
     """Where copies of a warm simulation come from."""
 
     def __init__(
-        self, setup: Setup, timeout_s: float, *, by_replay: bool, progress: Progress | None = None
+        self, setup: Setup, timeout_s: float, *, by_replay: bool, progress: WarmUpProgress | None = None
     ) -> None:
         self.by_replay = by_replay
         self._setup = setup
@@ -312,7 +312,7 @@ class Simulations:
         self,
         scenario: Scenario,
         seed: int = 0,
-        progress: Progress | None = None,
+        progress: WarmUpProgress | None = None,
         *,
         allow_unprojected: bool = False,
     ) -> Forked:

@@ -33,7 +33,7 @@ def test_a_run_is_told_and_the_same_command_finds_it_done(cli, tmp_path):
     again = cli("eval", "--agents", "oracle", *GRID)
     assert again.code == 0
     assert "1 of 1 episodes; 100% succeeded" in again.out
-    assert "1 of 1 judged episodes succeeded; 0 errors" in again.out
+    assert "1 of 1 judged episode succeeded; 0 errors" in again.out
     assert len(list((tmp_path / "runs").iterdir())) == 1
 
 
@@ -53,8 +53,8 @@ def test_errors_are_listed_and_set_the_exit_code(cli):
     )
     assert ran.code == 3
     assert "TriggerNotReachedError" in ran.out
-    assert "1 of 1 judged episodes succeeded; 1 errors" in ran.out
-    assert ran.err.startswith("error: 1 of 2 episodes ended in an error")
+    assert "1 of 1 judged episode succeeded; 1 error\n" in ran.out
+    assert ran.err.startswith("error: 1 of 2 episodes ended in an infrastructure error")
 
 
 @pytest.mark.parametrize(
@@ -125,7 +125,7 @@ def test_a_stop_says_how_to_go_on(program, tmp_path, until, session, in_backgrou
     assert process.returncode == (143 if in_background else 130)
     assert err.endswith("error: interrupted\n")
     assert "Traceback" not in err
-    assert "the same command goes on" in err
+    assert "rerun the command to resume" in err
     assert lines.read_bytes().endswith(b"\n")
     until(lambda: not session(process.pid))
 

@@ -204,7 +204,7 @@ def test_a_cluster_of_its_own_is_ended_by_ctrl_c_and_the_same_plan_goes_on(progr
     out, err = process.communicate(timeout=60)
     assert (process.returncode, out) == (130, ""), err
     assert "Traceback" not in err
-    assert "the same command goes on" in err
+    assert "rerun the command to resume" in err
     until(lambda: not marked("own"))
     kept = len(read_rows(mine.parent / "e", EpisodeRow))
     assert 1 <= kept < 3

@@ -1,0 +1,162 @@
+"""TOML files that users write: read whole, and refused by line, table and field."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, TypeVar
+
+from automotive_cosim.errors import UserError
+from automotive_cosim.formats.checked import Steps, checked
+
+T = TypeVar("T")
+
+MOST_BYTES = 4 * 2**20
+"""Nobody writes more by hand, and a wrong path may be a device that never ends."""
+
+LABELS = {"id": " {}", "kind": " of kind '{}'", "name": " '{}'"}
+"""What tells one entry of a list of tables from another, and how a refusal names it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Document:
+    """A TOML file and where in it things stand."""
+
+    path: Path
+    table: dict[str, Any]
+    error: type[UserError]
+    """What a refusal raises."""
+    text: str = field(repr=False)
+
+    def read(self, kind: type[T]) -> T:
+        """The whole file as an instance of a type.
+
+        Raises:
+            UserError: of the document's class: it does not fit; one line for each problem.
+        """
+        return checked(kind, self.table, self.place, self.error)
+
+    def refused(self, steps: Steps, why: str) -> UserError:
+        """The error to raise because of what stands there."""
+        where, name = self.place(steps)
+        return self.error(f"{where}: {name} {why}" if name else f"{where}: {why}")
+
+    def place(self, steps: Steps) -> tuple[str, str]:
+        """File, line and table of a value, and what it is called in that table."""
+        lines, tables = _lines(self.text)
+        line = next((lines[steps[:end]] for end in range(len(steps), 0, -1) if steps[:end] in lines), None)
+        table = next(steps[:end] for end in range(len(steps), -1, -1) if steps[:end] in tables)
+        where = f"{self.path} line {line}" if line else str(self.path)
+        return where + self._header(table), dotted(steps[len(table) :])
+
+    def _header(self, table: Steps) -> str:
+        """How the file writes a table's name, with what tells it from others of that name."""
+        if not table:
+            return ""
+        name = ".".join(str(step) for step in table if isinstance(step, str))
+        if isinstance(table[-1], str):
+            return f" [{name}]"
+        entry: Any = self.table
+        for step in table:
+            entry = entry[step]
+        told = next((form.format(entry[key]) for key, form in LABELS.items() if _is_word(entry.get(key))), "")
+        return f" [[{name}]]{told}"
+
+
+def read_toml(path: Path, error: type[UserError] = UserError) -> Document:
+    """Reads a file.
+
+    Raises:
+        UserError: of that class: it is missing, too large, or no TOML.
+    """
+    try:
+        with path.open("rb") as file:
+            data = file.read(MOST_BYTES + 1)
+        if len(data) > MOST_BYTES:
+            raise error(f"{path} is larger than {MOST_BYTES // 2**20} MB; give a TOML file written by hand")
+        text = data.decode("utf-8-sig").replace("\r\n", "\n")
+        return Document(path, tomllib.loads(text), error, text)
+    except OSError as broken:
+        raise error(f"cannot read {path}: {broken.strerror or broken}") from broken
+    except UnicodeDecodeError as broken:
+        raise error(f"{path} is not TOML: it is no UTF-8 text; save it as UTF-8") from broken
+    except (ValueError, RecursionError) as broken:
+        why = "it is nested too deeply" if isinstance(broken, RecursionError) else str(broken)
+        raise error(f"{path} is not TOML: {why}") from broken
+
+
+# --- where things stand -------------------------------------------------------------------------------------
+
+_OPAQUE = re.compile(
+    r'#[^\n]*|"""(?:\\.|[^\\])*?"""(?:"{0,2})|\'\'\'.*?\'\'\'(?:\'{0,2})|"(?:\\.|[^"\\\n])*"|\'[^\'\n]*\'',
+    re.DOTALL,
+)
+"""Comments and texts of a well-formed file: what may hold brackets, equal signs and line ends that mean nothing."""
+
+
+def dotted(steps: Steps) -> str:
+    """``cases[1].when.lit``."""
+    return "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in steps).removeprefix(".")
+
+
+def _is_word(value: object) -> bool:
+    return isinstance(value, str) and re.fullmatch(r"[\w. -]{1,60}", value) is not None
+
+
+@lru_cache(maxsize=1)
+def _lines(text: str) -> tuple[Mapping[Steps, int], frozenset[Steps]]:
+    """The line of each table and key of a well-formed file, and which of them are tables with a header."""
+    plain = _OPAQUE.sub(lambda found: (" " if found[0][0] == "#" else "_") * len(found[0]), text)
+    lines: dict[Steps, int] = {}
+    tables: set[Steps] = {()}
+    last: dict[Steps, int] = {}
+    table: Steps = ()
+    depth, begin, number = 0, 0, 1
+    for line in plain.split("\n"):
+        header = _HEADER.match(line)
+        key, equals, rest = line.partition("=")
+        if depth == 0 and header is not None:
+            table = _entry(_keys(text[begin + header.start(2) : begin + header.end(2)]), header[1] == "[[", last)
+            tables.add(table)
+            lines.setdefault(table, number)
+        elif depth == 0 and equals:
+            lines.setdefault((*table, *_keys(text[begin : begin + len(key)])), number)
+            depth = _depth(rest)
+        else:
+            depth += _depth(line)
+        number += 1 + text.count("\n", begin, begin + len(line))
+        begin += len(line) + 1
+    return lines, frozenset(tables)
+
+
+_HEADER = re.compile(r"\s*(\[\[?)([^\]]+)\]")
+
+
+def _depth(line: str) -> int:
+    return sum(line.count(bracket) for bracket in "[{") - sum(line.count(bracket) for bracket in "]}")
+
+
+def _keys(written: str) -> tuple[str, ...]:
+    """The keys of ``a."b c".d``, by the same reader as the file's."""
+    inner: Any = tomllib.loads(f"{written} = 0")
+    keys = []
+    while isinstance(inner, dict):
+        ((key, inner),) = inner.items()
+        keys.append(key)
+    return tuple(keys)
+
+
+def _entry(keys: tuple[str, ...], is_list: bool, last: dict[Steps, int]) -> Steps:
+    """The steps to a header's table; ``last`` has the newest index of each list of tables."""
+    steps: Steps = ()
+    for index, key in enumerate(keys, start=1):
+        steps = (*steps, key)
+        if is_list and index == len(keys):
+            last[steps] = last.get(steps, -1) + 1
+        if steps in last:
+            steps = (*steps, last[steps])
+    return steps
