@@ -94,6 +94,7 @@ def test_a_broken_scenario_is_named(cli, tmp_path, content, words):
     assert [path.name for path in tmp_path.iterdir()] == ["mine"]
 
 
+@pytest.mark.sumo
 def test_a_network_without_projection_is_refused(cli, tmp_path):
     folder = tmp_path / "flat"
     shutil.copytree(load("grid").folder, folder)

@@ -73,6 +73,7 @@ def test_a_task_is_shown_with_its_words_and_halves(cli, task):
     assert all(f"{half} half" in text for half in CATALOGUE[task].halves)
 
 
+@pytest.mark.sumo
 @pytest.mark.parametrize("task", ["hvac_fan_max", "road_over_the_line"])
 def test_a_picture_shows_what_the_expert_does(cli, tmp_path, task):
     path = tmp_path / "task.png"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import gzip
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from datetime import datetime, timedelta
 from pathlib import Path
 from zoneinfo import ZoneInfo
@@ -15,13 +15,6 @@ from automotive_cosim.osm.counts import ARC, FLOW, OCCUPANCY, TIME, geh, read_co
 
 PARIS = ZoneInfo("Europe/Paris")
 HEADER = f"{TIME};{ARC};Libelle;{FLOW};{OCCUPANCY}"
-REAL = (
-    Path(__file__).resolve().parents[3]
-    / "shared"
-    / "data"
-    / "paris_counts"
-    / "champs_elysees_arc4264_filtered.csv.gz"
-)
 
 
 def _file(folder: Path, lines: Sequence[str], name: str = "counts.csv") -> Path:
@@ -132,10 +125,8 @@ def test_geh_is_that_of_the_handbook() -> None:
     assert geh(0, 50) == pytest.approx(10)
 
 
-def test_the_champs_elysees() -> None:
-    if not REAL.is_file():
-        pytest.skip(f"the counts are not at {REAL}")
-    counts = read_counts(REAL, PARIS)
+def test_the_champs_elysees(data_of_others: Callable[[str], Path]) -> None:
+    counts = read_counts(data_of_others("paris_counts/champs_elysees_arc4264_filtered.csv.gz"), PARIS)
     assert counts.flow_per_h[8] == pytest.approx(994, abs=1)
     assert counts.flow_per_h[18] == 1090
     assert counts.occupancy is not None
