@@ -12,7 +12,7 @@ from automotive_cosim.agents.guest import load
 from automotive_cosim.agents.human import Human
 from automotive_cosim.agents.model_agent import ModelAgent
 from automotive_cosim.agents.oracle import Oracle
-from automotive_cosim.agents.settings import PROFILES, AgentSettings, Part
+from automotive_cosim.agents.settings import PROFILES, AgentPart, AgentSettings
 from automotive_cosim.agents.trivial import AlwaysAlert, NoOp, PressEverything, Random
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.models import make_model
@@ -21,6 +21,7 @@ __all__ = [
     "AGENTS",
     "PROFILES",
     "Agent",
+    "AgentPart",
     "AgentSettings",
     "AlwaysAlert",
     "Human",
@@ -28,7 +29,6 @@ __all__ = [
     "ModelAgent",
     "NoOp",
     "Oracle",
-    "Part",
     "PressEverything",
     "Privileged",
     "Random",

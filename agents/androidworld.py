@@ -84,7 +84,7 @@ class UIElement:
 
 
 @dataclass
-class State:
+class AndroidWorldState:
     """The result of ``get_state``."""
 
     pixels: npt.NDArray[np.uint8]
@@ -121,13 +121,13 @@ class _Environment:
         self.acted = False
         self._now: Observation | None = None
 
-    def get_state(self, wait_to_stabilize: bool = False) -> State:
+    def get_state(self, wait_to_stabilize: bool = False) -> AndroidWorldState:
         """The screen as it is now."""
         now = self.now()
         pixels = np.zeros((SCREEN_PX[1], SCREEN_PX[0], 3), np.uint8) if now.screenshot is None else now.screenshot
-        return State(np.array(pixels), [_ui_element(element) for element in now.elements or ()])
+        return AndroidWorldState(np.array(pixels), [_ui_element(element) for element in now.elements or ()])
 
-    def reset(self, go_home: bool = False) -> State:
+    def reset(self, go_home: bool = False) -> AndroidWorldState:
         """The current screen; nothing is reset."""
         return self.get_state()
 

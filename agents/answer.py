@@ -25,7 +25,7 @@ LABELS = re.compile(r"^[\s*_#>-]*(situation|reason|thought|plan|action|lesson)[*
 
 
 @dataclass(frozen=True, slots=True)
-class Answer:
+class ParsedAnswer:
     """A parsed answer."""
 
     situation: str
@@ -35,7 +35,7 @@ class Answer:
     """Whether it had the requested form."""
 
 
-def read(text: str) -> Answer:
+def read(text: str) -> ParsedAnswer:
     """The answer's parts.
 
     Raises:
@@ -62,8 +62,10 @@ def labelled(text: str, *labels: str) -> str:
     return ""
 
 
-def _answer(text: str, action: Json, *, strict: bool) -> Answer:
-    return Answer(labelled(text, "situation", "reason", "thought"), labelled(text, "plan"), parse(action), strict)
+def _answer(text: str, action: Json, *, strict: bool) -> ParsedAnswer:
+    return ParsedAnswer(
+        labelled(text, "situation", "reason", "thought"), labelled(text, "plan"), parse(action), strict
+    )
 
 
 def _objects(text: str) -> Iterator[Json]:

@@ -9,7 +9,7 @@ from typing import Protocol, runtime_checkable
 
 from automotive_cosim.contracts import Action, Json, Observation
 from automotive_cosim.interface.observe import Channel
-from automotive_cosim.models.base import Reply
+from automotive_cosim.models.base import ModelReply
 from automotive_cosim.tasking.instance import Instance
 
 
@@ -71,7 +71,7 @@ class Stage:
     text: str
     at_s: float
     """Simulated seconds since the hand-over."""
-    reply: Reply | None = None
+    reply: ModelReply | None = None
     """The model's whole answer, at the first of the stages that were parsed from it."""
     asked: str = ""
     """Digest of the question it answers."""

@@ -12,11 +12,11 @@ from automotive_cosim.agents import answer, prompt
 from automotive_cosim.agents.base import Stage, StageName
 from automotive_cosim.agents.marks import marked, png
 from automotive_cosim.agents.memory import Memory, Strategy, where, why
-from automotive_cosim.agents.settings import AgentSettings, Profile
+from automotive_cosim.agents.settings import AgentProfile, AgentSettings
 from automotive_cosim.contracts import Action, Observation
 from automotive_cosim.errors import ActionError, OutOfBudgetError
 from automotive_cosim.interface.observe import Channel
-from automotive_cosim.models.base import ChatModel, Message, Reply, digest
+from automotive_cosim.models.base import ChatMessage, ChatModel, ModelReply, digest
 
 LONGEST_LESSON, LONGEST_PLAN = 300, 2000
 """Characters of its own text that it carries over to the next turn."""
@@ -38,7 +38,12 @@ class ModelAgent:
     ``stages`` records the last turn.
     """
 
-    def __init__(self, profile: Profile, chat_model: ChatModel, settings: AgentSettings = AgentSettings()) -> None:  # noqa: B008, frozen
+    def __init__(
+        self,
+        profile: AgentProfile,
+        chat_model: ChatModel,
+        settings: AgentSettings = AgentSettings(),  # noqa: B008, frozen
+    ) -> None:
         """Puts the agent together.
 
         Args:
@@ -168,14 +173,14 @@ class ModelAgent:
     def _sees(self) -> bool:
         return Channel.SCREENSHOT in self.channels and self._chat_model.sees_pictures
 
-    def _ask(self, text: str, pictures: Sequence[bytes]) -> tuple[Reply, str]:
+    def _ask(self, text: str, pictures: Sequence[bytes]) -> tuple[ModelReply, str]:
         settings = self._settings
         if self._tokens >= settings.most_tokens or self._seconds >= settings.most_seconds:
             raise OutOfBudgetError(
                 f"the episode's budget is spent: {self._tokens} of {settings.most_tokens} tokens, "
                 f"{self._seconds:.0f} of {settings.most_seconds:g} s"
             )
-        messages = [Message("user", text, tuple(pictures))]
+        messages = [ChatMessage("user", text, tuple(pictures))]
         reply = self._chat_model.chat(messages)
         self._tokens += reply.tokens_in + reply.tokens_out
         self._seconds += reply.seconds
@@ -186,7 +191,7 @@ class ModelAgent:
         name: StageName,
         seen: Observation,
         text: str,
-        reply: Reply | None = None,
+        reply: ModelReply | None = None,
         asked: str = "",
         pictures: int = 0,
     ) -> None:

@@ -17,7 +17,7 @@ from automotive_cosim.contracts import (
 from automotive_cosim.errors import ActionError
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.tasking.instance import Instance
-from automotive_cosim.tasking.moves import Do, Move, Open, Slide, Tap, TapUntil, Type, Warn
+from automotive_cosim.tasking.moves import Do, Move, Open, Slide, Tap, TapUntil, TypeText, Warn
 
 SLIDER_MARGIN_PX = 20
 """How far inside its element a slider's range begins."""
@@ -82,7 +82,7 @@ class Oracle:
                     return self._search(observation, resource_id)
                 self._moves.popleft()
                 return _slide(elements[index], (value - low) / (high - low))
-            case Type(resource_id, text, enter):
+            case TypeText(resource_id, text, enter):
                 index = _index(elements, resource_id, "")
                 if index is None:
                     return self._search(observation, resource_id)

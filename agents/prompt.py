@@ -15,7 +15,7 @@ from importlib.resources import files
 from string import Template
 
 from automotive_cosim.agents.marks import listed
-from automotive_cosim.agents.settings import Profile
+from automotive_cosim.agents.settings import AgentProfile
 from automotive_cosim.cockpit.actions import grammar, to_json
 from automotive_cosim.contracts import Action, Element, Feedback, GpsFix, Observation, VehicleState
 from automotive_cosim.interface.observe import Channel
@@ -39,7 +39,7 @@ def fill(name: str, slots: Mapping[str, str | None]) -> str:
 
 
 def turn(
-    profile: Profile,
+    profile: AgentProfile,
     observation: Observation,
     history: Sequence[str] = (),
     plan: str = "",

@@ -13,7 +13,7 @@ from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.interface.observe import Channel
 
 
-class Part(StrEnum):
+class AgentPart(StrEnum):
     """Parts that can be switched off, to measure their effect."""
 
     GPS = "gps"
@@ -25,7 +25,7 @@ class Part(StrEnum):
     MEMORY = "memory"
 
 
-def parts(names: Iterable[str]) -> frozenset[Part]:
+def parts(names: Iterable[str]) -> frozenset[AgentPart]:
     """Parts by name.
 
     Raises:
@@ -33,9 +33,9 @@ def parts(names: Iterable[str]) -> frozenset[Part]:
     """
     chosen = list(names)
     for name in chosen:
-        if name not in set(Part):
-            raise UnknownNameError("part of an agent", name, Part)
-    return frozenset(map(Part, chosen))
+        if name not in set(AgentPart):
+            raise UnknownNameError("part of an agent", name, AgentPart)
+    return frozenset(map(AgentPart, chosen))
 
 
 def geo_input(name: str) -> GeoInput:
@@ -54,7 +54,7 @@ class AgentSettings:
     """How to run an agent. An agent ignores the settings that it has no use for."""
 
     geo: GeoInput = GeoInput.FULL
-    without: frozenset[Part] = frozenset()
+    without: frozenset[AgentPart] = frozenset()
     memory: Path | None = None
     """SQLite file with what worked in earlier episodes; None, the default, keeps episodes independent."""
     seed: int = 0
@@ -75,7 +75,7 @@ SCREEN_ALONE = frozenset(ActionType) - {ActionType.QUERY, ActionType.ESTIMATE_PO
 
 
 @dataclass(frozen=True, slots=True)
-class Profile:
+class AgentProfile:
     """One variant of the common cycle."""
 
     name: str
@@ -87,14 +87,14 @@ class Profile:
     remembers: bool = False
     """Whether it can remember what worked from one episode to the next."""
 
-    def under(self, settings: AgentSettings) -> Profile:
+    def under(self, settings: AgentSettings) -> AgentProfile:
         """The profile without what the settings take away."""
         without = settings.without
         lost = set(settings.geo.withheld)
         lost |= {channel for part, channel in _CHANNELS.items() if part in without}
         channels = self.channels - lost
         actions = set(self.actions)
-        if Part.QUERIES in without or not settings.geo.answers or Channel.CONTEXT not in channels:
+        if AgentPart.QUERIES in without or not settings.geo.answers or Channel.CONTEXT not in channels:
             actions.discard(ActionType.QUERY)
         if Channel.GPS not in channels:
             actions.discard(ActionType.ESTIMATE_POSITION)
@@ -102,18 +102,18 @@ class Profile:
             self,
             channels=channels,
             actions=frozenset(actions),
-            reflects=self.reflects and Part.REFLECTION not in without,
-            remembers=self.remembers and Part.MEMORY not in without and settings.memory is not None,
+            reflects=self.reflects and AgentPart.REFLECTION not in without,
+            remembers=self.remembers and AgentPart.MEMORY not in without and settings.memory is not None,
         )
 
 
-_CHANNELS = {Part.GPS: Channel.GPS, Part.CONTEXT: Channel.CONTEXT, Part.SCREEN: Channel.SCREENSHOT}
+_CHANNELS = {AgentPart.GPS: Channel.GPS, AgentPart.CONTEXT: Channel.CONTEXT, AgentPart.SCREEN: Channel.SCREENSHOT}
 
 _TEXT = frozenset({Channel.ELEMENTS, Channel.VEHICLE, Channel.CONNECTIVITY})
-T3A = Profile("t3a", _TEXT)
+T3A = AgentProfile("t3a", _TEXT)
 """Reads the elements (after AndroidWorld's T3A)."""
-M3A = Profile("m3a", _TEXT | {Channel.SCREENSHOT})
+M3A = AgentProfile("m3a", _TEXT | {Channel.SCREENSHOT})
 """Also sees the screen, raw and with numbered marks (after AndroidWorld's M3A)."""
-ASURADA = Profile("asurada", frozenset(Channel), frozenset(ActionType), remembers=True)
+ASURADA = AgentProfile("asurada", frozenset(Channel), frozenset(ActionType), remembers=True)
 """Also knows where it is, and can query the rules there (after the paper's ASURADA)."""
 PROFILES = {profile.name: profile for profile in (T3A, M3A, ASURADA)}

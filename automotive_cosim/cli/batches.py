@@ -74,7 +74,7 @@ def executor_of(name: str, workers: int | None, ray_address: str | None, ray_sen
     return Processes(workers or 1)
 
 
-class View(Generic[R]):
+class ProgressView(Generic[R]):
     """Shows the progress of a run: a bar in a terminal, else a line now and then."""
 
     EVERY_S = 15.0
@@ -92,7 +92,7 @@ class View(Generic[R]):
         self._task = self._bar.add_task("", total=None, said="") if self._bar else None
         self._said_s = -self.EVERY_S
 
-    def __enter__(self) -> View[R]:
+    def __enter__(self) -> ProgressView[R]:
         if self._bar:
             self._bar.start()
         return self

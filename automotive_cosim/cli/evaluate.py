@@ -11,9 +11,9 @@ import typer
 
 from automotive_cosim.cli.batches import (
     ExecutorName,
+    ProgressView,
     RayAddress,
     RaySend,
-    View,
     Workers,
     executor_of,
     seeds_in,
@@ -139,7 +139,7 @@ def evaluate(
     _announce(console, plan, folder)
     if dry_run:
         return
-    with where, View(console, "episodes", _said) as view:
+    with where, ProgressView(console, "episodes", _said) as view:
         try:
             end = run_plan(
                 plan, folder, executor=where, retries=retries, pictures=Pictures(pictures), tell=view.tell

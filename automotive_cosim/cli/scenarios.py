@@ -19,11 +19,11 @@ from automotive_cosim.errors import UserError
 if TYPE_CHECKING:
     from rich.text import Text
 
+    from automotive_cosim.contracts import Tell
     from automotive_cosim.osm import ImportReport
     from automotive_cosim.osm.day import Day
-    from automotive_cosim.osm.importer import Progress
     from automotive_cosim.scenarios import Scenario
-    from automotive_cosim.scenery.check import Proof
+    from automotive_cosim.scenery.check import ScenarioProof
 
 app = typer.Typer(help="List, check, draw and import scenarios.", no_args_is_help=True)
 
@@ -115,7 +115,7 @@ def check_scenarios(
         raise typer.Exit(1)
 
 
-def _print_proof(proof: Proof) -> None:
+def _print_proof(proof: ScenarioProof) -> None:
     from rich.console import Console
     from rich.table import Table
     from rich.text import Text
@@ -296,10 +296,10 @@ def download_map(
     """Fetch the roads of an area from an Overpass server of your choice."""
     from automotive_cosim.osm import Area
     from automotive_cosim.osm.folder import ATTRIBUTION
-    from automotive_cosim.osm.overpass import Limits, download
+    from automotive_cosim.osm.overpass import DownloadLimits, download
 
     with _progress() as tell:
-        limits = Limits(timeout_s=timeout, tries=tries, size_mb=max_mb)
+        limits = DownloadLimits(timeout_s=timeout, tries=tries, size_mb=max_mb)
         found = download(endpoint, Area.parse(bbox), out, limits, tell=tell)
     dated = f", as of {found.map_date}" if found.map_date else ""
     typer.echo(f"{out}: {megabytes_in_words(found.size_mb)}{dated}\n{ATTRIBUTION}")
@@ -344,7 +344,7 @@ def _print_day(day: Day, folder: Path, page: Path) -> None:
 
 
 @contextmanager
-def _progress() -> Iterator[Progress]:
+def _progress() -> Iterator[Tell]:
     """A line on stderr with the current activity; only its last state if stderr is not a terminal."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn

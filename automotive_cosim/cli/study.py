@@ -11,9 +11,9 @@ import typer
 
 from automotive_cosim.cli.batches import (
     ExecutorName,
+    ProgressView,
     RayAddress,
     RaySend,
-    View,
     Workers,
     executor_of,
     seeds_in,
@@ -163,7 +163,7 @@ def reroute(
         errors = f", {counted(progress.errors, 'error')}" if progress.errors else ""
         return f"{counted(count, 'decision')}{errors}{time_left(progress)}"
 
-    with where, View(console, "drives", said) as view:
+    with where, ProgressView(console, "drives", said) as view:
         try:
             run_study(plan, folder, executor=where, tell=view.tell)
         except KeyboardInterrupt:

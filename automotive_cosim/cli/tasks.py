@@ -158,7 +158,7 @@ def _half(half: Half) -> Iterable[str]:
 
 
 def _move(move: object) -> str:
-    from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil, Type, Warn
+    from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil, TypeText, Warn
 
     match move:
         case Open(name):
@@ -169,7 +169,7 @@ def _move(move: object) -> str:
             return f"tap {resource_id} until {shown} reads {text!r}"
         case Slide(resource_id, value):
             return f"slide {resource_id} to {value}"
-        case Type(resource_id, text):
+        case TypeText(resource_id, text):
             return f"type {text!r} into {resource_id}"
         case Warn(kind):
             return f"alert {kind}"

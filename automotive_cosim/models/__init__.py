@@ -13,11 +13,11 @@ from __future__ import annotations
 from pathlib import Path
 
 from automotive_cosim.errors import UnknownNameError
-from automotive_cosim.models.base import ChatModel, Message, Reply
+from automotive_cosim.models.base import ChatMessage, ChatModel, ModelReply
 from automotive_cosim.models.replay import Replay
 from automotive_cosim.models.rules import Rules
 
-__all__ = ["MODELS", "ChatModel", "Message", "Replay", "Reply", "Rules", "make_model"]
+__all__ = ["MODELS", "ChatMessage", "ChatModel", "ModelReply", "Replay", "Rules", "make_model"]
 
 MODELS = ("rules", "replay/FOLDER", "openai/NAME", "PROVIDER/NAME")
 """The forms of a model's name."""

@@ -16,7 +16,7 @@ CHARACTERS_PER_TOKEN = 4
 
 
 @dataclass(frozen=True, slots=True)
-class Message:
+class ChatMessage:
     """One turn of a conversation."""
 
     role: str
@@ -27,7 +27,7 @@ class Message:
 
 
 @dataclass(frozen=True, slots=True)
-class Reply:
+class ModelReply:
     """A model's answer, with its tokens, time and cost."""
 
     text: str
@@ -57,7 +57,7 @@ class ChatModel(Protocol):
         """Whether to send it pictures."""
         ...
 
-    def chat(self, messages: Sequence[Message]) -> Reply:
+    def chat(self, messages: Sequence[ChatMessage]) -> ModelReply:
         """Answers the last message.
 
         Raises:
@@ -66,7 +66,7 @@ class ChatModel(Protocol):
         ...
 
 
-def digest(messages: Sequence[Message]) -> str:
+def digest(messages: Sequence[ChatMessage]) -> str:
     """SHA-256 of a conversation, including pictures, as a hexadecimal string."""
     told = [
         [message.role, message.text, [hashlib.sha256(picture).hexdigest() for picture in message.pictures]]

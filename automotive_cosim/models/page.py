@@ -14,7 +14,7 @@ HEAVY_RAIN_MMH = 7.6
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class ListedElement:
     """One element as the prompt lists it."""
 
     index: int
@@ -33,7 +33,7 @@ class Page:
     """The content of a prompt by section; a missing section is empty."""
 
     goal: str
-    screen: tuple[Line, ...]
+    screen: tuple[ListedElement, ...]
     car: Mapping[str, str]
     """The car's readings, from name to value, as texts."""
     context: tuple[str, ...]
@@ -76,7 +76,7 @@ class Page:
         """Whether it asks about the result of the last action."""
         return bool(self.before or self.after)
 
-    def find(self, resource_id: str) -> Line | None:
+    def find(self, resource_id: str) -> ListedElement | None:
         """The element with that id, or, after ``=``, with that text."""
         if resource_id.startswith("="):
             wanted = resource_id[1:].casefold()
@@ -158,10 +158,10 @@ class Page:
         return bool(kinds & self.sky())
 
 
-def _line(text: str) -> Line | None:
+def _line(text: str) -> ListedElement | None:
     try:
         entry = json.loads(text)
-        return Line(
+        return ListedElement(
             index=int(entry["index"]),
             resource_id=str(entry.get("id", "")),
             text=str(entry.get("text", "")),

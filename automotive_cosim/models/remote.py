@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, get_args, get_type_hints
 from urllib.parse import parse_qsl
 
 from automotive_cosim.errors import ModelError, SetupError, UnknownNameError, UserError
-from automotive_cosim.models.base import Message, Reply
+from automotive_cosim.models.base import ChatMessage, ModelReply
 
 if TYPE_CHECKING:
     import openai
@@ -160,7 +160,7 @@ class Remote:
         self._client = endpoint.client(settings.timeout_s)
         self._next_s = 0.0
 
-    def chat(self, messages: Sequence[Message]) -> Reply:
+    def chat(self, messages: Sequence[ChatMessage]) -> ModelReply:
         """Asks, and repeats the question after a transient failure, each time after a longer pause.
 
         Raises:
@@ -192,7 +192,7 @@ class Remote:
             self._sleep(self._next_s - now_s)
         self._next_s = max(now_s, self._next_s) + 60 / self._settings.per_minute
 
-    def _ask(self, messages: Sequence[Message]) -> Reply:
+    def _ask(self, messages: Sequence[ChatMessage]) -> ModelReply:
         import httpx2
         import openai
 
@@ -207,7 +207,7 @@ class Remote:
             raise _PassingError(f"{type(error).__name__}: {error}") from None
         return self._read(body)
 
-    def _post(self, messages: Sequence[Message]) -> bytes:
+    def _post(self, messages: Sequence[ChatMessage]) -> bytes:
         """The body of the answer. It is read in pieces, so that the time limit applies to a slow server too."""
         settings = self._settings
         longest = "max_completion_tokens" if self._endpoint.provider == "openai" else "max_tokens"
@@ -231,7 +231,7 @@ class Remote:
                     raise _PassingError(f"the answer has over {BODY_LIMIT_BYTES} bytes")
         return body
 
-    def _read(self, body: bytes) -> Reply:
+    def _read(self, body: bytes) -> ModelReply:
         try:
             told = json.loads(body)
             choice = told["choices"][0]
@@ -247,7 +247,7 @@ class Remote:
         cost_usd = (tokens_in * settings.usd_per_million_in + tokens_out * settings.usd_per_million_out) / 1e6
         # Half a surrogate pair is valid JSON but not valid text: it could not be written into a record.
         text = self._endpoint.clean(_text(content)).encode("utf-8", "replace").decode()
-        return Reply(text, tokens_in, tokens_out, cost_usd, finish=finish)
+        return ModelReply(text, tokens_in, tokens_out, cost_usd, finish=finish)
 
 
 def _pause(header: str | None) -> float | None:
@@ -267,7 +267,7 @@ def _text(content: object) -> str:
     return ""
 
 
-def _wire(message: Message) -> dict[str, Any]:
+def _wire(message: ChatMessage) -> dict[str, Any]:
     if not message.pictures:
         return {"role": message.role, "content": message.text}
     parts: list[dict[str, Any]] = [{"type": "text", "text": message.text}]

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import ModelError, UserError
-from automotive_cosim.models.base import Message, Reply, digest
+from automotive_cosim.models.base import ChatMessage, ModelReply, digest
 
 
 class Replay:
@@ -17,7 +17,7 @@ class Replay:
 
     name = "replay"
 
-    def __init__(self, answers: Sequence[tuple[str, Reply]], sees_pictures: bool) -> None:
+    def __init__(self, answers: Sequence[tuple[str, ModelReply]], sees_pictures: bool) -> None:
         """Takes the answers to play.
 
         Args:
@@ -38,7 +38,7 @@ class Replay:
         path = folder / "steps.jsonl"
         try:
             stages = list(_stages(path))
-            answers = [(stage["asked"], Reply(**stage["reply"])) for stage in stages if stage["reply"]]
+            answers = [(stage["asked"], ModelReply(**stage["reply"])) for stage in stages if stage["reply"]]
             sees_pictures = any(stage["pictures"] for stage in stages)
         except (OSError, ValueError, KeyError, TypeError) as error:
             raise UserError(
@@ -48,7 +48,7 @@ class Replay:
             raise UserError(f"{path} has no answers of a model; record an episode of an agent that uses a model")
         return cls(answers, sees_pictures)
 
-    def chat(self, messages: Sequence[Message]) -> Reply:
+    def chat(self, messages: Sequence[ChatMessage]) -> ModelReply:
         """The next recorded answer.
 
         Raises:

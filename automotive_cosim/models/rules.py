@@ -15,9 +15,9 @@ import json
 import re
 from collections.abc import Mapping, Sequence
 
-from automotive_cosim.models.base import Message, Reply, estimated_tokens
-from automotive_cosim.models.page import Line, Page
-from automotive_cosim.models.skills import SKILLS, Decline, Move, Wait, Way
+from automotive_cosim.models.base import ChatMessage, ModelReply, estimated_tokens
+from automotive_cosim.models.page import ListedElement, Page
+from automotive_cosim.models.skills import SKILLS, Course, Decline, SkillMove, Wait
 
 MOST_SCROLLS = 6
 """How often it scrolls for one element before it stops looking."""
@@ -36,12 +36,12 @@ class Rules:
     name = "rules"
     sees_pictures = False
 
-    def chat(self, messages: Sequence[Message]) -> Reply:
+    def chat(self, messages: Sequence[ChatMessage]) -> ModelReply:
         """Answers a prompt with an action, or a request to look back with one line."""
         page = Page.read(messages[-1].text)
         text = _look_back(page) if page.looks_back else _answer(page)
         asked = [message.text for message in messages]
-        return Reply(text, estimated_tokens(*asked), estimated_tokens(text))
+        return ModelReply(text, estimated_tokens(*asked), estimated_tokens(text))
 
 
 def _answer(page: Page) -> str:
@@ -56,7 +56,7 @@ def _answer(page: Page) -> str:
     return _go_on(page, decided.because, (*decided.moves, ("status", "complete", "none")), 0)
 
 
-def _decide(page: Page) -> Way | Decline | Wait:
+def _decide(page: Page) -> Course | Decline | Wait:
     goal = page.goal.lower()
     for skill in SKILLS:
         if any(re.search(word, goal) for word in skill.words):
@@ -64,7 +64,7 @@ def _decide(page: Page) -> Way | Decline | Wait:
     return Decline("infeasible", "none", "I do not know what is wanted.")
 
 
-def _go_on(page: Page, because: str, moves: Sequence[Move], scrolls: int) -> str:
+def _go_on(page: Page, because: str, moves: Sequence[SkillMove], scrolls: int) -> str:
     """The first of the moves, with the others as the plan."""
     if page.plan and page.result in STOPPED:
         return _say(f"The car says {page.result}.", _status("infeasible", STOPPED[page.result]))
@@ -79,7 +79,7 @@ def _go_on(page: Page, because: str, moves: Sequence[Move], scrolls: int) -> str
     return _say(f"I cannot find {move[1]}.", _status("infeasible", "not_possible"))
 
 
-def _action(page: Page, move: Move) -> dict[str, object] | None:
+def _action(page: Page, move: SkillMove) -> dict[str, object] | None:
     """The action of one move; None if its element is not on the screen."""
     kind, about = move[0], move[1]
     if kind == "open":
@@ -105,7 +105,7 @@ TRACK_INSET_PX = 20
 """How far inside its bounds a slider's track begins and ends, as in its picture."""
 
 
-def _on_track(line: Line, share: float) -> dict[str, object]:
+def _on_track(line: ListedElement, share: float) -> dict[str, object]:
     left, top, right, bottom = line.bounds
     x = left + TRACK_INSET_PX + share * (right - left - 2 * TRACK_INSET_PX)
     return {"action_type": "click", "x": round(x), "y": (top + bottom) // 2}
@@ -115,12 +115,12 @@ def _status(status: str, reason: str) -> dict[str, object]:
     return {"action_type": "status", "goal_status": status, "reason": reason}
 
 
-def _say(because: str, action: Mapping[str, object], rest: Sequence[Move] = (), scrolls: int = 0) -> str:
+def _say(because: str, action: Mapping[str, object], rest: Sequence[SkillMove] = (), scrolls: int = 0) -> str:
     plan = f"Plan: {json.dumps({'moves': rest, 'scrolls': scrolls})}\n" if rest else ""
     return f"Situation: {because}\n{plan}Action: {json.dumps(action)}"
 
 
-def _plan(text: str) -> tuple[tuple[Move, ...], int]:
+def _plan(text: str) -> tuple[tuple[SkillMove, ...], int]:
     """The remaining moves of a plan and how often it has scrolled for the first; empty if it is not ours."""
     try:
         plan = json.loads(text)

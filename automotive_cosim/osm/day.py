@@ -14,11 +14,12 @@ from pathlib import Path
 from typing import Any
 from zoneinfo import ZoneInfo
 
+from automotive_cosim.contracts import Tell
 from automotive_cosim.errors import CountsError, ScenarioError, UnknownNameError
 from automotive_cosim.osm import folder
 from automotive_cosim.osm.counts import read_counts
 from automotive_cosim.osm.demand import fastest_ways, write
-from automotive_cosim.osm.fit import HOUR_S, WARM_UP_S, WHOLE_DAY, Hour, Progress, fit, make_demand
+from automotive_cosim.osm.fit import HOUR_S, WARM_UP_S, WHOLE_DAY, Hour, fit, make_demand
 from automotive_cosim.scenarios import Scenario, Sumo, load
 from automotive_cosim.traffic.network import Edge, Network, read_network
 from automotive_cosim.traffic.options import Configuration, read_configuration
@@ -108,7 +109,7 @@ def read_day(scenario_folder: Path) -> Day:
 
 
 def make_day(
-    source: Path, counts_file: Path, out: Path, options: DayOptions, on_progress: Progress | None = None
+    source: Path, counts_file: Path, out: Path, options: DayOptions, on_progress: Tell | None = None
 ) -> Day:
     """Makes a scenario with a day of traffic from an imported one.
 

@@ -53,7 +53,7 @@ class Position(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Way:
+class OsmWay:
     """One road of the extract."""
 
     way_id: int
@@ -75,7 +75,7 @@ class Node:
 
 
 @dataclass(frozen=True, slots=True)
-class Restriction:
+class TurnRestriction:
     """A turn restriction; members are (``"n"`` or ``"w"``, id, role)."""
 
     relation_id: int
@@ -87,9 +87,9 @@ class Restriction:
 class Extract:
     """The roads of an OSM extract."""
 
-    ways: tuple[Way, ...]
+    ways: tuple[OsmWay, ...]
     nodes: Mapping[int, Node]
-    restrictions: tuple[Restriction, ...]
+    restrictions: tuple[TurnRestriction, ...]
     cameras: tuple[Position, ...] = ()
     """Positions of speed cameras, on a road or beside it."""
 
@@ -197,19 +197,19 @@ def _explain(source: Path, error: str) -> str:
     return f"{source} cannot be read as OSM data ({error}); give OSM XML (plain, .gz or .bz2) or .osm.pbf"
 
 
-def _read_ways(file: Any) -> tuple[list[Way], tuple[Restriction, ...]]:
+def _read_ways(file: Any) -> tuple[list[OsmWay], tuple[TurnRestriction, ...]]:
     osmium = _osmium()
-    ways: list[Way] = []
-    restrictions: list[Restriction] = []
+    ways: list[OsmWay] = []
+    restrictions: list[TurnRestriction] = []
     wanted = osmium.filter.KeyFilter("highway", "restriction")
     for item in osmium.FileProcessor(file, osmium.osm.WAY | osmium.osm.RELATION).with_filter(wanted):
         tags = {tag.k: tag.v for tag in item.tags}
         if item.is_way():
             if tags.get("highway") in ROAD_CLASSES and tags.get("area") != "yes" and _cars_may(tags):
-                ways.append(Way(item.id, tags, tuple(node.ref for node in item.nodes)))
+                ways.append(OsmWay(item.id, tags, tuple(node.ref for node in item.nodes)))
         elif "restriction" in tags:
             members = tuple((member.type, member.ref, member.role) for member in item.members)
-            restrictions.append(Restriction(item.id, tags, members))
+            restrictions.append(TurnRestriction(item.id, tags, members))
     return ways, tuple(restrictions)
 
 
@@ -235,7 +235,7 @@ def _read_cameras(file: Any) -> tuple[Position, ...]:
     return tuple(Position(node.location.lon, node.location.lat) for node in found if node.location.valid())
 
 
-def _known_pieces(way: Way, nodes: Mapping[int, Node]) -> Iterator[Way]:
+def _known_pieces(way: OsmWay, nodes: Mapping[int, Node]) -> Iterator[OsmWay]:
     """The part of a way whose nodes are in the extract: the longest stretch, if clipping left gaps."""
     stretches: list[list[int]] = [[]]
     for ref in way.nodes:
@@ -245,7 +245,7 @@ def _known_pieces(way: Way, nodes: Mapping[int, Node]) -> Iterator[Way]:
             stretches.append([])
     longest = max(stretches, key=len)
     if len(longest) > 1:
-        yield Way(way.way_id, way.tags, tuple(longest))
+        yield OsmWay(way.way_id, way.tags, tuple(longest))
 
 
 def write(extract: Extract, target: Path, country: str) -> None:
@@ -289,7 +289,7 @@ def town_cells(extract: Extract) -> frozenset[tuple[int, int]]:
     return frozenset(cell for cell, count in about.items() if count >= TOWN_NODES)
 
 
-def is_built_up(way: Way, nodes: Mapping[int, Node], towns: frozenset[tuple[int, int]]) -> bool:
+def is_built_up(way: OsmWay, nodes: Mapping[int, Node], towns: frozenset[tuple[int, int]]) -> bool:
     """Whether a road lies in a town or village: by its tags, else by the streets around it."""
     zone = zone_of(way.tags)
     if zone in ("urban", "rural", "motorway", "trunk"):

@@ -21,12 +21,13 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from automotive_cosim.contracts import Tell
 from automotive_cosim.osm.counts import GOOD_GEH, HOURS, Counts, geh
 from automotive_cosim.osm.demand import Journey, write
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.options import Setup, command_line, read_configuration
-from automotive_cosim.traffic.stability import Step, summary
+from automotive_cosim.traffic.stability import StepFigures, summary
 
 HOUR_S = 3600.0
 
@@ -42,9 +43,6 @@ road that does not carry more when more is sent is full, and the surplus stands 
 
 LOOK_EVERY_S = 1.0
 """How often to sample how many vehicles are halted; SUMO's lines are also its signs of life, and come in bursts."""
-
-Progress = Callable[[str, float | None], None]
-"""Called with the current activity and, where known, its progress."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,7 +194,7 @@ def fit(
     days: int,
     minutes: float,
     scratch: Path,
-    tell: Progress,
+    tell: Tell,
 ) -> Fitted:
     """Simulates days until the counts are met.
 
@@ -305,7 +303,7 @@ class _Look:
     teleports: int = 0
     """Seconds since the day began."""
 
-    def add(self, step: Step) -> None:
+    def add(self, step: StepFigures) -> None:
         self.count += 1
         self.running += step["running"]
         self.halting += step["halting"]

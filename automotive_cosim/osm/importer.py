@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 
+from automotive_cosim.contracts import Tell
 from automotive_cosim.errors import ImportMapError
 from automotive_cosim.geo.place import Atlas, Place
 from automotive_cosim.osm import demand, extract, folder, network, trips
@@ -35,9 +36,6 @@ QUICK_STEP_S = 1.0
 
 FULL_PER_KM = 1000 / 7.5
 """Cars that fit on a kilometre of lane: SUMO's default length of 5 m and gap of 2.5 m."""
-
-Progress = Callable[[str, float | None], None]
-"""Called with the current activity and, where known, its progress."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +64,7 @@ def scenario_name(source: Path) -> str:
 
 
 def import_map(
-    source: Path, out: Path, options: ImportOptions | None = None, on_progress: Progress | None = None
+    source: Path, out: Path, options: ImportOptions | None = None, on_progress: Tell | None = None
 ) -> ImportReport:
     """Turns an OSM extract into a scenario folder that ``scenarios.load`` accepts.
 
@@ -165,14 +163,14 @@ def _write(building: Path, options: ImportOptions, place: Place, ways: Sequence[
     return load(building)
 
 
-def _find_scale(scenario: Scenario, options: ImportOptions, tell: Progress) -> Stability:
+def _find_scale(scenario: Scenario, options: ImportOptions, tell: Tell) -> Stability:
     """Scales the traffic down until it flows, first with long steps, then with the scenario's own."""
     quick = _lower_until_it_flows(scenario, 1.0, QUICK_STEP_S, options, tell)
     return _lower_until_it_flows(scenario, quick.scale, scenario.sumo.step_length_s, options, tell)
 
 
 def _lower_until_it_flows(
-    scenario: Scenario, scale: float, step_length_s: float, options: ImportOptions, tell: Progress
+    scenario: Scenario, scale: float, step_length_s: float, options: ImportOptions, tell: Tell
 ) -> Stability:
     while True:
         run = measure(

@@ -23,6 +23,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import IO
 
+from automotive_cosim.contracts import Tell
 from automotive_cosim.errors import ImportMapError
 from automotive_cosim.osm.area import Area
 
@@ -38,13 +39,10 @@ LONGEST_PAUSE_S = 120.0
 
 PIECE_BYTES = 1 << 16
 
-Tell = Callable[[str, float | None], None]
-"""Called with the current activity and, where known, its progress."""
-
 
 @dataclass(frozen=True, slots=True)
-class Limits:
-    """Limits of a download."""
+class DownloadLimits:
+    """How patient the download is."""
 
     timeout_s: float = 180.0
     """Limit of the server's work, and of wall time without a byte from it."""
@@ -72,7 +70,7 @@ class _BusyError(Exception):
         self.pause_s = pause_s
 
 
-def query(area: Area, limits: Limits) -> str:
+def query(area: Area, limits: DownloadLimits) -> str:
     """The roads within an area, with turn restrictions and speed cameras, in Overpass QL."""
     box = f"{area.south_deg:.7f},{area.west_deg:.7f},{area.north_deg:.7f},{area.east_deg:.7f}"
     return (
@@ -87,7 +85,7 @@ def download(
     endpoint: str,
     area: Area,
     target: Path,
-    limits: Limits | None = None,
+    limits: DownloadLimits | None = None,
     *,
     tell: Tell = lambda _stage, _share: None,
     sleep: Callable[[float], None] = time.sleep,
@@ -105,7 +103,7 @@ def download(
     Raises:
         ImportMapError: the endpoint, the area or the target cannot be used, or the server returns no map.
     """
-    limits = limits or Limits()
+    limits = limits or DownloadLimits()
     _check(endpoint, area, target)
     request = urllib.request.Request(
         endpoint,
@@ -142,7 +140,11 @@ def _check(endpoint: str, area: Area, target: Path) -> None:
 
 
 def _fetch_patiently(
-    request: urllib.request.Request, target: Path, limits: Limits, tell: Tell, sleep: Callable[[float], None]
+    request: urllib.request.Request,
+    target: Path,
+    limits: DownloadLimits,
+    tell: Tell,
+    sleep: Callable[[float], None],
 ) -> None:
     pause_s = FIRST_PAUSE_S
     for left in range(limits.tries - 1, -1, -1):
@@ -162,7 +164,7 @@ def _fetch_patiently(
             return
 
 
-def _fetch(request: urllib.request.Request, target: Path, limits: Limits, tell: Tell) -> None:
+def _fetch(request: urllib.request.Request, target: Path, limits: DownloadLimits, tell: Tell) -> None:
     tell("asking the server", None)
     try:
         with urllib.request.urlopen(request, timeout=limits.timeout_s) as answer, target.open("wb") as file:
@@ -188,7 +190,7 @@ def _fetch(request: urllib.request.Request, target: Path, limits: Limits, tell: 
         raise _BusyError(f"the connection broke ({type(error).__name__})") from error
 
 
-def _copy(answer: http.client.HTTPResponse, file: IO[bytes], limits: Limits, tell: Tell) -> None:
+def _copy(answer: http.client.HTTPResponse, file: IO[bytes], limits: DownloadLimits, tell: Tell) -> None:
     size = 0
     while piece := answer.read(PIECE_BYTES):
         size += len(piece)

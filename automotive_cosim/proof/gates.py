@@ -38,7 +38,7 @@ from automotive_cosim.proof import mutations
 from automotive_cosim.proof.ground import Ground, Played, Script, finish
 from automotive_cosim.tasking.checks import NothingDone
 from automotive_cosim.tasking.task import Basis, Half, Task
-from automotive_cosim.tasking.triggers import All, Condition, Parked, Standing
+from automotive_cosim.tasking.triggers import All, Parked, Standing, TriggerCondition
 from automotive_cosim.tasking.verdict import judge
 from automotive_cosim.traffic.fork import Simulations
 
@@ -53,7 +53,7 @@ PATIENCE = 200
 BY_NUMBER = re.compile(r"\b(element|index|widget)\s*(number\s*)?\d", re.IGNORECASE)
 
 Wrong = Iterator[str]
-Strategy = Callable[[Ground], Played]
+GateStrategy = Callable[[Ground], Played]
 
 
 # --- one half ---------------------------------------------------------------------------------------------
@@ -156,7 +156,7 @@ def _wins(ground: Ground, right: Played, moments: tuple[object, ...]) -> bool:
 # --- strategies over all halves ---------------------------------------------------------------------------
 
 
-def _strategies(grounds: dict[str, Ground]) -> Iterator[tuple[str, Strategy]]:
+def _strategies(grounds: dict[str, Ground]) -> Iterator[tuple[str, GateStrategy]]:
     yield "no-op", lambda ground: ground.play(ground.agent(NoOp()), give_up=True)
     for status in GoalStatus:
         yield str(status), partial(Ground.declares, status=status)
@@ -260,7 +260,7 @@ def road(ground: Ground, simulations: Simulations) -> Wrong:
     yield "its trigger is reached by a parked car"
 
 
-def _stands(condition: Condition) -> bool:
+def _stands(condition: TriggerCondition) -> bool:
     """Whether it holds of a standing car alone."""
     if isinstance(condition, All):
         return any(map(_stands, condition.conditions))

@@ -16,7 +16,7 @@ from automotive_cosim.cockpit.theme import DAY, SCREEN_HEIGHT, SCREEN_WIDTH, Typ
 
 COLUMNS, CAPTION_HEIGHT, GAP = 6, 22, 10
 
-Tile = tuple[str, Image.Image | None]
+SheetTile = tuple[str, Image.Image | None]
 """A caption and a screen; None leaves the tile empty."""
 
 
@@ -30,7 +30,7 @@ def contact_sheet(cockpit: Cockpit, width: int = 400) -> Image.Image:
     return sheet(tuple(pictures(cockpit)), COLUMNS, width)
 
 
-def sheet(tiles: Sequence[Tile], columns: int, width: int = 400) -> Image.Image:
+def sheet(tiles: Sequence[SheetTile], columns: int, width: int = 400) -> Image.Image:
     """Screens with a caption above each, row by row.
 
     Args:

@@ -26,7 +26,7 @@ from itertools import pairwise
 from automotive_cosim.contracts import ActionType, AlertKind, FeedbackCode, GoalStatus, Json, Reason
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
-from automotive_cosim.tasking.moves import Do, Move, Slide, Tap, TapUntil, Type, Warn
+from automotive_cosim.tasking.moves import Do, Move, Slide, Tap, TapUntil, TypeText, Warn
 from automotive_cosim.tasking.parameters import bind
 from automotive_cosim.tasking.task import Basis, Half, Task
 from automotive_cosim.tasks import CATALOGUE
@@ -249,7 +249,7 @@ def _target(move: Move) -> str:
     match move:
         case Tap(resource_id, _, text):
             return resource_id or text.lower()
-        case TapUntil() | Slide() | Type():
+        case TapUntil() | Slide() | TypeText():
             return move.resource_id
         case _:
             return ""

@@ -38,7 +38,7 @@ QUALITY = 72
 
 
 @dataclass(frozen=True, slots=True)
-class Frame:
+class FilmFrame:
     """The content of one frame before it is composed."""
 
     time_s: float
@@ -54,9 +54,9 @@ class Film(Watcher):
     def __init__(self, folder: Path) -> None:
         """``folder`` is the record's folder; nothing is written before the end."""
         self._path = folder / "episode.webp"
-        self._before: deque[Frame] = deque(maxlen=BEFORE_FRAMES)
-        self._steps: list[Frame] = []
-        self._after: list[Frame] = []
+        self._before: deque[FilmFrame] = deque(maxlen=BEFORE_FRAMES)
+        self._steps: list[FilmFrame] = []
+        self._after: list[FilmFrame] = []
         self._map: RoadMap | None = None
         self._hand_over_s = 0.0
 
@@ -105,7 +105,7 @@ class Film(Watcher):
         )
         draft.replace(self._path)
 
-    def _compose(self, frame: Frame, result: EpisodeResult) -> Image.Image:
+    def _compose(self, frame: FilmFrame, result: EpisodeResult) -> Image.Image:
         assert self._map is not None
         at_s = frame.time_s - self._hand_over_s
         past = [sample for sample in result.path if sample.at_s <= at_s + 0.05]
@@ -120,9 +120,11 @@ class Film(Watcher):
         return canvas.image
 
 
-def _frame(time_s: float, screenshot: npt.NDArray[np.uint8], title: str, words: str, milliseconds: int) -> Frame:
+def _frame(
+    time_s: float, screenshot: npt.NDArray[np.uint8], title: str, words: str, milliseconds: int
+) -> FilmFrame:
     picture = Image.fromarray(screenshot).resize(_pixels(COCKPIT), Image.Resampling.LANCZOS)
-    return Frame(time_s, picture, title, words, milliseconds)
+    return FilmFrame(time_s, picture, title, words, milliseconds)
 
 
 def _pixels(rect: Rect) -> tuple[int, int]:
@@ -160,7 +162,7 @@ def _limit_sign(canvas: Canvas, rect: Rect, limit_kmh: float) -> None:
     canvas.text(rect, f"{limit_kmh:.0f}", Type.STRONG, (10, 10, 10), "centre")
 
 
-def _info(canvas: Canvas, frame: Frame, here: Sample, at_s: float) -> None:
+def _info(canvas: Canvas, frame: FilmFrame, here: Sample, at_s: float) -> None:
     """Clock, speed, and what is being done and why."""
     canvas.box(INFO, NIGHT.surface, 14)
     inner = INFO.inset(18, 12)

@@ -11,7 +11,7 @@ from PIL import Image, ImageDraw
 from automotive_cosim.cockpit.drawing import Canvas
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.map import EGO_DOWN, Camera, RoadMap
-from automotive_cosim.cockpit.mapdraw import Scene, draw
+from automotive_cosim.cockpit.mapdraw import MapScene, draw
 from automotive_cosim.cockpit.theme import NIGHT, Type
 from automotive_cosim.run.timeline import Sample
 from automotive_cosim.run.words import is_over
@@ -39,7 +39,7 @@ def draw_road(
     here = past[-1]
     camera = Camera(here.x_m, here.y_m, here.heading_deg, METRES_PER_PIXEL)
     width, height = round(area.width * canvas.scale), round(area.height * canvas.scale)
-    scene = Scene(camera, (here.x_m, here.y_m, here.heading_deg))
+    scene = MapScene(camera, (here.x_m, here.y_m, here.heading_deg))
     picture = draw(road_map, scene, width, height, canvas.scale, night=True)
     trail = _Trail(camera, area, canvas.scale * FINE)
     trail.drive(past)

@@ -11,7 +11,7 @@ from automotive_cosim.report.failures import FailureClass, failure_class
 from automotive_cosim.report.results import NOT_RANKED, Contestant, Results, pair_instance, pairs
 from automotive_cosim.report.stats import clustered_mean, compare
 from automotive_cosim.report.summary import DIMENSIONS, NONE, RATES, rate_cell
-from automotive_cosim.report.tables import Cell, Row, Table
+from automotive_cosim.report.tables import Cell, Table, TableRow
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.harm import DriveFigures
 from automotive_cosim.run.store import read_trace, trace_file
@@ -40,7 +40,7 @@ def classes(results: Results) -> dict[str, FailureClass]:
 
 def failures(results: Results, found: Mapping[str, FailureClass]) -> Table:
     """The number of failures of each class, by contestant."""
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     for each in results.contestants:
         lost = [row.id for row in results.of(each) if row.id in found]
         cells = [
@@ -60,7 +60,7 @@ def failures(results: Results, found: Mapping[str, FailureClass]) -> Table:
 
 def harm(results: Results) -> Table:
     """Differences between the agent's drive and its baseline run."""
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     for each in results.contestants:
         for half in ("first", "second"):
             mine = [row for row in results.of(each) if row.drive and row.half == half]
@@ -93,7 +93,7 @@ def _difference(rows: Iterable[EpisodeRow], digits: int, of: Callable[[DriveFigu
 
 def place_effect(results: Results) -> Table:
     """What place is worth: success on pairs that place decides, with and without it; the others are the placebo."""
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     ranked = [each for each in results.contestants if each.agent not in NOT_RANKED]
     for full in ranked:
         for other in ranked:
@@ -136,7 +136,7 @@ def _effect(results: Results, full: Contestant, other: Contestant, decided: bool
 def by_label(results: Results, title: str, of: Callable[[EpisodeRow], Sequence[str]]) -> Table:
     """Success by a label of which an episode may have several."""
     values = sorted({value for row in results.rows for value in of(row)})
-    rows: list[Row] = [
+    rows: list[TableRow] = [
         (
             value,
             *(rate_cell(row for row in results.of(each) if value in of(row)) for each in results.contestants),
@@ -151,7 +151,7 @@ def by_label(results: Results, title: str, of: Callable[[EpisodeRow], Sequence[s
 
 def prompts(results: Results) -> Table:
     """Lengths of prompts under each geo control."""
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     for each in results.contestants:
         asked = [row for row in results.of(each) if row.prompt_tokens]
         if asked:
@@ -167,7 +167,7 @@ def prompts(results: Results) -> Table:
 def distribution(results: Results) -> Table:
     """The number of tasks by module and dimension."""
     tasks = {row.task: row for row in results.rows}.values()
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     for module in Module:
         mine = [row for row in tasks if row.module == module]
         if mine:

@@ -18,7 +18,7 @@ MOST_LISTED = 30
 
 
 @dataclass(frozen=True, slots=True)
-class Case:
+class ComparedInstance:
     """One instance in both evaluations."""
 
     name: str
@@ -49,13 +49,13 @@ class Case:
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class SuccessChange:
     """One contestant's success before and after."""
 
     contestant: Contestant
     unit: str
     """``episodes`` or ``pairs``."""
-    cases: tuple[Case, ...]
+    cases: tuple[ComparedInstance, ...]
     found: Comparison | None
     """After compared with before; None if nothing was judged both times."""
 
@@ -68,14 +68,14 @@ class Change:
         return self.count("error") > 0 or self.found is None or -self.found.difference > allowed + 1e-9
 
 
-def changes(before: Path, after: Path) -> tuple[Change, ...]:
+def changes(before: Path, after: Path) -> tuple[SuccessChange, ...]:
     """Compares two evaluations' folders on what was judged in the first.
 
     Raises:
         UserError: one folder is not an evaluation's, or no contestant is in both.
     """
     old, new = read_results(before), read_results(after)
-    found: list[Change] = []
+    found: list[SuccessChange] = []
     for each in old.contestants:
         if each in new.contestants:
             found.append(_change(each, "episodes", old.of(each), new.of(each)))
@@ -87,11 +87,13 @@ def changes(before: Path, after: Path) -> tuple[Change, ...]:
     return tuple(found)
 
 
-def _change(each: Contestant, unit: str, old: Iterable[EpisodeRow], new: Iterable[EpisodeRow]) -> Change:
+def _change(each: Contestant, unit: str, old: Iterable[EpisodeRow], new: Iterable[EpisodeRow]) -> SuccessChange:
     key = pair_instance if unit == "pairs" else instance
     news = {key(row): row for row in new}
     cases = tuple(
-        Case(" ".join(map(str, key(row))), row, news.get(key(row))) for row in old if row.success is not None
+        ComparedInstance(" ".join(map(str, key(row))), row, news.get(key(row)))
+        for row in old
+        if row.success is not None
     )
     judged = {case.name: case for case in cases if case.kind != "error"}
     clusters: dict[Hashable, Hashable] = {name: case.before.task for name, case in judged.items()}
@@ -100,10 +102,10 @@ def _change(each: Contestant, unit: str, old: Iterable[EpisodeRow], new: Iterabl
         {name: bool(case.before.success) for name, case in judged.items()},
         clusters,
     )
-    return Change(each, unit, cases, found)
+    return SuccessChange(each, unit, cases, found)
 
 
-def markdown(found: Sequence[Change], allowed: float) -> str:
+def markdown(found: Sequence[SuccessChange], allowed: float) -> str:
     """A summary for a pull request."""
     rows = []
     for each in found:
@@ -137,7 +139,7 @@ def markdown(found: Sequence[Change], allowed: float) -> str:
     return table.markdown() + "".join(_listed(each, kind) for each in found for kind in ("lost", "error", "won"))
 
 
-def _listed(each: Change, kind: str) -> str:
+def _listed(each: SuccessChange, kind: str) -> str:
     cases = [case for case in each.cases if case.kind == kind]
     if not cases or each.unit == "pairs":
         return ""
@@ -148,7 +150,7 @@ def _listed(each: Change, kind: str) -> str:
     return f"\n**{title}, {each.contestant.label}**\n\n" + "\n".join(lines) + "\n"
 
 
-def junit(found: Sequence[Change]) -> str:
+def junit(found: Sequence[SuccessChange]) -> str:
     """JUnit XML, one suite per contestant, one case per instance; lost ones fail, ones not judged are errors."""
     root = ElementTree.Element("testsuites", name="automotive-cosim compare")
     for each in found:

@@ -9,7 +9,7 @@ from PIL import Image
 from automotive_cosim.agents import make_agent
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.errors import InfrastructureError
-from automotive_cosim.report.contactsheet import Tile, sheet
+from automotive_cosim.report.contactsheet import SheetTile, sheet
 from automotive_cosim.run.episode import EpisodeSetup, Shot, Watcher, run_episode
 from automotive_cosim.run.words import action_in_words
 from automotive_cosim.tasking.task import Task
@@ -23,7 +23,7 @@ class Storyboard(Watcher):
 
     def __init__(self, title: str) -> None:
         """``title`` is shown above the first screen."""
-        self.tiles: list[Tile] = []
+        self.tiles: list[SheetTile] = []
         self._title = title
 
     def handed_over(self, episode: Episode, shot: Shot) -> None:
@@ -42,7 +42,7 @@ def picture_of(task: Task, halves: Sequence[str], seed: int, width: int) -> Imag
     Raises:
         InfrastructureError: the simulation failed, or the trigger did not come true.
     """
-    tiles: list[Tile] = []
+    tiles: list[SheetTile] = []
     simulations = Simulations()
     try:
         for half in halves:

@@ -13,7 +13,7 @@ from automotive_cosim.interface.observe import Channel
 from automotive_cosim.report.published import PAPER, PAPER_COLUMNS, PAPER_ROWS
 from automotive_cosim.report.results import Contestant, Results, instance, pairs
 from automotive_cosim.report.stats import Rate, compare, mean, pass_hat_k, rate
-from automotive_cosim.report.tables import Cell, Row, Table
+from automotive_cosim.report.tables import Cell, Table, TableRow
 from automotive_cosim.run.episode_row import PARTS, EpisodeRow
 from automotive_cosim.tasking.task import Dimension, Mode, Module
 
@@ -53,7 +53,7 @@ def tables(results: Results) -> list[Table]:
 
 def main(results: Results) -> Table:
     """Success by method and input over the four dimensions, laid out like the paper's main table."""
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     for each in results.contestants:
         firsts = [row for row in results.of(each) if row.half == "first"]
         cells = [rate_cell(row for row in firsts if row.dimension == name) for name in DIMENSIONS]
@@ -76,7 +76,7 @@ def published() -> Table:
 
 def safety(results: Results) -> Table:
     """Pair success, the headline figure, and each half separately."""
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     for each in results.contestants:
         mine = [row for row in results.of(each) if row.pair]
         if mine:
@@ -111,7 +111,7 @@ def safety(results: Results) -> Table:
 
 def held_out(results: Results) -> Table:
     """First phrasings, from which the rule model was built, beside held-out ones; empty if none was drawn."""
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     for each in results.contestants if any(row.held_out for row in results.rows) else ():
         cells: list[Cell] = []
         for wanted in (False, True):
@@ -128,7 +128,7 @@ def held_out(results: Results) -> Table:
 
 def conduct(results: Results) -> Table:
     """Duration and cost of episodes, and figures of the drives."""
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     for each in results.contestants:
         mine = [row for row in results.of(each) if row.success is not None]
         nearest = ((row.min_time_to_collision_s, row.id) for row in mine if row.min_time_to_collision_s is not None)
@@ -169,7 +169,7 @@ def conduct(results: Results) -> Table:
 
 def comparisons(results: Results) -> Table:
     """Each contestant against each other, on the instances on which both were judged."""
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     for first, second in combinations(results.contestants, 2):
         ones, others = _judged(results.of(first)), _judged(results.of(second))
         found = compare(
@@ -204,7 +204,7 @@ def by(results: Results, title: str, of: Callable[[EpisodeRow], str], order: Ite
     """Success by something that each episode has one of, both halves together; those without it are left out."""
     found = {of(row) for row in results.rows} - {""}
     values = [value for value in order if value in found] or sorted(found)
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     for value in values:
         cells = [rate_cell(row for row in results.of(each) if of(row) == value) for each in results.contestants]
         rows.append((value, *cells))
@@ -215,7 +215,7 @@ def by(results: Results, title: str, of: Callable[[EpisodeRow], str], order: Ite
 
 def parts(results: Results) -> Table:
     """Which part of the verdict failed in the episodes that were not solved."""
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     for each in results.contestants:
         lost = [row for row in results.of(each) if row.success is False]
         cells = []
@@ -230,7 +230,7 @@ def parts(results: Results) -> Table:
 def repeats(results: Results) -> Table:
     """pass^k over the repeats of each instance, if there are any."""
     most = int(results.manifest["plan"]["repeats"])
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     for each in results.contestants if most > 1 else ():
         trials: dict[Hashable, list[bool]] = defaultdict(list)
         mine = [row for row in results.of(each) if row.success is not None]

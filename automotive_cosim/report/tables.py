@@ -20,7 +20,7 @@ class Cell:
         return self.text
 
 
-Row = tuple[Cell | str, ...]
+TableRow = tuple[Cell | str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +31,7 @@ class Table:
     """Base name of its files."""
     title: str
     columns: tuple[str, ...]
-    rows: tuple[Row, ...]
+    rows: tuple[TableRow, ...]
     note: str = ""
     heads: int = 1
 

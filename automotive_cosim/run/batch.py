@@ -19,7 +19,7 @@ from automotive_cosim.run import worker
 from automotive_cosim.run.collect import Pictures, failed
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.executor import CannotWrite, Executor, J, LostError, Opener, R, Worker
-from automotive_cosim.run.pace import SHARED_FROM, Pace, Simulation, Turn
+from automotive_cosim.run.pace import SHARED_FROM, JobTurn, Pace, SimulationKey
 from automotive_cosim.run.plan import Plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.row import JobRow
@@ -126,7 +126,7 @@ class _Place(Generic[J, R]):
     """When it was given the job (monotonic clock)."""
     is_cold: bool = True
     """Whether it has to warm up the simulation for the job."""
-    warm: Simulation | None = None
+    warm: SimulationKey | None = None
     """The simulation it ran last."""
 
     def give(self, job: J) -> None:
@@ -134,16 +134,16 @@ class _Place(Generic[J, R]):
         self.job, self.since_s, self.warm = job, time.monotonic(), job.simulation
         self.worker.give(job)
 
-    def turn(self) -> Turn[J] | None:
+    def turn(self) -> JobTurn[J] | None:
         """How long it has worked on its job; None if it has none."""
-        return Turn(self.job, self.is_cold, time.monotonic() - self.since_s) if self.job else None
+        return JobTurn(self.job, self.is_cold, time.monotonic() - self.since_s) if self.job else None
 
 
 @dataclass
 class _Queue(Generic[J]):
     """Jobs by simulation and kind; one of each kind goes first, to learn how long the others take."""
 
-    groups: dict[Simulation, dict[Hashable, deque[J]]] = field(default_factory=dict)
+    groups: dict[SimulationKey, dict[Hashable, deque[J]]] = field(default_factory=dict)
     tried: set[Hashable] = field(default_factory=set)
     """Kinds of which a job has been taken."""
 
@@ -151,7 +151,7 @@ class _Queue(Generic[J]):
         for job in jobs:
             self.groups.setdefault(job.simulation, {}).setdefault(job.kind, deque()).append(job)
 
-    def take(self, warm: Simulation | None, busy: Counter[Simulation]) -> J | None:
+    def take(self, warm: SimulationKey | None, busy: Counter[SimulationKey]) -> J | None:
         """The next job for a worker: of its own simulation, else of one that no worker has, else shared work."""
         if warm is not None and warm in self.groups:
             return self._first(warm)
@@ -168,14 +168,14 @@ class _Queue(Generic[J]):
         self._without(job)
         return True
 
-    def waiting(self) -> dict[Simulation, dict[Hashable, int]]:
+    def waiting(self) -> dict[SimulationKey, dict[Hashable, int]]:
         """The number of waiting jobs."""
         return {
             simulation: {kind: len(jobs) for kind, jobs in kinds.items()}
             for simulation, kinds in self.groups.items()
         }
 
-    def _first(self, simulation: Simulation) -> J:
+    def _first(self, simulation: SimulationKey) -> J:
         kinds = self.groups[simulation]
         kind = next((kind for kind in kinds if kind not in self.tried), next(iter(kinds)))
         self.tried.add(kind)
@@ -307,7 +307,7 @@ class _Batch(Generic[J, R]):
         if self._stillborn >= STILLBORN * self._executor.count:
             raise InfrastructureError(f"no worker becomes ready: {why}; rerun the command to resume")
 
-    def _finished(self, place: _Place[J, R]) -> Turn[J] | None:
+    def _finished(self, place: _Place[J, R]) -> JobTurn[J] | None:
         """Takes the job from a worker, if it has one."""
         turn, place.job = place.turn(), None
         if turn is not None:

@@ -18,7 +18,7 @@ from automotive_cosim.run.episode import EpisodeResult, Shot, Watcher
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.harm import nearest_s, overspeed
 from automotive_cosim.run.moments import Judged
-from automotive_cosim.run.plan import Job
+from automotive_cosim.run.plan import EpisodeJob
 
 OVERSPEED_SCALE_MPS = 2.23
 """Mean overspeed at which compliance is zero, 5 mph: nuPlan's speed-limit metric (``max_overspeed_value``)."""
@@ -91,7 +91,7 @@ class Collector(Watcher):
         for number, data in enumerate(self._shown):
             (folder / f"step_{number:03d}.jpg").write_bytes(data)
 
-    def row(self, job: Job, result: EpisodeResult) -> EpisodeRow:
+    def row(self, job: EpisodeJob, result: EpisodeResult) -> EpisodeRow:
         """The episode's row, without the fields that the batch adds."""
         episode, judged, load = self._episode, result.verdict, result.load
         return replace(
@@ -128,7 +128,7 @@ class Collector(Watcher):
         )
 
 
-def planned(job: Job) -> EpisodeRow:
+def planned(job: EpisodeJob) -> EpisodeRow:
     """What is known of an episode before it runs."""
     setup, task = job.setup, job.task
     half = task.half(setup.half)
@@ -154,7 +154,7 @@ def planned(job: Job) -> EpisodeRow:
     )
 
 
-def failed(job: Job, kind: str, why: str) -> EpisodeRow:
+def failed(job: EpisodeJob, kind: str, why: str) -> EpisodeRow:
     """The row of an episode that ended in an infrastructure error."""
     return replace(planned(job), error=why, error_kind=kind)
 

@@ -26,11 +26,11 @@ from automotive_cosim.episode.specification import End, EpisodeSpec, SeedSource
 from automotive_cosim.errors import InfrastructureError
 from automotive_cosim.geo.breaches import Violation
 from automotive_cosim.interface import trace
-from automotive_cosim.models import Reply
+from automotive_cosim.models import ModelReply
 from automotive_cosim.run.estimates import PositionEstimate, estimates
 from automotive_cosim.run.harm import DriveFigures, drive_figures
 from automotive_cosim.run.load import DriverLoad, driver_load
-from automotive_cosim.run.timeline import Entry, Sample, samples, timeline
+from automotive_cosim.run.timeline import Sample, TimelineEntry, samples, timeline
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.tasking import verdict
 from automotive_cosim.traffic.fork import Simulations
@@ -70,7 +70,7 @@ class EpisodeResult:
     trace_sha256: str | None
     """Hash of the steps so far; None before the hand-over."""
     verdict: Json | None
-    timeline: tuple[Entry, ...]
+    timeline: tuple[TimelineEntry, ...]
     path: tuple[Sample, ...]
     """The drive, once per second, from departure to the end of the aftermath."""
     end: End
@@ -178,7 +178,7 @@ class _Run:
         self._agent = agent
         self._watchers = watchers
         self._episode: Episode | None = None
-        self._replies: list[Reply] = []
+        self._replies: list[ModelReply] = []
         self._after: list[Moment] = []
         self._baseline: tuple[Moment, ...] = ()
 

@@ -15,7 +15,7 @@ from typing import Any, Generic
 
 from automotive_cosim.run.executor import J
 
-Simulation = tuple[str, int]
+SimulationKey = tuple[str, int]
 SHARED_FROM = 4
 """This many jobs must wait for a simulation before a second worker warms it up too."""
 DRAWN_BY = 2.0
@@ -23,7 +23,7 @@ DRAWN_BY = 2.0
 
 
 @dataclass(frozen=True, slots=True)
-class Turn(Generic[J]):
+class JobTurn(Generic[J]):
     """The time that a worker spends on a job."""
 
     job: J
@@ -60,9 +60,9 @@ class Pace:
 
     def __init__(self) -> None:
         self._own: dict[Hashable, _Means] = defaultdict(_Means)
-        self._cold: list[Turn[Any]] = []
+        self._cold: list[JobTurn[Any]] = []
 
-    def took(self, turn: Turn[Any]) -> None:
+    def took(self, turn: JobTurn[Any]) -> None:
         """Takes note of a job that has ended, with or without an error."""
         if turn.is_cold:
             self._cold.append(turn)
@@ -70,7 +70,7 @@ class Pace:
             self._own[turn.job.kind].add(turn.job.simulation[0], turn.seconds)
 
     def left_s(
-        self, waiting: Mapping[Simulation, Mapping[Hashable, int]], running: Sequence[Turn[Any]], workers: int
+        self, waiting: Mapping[SimulationKey, Mapping[Hashable, int]], running: Sequence[JobTurn[Any]], workers: int
     ) -> float | None:
         """Wall time until everything has ended; None while nothing is known of some kind of job.
 
@@ -99,7 +99,7 @@ class Pace:
         again = max(0, shared - len({*waiting, *busy}))
         return max(longest_s, (sum(works_s) + again * warm_ups.of("")) / shared)
 
-    def _takes_s(self, turn: Turn[Any], warm_ups: _Means) -> float:
+    def _takes_s(self, turn: JobTurn[Any], warm_ups: _Means) -> float:
         scenario = turn.job.simulation[0]
         return self._own[turn.job.kind].of(scenario) + (warm_ups.of(scenario) if turn.is_cold else 0.0)
 

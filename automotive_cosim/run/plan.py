@@ -96,7 +96,7 @@ class Plan:
                 raise UserError("agent 'human' needs a person; use `automotive-cosim run --agent human`")
             make_agent(agent, model)
 
-    def jobs(self) -> tuple[Job, ...]:
+    def jobs(self) -> tuple[EpisodeJob, ...]:
         """Every episode, grouped by warm simulation.
 
         Within a group they are ordered by contestant, so a situation that does not arise for one is known by then.
@@ -129,7 +129,7 @@ class Plan:
             if self.everywhere or name not in shipped or task.runs_whole_in(name)
         ]
 
-    def _each(self) -> Iterator[Job]:
+    def _each(self) -> Iterator[EpisodeJob]:
         for agent, model, (task, scenario), seed, geo, mode, repeat in product(
             self.agents,
             self.models,
@@ -156,11 +156,11 @@ class Plan:
                     mode=Mode(mode),
                     held_out=self.held_out,
                 )
-                yield Job(setup, repeat, self.limits)
+                yield EpisodeJob(setup, repeat, self.limits)
 
 
 @dataclass(frozen=True, slots=True)
-class Job:
+class EpisodeJob:
     """One episode of a plan."""
 
     setup: EpisodeSetup

@@ -12,7 +12,7 @@ from automotive_cosim.errors import ActionError
 from automotive_cosim.interface.observe import ALL
 
 
-class Script:
+class ScriptedAgent:
     """Plays one action per step, whatever it observes, then waits until the episode is over."""
 
     name = "script"
@@ -32,7 +32,7 @@ class Script:
         return self._left.popleft() if self._left else Action(ActionType.WAIT, seconds=1)
 
 
-def read_script(path: Path) -> Script:
+def read_script(path: Path) -> ScriptedAgent:
     """Reads a file of actions; empty lines are ignored.
 
     Raises:
@@ -52,4 +52,4 @@ def read_script(path: Path) -> Script:
                 raise ActionError(f"{path}, line {number}: {error}") from error
     if not actions:
         raise ActionError(f"{path} has no actions; write one JSON object per line")
-    return Script(actions)
+    return ScriptedAgent(actions)

@@ -14,7 +14,7 @@ from automotive_cosim.run.episode import run_episode
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.executor import Runner
 from automotive_cosim.run.moments import write_judged
-from automotive_cosim.run.plan import Job
+from automotive_cosim.run.plan import EpisodeJob
 from automotive_cosim.run.store import write_trace
 from automotive_cosim.traffic.fork import Simulations
 
@@ -23,13 +23,13 @@ WARM = 2
 
 
 @contextmanager
-def episodes(pictures: Pictures) -> Iterator[Runner[Job, EpisodeRow]]:
+def episodes(pictures: Pictures) -> Iterator[Runner[EpisodeJob, EpisodeRow]]:
     """Makes the runner of an evaluation's jobs."""
     with closing(Simulations(count_limit=WARM)) as simulations:
         yield lambda job, folder: run_job(job, folder, pictures, simulations)
 
 
-def run_job(job: Job, folder: Path, pictures: Pictures, simulations: Simulations) -> EpisodeRow:
+def run_job(job: EpisodeJob, folder: Path, pictures: Pictures, simulations: Simulations) -> EpisodeRow:
     """Runs one episode, writes its trace and screenshots, and returns its row; an error becomes a row too.
 
     Raises:

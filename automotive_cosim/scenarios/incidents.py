@@ -23,7 +23,7 @@ from annotated_types import Ge, Gt, Le, MinLen
 from automotive_cosim.formats.annotations import Form, TaggedBy
 
 FOR_GOOD_S = 86_400.0
-Edge = Annotated[str, MinLen(1)]
+EdgeId = Annotated[str, MinLen(1)]
 """Id of an edge of the network."""
 LocalTime = Annotated[time, Form(r"^\d\d:\d\d(:\d\d(\.\d+)?)?$", "08:00:00", time.fromisoformat)]
 """A local time of day."""
@@ -67,7 +67,7 @@ class Breakdown(Incident):
     """A car stands in a lane with its hazard lights on."""
 
     kind: Literal["breakdown"] = "breakdown"
-    edge: Edge
+    edge: EdgeId
     position_m: Annotated[float, Ge(0)]
     """Its front bumper, from the start of the edge."""
     lane: Annotated[int, Ge(0)] = 0
@@ -79,7 +79,7 @@ class Roadworks(Incident):
     """A lower limit is signed, and lanes may be closed."""
 
     kind: Literal["roadworks"] = "roadworks"
-    edge: Edge
+    edge: EdgeId
     limit_kmh: Annotated[float, Gt(0)]
     closed_lanes: tuple[Annotated[int, Ge(0)], ...] = ()
     """Among the edge's lanes for cars, 0 nearest the kerb."""
@@ -90,7 +90,7 @@ class Jam(Incident):
     """A queue before a bottleneck at the end of the last edge; its tail is ``length_m`` further back at first."""
 
     kind: Literal["jam"] = "jam"
-    edges: Annotated[tuple[Edge, ...], MinLen(1)]
+    edges: Annotated[tuple[EdgeId, ...], MinLen(1)]
     """In driving order, each leading to the next; together at least as long as the queue."""
     length_m: Annotated[float, Gt(0)]
     hold_s: Annotated[float, Gt(0)] = 20.0
@@ -102,7 +102,7 @@ class Closure(Incident):
     """A road closed to all except the authorities; other vehicles go round."""
 
     kind: Literal["closure"] = "closure"
-    edge: Edge
+    edge: EdgeId
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -110,7 +110,7 @@ class SchoolZone(Incident):
     """A lower limit at certain hours of school days, Monday to Friday, in local time."""
 
     kind: Literal["school_zone"] = "school_zone"
-    edges: Annotated[tuple[Edge, ...], MinLen(1)]
+    edges: Annotated[tuple[EdgeId, ...], MinLen(1)]
     limit_kmh: Annotated[float, Gt(0)]
     opens: LocalTime
     """``opens = 08:00:00``, TOML's local time."""
@@ -135,8 +135,8 @@ class Tractor(Incident):
     """A slow vehicle drives from one edge to another."""
 
     kind: Literal["tractor"] = "tractor"
-    from_edge: Edge
-    to_edge: Edge
+    from_edge: EdgeId
+    to_edge: EdgeId
     speed_kmh: Annotated[float, Gt(0)] = 25.0
     """25 is a common speed on the plates that slow vehicles carry in Germany (StVZO section 58)."""
     length_m: Annotated[float, Gt(0)] = 9.0
@@ -150,8 +150,8 @@ class Pedestrians(Incident):
     """
 
     kind: Literal["pedestrians"] = "pedestrians"
-    from_edge: Edge
-    to_edge: Edge
+    from_edge: EdgeId
+    to_edge: EdgeId
     every_s: Annotated[float, Ge(1)] = 10.0
     """Time between two groups."""
     group: Annotated[int, Ge(1)] = 3

@@ -14,7 +14,7 @@ from annotated_types import Ge, Gt, Le, MinLen
 from automotive_cosim.contracts import Weather
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.formats.annotations import Called, Latitude, Longitude, OneOf
-from automotive_cosim.scenarios.incidents import AnyIncident, Edge
+from automotive_cosim.scenarios.incidents import AnyIncident, EdgeId
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,9 +46,9 @@ class Trip:
 
     name: str
     """Name by which tasks and incidents refer to it."""
-    from_edge: Edge
-    to_edge: Edge
-    via: tuple[Edge, ...] = ()
+    from_edge: EdgeId
+    to_edge: EdgeId
+    via: tuple[EdgeId, ...] = ()
     """Edges on the way, in driving order."""
     about: str = ""
     """A description for human readers."""

@@ -5,12 +5,12 @@ Each check gives an ``Item``: what was checked, whether it passes, and the figur
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import closing
 from dataclasses import dataclass
 from functools import partial
 
-from automotive_cosim.contracts import EgoEnd, Json, LimitSource
+from automotive_cosim.contracts import EgoEnd, Json, LimitSource, Tell
 from automotive_cosim.errors import ScenarioError, TrafficError
 from automotive_cosim.geo.place import Atlas, Place
 from automotive_cosim.scenarios import Scenario, Street, Trip, incidents
@@ -36,9 +36,6 @@ LONGEST_DRIVE_S = 7200.0
 PIECE_S = 30.0
 """Length of the pieces in which the drive is run."""
 
-Tell = Callable[[str, float | None], None]
-"""Called with the current check and its progress: 0 to 1, or None if unknown."""
-
 
 @dataclass(frozen=True, slots=True)
 class Item:
@@ -50,7 +47,7 @@ class Item:
 
 
 @dataclass(frozen=True, slots=True)
-class Proof:
+class ScenarioProof:
     """The results of all checks of one scenario."""
 
     scenario: str
@@ -79,7 +76,7 @@ class Ride:
     took_s: float
 
 
-def check(scenario: Scenario, *, quick: bool = False, tell: Tell = lambda what, share: None) -> Proof:
+def check(scenario: Scenario, *, quick: bool = False, tell: Tell = lambda what, share: None) -> ScenarioProof:
     """Checks everything that a scenario declares.
 
     Args:
@@ -90,7 +87,7 @@ def check(scenario: Scenario, *, quick: bool = False, tell: Tell = lambda what, 
     Raises:
         SetupError: libsumo is missing, or eclipse-sumo unless ``quick``.
     """
-    return Proof(scenario.name, tuple(_items(scenario, quick, tell)))
+    return ScenarioProof(scenario.name, tuple(_items(scenario, quick, tell)))
 
 
 def _items(scenario: Scenario, quick: bool, tell: Tell) -> Iterator[Item]:

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 from PIL import Image, ImageDraw
 from shapely import LineString, Polygon, box
 
@@ -17,7 +16,7 @@ from automotive_cosim.cockpit.theme import DAY, Colour, Weight, font
 from automotive_cosim.errors import ScenarioError, UserError
 from automotive_cosim.geo.place import Atlas
 from automotive_cosim.scenarios import Scenario
-from automotive_cosim.scenery.labels import Labels, place_labels
+from automotive_cosim.scenery.labels import Labels, Points, place_labels
 from automotive_cosim.scenery.opening import network_of
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.network import Edge, Network
@@ -57,11 +56,9 @@ ENDINGS = (".webp", ".png")
 QUALITY = 75
 """Quality of WebP, which is lossy."""
 
-Points = npt.NDArray[np.float64]
-
 
 @dataclass(frozen=True, slots=True)
-class Frame:
+class Viewport:
     """Maps the network's metres to the picture's pixels."""
 
     left_m: float
@@ -71,7 +68,7 @@ class Frame:
     height: int
 
     @classmethod
-    def around(cls, edges: Iterable[Edge]) -> Frame:
+    def around(cls, edges: Iterable[Edge]) -> Viewport:
         """A frame of the usual size that contains all roads."""
         points = np.array([point for edge in edges for point in edge.shape_m])
         (x_min, y_min), (x_max, y_max) = points.min(axis=0), points.max(axis=0)
@@ -98,7 +95,7 @@ def draw_scenario(scenario: Scenario) -> Image.Image:
     """
     network = network_of(scenario)
     edges = tuple(network.edges.values())
-    frame = Frame.around(edges)
+    frame = Viewport.around(edges)
     roads = _roads(frame, edges)
     _trips(roads, frame, network, scenario)
     picture = roads.reduce(FINE)
@@ -128,7 +125,7 @@ def save_picture(scenario: Scenario, path: Path) -> None:
         ) from error
 
 
-def _roads(frame: Frame, edges: Sequence[Edge]) -> Image.Image:
+def _roads(frame: Viewport, edges: Sequence[Edge]) -> Image.Image:
     picture = Image.new("RGB", (frame.width * FINE, frame.height * FINE), DAY.land)
     brush = ImageDraw.Draw(picture)
     order = sorted(edges, key=lambda edge: (not edge.in_tunnel, rank(edge.road_class)))
@@ -143,7 +140,7 @@ def _roads(frame: Frame, edges: Sequence[Edge]) -> Image.Image:
     return picture
 
 
-def _trips(picture: Image.Image, frame: Frame, network: Network, scenario: Scenario) -> None:
+def _trips(picture: Image.Image, frame: Viewport, network: Network, scenario: Scenario) -> None:
     """Draws the trips side by side where they share a road."""
     brush = ImageDraw.Draw(picture)
     count = len(scenario.ego.trips)
@@ -158,7 +155,7 @@ def _trips(picture: Image.Image, frame: Frame, network: Network, scenario: Scena
         _stroke(brush, _shifted(line, aside) * FINE, TRIP_WIDTH * FINE, trip_colour(number))
 
 
-def _ends(picture: Image.Image, frame: Frame, network: Network, scenario: Scenario) -> list[Polygon]:
+def _ends(picture: Image.Image, frame: Viewport, network: Network, scenario: Scenario) -> list[Polygon]:
     """Draws a disc with the trip's number where it begins and a ring where it ends; returns what they cover."""
     brush = ImageDraw.Draw(picture)
     face = font(Weight.BOLD, 15)
@@ -175,7 +172,7 @@ def _ends(picture: Image.Image, frame: Frame, network: Network, scenario: Scenar
     return [box(x - 12, y - 12, x + 12, y + 12) for x, y in taken]
 
 
-def _scale_bar(picture: Image.Image, frame: Frame, edges: Iterable[Edge]) -> Polygon:
+def _scale_bar(picture: Image.Image, frame: Viewport, edges: Iterable[Edge]) -> Polygon:
     brush = ImageDraw.Draw(picture)
     longest_m = 0.22 * frame.width / frame.pixels_per_m
     power = 10 ** math.floor(math.log10(longest_m))
@@ -191,7 +188,7 @@ def _scale_bar(picture: Image.Image, frame: Frame, edges: Iterable[Edge]) -> Pol
     return area
 
 
-def _emptiest(frame: Frame, width: float, height: float, edges: Iterable[Edge]) -> Polygon:
+def _emptiest(frame: Viewport, width: float, height: float, edges: Iterable[Edge]) -> Polygon:
     """The corner of the map with the fewest roads, the lower right one in a tie."""
     roads = [LineString(frame.pixels(edge.shape_m)) for edge in edges]
     right, bottom = frame.width - 12 - width, frame.height - 12 - height
@@ -275,7 +272,7 @@ def _colour(road_class: str) -> Colour:
     return (DAY.street, DAY.street, DAY.avenue, DAY.motorway)[rank(road_class)]
 
 
-def _width(edge: Edge, frame: Frame) -> float:
+def _width(edge: Edge, frame: Viewport) -> float:
     least = (2.5, 3.5, 5.0, 6.5)[rank(edge.road_class)]
     return FINE * max(least, len(edge.lane_ids) * 3.2 * frame.pixels_per_m)
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 
-from automotive_cosim.report.tables import Row, Table
+from automotive_cosim.report.tables import Table, TableRow
 from automotive_cosim.studies.intervals import LEAST_SEEDS, SeedMean, seed_mean
-from automotive_cosim.studies.policies import Rule, parse_policy
+from automotive_cosim.studies.policies import PolicyRule, parse_policy
 from automotive_cosim.studies.results import NOISE, Noise, Study
 from automotive_cosim.studies.rows import PolicyChoice
 
@@ -45,13 +45,13 @@ def groups(study: Study) -> list[tuple[float, str, float, list[PolicyChoice]]]:
 
 def goes_by_news(policy: str) -> bool:
     """Whether a policy decides by the plan's traffic news; others know the present, the future or nothing."""
-    return parse_policy(policy).rule in (Rule.ALWAYS, Rule.DELAY)
+    return parse_policy(policy).rule in (PolicyRule.ALWAYS, PolicyRule.DELAY)
 
 
 def policies(study: Study) -> Table:
     """What each policy gained for the ego."""
     floor = study.noise()
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     for share, policy, age_s, chosen in groups(study):
         wins, ties, losses = outcomes(chosen, floor)
         rows.append(
@@ -83,14 +83,15 @@ def policies(study: Study) -> Table:
     note = (
         "Over all decisions that count; where the policy keeps the route, the gain is 0. In brackets: 95 % "
         f"intervals from resampling whole seeds, with {LEAST_SEEDS} seeds or more. Won and lost exclude "
-        f"differences within the noise floor of {floor.time_s:.1f} s. Regret: time lost compared with the best future."
+        f"differences within the noise floor of {floor.time_s:.1f} s. Regret: time lost compared with the best "
+        "future."
     )
     return Table("policies", "What each policy saved the ego", columns, tuple(rows), note, heads=3)
 
 
 def costs(study: Study) -> Table:
     """Other effects, on the ego and on all other vehicles."""
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     for share, policy, age_s, chosen in groups(study):
         if policy in STAYING:
             continue
@@ -132,7 +133,7 @@ def by_congestion(study: Study) -> Table:
     first_s = study.plan.ages_s[0]
     chosen = [each for each in study.choices if each.age_s == first_s and each.policy not in STAYING]
     named = list(dict.fromkeys(each.policy for each in chosen))
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     for low, high in BINS:
         here = [each for each in chosen if low <= each.time_index < high]
         if here:
@@ -149,7 +150,7 @@ def by_congestion(study: Study) -> Table:
 
 def by_age(study: Study) -> Table:
     """Time saved by the age of the news, at the same decisions."""
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     if len(study.plan.ages_s) > 1:
         named = [name for name in study.plan.policies if goes_by_news(name)]
         for age_s in study.plan.ages_s:
@@ -165,7 +166,7 @@ def by_age(study: Study) -> Table:
 
 def by_share(study: Study) -> Table:
     """Time saved by the share of other cars that reroute; each share's traffic was warmed up separately."""
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     shares = sorted({each.share for each in study.choices})
     for share in shares if len(shares) > 1 else ():
         here = [each for each in study.choices if (each.share, each.age_s) == (share, study.plan.ages_s[0])]
@@ -216,7 +217,7 @@ def stops_helping(study: Study) -> str:
 def noise_floor(study: Study) -> Table:
     """Differences caused by the placebos."""
     floor = study.noise()
-    rows: tuple[Row, ...] = ()
+    rows: tuple[TableRow, ...] = ()
     if floor.placebos:
         rows = (
             ("One other car 0.1 % faster", str(floor.placebos), f"{floor.time_s:.1f}", f"{floor.others_s:.1f}"),

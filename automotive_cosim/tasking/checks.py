@@ -1,14 +1,14 @@
 """Checks: goals as predicates on the state, without effects.
 
-A ``Check`` judges the outcome of the situation that a trigger (``triggers``) started. Each is a frozen dataclass,
-so it can be compared and stored; ``str`` describes it in words. Values may be parameters until they are bound.
+A ``Check`` judges the outcome of the situation that a trigger (``triggers``) started. Each is a frozen dataclass, so
+it can be compared and stored; ``str`` describes it in words. Values may be parameters until they are bound.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, Generic, Protocol, TypeVar
 
 from automotive_cosim.cockpit.signals import Signal
 from automotive_cosim.contracts import AlertKind, RoadRequest
@@ -28,17 +28,38 @@ class Check(Protocol):
         ...
 
 
-@dataclass(frozen=True, slots=True)
-class SignalIs:
-    """A signal has one of these values."""
+T = TypeVar("T")
 
-    signal: Signal[Any]
-    values: tuple[Any, ...]
+
+@dataclass(frozen=True, slots=True)
+class _OfSignal(Generic[T]):
+    """Common part of the checks of one signal."""
+
+    signal: Signal[T]
 
     @property
     def writes(self) -> frozenset[str]:
         """The signal's path."""
         return frozenset({self.signal.path})
+
+
+@dataclass(frozen=True, slots=True)
+class _OfData:
+    """Common part of the checks of one entry of ``Moment.commands``."""
+
+    key: str
+
+    @property
+    def writes(self) -> frozenset[str]:
+        """The entry's key."""
+        return frozenset({self.key})
+
+
+@dataclass(frozen=True, slots=True)
+class SignalIs(_OfSignal[Any]):
+    """A signal has one of these values."""
+
+    values: tuple[Any, ...]
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Whether the present value qualifies."""
@@ -49,16 +70,10 @@ class SignalIs:
 
 
 @dataclass(frozen=True, slots=True)
-class SignalRaised:
+class SignalRaised(_OfSignal[float]):
     """A numeric signal is at least ``by`` above its value at the start."""
 
-    signal: Signal[float]
     by: float
-
-    @property
-    def writes(self) -> frozenset[str]:
-        """The signal's path."""
-        return frozenset({self.signal.path})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Whether the change since the start qualifies."""
@@ -69,16 +84,10 @@ class SignalRaised:
 
 
 @dataclass(frozen=True, slots=True)
-class SignalLowered:
+class SignalLowered(_OfSignal[float]):
     """A numeric signal is at least ``by`` below its value at the start."""
 
-    signal: Signal[float]
     by: float
-
-    @property
-    def writes(self) -> frozenset[str]:
-        """The signal's path."""
-        return frozenset({self.signal.path})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Whether the change since the start qualifies."""
@@ -89,17 +98,11 @@ class SignalLowered:
 
 
 @dataclass(frozen=True, slots=True)
-class SignalWithin:
+class SignalWithin(_OfSignal[float]):
     """A numeric signal lies between two values, both included."""
 
-    signal: Signal[float]
     low: float
     high: float
-
-    @property
-    def writes(self) -> frozenset[str]:
-        """The signal's path."""
-        return frozenset({self.signal.path})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Whether the present value qualifies."""
@@ -110,15 +113,8 @@ class SignalWithin:
 
 
 @dataclass(frozen=True, slots=True)
-class SignalChanged:
+class SignalChanged(_OfSignal[Any]):
     """A signal has any other value than at the start."""
-
-    signal: Signal[Any]
-
-    @property
-    def writes(self) -> frozenset[str]:
-        """The signal's path."""
-        return frozenset({self.signal.path})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Whether the change since the start qualifies."""
@@ -129,16 +125,10 @@ class SignalChanged:
 
 
 @dataclass(frozen=True, slots=True)
-class AppDataIs:
+class AppDataIs(_OfData):
     """An entry of the apps' data (``State.commands``) has one of these values."""
 
-    key: str
     values: tuple[Any, ...]
-
-    @property
-    def writes(self) -> frozenset[str]:
-        """The entry's key."""
-        return frozenset({self.key})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Whether the present value qualifies."""
@@ -149,17 +139,11 @@ class AppDataIs:
 
 
 @dataclass(frozen=True, slots=True)
-class AppDataHas:
+class AppDataHas(_OfData):
     """A list of the apps' data contains that entry, or no longer does; the rest of it is unchanged."""
 
-    key: str
     entry: Any
     there: bool = True
-
-    @property
-    def writes(self) -> frozenset[str]:
-        """The list's key."""
-        return frozenset({self.key})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Whether the entry is there, or gone, and the rest is unchanged."""
@@ -174,18 +158,12 @@ class AppDataHas:
 
 
 @dataclass(frozen=True, slots=True)
-class Filed:
+class Filed(_OfData):
     """One of several named lists (playlists) contains that entry, or no longer does; the others are unchanged."""
 
-    key: str
     name: str
     entry: Any
     there: bool = True
-
-    @property
-    def writes(self) -> frozenset[str]:
-        """The key of the lists."""
-        return frozenset({self.key})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Whether the entry is there, or gone, and the rest is unchanged."""
@@ -199,17 +177,11 @@ class Filed:
 
 
 @dataclass(frozen=True, slots=True)
-class Entered:
+class Entered(_OfData):
     """Exactly one entry was added to a list that only grows (messages sent, calls, payments, memos), and with
     ``entry`` it is that one. If an entry is a mapping, only the fields named in ``entry`` count."""
 
-    key: str
     entry: Any = None
-
-    @property
-    def writes(self) -> frozenset[str]:
-        """The list's key."""
-        return frozenset({self.key})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Whether exactly that entry was added since the start."""
@@ -225,16 +197,10 @@ class Entered:
 
 
 @dataclass(frozen=True, slots=True)
-class EnteredOf:
+class EnteredOf(_OfData):
     """Exactly one entry was added to a list that only grows: the signal's value at the start, e.g. who rang."""
 
-    key: str
     signal: Signal[str]
-
-    @property
-    def writes(self) -> frozenset[str]:
-        """The list's key."""
-        return frozenset({self.key})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Whether exactly that entry was added since the start."""
@@ -246,16 +212,10 @@ class EnteredOf:
 
 
 @dataclass(frozen=True, slots=True)
-class Counted:
+class Counted(_OfData):
     """A counter (horn, washer, trip.resets) is higher than at the start by a number."""
 
-    key: str
     by: int = 1
-
-    @property
-    def writes(self) -> frozenset[str]:
-        """The counter's key."""
-        return frozenset({self.key})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Subtracts."""
@@ -270,8 +230,7 @@ class RoadAsked:
     """Exactly one irrevocable request was made to the road: ``Reroute``, ``PullOver``, ``SlowDown``."""
 
     request: type[RoadRequest] | RoadRequest
-    """Its class or the exact request: ``RoadAsked(Reroute)`` accepts any, ``RoadAsked(Reroute("A 4"))`` only
-    that."""
+    """Its class or the exact request: ``RoadAsked(Reroute)`` accepts any, ``RoadAsked(Reroute("A 4"))`` only that."""
 
     @property
     def writes(self) -> frozenset[str]:

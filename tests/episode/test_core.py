@@ -53,10 +53,11 @@ def begin(simulations) -> Iterator[Callable[..., Episode]]:
 
 
 def test_seeds_follow_from_the_seed_alone():
-    one, other = SeedSource(7), SeedSource()
-    assert one.next() == other.next(7)
-    assert one.next() == other.next()
-    assert one.next().traffic == 7
+    one, other = SeedSource(7), SeedSource(7)
+    assert [one.next() for _ in range(3)] == [other.next() for _ in range(3)]
+    other.traffic = 8
+    assert (one.next(), one.traffic) == (replace(other.next(), traffic=7), 7)
+    assert SeedSource().next() != SeedSource().next()
     assert SeedSource(2**31 + 5).next().traffic == 5
     assert len({SeedSource(seed).next().drive for seed in range(20)}) == 20
 

@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 from automotive_cosim.cli.scenarios import app
 from automotive_cosim.errors import ImportMapError
 from automotive_cosim.osm import Area, extract
-from automotive_cosim.osm.overpass import FIRST_PAUSE_S, LONGEST_PAUSE_S, Limits, download
+from automotive_cosim.osm.overpass import FIRST_PAUSE_S, LONGEST_PAUSE_S, DownloadLimits, download
 
 AREA = Area(1.58, 48.29, 1.64, 48.32)
 NOTE = "The data included in this document is from www.openstreetmap.org. The data is made available under ODbL."
@@ -140,7 +140,7 @@ def test_what_is_no_whole_map_is_told_and_leaves_nothing(
     answer: Answer, said: str, asked: int, server: Server, tmp_path: Path
 ) -> None:
     server.answers = [answer]
-    limits = Limits(timeout_s=0.3, tries=2, size_mb=0.1)
+    limits = DownloadLimits(timeout_s=0.3, tries=2, size_mb=0.1)
     with pytest.raises(ImportMapError, match=said) as error:
         download(server.url, AREA, tmp_path / "map.osm", limits, sleep=lambda _s: None)
     assert "\n" not in str(error.value)
@@ -163,7 +163,7 @@ def test_what_is_no_whole_map_is_told_and_leaves_nothing(
 )
 def test_what_cannot_be_asked_for(endpoint: str, bbox: str, said: str, tmp_path: Path) -> None:
     with pytest.raises(ImportMapError, match=said):
-        download(endpoint, Area.parse(bbox), tmp_path / "map.osm", Limits(tries=1))
+        download(endpoint, Area.parse(bbox), tmp_path / "map.osm", DownloadLimits(tries=1))
     with pytest.raises(ImportMapError, match="exists"):
         download("http://127.0.0.1:9/", AREA, tmp_path)
 

@@ -7,15 +7,26 @@ import pytest
 
 from automotive_cosim.agents.trivial import Random
 from automotive_cosim.cockpit.signals import HVAC, SEAT
-from automotive_cosim.contracts import Action, ActionType, AlertKind, GoalStatus, Reason
+from automotive_cosim.contracts import Action, ActionType, AlertKind, GoalStatus, PullOver, Reason
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.proof import gates
 from automotive_cosim.proof.ground import Ground, Script
 from automotive_cosim.tasking import verdict
-from automotive_cosim.tasking.checks import AnyOf, NothingDone, SignalIs
+from automotive_cosim.tasking.checks import AnyOf, NothingDone, RoadAsked, SignalIs
 from automotive_cosim.tasking.moves import Open, Tap
 from automotive_cosim.tasking.task import Basis, Module, Start, Task
-from automotive_cosim.tasking.triggers import InTunnel, SignalAbove, Trigger
+from automotive_cosim.tasking.triggers import (
+    All,
+    Dark,
+    Driving,
+    InTunnel,
+    Lit,
+    Not,
+    Parked,
+    SignalAbove,
+    Standing,
+    Trigger,
+)
 from automotive_cosim.tasks.forms import COMFORT, ON_THE_WAY, asked, decline
 
 SAYS = ("Warm my seat.", "Seat heating on.", "My seat, please.", "Heat this seat.")
@@ -52,6 +63,16 @@ class AnySeat:
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         return any(now.signals[seat.path] > 0 for seat in (SEAT.DRIVER_HEATING, SEAT.PASSENGER_HEATING))
+
+
+@dataclass(frozen=True)
+class AnyRequest:
+    """Does not care what the road is asked for."""
+
+    writes = frozenset({"requests"})
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        return len(now.commands["requests"]) == len(start.commands["requests"]) + 1
 
 
 @pytest.fixture
@@ -141,6 +162,26 @@ def test_a_goal_that_survives_being_undone_is_seen(ground):
 def test_a_goal_that_takes_the_wrong_seat_is_seen(ground):
     stand = ground(changed(goal=AnySeat(), may_write=frozenset({SEAT.PASSENGER_HEATING.path})))
     assert any("PassengerSide" in wrong for wrong in gates.near(stand, stand.reference))
+
+
+@pytest.mark.parametrize(("goal", "wrong"), [(AnyRequest(), 1), (RoadAsked(PullOver), 0)], ids=["any", "that one"])
+def test_a_goal_that_takes_another_request_is_seen(ground, goal, wrong):
+    stand = ground(changed(goal=goal, moves=(Open("safety"), Tap("safety.pull_over"))))
+    assert list(gates.near(stand, stand.reference)) == ["succeeds with requests something else"] * wrong
+
+
+@pytest.mark.parametrize(
+    ("condition", "stands"),
+    [
+        (Parked(), True),
+        (All((Dark(), All((Standing(), Lit())))), True),
+        (Not(Parked()), False),
+        (All((Dark(), Driving())), False),
+    ],
+    ids=str,
+)
+def test_a_trigger_that_asks_for_a_standing_car_is_known_by_its_structure(condition, stands):
+    assert gates._stands(condition) is stands
 
 
 def test_a_verdict_blind_to_side_effects_is_seen(ground, monkeypatch):

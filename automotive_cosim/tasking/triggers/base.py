@@ -13,7 +13,7 @@ ANY = 1e9
 """Larger than any distance, speed or amount."""
 
 
-class Condition(Protocol):
+class TriggerCondition(Protocol):
     """A predicate on one moment."""
 
     def __call__(self, moment: Moment) -> bool:
@@ -25,7 +25,7 @@ class Condition(Protocol):
 class Trigger:
     """The situation that starts a task: ``condition`` has held for ``for_s`` without interruption."""
 
-    condition: Condition
+    condition: TriggerCondition
     for_s: float
     within_s: float
     """Simulated seconds from departure after which the trigger counts as not reached."""
@@ -35,7 +35,7 @@ class Trigger:
 class All:
     """All of the conditions hold."""
 
-    conditions: tuple[Condition, ...]
+    conditions: tuple[TriggerCondition, ...]
 
     def __call__(self, moment: Moment) -> bool:
         """Whether all hold."""
@@ -49,7 +49,7 @@ class All:
 class Not:
     """The condition does not hold."""
 
-    condition: Condition
+    condition: TriggerCondition
 
     def __call__(self, moment: Moment) -> bool:
         """Whether the condition does not hold."""
