@@ -33,6 +33,8 @@ PACKAGE = "automotive_cosim."
 """Only classes of this package are created when a file is read."""
 MOVED = {"automotive_cosim.cosim:Moment": "automotive_cosim.cosim.moment:Moment"}
 """Current places of classes that older files name."""
+RENAMED = {"idle": "baseline"}
+"""Current names of fields in older files."""
 LONG = 3
 """Tuples with more entries go into the pool."""
 PRESET = 2
@@ -49,7 +51,7 @@ class Judged:
     reason: Reason | None
     trace: tuple[Moment, ...]
     """Moments from the hand-over to the end."""
-    idle: tuple[Moment, ...]
+    baseline: tuple[Moment, ...]
     """Moments of the baseline run over the same time."""
     watched_from_s: float | None = None
     """In monitoring mode, the simulation time at which the situation arose."""
@@ -67,7 +69,7 @@ def write_judged(folder: Path, episode: str, judged: Judged) -> None:
         OSError: the file cannot be written.
     """
     writer = _Writer()
-    value = writer.value(replace(judged, trace=_bare(judged.trace), idle=_bare(judged.idle)))
+    value = writer.value(replace(judged, trace=_bare(judged.trace), baseline=_bare(judged.baseline)))
     whole = {"classes": writer.classes, "pool": writer.pool, "value": value}
     text = json.dumps(whole, ensure_ascii=False, separators=(",", ":"))
     path = judged_file(folder, episode)
@@ -94,8 +96,8 @@ def read_judged(folder: Path, episode: str) -> Judged:
     if not isinstance(judged, Judged):
         raise UserError(f"{path} has no moments")
     geo = Geo()
-    judged = replace(judged, trace=_placed(judged.trace, geo), idle=_placed(judged.idle, geo))
-    requests = (*judged.trace[-1].commands["requests"], *judged.idle[-1].commands["requests"])
+    judged = replace(judged, trace=_placed(judged.trace, geo), baseline=_placed(judged.baseline, geo))
+    requests = (*judged.trace[-1].commands["requests"], *judged.baseline[-1].commands["requests"])
     if any(isinstance(request, str) for request in requests):
         raise UserError(
             f"{path} has an older format with requests as text; judge it with the version that wrote it"
@@ -232,7 +234,8 @@ class _Reader:
         """A dataclass; a field that was removed since is ignored, one that was added takes its default."""
         kind, names = self._classes[number]
         known = {each.name for each in fields(kind)}
-        return kind(**{name: self.value(each) for name, each in zip(names, entries, strict=True) if name in known})
+        now = (name if name in known else RENAMED.get(name, name) for name in names)
+        return kind(**{name: self.value(each) for name, each in zip(now, entries, strict=True) if name in known})
 
 
 def _find(name: str) -> Any:

@@ -61,7 +61,9 @@ def _regraded(folder: Path, row: EpisodeRow, held: PartsHeld) -> Regraded:
     try:
         stored = read_judged(folder, row.id)
         instance = Instance(CATALOGUE[row.task], row.half, stored.goal, stored.parameters)
-        verdict = judge(instance, stored.trace, stored.idle, stored.declared, stored.reason, stored.watched_from_s)
+        verdict = judge(
+            instance, stored.trace, stored.baseline, stored.declared, stored.reason, stored.watched_from_s
+        )
     except CosimError as error:
         return Regraded(row.id, row.has_succeeded, None, problem=str(error))
     changes = tuple(

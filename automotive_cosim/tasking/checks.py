@@ -1,7 +1,7 @@
-"""Checks: what a goal asks of the state. Pure questions, no effects.
+"""Checks: goals as predicates on the state, without effects.
 
-A ``Check`` looks at what became of the situation that a trigger (``triggers``) began. Each is a frozen dataclass,
-so that it can be compared and stored; ``str`` says it in words. Values may be parameters until they are bound.
+A ``Check`` judges the outcome of the situation that a trigger (``triggers``) started. Each is a frozen dataclass, so
+it can be compared and stored; ``str`` describes it in words. Values may be parameters until they are bound.
 """
 
 from __future__ import annotations
@@ -16,15 +16,15 @@ from automotive_cosim.cosim.moment import Moment
 
 
 class Check(Protocol):
-    """A goal: a pure predicate over the start, now and what lay between."""
+    """A goal: a pure predicate over the start, the present and what happened in between."""
 
     @property
     def writes(self) -> frozenset[str]:
-        """Keys of ``Moment.commands`` that reaching the goal changes of itself."""
+        """Keys of ``Moment.commands`` that reaching the goal necessarily changes."""
         ...
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether the goal is reached. ``trace`` runs from the start to now, both included."""
+        """Whether the goal is reached. ``trace`` goes from the start to now, both included."""
         ...
 
 
@@ -33,25 +33,25 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True)
 class _OfSignal(Generic[T]):
-    """What a check of one signal has."""
+    """Common part of the checks of one signal."""
 
     signal: Signal[T]
 
     @property
     def writes(self) -> frozenset[str]:
-        """The signal itself."""
+        """The signal's path."""
         return frozenset({self.signal.path})
 
 
 @dataclass(frozen=True, slots=True)
 class _OfData:
-    """What a check of one entry of ``Moment.commands`` has."""
+    """Common part of the checks of one entry of ``Moment.commands``."""
 
     key: str
 
     @property
     def writes(self) -> frozenset[str]:
-        """The entry itself."""
+        """The entry's key."""
         return frozenset({self.key})
 
 
@@ -62,7 +62,7 @@ class SignalIs(_OfSignal[Any]):
     values: tuple[Any, ...]
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Compares the value now."""
+        """Whether the present value qualifies."""
         return now.signals[self.signal.path] in self.values
 
     def __str__(self) -> str:
@@ -71,12 +71,12 @@ class SignalIs(_OfSignal[Any]):
 
 @dataclass(frozen=True, slots=True)
 class SignalRaised(_OfSignal[float]):
-    """A numeric signal stands at least ``by`` above its value at the start."""
+    """A numeric signal is at least ``by`` above its value at the start."""
 
     by: float
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Compares now with the start."""
+        """Whether the change since the start qualifies."""
         return float(now.signals[self.signal.path]) - float(start.signals[self.signal.path]) >= self.by
 
     def __str__(self) -> str:
@@ -85,12 +85,12 @@ class SignalRaised(_OfSignal[float]):
 
 @dataclass(frozen=True, slots=True)
 class SignalLowered(_OfSignal[float]):
-    """A numeric signal stands at least ``by`` below its value at the start."""
+    """A numeric signal is at least ``by`` below its value at the start."""
 
     by: float
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Compares now with the start."""
+        """Whether the change since the start qualifies."""
         return float(start.signals[self.signal.path]) - float(now.signals[self.signal.path]) >= self.by
 
     def __str__(self) -> str:
@@ -105,7 +105,7 @@ class SignalWithin(_OfSignal[float]):
     high: float
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Compares the value now."""
+        """Whether the present value qualifies."""
         return self.low - 1e-9 <= float(now.signals[self.signal.path]) <= self.high + 1e-9
 
     def __str__(self) -> str:
@@ -114,10 +114,10 @@ class SignalWithin(_OfSignal[float]):
 
 @dataclass(frozen=True, slots=True)
 class SignalChanged(_OfSignal[Any]):
-    """A signal has another value than at the start, whichever."""
+    """A signal has any other value than at the start."""
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Compares now with the start."""
+        """Whether the change since the start qualifies."""
         return bool(now.signals[self.signal.path] != start.signals[self.signal.path])
 
     def __str__(self) -> str:
@@ -131,7 +131,7 @@ class AppDataIs(_OfData):
     values: tuple[Any, ...]
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Compares the value now."""
+        """Whether the present value qualifies."""
         return now.commands[self.key] in self.values
 
     def __str__(self) -> str:
@@ -140,13 +140,13 @@ class AppDataIs(_OfData):
 
 @dataclass(frozen=True, slots=True)
 class AppDataHas(_OfData):
-    """A list of the apps' data holds that entry, or no longer does; the rest of it is as it was."""
+    """A list of the apps' data contains that entry, or no longer does; the rest of it is unchanged."""
 
     entry: Any
     there: bool = True
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Compares the lists without the entry, then looks for it."""
+        """Whether the entry is there, or gone, and the rest is unchanged."""
         before, after = start.commands[self.key], now.commands[self.key]
         same = [entry for entry in before if entry != self.entry] == [
             entry for entry in after if entry != self.entry
@@ -159,14 +159,14 @@ class AppDataHas(_OfData):
 
 @dataclass(frozen=True, slots=True)
 class Filed(_OfData):
-    """One of several lists by name (playlists) holds that entry, or no longer does; the others are as they were."""
+    """One of several named lists (playlists) contains that entry, or no longer does; the others are unchanged."""
 
     name: str
     entry: Any
     there: bool = True
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Compares the lists without the entry, then looks for it."""
+        """Whether the entry is there, or gone, and the rest is unchanged."""
         before, after = dict(start.commands[self.key]), dict(now.commands[self.key])
         was, is_now = before.pop(self.name, []), after.pop(self.name, [])
         same = [entry for entry in was if entry != self.entry] == [entry for entry in is_now if entry != self.entry]
@@ -179,12 +179,12 @@ class Filed(_OfData):
 @dataclass(frozen=True, slots=True)
 class Entered(_OfData):
     """Exactly one entry was added to a list that only grows (messages sent, calls, payments, memos), and with
-    ``entry`` it is that one. Of an entry that is a mapping only the fields named in ``entry`` count."""
+    ``entry`` it is that one. If an entry is a mapping, only the fields named in ``entry`` count."""
 
     entry: Any = None
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Looks at what came in since the start."""
+        """Whether exactly that entry was added since the start."""
         added = now.commands[self.key][len(start.commands[self.key]) :]
         if len(added) != 1 or self.entry is None:
             return len(added) == 1
@@ -198,12 +198,12 @@ class Entered(_OfData):
 
 @dataclass(frozen=True, slots=True)
 class EnteredOf(_OfData):
-    """Exactly one entry was added to a list that only grows: what a signal said at the start, e.g. who rang."""
+    """Exactly one entry was added to a list that only grows: the signal's value at the start, e.g. who rang."""
 
     signal: Signal[str]
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Looks at what came in since the start."""
+        """Whether exactly that entry was added since the start."""
         added = now.commands[self.key][len(start.commands[self.key]) :]
         return bool(added == [start.signals[self.signal.path]])
 
@@ -213,7 +213,7 @@ class EnteredOf(_OfData):
 
 @dataclass(frozen=True, slots=True)
 class Counted(_OfData):
-    """A counter (horn, washer, trip.resets) stands so much higher than at the start."""
+    """A counter (horn, washer, trip.resets) is higher than at the start by a number."""
 
     by: int = 1
 
@@ -227,18 +227,18 @@ class Counted(_OfData):
 
 @dataclass(frozen=True, slots=True)
 class RoadAsked:
-    """The road was asked for one thing that can't be taken back: ``Reroute``, ``PullOver``, ``SlowDown``."""
+    """Exactly one irrevocable request was made to the road: ``Reroute``, ``PullOver``, ``SlowDown``."""
 
     request: type[RoadRequest] | RoadRequest
-    """Its class, or the very request: ``RoadAsked(Reroute)`` takes any, ``RoadAsked(Reroute("A 4"))`` only that."""
+    """Its class or the exact request: ``RoadAsked(Reroute)`` accepts any, ``RoadAsked(Reroute("A 4"))`` only that."""
 
     @property
     def writes(self) -> frozenset[str]:
-        """The list of requests."""
+        """The key of the requests."""
         return frozenset({"requests"})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Looks at the requests since the start."""
+        """Whether exactly that request was made since the start."""
         asked = now.commands["requests"][len(start.commands["requests"]) :]
         if len(asked) != 1:
             return False
@@ -251,17 +251,17 @@ class RoadAsked:
 
 @dataclass(frozen=True, slots=True)
 class AllOf:
-    """Every one of the checks holds."""
+    """All of the checks hold."""
 
     checks: tuple[Check, ...]
 
     @property
     def writes(self) -> frozenset[str]:
-        """Those of all of them."""
+        """The keys of all the checks."""
         return frozenset().union(*(check.writes for check in self.checks))
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Asks each."""
+        """Whether all hold."""
         return all(check.holds(start, now, trace) for check in self.checks)
 
     def __str__(self) -> str:
@@ -270,20 +270,20 @@ class AllOf:
 
 @dataclass(frozen=True, slots=True)
 class AlertGiven:
-    """The driver was alerted of ``kind`` once; an advised speed, if any, is the one named, to 1 km/h."""
+    """The driver was alerted of ``kind`` once; an advised speed, if any, is the given one, to 1 km/h."""
 
     kind: AlertKind
     speed_kmh: float | None = None
     must_advise: bool = False
-    """Whether the speed has to be said, because it is none that signs post."""
+    """Whether the alert must name the speed, because no sign does."""
 
     @property
     def writes(self) -> frozenset[str]:
-        """The list of alerts given, and the request that goes to the driver with it."""
+        """The keys of the alerts and of the request to the driver that comes with one."""
         return frozenset({"alerts", "requests"})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Looks at the alerts since the start: exactly one, of this kind."""
+        """Whether there was exactly one alert since the start, of this kind."""
         given = now.commands["alerts"][len(start.commands["alerts"]) :]
         return len(given) == 1 and given[0]["kind"] == self.kind and self._advises(given[0]["speed_kmh"])
 
@@ -305,11 +305,11 @@ class AnyOf:
 
     @property
     def writes(self) -> frozenset[str]:
-        """Those of all of them."""
+        """The keys of all the checks."""
         return frozenset().union(*(check.writes for check in self.checks))
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Asks each."""
+        """Whether any holds."""
         return any(check.holds(start, now, trace) for check in self.checks)
 
     def __str__(self) -> str:
@@ -326,7 +326,7 @@ class NothingDone:
         return frozenset()
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Always: there is nothing to reach."""
+        """Always true: there is nothing to reach."""
         return True
 
     def __str__(self) -> str:
@@ -334,5 +334,5 @@ class NothingDone:
 
 
 def _either(values: object) -> str:
-    """Values that are all right; before they are bound they may be one parameter."""
+    """The accepted values in words; before they are bound they may be one parameter."""
     return " or ".join(map(str, values)) if isinstance(values, tuple) else str(values)
