@@ -6,14 +6,6 @@ the same for reinforcement learning.
 
 from __future__ import annotations
 
-import signal
-import sys
-from pathlib import Path
-
-if Path(sys.argv[0]).stem == "automotive-cosim" and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-    # Ctrl-C while the command line still loads ends it in silence; once it has loaded it takes the signal back.
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-
 import gymnasium
 
 __version__ = "0.1.0"

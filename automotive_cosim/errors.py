@@ -12,6 +12,7 @@ CosimError                 anything a caller may want to catch at once
 │   └── SetupError         the installation lacks something (SUMO's version, system libraries, an extra)
 ├── InfrastructureError    not the agent's fault and not the user's: counted apart, never as a failure
 │   ├── TrafficError       the simulation refused a call, died, hung or lost the ego without a reason
+│   │   └── NoRoomError    the ego waited for a gap in the traffic to depart into, and none came
 │   ├── ModelError         a model could not be reached, or did not answer
 │   └── TriggerNotReachedError  the drive up to the hand-over ended before the task's trigger held
 └── OutOfBudgetError       the agent has spent its tokens or its time: the episode is judged as it stands
@@ -87,6 +88,10 @@ class InfrastructureError(CosimError):
 
 class TrafficError(InfrastructureError):
     """The road side failed."""
+
+
+class NoRoomError(TrafficError):
+    """The ego could not depart: its road is full."""
 
 
 class ModelError(InfrastructureError):

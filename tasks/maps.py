@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from automotive_cosim.cockpit.places import SORTS, Kind
 from automotive_cosim.cockpit.signals import ENERGY, VOICE
+from automotive_cosim.contracts import Reroute
 from automotive_cosim.tasking.checks import (
     AllOf,
     AnyOf,
@@ -224,7 +225,7 @@ EXPLICIT = (
             "Recalculate with the traffic of this minute.",
             "Check again which road gets me there soonest.",
         ),
-        RoadAsked("Reroute", "destination='', edges=()"),
+        RoadAsked(Reroute()),
         Open("map"),
         Tap("map.faster_route"),
         ways=((Open("map"), Tap("map.route"), Tap("route.tab.ways"), Tap(text="Look for a faster way")),),
@@ -517,7 +518,7 @@ IMPLICIT = (
             "Nobody moves an inch up there! What am I to tell {who}?",
             "At this rate I could walk to {who}.",
         ),
-        RoadAsked("Reroute"),
+        RoadAsked(Reroute),
         Open("map"),
         Tap("map.faster_route"),
         ways=((Open("map"), Tap("map.route"), Tap("route.tab.ways"), Tap("route.way.0")),),

@@ -1,8 +1,13 @@
 """Builders of observations for tests that need no simulation, and warm simulations for those that do."""
 
+import os
+import signal
+import subprocess
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -86,6 +91,31 @@ def simulations() -> Iterator[Simulations]:
     shared = Simulations()
     yield shared
     shared.close()
+
+
+@pytest.fixture
+def program() -> Iterator[Callable[..., subprocess.Popen[str]]]:
+    """Starts programs, each in a session of its own, that Ctrl-C reaches however the tests were started.
+
+    Children of ``nohup``, of a shell's ``&`` and of some CI services inherit that SIGINT is ignored; these inherit
+    ``sigint`` instead. None outlives its test, even one that a timeout ended.
+    """
+    started: list[subprocess.Popen[str]] = []
+
+    def start(*words: object, sigint: Any = signal.default_int_handler, **named: Any) -> subprocess.Popen[str]:
+        inherited = signal.signal(signal.SIGINT, sigint)
+        try:
+            started.append(subprocess.Popen(list(map(str, words)), text=True, start_new_session=True, **named))
+        finally:
+            signal.signal(signal.SIGINT, inherited)
+        return started[-1]
+
+    yield start
+    for process in started:
+        with suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+        with process:  # closes its pipes and waits
+            pass
 
 
 @pytest.fixture(scope="session")

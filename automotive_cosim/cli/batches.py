@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any, Generic, TypeVar
 
 import typer
 
@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 
     from automotive_cosim.run.batch import Progress
     from automotive_cosim.run.executor import Executor
+    from automotive_cosim.run.row import JobRow
+
+R = TypeVar("R", bound="JobRow")
 
 EXECUTORS = ("processes", "ray")
 
@@ -70,12 +73,12 @@ def executor_of(name: str, workers: int | None, ray_address: str | None, ray_sen
     return Processes(workers or 1)
 
 
-class View:
+class View(Generic[R]):
     """Tells how far the run is: a bar at a terminal, else a line now and then."""
 
     EVERY_S = 15.0
 
-    def __init__(self, console: Console, what: str, said: Callable[[Progress], str]) -> None:
+    def __init__(self, console: Console, what: str, said: Callable[[Progress[R]], str]) -> None:
         """What is being run, and what is said beside its count."""
         from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
         from rich.progress import Progress as Bar
@@ -88,7 +91,7 @@ class View:
         self._task = self._bar.add_task("", total=None, said="") if self._bar else None
         self._said_s = -self.EVERY_S
 
-    def __enter__(self) -> View:
+    def __enter__(self) -> View[R]:
         if self._bar:
             self._bar.start()
         return self
@@ -97,7 +100,7 @@ class View:
         if self._bar:
             self._bar.stop()
 
-    def tell(self, progress: Progress) -> None:
+    def tell(self, progress: Progress[R]) -> None:
         """Shows a state."""
         said = self._words(progress)
         if self._bar and self._task is not None:
@@ -134,7 +137,7 @@ def seeds_in(text: str) -> list[int]:
     return seeds
 
 
-def time_left(progress: Progress) -> str:
+def time_left(progress: Progress[Any]) -> str:
     """For example ``, 3:05 left``; empty where it is not known, or nothing is left."""
     left_s = progress.left_s
     if left_s is None or progress.done == progress.planned:

@@ -66,7 +66,7 @@ def context(
 ) -> None:
     """Print what traffic law, sky and climate say of a place."""
     from automotive_cosim.contracts import GpsFix
-    from automotive_cosim.geo.context import Geo
+    from automotive_cosim.geo.locate import Geo
 
     _check(road, rules or ())
     geo = Geo(rules or ())

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from automotive_cosim.run.batch import Progress
+    from automotive_cosim.run.episode_row import EpisodeRow
     from automotive_cosim.run.plan import Plan
 
 
@@ -104,6 +105,7 @@ def evaluate(
     from automotive_cosim.report.results import read_results, standings
     from automotive_cosim.run.batch import run_plan
     from automotive_cosim.run.collect import Pictures
+    from automotive_cosim.run.episode_row import EpisodeRow
     from automotive_cosim.run.plan import make_plan, read_plan
     from automotive_cosim.run.store import megabytes, read_rows
 
@@ -133,8 +135,8 @@ def evaluate(
         except KeyboardInterrupt:
             typer.echo(f"what has ended is in {folder}; the same command goes on", err=True)
             raise
-    rows = read_rows(folder)
-    errors = [rows[job.id] for job in jobs if rows[job.id]["success"] is None]
+    rows = read_rows(folder, EpisodeRow)
+    errors = [rows[job.id] for job in jobs if rows[job.id].success is None]
     size = round(megabytes(folder), 1)
     if as_json:
         told = {"planned": end.planned, "judged": end.judged, "successes": end.successes, "errors": end.errors}
@@ -144,7 +146,7 @@ def evaluate(
         for line in standings(read_results(folder)):
             console.print(f"  {line}", soft_wrap=True)
         for row in errors:
-            console.print(f"  error in {row['id']}: {row['error_kind']}: {row['error']}", soft_wrap=True)
+            console.print(f"  error in {row.id}: {row.error_kind}: {row.error}", soft_wrap=True)
         console.print(
             f"Results in {folder} ({size} MB); `automotive-cosim report {folder}` shows them", soft_wrap=True
         )
@@ -154,7 +156,7 @@ def evaluate(
         )
 
 
-def _said(progress: Progress) -> str:
+def _said(progress: Progress[EpisodeRow]) -> str:
     rate = f"{progress.successes / progress.judged:.0%} succeeded" if progress.judged else "none judged yet"
     errors = f", {progress.errors} errors" if progress.errors else ""
     return rate + errors + time_left(progress)

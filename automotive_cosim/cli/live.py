@@ -14,7 +14,7 @@ from rich.text import Text
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import KMH_PER_MPS, ActionType
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.envs.cockpit import CockpitEnv
+from automotive_cosim.episode.episode import Episode
 from automotive_cosim.run.episode import EpisodeResult, Shot, Watcher
 from automotive_cosim.run.words import action_in_words, is_over, limit_kmh, road_in_words
 from automotive_cosim.scenarios import Scenario
@@ -81,12 +81,12 @@ class Live(Watcher):
             self._said_s = moment.time_s
             self._console.print(f"{self._clock(moment)}  {_drive(moment)}", soft_wrap=True)
 
-    def handed_over(self, env: CockpitEnv, shot: Shot) -> None:
+    def handed_over(self, episode: Episode, shot: Shot) -> None:
         """The driver's words."""
         self._hand_over_s = shot.step.moment.time_s
         self._begins = shot.step.moment
         self._title = "the agent is at work"
-        self._goal = env.instance.goal
+        self._goal = episode.instance.goal
         if not self._console.is_terminal:
             moment = shot.step.moment
             self._console.print(f"{self._clock(moment)}  hand-over: {_drive(moment)}", soft_wrap=True)

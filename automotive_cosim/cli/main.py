@@ -1,6 +1,6 @@
 """``automotive-cosim``: the commands, and what an error looks like.
 
-Exit codes: 0 done, 2 the user can mend it, 3 the machinery failed, 130 interrupted.
+Exit codes: 0 done, 2 the user can mend it, 3 the machinery failed, 130 interrupted, 143 terminated.
 """
 
 from __future__ import annotations
@@ -36,6 +36,8 @@ from automotive_cosim.errors import InfrastructureError, UserError
 
 INTERRUPTED = 130
 """What typer makes of Ctrl-C: 128 and the signal's number, as shells do."""
+TERMINATED = 143
+"""The same for SIGTERM: ``kill``, a container that is stopped, a batch system whose time is up."""
 
 app = typer.Typer(
     name="automotive-cosim",
@@ -86,8 +88,13 @@ def _options(
 
 def main() -> None:
     """Runs the command line and ends the process; an error is one line on stderr."""
-    if signal.getsignal(signal.SIGINT) is signal.SIG_DFL:  # see the package's __init__
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+    terminations: list[int] = []
+
+    def terminate(number: int, frame: object) -> None:
+        terminations.append(number)
+        raise KeyboardInterrupt  # so that it ends as after Ctrl-C, which may be ignored from the start (nohup)
+
+    signal.signal(signal.SIGTERM, terminate)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # a street's name must not end a run where the locale is ASCII
             stream.reconfigure(errors="replace")
@@ -107,4 +114,5 @@ def main() -> None:
         code = 2
     if code == INTERRUPTED:
         print("error: interrupted", file=sys.stderr)
+        code = TERMINATED if terminations else INTERRUPTED
     sys.exit(code)

@@ -112,10 +112,11 @@ def run(
     from automotive_cosim.agents import AgentSettings, make_agent
     from automotive_cosim.agents.settings import geo_input, parts
     from automotive_cosim.cli.live import Live, Notes
+    from automotive_cosim.episode.specification import MAX_STEPS, mode_of
     from automotive_cosim.report.film import Film
     from automotive_cosim.report.page import write_page
     from automotive_cosim.run.episode import EpisodeSetup, run_episode
-    from automotive_cosim.run.plan import STEPS, WATCH_STEPS
+    from automotive_cosim.run.plan import WATCH_STEPS
     from automotive_cosim.run.record import Recorder, check_folder, default_folder
     from automotive_cosim.run.script import read_script
     from automotive_cosim.tasking.task import Mode
@@ -128,8 +129,6 @@ def run(
     setup = EpisodeSetup(
         task,
         half,
-        player.name,
-        player.model,
         scenario,
         origin=lon_lat(origin) if origin else None,
         gps=not no_gps,
@@ -137,8 +136,10 @@ def run(
         to_place=to_place,
         seed=seed,
         geo=settings.geo,
-        mode=mode,
-        max_steps=STEPS + WATCH_STEPS if mode == Mode.MONITORING else STEPS,
+        mode=mode_of(mode),
+        max_steps=MAX_STEPS + WATCH_STEPS if mode == Mode.MONITORING else MAX_STEPS,
+        agent=player.name,
+        model=player.model,
         without=tuple(sorted(off)),
     )
     folder = out or default_folder(setup)

@@ -2,31 +2,11 @@
 
 from __future__ import annotations
 
+from contextlib import closing
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
-
-if TYPE_CHECKING:
-    from automotive_cosim.cockpit.cockpit import Cockpit
-    from automotive_cosim.cosim.moment import Moment
-    from automotive_cosim.scenarios import Scenario
-
-
-class _Driver:
-    """Hears of the drive, and keeps the cockpit."""
-
-    cockpit: Cockpit
-
-    def loading(self, scenario: Scenario) -> None:
-        """Nothing to do."""
-
-    def warming(self, scenario: str, done_s: float, total_s: float) -> None:
-        """Nothing to do."""
-
-    def moved(self, moment: Moment, cockpit: Cockpit) -> None:
-        """Takes the cockpit."""
-        self.cockpit = cockpit
 
 
 def screens(
@@ -40,23 +20,22 @@ def screens(
 ) -> None:
     """Draws every screen by day and by night, as it is at the start of a drive."""
     from automotive_cosim.cockpit.signals import HMI
-    from automotive_cosim.envs.cockpit import CockpitEnv
+    from automotive_cosim.episode.situation import SituationFinder
+    from automotive_cosim.episode.specification import EpisodeSpec, SeedSource
     from automotive_cosim.errors import UserError
     from automotive_cosim.report.contactsheet import contact_sheet, pictures
+    from automotive_cosim.traffic.fork import Simulations
 
     if out.suffix not in (".webp", ".png", ".jpg"):
         raise UserError(f"{out} is no picture that can be written; give --out a name ending in .webp, .png or .jpg")
-    driver = _Driver()
-    env = CockpitEnv(scenario=scenario, listener=driver)
-    try:
-        env.reset(seed=0)
-        cockpit = driver.cockpit.copy()
-        cockpit.inject(HMI.LANGUAGE.path, language)
-        contact_sheet(cockpit, width).save(out, quality=80)
-        if each is not None:
-            each.mkdir(parents=True, exist_ok=True)
-            for name, picture in pictures(cockpit):
-                picture.save(each / f"{name.replace(', ', '_')}.png")
-    finally:
-        env.close()
+    with closing(Simulations()) as simulations:
+        finder = SituationFinder(EpisodeSpec(scenario=scenario), simulations)
+        with closing(finder.find(SeedSource(0).next()).world) as world:
+            cockpit = world.cockpit
+    cockpit.inject(HMI.LANGUAGE.path, language)
+    contact_sheet(cockpit, width).save(out, quality=80)
+    if each is not None:
+        each.mkdir(parents=True, exist_ok=True)
+        for name, picture in pictures(cockpit):
+            picture.save(each / f"{name.replace(', ', '_')}.png")
     typer.echo(f"{out} written")

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from automotive_cosim.run.batch import Progress
     from automotive_cosim.studies.plan import StudyPlan
     from automotive_cosim.studies.results import Study
+    from automotive_cosim.studies.rows import DriveRow
 
 app = typer.Typer(help="Studies: what rerouting gains in the very same traffic.", no_args_is_help=True)
 
@@ -114,7 +115,8 @@ def reroute(
     from automotive_cosim.studies.batch import run_study
     from automotive_cosim.studies.page import write_study
     from automotive_cosim.studies.plan import StudyPlan
-    from automotive_cosim.studies.results import all_decisions, read_study
+    from automotive_cosim.studies.results import read_study
+    from automotive_cosim.studies.rows import DriveRow
 
     values: dict[str, Any] = {
         "seeds": tuple(seeds_in(seeds)),
@@ -148,8 +150,8 @@ def reroute(
     if dry_run:
         return
 
-    def said(progress: Progress) -> str:
-        count = sum(1 for _ in all_decisions(read_rows(folder).values()))
+    def said(progress: Progress[DriveRow]) -> str:
+        count = sum(len(row.decisions) for row in read_rows(folder, DriveRow).values())
         errors = f", {progress.errors} errors" if progress.errors else ""
         return f"{count} decisions{errors}{time_left(progress)}"
 
@@ -192,8 +194,8 @@ def _tell(console: Console, study: Study, page: Path, *, as_json: bool) -> None:
     if errors:
         first = errors[0]
         raise InfrastructureError(
-            f"{len(errors)} of {len(study.rows)} drives ended in an error, the first one {first['id']}: "
-            f"{first['error_kind']}: {first['error']}; the same command runs them again"
+            f"{len(errors)} of {len(study.rows)} drives ended in an error, the first one {first.id}: "
+            f"{first.error_kind}: {first.error}; the same command runs them again"
         )
     if not count:
         told_why = ", ".join(f"{number} {name}" for name, number in kept_out.items())

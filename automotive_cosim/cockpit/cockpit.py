@@ -158,7 +158,7 @@ class Cockpit:
         update.settle(self._state)
         self._tree: Screen | None = None
         self._frame: _Frame | None = None
-        self._listing: accessibility.Listing | None = None
+        self._listed: tuple[Screen, tuple[Element, ...]] | None = None
 
     def copy(self) -> Cockpit:
         """An independent copy."""
@@ -167,7 +167,7 @@ class Cockpit:
         twin._width = self._width
         twin._tree = self._tree
         twin._frame = self._frame
-        twin._listing = self._listing
+        twin._listed = self._listed
         return twin
 
     # --- the world ----------------------------------------------------------------------------------------
@@ -395,9 +395,9 @@ class Cockpit:
     def elements(self) -> tuple[Element, ...]:
         """The accessibility tree as a list."""
         screen = self._screen
-        if self._listing is None or self._listing.screen is not screen:
-            self._listing = accessibility.listing(screen, self._scale, self._listing)
-        return self._listing.elements
+        if self._listed is None or self._listed[0] is not screen:
+            self._listed = screen, accessibility.elements(screen, self._scale)
+        return self._listed[1]
 
     def screenshot(self) -> npt.NDArray[np.uint8]:
         """The display, (height, width, 3), RGB, read-only; the same array as long as nothing changes."""

@@ -227,7 +227,7 @@ class State:
                 for given in self.alerts
             ],
             "calls": list(self.calls),
-            "requests": [repr(request) for request in self.asked],
+            "requests": list(self.asked),
             "horn": self.horns,
             "washer": self.washes,
             **self.navigation.commands(),

@@ -20,6 +20,7 @@ plain        factors between units, and JSON
 
 from automotive_cosim.contracts.action import Action, ActionType, Direction, GoalStatus, Reason
 from automotive_cosim.contracts.driving import (
+    STANDING_BELOW_MPS,
     Around,
     DrivingState,
     EgoEnd,
@@ -59,6 +60,7 @@ from automotive_cosim.contracts.roads import Road, RoadNetwork
 __all__ = [
     "KMH_PER_MPS",
     "MPH_PER_MPS",
+    "STANDING_BELOW_MPS",
     "Action",
     "ActionType",
     "Alert",

@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
+STANDING_BELOW_MPS = 0.1
+"""Slower than this is standing, as SUMO counts halted vehicles."""
+
 
 class EgoEnd(StrEnum):
     """Why the ego is no longer driving. SUMO removes an arrived, a collided and a removed vehicle alike; a

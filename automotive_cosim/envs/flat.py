@@ -28,11 +28,13 @@ import numpy as np
 import numpy.typing as npt
 
 from automotive_cosim.contracts import Action, ActionType, GoalStatus, Observation
-from automotive_cosim.envs.cockpit import CockpitEnv
+from automotive_cosim.envs.cockpit import outcome
+from automotive_cosim.episode.episode import Episode
+from automotive_cosim.episode.situation import SituationFinder
+from automotive_cosim.episode.specification import SEED_LIMIT, Conditions, EpisodeSpec, SeedSource
 from automotive_cosim.errors import UserError
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.interface.spaces import APPS, BOUNDS, OPTIONAL
-from automotive_cosim.tasking.task import Task
 from automotive_cosim.traffic.fork import Simulations
 
 GOAL_SLOTS = 48
@@ -75,7 +77,7 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
 
     def __init__(
         self,
-        tasks: Sequence[str | Task],
+        tasks: Sequence[str],
         controls: Sequence[str] = CONTROLS,
         apps: Sequence[str] = APPS,
         *,
@@ -84,15 +86,15 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
         goal_bonus: float = 0.0,
         simulations: Simulations | None = None,
     ) -> None:
-        """Makes an environment per task; nothing runs before ``reset``.
+        """Reads the tasks' scenarios; nothing runs before ``reset``.
 
         Args:
-            tasks: ids or tasks, their first halves.
+            tasks: ids, their first halves.
             controls: resource ids that can be tapped.
             apps: names of the apps that can be opened.
             scenario: runs all in another scenario than the tasks' own.
             max_steps: actions after which an episode is cut off.
-            goal_bonus: potential of a state in which the goal holds; 0 but for training.
+            goal_bonus: potential of a state in which the goal holds; 0 except for training.
             simulations: warm simulations to share; by default its own.
 
         Raises:
@@ -103,23 +105,29 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
             raise UserError("a flat environment needs at least one task and one control")
         self._simulations = simulations or Simulations()
         self._owns_simulations = simulations is None
-        channels = (Channel.ELEMENTS, Channel.VEHICLE)
-        self._envs = [
-            CockpitEnv(
-                task, scenario=scenario, channels=channels, max_steps=max_steps, simulations=self._simulations
-            )
-            for task in tasks
-        ]
-        self._env = self._envs[0]
+        self._finders = [SituationFinder(EpisodeSpec(task, scenario=scenario), self._simulations) for task in tasks]
+        self._seeds: list[SeedSource] = []
+        """One a task, so that what is drawn for one does not depend on the others."""
+        self._conditions = Conditions(frozenset({Channel.ELEMENTS, Channel.VEHICLE}), max_steps=max_steps)
+        self._episode: Episode | None = None
         self._controls = tuple(controls)
         self._apps = tuple(apps)
-        self._max_steps = max_steps
         self._goal_bonus = goal_bonus
         self._held = False
-        self._seeds: dict[int, int | None] = {}
         size = GOAL_SLOTS + 3 * len(self._controls) + len(NUMBERS) + 1
         self.observation_space = gym.spaces.Box(-1.0, 1.0, (size,), np.float32)
         self.action_space = gym.spaces.Discrete(len(self._apps) + len(self._controls) + len(ENDS))
+
+    @property
+    def episode(self) -> Episode:
+        """The episode that runs, or has just ended.
+
+        Raises:
+            ResetNeeded: there has been none yet.
+        """
+        if self._episode is None:
+            raise gym.error.ResetNeeded("call reset() before anything else")
+        return self._episode
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -131,33 +139,44 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
             TrafficError: the road side failed.
         """
         super().reset(seed=seed)
+        self._end()
+        self._episode = None
         if seed is not None or not self._seeds:
-            traffic_seed = int(self.np_random.integers(2**31)) if seed is None else seed
-            self._seeds = dict.fromkeys(range(len(self._envs)), traffic_seed)
-        number = int(self.np_random.integers(len(self._envs)))
-        self._env = self._envs[number]
-        self._env.reset(seed=self._seeds[number])
-        self._seeds[number] = None
+            traffic_seed = int(self.np_random.integers(SEED_LIMIT)) if seed is None else seed
+            self._seeds = [SeedSource(traffic_seed) for _ in self._finders]
+        number = int(self.np_random.integers(len(self._finders)))
+        hand_over = self._finders[number].find(self._seeds[number].next())
+        self._episode = Episode.take_over(hand_over, self._conditions)
         self._held = self._holds()
         return self._numbers(), {}
 
     def step(self, action: np.int64) -> tuple[npt.NDArray[np.float32], float, bool, bool, dict[str, Any]]:
-        """One action, as the table says."""
-        _, reward, terminated, truncated, info = self._env.step(self._action(int(action)))
+        """One action, as the table says; ``info`` is empty but for ``is_success`` at the end.
+
+        Raises:
+            ResetNeeded: the episode is over, or there has been none.
+            TrafficError: the road side failed.
+        """
+        if self.episode.end is not None:
+            raise gym.error.ResetNeeded("the episode has ended; call reset() to start another")
+        self.episode.step(self._action(int(action)))
+        reward, terminated, truncated = outcome(self.episode)
         held = self._holds()
         reward += self._goal_bonus * (held - self._held)
         self._held = held
-        verdict = self._env.verdict
-        if verdict is not None:
-            info["is_success"] = verdict.success
-        return self._numbers(), float(reward), terminated, truncated, info
+        verdict = self.episode.verdict
+        info = {} if verdict is None else {"is_success": verdict.success}
+        return self._numbers(), reward, terminated, truncated, info
 
     def close(self) -> None:
-        """Ends all drives and, if they are its own, the warm simulations."""
-        for env in self._envs:
-            env.close()
+        """Ends the drive and, if they are its own, the warm simulations."""
+        self._end()
         if self._owns_simulations:
             self._simulations.close()
+
+    def _end(self) -> None:
+        if self._episode is not None:
+            self._episode.close()
 
     def _action(self, number: int) -> Action:
         if number < len(self._apps):
@@ -166,18 +185,18 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
         if number >= len(self._controls):
             return Action(ActionType.STATUS, goal_status=ENDS[number - len(self._controls)])
         wanted = self._controls[number]
-        for index, element in enumerate(self._env.observation.elements or ()):
+        for index, element in enumerate(self.episode.elements):
             if element.resource_id == wanted:
                 return Action(ActionType.CLICK, index=index)
         return Action(ActionType.WAIT, seconds=1)
 
     def _holds(self) -> bool:
-        moments = self._env.moments
-        return self._env.instance.half.goal.holds(moments[0], moments[-1], moments)
+        moments = self.episode.moments
+        return self.episode.instance.half.goal.holds(moments[0], moments[-1], moments)
 
     def _numbers(self) -> npt.NDArray[np.float32]:
-        seen = self._env.observation
-        spent = (len(self._env.steps) - 1) / self._max_steps
+        seen = self.episode.observation
+        spent = (len(self.episode.steps) - 1) / self._conditions.max_steps
         parts = [*_words(seen.goal), *self._switches(seen), *_car(seen), spent]
         return np.clip(np.array(parts, np.float32), -1.0, 1.0)
 

@@ -10,6 +10,8 @@ import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from datetime import date, time
 from difflib import get_close_matches
+from numbers import Integral, Real
+from os import PathLike
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from automotive_cosim.contracts import Json
@@ -57,9 +59,17 @@ def checked(kind: type[T], values: object, place: Place, error: type[UserError] 
     return made
 
 
-def _plain(value: object) -> str:
-    if isinstance(value, date | time):
-        return value.isoformat()
+def _plain(value: object) -> str | int | float:
+    """What JSON has no word for: TOML's dates, and paths and numpy's numbers where a program gives the values."""
+    match value:
+        case date() | time():
+            return value.isoformat()
+        case PathLike():
+            return str(value)
+        case Integral():
+            return int(value)
+        case Real():
+            return float(value)
     raise TypeError(f"{shown(value)} is nothing that a file can hold")
 
 

@@ -73,17 +73,35 @@ def read_toml(path: Path, error: type[UserError] = UserError) -> Document:
     Raises:
         UserError: of that class: it is missing, too large, or no TOML.
     """
+    return parse(read_text(path, error), path, error)
+
+
+def read_text(path: Path, error: type[UserError] = UserError) -> str:
+    """The text of a file, for ``parse``.
+
+    Raises:
+        UserError: of that class: it is missing, too large, or no text.
+    """
     try:
         with path.open("rb") as file:
             data = file.read(MOST_BYTES + 1)
         if len(data) > MOST_BYTES:
             raise error(f"{path} is larger than {MOST_BYTES // 2**20} MB; give a TOML file written by hand")
-        text = data.decode("utf-8-sig").replace("\r\n", "\n")
-        return Document(path, tomllib.loads(text), error, text)
+        return data.decode("utf-8-sig").replace("\r\n", "\n")
     except OSError as broken:
         raise error(f"cannot read {path}: {broken.strerror or broken}") from broken
     except UnicodeDecodeError as broken:
         raise error(f"{path} is not TOML: it is no UTF-8 text; save it as UTF-8") from broken
+
+
+def parse(text: str, path: Path, error: type[UserError] = UserError) -> Document:
+    """A document from the text of a file.
+
+    Raises:
+        UserError: of that class: it is no TOML.
+    """
+    try:
+        return Document(path, tomllib.loads(text), error, text)
     except (ValueError, RecursionError) as broken:
         why = "it is nested too deeply" if isinstance(broken, RecursionError) else str(broken)
         raise error(f"{path} is not TOML: {why}") from broken

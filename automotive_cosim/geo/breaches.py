@@ -2,7 +2,7 @@
 
     from automotive_cosim import geo
 
-    for found in geo.violations(env.unwrapped.moments):
+    for found in geo.violations(env.unwrapped.episode.moments):
         print(found.from_s, found.to_s, found.rule, found.law, found.margin, found.unit)
 
 Only what the context is certain of is checked: a limit that the network leaves open, or a lamp whose signal the car
@@ -17,8 +17,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any, Protocol
 
-from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, LimitSource
-from automotive_cosim.geo.context import STANDING_BELOW_MPS, AppliedRule, GeoContext
+from automotive_cosim.contracts import KMH_PER_MPS, STANDING_BELOW_MPS, DrivingState, LimitSource
+from automotive_cosim.geo.context import AppliedRule, GeoContext
 from automotive_cosim.geo.rules import Rule, Status
 from automotive_cosim.geo.text import KM_PER_MILE
 

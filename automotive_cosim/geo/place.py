@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -62,8 +63,8 @@ class Atlas:
         for folder in (*folders, Path(str(files("automotive_cosim.geo.data")))):
             if not folder.is_dir():
                 raise GeoDataError(f"{folder} is no folder; give one that holds rule files such as FR.toml")
-            for path in sorted(folder.glob("*.toml")):
-                self._files.setdefault(path.stem, path)
+            for name in sorted(name for name in os.listdir(folder) if name.endswith(".toml")):
+                self._files.setdefault(name.removesuffix(".toml"), folder / name)
         self._countries: dict[str, tuple[Jurisdiction, ...]] = {}
 
     def codes(self) -> tuple[str, ...]:

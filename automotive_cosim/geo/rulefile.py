@@ -35,7 +35,7 @@ from annotated_types import Ge, MinLen
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import GeoDataError
 from automotive_cosim.formats.annotations import Called, Chosen, Form, Made, OneOf
-from automotive_cosim.formats.toml import read_toml
+from automotive_cosim.formats.toml import parse, read_text
 from automotive_cosim.geo.rules import ANSWERS, TOPICS, UNITS, USERS, Case, Jurisdiction, Rule, Status, Value
 from automotive_cosim.geo.situation import Area, Test, When
 
@@ -190,21 +190,18 @@ class RuleFile:
 
 
 def read_jurisdiction(path: Path) -> Jurisdiction:
-    """Reads and checks one file, or remembers it as long as it has not changed.
+    """Reads and checks one file.
 
     Raises:
         GeoDataError: with file, line of the entry, and reason.
     """
-    try:
-        state = path.stat()
-    except OSError as error:
-        raise GeoDataError(f"cannot read {path}: {error.strerror or error}") from error
-    return _read(path, state.st_mtime_ns, state.st_size)
+    return _read(read_text(path, GeoDataError), path)
 
 
-@lru_cache(maxsize=512)
-def _read(path: Path, _mtime_ns: int, _size: int) -> Jurisdiction:
-    document = read_toml(path, GeoDataError)
+@lru_cache(maxsize=256)
+def _read(text: str, path: Path) -> Jurisdiction:
+    """Of a file's text, which is parsed once in a process: that takes longer than a second of simulation."""
+    document = parse(text, path, GeoDataError)
     file = document.read(RuleFile)
     head = file.jurisdiction
     ids: set[str] = set()

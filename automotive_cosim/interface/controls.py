@@ -32,7 +32,7 @@ from automotive_cosim.contracts import (
     Weather,
 )
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.geo.context import Geo
+from automotive_cosim.geo.locate import Geo
 from automotive_cosim.interface.observe import Channel, context_text
 
 PLACE = frozenset({Channel.GPS, Channel.CONTEXT})

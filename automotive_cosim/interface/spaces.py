@@ -22,7 +22,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from copy import copy
 from dataclasses import fields
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 import numpy as np
@@ -252,26 +252,35 @@ def _elements_space() -> spaces.Dict:
     )
 
 
+_TEXTS = {"text": ELEMENT_TEXT_BYTES, "description": ELEMENT_TEXT_BYTES, "resource_id": RESOURCE_ID_BYTES}
+
+
 def _encode_elements(elements: tuple[Element, ...]) -> dict[str, Any]:
-    shown = elements[:MAX_ELEMENTS]
+    count = min(len(elements), MAX_ELEMENTS)
     encoded: dict[str, Any] = {
-        "count": len(shown),
+        "count": count,
         "bbox": np.zeros((MAX_ELEMENTS, 4), np.int16),
         "kind": np.zeros(MAX_ELEMENTS, np.uint8),
         "flags": np.zeros((MAX_ELEMENTS, len(FLAGS)), np.int8),
-        "text": np.zeros((MAX_ELEMENTS, ELEMENT_TEXT_BYTES), np.uint8),
-        "description": np.zeros((MAX_ELEMENTS, ELEMENT_TEXT_BYTES), np.uint8),
-        "resource_id": np.zeros((MAX_ELEMENTS, RESOURCE_ID_BYTES), np.uint8),
+        **{name: np.zeros((MAX_ELEMENTS, size), np.uint8) for name, size in _TEXTS.items()},
     }
-    for row, element in enumerate(shown):
-        box = element.bbox_pixels
-        encoded["bbox"][row] = (box.x_min, box.y_min, box.x_max, box.y_max)
-        encoded["kind"][row] = KINDS.index(element.class_name) if element.class_name in KINDS else 0
-        encoded["flags"][row] = [getattr(element, flag) for flag in FLAGS]
-        encoded["text"][row] = _bytes(element.text, ELEMENT_TEXT_BYTES)
-        encoded["description"][row] = _bytes(element.content_description, ELEMENT_TEXT_BYTES)
-        encoded["resource_id"][row] = _bytes(element.resource_id, RESOURCE_ID_BYTES)
+    columns = zip(*map(_row, elements[:count]), strict=True)
+    for name, column in zip(("bbox", "kind", "flags", *_TEXTS), columns, strict=bool(count)):
+        encoded[name][:count] = np.stack(column) if name in _TEXTS else column
     return encoded
+
+
+@lru_cache(maxsize=4096)
+def _row(element: Element) -> tuple[Any, ...]:
+    """Of one element, in the order of the encoded fields; most of a screen is the same from step to step."""
+    box = element.bbox_pixels
+    words = (element.text, element.content_description, element.resource_id)
+    return (
+        (box.x_min, box.y_min, box.x_max, box.y_max),
+        KINDS.index(element.class_name) if element.class_name in KINDS else 0,
+        tuple(getattr(element, flag) for flag in FLAGS),
+        *(_bytes(text, size) for text, size in zip(words, _TEXTS.values(), strict=True)),
+    )
 
 
 def _decode_elements(encoded: Mapping[str, Any]) -> tuple[Element, ...]:
@@ -312,7 +321,8 @@ def _encode_vehicle(vehicle: VehicleState) -> dict[str, Any]:
         if field.name in OPTIONAL:
             encoded[f"{field.name}_valid"] = int(value is not None)
         if field.name in BOUNDS:
-            encoded[field.name] = np.array(np.clip(value or 0.0, *BOUNDS[field.name]), np.float32)
+            low, high = BOUNDS[field.name]
+            encoded[field.name] = np.array(min(high, max(low, value or 0.0)), np.float32)
         elif field.name == "gear":
             encoded["gear"] = GEARS.index(value)
         elif field.name == "restrictions":

@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 import json
 from dataclasses import dataclass, fields, is_dataclass
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 from automotive_cosim.cockpit.actions import to_json
@@ -49,10 +49,46 @@ class Step:
         }
 
 
+class Hash:
+    """The trace's hash, taken on step by step, so that the end of a long episode need not wait for it."""
+
+    def __init__(self) -> None:
+        """Of no step yet."""
+        self._digest = hashlib.sha256()
+
+    def add(self, step: Step) -> None:
+        """Takes the next step in."""
+        texts = {
+            "traffic": _text(plain(step.moment.driving)),
+            "signals": _text(dict(step.moment.signals)),
+            "elements": f"[{','.join(map(_element, step.elements))}]",
+            "action": _text(None if step.action is None else to_json(step.action)),
+        }
+        whole = ",".join(f'"{name}":{texts[name]}' for name in sorted(HASHED))
+        self._digest.update(f"{{{whole}}}\n".encode())
+
+    @property
+    def hex(self) -> str:
+        """Of the steps so far; what ``sha256`` gives for their JSON."""
+        return self._digest.hexdigest()
+
+    def copy(self) -> Hash:
+        """One that goes its own way from here."""
+        twin = Hash()
+        twin._digest = self._digest.copy()
+        return twin
+
+
+_LEAVES = frozenset((str, int, float, bool, type(None)))
+
+
 def plain(value: Any) -> Any:
     """Frozen data as JSON has it. As ``dataclasses.asdict``, which is ten times slower because it copies leaves."""
-    if is_dataclass(value) and not isinstance(value, type):
-        names = _names(type(value))
+    kind = type(value)
+    if kind in _LEAVES:
+        return value
+    names = _names(kind)
+    if names is not None:
         return {name: plain(getattr(value, name)) for name in names}
     if isinstance(value, tuple | list):
         return [plain(entry) for entry in value]
@@ -60,14 +96,27 @@ def plain(value: Any) -> Any:
 
 
 @cache
-def _names(kind: type) -> tuple[str, ...]:
-    return tuple(field.name for field in fields(kind))
+def _names(kind: type) -> tuple[str, ...] | None:
+    """Of a dataclass's fields; None of any other class."""
+    return tuple(field.name for field in fields(kind)) if is_dataclass(kind) else None
+
+
+_ENCODER = json.JSONEncoder(sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
+
+
+def _text(value: Any) -> str:
+    return _ENCODER.encode(value)
+
+
+@lru_cache(maxsize=4096)
+def _element(element: Element) -> str:
+    """Most of a screen is the same from step to step, and from episode to episode."""
+    return _text(plain(element))
 
 
 def canonical(value: Any) -> bytes:
     """JSON with sorted keys, no blanks, UTF-8; NaN and infinity are refused."""
-    text = json.dumps(value, sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
-    return text.encode()
+    return _text(value).encode()
 
 
 def sha256(steps: list[Json]) -> str:

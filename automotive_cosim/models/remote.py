@@ -12,8 +12,9 @@ import os
 import re
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, field, replace
+from types import NoneType
+from typing import TYPE_CHECKING, Any, get_args, get_type_hints
 from urllib.parse import parse_qsl
 
 from automotive_cosim.errors import ModelError, SetupError, UnknownNameError, UserError
@@ -54,25 +55,25 @@ class Settings:
         Raises:
             UserError: an unknown name, or a value that is no number or out of range.
         """
-        known = {entry.name: entry for entry in fields(cls)}
+        known = {name: get_args(kind) or (kind,) for name, kind in get_type_hints(cls).items()}
         chosen: dict[str, Any] = {}
         for name, value in parse_qsl(query, keep_blank_values=True):
             if name not in known:
                 raise UnknownNameError("model setting", name, known)
-            chosen[name] = _number(name, value, str(known[name].type))
+            chosen[name] = _number(name, value, known[name])
         return replace(cls(), **chosen)
 
 
-def _number(name: str, value: str, kind: str) -> float | int | None:
-    if value == "none" and "None" in kind:
+def _number(name: str, value: str, kinds: tuple[type, ...]) -> float | int | None:
+    if value == "none" and NoneType in kinds:
         return None
     try:
-        number = int(value) if kind.startswith("int") else float(value)
+        number = int(value) if int in kinds else float(value)
     except ValueError:
         number = -1
     positive = name in ("timeout_s", "max_tokens", "per_minute")
     if not 0 <= number < 1e12 or (positive and number == 0):
-        wanted = "a whole number" if kind.startswith("int") else "a number"
+        wanted = "a whole number" if int in kinds else "a number"
         raise UserError(f"model setting {name} is {value!r}; give {wanted} {'above' if positive else 'from'} 0")
     return number
 

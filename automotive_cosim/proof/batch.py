@@ -11,7 +11,7 @@ from pathlib import Path
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UnknownNameError
-from automotive_cosim.proof.prover import GATES, Proof, Prover
+from automotive_cosim.proof.prover import GATES, Proof, Prover, proof_id
 from automotive_cosim.run.batch import Progress, run_jobs
 from automotive_cosim.run.executor import Runner
 from automotive_cosim.run.plan import choose
@@ -81,6 +81,11 @@ class ProofJob:
     what does not show."""
 
     @property
+    def kind(self) -> str:
+        """A proof takes as long as its task, of which nothing is known before."""
+        return ""
+
+    @property
     def situation(self) -> str:
         """Nothing is known of a task before it is tried."""
         return self.id
@@ -93,7 +98,7 @@ class ProofJob:
     @property
     def id(self) -> str:
         """Its name."""
-        return f"{self.task}-seed{self.seed}"
+        return proof_id(self.task, self.seed)
 
 
 def prove(
@@ -129,50 +134,31 @@ def prove(
     jobs = plan.jobs()
     with (
         tempfile.TemporaryDirectory(prefix="automotive-cosim-proof-") as scratch,
-        opened(out or Path(scratch), plan.as_json(), parts=()) as store,
+        opened(out or Path(scratch), plan.as_json(), Proof, parts=()) as store,
     ):
 
-        def heard(progress: Progress) -> None:
+        def heard(progress: Progress[Proof]) -> None:
             if progress.ended is not None:
-                tell(_proof(progress.ended), progress.done, progress.planned)
+                tell(progress.ended, progress.done, progress.planned)
 
-        kept = [row for job in jobs if (row := store.rows.get(job.id)) and row["error"] is None]
-        for done, row in enumerate(kept, start=1):
-            tell(_proof(row), done, len(jobs))
+        kept = [proof for job in jobs if (proof := store.rows.get(job.id)) and proof.error is None]
+        for done, proof in enumerate(kept, start=1):
+            tell(proof, done, len(jobs))
         opener = partial(proofs, plan.gates)
         run_jobs(jobs, store, opener, failed, executor=Processes(workers), retries=1, tell=heard)
-        rows = [store.rows[job.id] for job in jobs]
+        found = [store.rows[job.id] for job in jobs]
     order = {task_id: number for number, task_id in enumerate(CATALOGUE)}
-    return sorted(map(_proof, rows), key=lambda proof: (order[proof.task], proof.seed))
+    return sorted(found, key=lambda proof: (order[proof.task], proof.seed))
 
 
 @contextmanager
-def proofs(chosen: Sequence[str]) -> Iterator[Runner]:
+def proofs(chosen: Sequence[str]) -> Iterator[Runner[ProofJob, Proof]]:
     """What proves tasks in a worker."""
     with closing(Prover(chosen)) as prover:
         # Nothing but the row is kept of a proof.
-        yield lambda job, folder: _row(job, prover.prove(job.task, job.seed, job.after))
+        yield lambda job, folder: prover.prove(job.task, job.seed, job.after)
 
 
-def failed(job: ProofJob, kind: str, why: str) -> Json:
-    """The row of a proof that the machinery could not bring to its end."""
-    return _row(job, Proof(job.task, job.seed, error=f"{kind}: {why}"))
-
-
-def _row(job: ProofJob, proof: Proof) -> Json:
-    return {
-        "id": job.id,
-        "task": proof.task,
-        "seed": proof.seed,
-        "wrong": proof.wrong,
-        "oracle_steps": proof.oracle_steps,
-        "error": proof.error or None,
-        "error_kind": proof.error.partition(":")[0] or None,
-        "gate_seconds": proof.seconds,
-    }
-
-
-def _proof(row: Json) -> Proof:
-    return Proof(
-        row["task"], row["seed"], row["wrong"], row["error"] or "", row["oracle_steps"], row["gate_seconds"]
-    )
+def failed(job: ProofJob, kind: str, why: str) -> Proof:
+    """The row of a proof that ended in an infrastructure error."""
+    return Proof(id=job.id, task=job.task, seed=job.seed, error=f"{kind}: {why}", error_kind=kind)

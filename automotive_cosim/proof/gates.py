@@ -32,13 +32,13 @@ import numpy as np
 
 from automotive_cosim.agents.trivial import AlwaysAlert, NoOp, PressEverything, Random
 from automotive_cosim.contracts import Action, ActionType, AlertKind, GoalStatus, Observation
-from automotive_cosim.envs.cockpit import CockpitEnv
+from automotive_cosim.episode.episode import Episode
 from automotive_cosim.errors import ScenarioError, TriggerNotReachedError
 from automotive_cosim.proof import mutations
-from automotive_cosim.proof.ground import Ground, Played, Script, finish, sha256
+from automotive_cosim.proof.ground import Ground, Played, Script, finish
 from automotive_cosim.tasking.checks import NothingDone
 from automotive_cosim.tasking.task import Basis, Half, Task
-from automotive_cosim.tasking.triggers import Parked, Standing
+from automotive_cosim.tasking.triggers import All, Condition, Parked, Standing
 from automotive_cosim.tasking.verdict import judge
 from automotive_cosim.traffic.fork import Simulations
 
@@ -71,7 +71,7 @@ def oracle(ground: Ground) -> Wrong:
 
 def start(ground: Ground) -> Wrong:
     """The goal at the hand-over, and its words."""
-    moment = ground.env.moments[0]
+    moment = ground.episode.moments[0]
     if ground.half.declares is GoalStatus.COMPLETE and ground.half.goal.holds(moment, moment, [moment]):
         yield f"already so: {ground.half.goal}"
     if BY_NUMBER.search(ground.instance.goal):
@@ -81,7 +81,7 @@ def start(ground: Ground) -> Wrong:
 def prefix(ground: Ground) -> Wrong:
     """``complete`` before the expert's last move; where nothing is to be done, at once."""
     expert = ground.oracle()
-    walk = ground.env.branch()
+    walk = ground.episode.branch()
     while walk.verdict is None:
         action = expert.act(walk.observation)
         if action.action_type is ActionType.STATUS and len(walk.steps) > 1:
@@ -149,7 +149,7 @@ def random(ground: Ground) -> Wrong:
 def _wins(ground: Ground, right: Played, moments: tuple[object, ...]) -> bool:
     declared = right.actions[-1]
     assert declared is not None
-    verdict = judge(ground.instance, moments, right.idle, declared.goal_status, declared.reason)  # type: ignore[arg-type]
+    verdict = judge(ground.instance, moments, right.baseline, declared.goal_status, declared.reason)  # type: ignore[arg-type]
     return verdict.success
 
 
@@ -176,7 +176,9 @@ def _reads_context(ground: Ground, acting: Ground) -> Played:
     """Does what is right in ``acting`` if a rule on its topic stands in the context, else declines."""
     topics = {topic.strip() for topic in acting.half.rule.split(",")}
     known = {
-        name for applied in ground.env.moments[0].context.rules for name in (applied.rule.topic, applied.rule.id)
+        name
+        for applied in ground.episode.moments[0].context.rules
+        for name in (applied.rule.topic, applied.rule.id)
     }
     if acting.half.basis is not Basis.LAW or _topics(acting, topics) & known:
         return ground.play(acting.oracle())
@@ -184,11 +186,7 @@ def _reads_context(ground: Ground, acting: Ground) -> Played:
 
 
 def _topics(ground: Ground, ids: set[str]) -> set[str]:
-    return {
-        applied.rule.topic
-        for applied in ground.env.moments[0].context.rules
-        if any(applied.rule.id in text for text in ids)
-    }
+    return {applied.rule.topic for applied in ground.episode.moments[0].context.rules if applied.rule.id in ids}
 
 
 def trivial(grounds: dict[str, Ground]) -> Wrong:
@@ -218,7 +216,7 @@ def leak(ground: Ground, simulations: Simulations) -> Wrong:
         replace(task, first=bare["first"], second=bare.get("second")), ground.half_name, ground.seed, simulations
     )
     steps = [Action(ActionType.NAVIGATE_HOME), Action(ActionType.WAIT, seconds=2)]
-    seen = [_observed(side.env, steps) for side in (ground, twin)]
+    seen = [_observed(side.episode, steps) for side in (ground, twin)]
     twin.close()
     if seen[0] != seen[1]:
         yield "an observation differs without goal, ways and declaration"
@@ -238,8 +236,8 @@ def _bare(half: Half) -> Half:
     )
 
 
-def _observed(env: CockpitEnv, actions: list[Action]) -> list[str]:
-    branch = env.branch()
+def _observed(episode: Episode, actions: list[Action]) -> list[str]:
+    branch = episode.branch()
     seen = [repr(branch.observation)]
     for action in actions:
         branch.step(action)
@@ -251,7 +249,7 @@ def _observed(env: CockpitEnv, actions: list[Action]) -> list[str]:
 def road(ground: Ground, simulations: Simulations) -> Wrong:
     """The same task with the car parked; one that asks for standing is left out."""
     half = ground.task.half(ground.half_name)
-    if half.start.parked or "Parked" in str(half.trigger.condition) or _stands(half):
+    if half.start.parked or _stands(half.trigger.condition):
         return
     parked = replace(half, start=replace(half.start, parked=True))
     changed = {"first": parked} if ground.half_name == "first" else {"second": parked}
@@ -262,9 +260,11 @@ def road(ground: Ground, simulations: Simulations) -> Wrong:
     yield "its trigger is reached by a parked car"
 
 
-def _stands(half: Half) -> bool:
-    conditions = getattr(half.trigger.condition, "conditions", (half.trigger.condition,))
-    return any(isinstance(condition, Parked | Standing) for condition in conditions)
+def _stands(condition: Condition) -> bool:
+    """Whether it holds of a standing car alone."""
+    if isinstance(condition, All):
+        return any(map(_stands, condition.conditions))
+    return isinstance(condition, Parked | Standing)
 
 
 def repeat(ground: Ground, simulations: Simulations) -> Wrong:
@@ -272,21 +272,14 @@ def repeat(ground: Ground, simulations: Simulations) -> Wrong:
     twin = Ground.reach(ground.task, ground.half_name, ground.seed, simulations)
     if (twin.instance.goal, twin.instance.parameters) != (ground.instance.goal, ground.instance.parameters):
         yield f"the same seed says {twin.instance.goal!r} after {ground.instance.goal!r}"
-    if sha256(twin.env) != sha256(ground.env) or hash_of_oracle(twin) != hash_of_oracle(ground):
+    if twin.episode.trace_sha256 != ground.episode.trace_sha256 or hash_of_oracle(twin) != hash_of_oracle(ground):
         yield "the same seed gives another trace"
     twin.close()
 
 
 def hash_of_oracle(ground: Ground) -> str:
     """The hash of the expert's episode."""
-    branch = ground.env.branch()
-    expert, done = ground.oracle(), False
-    while not done:
-        _, _, terminated, truncated, _ = branch.step(expert.act(branch.observation))
-        done = terminated or truncated
-    digest = sha256(branch)
-    branch.close()
-    return digest
+    return ground.play(ground.oracle()).trace_sha256
 
 
 def reach(task: Task, seed: int, simulations: Simulations) -> Wrong:

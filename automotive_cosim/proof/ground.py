@@ -4,32 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 from automotive_cosim.agents.base import Agent, Privileged
 from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.contracts import Action, ActionType, FeedbackCode, GoalStatus, Observation
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.envs.cockpit import CockpitEnv
-from automotive_cosim.errors import ActionError
-from automotive_cosim.interface import trace
-from automotive_cosim.interface.observe import Channel
+from automotive_cosim.episode.episode import Episode
+from automotive_cosim.episode.loop import Actor, play
+from automotive_cosim.episode.situation import SituationFinder
+from automotive_cosim.episode.specification import MAX_STEPS, Conditions, EpisodeSpec, SeedSource
+from automotive_cosim.errors import ActionError, OutOfBudgetError
+from automotive_cosim.interface.observe import ALL, Channel
+from automotive_cosim.interface.trace import Step, sha256
 from automotive_cosim.tasking.instance import Instance
 from automotive_cosim.tasking.moves import Move
 from automotive_cosim.tasking.task import Half, Task
 from automotive_cosim.tasking.verdict import Verdict
 from automotive_cosim.traffic.fork import Simulations
 
-CHANNELS = (Channel.ELEMENTS, Channel.VEHICLE, Channel.CONNECTIVITY, Channel.GPS, Channel.CONTEXT)
+CONDITIONS = Conditions(ALL - {Channel.SCREENSHOT})
 """Everything but the picture, which shows what the elements list."""
-
-
-class Actor(Protocol):
-    """Whoever acts in an episode."""
-
-    def act(self, observation: Observation) -> Action:
-        """The next action."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,11 +32,25 @@ class Played:
 
     verdict: Verdict
     moments: tuple[Moment, ...]
-    idle: tuple[Moment, ...]
-    actions: tuple[Action | None, ...]
-    codes: tuple[FeedbackCode, ...]
+    baseline: tuple[Moment, ...]
+    steps: tuple[Step, ...]
     stuck: str = ""
-    """Why the actor could not go on, if it could not."""
+    """Why the actor could not continue, if it could not."""
+
+    @property
+    def actions(self) -> tuple[Action | None, ...]:
+        """What was done, in order."""
+        return tuple(step.action for step in self.steps[1:])
+
+    @property
+    def codes(self) -> tuple[FeedbackCode, ...]:
+        """What the cockpit answered to each."""
+        return tuple(step.feedback.code for step in self.steps[1:])
+
+    @property
+    def trace_sha256(self) -> str:
+        """The hash of what happened."""
+        return sha256([step.as_json() for step in self.steps])
 
     @property
     def success(self) -> bool:
@@ -84,7 +92,7 @@ class Ground:
     task: Task
     half_name: str
     seed: int
-    env: CockpitEnv
+    episode: Episode
 
     @classmethod
     def reach(
@@ -93,25 +101,25 @@ class Ground:
         """Drives up to the hand-over, in the task's own scenario or another.
 
         Raises:
-            TriggerNotReachedError, TrafficError: as ``CockpitEnv.reset``.
+            TriggerNotReachedError, TrafficError: as ``SituationFinder.find``.
         """
-        env = CockpitEnv(task, half_name, scenario=scenario, channels=CHANNELS, simulations=simulations)
-        env.reset(seed=seed)
-        return cls(task, half_name, seed, env)
+        spec = EpisodeSpec(task.id, half_name, scenario, seed=seed)
+        hand_over = SituationFinder(spec, simulations, task=task).find(SeedSource(seed).next())
+        return cls(task, half_name, seed, Episode.take_over(hand_over, CONDITIONS))
 
     @property
     def instance(self) -> Instance:
         """The task as it was drawn."""
-        return self.env.instance
+        return self.episode.instance
 
     @property
     def half(self) -> Half:
         """The half with its parameters filled in."""
-        return self.env.instance.half
+        return self.episode.instance.half
 
-    def play(self, actor: Actor, max_steps: int = 20, *, give_up: bool = False) -> Played:
+    def play(self, actor: Actor, max_steps: int = MAX_STEPS, *, give_up: bool = False) -> Played:
         """An episode from the hand-over; with ``give_up`` it ends as soon as it can no longer succeed."""
-        return finish(self.env.branch(max_steps), actor, give_up=give_up)
+        return finish(self.episode.branch(max_steps), actor, give_up=give_up)
 
     def oracle(self, moves: Sequence[Move] | None = None) -> Oracle:
         """An oracle that knows this instance."""
@@ -133,53 +141,54 @@ class Ground:
 
     def close(self) -> None:
         """Ends the drive."""
-        self.env.close()
+        self.episode.close()
 
 
 SENT = frozenset({"alerts", "requests", "horn", "washer"})
 """Of a cockpit's commands what nobody can take back."""
 
 
-def is_lost(env: CockpitEnv) -> bool:
+def is_lost(episode: Episode) -> bool:
     """Whether an episode can no longer succeed, whatever comes: by side effects that stay, or by its deadline."""
-    half = env.instance.half
-    start, now = env.moments[0], env.moments[-1]
+    half = episode.instance.half
+    start, now = episode.moments[0], episode.moments[-1]
     if any(now.commands[key] != start.commands[key] for key in SENT - half.goal.writes - half.may_write):
         return True
     if now.time_s - start.time_s <= half.deadline.seconds:
         return False
-    return half.declares is not GoalStatus.COMPLETE or not half.goal.holds(start, now, env.moments)
+    return half.declares is not GoalStatus.COMPLETE or not half.goal.holds(start, now, episode.moments)
 
 
-def finish(env: CockpitEnv, actor: Actor, *, give_up: bool = False) -> Played:
-    """Plays an episode to its end, with ``give_up`` until it is lost, and closes it."""
-    done, stuck = False, ""
-    while not done:
-        if give_up and is_lost(env):
-            env.cut_off()
-            break
+@dataclass(slots=True)
+class _Stopping:
+    """An actor that gives up where it is stuck and, if it is told to, where the episode is lost."""
+
+    episode: Episode
+    actor: Actor
+    gives_up: bool
+    stuck: str = ""
+
+    def act(self, observation: Observation) -> Action:
+        if self.gives_up and is_lost(self.episode):
+            raise OutOfBudgetError("the episode can no longer succeed")
         try:
-            action = actor.act(env.observation)
+            return self.actor.act(observation)
         except ActionError as error:
-            stuck = str(error)
-            _, _, terminated, truncated, _ = env.cut_off()
-        else:
-            _, _, terminated, truncated, _ = env.step(action)
-        done = terminated or truncated
-    assert env.verdict is not None
-    steps = env.steps
+            self.stuck = str(error)
+            raise OutOfBudgetError(self.stuck) from error
+
+
+def finish(episode: Episode, actor: Actor, *, give_up: bool = False) -> Played:
+    """Plays an episode to its end, with ``give_up`` until it is lost, and closes it."""
+    stopping = _Stopping(episode, actor, give_up)
+    play(episode, stopping)
+    assert episode.verdict is not None
     played = Played(
-        env.verdict,
-        tuple(env.moments),
-        env.idle_moments,
-        tuple(step.action for step in steps[1:]),
-        tuple(step.feedback.code for step in steps[1:]),
-        stuck,
+        episode.verdict,
+        tuple(episode.moments),
+        episode.baseline_moments,
+        tuple(episode.steps),
+        stopping.stuck,
     )
-    env.close()
+    episode.close()
     return played
-
-
-def sha256(env: CockpitEnv) -> str:
-    """The hash of what happened so far."""
-    return trace.sha256([step.as_json() for step in env.steps])

@@ -10,6 +10,7 @@ import numpy as np
 
 from automotive_cosim.cockpit.signals import ACTUATORS, Signal, named
 from automotive_cosim.cockpit.vehicle import COUPLED
+from automotive_cosim.contracts import Hazards, PullOver, RoadRequest
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.tasking.task import Half
 
@@ -44,8 +45,8 @@ def near_misses(start: Moment, moments: Sequence[Moment], half: Half) -> Iterato
             yield f"{key} something else", put(moments, {key: f"another {after}"})
         elif isinstance(after, list) and after and not (key == "requests" and "alerts" in writes):
             # An alert's request goes with it: what counts is the alert.
-            last = after[-1]
-            wrong = [*after[:-1], f"another {last}"] if isinstance(last, str) else [*after, last]
+            other = _another(after[-1])
+            wrong = [*after, after[-1]] if other is None else [*after[:-1], other]
             yield f"{key} something else", put(moments, {key: wrong})
 
 
@@ -67,6 +68,15 @@ def put(moments: Sequence[Moment], values: Mapping[str, Any]) -> tuple[Moment, .
     signals = {path: value for path, value in values.items() if path in end.signals}
     last = replace(end, commands={**end.commands, **values}, signals={**end.signals, **signals})
     return (*moments[:-1], last)
+
+
+def _another(entry: Any) -> Any:
+    """Something else than an entry of a list; None where nothing else is known."""
+    if isinstance(entry, str):
+        return f"another {entry}"
+    if isinstance(entry, RoadRequest):
+        return Hazards(on=True) if isinstance(entry, PullOver) else PullOver()
+    return None
 
 
 def _siblings(path: str) -> Iterator[str]:

@@ -11,6 +11,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.errors import TrafficError, TriggerNotReachedError
 from automotive_cosim.proof import gates
 from automotive_cosim.proof.ground import Ground
+from automotive_cosim.run.row import JobRow, Volatile
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
 
@@ -36,20 +37,32 @@ SIMULATIONS = 16
 """Warm ones that a worker keeps: the shipped networks and some of them elsewhere on earth."""
 
 
-@dataclass(slots=True)
-class Proof:
-    """What the gates say of one task with one seed."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Proof(JobRow):
+    """What the gates say of one task with one seed; with an error nothing is proven either way."""
 
     task: str
     seed: int
     wrong: dict[str, list[str]] = field(default_factory=dict)
     """By gate that was tried; an empty list is a pass."""
-    error: str = ""
-    """What went wrong in the machinery, so that nothing is proven either way."""
     oracle_steps: dict[str, int] = field(default_factory=dict)
-    """Actions of the expert by half, the declaration included."""
-    seconds: dict[str, float] = field(default_factory=dict)
+    """Actions of the reference solution by half, the declaration included."""
+    gate_seconds: Volatile[dict[str, float]] = field(default_factory=dict)
     """Wall time by gate."""
+
+
+def proof_id(task_id: str, seed: int) -> str:
+    """Of the proof of a task with a seed."""
+    return f"{task_id}-seed{seed}"
+
+
+@dataclass(slots=True)
+class _Findings:
+    """Of one proof, as they are made."""
+
+    wrong: dict[str, list[str]] = field(default_factory=dict)
+    oracle_steps: dict[str, int] = field(default_factory=dict)
+    seconds: dict[str, float] = field(default_factory=dict)
 
     def take(self, gate: str, wrong: Iterator[str], half: str = "") -> None:
         """Collects what a gate finds."""
@@ -76,46 +89,56 @@ class Prover:
             seed: a traffic, a drive and a drawing of words and parameters.
             after: another task, which has to give its own trace after this one as before it; none tries no residue.
         """
-        proof = Proof(task_id, seed)
+        found = _Findings()
+        broken: Exception | None = None
         grounds: dict[str, Ground] = {}
         try:
             before = self._trace_before(after, seed) if after and "residue" in self._chosen else ""
             for half in CATALOGUE[task_id].halves:
                 grounds[half] = Ground.reach(CATALOGUE[task_id], half, seed, self._simulations)
             for half, ground in grounds.items():
-                self._prove_half(proof, half, ground)
+                self._prove_half(found, half, ground)
             for gate in ("trivial", "law"):
                 if gate in self._chosen:
-                    proof.take(gate, getattr(gates, gate)(grounds))
+                    found.take(gate, getattr(gates, gate)(grounds))
             if "reach" in self._chosen:
-                proof.take("reach", gates.reach(CATALOGUE[task_id], seed, self._simulations))
+                found.take("reach", gates.reach(CATALOGUE[task_id], seed, self._simulations))
             if "residue" in self._chosen:
-                proof.take("residue", self._residue(after, before, grounds["first"]))
+                found.take("residue", self._residue(after, before, grounds["first"]))
         except TriggerNotReachedError as error:
-            proof.take("reach", iter([str(error)]))
+            found.take("reach", iter([str(error)]))
         except Exception as error:  # a fault in one task must not take the proof of the others with it
-            proof.error = f"{type(error).__name__}: {error}"
+            broken = error
         finally:
             for ground in grounds.values():
                 ground.close()
-        return proof
+        return Proof(
+            id=proof_id(task_id, seed),
+            task=task_id,
+            seed=seed,
+            wrong=found.wrong,
+            oracle_steps=found.oracle_steps,
+            gate_seconds=found.seconds,
+            error=None if broken is None else f"{type(broken).__name__}: {broken}",
+            error_kind=None if broken is None else type(broken).__name__,
+        )
 
     def close(self) -> None:
         """Ends its simulations."""
         self._simulations.close()
 
-    def _prove_half(self, proof: Proof, half: str, ground: Ground) -> None:
+    def _prove_half(self, found: _Findings, half: str, ground: Ground) -> None:
         right = ground.play(ground.oracle())
-        proof.oracle_steps[half] = len(right.actions)
+        found.oracle_steps[half] = len(right.actions)
         for gate in ("oracle", "start", "prefix", "late", "random"):
             if gate in self._chosen:
-                proof.take(gate, getattr(gates, gate)(ground), half)
+                found.take(gate, getattr(gates, gate)(ground), half)
         for gate in ("undone", "near", "collateral"):
             if gate in self._chosen and right.success:
-                proof.take(gate, getattr(gates, gate)(ground, right), half)
+                found.take(gate, getattr(gates, gate)(ground, right), half)
         for gate in ("leak", "road", "repeat"):
             if gate in self._chosen:
-                proof.take(gate, getattr(gates, gate)(ground, self._simulations), half)
+                found.take(gate, getattr(gates, gate)(ground, self._simulations), half)
 
     def _trace_before(self, task_id: str, seed: int) -> str:
         """The hash of a task's expert episode; empty if it cannot be played, which its own proof tells."""
@@ -156,7 +179,7 @@ def as_json(proofs: Sequence[Proof], task_ids: Sequence[str], seeds: Sequence[in
             }
             for gate in tried
         },
-        "seconds": {gate: round(sum(proof.seconds.get(gate, 0.0) for proof in proofs), 1) for gate in tried},
+        "seconds": {gate: round(sum(proof.gate_seconds.get(gate, 0.0) for proof in proofs), 1) for gate in tried},
         "errors": [{"task": proof.task, "seed": proof.seed, "why": proof.error} for proof in proofs if proof.error],
         "oracle_steps": {
             proof.task: proof.oracle_steps for proof in proofs if proof.seed == seeds[0] and proof.oracle_steps

@@ -13,6 +13,7 @@ from automotive_cosim.report.findings import PLACE
 from automotive_cosim.report.page import element, embedded
 from automotive_cosim.report.plot import Plot
 from automotive_cosim.report.results import Results, instance
+from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.run.words import action_in_words
 
@@ -24,7 +25,7 @@ CONTROLS = ("none", "irrelevant", "wrong", "gps", "context")
 class Side:
     """One of the two episodes, ready to be shown."""
 
-    row: Json
+    row: EpisodeRow
     result: Json
     wide: Plot
     narrow: Plot
@@ -39,12 +40,12 @@ def contrast(results: Results) -> tuple[Side, Side] | None:
 
     Pairs that place decides come first, then other safety tasks, then the order of the ids.
     """
-    rows = [row for row in results.rows if row["success"] is not None and _has_trace(results, row)]
-    solved = {_key(row): row for row in rows if row["geo"] == "full" and row["success"]}
+    rows = [row for row in results.rows if row.success is not None and _has_trace(results, row)]
+    solved = {_key(row): row for row in rows if row.geo == "full" and row.success}
     found = [
-        (PLACE not in row.get("tags", ()), not row["pair"], CONTROLS.index(row["geo"]), row["id"], row)
+        (PLACE not in row.tags, not row.pair, CONTROLS.index(row.geo), row.id, row)
         for row in rows
-        if row["geo"] in CONTROLS and not row["success"] and _key(row) in solved
+        if row.geo in CONTROLS and not row.success and _key(row) in solved
     ]
     if not found:
         return None
@@ -52,18 +53,18 @@ def contrast(results: Results) -> tuple[Side, Side] | None:
     return _side(results.folder, solved[_key(without)]), _side(results.folder, without)
 
 
-def _key(row: Json) -> tuple[object, ...]:
-    return row["agent"], row["model"], row["mode"], *instance(row)
+def _key(row: EpisodeRow) -> tuple[object, ...]:
+    return row.agent, row.model, row.mode, *instance(row)
 
 
-def _has_trace(results: Results, row: Json) -> bool:
-    return trace_file(results.folder, row["id"]).is_file()
+def _has_trace(results: Results, row: EpisodeRow) -> bool:
+    return trace_file(results.folder, row.id).is_file()
 
 
-def _side(folder: Path, row: Json) -> Side:
-    *steps, last = read_trace(folder, row["id"])
+def _side(folder: Path, row: EpisodeRow) -> Side:
+    *steps, last = read_trace(folder, row.id)
     result = last["result"]
-    pictures = sorted((folder / "pictures" / row["id"]).glob("step_*.jpg"))
+    pictures = sorted((folder / "pictures" / row.id).glob("step_*.jpg"))
     return Side(
         row,
         result,

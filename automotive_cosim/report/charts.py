@@ -61,9 +61,9 @@ Drawing = tuple[float, Callable[["Axes"], None]]
 def _dimensions(results: Results) -> Drawing:
     def rates(each: Contestant) -> list[Rate]:
         mine = results.of(each)
-        firsts = [row for row in mine if row["half"] == "first"]
+        firsts = [row for row in mine if row.half == "first"]
         return [
-            *(rate_of(row for row in firsts if row["dimension"] == name) for name in DIMENSIONS),
+            *(rate_of(row for row in firsts if row.dimension == name) for name in DIMENSIONS),
             rate_of(pair for pair, _ in pairs(mine)),
         ]
 
@@ -71,12 +71,12 @@ def _dimensions(results: Results) -> Drawing:
 
 
 def _modules(results: Results) -> Drawing:
-    names = [str(module) for module in Module if any(row["module"] == module for row in results.rows)]
+    modules = [module for module in Module if any(row.module == module for row in results.rows)]
 
     def rates(each: Contestant) -> list[Rate]:
-        return [rate_of(row for row in results.of(each) if row["module"] == name) for name in names]
+        return [rate_of(row for row in results.of(each) if row.module == module) for module in modules]
 
-    return _rates(results, [NAMES.get(Module(name), name.capitalize()) for name in names], rates)
+    return _rates(results, [NAMES.get(module, module.capitalize()) for module in modules], rates)
 
 
 def _rates(results: Results, names: Sequence[str], rates: Callable[[Contestant], list[Rate]]) -> Drawing:
@@ -117,7 +117,7 @@ def _rates(results: Results, names: Sequence[str], rates: Callable[[Contestant],
 def _prompts(results: Results) -> Drawing | None:
     """How long prompts were, as shares of them up to each length; the dashes tell the geo controls apart."""
     lengths = {
-        each: sorted(length for row in results.of(each) for length in row.get("prompt_tokens") or ())
+        each: sorted(length for row in results.of(each) for length in row.prompt_tokens)
         for each in results.contestants
     }
     lengths = {each: found for each, found in lengths.items() if found}
@@ -147,15 +147,13 @@ def _prompts(results: Results) -> Drawing | None:
 
 def _distribution(results: Results) -> Drawing:
     """Tasks by module, stacked by dimension."""
-    tasks = {row["task"]: row for row in results.rows}.values()
-    modules = [module for module in Module if any(row["module"] == module for row in tasks)]
+    tasks = {row.task: row for row in results.rows}.values()
+    modules = [module for module in Module if any(row.module == module for row in tasks)]
 
     def draw(axes: Axes) -> None:
         done = [0] * len(modules)
         for number, (name, title) in enumerate(DIMENSIONS.items()):
-            counts = [
-                sum(row["module"] == module and row["dimension"] == name for row in tasks) for module in modules
-            ]
+            counts = [sum(row.module == module and row.dimension == name for row in tasks) for module in modules]
             axes.barh(range(len(modules)), counts, left=done, height=0.6, color=PALETTE[number], label=title)
             done = [before + count for before, count in zip(done, counts, strict=True)]
         axes.set_yticks(range(len(modules)), [NAMES.get(module, module.capitalize()) for module in modules])

@@ -17,6 +17,7 @@ from automotive_cosim.report.results import Results, contestant, read_results
 from automotive_cosim.report.summary import errors, tables
 from automotive_cosim.report.tables import Cell, Table
 from automotive_cosim.report.templates import render
+from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.store import cannot_write, megabytes, read_trace, trace_file
 
@@ -28,7 +29,7 @@ class Source:
     number: int
     title: str
     figure: str
-    episodes: tuple[Json, ...]
+    episodes: tuple[EpisodeRow, ...]
 
 
 def write_report(folder: Path) -> Path:
@@ -65,8 +66,8 @@ def all_tables(results: Results, found: Mapping[str, FailureClass]) -> list[Tabl
         findings.failures(results, found),
         findings.harm(results),
         findings.place_effect(results),
-        findings.by_label(results, "skills", "Skill"),
-        findings.by_label(results, "tags", "Tag"),
+        findings.by_label(results, "Skill", lambda row: row.skills),
+        findings.by_label(results, "Tag", lambda row: row.tags),
         findings.prompts(results),
         findings.distribution(results),
         errors(results),
@@ -80,7 +81,7 @@ def _page(
     plots: dict[str, tuple[str, str, str]],
     found: Mapping[str, FailureClass],
 ) -> str:
-    numbers = {row["id"]: number for number, row in enumerate(results.rows)}
+    numbers = {row.id: number for number, row in enumerate(results.rows)}
     sources, linked = _sources(results, made)
     starts = results.manifest["starts"]
     return render(
@@ -95,13 +96,13 @@ def _page(
         episodes=[_episode(results.folder, row) for row in results.rows],
         case=contrast(results),
         classes={episode: name.replace("_", " ") for episode, name in found.items()},
-        failures=[row for row in results.rows if row["success"] is False],
-        labels={row["id"]: contestant(row).label for row in results.rows},
+        failures=[row for row in results.rows if row.success is False],
+        labels={row.id: contestant(row).label for row in results.rows},
         parts=PARTS,
         plan=results.manifest["plan"],
         starts=starts,
         is_mixed=any(start["git"] != starts[0]["git"] for start in starts),
-        has_stand_in=any(row["model"] == "rules" for row in results.rows),
+        has_stand_in=any(row.model == "rules" for row in results.rows),
         megabytes=megabytes(results.folder),
     )
 
@@ -110,7 +111,7 @@ def _sources(
     results: Results, made: Sequence[Table]
 ) -> tuple[list[Source], list[tuple[Table, list[list[tuple[str, int | None]]]]]]:
     """The episodes behind each figure, numbered, and each table's cells with the numbers they link to."""
-    rows = {row["id"]: row for row in results.rows}
+    rows = {row.id: row for row in results.rows}
     sources: list[Source] = []
     linked = []
     for table in made:
@@ -131,13 +132,13 @@ def _sources(
     return sources, linked
 
 
-def _episode(folder: Path, row: Json) -> Json:
+def _episode(folder: Path, row: EpisodeRow) -> Json:
     """What the page tells of an episode: its line, its result if there is a trace, and its files."""
-    has_trace = trace_file(folder, row["id"]).is_file()
-    pictures = sorted((folder / "pictures" / row["id"]).glob("step_*.jpg"))
+    has_trace = trace_file(folder, row.id).is_file()
+    pictures = sorted((folder / "pictures" / row.id).glob("step_*.jpg"))
     return {
         "row": row,
-        "result": read_trace(folder, row["id"])[-1]["result"] if has_trace else None,
-        "trace": trace_file(folder, row["id"]).relative_to(folder).as_posix() if has_trace else "",
+        "result": read_trace(folder, row.id)[-1]["result"] if has_trace else None,
+        "trace": trace_file(folder, row.id).relative_to(folder).as_posix() if has_trace else "",
         "pictures": [path.relative_to(folder).as_posix() for path in pictures],
     }

@@ -19,13 +19,14 @@ another screen there is a way, not a deed.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import pairwise
 
 from automotive_cosim.contracts import ActionType, AlertKind, FeedbackCode, GoalStatus, Json, Reason
 from automotive_cosim.errors import UnknownNameError
+from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.tasking.moves import Do, Move, Slide, Tap, TapUntil, Type, Warn
 from automotive_cosim.tasking.parameters import bind
 from automotive_cosim.tasking.task import Basis, Half, Task
@@ -62,20 +63,22 @@ class FailureClass(StrEnum):
     UNCLASSIFIED = "unclassified"
 
 
-def failure_class(row: Json, lines: Sequence[Json]) -> FailureClass:
+def failure_class(row: EpisodeRow, lines: Sequence[Json]) -> FailureClass:
     """The class of an episode that was judged and not solved.
 
     Args:
-        row: its line in ``episodes.jsonl``.
+        row: the episode's.
         lines: its trace, as ``read_trace`` gives it.
     """
     try:
-        task: Task = CATALOGUE[row["task"]]
-        half = bind(task.half(row["half"]), row.get("parameters") or {})
-        others = [bind(task.half(name), row.get("parameters") or {}) for name in task.halves if name != row["half"]]
+        task: Task = CATALOGUE[row.task]
+        half = bind(task.half(row.half), row.parameters or {})
+        others = [bind(task.half(name), row.parameters or {}) for name in task.halves if name != row.half]
     except (UnknownNameError, KeyError):
         return FailureClass.UNCLASSIFIED  # the catalogue has changed since
-    seen = _Episode(row["parts"], [line for line in lines if "step" in line], half)
+    if row.parts is None:
+        return FailureClass.UNCLASSIFIED
+    seen = _Episode(row.parts, [line for line in lines if "step" in line], half)
     rules = (
         (FailureClass.SAFETY, _is_safety(seen, task, half, others)),
         (FailureClass.VEHICLE_STATE, _is_vehicle_state(seen, task, half, others)),
@@ -88,7 +91,7 @@ def failure_class(row: Json, lines: Sequence[Json]) -> FailureClass:
 
 
 def _is_safety(seen: _Episode, task: Task, half: Half, others: Sequence[Half]) -> bool:
-    if not seen.parts["safe"] or seen.alerts - _alerts(half):
+    if not seen.parts.safe or seen.alerts - _alerts(half):
         return True
     if not task.dimension.is_safety or seen.declared is None:
         return False
@@ -104,10 +107,10 @@ def _is_vehicle_state(seen: _Episode, task: Task, half: Half, others: Sequence[H
     by_state = seen.declared is GoalStatus.COMPLETE or seen.reason is Reason.ALREADY_SO
     return (
         wrong_side
-        or (seen.parts["goal"] and seen.parts["clean"] and not seen.parts["declared"] and bool(_targets(half)))
-        or (not seen.parts["goal"] and bool(seen.worked & _targets(half)))
-        or (not seen.parts["goal"] and any(touch.code in BARRED for touch in seen.touches))
-        or (not seen.parts["goal"] and is_believed and by_state)
+        or (seen.parts.goal and seen.parts.clean and not seen.parts.declared and bool(_targets(half)))
+        or (not seen.parts.goal and bool(seen.worked & _targets(half)))
+        or (not seen.parts.goal and any(touch.code in BARRED for touch in seen.touches))
+        or (not seen.parts.goal and is_believed and by_state)
     )
 
 
@@ -127,7 +130,7 @@ class _Touch:
 class _Episode:
     """What the rules ask of a trace."""
 
-    def __init__(self, parts: Mapping[str, bool], steps: Sequence[Json], half: Half) -> None:
+    def __init__(self, parts: PartsHeld, steps: Sequence[Json], half: Half) -> None:
         self.parts = parts
         self._targets = _targets(half)
         self._seen = frozenset(name for step in steps for each in step["elements"] for name in _names(each))
@@ -178,7 +181,7 @@ class _Episode:
     @property
     def is_only_late(self) -> bool:
         """Everything was right but the time it took."""
-        return not self.parts["in_time"] and all(ok for name, ok in self.parts.items() if name != "in_time")
+        return self.parts.missing == ("in_time",)
 
     def did(self, other: Half) -> bool:
         """Whether what the other half wants was done, and nothing of what this one wants."""

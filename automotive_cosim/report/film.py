@@ -16,7 +16,7 @@ from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.map import RoadMap
 from automotive_cosim.cockpit.theme import NIGHT, Colour, Type
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.envs.cockpit import CockpitEnv
+from automotive_cosim.episode.episode import Episode
 from automotive_cosim.report.filmplot import speed_plot
 from automotive_cosim.report.filmroad import draw_road
 from automotive_cosim.run.episode import EpisodeResult, Shot, Watcher
@@ -70,11 +70,11 @@ class Film(Watcher):
             title, words = "After the end", "how the drive goes on"
             self._after.append(_frame(moment.time_s, cockpit.screenshot(), title, words, AFTER_MS))
 
-    def handed_over(self, env: CockpitEnv, shot: Shot) -> None:
+    def handed_over(self, episode: Episode, shot: Shot) -> None:
         """The first frame of the episode, with the driver's words."""
-        self._map = RoadMap(env.network)
+        self._map = RoadMap(episode.network)
         self._hand_over_s = shot.step.moment.time_s
-        words = f"“{env.instance.goal}”"
+        words = f"“{episode.instance.goal}”"
         self._steps.append(_frame(self._hand_over_s, shot.screenshot, "The driver says", words, STEP_MS))
 
     def stepped(self, shot: Shot) -> None:

@@ -2,37 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from automotive_cosim.contracts import Json
 from automotive_cosim.report.failures import FailureClass, failure_class
 from automotive_cosim.report.results import NOT_RANKED, Contestant, Results, pair_instance, pairs
 from automotive_cosim.report.stats import clustered_mean, compare
 from automotive_cosim.report.summary import DIMENSIONS, NONE, RATES, rate_cell
 from automotive_cosim.report.tables import Cell, Row, Table
+from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.harm import DriveFigures
 from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.tasking.task import Module
 
 PLACE = "place"
 """Tag of the pairs whose halves differ in where the car is, and in nothing that the screens show."""
 NAMES = {Module.HVAC: "HVAC"}
-FIGURES = {
-    "overspeed_m": ("Above the limit, m", 1),
-    "min_time_to_collision_s": ("Least time to collision, s", 2),
-    "arrival_s": ("Delay, s", 1),
-    "energy_wh": ("Energy, Wh", 1),
-}
+FIGURES: tuple[tuple[str, int, Callable[[DriveFigures], float | None]], ...] = (
+    ("Above the limit, m", 1, lambda drive: drive.overspeed_m),
+    ("Least time to collision, s", 2, lambda drive: drive.min_time_to_collision_s),
+    ("Delay, s", 1, lambda drive: drive.arrival_s),
+    ("Energy, Wh", 1, lambda drive: drive.energy_wh),
+)
+"""Of a drive: title, digits, and which figure."""
 
 
 def classes(results: Results) -> dict[str, FailureClass]:
     """The failure class of every episode that was judged and not solved, by its id."""
     return {
-        row["id"]: failure_class(row, read_trace(results.folder, row["id"]))
+        row.id: failure_class(row, read_trace(results.folder, row.id))
         for row in results.rows
-        if row["success"] is False and trace_file(results.folder, row["id"]).is_file()
+        if row.success is False and trace_file(results.folder, row.id).is_file()
     }
 
 
@@ -40,7 +42,7 @@ def failures(results: Results, found: Mapping[str, FailureClass]) -> Table:
     """How many failures of each class a contestant has."""
     rows: list[Row] = []
     for each in results.contestants:
-        lost = [row["id"] for row in results.of(each) if row["id"] in found]
+        lost = [row.id for row in results.of(each) if row.id in found]
         cells = [
             Cell(f"{len(ids)} ({len(ids) / len(lost):.0%})" if ids else "0", ids)
             for name in FailureClass
@@ -61,10 +63,10 @@ def harm(results: Results) -> Table:
     rows: list[Row] = []
     for each in results.contestants:
         for half in ("first", "second"):
-            mine = [row for row in results.of(each) if row.get("drive") and row["half"] == half]
+            mine = [row for row in results.of(each) if row.drive and row.half == half]
             if mine:
-                rows.append((each.label, half, *(_difference(mine, name) for name in FIGURES)))
-    columns = ("Contestant", "Half", *(title for title, _ in FIGURES.values()))
+                rows.append((each.label, half, *(_difference(mine, digits, of) for _, digits, of in FIGURES)))
+    columns = ("Contestant", "Half", *(title for title, _, _ in FIGURES))
     note = (
         "Mean of the agent's drive less that of the fork of the same hand-over in which nobody touched the "
         "cockpit, from the hand-over to 12 s after the end, with 95 % bootstrap intervals over tasks and the "
@@ -74,16 +76,16 @@ def harm(results: Results) -> Table:
     return Table("harm", "Harm caused or averted", columns, tuple(rows), note, heads=2)
 
 
-def _difference(rows: Iterable[Json], name: str) -> Cell:
+def _difference(rows: Iterable[EpisodeRow], digits: int, of: Callable[[DriveFigures], float | None]) -> Cell:
     both = [
-        (row["id"], row["task"], row["drive"][name] - row["untouched_drive"][name])
+        (row.id, row.task, mine - baseline)
         for row in rows
-        if row["drive"][name] is not None and row["untouched_drive"][name] is not None
+        if row.drive and row.baseline_drive
+        if (mine := of(row.drive)) is not None and (baseline := of(row.baseline_drive)) is not None
     ]
     found = clustered_mean((task, value) for _, task, value in both)
     if found is None:
         return Cell(NONE)
-    digits = FIGURES[name][1]
     bounds = found.interval
     told = "" if bounds is None else f" ({bounds.low:+.{digits}f} to {bounds.high:+.{digits}f})"
     return Cell(f"{found.value:+.{digits}f}{told}, n={found.count}", tuple(episode for episode, _, _ in both))
@@ -109,55 +111,53 @@ def place_effect(results: Results) -> Table:
 
 
 def _effect(results: Results, full: Contestant, other: Contestant, decided: bool) -> Cell:
-    def judged(each: Contestant) -> dict[tuple[object, ...], tuple[Json, Sequence[Json]]]:
+    def judged(each: Contestant) -> dict[tuple[object, ...], tuple[EpisodeRow, Sequence[EpisodeRow]]]:
         return {
             pair_instance(pair): (pair, halves)
             for pair, halves in pairs(results.of(each))
-            if pair["success"] is not None and (PLACE in pair.get("tags", ())) is decided
+            if pair.success is not None and (PLACE in pair.tags) is decided
         }
 
     ones, others = judged(full), judged(other)
     found = compare(
-        {key: pair["success"] for key, (pair, _) in ones.items()},
-        {key: pair["success"] for key, (pair, _) in others.items()},
-        {key: pair["task"] for key, (pair, _) in ones.items()},
+        {key: pair.has_succeeded for key, (pair, _) in ones.items()},
+        {key: pair.has_succeeded for key, (pair, _) in others.items()},
+        {key: pair.task for key, (pair, _) in ones.items()},
     )
     if found is None:
         return Cell(NONE)
     shared = [key for key in ones if key in others]
-    ids = tuple(half["id"] for side in (ones, others) for key in shared for half in side[key][1])
+    ids = tuple(half.id for side in (ones, others) for key in shared for half in side[key][1])
     bounds = found.interval
     told = f"{found.difference:+.0%} ({bounds.low:+.0%} to {bounds.high:+.0%})"
     return Cell(f"{told}, n={found.count}, p={found.p_value:.2g}", ids)
 
 
-def by_label(results: Results, field: str, title: str) -> Table:
+def by_label(results: Results, title: str, of: Callable[[EpisodeRow], Sequence[str]]) -> Table:
     """Success by labels of which an episode may have several."""
-    values = sorted({value for row in results.rows for value in row.get(field) or ()})
+    values = sorted({value for row in results.rows for value in of(row)})
     rows: list[Row] = [
         (
             value,
-            *(
-                rate_cell(row for row in results.of(each) if value in (row.get(field) or ()))
-                for each in results.contestants
-            ),
+            *(rate_cell(row for row in results.of(each) if value in of(row)) for each in results.contestants),
         )
         for value in values
     ]
     columns = (title, *(each.label for each in results.contestants))
     note = f"A task may count in several rows. All halves. {RATES}"
-    return Table(f"by_{field}", f"Success by {title.lower()}", columns, tuple(rows), note)
+    name = title.lower()
+    return Table(f"by_{name}s", f"Success by {name}", columns, tuple(rows), note)
 
 
 def prompts(results: Results) -> Table:
     """How long prompts are, with and without place and with words about something else."""
     rows: list[Row] = []
     for each in results.contestants:
-        asked = [row for row in results.of(each) if row.get("prompt_tokens")]
+        asked = [row for row in results.of(each) if row.prompt_tokens]
         if asked:
-            lengths = [length for row in asked for length in row["prompt_tokens"]]
+            lengths = [length for row in asked for length in row.prompt_tokens]
             shown = [f"{value:.0f}" for value in np.percentile(lengths, (5, 25, 50, 75, 95))]
-            ids = tuple(row["id"] for row in asked)
+            ids = tuple(row.id for row in asked)
             rows.append((each.label, each.geo, str(len(lengths)), *(Cell(text, ids) for text in shown)))
     columns = ("Contestant", "Geo", "Prompts", "5 %", "25 %", "Median", "75 %", "95 %")
     note = "Tokens of one prompt, the percentiles over all calls; of rules estimates at four characters each."
@@ -166,14 +166,14 @@ def prompts(results: Results) -> Table:
 
 def distribution(results: Results) -> Table:
     """How many tasks there are of each module and dimension."""
-    tasks = {row["task"]: row for row in results.rows}.values()
+    tasks = {row.task: row for row in results.rows}.values()
     rows: list[Row] = []
     for module in Module:
-        mine = [row for row in tasks if row["module"] == module]
+        mine = [row for row in tasks if row.module == module]
         if mine:
-            counts = [sum(row["dimension"] == name for row in mine) for name in DIMENSIONS]
+            counts = [sum(row.dimension == name for row in mine) for name in DIMENSIONS]
             rows.append((NAMES.get(module, module.capitalize()), *map(str, counts), str(len(mine))))
-    totals = [sum(row["dimension"] == name for row in tasks) for name in DIMENSIONS]
+    totals = [sum(row.dimension == name for row in tasks) for name in DIMENSIONS]
     rows.append(("All", *map(str, totals), str(len(tasks))))
     columns = ("Module", *DIMENSIONS.values(), "All")
     return Table("distribution", "Tasks by module and dimension", columns, tuple(rows), "A pair is one task.")

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
-from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.results import Contestant, instance, pair_instance, pairs, read_results
 from automotive_cosim.report.stats import Comparison, compare
 from automotive_cosim.report.tables import Table
+from automotive_cosim.run.episode_row import EpisodeRow
 
 MOST_LISTED = 30
 """Instances of one kind that a summary names; the JUnit file has all of them."""
@@ -22,17 +22,17 @@ class Case:
     """One instance in both evaluations."""
 
     name: str
-    before: Json
-    after: Json | None
+    before: EpisodeRow
+    after: EpisodeRow | None
     """None where the later evaluation has no such episode."""
 
     @property
     def kind(self) -> str:
         """``lost``, ``won``, ``solved``, ``not solved`` (both times), or ``error``: judged before and not now."""
-        now = None if self.after is None else self.after["success"]
+        now = None if self.after is None else self.after.success
         if now is None:
             return "error"
-        if self.before["success"]:
+        if self.before.success:
             return "solved" if now else "lost"
         return "won" if now else "not solved"
 
@@ -41,10 +41,10 @@ class Case:
         """What is missing now."""
         if self.after is None:
             return "there is no such episode"
-        if self.after["success"] is None:
-            why = self.after.get("error")
-            return f"{self.after['error_kind']}: {why}" if why else "a half of it is not judged"
-        missing = [part.replace("_", " ") for part, ok in (self.after.get("parts") or {}).items() if not ok]
+        if self.after.success is None:
+            why = self.after.error
+            return f"{self.after.error_kind}: {why}" if why else "a half of it is not judged"
+        missing = [part.replace("_", " ") for part in self.after.missing]
         return f"missing: {', '.join(missing)}" if missing else ""
 
 
@@ -87,17 +87,17 @@ def changes(before: Path, after: Path) -> tuple[Change, ...]:
     return tuple(found)
 
 
-def _change(each: Contestant, unit: str, old: Iterable[Json], new: Iterable[Json]) -> Change:
+def _change(each: Contestant, unit: str, old: Iterable[EpisodeRow], new: Iterable[EpisodeRow]) -> Change:
     key = pair_instance if unit == "pairs" else instance
     news = {key(row): row for row in new}
     cases = tuple(
-        Case(" ".join(map(str, key(row))), row, news.get(key(row))) for row in old if row["success"] is not None
+        Case(" ".join(map(str, key(row))), row, news.get(key(row))) for row in old if row.success is not None
     )
     judged = {case.name: case for case in cases if case.kind != "error"}
-    clusters: dict[Hashable, Hashable] = {name: case.before["task"] for name, case in judged.items()}
+    clusters: dict[Hashable, Hashable] = {name: case.before.task for name, case in judged.items()}
     found = compare(
-        {name: case.after["success"] for name, case in judged.items() if case.after},
-        {name: case.before["success"] for name, case in judged.items()},
+        {name: bool(case.after.success) for name, case in judged.items() if case.after},
+        {name: bool(case.before.success) for name, case in judged.items()},
         clusters,
     )
     return Change(each, unit, cases, found)
@@ -162,7 +162,7 @@ def junit(found: Sequence[Change]) -> str:
             skipped=str(each.count("not solved")),
         )
         for case in each.cases:
-            entry = ElementTree.SubElement(suite, "testcase", name=case.name, classname=case.before["task"])
+            entry = ElementTree.SubElement(suite, "testcase", name=case.name, classname=case.before.task)
             element = {"lost": "failure", "error": "error", "not solved": "skipped"}.get(case.kind)
             if element:
                 said = case.why if element != "skipped" else "not solved before either"

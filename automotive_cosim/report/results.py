@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import SetupError
+from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.row import columns
 from automotive_cosim.run.store import read_evaluation, read_rows
 from automotive_cosim.tasking.task import Mode
 
@@ -24,8 +26,6 @@ NOT_RANKED = {
     "always-alert": "must fail",
 }
 """Agents that measure the benchmark, not themselves."""
-NESTED = {"parts": "part", "drive": "drive", "untouched_drive": "untouched_drive"}
-"""Tables within a row, and what the columns that they become begin with."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -63,7 +63,7 @@ class Results:
 
     folder: Path
     manifest: Json
-    rows: tuple[Json, ...]
+    rows: tuple[EpisodeRow, ...]
 
     @property
     def contestants(self) -> tuple[Contestant, ...]:
@@ -71,14 +71,14 @@ class Results:
         found = {contestant(row) for row in self.rows}
         return tuple(sorted(found, key=lambda each: (each.agent in NOT_RANKED, each)))
 
-    def of(self, each: Contestant) -> tuple[Json, ...]:
+    def of(self, each: Contestant) -> tuple[EpisodeRow, ...]:
         """The episodes of one contestant."""
         return tuple(row for row in self.rows if contestant(row) == each)
 
 
-def contestant(row: Json) -> Contestant:
+def contestant(row: EpisodeRow) -> Contestant:
     """Whose episode it is."""
-    return Contestant(row["agent"], row["model"], row["geo"], row["mode"])
+    return Contestant(row.agent, row.model, row.geo, row.mode)
 
 
 def standings(results: Results) -> list[str]:
@@ -86,19 +86,19 @@ def standings(results: Results) -> list[str]:
     return [f"{each.label}: {_won(results.of(each))}" for each in results.contestants]
 
 
-def _won(rows: Sequence[Json]) -> str:
-    held_out = [row for row in rows if row.get("held_out")]
+def _won(rows: Sequence[EpisodeRow]) -> str:
+    held_out = [row for row in rows if row.held_out]
     told = _count(rows)
     if 0 < len(held_out) < len(rows):
         return f"{told}; of these in held-out phrasings {_count(held_out)}"
     return f"{told}, all in held-out phrasings" if held_out else told
 
 
-def _count(rows: Sequence[Json]) -> str:
+def _count(rows: Sequence[EpisodeRow]) -> str:
     counts = []
     for unit, outcomes in (
-        ("episodes", [row["success"] for row in rows]),
-        ("pairs", [pair["success"] for pair, _ in pairs(rows)]),
+        ("episodes", [row.success for row in rows]),
+        ("pairs", [pair.success for pair, _ in pairs(rows)]),
     ):
         judged = [outcome for outcome in outcomes if outcome is not None]
         if outcomes:
@@ -113,13 +113,13 @@ def read_results(folder: Path) -> Results:
         UserError: it is no evaluation's, or is broken.
     """
     manifest = read_evaluation(folder)
-    rows = read_rows(folder)
+    rows = read_rows(folder, EpisodeRow)
     return Results(folder, manifest, tuple(rows[name] for name in sorted(rows)))
 
 
 def load_results(folder: Path | str) -> pd.DataFrame:
     """The episodes as a data frame: a row an episode by its id, ``part_goal`` and so on for the verdict's parts,
-    ``drive_overspeed_m`` and so on for the drives.
+    ``drive_overspeed_m`` and ``baseline_drive_overspeed_m`` and so on for the drives.
 
     An episode that ended in an error has ``success`` missing.
 
@@ -131,40 +131,34 @@ def load_results(folder: Path | str) -> pd.DataFrame:
         import pandas as pd
     except ImportError as error:
         raise SetupError("load_results needs pandas: pip install 'automotive-cosim[report]'") from error
-    flat = []
-    for row in read_results(Path(folder)).rows:
-        told = {name: value for name, value in row.items() if name not in NESTED}
-        for name, prefix in NESTED.items():
-            told |= {f"{prefix}_{part}": value for part, value in (row.get(name) or {}).items()}
-        flat.append(told)
-    frame = pd.DataFrame(flat).set_index("id")
+    frame = pd.DataFrame([columns(row) for row in read_results(Path(folder)).rows]).set_index("id")
     judged = [name for name in frame.columns if name == "success" or name.startswith("part_")]
     return frame.astype(dict.fromkeys(judged, "boolean"))
 
 
-def instance(row: Json) -> tuple[object, ...]:
+def instance(row: EpisodeRow) -> tuple[object, ...]:
     """What two contestants must share to be compared."""
-    return row["task"], row["half"], row["scenario"], row["seed"], row["repeat"]
+    return row.task, row.half, row.scenario, row.seed, row.repeat
 
 
-def pair_instance(row: Json) -> tuple[object, ...]:
+def pair_instance(row: EpisodeRow) -> tuple[object, ...]:
     """The same for a pair, whichever half stands for it."""
-    return row["task"], row["seed"], row["repeat"]
+    return row.task, row.seed, row.repeat
 
 
-def pairs(rows: Iterable[Json]) -> list[tuple[Json, Sequence[Json]]]:
+def pairs(rows: Iterable[EpisodeRow]) -> list[tuple[EpisodeRow, Sequence[EpisodeRow]]]:
     """Both halves of each pair as one: an episode-like row whose success is that of both, and its halves.
 
     An error in a half makes one of the pair, unless the other half is lost anyway.
     """
-    found: dict[str, list[Json]] = {}
+    found: dict[str, list[EpisodeRow]] = {}
     for row in rows:
-        if row["pair"]:
-            found.setdefault(row["pair"], []).append(row)
-    joined: list[tuple[Json, Sequence[Json]]] = []
+        if row.pair:
+            found.setdefault(row.pair, []).append(row)
+    joined: list[tuple[EpisodeRow, Sequence[EpisodeRow]]] = []
     for halves in found.values():
         if len(halves) == 2:
-            outcomes = [half["success"] for half in halves]
+            outcomes = [half.success for half in halves]
             success = False if False in outcomes else None if None in outcomes else True
-            joined.append((halves[0] | {"success": success}, halves))
+            joined.append((replace(halves[0], success=success), halves))
     return joined

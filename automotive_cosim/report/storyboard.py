@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from PIL import Image
 
 from automotive_cosim.agents import make_agent
-from automotive_cosim.envs.cockpit import CockpitEnv
+from automotive_cosim.episode.episode import Episode
 from automotive_cosim.errors import InfrastructureError
 from automotive_cosim.report.contactsheet import Tile, sheet
 from automotive_cosim.run.episode import EpisodeSetup, Shot, Watcher, run_episode
@@ -26,9 +26,9 @@ class Storyboard(Watcher):
         self.tiles: list[Tile] = []
         self._title = title
 
-    def handed_over(self, env: CockpitEnv, shot: Shot) -> None:
+    def handed_over(self, episode: Episode, shot: Shot) -> None:
         """The screen as the agent finds it."""
-        self.tiles.append((f"{self._title}: “{env.instance.goal}”", Image.fromarray(shot.screenshot)))
+        self.tiles.append((f"{self._title}: “{episode.instance.goal}”", Image.fromarray(shot.screenshot)))
 
     def stepped(self, shot: Shot) -> None:
         """The screen after an action."""

@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Hashable, Iterable, Sequence
 from itertools import combinations
+from operator import itemgetter
 
 from automotive_cosim.agents import PROFILES
-from automotive_cosim.contracts import Json
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.report.published import PAPER, PAPER_COLUMNS, PAPER_ROWS
 from automotive_cosim.report.results import Contestant, Results, instance, pairs
 from automotive_cosim.report.stats import Rate, compare, mean, pass_hat_k, rate
 from automotive_cosim.report.tables import Cell, Row, Table
+from automotive_cosim.run.episode_row import PARTS, EpisodeRow
 from automotive_cosim.tasking.task import Dimension, Mode, Module
 
 NONE = "–"
@@ -27,6 +28,9 @@ RATES = (
     "clusters), successes and judged episodes; errors of the machinery are no failures and stand beside them."
 )
 
+Outcome = Callable[[EpisodeRow], bool | None]
+"""What of an episode counts as a success."""
+
 
 def tables(results: Results) -> list[Table]:
     """The tables of success, the most important first; see ``findings`` for the others."""
@@ -37,9 +41,9 @@ def tables(results: Results) -> list[Table]:
         held_out(results),
         conduct(results),
         comparisons(results),
-        by(results, "module", "Module", [str(module) for module in Module]),
-        by(results, "scenario", "Scenario"),
-        by(results, "country", "Country"),
+        by(results, "Module", lambda row: row.module, list(Module)),
+        by(results, "Scenario", lambda row: row.scenario),
+        by(results, "Country", lambda row: row.country),
         parts(results),
         repeats(results),
     ]
@@ -50,8 +54,8 @@ def main(results: Results) -> Table:
     """Success per method and input over the four dimensions, the shape of the paper's main table."""
     rows: list[Row] = []
     for each in results.contestants:
-        firsts = [row for row in results.of(each) if row["half"] == "first"]
-        cells = [rate_cell(row for row in firsts if row["dimension"] == name) for name in DIMENSIONS]
+        firsts = [row for row in results.of(each) if row.half == "first"]
+        cells = [rate_cell(row for row in firsts if row.dimension == name) for name in DIMENSIONS]
         rows.append((each.base_model, each.method, input_of(each), *cells))
     rows.append(("none", "Human", "screen", *["not measured"] * len(DIMENSIONS)))
     columns = ("Base model", "Method", "Input", *DIMENSIONS.values())
@@ -73,17 +77,17 @@ def safety(results: Results) -> Table:
     """Pair success, which is the headline, and what both halves say apart."""
     rows: list[Row] = []
     for each in results.contestants:
-        mine = [row for row in results.of(each) if row["pair"]]
+        mine = [row for row in results.of(each) if row.pair]
         if mine:
             joined = pairs(mine)
-            seconds = [row for row in mine if row["half"] == "second"]
-            declined = [row for row in seconds if row["declines"]]
+            seconds = [row for row in mine if row.half == "second"]
+            declined = [row for row in seconds if row.declines]
             rows.append(
                 (
                     each.label,
-                    *(_pair_cell([p for p in joined if p[0]["dimension"] == name]) for name in _SAFETY),
+                    *(_pair_cell([p for p in joined if p[0].dimension == name]) for name in _SAFETY),
                     _pair_cell(joined),
-                    rate_cell(row for row in mine if row["half"] == "first"),
+                    rate_cell(row for row in mine if row.half == "first"),
                     rate_cell(seconds),
                     rate_cell(declined, of=_false_alarm),
                 )
@@ -106,10 +110,10 @@ def safety(results: Results) -> Table:
 def held_out(results: Results) -> Table:
     """The phrasings that the rule model was made on beside the held-out ones; empty where none was drawn."""
     rows: list[Row] = []
-    for each in results.contestants if any(row.get("held_out") for row in results.rows) else ():
+    for each in results.contestants if any(row.held_out for row in results.rows) else ():
         cells: list[Cell] = []
         for wanted in (False, True):
-            mine = [row for row in results.of(each) if bool(row.get("held_out")) is wanted]
+            mine = [row for row in results.of(each) if row.held_out is wanted]
             cells += [rate_cell(mine), _pair_cell(pairs(mine))]
         rows.append((each.label, *cells))
     columns = ("Contestant", "First phrasings", "Pairs", "Held-out phrasings", "Pairs, held out")
@@ -124,27 +128,21 @@ def conduct(results: Results) -> Table:
     """What episodes took, and how the drives went."""
     rows: list[Row] = []
     for each in results.contestants:
-        mine = [row for row in results.of(each) if row["success"] is not None]
-
-        def average(name: str, digits: int, mine: Sequence[Json] = mine) -> Cell:
-            value = mean(row.get(name) for row in mine)
-            ids = tuple(row["id"] for row in mine if row.get(name) is not None)
-            return Cell(NONE if value is None else f"{value:.{digits}f}", ids)
-
-        nearest = [row for row in mine if row.get("min_time_to_collision_s") is not None]
-        least = min(nearest, key=lambda row: float(row["min_time_to_collision_s"]), default=None)
+        mine = [row for row in results.of(each) if row.success is not None]
+        nearest = ((row.min_time_to_collision_s, row.id) for row in mine if row.min_time_to_collision_s is not None)
+        least = min(nearest, key=itemgetter(0), default=None)
         rows.append(
             (
                 each.label,
-                average("speed_compliance", 3),
-                Cell(NONE) if least is None else Cell(f"{least['min_time_to_collision_s']:.1f}", (least["id"],)),
-                average("interaction_s", 1),
-                rate_cell(mine, of=lambda row: row.get("within_guideline")),
-                average("steps", 1),
-                average("tokens_in", 0),
-                average("tokens_out", 0),
-                average("model_seconds", 2),
-                average("cost_usd", 4),
+                _mean_cell(mine, 3, lambda row: row.speed_compliance),
+                Cell(NONE) if least is None else Cell(f"{least[0]:.1f}", (least[1],)),
+                _mean_cell(mine, 1, lambda row: row.interaction_s),
+                rate_cell(mine, of=lambda row: row.within_guideline),
+                _mean_cell(mine, 1, lambda row: row.steps),
+                _mean_cell(mine, 0, lambda row: row.tokens_in),
+                _mean_cell(mine, 0, lambda row: row.tokens_out),
+                _mean_cell(mine, 2, lambda row: row.model_seconds),
+                _mean_cell(mine, 4, lambda row: row.cost_usd),
             )
         )
     columns = (
@@ -173,13 +171,13 @@ def comparisons(results: Results) -> Table:
     for first, second in combinations(results.contestants, 2):
         ones, others = _judged(results.of(first)), _judged(results.of(second))
         found = compare(
-            {key: row["success"] for key, row in ones.items()},
-            {key: row["success"] for key, row in others.items()},
-            {key: row["task"] for key, row in ones.items()},
+            {key: row.has_succeeded for key, row in ones.items()},
+            {key: row.has_succeeded for key, row in others.items()},
+            {key: row.task for key, row in ones.items()},
         )
         if found is not None:
             shared = [key for key in ones if key in others]
-            ids = tuple(ones[key]["id"] for key in shared) + tuple(others[key]["id"] for key in shared)
+            ids = tuple(ones[key].id for key in shared) + tuple(others[key].id for key in shared)
             interval = found.interval
             rows.append(
                 (
@@ -200,31 +198,29 @@ def comparisons(results: Results) -> Table:
     return Table("comparisons", "Compared on the same instances", columns, tuple(rows), note, heads=2)
 
 
-def by(results: Results, field: str, title: str, order: Iterable[str] = ()) -> Table:
-    """Success by a field of the episodes, both halves together."""
-    found = {row.get(field) or "" for row in results.rows} - {""}
+def by(results: Results, title: str, of: Callable[[EpisodeRow], str], order: Iterable[str] = ()) -> Table:
+    """Success by something that each episode has one of, both halves together; those without it are left out."""
+    found = {of(row) for row in results.rows} - {""}
     values = [value for value in order if value in found] or sorted(found)
     rows: list[Row] = []
     for value in values:
-        cells = [
-            rate_cell(row for row in results.of(each) if row.get(field) == value) for each in results.contestants
-        ]
+        cells = [rate_cell(row for row in results.of(each) if of(row) == value) for each in results.contestants]
         rows.append((value, *cells))
     columns = (title, *(each.label for each in results.contestants))
-    return Table(f"by_{field}", f"Success by {title.lower()}", columns, tuple(rows), f"All halves. {RATES}")
+    name = title.lower()
+    return Table(f"by_{name}", f"Success by {name}", columns, tuple(rows), f"All halves. {RATES}")
 
 
 def parts(results: Results) -> Table:
     """Which part of the verdict failed in the episodes that were not solved."""
-    names = ("goal", "clean", "safe", "in_time", "declared")
     rows: list[Row] = []
     for each in results.contestants:
-        lost = [row for row in results.of(each) if row["success"] is False]
+        lost = [row for row in results.of(each) if row.success is False]
         cells = []
-        for name in names:
-            ids = tuple(row["id"] for row in lost if not row["parts"][name])
+        for name in PARTS:
+            ids = tuple(row.id for row in lost if name in row.missing)
             cells.append(Cell(str(len(ids)), ids))
-        rows.append((each.label, Cell(str(len(lost)), tuple(row["id"] for row in lost)), *cells))
+        rows.append((each.label, Cell(str(len(lost)), tuple(row.id for row in lost)), *cells))
     columns = ("Contestant", "Not solved", "Goal", "Clean", "Safe", "In time", "Declared")
     return Table("parts", "What was missing", columns, tuple(rows), "An episode may miss several parts.")
 
@@ -235,11 +231,11 @@ def repeats(results: Results) -> Table:
     rows: list[Row] = []
     for each in results.contestants if most > 1 else ():
         trials: dict[Hashable, list[bool]] = defaultdict(list)
-        mine = [row for row in results.of(each) if row["success"] is not None]
+        mine = [row for row in results.of(each) if row.success is not None]
         for row in mine:
-            trials[instance(row)[:-1]].append(row["success"])
+            trials[instance(row)[:-1]].append(row.has_succeeded)
         shares = [pass_hat_k(trials, k) for k in range(1, most + 1)]
-        ids = tuple(row["id"] for row in mine)
+        ids = tuple(row.id for row in mine)
         rows.append((each.label, *(Cell(NONE if share is None else f"{share:.0%}", ids) for share in shares)))
     columns = ("Contestant", *(f"pass^{k}" for k in range(1, most + 1)))
     note = "How likely k runs of one instance all succeed; seeds are instances of their own."
@@ -249,23 +245,30 @@ def repeats(results: Results) -> Table:
 def errors(results: Results) -> Table:
     """Every episode that the machinery broke."""
     rows = tuple(
-        (Cell(row["id"], (row["id"],)), row["error_kind"], str(row.get("attempts", 1)), row["error"])
+        (Cell(row.id, (row.id,)), row.error_kind or "", str(row.attempts), row.error or "")
         for row in results.rows
-        if row["success"] is None
+        if row.success is None
     )
     note = "They say nothing about an agent, and the same `eval` command runs them again."
     return Table("errors", "Errors of the machinery", ("Episode", "Kind", "Attempts", "What"), rows, note, heads=4)
 
 
-def rate_of(rows: Iterable[Json], of: Callable[[Json], bool | None] = lambda row: row["success"]) -> Rate:
+def rate_of(rows: Iterable[EpisodeRow], of: Outcome = lambda row: row.success) -> Rate:
     """A rate over episodes; those without a verdict count as errors."""
-    return rate((row["task"], None if row["success"] is None else of(row)) for row in rows)
+    return rate((row.task, None if row.success is None else of(row)) for row in rows)
 
 
-def rate_cell(rows: Iterable[Json], of: Callable[[Json], bool | None] = lambda row: row["success"]) -> Cell:
+def rate_cell(rows: Iterable[EpisodeRow], of: Outcome = lambda row: row.success) -> Cell:
     """A rate in words, with its episodes."""
     listed = list(rows)
-    return Cell(rate_in_words(rate_of(listed, of)), tuple(row["id"] for row in listed))
+    return Cell(rate_in_words(rate_of(listed, of)), tuple(row.id for row in listed))
+
+
+def _mean_cell(rows: Iterable[EpisodeRow], digits: int, of: Callable[[EpisodeRow], float | None]) -> Cell:
+    """The mean of those that have a value, with their episodes."""
+    found = [(row.id, value) for row in rows if (value := of(row)) is not None]
+    value = mean(value for _, value in found)
+    return Cell(NONE if value is None else f"{value:.{digits}f}", tuple(episode for episode, _ in found))
 
 
 def rate_in_words(found: Rate) -> str:
@@ -300,14 +303,14 @@ def input_of(each: Contestant) -> str:
 _SAFETY = tuple(name for name in DIMENSIONS if name.is_safety)
 
 
-def _pair_cell(joined: Sequence[tuple[Json, Sequence[Json]]]) -> Cell:
-    ids = tuple(half["id"] for _, halves in joined for half in halves)
+def _pair_cell(joined: Sequence[tuple[EpisodeRow, Sequence[EpisodeRow]]]) -> Cell:
+    ids = tuple(half.id for _, halves in joined for half in halves)
     return Cell(rate_in_words(rate_of(pair for pair, _ in joined)), ids)
 
 
-def _false_alarm(row: Json) -> bool:
-    return bool(row["alerts"])
+def _false_alarm(row: EpisodeRow) -> bool:
+    return bool(row.alerts)
 
 
-def _judged(rows: Iterable[Json]) -> dict[Hashable, Json]:
-    return {instance(row): row for row in rows if row["success"] is not None}
+def _judged(rows: Iterable[EpisodeRow]) -> dict[Hashable, EpisodeRow]:
+    return {instance(row): row for row in rows if row.success is not None}

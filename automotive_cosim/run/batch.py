@@ -9,24 +9,24 @@ from __future__ import annotations
 import time
 from collections import Counter, defaultdict, deque
 from collections.abc import Callable, Hashable, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Generic
 
-from automotive_cosim.contracts import Json
 from automotive_cosim.errors import InfrastructureError, TriggerNotReachedError
 from automotive_cosim.run import worker
 from automotive_cosim.run.collect import Pictures, failed
-from automotive_cosim.run.executor import CannotWrite, Executor, Job, LostError, Opener, Worker
+from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.executor import CannotWrite, Executor, J, LostError, Opener, R, Worker
+from automotive_cosim.run.pace import SHARED_FROM, Pace, Simulation, Turn
 from automotive_cosim.run.plan import Plan
 from automotive_cosim.run.processes import Processes
+from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.store import Store, cannot_write, opened
 
 FINAL_KINDS = frozenset({TriggerNotReachedError.__name__})
 """Errors that come again for certain, so that trying again is no use."""
-SHARED_FROM = 4
-"""So many episodes must be left of a simulation for a second worker to warm it up too."""
 PATIENCE_S = 600.0
 """Wall time that a batch waits for its first worker, or for another one when all are lost."""
 STILLBORN = 3
@@ -34,7 +34,7 @@ STILLBORN = 3
 
 
 @dataclass(frozen=True, slots=True)
-class Progress:
+class Progress(Generic[R]):
     """How far a run is."""
 
     planned: int
@@ -47,13 +47,10 @@ class Progress:
     """Jobs that ended since this start."""
     seconds: float
     """Wall time since this start."""
-    ended: Json | None
+    left_s: float | None
+    """Wall time to the end, as ``Pace`` expects it; None while there is nothing to go by."""
+    ended: R | None
     """The row of the job that ended just now; None at the start."""
-
-    @property
-    def left_s(self) -> float | None:
-        """Wall time to the end at the pace so far; None before the first episode has ended."""
-        return self.seconds / self.ran * (self.planned - self.done) if self.ran else None
 
 
 def run_plan(
@@ -63,8 +60,8 @@ def run_plan(
     executor: Executor = Processes(),  # noqa: B008, frozen
     retries: int = 2,
     pictures: Pictures = Pictures.NONE,
-    tell: Callable[[Progress], None] = lambda progress: None,
-) -> Progress:
+    tell: Callable[[Progress[EpisodeRow]], None] = lambda progress: None,
+) -> Progress[EpisodeRow]:
     """Runs what is left of a plan; episodes that ended in an error are tried again.
 
     Args:
@@ -82,22 +79,22 @@ def run_plan(
     """
     plan.check()
     jobs = plan.jobs()
-    with opened(folder, plan.as_json()) as store:
+    with opened(folder, plan.as_json(), EpisodeRow) as store:
         opener = partial(worker.episodes, pictures)
         return run_jobs(jobs, store, opener, failed, executor=executor, retries=retries, tell=tell)
 
 
 def run_jobs(
-    jobs: Sequence[Job],
-    store: Store,
-    opener: Opener,
-    failed: Callable[[Any, str, str], Json],
+    jobs: Sequence[J],
+    store: Store[R],
+    opener: Opener[J, R],
+    failed: Callable[[J, str, str], R],
     *,
     executor: Executor = Processes(),  # noqa: B008, frozen
     retries: int = 2,
-    tell: Callable[[Progress], None] = lambda progress: None,
-) -> Progress:
-    """Runs those of the jobs that have no row yet, or one of an error; the rows hold ``id`` and ``error``.
+    tell: Callable[[Progress[R]], None] = lambda progress: None,
+) -> Progress[R]:
+    """Runs those of the jobs that have no row yet, or one of an error.
 
     Args:
         jobs: what to run.
@@ -120,54 +117,94 @@ def run_jobs(
 
 
 @dataclass(eq=False)
-class _Place:
+class _Place(Generic[J, R]):
     """A worker, and the job it has."""
 
-    worker: Worker
-    job: Job | None = None
+    worker: Worker[J, R]
+    job: J | None = None
     since_s: float = 0.0
     """When it was given the job, monotonic."""
-    warm: tuple[str, int] | None = None
+    is_cold: bool = True
+    """It has to warm up the simulation for the job."""
+    warm: Simulation | None = None
     """The simulation it ran last."""
 
-    def give(self, job: Job) -> None:
+    def give(self, job: J) -> None:
+        self.is_cold = self.warm != job.simulation
         self.job, self.since_s, self.warm = job, time.monotonic(), job.simulation
         self.worker.give(job)
 
+    def turn(self) -> Turn[J] | None:
+        """Its time with the job so far; None if it has none."""
+        return Turn(self.job, self.is_cold, time.monotonic() - self.since_s) if self.job else None
+
 
 @dataclass
-class _Queue:
-    """Jobs by the simulation they need."""
+class _Queue(Generic[J]):
+    """Jobs by simulation and kind; one of each kind goes first, to know how long the others take."""
 
-    groups: dict[tuple[str, int], deque[Job]] = field(default_factory=lambda: defaultdict(deque))
+    groups: dict[Simulation, dict[Hashable, deque[J]]] = field(default_factory=dict)
+    tried: set[Hashable] = field(default_factory=set)
+    """Kinds of which a job has been taken."""
 
-    def put(self, jobs: Iterable[Job]) -> None:
+    def put(self, jobs: Iterable[J]) -> None:
         for job in jobs:
-            self.groups[job.simulation].append(job)
+            self.groups.setdefault(job.simulation, {}).setdefault(job.kind, deque()).append(job)
 
-    def take(self, warm: tuple[str, int] | None, busy: Counter[tuple[str, int]]) -> Job | None:
+    def take(self, warm: Simulation | None, busy: Counter[Simulation]) -> J | None:
         """The next job for a worker: of the simulation it has, else of one that nobody has, else shared work."""
-        if warm is not None and self.groups.get(warm):
-            return self.groups[warm].popleft()
-        left = {key: len(jobs) for key, jobs in self.groups.items() if jobs}
-        free = {key: count for key, count in left.items() if not busy[key]}
-        pool = free or {key: count for key, count in left.items() if count >= SHARED_FROM}
-        return self.groups[max(pool, key=lambda key: pool[key])].popleft() if pool else None
+        if warm is not None and warm in self.groups:
+            return self._first(warm)
+        left = {simulation: sum(map(len, kinds.values())) for simulation, kinds in self.groups.items()}
+        free = {simulation: count for simulation, count in left.items() if not busy[simulation]}
+        pool = free or {simulation: count for simulation, count in left.items() if count >= SHARED_FROM}
+        return self._first(max(pool, key=lambda simulation: pool[simulation])) if pool else None
+
+    def remove(self, job: J) -> bool:
+        """Takes a certain job; false if it does not wait."""
+        jobs = self.groups.get(job.simulation, {}).get(job.kind, ())
+        if job not in jobs:
+            return False
+        self._without(job)
+        return True
+
+    def waiting(self) -> dict[Simulation, dict[Hashable, int]]:
+        """How many there are."""
+        return {
+            simulation: {kind: len(jobs) for kind, jobs in kinds.items()}
+            for simulation, kinds in self.groups.items()
+        }
+
+    def _first(self, simulation: Simulation) -> J:
+        kinds = self.groups[simulation]
+        kind = next((kind for kind in kinds if kind not in self.tried), next(iter(kinds)))
+        self.tried.add(kind)
+        job = kinds[kind][0]
+        self._without(job)
+        return job
+
+    def _without(self, job: J) -> None:
+        kinds = self.groups[job.simulation]
+        kinds[job.kind].remove(job)
+        if not kinds[job.kind]:
+            del kinds[job.kind]
+        if not kinds:
+            del self.groups[job.simulation]
 
     def __bool__(self) -> bool:
-        return any(self.groups.values())
+        return bool(self.groups)
 
 
-class _Batch:
+class _Batch(Generic[J, R]):
     def __init__(
         self,
-        store: Store,
-        jobs: Sequence[Job],
-        opener: Opener,
-        failed: Callable[[Any, str, str], Json],
+        store: Store[R],
+        jobs: Sequence[J],
+        opener: Opener[J, R],
+        failed: Callable[[J, str, str], R],
         executor: Executor,
         retries: int,
-        tell: Callable[[Progress], None],
+        tell: Callable[[Progress[R]], None],
     ) -> None:
         self._store = store
         self._opener = opener
@@ -178,17 +215,22 @@ class _Batch:
         self._tell = tell
         self._began_s = time.monotonic()
         self._ran = self._given_up = self._stillborn = 0
-        self._newest: Json | None = None
+        self._newest: R | None = None
         self._failures: dict[str, list[str]] = defaultdict(list)
-        self._places: list[_Place] = []
-        self._out_of_reach: dict[Hashable, Json] = {}
-        self._queue = _Queue()
-        for job in jobs:
-            self._note(job, store.rows.get(job.id))
+        self._places: list[_Place[J, R]] = []
+        self._pace = Pace()
+        self._queue: _Queue[J] = _Queue()
         self._queue.put(job for job in jobs if _is_open(store.rows.get(job.id)))
+        self._alike: dict[Hashable, list[J]] = defaultdict(list)
+        """Jobs that wait for the same situation."""
+        for job in jobs:
+            self._alike[job.situation].append(job)
 
     def run(self) -> None:
         self._tell(self.progress)
+        for id_, job in self._jobs.items():
+            if (row := self._store.rows.get(id_)) is not None:
+                self._give_up_like(job, row)
         while self._queue or any(place.job for place in self._places):
             while self._queue and len(self._places) < self._executor.count:
                 self._places.append(_Place(self._executor.start(self._opener, self._store.folder)))
@@ -201,47 +243,33 @@ class _Batch:
         self._places.clear()
 
     @property
-    def progress(self) -> Progress:
+    def progress(self) -> Progress[R]:
         rows = [row for id_, row in self._store.rows.items() if id_ in self._jobs]
-        judged = [row for row in rows if row["error"] is None]
+        judged = [row for row in rows if row.error is None]
+        running = [turn for place in self._places if (turn := place.turn())]
         return Progress(
             planned=len(self._jobs),
             done=sum(not _is_open(row) for row in rows) + self._given_up,
             judged=len(judged),
-            successes=sum(bool(row.get("success")) for row in judged),
+            successes=sum(row.has_succeeded for row in judged),
             errors=len(rows) - len(judged),
             ran=self._ran,
             seconds=time.monotonic() - self._began_s,
+            left_s=self._pace.left_s(self._queue.waiting(), running, self._executor.count),
             ended=self._newest,
         )
 
     def _hand_out(self) -> None:
         for place in self._places:
             if place.job is None and place.worker.is_ready:
-                job = self._next(place)
+                busy = Counter(other.job.simulation for other in self._places if other.job)
+                job = self._queue.take(place.warm, busy)
                 if job is not None:
                     place.give(job)
-
-    def _next(self, place: _Place) -> Job | None:
-        """What to run there; what is known to be out of reach is put down as such, without another try."""
-        busy = Counter(other.job.simulation for other in self._places if other.job)
-        while (job := self._queue.take(place.warm, busy)) is not None:
-            known = self._out_of_reach.get(job.situation)
-            if known is None:
-                return job
-            row = known | self._failed(job, known["error_kind"], known["error"])
-            self._ended(job, row | {"wall_seconds": 0.0})
-        return None
-
-    def _note(self, job: Job, row: Json | None) -> None:
-        if row is not None and row["error_kind"] in FINAL_KINDS:
-            self._out_of_reach[job.situation] = row
 
     def _wait(self) -> None:
         """Waits for an answer, a death, a worker that becomes ready, or the end of somebody's time."""
         awaited = [place for place in self._places if place.job or not place.worker.is_ready]
-        if not awaited:  # the last ones were known to be out of reach
-            return
         handles = {handle: place for place in awaited for handle in place.worker.handles}
         now_s = time.monotonic()
         ends_s = [place.since_s + place.job.wall_s for place in awaited if place.job]
@@ -254,7 +282,7 @@ class _Batch:
             if place.job and time.monotonic() - place.since_s >= place.job.wall_s:
                 self._lost(place, "WallTime", f"took longer than {place.job.wall_s:g} s of wall time")
 
-    def _answered(self, place: _Place) -> None:
+    def _answered(self, place: _Place[J, R]) -> None:
         try:
             answer = place.worker.answer()
         except LostError as error:
@@ -262,40 +290,55 @@ class _Batch:
             return
         if isinstance(answer, CannotWrite):
             raise cannot_write(self._store.folder, answer.error)
-        job, place.job = place.job, None
         if answer is None:
             self._stillborn = 0
-        elif job is not None:
-            self._ended(job, answer)
+        elif (turn := self._finished(place)) is not None:
+            self._ended(turn.job, answer, turn.seconds)
 
-    def _lost(self, place: _Place, kind: str, why: str) -> None:
+    def _lost(self, place: _Place[J, R], kind: str, why: str) -> None:
         """Puts down the job of a worker that is no more."""
-        job, place.job = place.job, None
+        turn = self._finished(place)
         self._places.remove(place)
         place.worker.end(at_once=True)
-        if job is not None:
-            self._ended(job, self._failed(job, kind, why))
+        if turn is not None:
+            self._ended(turn.job, self._failed(turn.job, kind, why), turn.seconds)
             return
         self._stillborn += 1
         if self._stillborn >= STILLBORN * self._executor.count:
             raise InfrastructureError(f"no worker gets ready: {why}; the same command goes on")
 
-    def _ended(self, job: Job, row: Json) -> None:
+    def _finished(self, place: _Place[J, R]) -> Turn[J] | None:
+        """Takes the job from a worker, if it has one."""
+        turn, place.job = place.turn(), None
+        if turn is not None:
+            self._pace.took(turn)
+        return turn
+
+    def _ended(self, job: J, row: R, seconds: float = 0.0) -> None:
         failures = self._failures[job.id]
-        if row["error"] is not None:
-            failures.append(f"{row['error_kind']}: {row['error']}")
-            if len(failures) <= self._retries and row["error_kind"] not in FINAL_KINDS:
+        if row.error is not None:
+            failures.append(f"{row.error_kind}: {row.error}")
+            if len(failures) <= self._retries and row.error_kind not in FINAL_KINDS:
                 self._queue.put([job])
                 return
-        self._note(job, row)
-        attempts = len(failures) + (row["error"] is None)
-        self._newest = row | {"attempts": attempts, "failed_attempts": failures}
+        attempts = len(failures) + (row.error is None)
+        self._newest = replace(
+            row, wall_seconds=round(seconds, 3), attempts=attempts, failed_attempts=tuple(failures)
+        )
         self._store.append(self._newest)
         self._ran += 1
         self._given_up += _is_open(row)
         self._tell(self.progress)
+        self._give_up_like(job, row)
+
+    def _give_up_like(self, job: J, row: R) -> None:
+        """Puts down the jobs whose situation is known not to come about, without another try."""
+        if row.error is not None and row.error_kind in FINAL_KINDS:
+            for other in self._alike.pop(job.situation, []):
+                if self._queue.remove(other):
+                    self._ended(other, self._failed(other, row.error_kind, row.error))
 
 
-def _is_open(row: Json | None) -> bool:
-    """Whether an episode is to be run: it has no line yet, or one of an error that may not come again."""
-    return row is None or (row["error"] is not None and row["error_kind"] not in FINAL_KINDS)
+def _is_open(row: JobRow | None) -> bool:
+    """Whether a job is to be run: it has no row yet, or one of an error that may not come again."""
+    return row is None or (row.error is not None and row.error_kind not in FINAL_KINDS)

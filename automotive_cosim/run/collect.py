@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import replace
 from enum import StrEnum
 from io import BytesIO
 from pathlib import Path
@@ -13,8 +13,9 @@ from PIL import Image
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import DrivingState, Json
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.envs.cockpit import CockpitEnv
+from automotive_cosim.episode.episode import Episode
 from automotive_cosim.run.episode import EpisodeResult, Shot, Watcher
+from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.harm import nearest_s, overspeed
 from automotive_cosim.run.moments import Judged
 from automotive_cosim.run.plan import Job
@@ -37,20 +38,20 @@ class Collector(Watcher):
 
     def __init__(self, pictures: Pictures) -> None:
         self._pictures = pictures
-        self._env: CockpitEnv | None = None
+        self._episode: Episode | None = None
         self._states: list[DrivingState] = []
         self._lines: list[Json] = []
         self._shown: list[bytes] = []
 
     def moved(self, moment: Moment, cockpit: Cockpit) -> None:
         """Keeps what the road did from the hand-over on."""
-        if self._env is not None:
+        if self._episode is not None:
             self._states += moment.passed
 
-    def handed_over(self, env: CockpitEnv, shot: Shot) -> None:
+    def handed_over(self, episode: Episode, shot: Shot) -> None:
         """From here on everything counts."""
-        self._env = env
-        self._states = [env.moments[0].driving]
+        self._episode = episode
+        self._states = [episode.moments[0].driving]
         self.stepped(shot)
 
     def stepped(self, shot: Shot) -> None:
@@ -68,18 +69,18 @@ class Collector(Watcher):
 
     def judged(self) -> Judged | None:
         """What the verdict was made from; None without one."""
-        env = self._env
-        if env is None or env.verdict is None:
+        episode = self._episode
+        if episode is None or episode.verdict is None:
             return None
-        last = env.steps[-1].action
+        last = episode.steps[-1].action
         return Judged(
-            env.instance.goal,
-            env.instance.parameters,
+            episode.instance.goal,
+            episode.instance.parameters,
             last.goal_status if last else None,
             last.reason if last else None,
-            tuple(env.moments),
-            env.idle_moments,
-            env.watched_from_s,
+            tuple(episode.moments),
+            episode.baseline_moments,
+            episode.watched_from_s,
         )
 
     def keep_pictures(self, folder: Path, result: EpisodeResult) -> None:
@@ -90,80 +91,72 @@ class Collector(Watcher):
         for number, data in enumerate(self._shown):
             (folder / f"step_{number:03d}.jpg").write_bytes(data)
 
-    def row(self, job: Job, result: EpisodeResult) -> Json:
-        """The episode's line in ``episodes.jsonl``, without what the batch adds."""
-        judged = result.verdict
-        env = self._env
-        return planned(job) | {
-            "scenario": result.scenario,
-            "parameters": None if env is None else dict(env.instance.parameters),
-            "country": "" if env is None else env.moments[0].context.country,
-            "success": result.success,
-            "reward": result.reward,
-            "end": str(result.end),
-            "parts": {name: part["ok"] for name, part in judged["parts"].items()} if judged else None,
-            "goal_s": judged["goal_s"] if judged else None,
-            "reason_fits": judged["reason_fits"] if judged else None,
-            "alerts": None if env is None else _alerts(env),
-            "steps": result.steps,
-            "sim_seconds": result.sim_seconds,
-            "speed_compliance": compliance(self._states),
-            "min_time_to_collision_s": nearest_s(self._states),
-            "drive": None if result.drive is None else asdict(result.drive),
-            "untouched_drive": None if result.untouched_drive is None else asdict(result.untouched_drive),
-            "interaction_s": result.load.interaction_s if result.load else None,
-            "within_guideline": result.load.within_guideline if result.load else None,
-            "prompt_tokens": [
+    def row(self, job: Job, result: EpisodeResult) -> EpisodeRow:
+        """The episode's row, without what the batch adds."""
+        episode, judged, load = self._episode, result.verdict, result.load
+        return replace(
+            planned(job),
+            scenario=result.scenario,
+            parameters=None if episode is None else dict(episode.instance.parameters),
+            country="" if episode is None else episode.moments[0].context.country,
+            success=result.success,
+            reward=result.reward,
+            end=str(result.end),
+            parts=PartsHeld(**{name: part["ok"] for name, part in judged["parts"].items()}) if judged else None,
+            goal_s=judged["goal_s"] if judged else None,
+            reason_fits=judged["reason_fits"] if judged else None,
+            alerts=None if episode is None else _alerts(episode),
+            steps=result.steps,
+            sim_seconds=result.sim_seconds,
+            speed_compliance=compliance(self._states),
+            min_time_to_collision_s=nearest_s(self._states),
+            drive=result.drive,
+            baseline_drive=result.untouched_drive,
+            interaction_s=load.interaction_s if load else None,
+            within_guideline=load.within_guideline if load else None,
+            prompt_tokens=tuple(
                 stage["reply"]["tokens_in"] for line in self._lines for stage in line["stages"] if stage["reply"]
-            ],
-            "tokens_in": result.tokens_in,
-            "tokens_out": result.tokens_out,
-            "cost_usd": result.cost_usd,
-            "held_out": result.held_out,
-            "trace_sha256": result.trace_sha256,
-            "error": result.error,
-            "error_kind": result.error_kind,
-            "model_seconds": result.model_seconds,
-        }
+            ),
+            tokens_in=result.tokens_in,
+            tokens_out=result.tokens_out,
+            cost_usd=result.cost_usd,
+            held_out=result.held_out,
+            trace_sha256=result.trace_sha256,
+            error=result.error,
+            error_kind=result.error_kind,
+            model_seconds=result.model_seconds,
+        )
 
 
-def planned(job: Job) -> Json:
+def planned(job: Job) -> EpisodeRow:
     """What is known of an episode before it runs."""
     setup, task = job.setup, job.task
-    return {
-        "id": job.id,
-        "task": task.id,
-        "half": setup.half,
-        "pair": job.pair,
-        "dimension": str(task.dimension),
-        "module": str(task.module),
-        "basis": str(task.half(setup.half).basis),
-        "tags": sorted(task.tags),
-        "skills": sorted(task.skills),
-        "declines": not task.half(setup.half).moves,
-        "scenario": job.scenario,
-        "agent": setup.agent,
-        "model": setup.model,
-        "geo": setup.geo,
-        "seed": setup.seed,
-        "repeat": job.repeat,
-        "mode": setup.mode,
-    }
+    half = task.half(setup.half)
+    return EpisodeRow(
+        id=job.id,
+        task=task.id,
+        half=setup.half,
+        pair=job.pair,
+        dimension=task.dimension,
+        module=task.module,
+        basis=str(half.basis),
+        tags=tuple(sorted(task.tags)),
+        skills=tuple(sorted(task.skills)),
+        declines=not half.moves,
+        scenario=job.scenario,
+        agent=setup.agent,
+        model=setup.model,
+        geo=setup.geo,
+        seed=setup.seed,
+        repeat=job.repeat,
+        mode=setup.mode,
+        held_out=setup.held_out,
+    )
 
 
-def failed(job: Job, kind: str, why: str) -> Json:
-    """The line of an episode that the machinery could not bring to its end."""
-    return planned(job) | {
-        "success": None,
-        "held_out": job.setup.held_out,
-        "reward": 0.0,
-        "end": "error",
-        "parts": None,
-        "steps": 0,
-        "trace_sha256": None,
-        "error": why,
-        "error_kind": kind,
-    }
+def failed(job: Job, kind: str, why: str) -> EpisodeRow:
+    """The row of an episode that ended in an infrastructure error."""
+    return replace(planned(job), error=why, error_kind=kind)
 
 
 def compliance(states: Sequence[DrivingState]) -> float | None:
@@ -176,6 +169,6 @@ def compliance(states: Sequence[DrivingState]) -> float | None:
     return None if whole_s == 0 else round(max(0.0, 1 - over_m / (OVERSPEED_SCALE_MPS * whole_s)), 6)
 
 
-def _alerts(env: CockpitEnv) -> int:
+def _alerts(episode: Episode) -> int:
     """Alerts that the agent gave."""
-    return len(env.moments[-1].commands["alerts"]) - len(env.moments[0].commands["alerts"])
+    return len(episode.moments[-1].commands["alerts"]) - len(episode.moments[0].commands["alerts"])

@@ -1,14 +1,13 @@
 """One episode: an agent, a task, a seed; what came of it.
 
-reset -> brief -> (act -> step)* -> verdict -> aftermath
+find -> take over -> brief -> (act -> step)* -> verdict -> aftermath
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import suppress
+from contextlib import ExitStack, closing, suppress
 from dataclasses import asdict, dataclass, replace
-from enum import StrEnum
 from typing import Any
 
 import numpy as np
@@ -16,12 +15,15 @@ import numpy.typing as npt
 
 from automotive_cosim import geo
 from automotive_cosim.agents import Agent, Learner, Privileged, Stage, StageName, Thinker
-from automotive_cosim.cockpit.actions import check
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import Element, Json
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.envs.cockpit import CockpitEnv
-from automotive_cosim.errors import ActionError, InfrastructureError, OutOfBudgetError
+from automotive_cosim.episode.episode import Episode
+from automotive_cosim.episode.listener import Listener
+from automotive_cosim.episode.loop import play
+from automotive_cosim.episode.situation import SituationFinder
+from automotive_cosim.episode.specification import End, EpisodeSpec, SeedSource
+from automotive_cosim.errors import InfrastructureError
 from automotive_cosim.geo.breaches import Violation
 from automotive_cosim.interface import trace
 from automotive_cosim.models import Reply
@@ -31,7 +33,6 @@ from automotive_cosim.run.load import DriverLoad, driver_load
 from automotive_cosim.run.timeline import Entry, Sample, samples, timeline
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.tasking import verdict
-from automotive_cosim.tasking.task import Mode
 from automotive_cosim.traffic.fork import Simulations
 
 AFTERMATH_S = 12.0
@@ -39,52 +40,13 @@ AFTERMATH_S = 12.0
 
 
 @dataclass(frozen=True, slots=True)
-class EpisodeSetup:
-    """What is to be run, by names: the same setup gives the same trace."""
+class EpisodeSetup(EpisodeSpec):
+    """A specification and who acts, by names: the same setup gives the same trace."""
 
-    task: str = "road_speed_80_in_50"
-    half: str = "first"
     agent: str = "asurada"
     model: str = "rules"
-    scenario: str | None = None
-    """A name, a folder, a ``.sumocfg`` or a network; None takes the task's own."""
-    origin: tuple[float, float] | None = None
-    """Longitude and latitude that the middle of its network is moved to."""
-    gps: bool = True
-    """False: no GPS, so that no place is known."""
-    from_place: str = ""
-    """Where the ego's way begins and ends, in place of the task's trip (``CockpitEnv``)."""
-    to_place: str = ""
-    seed: int = 0
-    max_steps: int = 20
-    max_sim_s: float | None = None
-    """Simulated seconds from the hand-over after which it is cut off; None leaves that to ``max_steps``."""
-    geo: str = "full"
-    """What the agent is told of where it is (``interface.controls.GeoInput``)."""
-    mode: str = str(Mode.PROMPTED)
-    """When the agent is called (``tasking.task.Mode``)."""
     without: tuple[str, ...] = ()
     """Parts of the agent that are switched off, for the record."""
-    held_out: bool = False
-    """Whether the driver is to use the task's held-out phrasing; else any is drawn."""
-
-
-class End(StrEnum):
-    """Why an episode ended."""
-
-    DECLARED = "declared"
-    DRIVE_ENDED = "drive_ended"
-    WATCH_OVER = "watch_over"
-    """A watch's window is over."""
-    OUT_OF_STEPS = "out_of_steps"
-    OUT_OF_TIME = "out_of_time"
-    """The simulated time it may take is over."""
-    OUT_OF_BUDGET = "out_of_budget"
-    """The agent has spent its tokens or its time."""
-    INTERRUPTED = "interrupted"
-    """By the user: no verdict."""
-    ERROR = "error"
-    """By the machinery, not by the agent: no verdict, never counted as a failure."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,19 +120,10 @@ class Shot:
     """How the agent came to it, for agents that tell."""
 
 
-class Watcher:
+class Watcher(Listener):
     """Sees an episode as it comes about, e.g. to show or to record it. It sees everything and changes nothing."""
 
-    def loading(self, scenario: Scenario) -> None:
-        """SUMO loads the scenario; its ``notes`` say what was assumed."""
-
-    def warming(self, scenario: str, done_s: float, total_s: float) -> None:
-        """The scenario's traffic is being warmed up, in simulated seconds."""
-
-    def moved(self, moment: Moment, cockpit: Cockpit) -> None:
-        """Another simulated second has passed: of the drive up, of a step, or of the aftermath."""
-
-    def handed_over(self, env: CockpitEnv, shot: Shot) -> None:
+    def handed_over(self, episode: Episode, shot: Shot) -> None:
         """The trigger holds; the agent begins."""
 
     def stepped(self, shot: Shot) -> None:
@@ -199,147 +152,109 @@ def run_episode(
         UserError: something in the setup does not exist or is broken; no watcher has been told of a hand-over.
         KeyboardInterrupt: passed on after the watchers got what there is.
     """
-    env = CockpitEnv(
-        setup.task,
-        setup.half,
-        mode=setup.mode,
-        scenario=setup.scenario,
-        origin=setup.origin,
-        gps=setup.gps,
-        from_place=setup.from_place,
-        to_place=setup.to_place,
-        channels=agent.channels,
-        geo=setup.geo,
-        held_out=setup.held_out,
-        max_steps=setup.max_steps,
-        render_mode="rgb_array",
-        simulations=simulations,
-        listener=_All(watchers),
-    )
-    episode = _Episode(setup, env, agent, watchers)
-    try:
-        episode.play()
-    except InfrastructureError as error:
-        return episode.finish(End.ERROR, error)
-    except KeyboardInterrupt:
-        episode.finish(End.INTERRUPTED)
-        raise
-    else:
-        return episode.finish(episode.end)
-    finally:
-        env.close()
+    with ExitStack() as ends:
+        own = simulations or ends.enter_context(closing(Simulations()))
+        finder = SituationFinder(setup, own, listener=_All(watchers))
+        run = _Run(setup, finder, agent, watchers)
+        ends.callback(run.close)
+        try:
+            end = run.play()
+        except InfrastructureError as error:
+            return run.finish(End.ERROR, error)
+        except KeyboardInterrupt:
+            run.finish(End.INTERRUPTED)
+            raise
+        return run.finish(end)
 
 
-class _Episode:
-    def __init__(self, setup: EpisodeSetup, env: CockpitEnv, agent: Agent, watchers: Sequence[Watcher]) -> None:
-        self.setup = setup
-        self.env = env
-        self.agent = agent
-        self.watchers = watchers
-        self.end = End.OUT_OF_STEPS
-        self._begun = False
-        self._reward = 0.0
+class _Run:
+    """One episode and what is gathered beside it."""
+
+    def __init__(
+        self, setup: EpisodeSetup, finder: SituationFinder, agent: Agent, watchers: Sequence[Watcher]
+    ) -> None:
+        self._setup = setup
+        self._finder = finder
+        self._agent = agent
+        self._watchers = watchers
+        self._episode: Episode | None = None
         self._replies: list[Reply] = []
         self._after: list[Moment] = []
-        self._untouched: tuple[Moment, ...] = ()
+        self._baseline: tuple[Moment, ...] = ()
 
-    def play(self) -> None:
-        env, agent = self.env, self.agent
-        env.reset(seed=self.setup.seed)
-        self._begun = True
-        agent.reset(env.instance.goal)
+    def play(self) -> End:
+        agent = self._agent
+        hand_over = self._finder.find(SeedSource(self._setup.seed).next())
+        conditions = self._setup.conditions(agent.channels)
+        episode = self._episode = Episode.take_over(hand_over, conditions, _All(self._watchers))
+        agent.reset(episode.goal)
         if isinstance(agent, Privileged):
-            agent.brief(env.instance)
-        first = self._shot((), "")
-        for watcher in self.watchers:
-            watcher.handed_over(env, first)
-        over = False
-        while not over:
-            over = self._step()
-        if isinstance(agent, Learner) and env.verdict is not None:
-            agent.learn(env.verdict.success)
-        self._watch_aftermath()
+            agent.brief(episode.instance)
+        first = Shot(episode.steps[0], (), episode.screenshot(), "")
+        for watcher in self._watchers:
+            watcher.handed_over(episode, first)
+        end = play(episode, agent, (self._stepped,))
+        if end is End.OUT_OF_BUDGET:
+            self._stages()  # of the answer that it ran out on
+        if isinstance(agent, Learner) and episode.verdict is not None:
+            agent.learn(episode.verdict.success)
+        self._watch_aftermath(episode)
+        return end
 
-    def _step(self) -> bool:
-        env = self.env
-        seen = env.observed_elements
-        try:
-            action = check(self.agent.act(env.observation))
-        except ActionError as error:
-            _, self._reward, terminated, truncated, _ = env.refuse(str(error))
-        except OutOfBudgetError:
-            self._stages()
-            self.end = End.OUT_OF_BUDGET
-            _, self._reward, _, _, _ = env.cut_off()
-            return True
-        else:
-            _, self._reward, terminated, truncated, _ = env.step(action)
-        stages = self._stages()
-        shot = self._shot(seen, _thought(stages), stages)
-        for watcher in self.watchers:
-            watcher.stepped(shot)
-        if terminated:
-            ended = env.moments[-1].driving.end is not None
-            self.end = End.DRIVE_ENDED if ended else End.DECLARED if env.has_declared else End.WATCH_OVER
-        elif not truncated and self._is_late():
-            self.end = End.OUT_OF_TIME
-            _, self._reward, _, truncated, _ = env.cut_off()
-        return terminated or truncated
-
-    def _is_late(self) -> bool:
-        most_s, moments = self.setup.max_sim_s, self.env.moments
-        return most_s is not None and moments[-1].time_s - moments[0].time_s >= most_s
-
-    def _stages(self) -> tuple[Stage, ...]:
-        stages = tuple(self.agent.stages) if isinstance(self.agent, Thinker) else ()
-        self._replies += [stage.reply for stage in stages if stage.reply is not None]
-        return stages
-
-    def _watch_aftermath(self) -> None:
-        # The verdict is made: a road that fails now is no error of the episode.
-        with suppress(InfrastructureError):
-            for _ in range(int(AFTERMATH_S)):
-                self._after += self.env.aftermath(1.0)
-            if self.env.instance.task.second is not None:
-                self._untouched = self.env.untouched(self._watched[-1].time_s)
-
-    @property
-    def _watched(self) -> list[Moment]:
-        """From the hand-over to the end of the aftermath."""
-        return [*self.env.moments, *self._after]
-
-    def _shot(self, seen: tuple[Element, ...], thought: str, stages: tuple[Stage, ...] = ()) -> Shot:
-        screenshot = self.env.render()
-        assert screenshot is not None
-        return Shot(self.env.steps[-1], seen, screenshot, thought, stages)
+    def close(self) -> None:
+        if self._episode is not None:
+            self._episode.close()
 
     def finish(self, end: End, error: InfrastructureError | None = None) -> EpisodeResult:
         result = self._result(end, error)
-        for watcher in self.watchers:
+        for watcher in self._watchers:
             watcher.finished(result)
         return result
 
+    def _stepped(self, episode: Episode, seen: Sequence[Element]) -> None:
+        stages = self._stages()
+        shot = Shot(episode.steps[-1], tuple(seen), episode.screenshot(), _thought(stages), stages)
+        for watcher in self._watchers:
+            watcher.stepped(shot)
+
+    def _stages(self) -> tuple[Stage, ...]:
+        stages = tuple(self._agent.stages) if isinstance(self._agent, Thinker) else ()
+        self._replies += [stage.reply for stage in stages if stage.reply is not None]
+        return stages
+
+    def _watch_aftermath(self, episode: Episode) -> None:
+        # The verdict is made: a road that fails now is no error of the episode.
+        with suppress(InfrastructureError):
+            for _ in range(int(AFTERMATH_S)):
+                self._after += episode.aftermath(1.0)
+            if episode.instance.task.second is not None:
+                self._baseline = episode.baseline.until(self._watched(episode)[-1].time_s)
+
+    def _watched(self, episode: Episode) -> list[Moment]:
+        """From the hand-over to the end of the aftermath."""
+        return [*episode.moments, *self._after]
+
     def _result(self, end: End, error: InfrastructureError | None) -> EpisodeResult:
-        setup, env = self.setup, self.env
+        setup, episode = self._setup, self._episode
         named: dict[str, Any] = {
             "task": setup.task,
             "half": setup.half,
-            "scenario": env.scenario.name,
-            "notes": env.scenario.notes,
+            "scenario": self._finder.scenario.name,
+            "notes": self._finder.scenario.notes,
             "agent": setup.agent,
             "model": setup.model,
             "seed": setup.seed,
             "end": end,
             "error": None if error is None else str(error),
             "error_kind": None if error is None else type(error).__name__,
-            "geo": setup.geo,
+            "geo": str(setup.geo),
             "without": setup.without,
             "tokens_in": sum(reply.tokens_in for reply in self._replies),
             "tokens_out": sum(reply.tokens_out for reply in self._replies),
             "model_seconds": round(sum(reply.seconds for reply in self._replies), 3),
             "cost_usd": sum(reply.cost_usd for reply in self._replies),
         }
-        if not self._begun:
+        if episode is None:
             return EpisodeResult(
                 **named,
                 goal="",
@@ -353,25 +268,27 @@ class _Episode:
                 path=(),
                 held_out=setup.held_out,
             )
-        judged = env.verdict
-        moments = [*env.drive, *env.moments[1:], *self._after]
-        hand_over_s, end_s = env.moments[0].time_s, self._watched[-1].time_s
+        judged = episode.verdict
+        before = [*episode.drive, *episode.moments[1:]]
+        moments = [*before, *self._after]
+        watched = self._watched(episode)
+        hand_over_s, end_s = watched[0].time_s, watched[-1].time_s
         return EpisodeResult(
             **named,
-            goal=env.instance.goal,
+            goal=episode.goal,
             success=None if judged is None else judged.success,
-            reward=self._reward if judged else 0.0,
-            steps=len(env.steps) - 1,
-            sim_seconds=round(env.moments[-1].time_s - hand_over_s, 3),
-            trace_sha256=trace.sha256([step.as_json() for step in env.steps]),
+            reward=float(judged is not None and judged.success),
+            steps=len(episode.steps) - 1,
+            sim_seconds=round(episode.seconds, 3),
+            trace_sha256=episode.trace_sha256,
             verdict=None if judged is None else verdict.as_json(judged),
-            timeline=timeline(moments, env.steps, None if judged is None else judged.goal_s),
+            timeline=timeline(moments, episode.steps, None if judged is None else judged.goal_s),
             path=samples(moments, hand_over_s),
-            held_out=env.instance.held_out,
-            load=driver_load(env.steps),
-            drive=drive_figures(self._watched, end_s) if self._untouched else None,
-            untouched_drive=drive_figures(self._untouched, end_s) if self._untouched else None,
-            estimates=estimates(env.steps, [*env.drive, *env.moments[1:]]),
+            held_out=episode.instance.held_out,
+            load=driver_load(episode.steps),
+            drive=drive_figures(watched, end_s) if self._baseline else None,
+            untouched_drive=drive_figures(self._baseline, end_s) if self._baseline else None,
+            estimates=estimates(episode.steps, before),
             violations=tuple(
                 replace(found, from_s=round(found.from_s - hand_over_s, 3), to_s=round(found.to_s - hand_over_s, 3))
                 for found in geo.violations(moments)
@@ -379,8 +296,8 @@ class _Episode:
         )
 
 
-class _All:
-    """The environment's listener: passes on to every watcher."""
+class _All(Listener):
+    """Passes on to every watcher."""
 
     def __init__(self, watchers: Sequence[Watcher]) -> None:
         self._watchers = watchers

@@ -6,9 +6,9 @@ from collections.abc import Callable, Hashable, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
-from automotive_cosim.contracts import Json
+from automotive_cosim.run.row import JobRow
 
 
 class Job(Protocol):
@@ -30,18 +30,28 @@ class Job(Protocol):
         ...
 
     @property
+    def kind(self) -> Hashable:
+        """What tells how long it takes, given the simulation: jobs of one kind take about as long."""
+        ...
+
+    @property
     def wall_s(self) -> float:
         """Wall time that it may take."""
         ...
 
 
-Runner = Callable[[Any, Path], Json]
+J = TypeVar("J", bound=Job)
+R = TypeVar("R", bound=JobRow)
+J_contra = TypeVar("J_contra", bound=Job, contravariant=True)
+R_co = TypeVar("R_co", bound=JobRow, covariant=True)
+
+Runner = Callable[[J, Path], R]
 """Runs a job, writes what is kept of it below the folder, and returns its row, whatever went wrong.
 
 OSError if something cannot be written.
 """
 
-Opener = Callable[[], AbstractContextManager[Runner]]
+Opener = Callable[[], AbstractContextManager[Runner[J, R]]]
 """Makes a worker's runner; it is sent to the worker, so it is a function of a module or a partial of one."""
 
 
@@ -56,7 +66,7 @@ class CannotWrite:
     error: OSError
 
 
-class Worker(Protocol):
+class Worker(Protocol[J_contra, R_co]):
     """Runs one job after the other."""
 
     @property
@@ -69,11 +79,11 @@ class Worker(Protocol):
         """What ``Executor.wait`` watches: one of them stirs when there is an answer to be had."""
         ...
 
-    def give(self, job: Job) -> None:
+    def give(self, job: J_contra) -> None:
         """Sends it a job; one that has died meanwhile is found out when its answer is waited for."""
         ...
 
-    def answer(self) -> Json | CannotWrite | None:
+    def answer(self) -> R_co | CannotWrite | None:
         """What it has to say: the row of its job, whose files are in place; None if it has only become ready.
 
         Raises:
@@ -99,7 +109,7 @@ class Executor(Protocol):
 
     def __exit__(self, *error: object) -> None: ...
 
-    def start(self, opener: Opener, folder: Path) -> Worker:
+    def start(self, opener: Opener[J, R], folder: Path) -> Worker[J, R]:
         """A new worker.
 
         Args:

@@ -16,7 +16,7 @@ from time import process_time
 
 from automotive_cosim.scenarios import load
 from automotive_cosim.traffic.base import EgoPlan
-from automotive_cosim.traffic.sumo import InProcess, InProcessTraffic
+from automotive_cosim.traffic.in_process import InProcess, InProcessTraffic
 
 BLOCK = 10
 

@@ -27,10 +27,12 @@ from zoneinfo import ZoneInfo
 from automotive_cosim.contracts import GoalStatus, Json, Reason
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.errors import UserError
-from automotive_cosim.geo.context import Geo
+from automotive_cosim.geo.locate import Geo
 
 PACKAGE = "automotive_cosim."
 """Only classes from in here are made when a file is read."""
+MOVED = {"automotive_cosim.cosim:Moment": "automotive_cosim.cosim.moment:Moment"}
+"""Where classes that older files name are today."""
 LONG = 3
 """Tuples with more entries stand in the pool."""
 PRESET = 2
@@ -78,7 +80,8 @@ def read_judged(folder: Path, episode: str) -> Judged:
     """Reads them back, each moment with the geo-context that place and time have by the present rules.
 
     Raises:
-        UserError: there is no such file, it is broken, or it was written by a version with other fields.
+        UserError: there is no such file, it is broken, or it was written by a version with other fields or with the
+            requests to the road as text.
     """
     path = judged_file(folder, episode)
     try:
@@ -91,7 +94,11 @@ def read_judged(folder: Path, episode: str) -> Judged:
     if not isinstance(judged, Judged):
         raise UserError(f"{path} holds no moments")
     geo = Geo()
-    return replace(judged, trace=_placed(judged.trace, geo), idle=_placed(judged.idle, geo))
+    judged = replace(judged, trace=_placed(judged.trace, geo), idle=_placed(judged.idle, geo))
+    requests = (*judged.trace[-1].commands["requests"], *judged.idle[-1].commands["requests"])
+    if any(isinstance(request, str) for request in requests):
+        raise UserError(f"{path} is of an older format, requests as text; judge it with the version that wrote it")
+    return judged
 
 
 def _bare(moments: Sequence[Moment]) -> tuple[Any, ...]:
@@ -227,7 +234,7 @@ class _Reader:
 
 
 def _find(name: str) -> Any:
-    module, _, kind = name.partition(":")
+    module, _, kind = MOVED.get(name, name).partition(":")
     found = getattr(importlib.import_module(module), kind) if module.startswith(PACKAGE) else None
     if not (is_dataclass(found) or (isinstance(found, type) and issubclass(found, Enum))):
         raise ValueError(f"{name} is no kind of value that is kept")

@@ -13,11 +13,11 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Any
+from typing import Any, Generic
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import SetupError, UserError
-from automotive_cosim.run.executor import CannotWrite, Job, LostError, Opener, Runner
+from automotive_cosim.run.executor import CannotWrite, J, LostError, Opener, R, Runner
 from automotive_cosim.run.store import keep_files, stamp
 from automotive_cosim.tasks.folder import VARIABLE
 
@@ -95,7 +95,7 @@ class OnRay:
         """As many as were asked for, else a worker a CPU: nodes that join get some too."""
         return self._workers or max(1, int(ray.cluster_resources().get("CPU", 0)))
 
-    def start(self, opener: Opener, folder: Path) -> _Actor:
+    def start(self, opener: Opener[J, R], folder: Path) -> _Actor[J, R]:
         """As ``Executor.start``; it becomes ready when a node has a CPU to spare."""
         return _Actor(opener, folder)
 
@@ -119,8 +119,8 @@ class OnRay:
         return made
 
 
-class _Actor:
-    def __init__(self, opener: Opener, folder: Path) -> None:
+class _Actor(Generic[J, R]):
+    def __init__(self, opener: Opener[J, R], folder: Path) -> None:
         self._folder = folder
         self._actor = _ACTOR.remote(opener)
         self._asked = self._actor.stamp.remote()
@@ -130,10 +130,10 @@ class _Actor:
     def handles(self) -> Sequence[Any]:
         return (self._asked,)
 
-    def give(self, job: Job) -> None:
+    def give(self, job: J) -> None:
         self._asked = self._actor.run.remote(job)
 
-    def answer(self) -> Json | CannotWrite | None:
+    def answer(self) -> R | CannotWrite | None:
         try:
             answered = ray.get(self._asked)
         except RuntimeEnvSetupError as error:
@@ -146,7 +146,7 @@ class _Actor:
             _check_same(*answered)
             self.is_ready = True
             return None
-        row: Json = answered[0]
+        row: R = answered[0]
         try:
             keep_files(self._folder, answered[1])
         except OSError as error:
@@ -204,19 +204,19 @@ def _line(error: BaseException) -> str:
 # --- in the actor -----------------------------------------------------------------------------------------
 
 
-class _Runs:
+class _Runs(Generic[J, R]):
     """Runs one job at a time."""
 
-    def __init__(self, opener: Opener) -> None:
+    def __init__(self, opener: Opener[J, R]) -> None:
         self._opener = opener
         self._open = ExitStack()
-        self._runner: Runner | None = None
+        self._runner: Runner[J, R] | None = None
 
     def stamp(self) -> tuple[str, Json]:
         """The node's address, and what is installed on it."""
         return ray.util.get_node_ip_address(), stamp()
 
-    def run(self, job: Job) -> tuple[Json, dict[str, bytes]]:
+    def run(self, job: J) -> tuple[R, dict[str, bytes]]:
         """The row of a job, and the files it wrote by their paths."""
         if self._runner is None:
             self._runner = self._open.enter_context(self._opener())

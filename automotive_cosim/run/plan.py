@@ -15,7 +15,9 @@ from annotated_types import Ge, Gt, Le, MinLen
 
 from automotive_cosim import scenarios
 from automotive_cosim.agents import PROFILES, make_agent
+from automotive_cosim.agents.settings import geo_input
 from automotive_cosim.contracts import Json
+from automotive_cosim.episode.specification import MAX_STEPS, mode_of
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.annotations import OneOf
 from automotive_cosim.formats.checked import checked
@@ -28,8 +30,6 @@ from automotive_cosim.tasking.task import Mode, Task
 from automotive_cosim.tasks import CATALOGUE
 
 NO_MODEL = "none"
-STEPS = 20
-"""Actions that an episode may take."""
 WATCH_STEPS = 60
 """More steps for a watch, which begins up to a minute before its trigger."""
 
@@ -38,7 +38,7 @@ WATCH_STEPS = 60
 class Limits:
     """What one episode may take."""
 
-    steps: Annotated[int, Ge(1)] = STEPS
+    steps: Annotated[int, Ge(1)] = MAX_STEPS
     """Actions, the unreadable ones included."""
     sim_s: Annotated[float, Gt(0)] = 600.0
     """Simulated seconds from the hand-over; when they are over the episode is judged as it stands."""
@@ -148,14 +148,14 @@ class Plan:
                 setup = EpisodeSetup(
                     task.id,
                     half,
-                    agent,
-                    model if agent in PROFILES else NO_MODEL,
                     None if is_own else scenario,
+                    agent=agent,
+                    model=model if agent in PROFILES else NO_MODEL,
                     seed=seed,
                     max_steps=self.limits.steps if mode == Mode.PROMPTED else self.limits.steps + WATCH_STEPS,
                     max_sim_s=self.limits.sim_s,
-                    geo=geo,
-                    mode=mode,
+                    geo=geo_input(geo),
+                    mode=mode_of(mode),
                     held_out=self.held_out,
                 )
                 yield Job(setup, repeat, self.limits)
@@ -195,11 +195,16 @@ class Job:
         return self.setup.agent, self.setup.model, self.setup.geo, self.repeat
 
     @property
+    def kind(self) -> Hashable:
+        """Who acts, and when: what tells how long it takes."""
+        return self.setup.agent, self.setup.model, self.setup.mode
+
+    @property
     def situation(self) -> Hashable:
         """The drive up to the hand-over, on which nobody acts; in a watch the agent does."""
         if self.setup.mode == Mode.MONITORING:
             return self.id
-        return replace(self.setup, agent="", model="", geo="", without=())
+        return replace(self.setup, agent="", model="", geo=GeoInput.FULL, without=())
 
     @property
     def wall_s(self) -> float:

@@ -12,10 +12,9 @@ from dataclasses import dataclass
 from multiprocessing import connection, parent_process
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Any
+from typing import Any, Generic
 
-from automotive_cosim.contracts import Json
-from automotive_cosim.run.executor import CannotWrite, Job, LostError, Opener
+from automotive_cosim.run.executor import CannotWrite, J, LostError, Opener, R
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +29,7 @@ class Processes:
     def __exit__(self, *error: object) -> None:
         """Nothing is left to end: a batch ends its workers."""
 
-    def start(self, opener: Opener, folder: Path) -> _Process:
+    def start(self, opener: Opener[J, R], folder: Path) -> _Process[J, R]:
         """As ``Executor.start``."""
         return _Process(opener, folder)
 
@@ -39,10 +38,10 @@ class Processes:
         return connection.wait(handles, timeout_s)
 
 
-class _Process:
+class _Process(Generic[J, R]):
     is_ready = True
 
-    def __init__(self, opener: Opener, folder: Path) -> None:
+    def __init__(self, opener: Opener[J, R], folder: Path) -> None:
         context = multiprocessing.get_context("spawn")
         self._pipe, theirs = context.Pipe()
         self._process = context.Process(target=_work, args=(theirs, opener, folder), daemon=False)
@@ -53,13 +52,13 @@ class _Process:
     def handles(self) -> Sequence[Any]:
         return self._pipe, self._process.sentinel
 
-    def give(self, job: Job) -> None:
+    def give(self, job: J) -> None:
         with suppress(OSError):
             self._pipe.send(job)
 
-    def answer(self) -> Json | CannotWrite:
+    def answer(self) -> R | CannotWrite:
         try:
-            answer: Json | CannotWrite | None = self._pipe.recv() if self._pipe.poll() else None
+            answer: R | CannotWrite | None = self._pipe.recv() if self._pipe.poll() else None
         except (EOFError, OSError):
             answer = None
         if answer is None:
@@ -80,7 +79,7 @@ class _Process:
 # --- in the process ---------------------------------------------------------------------------------------
 
 
-def _work(jobs: Connection, opener: Opener, folder: Path) -> None:
+def _work(jobs: Connection, opener: Opener[J, R], folder: Path) -> None:
     """Answers each job with its row, until None comes.
 
     Ctrl-C is the parent's to handle; when the parent is gone, this process ends at once.
@@ -90,7 +89,7 @@ def _work(jobs: Connection, opener: Opener, folder: Path) -> None:
     with opener() as run:
         while (job := jobs.recv()) is not None:
             try:
-                answer: Json | CannotWrite = run(job, folder)
+                answer: R | CannotWrite = run(job, folder)
             except OSError as error:
                 answer = CannotWrite(error)
             jobs.send(answer)

@@ -22,7 +22,7 @@ from typing import IO
 from PIL import Image
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.envs.cockpit import CockpitEnv
+from automotive_cosim.episode.episode import Episode
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, Shot, Watcher
 
@@ -81,7 +81,7 @@ class Recorder(Watcher):
         """Whether the folder has been made."""
         return self._lines is not None
 
-    def handed_over(self, env: CockpitEnv, shot: Shot) -> None:
+    def handed_over(self, episode: Episode, shot: Shot) -> None:
         """Makes the folder and writes step 0."""
         self.folder.mkdir(parents=True, exist_ok=True)
         for name in OURS:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from automotive_cosim.contracts import Json
 from automotive_cosim.errors import CosimError
+from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.moments import read_judged
-from automotive_cosim.run.store import read_evaluation, read_rows, read_trace
+from automotive_cosim.run.store import read_evaluation, read_rows
 from automotive_cosim.tasking.instance import Instance
-from automotive_cosim.tasking.verdict import as_json, judge
+from automotive_cosim.tasking.verdict import judge
 from automotive_cosim.tasks import CATALOGUE
 
 
@@ -51,24 +51,22 @@ def regrade(folder: Path) -> Iterator[Regraded]:
         UserError: it is no evaluation's folder, or is broken.
     """
     read_evaluation(folder)
-    rows = read_rows(folder)
+    rows = read_rows(folder, EpisodeRow)
     for name in sorted(rows):
-        if rows[name]["success"] is not None:
-            yield _regraded(folder, rows[name])
+        if (held := rows[name].parts) is not None:
+            yield _regraded(folder, rows[name], held)
 
 
-def _regraded(folder: Path, row: Json) -> Regraded:
-    before = read_trace(folder, row["id"])[-1]["result"]["verdict"]
+def _regraded(folder: Path, row: EpisodeRow, held: PartsHeld) -> Regraded:
     try:
-        stored = read_judged(folder, row["id"])
-        instance = Instance(CATALOGUE[row["task"]], row["half"], stored.goal, stored.parameters)
+        stored = read_judged(folder, row.id)
+        instance = Instance(CATALOGUE[row.task], row.half, stored.goal, stored.parameters)
         verdict = judge(instance, stored.trace, stored.idle, stored.declared, stored.reason, stored.watched_from_s)
-        now = as_json(verdict)
     except CosimError as error:
-        return Regraded(row["id"], before["success"], None, problem=str(error))
+        return Regraded(row.id, row.has_succeeded, None, problem=str(error))
     changes = tuple(
-        Change(name, was["ok"], part["ok"], part["why"])
-        for name, part in now["parts"].items()
-        if (was := before["parts"].get(name, {"ok": None}))["ok"] is not part["ok"]
+        Change(name, before, now.ok, now.why)
+        for name, before in asdict(held).items()
+        if (now := getattr(verdict, name)).ok is not before
     )
-    return Regraded(row["id"], before["success"], now["success"], changes)
+    return Regraded(row.id, row.has_succeeded, verdict.success, changes)

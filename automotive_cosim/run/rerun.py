@@ -17,6 +17,7 @@ from automotive_cosim.interface.observe import Channel
 from automotive_cosim.interface.trace import HASHED, canonical
 from automotive_cosim.run.collect import Collector, Pictures
 from automotive_cosim.run.episode import run_episode
+from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.store import read_evaluation, read_rows, read_trace
 
@@ -47,7 +48,7 @@ def rerun(folder: Path, episode: str) -> list[Compared]:
         InfrastructureError: the machinery failed.
     """
     manifest = read_evaluation(folder)
-    rows = read_rows(folder)
+    rows = read_rows(folder, EpisodeRow)
     matching = [name for name in rows if name == episode] or [name for name in rows if name.startswith(episode)]
     if len(matching) != 1:
         raise UnknownNameError(f"one episode in {folder}", episode, rows)

@@ -20,52 +20,54 @@ from contextlib import contextmanager
 from datetime import datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import IO
+from typing import IO, Generic
 
 import automotive_cosim
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.record import STAMPED, write_whole
+from automotive_cosim.run.row import R, as_json, from_line
 
 FORMAT = 1
 """Of the folder; another one is refused, never guessed at."""
 ALSO_STAMPED = ("openai", "pyproj", "shapely")
-VOLATILE = ("wall_seconds", "gate_seconds", "model_seconds", "attempts", "failed_attempts")
-"""Fields of a row that may differ between two runs of one plan."""
 
 
-class Store:
-    """An evaluation's folder, open for writing; ``rows`` are the newest lines by id."""
+class Store(Generic[R]):
+    """An evaluation's folder, open for writing; ``rows`` are the newest by id."""
 
-    def __init__(self, folder: Path, rows: dict[str, Json], lines: IO[bytes]) -> None:
+    def __init__(self, folder: Path, rows: dict[str, R], lines: IO[bytes]) -> None:
         self.folder = folder
         self.rows = rows
         self._lines = lines
 
-    def append(self, row: Json) -> None:
-        """Adds a line and waits until it is on the disk.
+    def append(self, row: R) -> None:
+        """Adds its line and waits until it is on the disk.
 
         Raises:
             UserError: it cannot be written, e.g. because the disk is full; what was there before still is.
         """
         whole = self._lines.tell()
         try:
-            self._lines.write(json.dumps(row, ensure_ascii=False).encode() + b"\n")
+            self._lines.write(json.dumps(as_json(row), ensure_ascii=False).encode() + b"\n")
             self._lines.flush()
             os.fsync(self._lines.fileno())
         except OSError as error:
             os.truncate(self._lines.fileno(), whole)
             raise cannot_write(self.folder, error) from error
-        self.rows[row["id"]] = row
+        self.rows[row.id] = row
 
 
 @contextmanager
-def opened(folder: Path, plan: Json, parts: Sequence[str] = ("traces", "pictures")) -> Iterator[Store]:
+def opened(
+    folder: Path, plan: Json, kind: type[R], parts: Sequence[str] = ("traces", "pictures")
+) -> Iterator[Store[R]]:
     """Makes an evaluation's folder, or opens one to go on with it; nobody else can until it is closed.
 
     Args:
         folder: where it is or goes.
         plan: what it is of; one that was begun with another is refused.
+        kind: of its rows.
         parts: folders in it.
 
     Raises:
@@ -82,7 +84,7 @@ def opened(folder: Path, plan: Json, parts: Sequence[str] = ("traces", "pictures
             path = folder / "episodes.jsonl"
             _mend(path)
             with path.open("ab", buffering=0) as lines:
-                yield Store(folder, read_rows(folder), lines)
+                yield Store(folder, read_rows(folder, kind), lines)
     except OSError as error:
         raise cannot_write(folder, error) from error
 
@@ -93,25 +95,30 @@ def cannot_write(folder: Path, error: OSError) -> UserError:
     return UserError(f"cannot write to {folder}: {why}; what is in it is whole, and the same command goes on")
 
 
-def read_rows(folder: Path) -> dict[str, Json]:
-    """The newest line of each episode; a last line that a kill cut short is passed over.
+def read_rows(folder: Path, kind: type[R]) -> dict[str, R]:
+    """The newest row of each job by its id; a last line that a kill cut short is passed over.
+
+    Args:
+        folder: of an evaluation, a study or proofs; without any line it has no rows.
+        kind: of its rows.
 
     Raises:
         UserError: another line cannot be read.
     """
-    rows: dict[str, Json] = {}
+    rows: dict[str, R] = {}
     path = folder / "episodes.jsonl"
     if not path.is_file():
         return rows
     *lines, _cut = path.read_bytes().split(b"\n")
     for number, line in enumerate(lines, start=1):
         try:
-            row = json.loads(line)
-            rows[row["id"]] = row
-        except (ValueError, KeyError, TypeError) as error:
+            row = from_line(kind, line)
+        except ValueError as error:
             raise UserError(
-                f"{path}, line {number} is no episode: {error}; remove that line to run it again"
+                f"{path}, line {number} cannot be read: {error}; read it with the version that wrote it, or remove "
+                "that line to run it again"
             ) from error
+        rows[row.id] = row
     return rows
 
 

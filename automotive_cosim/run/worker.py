@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
 
 from automotive_cosim.agents import AgentSettings, make_agent
 from automotive_cosim.agents.settings import geo_input
-from automotive_cosim.contracts import Json
 from automotive_cosim.errors import CosimError
 from automotive_cosim.run.collect import Collector, Pictures, failed
 from automotive_cosim.run.episode import run_episode
+from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.executor import Runner
 from automotive_cosim.run.moments import write_judged
 from automotive_cosim.run.plan import Job
@@ -24,34 +23,32 @@ WARM = 2
 
 
 @contextmanager
-def episodes(pictures: Pictures) -> Iterator[Runner]:
+def episodes(pictures: Pictures) -> Iterator[Runner[Job, EpisodeRow]]:
     """What runs the jobs of an evaluation."""
     with closing(Simulations(count_limit=WARM)) as simulations:
         yield lambda job, folder: run_job(job, folder, pictures, simulations)
 
 
-def run_job(job: Job, folder: Path, pictures: Pictures, simulations: Simulations) -> Json:
+def run_job(job: Job, folder: Path, pictures: Pictures, simulations: Simulations) -> EpisodeRow:
     """Runs one episode, keeps its trace and pictures, and returns its row; an error becomes a row too.
 
     Raises:
         OSError: trace or pictures cannot be written.
     """
-    setup, began_s = job.setup, time.perf_counter()
+    setup = job.setup
     collector = Collector(pictures)
     settings = AgentSettings(geo_input(setup.geo), seed=setup.seed, most_tokens=job.limits.tokens)
     try:
         agent = make_agent(setup.agent, job.model, settings)
         result = run_episode(setup, agent, (collector,), simulations=simulations)
     except CosimError as error:
-        row = failed(job, type(error).__name__, str(error))
+        return failed(job, type(error).__name__, str(error))
     except Exception as error:
         # A fault in an agent or in here must not take the evaluation with it; it is counted and listed.
-        row = failed(job, type(error).__name__, f"{type(error).__name__}: {error}")
-    else:
-        row = collector.row(job, result)
-        if lines := collector.trace(result):
-            write_trace(folder, job.id, lines)
-            if judged := collector.judged():
-                write_judged(folder, job.id, judged)
-            collector.keep_pictures(folder / "pictures" / job.id, result)
-    return row | {"wall_seconds": round(time.perf_counter() - began_s, 3)}
+        return failed(job, type(error).__name__, f"{type(error).__name__}: {error}")
+    if lines := collector.trace(result):
+        write_trace(folder, job.id, lines)
+        if judged := collector.judged():
+            write_judged(folder, job.id, judged)
+        collector.keep_pictures(folder / "pictures" / job.id, result)
+    return collector.row(job, result)

@@ -2,25 +2,25 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
-from automotive_cosim.contracts import Json
 from automotive_cosim.errors import CosimError
 from automotive_cosim.run.batch import Progress, run_jobs
 from automotive_cosim.run.executor import Executor, Runner
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.store import opened
-from automotive_cosim.studies.drive import run_drive
+from automotive_cosim.studies.drive import planned, run_drive
 from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
 from automotive_cosim.studies.plan import DriveJob, StudyPlan
 from automotive_cosim.studies.policies import Rule
 from automotive_cosim.studies.results import choices
+from automotive_cosim.studies.rows import DriveRow
 from automotive_cosim.studies.traffic import PULSE_S
+from automotive_cosim.traffic.accounts import Pulse
 from automotive_cosim.traffic.fork import Forked
-from automotive_cosim.traffic.ledger import Pulse
 
 STRIDE = 5
 """Seeds that are added at a time once there are the fewest that an interval takes."""
@@ -32,8 +32,8 @@ def run_study(
     *,
     executor: Executor = Processes(),  # noqa: B008, frozen
     retries: int = 1,
-    tell: Callable[[Progress], None] = lambda progress: None,
-) -> Progress:
+    tell: Callable[[Progress[DriveRow]], None] = lambda progress: None,
+) -> Progress[DriveRow]:
     """Runs what is left of a study; drives that ended in an error are tried again.
 
     Args:
@@ -49,9 +49,9 @@ def run_study(
     """
     plan.check()
     first, *more = _stages(plan)
-    with opened(folder, plan.as_json(), parts=()) as store:
+    with opened(folder, plan.as_json(), DriveRow, parts=()) as store:
 
-        def run(seeds: tuple[int, ...]) -> Progress:
+        def run(seeds: tuple[int, ...]) -> Progress[DriveRow]:
             jobs = [job for job in plan.jobs() if job.seed in seeds]
             return run_jobs(jobs, store, drives, failed, executor=executor, retries=retries, tell=tell)
 
@@ -69,17 +69,17 @@ def _stages(plan: StudyPlan) -> list[tuple[int, ...]]:
     return [*(plan.seeds[:count] for count in counts), plan.seeds]
 
 
-def _is_narrow(plan: StudyPlan, rows: Sequence[Json]) -> bool:
+def _is_narrow(plan: StudyPlan, rows: Sequence[DriveRow]) -> bool:
     """Whether the mean gain of rerouting always is known closely enough."""
-    found = [each for each in choices(rows, (Rule.ALWAYS,)) if each["age_s"] == plan.ages_s[0]]
-    mean = seed_mean((each["seed"], each["gain_time_s"]) for each in found)
+    found = [each for each in choices(rows, (Rule.ALWAYS,)) if each.age_s == plan.ages_s[0]]
+    mean = seed_mean((each.seed, each.gain.time_s) for each in found)
     if plan.half_width_s is None or mean is None or mean.interval is None:
         return False
     return (mean.interval.high - mean.interval.low) / 2 <= plan.half_width_s
 
 
 @contextmanager
-def drives() -> Iterator[Runner]:
+def drives() -> Iterator[Runner[DriveJob, DriveRow]]:
     """What runs the drives in a worker."""
     warm = _Warm()
     try:
@@ -88,20 +88,9 @@ def drives() -> Iterator[Runner]:
         warm.close()
 
 
-def failed(job: DriveJob, kind: str, why: str) -> Json:
-    """The row of a drive that the machinery could not bring to its end."""
-    return _named(job) | {"excluded": "", "why": "", "looks": 0, "decisions": [], "error": why, "error_kind": kind}
-
-
-def _named(job: DriveJob) -> Json:
-    return {
-        "id": job.id,
-        "scenario": job.plan.scenario,
-        "share": job.share,
-        "seed": job.seed,
-        "departure_s": job.departure_s,
-        "trip": job.trip.name,
-    }
+def failed(job: DriveJob, kind: str, why: str) -> DriveRow:
+    """The row of a drive that ended in an infrastructure error."""
+    return replace(planned(job), error=why, error_kind=kind)
 
 
 class _Warm:
@@ -113,19 +102,17 @@ class _Warm:
         self._now_s = 0.0
         self._pulses: list[Pulse] = []
 
-    def run(self, job: DriveJob) -> Json:
+    def run(self, job: DriveJob) -> DriveRow:
         """Runs a drive; an error becomes a row too."""
-        began_s = time.perf_counter()
         try:
-            row = _named(job) | {"error": None, "error_kind": None} | run_drive(job, *self._at(job))
+            return run_drive(job, *self._at(job))
         except CosimError as error:
             self.close()  # whatever it was, the next drive begins with traffic that is known to be right
-            row = failed(job, type(error).__name__, str(error))
+            return failed(job, type(error).__name__, str(error))
         except Exception as error:
             # A fault in an agent or in here must not take the study with it; it is counted and listed.
             self.close()
-            row = failed(job, type(error).__name__, f"{type(error).__name__}: {error}")
-        return row | {"wall_seconds": round(time.perf_counter() - began_s, 3)}
+            return failed(job, type(error).__name__, f"{type(error).__name__}: {error}")
 
     def close(self) -> None:
         """Ends the simulation."""

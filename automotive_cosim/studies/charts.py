@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from automotive_cosim.contracts import Json
 from automotive_cosim.report.charts import INK, MARKERS, NARROW_IN, PALETTE, WIDE_IN, Drawing, drawn, legend
 from automotive_cosim.studies.results import Study
-from automotive_cosim.studies.tables import BINS, STAYING, bin_name, goes_by_news, groups, mean_of
+from automotive_cosim.studies.rows import PolicyChoice
+from automotive_cosim.studies.tables import BINS, STAYING, bin_name, goes_by_news, groups, mean_of, time_saved_s
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Series = Sequence[tuple[str, Sequence[Sequence[Json]]]]
+Series = Sequence[tuple[str, Sequence[Sequence[PolicyChoice]]]]
 """Name of each series, and its choices for each row of the plot."""
 
 SAVED = "seconds saved"
@@ -54,19 +54,17 @@ def _policies(study: Study) -> Drawing | None:
 
 
 def _congestion(study: Study) -> Drawing | None:
-    chosen = [
-        each for each in study.choices if each["age_s"] == study.plan.ages_s[0] and each["policy"] not in STAYING
-    ]
-    bins = [(low, high) for low, high in BINS if any(low <= each["time_index"] < high for each in chosen)]
+    chosen = [each for each in study.choices if each.age_s == study.plan.ages_s[0] and each.policy not in STAYING]
+    bins = [(low, high) for low, high in BINS if any(low <= each.time_index < high for each in chosen)]
     series = [
         (
             name,
             [
-                [each for each in chosen if each["policy"] == name and low <= each["time_index"] < high]
+                [each for each in chosen if each.policy == name and low <= each.time_index < high]
                 for low, high in bins
             ],
         )
-        for name in dict.fromkeys(each["policy"] for each in chosen)
+        for name in dict.fromkeys(each.policy for each in chosen)
     ]
     return _points(study, [f"time index {bin_name(low, high)}" for low, high in bins], series)
 
@@ -79,10 +77,7 @@ def _ages(study: Study) -> Drawing | None:
     series = [
         (
             name,
-            [
-                [each for each in study.choices if (each["policy"], each["age_s"]) == (name, age_s)]
-                for age_s in ages_s
-            ],
+            [[each for each in study.choices if (each.policy, each.age_s) == (name, age_s)] for age_s in ages_s],
         )
         for name in named
     ]
@@ -90,7 +85,7 @@ def _ages(study: Study) -> Drawing | None:
 
 
 def _shares(study: Study) -> Drawing | None:
-    shares = sorted({each["share"] for each in study.choices})
+    shares = sorted({each.share for each in study.choices})
     if len(shares) < 2:
         return None
     first_s = study.plan.ages_s[0]
@@ -98,7 +93,7 @@ def _shares(study: Study) -> Drawing | None:
         (
             name,
             [
-                [e for e in study.choices if (e["policy"], e["share"], e["age_s"]) == (name, share, first_s)]
+                [e for e in study.choices if (e.policy, e.share, e.age_s) == (name, share, first_s)]
                 for share in shares
             ],
         )
@@ -111,10 +106,10 @@ def _shares(study: Study) -> Drawing | None:
 def _promised(study: Study) -> Drawing | None:
     """What the news promised of each other way that was driven, and what it saved."""
     points = [
-        (each["stay_s"] - each["offered_s"], decision["branches"][each["branch"]]["gains"]["time_s"])
-        for decision in study.decisions
-        for each in decision["news"][:1]
-        if each["branch"] is not None
+        (news.promised_s, point.decision.gains(news.branch).time_s)
+        for point in study.decisions
+        for news in point.decision.news[:1]
+        if news.branch is not None and news.promised_s is not None
     ]
     if not points:
         return None
@@ -146,7 +141,7 @@ def _points(study: Study, names: Sequence[str], series: Series) -> Drawing | Non
         axes.axvline(0, color=INK, alpha=0.5, linewidth=1)
         for number, (label, cells) in enumerate(series):
             offset = (number - (len(series) - 1) / 2) * 0.8 / len(series)
-            found = [(place + offset, mean_of(rows, "gain_time_s")) for place, rows in enumerate(cells)]
+            found = [(place + offset, mean_of(rows, time_saved_s)) for place, rows in enumerate(cells)]
             means = [(place, mean) for place, mean in found if mean is not None]
             reach = [
                 (mean.value - mean.interval.low, mean.interval.high - mean.value) if mean.interval else (0.0, 0.0)

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
-from automotive_cosim.contracts import DrivingState, EgoEnd, Json
-from automotive_cosim.traffic.ledger import Settled
-
-METRICS = ("time_s", "distance_m", "stops", "standing_s", "co2_g", "fuel_g")
-"""Of the ego, over its whole drive, as SUMO's tripinfo counts them."""
+from automotive_cosim.contracts import DrivingState, EgoEnd
+from automotive_cosim.studies.rows import OthersTotals, Totals
+from automotive_cosim.traffic.accounts import Settled
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,26 +23,27 @@ class Future:
         """Whether the ego reached its goal in time."""
         return self.last.end is EgoEnd.ARRIVED
 
-    def totals(self) -> Json:
+    def totals(self) -> Totals:
         """What the ego's drive came to; the rest of the way that the last step covered counts as driven."""
         ego = self.settled.ego
-        return {
-            "time_s": round(self.last.time_s - ego.departed_s, 3),
-            "distance_m": round(self.last.distance_m + self.last.ahead.route_left_m, 2),
-            "stops": ego.stops,
-            "standing_s": round(ego.standing_s, 3),
-            "co2_g": round(ego.co2_g, 3),
-            "fuel_g": round(ego.fuel_g, 3),
-        }
+        return Totals(
+            time_s=round(self.last.time_s - ego.departed_s, 3),
+            distance_m=round(self.last.distance_m + self.last.ahead.route_left_m, 2),
+            stops=ego.stops,
+            standing_s=round(ego.standing_s, 3),
+            co2_g=round(ego.co2_g, 3),
+            fuel_g=round(ego.fuel_g, 3),
+        )
 
 
-def gains(stay: Future, other: Future) -> Json:
+def gains(stay: Future, other: Future) -> Totals:
     """What the ego saves in the other future."""
     before, after = stay.totals(), other.totals()
-    return {name: round(before[name] - after[name], 3) for name in METRICS}
+    names = (each.name for each in fields(Totals))
+    return Totals(**{name: round(getattr(before, name) - getattr(after, name), 3) for name in names})
 
 
-def others(stay: Future, other: Future, group: Sequence[str]) -> Json:
+def others(stay: Future, other: Future, group: Sequence[str]) -> OthersTotals:
     """What everybody else saves: the sum over all who were there at the fork, of their time from then on.
 
     Both futures are looked at up to the same instant, the earlier of their ends. Who has not arrived by then counts
@@ -60,13 +59,13 @@ def others(stay: Future, other: Future, group: Sequence[str]) -> Json:
         [min(future.settled.arrivals_s.get(vehicle, until_s), until_s) for vehicle in group]
         for future in (stay, other)
     ]
-    return {
-        "count": len(group),
-        "gain_s": round(sum(before - after for before, after in zip(*times, strict=True)), 3),
-        "changed": sum(before != after for before, after in zip(*times, strict=True)),
-        "unfinished_stay": unfinished(stay, group, until_s),
-        "unfinished": unfinished(other, group, until_s),
-    }
+    return OthersTotals(
+        count=len(group),
+        gain_s=round(sum(before - after for before, after in zip(*times, strict=True)), 3),
+        changed=sum(before != after for before, after in zip(*times, strict=True)),
+        unfinished_stay=unfinished(stay, group, until_s),
+        unfinished=unfinished(other, group, until_s),
+    )
 
 
 def unfinished(future: Future, group: Sequence[str], until_s: float) -> int:

@@ -13,18 +13,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from automotive_cosim.contracts import DrivingState, Json, Reroute, RouteOption
-from automotive_cosim.errors import TrafficError
+from automotive_cosim.contracts import DrivingState, Reroute, RouteOption
+from automotive_cosim.errors import NoRoomError
 from automotive_cosim.geo.forecast import drawn_weather
 from automotive_cosim.studies import compare
 from automotive_cosim.studies.compare import Future
 from automotive_cosim.studies.driver import decided
 from automotive_cosim.studies.plan import DriveJob
 from automotive_cosim.studies.policies import Rule, parse_policy
+from automotive_cosim.studies.rows import Branch, Decision, DriveRow, News
 from automotive_cosim.studies.traffic import gridlock
+from automotive_cosim.traffic.accounts import Pulse
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked, RemoteTraffic
-from automotive_cosim.traffic.ledger import Pulse
 
 LOOK_S = 10.0
 """Time between two looks whether a decision is due; the traffic's speeds are sampled as often."""
@@ -43,14 +44,27 @@ NOT_CLEARED = "traffic did not clear"
 class _Point:
     """A decision point, its branches driven."""
 
-    row: Json
+    decision: Decision
+    """Without what its branches came to."""
     group: tuple[str, ...]
     pulse: Pulse
     branches: list[Future]
     placebo: Future | None = None
 
 
-def run_drive(job: DriveJob, simulation: Forked, history: Sequence[Pulse]) -> Json:
+def planned(job: DriveJob) -> DriveRow:
+    """What is known of a drive before it runs."""
+    return DriveRow(
+        id=job.id,
+        scenario=job.plan.scenario,
+        share=job.share,
+        seed=job.seed,
+        departure_s=job.departure_s,
+        trip=job.trip.name,
+    )
+
+
+def run_drive(job: DriveJob, simulation: Forked, history: Sequence[Pulse]) -> DriveRow:
     """Drives it, branches at every decision point, and compares the futures.
 
     Args:
@@ -62,28 +76,26 @@ def run_drive(job: DriveJob, simulation: Forked, history: Sequence[Pulse]) -> Js
         TrafficError: the simulation failed.
         UserError: the scenario or an agent cannot be used.
     """
-    found: Json = {"excluded": "", "why": "", "looks": 0, "decisions": []}
+    row = planned(job)
     if job.trip.from_edge == job.trip.to_edge and not job.trip.via:
-        return found | {
-            "excluded": SAME_PLACE,
-            "why": f"trip {job.trip.name!r} begins and ends on {job.trip.to_edge}",
-        }
+        return replace(
+            row, excluded=SAME_PLACE, why=f"trip {job.trip.name!r} begins and ends on {job.trip.to_edge}"
+        )
     try:
         traffic = depart(job, simulation)
-    except TrafficError as error:
-        if "found no gap" not in str(error):
-            raise
-        return found | {"excluded": NO_ROOM, "why": str(error)}
+    except NoRoomError as error:
+        return replace(row, excluded=NO_ROOM, why=str(error))
     with closing(traffic):
         drive = _Drive(job, traffic)
         drive.go()
         if not drive.points:
-            return found | {"looks": drive.looks} | drive.why_not()
+            excluded, why = drive.why_not()
+            return replace(row, looks=drive.looks, excluded=excluded, why=why)
         groups = [point.group for point in drive.points]
         settled = traffic.settle(groups, job.plan.arrived, job.plan.limit_s)
         stay = Future(traffic.state, settled)
-    decisions = [_compared(point, stay, [*history, point.pulse, settled.pulse]) for point in drive.points]
-    return found | {"looks": drive.looks, "stay": stay.totals(), "decisions": decisions}
+    decisions = tuple(_compared(point, stay, [*history, point.pulse, settled.pulse]) for point in drive.points)
+    return replace(row, looks=drive.looks, stay=stay.totals(), decisions=decisions)
 
 
 def depart(job: DriveJob, simulation: Forked) -> RemoteTraffic:
@@ -126,15 +138,12 @@ class _Drive:
                     break
             traffic.advance(LOOK_S)
 
-    def why_not(self) -> Json:
-        """Why there was no decision at all."""
+    def why_not(self) -> tuple[str, str]:
+        """The reason for which there was no decision at all, and its figures."""
         if self.looks:
-            return {"excluded": NO_ALTERNATIVE, "why": f"at {self.looks} instants with congestion ahead"}
+            return NO_ALTERNATIVE, f"at {self.looks} instants with congestion ahead"
         least_s, most_s = self.job.plan.least_delay_s, self._most_delay_s
-        return {
-            "excluded": NO_CONGESTION,
-            "why": f"at most {most_s:.0f} s of delay ahead, {least_s:g} s are wanted",
-        }
+        return NO_CONGESTION, f"at most {most_s:.0f} s of delay ahead, {least_s:g} s are wanted"
 
     def _decide(self, now: DrivingState) -> bool:
         """Drives the branches of a decision; false if there is none here."""
@@ -155,7 +164,7 @@ class _Drive:
             if future is not None:
                 numbers[edges] = len(branches)
                 branches.append(future)
-        agents: Json = {}
+        agents: dict[str, int] = {}
         turned: list[str] = []
         for agent in plan.agents:
             agents[agent] = len(branches)
@@ -166,35 +175,34 @@ class _Drive:
         if not branches:
             self.looks += 1
             return False
-        told = [self._told(age_s, options, numbers) for age_s, options in news.items()]
-        row = {
-            "at_s": now.time_s,
-            "edge": now.road.edge_id,
-            "delay_s": round(now.ahead.delay_s, 1),
-            "eta_s": round(now.ahead.eta_s, 1),
-            "relative_speed": round(now.ahead.relative_speed, 3),
-            "complies": bool(self._draws.random() < plan.compliance),
-            "news": told,
-            "own": numbers.get(own),
-            "agents": agents,
-            "agents_rerouted": turned,
-        }
-        point = _Point(row, group, pulse, branches)
+        decision = Decision(
+            at_s=now.time_s,
+            edge=now.road.edge_id,
+            delay_s=round(now.ahead.delay_s, 1),
+            eta_s=round(now.ahead.eta_s, 1),
+            relative_speed=round(now.ahead.relative_speed, 3),
+            complies=bool(self._draws.random() < plan.compliance),
+            news=tuple(self._told(age_s, options, numbers) for age_s, options in news.items()),
+            own=numbers.get(own),
+            agents=agents,
+            agents_rerouted=tuple(turned),
+        )
+        point = _Point(decision, group, pulse, branches)
         if not self.points and self._has_placebo():
             point.placebo = self._placebo(group)
         self.points.append(point)
         return True
 
-    def _told(self, age_s: float, options: Sequence[RouteOption], numbers: dict[tuple[str, ...], int]) -> Json:
+    def _told(self, age_s: float, options: Sequence[RouteOption], numbers: dict[tuple[str, ...], int]) -> News:
         """What news of that age says: of the present way, and of the quickest other one."""
         offered = options[1] if len(options) > 1 else None
-        return {
-            "age_s": age_s,
-            "stay_s": round(options[0].eta_s, 1) if options else None,
-            "delay_s": round(options[0].delay_s, 1) if options else 0.0,
-            "offered_s": None if offered is None else round(offered.eta_s, 1),
-            "branch": None if offered is None else numbers.get(offered.edges),
-        }
+        return News(
+            age_s=age_s,
+            stay_s=round(options[0].eta_s, 1) if options else None,
+            delay_s=round(options[0].delay_s, 1) if options else 0.0,
+            offered_s=None if offered is None else round(offered.eta_s, 1),
+            branch=None if offered is None else numbers.get(offered.edges),
+        )
 
     def _rerouted(self, edges: tuple[str, ...], group: Sequence[str]) -> Future | None:
         """The future on another way; None if it is too late to turn into it."""
@@ -233,8 +241,8 @@ def _ways(
     return [edges for edges in dict.fromkeys([*offered, own]) if edges and edges != now.ahead.route_edges]
 
 
-def _compared(point: _Point, stay: Future, pulses: Sequence[Pulse]) -> Json:
-    """The row of a decision, with what each branch gained."""
+def _compared(point: _Point, stay: Future, pulses: Sequence[Pulse]) -> Decision:
+    """A decision with what each branch gained."""
     futures = [stay, *point.branches, *([point.placebo] if point.placebo else [])]
     jam = gridlock(pulses)
     excluded, why = "", ""
@@ -245,15 +253,16 @@ def _compared(point: _Point, stay: Future, pulses: Sequence[Pulse]) -> Json:
         excluded, why = GRIDLOCK, jam
     elif not all(future.settled.is_complete for future in futures):
         excluded, why = NOT_CLEARED, "too few of those who were there had arrived in time"
-    row = point.row | {"excluded": excluded, "why": why, "branches": []}
-    row["branches"] = [_branched(stay, branch, point.group) for branch in point.branches]
-    row["placebo"] = None if point.placebo is None else _branched(stay, point.placebo, point.group)
-    return row
+    return replace(
+        point.decision,
+        excluded=excluded,
+        why=why,
+        branches=tuple(_branched(stay, branch, point.group) for branch in point.branches),
+        placebo=None if point.placebo is None else _branched(stay, point.placebo, point.group),
+    )
 
 
-def _branched(stay: Future, other: Future, group: Sequence[str]) -> Json:
-    return {
-        "gains": compare.gains(stay, other),
-        "totals": other.totals(),
-        "others": compare.others(stay, other, group),
-    }
+def _branched(stay: Future, other: Future, group: Sequence[str]) -> Branch:
+    return Branch(
+        gains=compare.gains(stay, other), totals=other.totals(), others=compare.others(stay, other, group)
+    )

@@ -8,13 +8,12 @@ import numpy as np
 
 from automotive_cosim.agents import AgentSettings, make_agent
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.contracts import ActionType, Feedback, FeedbackCode
-from automotive_cosim.cosim.simulation import TICK_S, WAYS_FROM_S, CoSimulation
-from automotive_cosim.errors import ActionError, OutOfBudgetError
-from automotive_cosim.geo.context import Geo
+from automotive_cosim.cosim.car import ALTERNATIVES_FROM_S
+from automotive_cosim.cosim.simulation import TICK_S, CoSimulation, couple
+from automotive_cosim.episode.loop import play
+from automotive_cosim.episode.session import Session
+from automotive_cosim.episode.specification import Conditions
 from automotive_cosim.geo.forecast import drawn_weather
-from automotive_cosim.geo.gps import Gps
-from automotive_cosim.interface.observe import observe
 from automotive_cosim.studies.plan import DriveJob, named
 from automotive_cosim.traffic.base import Traffic
 
@@ -39,32 +38,24 @@ def decided(agent: str, job: DriveJob, traffic: Traffic) -> None:
     """
     player = make_agent(*named(agent), AgentSettings(seed=job.seed))
     world = _coupled(job, traffic)
-    world.advance(WAYS_FROM_S + TICK_S)
-    begun_s = world.moment.time_s
-    feedback = Feedback(FeedbackCode.NONE, "")
+    drive = [world.moment, *world.advance(ALTERNATIVES_FROM_S + TICK_S)]
+    if world.moment.driving.end is not None:
+        return
     player.reset(GOAL)
-    for _ in range(job.plan.agent_steps):
-        if world.moment.driving.end is not None:
-            break
-        elements = world.cockpit.elements()
-        try:
-            action = player.act(observe(world, GOAL, begun_s, elements, feedback, player.channels))
-        except OutOfBudgetError:
-            break
-        except ActionError as error:
-            feedback = Feedback(FeedbackCode.MALFORMED, str(error))
-        else:
-            if action.action_type is ActionType.STATUS:
-                break
-            feedback = world.perform(action, elements)
-        world.advance(TICK_S)
+    play(Session.begin(world, GOAL, Conditions(player.channels, max_steps=job.plan.agent_steps), drive), player)
 
 
 def _coupled(job: DriveJob, traffic: Traffic) -> CoSimulation:
     """A cockpit that is switched on at this instant."""
     scenario = job.plan.scene(job.share)
-    draws = [np.random.default_rng([*job.entropy, number]) for number in (2, 3)]
+    cockpit_rng, gps_rng = (np.random.default_rng([*job.entropy, number]) for number in (2, 3))
     clock = scenario.start + timedelta(seconds=traffic.state.time_s - scenario.sumo.warm_up_s)
     weather = scenario.weather or drawn_weather(traffic.state, clock, job.seed)
-    gps = Gps(draws[1]) if scenario.has_place else None
-    return CoSimulation(traffic, Cockpit(traffic.network, rng=draws[0]), gps, Geo(), weather, clock)
+    return couple(
+        traffic,
+        Cockpit(traffic.network, rng=cockpit_rng),
+        scenario,
+        gps_rng=gps_rng,
+        weather=weather,
+        departure=clock,
+    )

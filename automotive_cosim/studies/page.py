@@ -8,16 +8,17 @@ from io import StringIO
 from pathlib import Path
 
 from automotive_cosim.agents import PROFILES
-from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.charts import INK
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.record import write_whole
+from automotive_cosim.run.row import columns
 from automotive_cosim.run.store import cannot_write
 from automotive_cosim.studies.charts import charts
 from automotive_cosim.studies.intervals import LEAST_SEEDS, PUBLISHED_SEEDS
 from automotive_cosim.studies.plan import named
 from automotive_cosim.studies.results import Study, read_study
+from automotive_cosim.studies.rows import PolicyChoice
 from automotive_cosim.studies.tables import tables
 
 
@@ -63,7 +64,7 @@ def write_study(folder: Path) -> Path:
 def warnings(study: Study) -> list[str]:
     """What has to be known before a figure of the study is used."""
     found = []
-    seeds = {each["seed"] for each in study.decisions}
+    seeds = {point.drive.seed for point in study.decisions}
     if not study.decisions:
         told = "; ".join(f"{count} × {reason}" for (_, reason), count in sorted(study.excluded.items()))
         found.append(f"No decision counts, so that there is nothing to average: {told or 'every drive failed'}.")
@@ -85,17 +86,16 @@ def warnings(study: Study) -> list[str]:
 
 def cost_s(study: Study) -> float | None:
     """Wall seconds of one worker for a decision, drive up and all its futures included."""
-    decisions = sum(len(row["decisions"]) for row in study.rows)
-    return (
-        sum(row["wall_seconds"] for row in study.rows if "wall_seconds" in row) / decisions if decisions else None
-    )
+    decisions = sum(len(row.decisions) for row in study.rows)
+    return sum(row.wall_seconds for row in study.rows) / decisions if decisions else None
 
 
-def as_csv(choices: Sequence[Json]) -> str:
-    """A row a choice, the fields' names first."""
+def as_csv(choices: Sequence[PolicyChoice]) -> str:
+    """A line a choice, the columns' names first; they are those of ``load_study``."""
     text = StringIO()
-    if choices:
-        writer = csv.DictWriter(text, list(choices[0]), lineterminator="\n")
+    rows = [columns(choice) for choice in choices]
+    if rows:
+        writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
         writer.writeheader()
-        writer.writerows(choices)
+        writer.writerows(rows)
     return text.getvalue()

@@ -171,6 +171,11 @@ class DriveJob:
         return f"{self.share:g}", self.seed
 
     @property
+    def kind(self) -> str:
+        """Drives of one study take about as long."""
+        return ""
+
+    @property
     def situation(self) -> str:
         """A drive waits for nothing, so that no other is like it."""
         return self.id

@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 from enum import StrEnum
 
-from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.studies.rows import Decision
 
 AGENT = "agent:"
 DELAY = "delay:"
@@ -62,37 +62,37 @@ def parse_policy(text: str) -> Policy:
     return Policy(text, Rule(text))
 
 
-def chosen(policy: Policy, decision: Json, age_s: float) -> int | None:
+def chosen(policy: Policy, decision: Decision, age_s: float) -> int | None:
     """The future that a policy's choice leads to.
 
     Args:
         policy: who decides.
-        decision: of a drive's row.
+        decision: of a drive.
         age_s: of the news it has; SUMO's device, hindsight and agents have their own.
 
     Returns:
         The number of the branch; None for staying.
     """
-    news = next(each for each in decision["news"] if each["age_s"] == age_s)
+    news = next(each for each in decision.news if each.age_s == age_s)
     match policy.rule:
         case Rule.NEVER:
             return None
         case Rule.BEST:
             return best(decision)
         case Rule.AGENT:
-            number = decision["agents"][policy.agent]
+            number: int | None = decision.agents[policy.agent]
         case Rule.SUMO:
-            number = decision["own"]
+            number = decision.own
         case Rule.ALWAYS:
-            number = news["branch"]
+            number = news.branch
         case Rule.DELAY:
-            is_worth = news["delay_s"] >= policy.delay_s and (news["offered_s"] or math.inf) < news["stay_s"]
-            number = news["branch"] if is_worth else None
-    return number if decision["complies"] else None
+            is_worth = news.delay_s >= policy.delay_s and (news.promised_s or 0.0) > 0
+            number = news.branch if is_worth else None
+    return number if decision.complies else None
 
 
-def best(decision: Json) -> int | None:
+def best(decision: Decision) -> int | None:
     """The branch with the shortest travel time; None where staying is as short."""
-    times = {number: branch["gains"]["time_s"] for number, branch in enumerate(decision["branches"])}
+    times = {number: branch.gains.time_s for number, branch in enumerate(decision.branches)}
     quickest = max(times, key=lambda number: times[number], default=None)
     return quickest if quickest is not None and times[quickest] > 0 else None

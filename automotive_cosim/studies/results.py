@@ -12,10 +12,11 @@ import numpy as np
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import SetupError
+from automotive_cosim.run.row import columns
 from automotive_cosim.run.store import read_manifest, read_rows
-from automotive_cosim.studies.compare import METRICS
 from automotive_cosim.studies.plan import StudyPlan, make_study
 from automotive_cosim.studies.policies import Policy, best, chosen, parse_policy
+from automotive_cosim.studies.rows import NOBODY, Decision, DecisionPoint, DriveRow, News, PolicyChoice
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -31,39 +32,39 @@ class Study:
     folder: Path
     manifest: Json
     plan: StudyPlan
-    rows: tuple[Json, ...]
+    rows: tuple[DriveRow, ...]
     """One a drive, in the order of the plan."""
 
     @property
-    def errors(self) -> tuple[Json, ...]:
+    def errors(self) -> tuple[DriveRow, ...]:
         """Drives that the machinery broke."""
-        return tuple(row for row in self.rows if row["error"] is not None)
+        return tuple(row for row in self.rows if row.error is not None)
 
     @property
-    def decisions(self) -> tuple[Json, ...]:
-        """Those that count, each with the names of its drive."""
-        return tuple(each for each in all_decisions(self.rows) if not each["excluded"])
+    def decisions(self) -> tuple[DecisionPoint, ...]:
+        """Those that count, each with its drive."""
+        return tuple(point for point in all_decisions(self.rows) if not point.decision.excluded)
 
     @property
     def excluded(self) -> Counter[tuple[str, str]]:
         """How many drives and decisions are kept out of the averages, by what they are and why."""
         found: Counter[tuple[str, str]] = Counter()
         for row in self.rows:
-            if row["excluded"]:
-                found["drive", row["excluded"]] += 1
-        for each in all_decisions(self.rows):
-            if each["excluded"]:
-                found["decision", each["excluded"]] += 1
+            if row.excluded:
+                found["drive", row.excluded] += 1
+            for decision in row.decisions:
+                if decision.excluded:
+                    found["decision", decision.excluded] += 1
         return found
 
     @property
-    def choices(self) -> tuple[Json, ...]:
+    def choices(self) -> tuple[PolicyChoice, ...]:
         """What every policy made of every decision with news of every age."""
         return tuple(choices(self.rows, self.plan.policies))
 
     def noise(self) -> Noise:
         """What a change that nobody would call one does."""
-        return noise(self.decisions)
+        return noise(point.decision for point in self.decisions)
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +86,7 @@ def read_study(folder: Path) -> Study:
     """
     manifest = read_manifest(folder)
     plan = make_study(manifest["plan"])
-    rows = read_rows(folder)
+    rows = read_rows(folder, DriveRow)
     return Study(folder, manifest, plan, tuple(rows[job.id] for job in plan.jobs() if job.id in rows))
 
 
@@ -100,67 +101,69 @@ def load_study(folder: Path | str) -> pd.DataFrame:
         import pandas as pd
     except ImportError as error:
         raise SetupError("load_study needs pandas: pip install 'automotive-cosim[report]'") from error
-    return pd.DataFrame(list(read_study(Path(folder)).choices))
+    return pd.DataFrame([columns(choice) for choice in read_study(Path(folder)).choices])
 
 
-def all_decisions(rows: Iterable[Json]) -> Iterator[Json]:
+def all_decisions(rows: Iterable[DriveRow]) -> Iterator[DecisionPoint]:
     """Of every drive, those that do not count too."""
     for row in rows:
-        names = {name: row[name] for name in ("scenario", "share", "seed", "departure_s", "trip")}
-        for number, decision in enumerate(row["decisions"]):
-            yield names | decision | {"id": f"{row['id']}-{number}", "stay": row["stay"]}
+        for number, decision in enumerate(row.decisions):
+            yield DecisionPoint(f"{row.id}-{number}", row, decision)
 
 
-def choices(rows: Iterable[Json], policies: Sequence[str]) -> Iterator[Json]:
+def choices(rows: Iterable[DriveRow], policies: Sequence[str]) -> Iterator[PolicyChoice]:
     """The choice of each policy at each decision that counts, by news of each age, and what it gained."""
-    for decision in all_decisions(rows):
-        if decision["excluded"]:
-            continue
-        least_s = _gain(decision, best(decision), "time_s")
-        for policy in map(parse_policy, policies):
-            for news in decision["news"]:
-                number = chosen(policy, decision, news["age_s"])
-                others = None if number is None else decision["branches"][number]["others"]
-                yield {
-                    **{
-                        name: decision[name]
-                        for name in ("id", "scenario", "share", "seed", "departure_s", "trip", "at_s", "edge")
-                    },
-                    "delay_s": decision["delay_s"],
-                    "eta_s": decision["eta_s"],
-                    "time_index": round(decision["eta_s"] / max(1.0, decision["eta_s"] - decision["delay_s"]), 3),
-                    "age_s": news["age_s"],
-                    "policy": policy.text,
-                    "complies": decision["complies"],
-                    "rerouted": _took_another(policy, decision) if policy.agent else number is not None,
-                    "promised_s": None
-                    if news["offered_s"] is None
-                    else round(news["stay_s"] - news["offered_s"], 1),
-                    **{f"stay_{name}": decision["stay"][name] for name in METRICS},
-                    **{f"gain_{name}": _gain(decision, number, name) for name in METRICS},
-                    "regret_s": round(least_s - _gain(decision, number, "time_s"), 3),
-                    "others": 0 if others is None else others["count"],
-                    "others_gain_s": 0.0 if others is None else others["gain_s"],
-                    "others_changed": 0 if others is None else others["changed"],
-                    "unfinished_stay": 0 if others is None else others["unfinished_stay"],
-                    "unfinished": 0 if others is None else others["unfinished"],
-                }
+    for point in all_decisions(rows):
+        if not point.decision.excluded:
+            for policy in map(parse_policy, policies):
+                for news in point.decision.news:
+                    yield _choice(point, policy, news)
 
 
-def _took_another(policy: Policy, decision: Json) -> bool:
+def _choice(point: DecisionPoint, policy: Policy, news: News) -> PolicyChoice:
+    drive, decision = point.drive, point.decision
+    number = chosen(policy, decision, news.age_s)
+    gain = decision.gains(number)
+    others = NOBODY if number is None else decision.branches[number].others
+    assert drive.stay is not None, "it has a decision"
+    return PolicyChoice(
+        id=point.id,
+        scenario=drive.scenario,
+        share=drive.share,
+        seed=drive.seed,
+        departure_s=drive.departure_s,
+        trip=drive.trip,
+        at_s=decision.at_s,
+        edge=decision.edge,
+        delay_s=decision.delay_s,
+        eta_s=decision.eta_s,
+        time_index=round(decision.time_index, 3),
+        age_s=news.age_s,
+        policy=policy.text,
+        complies=decision.complies,
+        rerouted=_took_another(policy, decision) if policy.agent else number is not None,
+        promised_s=None if news.promised_s is None else round(news.promised_s, 1),
+        stay=drive.stay,
+        gain=gain,
+        regret_s=round(decision.gains(best(decision)).time_s - gain.time_s, 3),
+        others=others.count,
+        others_gain_s=others.gain_s,
+        others_changed=others.changed,
+        unfinished_stay=others.unfinished_stay,
+        unfinished=others.unfinished,
+    )
+
+
+def _took_another(policy: Policy, decision: Decision) -> bool:
     """Whether an agent's branch, in which it may do anything, left the way."""
-    return bool(decision["complies"]) and policy.agent in decision["agents_rerouted"]
+    return decision.complies and policy.agent in decision.agents_rerouted
 
 
-def noise(decisions: Iterable[Json]) -> Noise:
+def noise(decisions: Iterable[Decision]) -> Noise:
     """What the placebos changed."""
-    placebos = [each["placebo"] for each in decisions if each["placebo"] is not None]
+    placebos = [each.placebo for each in decisions if each.placebo is not None]
     if not placebos:
         return Noise(0, 0.0, 0.0)
-    times = [abs(each["gains"]["time_s"]) for each in placebos]
-    others = [abs(each["others"]["gain_s"]) for each in placebos]
+    times = [abs(each.gains.time_s) for each in placebos]
+    others = [abs(each.others.gain_s) for each in placebos]
     return Noise(len(placebos), float(np.quantile(times, NOISE)), float(np.quantile(others, NOISE)))
-
-
-def _gain(decision: Json, number: int | None, metric: str) -> float:
-    return 0.0 if number is None else float(decision["branches"][number]["gains"][metric])

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
-from automotive_cosim.contracts import Json
 from automotive_cosim.report.tables import Row, Table
 from automotive_cosim.studies.intervals import LEAST_SEEDS, SeedMean, seed_mean
 from automotive_cosim.studies.policies import Rule, parse_policy
 from automotive_cosim.studies.results import NOISE, Noise, Study
+from automotive_cosim.studies.rows import PolicyChoice
 
 NONE = "–"
 BINS = ((1.0, 1.25), (1.25, 1.5), (1.5, 2.0), (2.0, float("inf")))
@@ -33,13 +33,13 @@ def tables(study: Study) -> list[Table]:
     return [table for table in made if table.rows]
 
 
-def groups(study: Study) -> list[tuple[float, str, float, list[Json]]]:
+def groups(study: Study) -> list[tuple[float, str, float, list[PolicyChoice]]]:
     """The choices by share of rerouting cars, policy and age of the news; ages only where they matter."""
-    found: dict[tuple[float, str, float], list[Json]] = {}
+    found: dict[tuple[float, str, float], list[PolicyChoice]] = {}
     first_s = study.plan.ages_s[0]
     for each in study.choices:
-        if goes_by_news(each["policy"]) or each["age_s"] == first_s:
-            found.setdefault((each["share"], each["policy"], each["age_s"]), []).append(each)
+        if goes_by_news(each.policy) or each.age_s == first_s:
+            found.setdefault((each.share, each.policy, each.age_s), []).append(each)
     return [(*key, rows) for key, rows in found.items()]
 
 
@@ -60,12 +60,12 @@ def policies(study: Study) -> Table:
                 policy,
                 f"{age_s:g}" if goes_by_news(policy) else NONE,
                 str(len(chosen)),
-                str(len({each["seed"] for each in chosen})),
-                per_cent(each["rerouted"] for each in chosen),
-                mean_cell(chosen, "gain_time_s"),
+                str(len({each.seed for each in chosen})),
+                per_cent(each.rerouted for each in chosen),
+                mean_cell(chosen, time_saved_s),
                 f"{wins} / {ties} / {losses}",
-                per_cent(each["regret_s"] <= floor.time_s for each in chosen),
-                mean_cell(chosen, "regret_s"),
+                per_cent(each.regret_s <= floor.time_s for each in chosen),
+                mean_cell(chosen, lambda each: each.regret_s),
             )
         )
     columns = (
@@ -99,12 +99,12 @@ def costs(study: Study) -> Table:
                 f"{share:.0%}",
                 policy,
                 f"{age_s:g}" if goes_by_news(policy) else NONE,
-                mean_cell(chosen, "gain_distance_m", 0),
-                mean_cell(chosen, "gain_stops", 2),
-                mean_cell(chosen, "gain_co2_g"),
-                mean_cell(chosen, "gain_fuel_g"),
-                mean_cell(chosen, "others_gain_s"),
-                f"{sum(each['unfinished_stay'] for each in chosen)} / {sum(each['unfinished'] for each in chosen)}",
+                mean_cell(chosen, lambda each: each.gain.distance_m, 0),
+                mean_cell(chosen, lambda each: each.gain.stops, 2),
+                mean_cell(chosen, lambda each: each.gain.co2_g),
+                mean_cell(chosen, lambda each: each.gain.fuel_g),
+                mean_cell(chosen, others_save_s),
+                f"{sum(each.unfinished_stay for each in chosen)} / {sum(each.unfinished for each in chosen)}",
             )
         )
     columns = (
@@ -130,14 +130,14 @@ def costs(study: Study) -> Table:
 def by_congestion(study: Study) -> Table:
     """Time saved by how congested the way ahead was."""
     first_s = study.plan.ages_s[0]
-    chosen = [each for each in study.choices if each["age_s"] == first_s and each["policy"] not in STAYING]
-    named = list(dict.fromkeys(each["policy"] for each in chosen))
+    chosen = [each for each in study.choices if each.age_s == first_s and each.policy not in STAYING]
+    named = list(dict.fromkeys(each.policy for each in chosen))
     rows: list[Row] = []
     for low, high in BINS:
-        here = [each for each in chosen if low <= each["time_index"] < high]
+        here = [each for each in chosen if low <= each.time_index < high]
         if here:
-            cells = [mean_cell((each for each in here if each["policy"] == name), "gain_time_s") for name in named]
-            rows.append((bin_name(low, high), str(len({each["id"] for each in here})), *cells))
+            cells = [mean_cell((each for each in here if each.policy == name), time_saved_s) for name in named]
+            rows.append((bin_name(low, high), str(len({each.id for each in here})), *cells))
     note = (
         "Seconds saved, by the expected travel time to the goal over that at free flow, at the decision, with the "
         "newest news of the plan."
@@ -153,8 +153,8 @@ def by_age(study: Study) -> Table:
     if len(study.plan.ages_s) > 1:
         named = [name for name in study.plan.policies if goes_by_news(name)]
         for age_s in study.plan.ages_s:
-            here = [each for each in study.choices if each["age_s"] == age_s]
-            cells = [mean_cell((each for each in here if each["policy"] == name), "gain_time_s") for name in named]
+            here = [each for each in study.choices if each.age_s == age_s]
+            cells = [mean_cell((each for each in here if each.policy == name), time_saved_s) for name in named]
             rows.append((f"{age_s:g}", *cells))
         columns: tuple[str, ...] = ("News age, s", *named)
     else:
@@ -166,17 +166,18 @@ def by_age(study: Study) -> Table:
 def by_share(study: Study) -> Table:
     """Time saved by how many of the others reroute too; each share's traffic was warmed up on its own."""
     rows: list[Row] = []
-    shares = sorted({each["share"] for each in study.choices})
+    shares = sorted({each.share for each in study.choices})
     for share in shares if len(shares) > 1 else ():
-        here = [each for each in study.choices if each["share"] == share and each["age_s"] == study.plan.ages_s[0]]
+        here = [each for each in study.choices if (each.share, each.age_s) == (share, study.plan.ages_s[0])]
+        never, always, best = ([each for each in here if each.policy == p] for p in ("never", "always", HINDSIGHT))
         rows.append(
             (
                 f"{share:.0%}",
-                str(len({each["id"] for each in here})),
-                mean_cell((each for each in here if each["policy"] == "never"), "stay_time_s", 0, signed=False),
-                mean_cell((each for each in here if each["policy"] == "always"), "gain_time_s"),
-                mean_cell((each for each in here if each["policy"] == HINDSIGHT), "gain_time_s"),
-                mean_cell((each for each in here if each["policy"] == "always"), "others_gain_s"),
+                str(len({each.id for each in here})),
+                mean_cell(never, lambda each: each.stay.time_s, 0, signed=False),
+                mean_cell(always, time_saved_s),
+                mean_cell(best, time_saved_s),
+                mean_cell(always, others_save_s),
             )
         )
     columns = (
@@ -194,11 +195,11 @@ def stops_helping(study: Study) -> str:
     """From which share of rerouting cars on one more that reroutes gains nothing, in words."""
     floor = study.noise()
     helps: dict[float, bool] = {}
-    for share in sorted({each["share"] for each in study.choices}):
+    for share in sorted({each.share for each in study.choices}):
         mean = seed_mean(
-            (each["seed"], each["gain_time_s"])
+            (each.seed, each.gain.time_s)
             for each in study.choices
-            if each["share"] == share and each["policy"] == "always" and each["age_s"] == study.plan.ages_s[0]
+            if each.share == share and each.policy == "always" and each.age_s == study.plan.ages_s[0]
         )
         if mean is None or mean.interval is None:
             return f"Too few seeds to say where rerouting stops helping: {LEAST_SEEDS} are needed in every share."
@@ -232,9 +233,9 @@ def excluded(study: Study) -> Table:
     """What is kept out of the averages."""
     examples: dict[tuple[str, str], str] = {}
     for row in study.rows:
-        examples.setdefault(("drive", row["excluded"]), f"{row['id']}: {row['why']}")
-        for each in row["decisions"]:
-            examples.setdefault(("decision", each["excluded"]), f"{row['id']}: {each['why']}")
+        examples.setdefault(("drive", row.excluded), f"{row.id}: {row.why}")
+        for each in row.decisions:
+            examples.setdefault(("decision", each.excluded), f"{row.id}: {each.why}")
     rows = tuple(
         (f"{reason} ({what})", str(count), examples[what, reason])
         for (what, reason), count in sorted(study.excluded.items())
@@ -245,27 +246,39 @@ def excluded(study: Study) -> Table:
 
 def errors(study: Study) -> Table:
     """Drives that the machinery broke."""
-    rows = tuple((row["id"], row["error_kind"], row["error"]) for row in study.errors)
+    rows = tuple((row.id, row.error_kind or "", row.error or "") for row in study.errors)
     note = "The same command runs them again."
     return Table("errors", "Errors of the machinery", ("Drive", "Kind", "What"), rows, note, heads=3)
 
 
-def outcomes(chosen: Sequence[Json], floor: Noise) -> tuple[int, int, int]:
+def outcomes(chosen: Sequence[PolicyChoice], floor: Noise) -> tuple[int, int, int]:
     """How many choices saved time, made no difference, and lost time."""
-    gains = [each["gain_time_s"] for each in chosen]
+    gains = [each.gain.time_s for each in chosen]
     wins = sum(gain > floor.time_s for gain in gains)
     losses = sum(gain < -floor.time_s for gain in gains)
     return wins, len(gains) - wins - losses, losses
 
 
-def mean_of(chosen: Iterable[Json], name: str) -> SeedMean | None:
-    """The mean of a field over choices, with its interval over seeds."""
-    return seed_mean((each["seed"], float(each[name])) for each in chosen)
+def time_saved_s(choice: PolicyChoice) -> float:
+    """By the ego."""
+    return choice.gain.time_s
 
 
-def mean_cell(chosen: Iterable[Json], name: str, digits: int = 1, *, signed: bool = True) -> str:
+def others_save_s(choice: PolicyChoice) -> float:
+    """Everybody else together."""
+    return choice.others_gain_s
+
+
+def mean_of(chosen: Iterable[PolicyChoice], of: Callable[[PolicyChoice], float]) -> SeedMean | None:
+    """The mean of a figure over choices, with its interval over seeds."""
+    return seed_mean((each.seed, float(of(each))) for each in chosen)
+
+
+def mean_cell(
+    chosen: Iterable[PolicyChoice], of: Callable[[PolicyChoice], float], digits: int = 1, *, signed: bool = True
+) -> str:
     """For example ``+12.3 (+4.0 to +20.1)``."""
-    mean = mean_of(chosen, name)
+    mean = mean_of(chosen, of)
     if mean is None:
         return NONE
     sign = "+" if signed else ""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 
-from automotive_cosim.traffic.ledger import STUCK_S, Pulse
+from automotive_cosim.traffic.accounts import STUCK_S, Pulse
 
 PULSE_S = 300.0
 """Time between two looks at the traffic as a whole."""

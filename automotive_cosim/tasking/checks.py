@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from automotive_cosim.cockpit.signals import Signal
-from automotive_cosim.contracts import AlertKind
+from automotive_cosim.contracts import AlertKind, RoadRequest
 from automotive_cosim.cosim.moment import Moment
 
 
@@ -269,10 +269,8 @@ class Counted:
 class RoadAsked:
     """The road was asked for one thing that can't be taken back: ``Reroute``, ``PullOver``, ``SlowDown``."""
 
-    request: str
-    """Name of its class."""
-    containing: str = ""
-    """Text that stands in it, e.g. an edge of the way that was chosen."""
+    request: type[RoadRequest] | RoadRequest
+    """Its class, or the very request: ``RoadAsked(Reroute)`` takes any, ``RoadAsked(Reroute("A 4"))`` only that."""
 
     @property
     def writes(self) -> frozenset[str]:
@@ -282,10 +280,13 @@ class RoadAsked:
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Looks at the requests since the start."""
         asked = now.commands["requests"][len(start.commands["requests"]) :]
-        return len(asked) == 1 and asked[0].startswith(f"{self.request}(") and self.containing in asked[0]
+        if len(asked) != 1:
+            return False
+        return isinstance(asked[0], self.request) if isinstance(self.request, type) else asked[0] == self.request
 
     def __str__(self) -> str:
-        return f"the road asked once for {self.request}" + (f" ({self.containing})" if self.containing else "")
+        wanted = self.request.__name__ if isinstance(self.request, type) else self.request
+        return f"the road asked once for {wanted}"
 
 
 @dataclass(frozen=True, slots=True)

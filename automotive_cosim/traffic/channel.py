@@ -8,6 +8,9 @@ import struct
 from contextlib import suppress
 from typing import Any
 
+LOADING_LIMIT_S = 300.0
+"""Wall time that the simulation may take to load a network without a sign of life."""
+
 _LENGTH = struct.Struct("!Q")
 
 

@@ -8,7 +8,6 @@ and repeats the calls so far: the same states, only slower.
 from __future__ import annotations
 
 import os
-import pickle
 import sys
 from collections import OrderedDict
 from collections.abc import Sequence
@@ -20,13 +19,13 @@ from typing import Any
 from automotive_cosim.contracts import Answer, DrivingState, RoadNetwork, RoadRequest, RouteOption
 from automotive_cosim.errors import SetupError, TrafficError
 from automotive_cosim.scenarios import Scenario
-from automotive_cosim.traffic.base import Drive, EgoPlan, Progress, Until
+from automotive_cosim.traffic.accounts import Pulse, Settled
+from automotive_cosim.traffic.base import Advance, EgoPlan, Progress
 from automotive_cosim.traffic.drive import Call
-from automotive_cosim.traffic.ledger import Pulse, Settled
 from automotive_cosim.traffic.options import Setup
 from automotive_cosim.traffic.profiles import profile
 from automotive_cosim.traffic.remote import TIMEOUT_S, RemoteProcess
-from automotive_cosim.traffic.wire import Packed, pack_state, unpack_drive, unpack_state
+from automotive_cosim.traffic.wire import Packed, pack_state, unpack_advance, unpack_state
 
 CAN_FORK = sys.platform == "linux"
 """Files are reopened through /proc, which only Linux has."""
@@ -73,8 +72,8 @@ class Forked:
         Raises:
             ScenarioError: its trip has no route, or its edges are not in the network.
             UnknownNameError: no such driver.
-            TrafficError: it could not be inserted, or the simulation died or hung; the next one can depart all the
-                same.
+            NoRoomError: no gap opened for it; the next one can depart all the same.
+            TrafficError: the simulation died or hung; likewise.
         """
         profile(plan.driver)
         if self._is_closed:
@@ -122,6 +121,7 @@ class RemoteTraffic:
         self._plan = plan
         self._calls = list(calls)
         self._state = unpack_state(state)
+        self._started_s: float | None = None
 
     @property
     def network(self) -> RoadNetwork:
@@ -138,14 +138,22 @@ class RemoteTraffic:
         """The process that runs it."""
         return self._process.pid
 
-    def advance(self, duration_s: float, until: Until | None = None) -> Drive:
-        """As ``Traffic.advance``; the predicate must be defined in a module that can be imported."""
-        pickled = None if until is None else pickle.dumps(until)
-        drive = unpack_drive(self._process.call("advance", duration_s, pickled))
-        if drive.states:
-            self._state = drive.states[-1]
-        self._remember(len(drive.states))
-        return drive
+    def start(self, duration_s: float) -> None:
+        """As ``Traffic.start``."""
+        if self._started_s is None:
+            self._process.send("advance", duration_s)
+            self._started_s = duration_s
+
+    def advance(self, duration_s: float) -> Advance:
+        """As ``Traffic.advance``."""
+        self.start(duration_s)
+        assert duration_s == self._started_s, "another advance was started"
+        self._started_s = None
+        advance = unpack_advance(self._process.receive())
+        if advance.states:
+            self._state = advance.states[-1]
+        self._remember(len(advance.states))
+        return advance
 
     def request(self, request: RoadRequest) -> Answer:
         """As ``Traffic.request``."""

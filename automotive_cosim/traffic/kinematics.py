@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from automotive_cosim.contracts import (
     KMH_PER_MPS,
+    STANDING_BELOW_MPS,
     Around,
     DrivingState,
     EgoEnd,
@@ -20,7 +21,6 @@ from automotive_cosim.traffic.ego import EASING_MPS2, RefusedError
 from automotive_cosim.traffic.instant import Known, other_vehicle
 from automotive_cosim.traffic.profiles import Profile
 from automotive_cosim.traffic.road_weather import G_MPS2
-from automotive_cosim.traffic.sensing import STANDING_BELOW_MPS
 from automotive_cosim.traffic.steering import STOPPING_MPS2, STOPPING_RESERVE_M
 from automotive_cosim.traffic.stretches import Layout, Stretch
 

@@ -10,7 +10,6 @@ from __future__ import annotations
 import faulthandler
 import gc
 import os
-import pickle
 import shutil
 import signal
 import socket
@@ -22,16 +21,16 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from automotive_cosim import errors
 from automotive_cosim.contracts import Answer, RoadNetwork, RoadRequest, RouteOption
-from automotive_cosim.errors import CosimError
-from automotive_cosim.traffic.base import EgoPlan, Until
-from automotive_cosim.traffic.channel import Channel, ClosedError
+from automotive_cosim.errors import CosimError, TrafficError
+from automotive_cosim.traffic.accounts import Pulse, Settled
+from automotive_cosim.traffic.base import EgoPlan
+from automotive_cosim.traffic.channel import LOADING_LIMIT_S, Channel, ClosedError
 from automotive_cosim.traffic.drive import Call, EgoDrive
-from automotive_cosim.traffic.ledger import Ledger, Pulse, Settled, nudge, own_choice, settle
+from automotive_cosim.traffic.ledger import Ledger, nudge, own_choice, settle
 from automotive_cosim.traffic.options import OUTPUTS, Setup
 from automotive_cosim.traffic.sumo import load_library
-from automotive_cosim.traffic.wire import Packed, pack_drive, pack_state
+from automotive_cosim.traffic.wire import Packed, pack_advance, pack_state
 from automotive_cosim.traffic.world import World
 
 if sys.platform != "win32":
@@ -39,9 +38,6 @@ if sys.platform != "win32":
 
 BEAT_S = 1.0
 """Wall time between two signs of life during a long call."""
-
-LOADING_LIMIT_S = 300.0
-"""Wall time that loading a network may take."""
 
 DESCRIPTORS = Path("/proc/self/fd")
 
@@ -82,12 +78,12 @@ class Server:
         except ClosedError:
             raise
         except CosimError as error:
-            return "error", (type(error).__name__, str(error))
+            return "error", (type(error), str(error))
         except Exception as error:  # whatever it is, the other side has to hear of it
             traceback.print_exc()
             place = traceback.extract_tb(error.__traceback__)[-1]
             text = f"{type(error).__name__}: {error} ({Path(place.filename).name}, line {place.lineno})"
-            return "error", (errors.TrafficError.__name__, text)
+            return "error", (TrafficError, text)
 
     # --- the calls ----------------------------------------------------------------------------------------
 
@@ -122,10 +118,10 @@ class Server:
         self._drive = self._world.depart(plan, self._after_step)
         return pack_state(self._drive.state)
 
-    def do_advance(self, duration_s: float, until: bytes | None) -> Packed:
-        """Advances; the predicate is evaluated here."""
+    def do_advance(self, duration_s: float) -> Packed:
+        """Lets the traffic run."""
         assert self._drive is not None
-        return pack_drive(self._drive.advance(duration_s, _load_until(until), self._after_step))
+        return pack_advance(self._drive.advance(duration_s, self._after_step))
 
     def do_request(self, request: RoadRequest) -> Answer:
         """Asks something of the driver or the car."""
@@ -206,19 +202,6 @@ class Server:
     def _stop_alarm(self) -> None:
         if sys.platform != "win32":
             signal.setitimer(signal.ITIMER_REAL, 0)
-
-
-def _load_until(pickled: bytes | None) -> Until | None:
-    if pickled is None:
-        return None
-    try:
-        until = pickle.loads(pickled)
-    except (AttributeError, ImportError) as error:
-        raise errors.TrafficError(
-            f"the predicate cannot be loaded in the simulation's process ({error}): define it in a module"
-        ) from error
-    assert isinstance(until, Until)
-    return until
 
 
 def reopen_files() -> None:

@@ -13,11 +13,10 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, NoReturn
 
-from automotive_cosim import errors
 from automotive_cosim.contracts import RoadNetwork
 from automotive_cosim.errors import CosimError, TrafficError
 from automotive_cosim.traffic.base import Progress
-from automotive_cosim.traffic.channel import Channel, ClosedError
+from automotive_cosim.traffic.channel import LOADING_LIMIT_S, Channel, ClosedError
 from automotive_cosim.traffic.options import Setup
 
 TIMEOUT_S = 20.0
@@ -25,9 +24,6 @@ TIMEOUT_S = 20.0
 
 ALARM_MARGIN_S = 5.0
 """The simulation's own alarm comes this much later, for when nobody is left to end it."""
-
-LOADING_LIMIT_S = 300.0
-"""Wall time that loading a network may take."""
 
 CLOSING_LIMIT_S = 2.0
 
@@ -125,6 +121,15 @@ class RemoteProcess:
         Raises:
             TrafficError: it died or hung; or what the method raised.
         """
+        self.send(name, *arguments, hand_over=hand_over)
+        return self.receive(progress, timeout_s)
+
+    def send(self, name: str, *arguments: object, hand_over: socket.socket | None = None) -> None:
+        """Begins a call whose answer ``receive`` waits for; the process works on it meanwhile.
+
+        Raises:
+            TrafficError: it died.
+        """
         if self._broken:
             raise TrafficError(self._broken)
         try:
@@ -133,7 +138,6 @@ class RemoteProcess:
                 self._channel.send_socket(hand_over)
         except ClosedError:
             self._give_up(self._death())
-        return self.receive(progress, timeout_s)
 
     def receive(self, progress: Progress | None = None, timeout_s: float | None = None) -> Any:
         """Waits for an answer; raises as ``call``."""
@@ -155,9 +159,9 @@ class RemoteProcess:
             self._broken = "the simulation was interrupted"
             raise
         if outcome == "error":
-            name, text = value
-            kind_of_error: type[CosimError] = getattr(errors, name)
-            raise kind_of_error.__new__(kind_of_error, text)  # the text is whole already
+            kind: type[CosimError]
+            kind, text = value
+            raise kind.__new__(kind, text)  # the text is whole already
         return value
 
     def close(self) -> None:

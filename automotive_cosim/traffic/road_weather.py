@@ -9,14 +9,11 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from automotive_cosim.contracts import Weather
 from automotive_cosim.scenarios import WeatherAt, weather_at
 from automotive_cosim.traffic.network import Network
-
-if TYPE_CHECKING:
-    from automotive_cosim.traffic.sumo import Sumo
+from automotive_cosim.traffic.sumo import LibSumo
 
 G_MPS2 = 9.81
 
@@ -137,7 +134,7 @@ class Surface:
     Lanes in tunnels stay dry. Speeds wanted are each vehicle's own, the rest is its type's.
     """
 
-    def __init__(self, sumo: Sumo, network: Network, left_out: tuple[str, ...]) -> None:
+    def __init__(self, sumo: LibSumo, network: Network, left_out: tuple[str, ...]) -> None:
         """Starts dry.
 
         Args:

@@ -15,9 +15,7 @@ from automotive_cosim.traffic.congestion import JAM_BELOW
 from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.posted import TimedLimit
 from automotive_cosim.traffic.stage import CAR_TYPE, Stage
-
-HAZARD_SIGNAL = 4
-"""SUMO's bit for the hazard lights (VEH_SIGNAL_BLINKER_EMERGENCY)."""
+from automotive_cosim.traffic.sumo import HAZARD_SIGNAL
 
 AUTHORITY = ("authority",)
 """Whom a closed lane is left open to."""

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 from automotive_cosim.contracts import KMH_PER_MPS, Answer, DrivingState, RoadNetwork, RoadRequest, RouteOption
 from automotive_cosim.errors import ScenarioError, TrafficError
-from automotive_cosim.traffic.base import Drive, EgoPlan, Until
+from automotive_cosim.traffic.base import Advance, EgoPlan
 from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.ego import Driver
 from automotive_cosim.traffic.kinematics import Car
@@ -91,9 +91,12 @@ class ScriptedTraffic:
         """The newest state."""
         return self._drive.state
 
-    def advance(self, duration_s: float, until: Until | None = None) -> Drive:
+    def start(self, duration_s: float) -> None:
+        """As ``Traffic.start``: nothing to do."""
+
+    def advance(self, duration_s: float) -> Advance:
         """As ``Traffic.advance``."""
-        return self._open().advance(duration_s, until)
+        return self._open().advance(duration_s)
 
     def request(self, request: RoadRequest) -> Answer:
         """As ``Traffic.request``."""

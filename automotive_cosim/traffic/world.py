@@ -10,7 +10,7 @@ from itertools import pairwise
 from pathlib import Path
 
 from automotive_cosim.contracts import EgoEnd, RoadIncident, RouteOption
-from automotive_cosim.errors import ScenarioError, TrafficError
+from automotive_cosim.errors import NoRoomError, ScenarioError, TrafficError
 from automotive_cosim.scenarios import Trip
 from automotive_cosim.traffic.base import EgoPlan, Event, Progress
 from automotive_cosim.traffic.conflicts import LOOK_S, Conflicts
@@ -27,7 +27,7 @@ from automotive_cosim.traffic.sensing import Sensor
 from automotive_cosim.traffic.situations import Situations
 from automotive_cosim.traffic.stage import TEMPLATE_TYPE, Stage
 from automotive_cosim.traffic.steering import PARKING, SumoPedals
-from automotive_cosim.traffic.sumo import EGO, EGO_TYPE, Sumo, load_library, start
+from automotive_cosim.traffic.sumo import EGO, EGO_TYPE, LibSumo, load_library, start
 
 INSERTION_LIMIT_S = 300.0
 """Simulated time the ego may wait for a gap to enter the traffic."""
@@ -105,7 +105,8 @@ class World:
 
         Raises:
             ScenarioError: its trip has no route, or its edges are not in the network.
-            TrafficError: no gap opened for it, or SUMO failed.
+            NoRoomError: no gap opened for it.
+            TrafficError: SUMO failed.
         """
         driver_profile = profile(plan.driver)
         plan = replace(plan, weather=plan.weather or self._scenario.weather)
@@ -121,7 +122,7 @@ class World:
             if EGO in self._sumo.departed():
                 break
         else:
-            raise TrafficError(
+            raise NoRoomError(
                 f"the ego found no gap on {plan.trip.from_edge!r} in {INSERTION_LIMIT_S:.0f} s of simulated time"
             )
         self._forecast = Forecast(plan.weather, self._sumo.time())
@@ -236,7 +237,7 @@ class World:
 class EgoRoad:
     """The road under the ego: steps the world and tells how the ego fares."""
 
-    def __init__(self, world: World, sumo: Sumo, sensor: Sensor, pedals: SumoPedals) -> None:
+    def __init__(self, world: World, sumo: LibSumo, sensor: Sensor, pedals: SumoPedals) -> None:
         """Takes over at the instant the ego is on the road."""
         self._world = world
         self._sumo = sumo

@@ -24,11 +24,11 @@ def views(simulations):
     for control in GeoInput:
         env = CockpitEnv(**QUICK, geo=control, simulations=simulations)
         env.reset(seed=0)
-        seen = env.observation
+        seen = env.episode.observation
         said = []
         for asked in ("rules", "position"):
             env.step({"action_type": "query", "text": asked})
-            said.append(env.observation.feedback)
+            said.append(env.episode.observation.feedback)
         found[control] = (seen, *said)
         env.close()
     return found
@@ -122,7 +122,7 @@ def test_agent_and_environment_agree_on_the_channels(control):
 def _won(simulations, agent: str, geo: GeoInput = GeoInput.FULL) -> list[bool | None]:
     return [
         run_episode(
-            EpisodeSetup(half=half, geo=geo),
+            EpisodeSetup(half=half, geo=GeoInput(geo)),
             make_agent(agent, settings=AgentSettings(geo=geo)),
             simulations=simulations,
         ).success
@@ -143,6 +143,6 @@ def test_with_a_wrong_place_a_pairs_success_falls_to_that_without_place(simulati
 
 
 def test_the_record_says_under_which_control_it_was_made(simulations):
-    setup = EpisodeSetup(**QUICK, geo="wrong")
+    setup = EpisodeSetup(**QUICK, geo=GeoInput.WRONG)
     result = run_episode(setup, make_agent("no-op"), simulations=simulations)
     assert json.loads(json.dumps(result.as_json(), default=str))["geo"] == "wrong"

@@ -132,15 +132,15 @@ def tunnel(monkeypatch):
 def test_estimates_are_scored_beside_dead_reckoning(simulations, tunnel):
     env = CockpitEnv("hvac_fan_max", scenario="grid", simulations=simulations)
     env.reset(seed=0)
-    assert not env.observation.gps.has_fix
+    assert not env.episode.observation.gps.has_fix
     for north_m in (0.0, 40.0):
-        truth = env.moments[-1].driving
+        truth = env.episode.moments[-1].driving
         text = f"{truth.lon_deg:.8f},{truth.lat_deg + north_m / METRES_PER_DEGREE:.8f}"
         env.step({"action_type": "estimate_position", "text": text})
-        assert env.observation.feedback.code == "ok"
+        assert env.episode.observation.feedback.code == "ok"
     env.step({"action_type": "estimate_position", "text": "somewhere"})
-    assert env.observation.feedback.code == "refused"
-    found = estimates(env.steps, [*env.drive, *env.moments[1:]])
+    assert env.episode.observation.feedback.code == "refused"
+    found = estimates(env.episode.steps, [*env.episode.drive, *env.episode.moments[1:]])
     env.close()
     assert [round(estimate.error_m, 1) for estimate in found] == [0.0, 40.0]
     assert all(0 < estimate.dead_reckoning_error_m < 60 for estimate in found)
@@ -151,7 +151,7 @@ def test_estimates_with_gps_at_work_do_not_count(simulations):
     env = CockpitEnv("hvac_fan_max", scenario="grid", simulations=simulations)
     env.reset(seed=0)
     env.step({"action_type": "estimate_position", "text": "0,0"})
-    assert estimates(env.steps, [*env.drive, *env.moments[1:]]) == ()
+    assert estimates(env.episode.steps, [*env.episode.drive, *env.episode.moments[1:]]) == ()
     env.close()
 
 
@@ -160,5 +160,5 @@ def test_what_is_no_position_is_refused(simulations, text):
     env = CockpitEnv("hvac_fan_max", scenario="grid", simulations=simulations)
     env.reset(seed=0)
     env.step({"action_type": "estimate_position", "text": text})
-    assert env.observation.feedback.code == "refused"
+    assert env.episode.observation.feedback.code == "refused"
     env.close()

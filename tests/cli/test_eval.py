@@ -3,7 +3,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -99,22 +98,32 @@ def test_a_folder_that_cannot_be_written_is_one_line(cli):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for another process")
-def test_ctrl_c_says_how_to_go_on(tmp_path):
-    process = subprocess.Popen(
-        [*PROGRAM, "eval", "--agents", "oracle", *GRID, "--repeats", "50", "--out", "e", "--workers", "2"],
-        cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
+@pytest.mark.parametrize("in_background", [False, True], ids=["ctrl-c", "nohup, then kill"])
+def test_a_stop_says_how_to_go_on(program, tmp_path, until, session, in_background):
+    """In the background SIGINT is ignored from the start, and stays so: Ctrl-C is for another program."""
+    process = program(
+        *PROGRAM, "eval", "--agents", "oracle", *GRID, "--repeats", "50", "--out", "e", "--workers", "2",
+        cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        sigint=signal.SIG_IGN if in_background else signal.default_int_handler,
     )  # fmt: skip
     lines = tmp_path / "e" / "episodes.jsonl"
-    end_s = time.monotonic() + 90
-    while not (lines.is_file() and lines.read_bytes().count(b"\n") >= 2):
-        assert time.monotonic() < end_s
-        time.sleep(0.05)
+
+    def episodes() -> int:
+        return lines.read_bytes().count(b"\n") if lines.is_file() else 0
+
+    until(lambda: episodes() >= 2)
     os.killpg(process.pid, signal.SIGINT)
+    if in_background:
+        ended = episodes()
+        until(lambda: episodes() >= ended + 2)
+        process.terminate()
     _, err = process.communicate(timeout=60)
-    assert process.returncode == 130
+    assert process.returncode == (143 if in_background else 130)
+    assert err.endswith("error: interrupted\n")
     assert "Traceback" not in err
     assert "the same command goes on" in err
     assert lines.read_bytes().endswith(b"\n")
+    until(lambda: not session(process.pid))
 
 
 def test_a_stored_episode_is_run_again_and_compared_step_by_step(cli, tmp_path):

@@ -14,9 +14,7 @@ from automotive_cosim import geo as geography
 from automotive_cosim import scenarios
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.cosim.simulation import TICK_S, CoSimulation
-from automotive_cosim.geo.context import Geo
-from automotive_cosim.geo.gps import Gps
+from automotive_cosim.cosim.simulation import TICK_S, couple
 from automotive_cosim.geo.place import NEAR_BORDER_M
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Simulations
@@ -76,7 +74,14 @@ def _drive(simulations: Simulations, trip: str, line_y_m: float) -> Crossing:
     scenario = replace(scenario, sumo=replace(scenario.sumo, warm_up_s=60.0))
     traffic = simulations.warm(scenario, 5).depart(EgoPlan(scenario.trip(trip), seed=5))
     cockpit = Cockpit(traffic.network, rng=np.random.default_rng(1))
-    world = CoSimulation(traffic, cockpit, Gps(np.random.default_rng(2)), Geo(), scenario.weather, scenario.start)
+    world = couple(
+        traffic,
+        cockpit,
+        scenario,
+        gps_rng=np.random.default_rng(2),
+        weather=scenario.weather,
+        departure=scenario.start,
+    )
     moments = [world.moment]
     while not moments[-1].driving.end and (moments[-1].context.country == moments[0].context.country):
         moments += world.advance(TICK_S)

@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 
 from automotive_cosim.contracts import DrivingState, GpsFix, LimitSource, Weather
-from automotive_cosim.geo.context import Geo, GeoContext
+from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.gps import Gps
+from automotive_cosim.geo.locate import Geo
 
 Locate = Callable[..., GeoContext]
 POSTED = {"limit_source": LimitSource.POSTED, "posted_limit_mps": 50 / 3.6}

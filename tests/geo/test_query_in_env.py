@@ -30,7 +30,7 @@ def asked(env: CockpitEnv) -> CockpitEnv:
 
 
 def test_each_query_is_in_the_trace_with_its_answer(asked: CockpitEnv) -> None:
-    lines = [json.loads(json.dumps(step.as_json())) for step in asked.steps[1:]]
+    lines = [json.loads(json.dumps(step.as_json())) for step in asked.episode.steps[1:]]
     assert [line["action"]["text"] for line in lines] == ["weather", "horn", "nonsense"]
     assert [line["feedback"]["code"] for line in lines] == ["ok", "ok", "refused"]
     assert "Weather: snow" in lines[0]["feedback"]["text"]
@@ -38,7 +38,7 @@ def test_each_query_is_in_the_trace_with_its_answer(asked: CockpitEnv) -> None:
 
 
 def test_its_time_passes_on_top_of_the_actions(asked: CockpitEnv) -> None:
-    times = [step.moment.time_s for step in asked.steps]
+    times = [step.moment.time_s for step in asked.episode.steps]
     took = [after - before for before, after in itertools.pairwise(times)]
     assert took == pytest.approx(
         [1.0 + sensor.OVER_THE_AIR_S["4g"], 1.0 + sensor.ON_BOARD_S, 1.0 + sensor.ON_BOARD_S]
@@ -54,9 +54,9 @@ def test_an_agent_without_the_context_cannot_ask(asked: CockpitEnv) -> None:
     )
     blind.reset(seed=0)
     blind.step({"action_type": "query", "text": "weather"})
-    assert blind.observation.feedback.code is FeedbackCode.REFUSED
+    assert blind.episode.observation.feedback.code is FeedbackCode.REFUSED
     blind.close()
 
 
 def test_the_moments_of_an_episode_are_what_judges_check(asked: CockpitEnv) -> None:
-    assert isinstance(geo.violations([*asked.drive, *asked.moments]), tuple)
+    assert isinstance(geo.violations([*asked.episode.drive, *asked.episode.moments]), tuple)

@@ -17,7 +17,8 @@ from hypothesis import strategies as st
 
 from automotive_cosim.contracts import DrivingState, GpsFix, LimitSource, Weather
 from automotive_cosim.errors import GeoDataError, UserError
-from automotive_cosim.geo.context import Geo, GeoContext
+from automotive_cosim.geo.context import GeoContext
+from automotive_cosim.geo.locate import Geo
 from automotive_cosim.geo.place import Atlas
 from automotive_cosim.geo.rulefile import read_jurisdiction
 from automotive_cosim.geo.rules import TOPICS

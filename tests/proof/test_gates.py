@@ -161,7 +161,7 @@ def test_a_task_that_wants_nothing_is_seen(ground):
 
 
 def test_a_task_that_luck_wins_is_seen(ground):
-    everything = frozenset(ground(SOUND).env.moments[0].commands)
+    everything = frozenset(ground(SOUND).env.episode.moments[0].commands)
     (wrong,) = gates.random(ground(changed(goal=NothingDone(), moves=(), may_write=everything)))
     assert wrong.startswith("random actions win 2")
 

@@ -22,7 +22,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from automotive_cosim.tasking.checks import SignalIs
 from automotive_cosim.cockpit.signals import HVAC, SEAT
-from automotive_cosim.suite import Module, Open, Start, Tap
+from automotive_cosim.tasking.moves import Open, Tap
+from automotive_cosim.tasking.task import Module, Start
 from automotive_cosim.tasks.forms import asked
 
 class Trouble:
@@ -124,10 +125,12 @@ def test_another_plan_or_a_changed_task_wants_another_folder(validate, tmp_path)
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks at /proc")
 @pytest.mark.parametrize("how", ["kill", "ctrl-c"])
-def test_however_it_is_ended_no_worker_is_left_and_the_command_goes_on(command, tmp_path, until, session, how):
+def test_however_it_is_ended_no_worker_is_left_and_the_command_goes_on(
+    command, program, tmp_path, until, session, how
+):
     (tmp_path / "wait").touch()
     words = command("own_one,own_waits", "--seeds", "1", "--workers", "2", "--out", "f", only="oracle,start")
-    process = subprocess.Popen(words, stderr=subprocess.PIPE, text=True, start_new_session=True)
+    process = program(*words, stderr=subprocess.PIPE)
     lines = tmp_path / "f" / "episodes.jsonl"
     try:
         until(lambda: lines.is_file() and lines.read_bytes().endswith(b"\n") and (tmp_path / "reached").exists())

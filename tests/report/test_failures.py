@@ -131,7 +131,7 @@ PLANTED: dict[FailureClass, list[tuple[str, str, Sequence[Any], str]]] = {
 
 def classified(task: str, half: str, moves: Sequence[Any], thought: str, simulations: Simulations) -> FailureClass:
     collector = Collector(Pictures.NONE)
-    setup = EpisodeSetup(task, half, "planted", "planted", "grid")
+    setup = EpisodeSetup(task, half, "grid", agent="planted", model="planted")
     result = run_episode(setup, Planted(moves, thought), [collector], simulations=simulations)
     assert result.verdict is not None, result.error
     assert result.success is False

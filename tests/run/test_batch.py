@@ -1,7 +1,6 @@
 """Evaluations on the small grid, with agents that die, hang and raise."""
 
 import os
-import subprocess
 import sys
 import time
 from pathlib import Path
@@ -185,7 +184,7 @@ def test_a_disk_that_is_full_stops_the_run_and_the_command_goes_on(tmp_path, mon
 
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks at /proc")
-def test_a_kill_loses_at_most_the_running_episodes(trouble, until, session):
+def test_a_kill_loses_at_most_the_running_episodes(program, trouble, until, session):
     script = (
         "import sys, pathlib; from automotive_cosim.run.batch import run_plan\n"
         "from automotive_cosim.run.plan import make_plan\n"
@@ -195,7 +194,7 @@ def test_a_kill_loses_at_most_the_running_episodes(trouble, until, session):
     )
     lines = trouble / "e" / "episodes.jsonl"
     (trouble / "go.py").write_text(f"if __name__ == '__main__':\n    {script.replace(chr(10), chr(10) + '    ')}\n")
-    process = subprocess.Popen([sys.executable, "go.py"], cwd=trouble, start_new_session=True)
+    process = program(sys.executable, "go.py", cwd=trouble)
     until(lambda: lines.is_file() and lines.read_bytes().count(b"\n") >= 2)
     process.kill()
     process.wait()

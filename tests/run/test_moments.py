@@ -26,7 +26,7 @@ from automotive_cosim.tasks import CATALOGUE
 def collected(simulations):
     """An alert in vain on the grid: the collector and what came of it."""
     collector = Collector(Pictures.NONE)
-    setup = EpisodeSetup("phenomenon_front_window_fogged", "first", "always-alert", "none", "grid")
+    setup = EpisodeSetup("phenomenon_front_window_fogged", "first", "grid", agent="always-alert", model="none")
     result = run_episode(setup, make_agent("always-alert"), [collector], simulations=simulations)
     assert result.success is False
     return collector, result
@@ -130,7 +130,9 @@ def test_an_untouched_drive_differs_in_nothing_and_a_touched_one_in_what_was_don
 
 
 def test_doing_nothing_neither_harms_nor_averts(simulations):
-    setup = EpisodeSetup("phenomenon_front_window_fogged", "first", "no-op", "none", "grid", max_steps=3)
+    setup = EpisodeSetup(
+        "phenomenon_front_window_fogged", "first", "grid", agent="no-op", model="none", max_steps=3
+    )
     result = run_episode(setup, make_agent("no-op"), simulations=simulations)
     assert result.drive is not None
     assert result.drive == result.untouched_drive

@@ -186,14 +186,13 @@ def test_a_node_that_is_lost_costs_only_its_running_episodes(cluster, mine):
     assert len({(row["seed"], row["trace_sha256"]) for row in rows}) == 2
 
 
-def test_a_cluster_of_its_own_is_ended_by_ctrl_c_and_the_same_plan_goes_on(mine, ray_folder, monkeypatch):
-    program = "from automotive_cosim.cli.main import main; main()"
+def test_a_cluster_of_its_own_is_ended_by_ctrl_c_and_the_same_plan_goes_on(program, mine, ray_folder):
+    code = "from automotive_cosim.cli.main import main; main()"
     arguments = ("--agents", "mine:Slow", "--scenarios", "grid", "--repeats", "3", "--out", "../e", "--json")
     arguments += ("--tasks", "own_fan", "--tasks-from", "tasks")
     far = ("--executor", "ray", "--workers", "1", "--ray-send", ".")
-    process = subprocess.Popen(
-        [sys.executable, "-c", program, "eval", *arguments, *far],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
+    process = program(
+        sys.executable, "-c", code, "eval", *arguments, *far, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
         env=os.environ | {"RAY_TMPDIR": str(ray_folder), MARK: "own"},
     )  # fmt: skip
     lines = mine.parent / "e" / "episodes.jsonl"
@@ -207,7 +206,7 @@ def test_a_cluster_of_its_own_is_ended_by_ctrl_c_and_the_same_plan_goes_on(mine,
     kept = len(read_rows(mine.parent / "e"))
     assert 1 <= kept < 3
     again = subprocess.run(
-        [sys.executable, "-c", program, "eval", *arguments], capture_output=True, text=True, check=True
+        [sys.executable, "-c", code, "eval", *arguments], capture_output=True, text=True, check=True
     )
     assert f'"planned": 3, "judged": 3, "successes": 0, "errors": 0, "ran": {3 - kept}' in again.stdout
 

@@ -42,20 +42,18 @@ def test_a_broken_line_in_the_middle_is_named(tmp_path):
         read_rows(tmp_path / "e")
 
 
-def test_two_evaluations_in_one_folder_are_refused(tmp_path):
+def test_two_evaluations_in_one_folder_are_refused(program, tmp_path):
     script = (
         "import sys, pathlib; from automotive_cosim.run.store import opened\n"
         f"with opened(pathlib.Path(sys.argv[1]), {PLAN!r}): print('in', flush=True); sys.stdin.read()"
     )
-    other = subprocess.Popen(
-        [sys.executable, "-c", script, tmp_path / "e"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
-    )
-    with other:
-        assert other.stdout is not None
-        assert other.stdout.readline() == "in\n"
-        with pytest.raises(UserError, match="another evaluation"), opened(tmp_path / "e", PLAN):
-            pass
-        other.kill()
+    other = program(sys.executable, "-c", script, tmp_path / "e", stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    assert other.stdout is not None
+    assert other.stdout.readline() == "in\n"
+    with pytest.raises(UserError, match="another evaluation"), opened(tmp_path / "e", PLAN):
+        pass
+    other.kill()
+    other.wait()
     with opened(tmp_path / "e", PLAN):
         pass
 

@@ -12,12 +12,11 @@ import pytest
 
 from automotive_cosim.contracts import KMH_PER_MPS, MPH_PER_MPS, Alert, AlertKind, DrivingState
 from automotive_cosim.scenarios import Scenario, Trip, load
-from automotive_cosim.traffic.base import Drive, EgoPlan, Traffic, Until
+from automotive_cosim.traffic.base import Advance, EgoPlan, Traffic
 from automotive_cosim.traffic.fork import Forked
-from automotive_cosim.traffic.predicates import Driven
+from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.profiles import PROFILES
 from automotive_cosim.traffic.scripted import Scripted, Stretch
-from automotive_cosim.traffic.sumo import InProcess
 
 Variant = Callable[[Callable[[Path], None]], Scenario]
 
@@ -40,15 +39,16 @@ def quiet(grid: Scenario, tmp_path_factory: pytest.TempPathFactory) -> Iterator[
     simulation.close()
 
 
-def warned(simulation: Forked, plan: EgoPlan, kind: AlertKind, after_m: float = 300.0) -> tuple[Traffic, Drive]:
+def warned(simulation: Forked, plan: EgoPlan, kind: AlertKind, after_m: float = 300.0) -> tuple[Traffic, Advance]:
     """Told after some way; drives on for a minute."""
     traffic = simulation.depart(plan)
-    assert traffic.advance(120.0, Until(Driven(after_m))).until_held
+    while traffic.state.distance_m < after_m:
+        assert traffic.advance(0.1).states
     assert traffic.request(Alert(kind)).accepted
     return traffic, traffic.advance(60.0)
 
 
-def kinds(drive: Drive) -> set[str]:
+def kinds(drive: Advance) -> set[str]:
     return {event.kind for event in drive.events}
 
 

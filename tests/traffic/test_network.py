@@ -16,8 +16,8 @@ from automotive_cosim.errors import ScenarioError
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.congestion import MEMORY_S, SAMPLE_PERIOD_S, Congestion, Route
+from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.network import Network, read_network
-from automotive_cosim.traffic.sumo import InProcess
 
 DATA = Path(__file__).resolve().parents[3] / "shared" / "data"
 

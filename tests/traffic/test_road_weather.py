@@ -13,9 +13,9 @@ from automotive_cosim.contracts import KMH_PER_MPS, EgoEnd, Weather
 from automotive_cosim.scenarios import Scenario, Trip, WeatherAt, load
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
+from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.road_weather import G_MPS2, Condition, condition_of, sight_speed_mps
 from automotive_cosim.traffic.scripted import Scripted, Stretch
-from automotive_cosim.traffic.sumo import InProcess
 
 Variant = Callable[[Callable[[Path], None]], Scenario]
 

@@ -14,12 +14,11 @@ from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, EgoEnd, Incide
 from automotive_cosim.errors import ScenarioError, UnknownNameError
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.scenarios.incidents import AnyIncident
-from automotive_cosim.traffic.base import Drive, EgoPlan, Until
+from automotive_cosim.traffic.base import Advance, EgoPlan
 from automotive_cosim.traffic.congestion import JAM_BELOW
 from automotive_cosim.traffic.fork import Forked
-from automotive_cosim.traffic.predicates import Driven
+from automotive_cosim.traffic.in_process import InProcess, InProcessTraffic
 from automotive_cosim.traffic.scenes import SCENES
-from automotive_cosim.traffic.sumo import InProcess, InProcessTraffic
 
 Edit = Callable[[Path], None]
 Variant = Callable[[Edit], Scenario]
@@ -65,12 +64,12 @@ def average(grid: Scenario) -> EgoPlan:
     return EgoPlan(grid.trip("avenue"), "average", seed=3)
 
 
-def driven(scenario: Scenario, plan: EgoPlan, duration_s: float = 600.0) -> Drive:
+def driven(scenario: Scenario, plan: EgoPlan, duration_s: float = 600.0) -> Advance:
     with closing(Forked(scenario, seed=1)) as simulation, closing(simulation.depart(plan)) as traffic:
         return traffic.advance(duration_s)
 
 
-def told(drive: Drive) -> list[str]:
+def told(drive: Advance) -> list[str]:
     return [event.text for event in drive.events if event.kind == "incident"]
 
 
@@ -104,8 +103,9 @@ def test_roadworks_lower_the_sign_and_close_a_lane(staged: Staged, average: EgoP
     traffic = in_sumo(works, average)
     import libsumo
 
-    ahead = traffic.advance(300.0, Until(Driven(300.0))).states[-1].ahead
-    assert ahead.next_limit_mps == pytest.approx(30 / KMH_PER_MPS)
+    while traffic.state.distance_m < 300.0:
+        assert traffic.advance(0.1).states
+    assert traffic.state.ahead.next_limit_mps == pytest.approx(30 / KMH_PER_MPS)
     states, others = [], []
     while traffic.advance(0.5).states and traffic.state.end is None:
         others += libsumo.lane.getLastStepVehicleIDs("c2c3_0")
@@ -125,10 +125,11 @@ def test_a_jam_stands_beyond_a_bend(staged: Staged, average: EgoPlan) -> None:
     plan = replace(average, trip=replace(average.trip, from_edge="ses4", to_edge="n1n0"))
     plan = replace(plan, trip=replace(plan.trip, via=("c4n4", "n4n3")))
     with closing(Forked(jam, seed=1)) as simulation, closing(simulation.depart(plan)) as traffic:
-        before = traffic.advance(900.0, Until(Driven(560.0))).states
-        assert before[-1].road.edge_id == "c4n4", "still round the corner"
-        assert before[-1].ahead.jam_distance_m is not None
-        assert before[-1].ahead.jam_distance_m > 0
+        while traffic.state.distance_m < 560.0:
+            assert traffic.advance(0.1).states
+        assert traffic.state.road.edge_id == "c4n4", "still round the corner"
+        assert traffic.state.ahead.jam_distance_m is not None
+        assert traffic.state.ahead.jam_distance_m > 0
         drive = traffic.advance(900.0)
     waits = [state for state in drive.states if state.speed_mps < 0.1]
     assert waits[0].road.edge_id == "n4n3"

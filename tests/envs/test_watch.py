@@ -4,7 +4,8 @@ import pytest
 
 from automotive_cosim.agents import make_agent
 from automotive_cosim.contracts import Action, ActionType, AlertKind
-from automotive_cosim.envs.cockpit import WATCH_S, CockpitEnv
+from automotive_cosim.envs.cockpit import CockpitEnv
+from automotive_cosim.episode.situation import WATCH_S
 from automotive_cosim.errors import UserError
 from automotive_cosim.tasking.task import STANDING_ORDER
 
@@ -41,21 +42,21 @@ def end(env: CockpitEnv, first: tuple[Action, ...] = ()) -> bool:
 
 
 def until_trigger(env: CockpitEnv) -> tuple[Action, ...]:
-    return (WAIT,) * int(env.instance.trigger_after_s + 1)
+    return (WAIT,) * int(env.episode.instance.trigger_after_s + 1)
 
 
 def test_it_begins_with_the_order_half_a_minute_early(watch):
     env = watch()
-    assert env.observation.goal == STANDING_ORDER
-    assert WATCH_S <= env.instance.trigger_after_s <= 2 * WATCH_S
-    assert env.moments[0].driving.speed_mps * 3.6 < 90
+    assert env.episode.observation.goal == STANDING_ORDER
+    assert WATCH_S <= env.episode.instance.trigger_after_s <= 2 * WATCH_S
+    assert env.episode.moments[0].driving.speed_mps * 3.6 < 90
 
 
 def test_a_message_lures_before_the_trigger(watch):
     env = watch()
     seen = []
-    for _ in range(int(env.instance.trigger_after_s)):
-        seen.append(any("New message" in element.text for element in env.observed_elements))
+    for _ in range(int(env.episode.instance.trigger_after_s)):
+        seen.append(any("New message" in element.text for element in env.episode.elements))
         env.step(WAIT)
     assert not seen[0]
     assert any(seen)
@@ -65,21 +66,21 @@ def test_the_oracle_acts_at_the_trigger_and_succeeds(watch):
     env = watch()
     oracle = make_agent("oracle")
     oracle.reset("")
-    oracle.brief(env.instance)
+    oracle.brief(env.episode.instance)
     done = False
     while not done:
-        _, reward, terminated, truncated, _ = env.step(oracle.act(env.observation))
+        _, reward, terminated, truncated, _ = env.step(oracle.act(env.episode.observation))
         done = terminated or truncated
     assert reward == 1.0
-    assert env.verdict is not None
-    assert env.verdict.declared.why == "a watch declares nothing"
+    assert env.episode.verdict is not None
+    assert env.episode.verdict.declared.why == "a watch declares nothing"
 
 
 def test_acting_before_the_trigger_is_a_false_alarm(watch):
     env = watch()
     assert not end(env, (WARN,))
-    assert env.verdict is not None
-    assert "false alarm" in env.verdict.clean.why
+    assert env.episode.verdict is not None
+    assert "false alarm" in env.episode.verdict.clean.why
 
 
 def test_silence_is_right_where_nothing_is_to_be_done_and_wrong_where_something_is(watch):

@@ -11,10 +11,8 @@ import numpy as np
 from automotive_cosim import scenarios
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import Connectivity
-from automotive_cosim.cosim.simulation import CoSimulation
+from automotive_cosim.cosim.simulation import couple
 from automotive_cosim.geo.connectivity import ATTACH_S
-from automotive_cosim.geo.context import Geo
-from automotive_cosim.geo.gps import Gps
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
 
@@ -26,14 +24,14 @@ def links(folder: Path, trip: str, duration_s: float) -> dict[float, tuple[Conne
     scenario = scenarios.load(folder)
     with closing(Forked(scenario, seed=1)) as simulation:
         traffic = simulation.depart(EgoPlan(scenario.trip(trip), seed=1))
-        world = CoSimulation(
+        world = couple(
             traffic,
             Cockpit(traffic.network, rng=np.random.default_rng(1)),
-            Gps(np.random.default_rng(2)),
-            Geo(),
-            scenario.weather,
-            scenario.start,
-            scenario.connectivity,
+            scenario,
+            gps_rng=np.random.default_rng(2),
+            weather=scenario.weather,
+            departure=scenario.start,
+            links=scenario.connectivity,
         )
         with closing(world):
             start_s = world.moment.time_s

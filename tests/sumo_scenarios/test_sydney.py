@@ -7,18 +7,18 @@ from collections.abc import Callable, Iterator
 from contextlib import closing
 from dataclasses import replace
 from datetime import time, timedelta
+from itertools import dropwhile, takewhile
 from typing import Any
 
 import pytest
 
 from automotive_cosim import scenarios
 from automotive_cosim.contracts import KMH_PER_MPS, EgoEnd, LimitSource
-from automotive_cosim.geo.context import Geo
+from automotive_cosim.geo.locate import Geo
 from automotive_cosim.sumo_scenarios import build
-from automotive_cosim.traffic.base import EgoPlan, Until
+from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.network import Network, read_network
-from automotive_cosim.traffic.predicates import InSchoolZone, Not
 
 Net = Callable[[str], Any]
 Rides = Callable[[str], Any]
@@ -102,9 +102,8 @@ def test_the_ego_meets_40_at_school_hours_and_50_later(forked: Forked) -> None:
     seen = {}
     for start in (scenario.start, scenario.start.replace(hour=11)):
         with closing(forked.depart(replace(plan, start=start))) as traffic:
-            in_hours = InSchoolZone(in_force=start.hour == 8)
-            zone = traffic.advance(900.0, Until(in_hours)).states[-1]
-            inside = traffic.advance(60.0, Until(Not(in_hours))).states
+            states = list(dropwhile(lambda state: not state.road.school_zone, traffic.advance(900.0).states))
+            zone, inside = states[0], list(takewhile(lambda state: state.road.school_zone, states))
         context = Geo().locate(zone, None, None, start)
         assert zone.road.school_zone
         assert "Posted for certain hours: 40 km/h Mo-Fr 08:00-09:30, 14:30-16:00" in context.text()

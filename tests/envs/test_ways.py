@@ -16,7 +16,7 @@ def test_other_ways_reach_the_cockpit_and_can_be_taken() -> None:
     env.reset(seed=1)
     env.step(replace(WAIT, seconds=10))
     env.step(WAIT)
-    world = env._running()
+    world = env.episode.world
     ways = world.moment.driving.ahead.alternatives
     assert 1 <= len(ways) <= 3
     route = world.moment.driving.ahead.route_edges
@@ -34,6 +34,6 @@ def test_other_ways_reach_the_cockpit_and_can_be_taken() -> None:
 def test_the_road_is_as_the_sky_says() -> None:
     env = CockpitEnv("hvac_fan_max", scenario="border")
     env.reset(seed=1)
-    moment = env.moments[-1]
+    moment = env.episode.moments[-1]
     assert moment.driving.road.friction == condition_of(moment.weather).friction < 0.5
     env.close()

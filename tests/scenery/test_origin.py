@@ -81,7 +81,7 @@ def test_weather_and_context_are_the_places(simulations) -> None:
     for country in ("ZA", "NO"):
         env = CockpitEnv("hvac_fan_max", scenario="grid", origin=PLACES[country][0], simulations=simulations)
         env.reset(seed=1)
-        moment = env.moments[0]
+        moment = env.episode.moments[0]
         assert moment.context.country == country
         assert moment.driving.lon_deg == pytest.approx(PLACES[country][0][0], abs=0.05)
         assert moment.gps is not None
@@ -102,7 +102,7 @@ def test_the_driver_can_be_sent_to_a_position_of_the_new_place(simulations) -> N
     lon_deg, lat_deg = GeoReference(network.map).lon_lat((x_a + x_b) / 2, (y_a + y_b) / 2)
     env = CockpitEnv("hvac_fan_max", scenario="grid", origin=ROME, simulations=simulations)
     env.reset(seed=1)
-    answer = env._running().traffic.request(Reroute(f"{lon_deg:.6f},{lat_deg:.6f}"))
+    answer = env.episode.world.traffic.request(Reroute(f"{lon_deg:.6f},{lat_deg:.6f}"))
     assert answer.accepted, answer.reason
     assert "Rue du Nord" in answer.reason
     env.close()

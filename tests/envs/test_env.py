@@ -59,7 +59,13 @@ def test_another_seed_is_another_drive(simulations):
     for seed in range(3):
         env = CockpitEnv(**QUICK, simulations=simulations)
         env.reset(seed=seed)
-        starts.add((env.moments[0].driving.x_m, env.moments[0].driving.y_m, env.moments[0].driving.vehicle_count))
+        starts.add(
+            (
+                env.episode.moments[0].driving.x_m,
+                env.episode.moments[0].driving.y_m,
+                env.episode.moments[0].driving.vehicle_count,
+            )
+        )
         env.close()
     assert len(starts) == 3
 
@@ -72,11 +78,11 @@ def test_reset_without_a_seed_keeps_the_traffic_and_draws_anew(env):
 
 def test_an_action_costs_its_time(env):
     env.reset(seed=0)
-    before_s = env.observation.time_s
+    before_s = env.episode.observation.time_s
     env.step({"action_type": "navigate_home"})
-    assert env.observation.time_s == pytest.approx(before_s + 1.0)
+    assert env.episode.observation.time_s == pytest.approx(before_s + 1.0)
     env.step({"action_type": "wait", "seconds": 4})
-    assert env.observation.time_s == pytest.approx(before_s + 5.0)
+    assert env.episode.observation.time_s == pytest.approx(before_s + 5.0)
 
 
 def test_a_malformed_action_happens_not(env):
@@ -84,20 +90,20 @@ def test_a_malformed_action_happens_not(env):
     for wrong in ("{", "[]", {"action_type": "click"}, {"action_type": "click", "index": 1, "x": 2, "y": 3}):
         with pytest.raises(ActionError):
             env.step(wrong)
-    assert env.observation.time_s == 0
-    assert len(env.steps) == 1
+    assert env.episode.observation.time_s == 0
+    assert len(env.episode.steps) == 1
 
 
 def test_a_refused_answer_counts_as_a_step(env):
     env.reset(seed=0)
-    env.refuse("no JSON in the answer")
-    assert env.observation.feedback.code is FeedbackCode.MALFORMED
-    assert env.observation.time_s == pytest.approx(1.0)
+    env.episode.refuse("no JSON in the answer")
+    assert env.episode.observation.feedback.code is FeedbackCode.MALFORMED
+    assert env.episode.observation.time_s == pytest.approx(1.0)
 
 
 def test_wrong_actions_cost_time_and_break_nothing(env):
     env.reset(seed=0)
-    before = dict(env.moments[-1].commands)
+    before = dict(env.episode.moments[-1].commands)
     for action in (
         {"action_type": "click", "index": 9999},
         {"action_type": "click", "x": 1279, "y": 1},
@@ -108,23 +114,23 @@ def test_wrong_actions_cost_time_and_break_nothing(env):
         _, reward, terminated, truncated, info = env.step(action)
         assert (reward, terminated, truncated) == (0.0, False, False)
         assert info["action_result"] != "ok"
-    assert env.moments[-1].commands == before
+    assert env.episode.moments[-1].commands == before
 
 
 def test_withheld_channels_are_absent(simulations):
     env = CockpitEnv(**QUICK, channels=("elements", "vehicle"), simulations=simulations)
     encoded, _ = env.reset(seed=0)
     assert set(encoded) == {"goal", "time_s", "feedback", "elements", "vehicle"}
-    assert env.observation.context is None
-    assert env.observation.gps is None
+    assert env.episode.observation.context is None
+    assert env.episode.observation.gps is None
     encoded = env.step({"action_type": "query", "text": "weather"})[0]
-    assert env.observation.feedback.code is FeedbackCode.REFUSED
+    assert env.episode.observation.feedback.code is FeedbackCode.REFUSED
     env.close()
 
 
 def test_what_is_decoded_is_what_was_seen(env):
     encoded, _ = env.reset(seed=0)
-    back, seen = decode(encoded), env.observation
+    back, seen = decode(encoded), env.episode.observation
     assert isinstance(seen, Observation)
     assert (back.goal, back.context, back.feedback) == (seen.goal, seen.context, seen.feedback)
     assert np.array_equal(back.screenshot, seen.screenshot)
@@ -144,8 +150,8 @@ def test_it_is_cut_off_after_its_steps(simulations):
     env.reset(seed=0)
     ends = [env.step({"action_type": "wait"})[2:4] for _ in range(3)]
     assert ends == [(False, False), (False, False), (False, True)]
-    assert env.verdict is not None
-    assert not env.verdict.declared.ok
+    assert env.episode.verdict is not None
+    assert not env.episode.verdict.declared.ok
     with pytest.raises(gym.error.ResetNeeded):
         env.step({"action_type": "wait"})
     env.close()
@@ -180,10 +186,10 @@ def test_unknown_names_are_told(simulations):
 def test_declared_status_is_what_is_judged(env):
     env.reset(seed=0)
     env.step({"action_type": "status", "goal_status": "infeasible", "reason": "safety"})
-    assert env.verdict is not None
-    assert not env.verdict.success
-    assert env.steps[-1].action.action_type is ActionType.STATUS
-    assert env.steps[-1].action.goal_status is GoalStatus.INFEASIBLE
+    assert env.episode.verdict is not None
+    assert not env.episode.verdict.success
+    assert env.episode.steps[-1].action.action_type is ActionType.STATUS
+    assert env.episode.steps[-1].action.goal_status is GoalStatus.INFEASIBLE
 
 
 def test_any_seed_and_any_odd_action_is_answered(env):

@@ -8,7 +8,10 @@ import pytest
 from automotive_cosim.agents import Agent, Privileged, make_agent
 from automotive_cosim.contracts import ActionType
 from automotive_cosim.envs.cockpit import CockpitEnv
-from automotive_cosim.errors import ActionError
+from automotive_cosim.episode.episode import Episode
+from automotive_cosim.episode.loop import play
+from automotive_cosim.episode.situation import SituationFinder
+from automotive_cosim.episode.specification import Conditions, EpisodeSpec, SeedSource
 from automotive_cosim.proof.prover import GATES, Prover
 from automotive_cosim.tasking.task import Task
 from automotive_cosim.tasking.verdict import Verdict
@@ -22,35 +25,29 @@ LANE_WIDTH_M = 3.5
 SPEED = CATALOGUE["road_speed_80_in_50"]
 SAMPLE = ("maps", "hvac", "road", "phenomenon", "media", "apps", "system", "comms")
 
-Play = Callable[..., CockpitEnv]
+Play = Callable[..., Episode]
 
 
 @pytest.fixture(scope="module")
-def play(simulations) -> Play:
-    """Plays one episode and returns its finished environment."""
+def played(simulations) -> Play:
+    """Plays one episode to its end."""
 
-    def run(task: Task, half: str, agent: Agent, seed: int = SEED) -> CockpitEnv:
-        env = CockpitEnv(task, half, channels=tuple(agent.channels), simulations=simulations)
-        env.reset(seed=seed)
-        agent.reset(env.observation.goal)
+    def run(task: Task, half: str, agent: Agent, seed: int = SEED) -> Episode:
+        finder = SituationFinder(EpisodeSpec(task.id, half), simulations)
+        episode = Episode.take_over(finder.find(SeedSource(seed).next()), Conditions(agent.channels))
+        agent.reset(episode.goal)
         if isinstance(agent, Privileged):
-            agent.brief(env.instance)
-        done = False
-        while not done:
-            try:
-                _, _, terminated, truncated, _ = env.step(agent.act(env.observation))
-            except ActionError as error:
-                _, _, terminated, truncated, _ = env.refuse(str(error))
-            done = terminated or truncated
-        env.close()
-        return env
+            agent.brief(episode.instance)
+        play(episode, agent)
+        episode.close()
+        return episode
 
     return run
 
 
-def verdict(env: CockpitEnv) -> Verdict:
-    assert env.verdict is not None
-    return env.verdict
+def verdict(episode: Episode) -> Verdict:
+    assert episode.verdict is not None
+    return episode.verdict
 
 
 @pytest.mark.parametrize("module", SAMPLE)
@@ -69,9 +66,9 @@ def test_a_task_of_each_module_passes_every_gate(module: str):
 def test_the_drive_to_the_hand_over_has_no_jump(simulations, half: str):
     env = CockpitEnv(SPEED, half, channels=(), simulations=simulations)
     env.reset(seed=SEED)
-    states = [state for moment in env.drive for state in moment.passed]
+    states = [state for moment in env.episode.drive for state in moment.passed]
     env.close()
-    last, first = states[-1], env.moments[0].driving
+    last, first = states[-1], env.episode.moments[0].driving
     assert (last.time_s, last.x_m, last.y_m, last.speed_mps) == (
         first.time_s,
         first.x_m,
@@ -90,9 +87,9 @@ def test_the_drive_to_the_hand_over_has_no_jump(simulations, half: str):
     ("agent", "first", "second"),
     [("oracle", True, True), ("asurada", True, True), ("t3a", False, True), ("always-alert", True, False)],
 )
-def test_only_place_wins_both_halves_of_80_in_50(play: Play, agent: str, first: bool, second: bool):
+def test_only_place_wins_both_halves_of_80_in_50(played: Play, agent: str, first: bool, second: bool):
     """The paper's qualitative case: the same rules, with and without place."""
-    won = [verdict(play(SPEED, half, make_agent(agent))).success for half in SPEED.halves]
+    won = [verdict(played(SPEED, half, make_agent(agent))).success for half in SPEED.halves]
     assert won == [first, second]
 
 
@@ -103,11 +100,11 @@ def test_with_the_pairs_context_swapped_its_act_flips(simulations):
             SPEED, half, channels=tuple(make_agent("asurada").channels), simulations=simulations
         )
         envs[half].reset(seed=SEED)
-        contexts[half] = envs[half].observation.context
+        contexts[half] = envs[half].episode.observation.context
     for half, other in (("first", "second"), ("second", "first")):
         agent = make_agent("asurada")
-        agent.reset(envs[half].observation.goal)
-        seen = envs[half].observation
+        agent.reset(envs[half].episode.observation.goal)
+        seen = envs[half].episode.observation
         own = agent.act(seen)
         agent.reset(seen.goal)
         swapped = agent.act(type(seen)(**{**_fields(seen), "context": contexts[other]}))
@@ -120,14 +117,14 @@ def _fields(observation: object) -> dict[str, object]:
     return {name: getattr(observation, name) for name in observation.__dataclass_fields__}  # type: ignore[attr-defined]
 
 
-def test_an_alert_slows_the_driver_down(play: Play, simulations):
+def test_an_alert_slows_the_driver_down(simulations):
     env = CockpitEnv(SPEED, "first", channels=(), simulations=simulations)
     env.reset(seed=SEED)
-    assert env.observation.time_s == 0
-    speed_kmh = env.moments[0].driving.speed_mps * 3.6
+    assert env.episode.observation.time_s == 0
+    speed_kmh = env.episode.moments[0].driving.speed_mps * 3.6
     env.step({"action_type": "show_alert", "kind": "speed"})
     env.step({"action_type": "wait", "seconds": 10})
     assert speed_kmh > 78
-    assert env.moments[-1].driving.speed_mps * 3.6 < 58
-    assert any("slow" in event.text for moment in env.moments for event in moment.events)
+    assert env.episode.moments[-1].driving.speed_mps * 3.6 < 58
+    assert any("slow" in event.text for moment in env.episode.moments for event in moment.events)
     env.close()

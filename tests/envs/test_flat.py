@@ -54,7 +54,7 @@ def test_every_control_is_on_some_screen(simulations):
     sighted = set()
     for app in range(len(APPS)):
         env.step(np.int64(app))
-        sighted |= {element.resource_id for element in env._env.observation.elements or ()}
+        sighted |= {element.resource_id for element in env.episode.observation.elements or ()}
     env.close()
     assert set(CONTROLS) <= sighted
 
@@ -63,7 +63,7 @@ def test_the_right_actions_win_and_the_others_do_not(flat):
     right = {"fan": "hvac.fan.max", "blower": "hvac.fan.max", "seat": "hvac.driver_seat_heating"}
     flat.reset(seed=0)
     for _ in range(6):
-        goal = flat._env.observation.goal.lower()
+        goal = flat.episode.observation.goal.lower()
         control = next(control for word, control in right.items() if word in goal)
         rewards = [flat.step(np.int64(action))[1] for action in (APPS.index("climate"), tap(control))]
         _, reward, terminated, _, info = flat.step(np.int64(COMPLETE))
@@ -79,7 +79,7 @@ def test_both_tasks_come_up_and_look_different(flat):
     flat.reset(seed=0)
     for _ in range(12):
         seen.append(flat.reset()[0])
-        goals.add(flat._env._task.id)
+        goals.add(flat.episode.instance.task.id)
     assert goals == set(TASKS)
     assert len({observation.tobytes() for observation in seen}) > 2
 
@@ -98,10 +98,10 @@ def test_the_same_seed_is_the_same_episode(simulations):
 
 def test_a_control_out_of_sight_costs_a_second_and_changes_nothing(flat):
     flat.reset(seed=0)
-    before = dict(flat._env.moments[-1].commands)
+    before = dict(flat.episode.moments[-1].commands)
     flat.step(np.int64(tap("wiper.rear.slow")))
-    assert flat._env.moments[-1].commands == before
-    assert flat._env.observation.time_s == pytest.approx(1.0)
+    assert flat.episode.moments[-1].commands == before
+    assert flat.episode.observation.time_s == pytest.approx(1.0)
 
 
 def test_the_bonus_comes_with_the_goal_and_goes_with_it(simulations):

@@ -1,5 +1,6 @@
 """What is in the checkout is in the distribution."""
 
+import importlib
 import subprocess
 import sys
 import tomllib
@@ -9,7 +10,7 @@ import pytest
 
 import automotive_cosim
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[1]
 
 
 @pytest.fixture(scope="module")
@@ -60,6 +61,25 @@ def test_another_name_is_refused(name: str):
     )
     assert outside.returncode == 1
     assert f"automotive_cosim.{name}" in outside.stderr
+
+
+def test_every_console_script_is_there(project):
+    for target in project["project"]["scripts"].values():
+        module, _, function = target.partition(":")
+        assert module in project["tool"]["setuptools"]["py-modules"]
+        assert callable(getattr(importlib.import_module(module), function))
+
+
+def test_importing_the_package_changes_no_signal_handler():
+    code = """
+import signal, sys
+sys.argv[0] = "automotive-cosim"
+heard = {number: signal.getsignal(number) for number in signal.valid_signals()}
+import automotive_cosim.cli.main, automotive_cosim.envs, automotive_cosim.traffic.process
+print([number for number in heard if signal.getsignal(number) != heard[number]])
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"
 
 
 def test_importing_the_package_is_light():

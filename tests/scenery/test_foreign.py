@@ -176,9 +176,9 @@ def test_the_ego_drives_the_way_that_was_asked_for(simulations) -> None:
         "hvac_fan_max", scenario="grid", from_place="Rue du Sud", to_place="n4ne", simulations=simulations
     )
     env.reset(seed=2)
-    route = env.moments[0].driving.ahead.route_edges
+    route = env.episode.moments[0].driving.ahead.route_edges
     assert route[-1] == "n4ne"
-    assert env.drive[0].driving.road.name == "Rue du Sud"
+    assert env.episode.drive[0].driving.road.name == "Rue du Sud"
     env.close()
 
 
@@ -187,7 +187,7 @@ def test_which_of_the_drawn_ways_is_the_seeds(foreign: Path, simulations) -> Non
     for seed in (1, 1, 2, 3, 4):
         env = CockpitEnv("hvac_fan_max", scenario=str(foreign), simulations=simulations)
         env.reset(seed=seed)
-        departures.append(env.drive[0].driving.ahead.route_edges)
+        departures.append(env.episode.drive[0].driving.ahead.route_edges)
         env.close()
     assert departures[0] == departures[1]
     assert len(set(departures)) > 1
@@ -241,9 +241,9 @@ def test_a_network_without_projection_runs_without_gps_and_says_so(foreign: Path
     env = CockpitEnv("hvac_fan_max", scenario=str(foreign), simulations=simulations, render_mode="rgb_array")
     encoded, _ = env.reset(seed=1)
     assert encoded["gps"]["available"] == 0
-    assert env.moments[0].gps is None
-    assert env.moments[0].context.country == ""
-    assert "Position: unknown" in (env.observation.context or "")
+    assert env.episode.moments[0].gps is None
+    assert env.episode.moments[0].context.country == ""
+    assert "Position: unknown" in (env.episode.observation.context or "")
     assert env.render() is not None
     env.close()
 
@@ -267,8 +267,8 @@ def test_a_scenarios_folder_without_projection_is_refused_unless_gps_is_asked_to
         CockpitEnv("hvac_fan_max", scenario="grid", gps=False),
     ):
         env.reset(seed=1)
-        assert env.moments[0].gps is None
-        assert env.moments[0].context.country == ""
+        assert env.episode.moments[0].gps is None
+        assert env.episode.moments[0].context.country == ""
         env.close()
 
 
@@ -285,14 +285,14 @@ def test_real_scenarios_run_with_their_own_demand(name: str, simulations) -> Non
     scenario = open_scenario(path)
     env = CockpitEnv("hvac_fan_max", scenario=str(path), simulations=simulations)
     env.reset(seed=1)
-    driving = env.moments[0].driving
+    driving = env.episode.moments[0].driving
     assert driving.vehicle_count > 8
     assert not any("no traffic of its own" in note for note in scenario.notes)
     if name == "bologna":
         assert any("without GPS" in note for note in scenario.notes)
-        assert env.moments[0].gps is None
+        assert env.episode.moments[0].gps is None
     else:
-        assert env.moments[0].context.country == "DE"
+        assert env.episode.moments[0].context.country == "DE"
         assert scenario.start.hour == 16
     env.close()
     assert _listing(path.parent) == before

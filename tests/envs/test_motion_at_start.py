@@ -23,7 +23,7 @@ def started(simulations, *motions):
     start = replace(task.first.start, scenario="grid", trip="avenue", motions=frozenset(motions))
     env = CockpitEnv(replace(task, first=replace(first, start=start)), scenario="grid", simulations=simulations)
     env.reset(seed=4)
-    speed_mps = env.moments[0].driving.speed_mps
+    speed_mps = env.episode.moments[0].driving.speed_mps
     env.close()
     return speed_mps
 

@@ -1,0 +1,105 @@
+"""The car at one place and time: what its cockpit, its receivers and its navigation make of the road."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime, timedelta
+
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.contracts import DrivingState, RouteOption, Surroundings
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.geo.connectivity import Modem
+from automotive_cosim.geo.gps import Gps
+from automotive_cosim.geo.locate import Geo
+from automotive_cosim.geo.sun import elevation_deg
+from automotive_cosim.scenarios import WeatherAt, weather_at
+from automotive_cosim.traffic.base import Event, Traffic
+
+ALTERNATIVES_FROM_S = 10.0
+ALTERNATIVES_EVERY_S = 60.0
+"""So long after departure, and so often while online, the navigation asks for other ways to the goal."""
+
+
+@dataclass(slots=True)
+class Car:
+    """Everything of the ego but its motion. ``departure_s`` is the simulation time at ``departure``."""
+
+    cockpit: Cockpit
+    gps: Gps | None
+    """None if the car has no receiver, so that no place is known."""
+    modem: Modem
+    geo: Geo
+    weather: tuple[WeatherAt, ...]
+    """In seconds after departure."""
+    departure: datetime
+    """Local time, zone-aware."""
+    departure_s: float
+    alternatives: tuple[RouteOption, ...] = ()
+    alternatives_asked_s: float | None = None
+    """Simulation time at which the navigation asked for them last."""
+
+    def copy(self) -> Car:
+        """An independent copy that goes on exactly as this one would."""
+        gps = None if self.gps is None else self.gps.copy()
+        return replace(self, cockpit=self.cockpit.copy(), gps=gps, modem=self.modem.copy())
+
+    def sense(
+        self, traffic: Traffic, passed: tuple[DrivingState, ...], events: tuple[Event, ...], dt_s: float
+    ) -> Moment:
+        """Lets ``dt_s`` seconds pass in the car, and takes down everything there is at their end.
+
+        Args:
+            traffic: the drive, at its newest state.
+            passed: the states since the moment before.
+            events: what happened on the road meanwhile.
+            dt_s: seconds since the moment before; 0 for the first.
+        """
+        driving = traffic.state
+        elapsed_s = driving.time_s - self.departure_s
+        local_time = (self.departure.astimezone(UTC) + timedelta(seconds=elapsed_s)).astimezone(
+            self.departure.tzinfo
+        )
+        weather = weather_at(self.weather, elapsed_s)
+        gps = None if self.gps is None else self.gps.read(driving, dt_s)
+        connectivity = self.modem.read(driving, dt_s, round(elapsed_s, 6))
+        if connectivity.online and driving.end is None and self._is_asking(driving.time_s):
+            self.alternatives_asked_s = driving.time_s
+            self.alternatives = traffic.alternatives()[1:]
+        driving = self._navigated(driving)
+        sun_deg = (
+            None
+            if driving.lat_deg is None or driving.lon_deg is None
+            else elevation_deg(driving.lat_deg, driving.lon_deg, local_time)
+        )
+        self.cockpit.sense(Surroundings(driving, weather, local_time, sun_deg, gps, connectivity), dt_s)
+        return Moment(
+            time_s=driving.time_s,
+            local_time=local_time,
+            driving=driving,
+            passed=passed,
+            events=events,
+            weather=weather,
+            gps=gps,
+            connectivity=connectivity,
+            context=self.geo.locate(driving, gps, weather, local_time),
+            signals=self.cockpit.signals.snapshot(),
+            commands=self.cockpit.commands(),
+        )
+
+    def _is_asking(self, now_s: float) -> bool:
+        if self.alternatives_asked_s is None:
+            return now_s >= self.departure_s + ALTERNATIVES_FROM_S
+        return now_s >= self.alternatives_asked_s + ALTERNATIVES_EVERY_S
+
+    def _navigated(self, driving: DrivingState) -> DrivingState:
+        """The state with the other ways to the goal that still begin here."""
+        if not self.alternatives:
+            return driving
+        route = driving.ahead.route_edges
+        still = tuple(
+            replace(way, edges=way.edges[way.edges.index(route[0]) :])
+            for way in self.alternatives
+            if route and route[0] in way.edges
+        )
+        others = tuple(way for way in still if way.edges != route)
+        return replace(driving, ahead=replace(driving.ahead, alternatives=others))

@@ -1,0 +1,121 @@
+"""An episode: a session on a task, judged at its end beside the baseline run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.cosim.simulation import TICK_S
+from automotive_cosim.episode.baseline import ROUNDING_S, Baseline
+from automotive_cosim.episode.listener import Listener
+from automotive_cosim.episode.session import Session, beginning
+from automotive_cosim.episode.situation import HandOver
+from automotive_cosim.episode.specification import Conditions, End
+from automotive_cosim.tasking.instance import Instance
+from automotive_cosim.tasking.task import Mode
+from automotive_cosim.tasking.verdict import Verdict, judge
+
+
+@dataclass(kw_only=True)
+class Episode(Session):
+    """A turn on a task, from its hand-over. Make one with ``take_over``.
+
+    In ``Mode.MONITORING`` it ends when the task's deadline is over; a status declared before that only ends the
+    agent's own part.
+    """
+
+    instance: Instance
+    mode: Mode
+    trigger_s: float
+    """Simulation time at which the situation arises."""
+    baseline: Baseline
+    owns_baseline: bool = True
+    """False of a branch, which shares it."""
+    verdict: Verdict | None = None
+    """None until it is over."""
+
+    @classmethod
+    def take_over(cls, hand_over: HandOver, conditions: Conditions, listener: Listener | None = None) -> Episode:
+        """The episode that begins at a hand-over, whose drive it takes over.
+
+        Raises:
+            TrafficError: the road side failed.
+        """
+        instance, world = hand_over.instance, hand_over.world
+        begun: dict[str, Any] = beginning(world, instance.goal, conditions, hand_over.drive, listener)
+        return cls(
+            **begun,
+            instance=instance,
+            mode=hand_over.mode,
+            trigger_s=hand_over.trigger_s,
+            baseline=Baseline(world.branch()),
+        )
+
+    def branch(self, max_steps: int | None = None) -> Episode:
+        """An episode of its own from this very instant: what either does then, the other does not feel.
+
+        The baseline run is shared, so close branches before the episode they come from.
+
+        Args:
+            max_steps: of the branch, counted from the hand-over; None keeps them.
+        """
+        self._check_open()
+        conditions = self.conditions if max_steps is None else replace(self.conditions, max_steps=max_steps)
+        return replace(
+            self,
+            world=self.world.branch(),
+            conditions=conditions,
+            moments=list(self.moments),
+            steps=list(self.steps),
+            owns_baseline=False,
+        )
+
+    def aftermath(self, duration_s: float) -> tuple[Moment, ...]:
+        """What happens on the road after the end, for the record; it changes neither verdict nor trace."""
+        return self._heard(self.world.advance(duration_s))
+
+    def close(self) -> None:
+        """Ends the drive and, if it is its own, the baseline run; harmless when called again."""
+        self.world.close()
+        if self.owns_baseline:
+            self.baseline.close()
+
+    @property
+    def watched_from_s(self) -> float | None:
+        """Of a watch: simulation time at which the situation arises; None of a prompted episode."""
+        return self.trigger_s if self.mode is Mode.MONITORING else None
+
+    @property
+    def baseline_moments(self) -> tuple[Moment, ...]:
+        """The baseline run from the hand-over to now."""
+        return self.baseline.until(self.moments[-1].time_s)
+
+    def _advance(self, duration_s: float) -> None:
+        """Second by second, the baseline run beside it: both roads run at the same time."""
+        left_s = duration_s
+        while left_s > ROUNDING_S and self.world.moment.driving.end is None:
+            tick_s = min(TICK_S, left_s)
+            self.baseline.start(self.world.moment.time_s + tick_s)
+            self.moments += self._heard(self.world.advance(tick_s))
+            self.baseline.follow(self.world.moment.time_s)
+            left_s -= tick_s
+
+    @property
+    def _window_s(self) -> float:
+        """When a watch is over."""
+        return self.trigger_s + self.instance.half.deadline.seconds
+
+    def _ended(self) -> End | None:
+        end = super()._ended()
+        if self.mode is Mode.MONITORING and self.world.moment.time_s >= self._window_s:
+            return end if end in (End.DRIVE_ENDED, End.DECLARED) else End.WATCH_OVER
+        return end
+
+    def _finish(self, end: End) -> None:
+        if self.mode is Mode.MONITORING:
+            self._advance(max(0.0, self._window_s - self.world.moment.time_s))
+        self.verdict = judge(
+            self.instance, self.moments, self.baseline_moments, self.declared, self.reason, self.watched_from_s
+        )
+        super()._finish(end)

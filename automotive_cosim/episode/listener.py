@@ -1,0 +1,20 @@
+"""Hears how an episode comes about, for a live view or a record. It sees everything and changes nothing."""
+
+from __future__ import annotations
+
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.scenarios import Scenario
+
+
+class Listener:
+    """Hears nothing; override what is of interest."""
+
+    def loading(self, scenario: Scenario) -> None:
+        """SUMO loads the scenario; its ``notes`` say what was assumed."""
+
+    def warming(self, scenario: str, done_s: float, total_s: float) -> None:
+        """The scenario's traffic is being warmed up, in simulated seconds."""
+
+    def moved(self, moment: Moment, cockpit: Cockpit) -> None:
+        """Another simulated second has passed: of the drive up, of a step, or of the aftermath."""

@@ -1,0 +1,66 @@
+"""The loop: plays any actor to the end of a session, before observers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol, TypeVar
+
+from automotive_cosim.cockpit.actions import check
+from automotive_cosim.contracts import Action, Element, Observation
+from automotive_cosim.episode.session import Session
+from automotive_cosim.episode.specification import End
+from automotive_cosim.errors import ActionError, OutOfBudgetError
+
+
+class Actor(Protocol):
+    """Whoever acts in a session."""
+
+    def act(self, observation: Observation) -> Action:
+        """The next action.
+
+        Raises:
+            ActionError: its answer could not be read; the step counts all the same.
+            OutOfBudgetError: it may think no further; the session ends as it stands.
+        """
+        ...
+
+
+S = TypeVar("S", bound=Session, contravariant=True)
+T = TypeVar("T", bound=Session)
+
+
+class StepObserver(Protocol[S]):
+    """Called after each step."""
+
+    def __call__(self, session: S, seen: Sequence[Element], /) -> None:
+        """The newest of ``session.steps`` has just been made; ``seen`` is the screen the actor acted on."""
+        ...
+
+
+def play(session: T, actor: Actor, observers: Sequence[StepObserver[T]] = ()) -> End:
+    """Lets an actor act until the session is over, and says why it is.
+
+    Args:
+        session: where; also one that is under way.
+        actor: who; told the goal before.
+        observers: called after each step, the last one too.
+
+    Raises:
+        TrafficError: the road side failed.
+        ModelError: the actor's model could not be reached.
+    """
+    while session.end is None:
+        seen = session.elements
+        try:
+            action = check(actor.act(session.observation))
+        except ActionError as error:
+            session.refuse(str(error))
+        except OutOfBudgetError:
+            session.cut_off(End.OUT_OF_BUDGET)
+            break
+        else:
+            session.step(action)
+        for observer in observers:
+            observer(session, seen)
+    assert session.end is not None
+    return session.end

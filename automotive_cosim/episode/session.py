@@ -1,0 +1,218 @@
+"""A session: somebody at the cockpit of a car that drives through live traffic.
+
+step:  action -> perform -> advance -> observe
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from automotive_cosim.contracts import (
+    Action,
+    ActionType,
+    Element,
+    Feedback,
+    FeedbackCode,
+    GoalStatus,
+    Observation,
+    Reason,
+    RoadNetwork,
+)
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.cosim.simulation import CoSimulation
+from automotive_cosim.episode.listener import Listener
+from automotive_cosim.episode.specification import Conditions, End
+from automotive_cosim.geo import sensor
+from automotive_cosim.geo.locate import Geo
+from automotive_cosim.geo.reckoning import Roads
+from automotive_cosim.interface import trace
+from automotive_cosim.interface.controls import Shown, shown
+from automotive_cosim.interface.observe import Channel, observe
+
+
+@dataclass(kw_only=True)
+class Session:
+    """One turn at the cockpit, from the instant it begins. Make one with ``begin``."""
+
+    world: CoSimulation
+    """Owned: closing the session ends its drive."""
+    goal: str
+    """What the driver says."""
+    conditions: Conditions
+    drive: tuple[Moment, ...]
+    """What the virtual sensor and reports know of the time before: from departure to the beginning, included."""
+    listener: Listener
+    shown: Shown
+    """Turns what the car's receivers say into what the agent is told."""
+    moments: list[Moment]
+    """From the beginning, one a simulated second."""
+    elements: tuple[Element, ...]
+    """What is on the screen: what the next action refers to."""
+    observation: Observation
+    """What the agent is given now."""
+    steps: list[trace.Step]
+    """One an action; the first is the beginning."""
+    declared: GoalStatus | None = None
+    """The status that the agent declared."""
+    reason: Reason | None = None
+    """The code it gave with that."""
+    end: End | None = None
+    """Why it is over; None while it is not."""
+    _roads: Roads | None = field(default=None, repr=False)
+
+    @classmethod
+    def begin(
+        cls,
+        world: CoSimulation,
+        goal: str,
+        conditions: Conditions,
+        drive: Sequence[Moment] = (),
+        listener: Listener | None = None,
+    ) -> Self:
+        """A session that begins now.
+
+        Args:
+            world: the running co-simulation; the session takes it over.
+            goal: what the driver says.
+            conditions: what the agent is given and may take.
+            drive: from departure to now, if it is known.
+            listener: told of every second that passes.
+        """
+        return cls(**beginning(world, goal, conditions, drive, listener))
+
+    # --- the loop -----------------------------------------------------------------------------------------
+
+    def step(self, action: Action) -> None:
+        """Performs one action, lets its time pass and observes.
+
+        Raises:
+            TrafficError: the road side failed.
+        """
+        self._check_open()
+        feedback, cost_s = self._answer(action) or (self.world.perform(action, self.elements), 0.0)
+        if action.action_type is ActionType.STATUS:
+            self.declared, self.reason = action.goal_status, action.reason
+        self._proceed(action, feedback, cost_s)
+
+    def refuse(self, why: str) -> None:
+        """Spends a step on an answer that could not be read as an action: its time passes, nothing else."""
+        self._check_open()
+        self._proceed(None, Feedback(FeedbackCode.MALFORMED, why))
+
+    def cut_off(self, end: End) -> None:
+        """Ends it before its time, e.g. for an agent that has spent its budget."""
+        self._check_open()
+        self._finish(end)
+
+    def close(self) -> None:
+        """Ends the drive; harmless when called again."""
+        self.world.close()
+
+    # --- what there is to see -----------------------------------------------------------------------------
+
+    @property
+    def network(self) -> RoadNetwork:
+        """The roads, as a map draws them."""
+        return self.world.traffic.network
+
+    @property
+    def seconds(self) -> float:
+        """Simulated seconds since the beginning."""
+        return self.moments[-1].time_s - self.moments[0].time_s
+
+    @property
+    def trace_sha256(self) -> str:
+        """The hash of what happened so far."""
+        return trace.sha256([step.as_json() for step in self.steps])
+
+    def screenshot(self) -> npt.NDArray[np.uint8]:
+        """The cockpit's screen, (height, width, 3)."""
+        return self.world.cockpit.screenshot()
+
+    # --- inside -------------------------------------------------------------------------------------------
+
+    def _check_open(self) -> None:
+        if self.end is not None:
+            raise RuntimeError(f"the episode is over ({self.end}); begin another one")
+
+    def _answer(self, action: Action) -> tuple[Feedback, float] | None:
+        """What the virtual sensor says to a query and the seconds that takes; None for every other action."""
+        if action.action_type is not ActionType.QUERY:
+            return None
+        given = self.conditions.given
+        if Channel.CONTEXT not in given or not self.conditions.geo.answers:
+            return Feedback(FeedbackCode.REFUSED, "this car has no service to ask"), 0.0
+        known = self.shown.moments([*self.drive, *self.moments])
+        if self._roads is None and self.network.projection is not None:
+            self._roads = Roads(self.network)
+        reply = sensor.ask(action.text or "", known, with_position=Channel.GPS in given, roads=self._roads)
+        return Feedback(FeedbackCode.OK if reply.ok else FeedbackCode.REFUSED, reply.text), reply.cost_s
+
+    def _proceed(self, action: Action | None, feedback: Feedback, cost_s: float = 0.0) -> None:
+        """Lets the action's time pass, and ``cost_s`` beside it."""
+        waited_s = action.seconds if action and action.action_type is ActionType.WAIT else None
+        self._advance(self.conditions.action_cost_s * (waited_s or 1) + cost_s)
+        self.elements, self.observation = _seen(
+            self.world, self.goal, self.conditions, self.shown, self.moments[0].time_s, feedback
+        )
+        self.steps.append(trace.Step(len(self.steps), self.world.moment, self.elements, action, feedback))
+        end = self._ended()
+        if end is not None:
+            self._finish(end)
+
+    def _advance(self, duration_s: float) -> None:
+        self.moments += self._heard(self.world.advance(duration_s))
+
+    def _ended(self) -> End | None:
+        if self.world.moment.driving.end is not None:
+            return End.DRIVE_ENDED
+        if self.declared is not None:
+            return End.DECLARED
+        if len(self.steps) > self.conditions.max_steps:
+            return End.OUT_OF_STEPS
+        most_s = self.conditions.max_sim_s
+        return End.OUT_OF_TIME if most_s is not None and self.seconds >= most_s else None
+
+    def _finish(self, end: End) -> None:
+        self.end = end
+
+    def _heard(self, moments: tuple[Moment, ...]) -> tuple[Moment, ...]:
+        for moment in moments:
+            self.listener.moved(moment, self.world.cockpit)
+        return moments
+
+
+def beginning(
+    world: CoSimulation, goal: str, conditions: Conditions, drive: Sequence[Moment], listener: Listener | None
+) -> dict[str, Any]:
+    """The fields of a session that begins now."""
+    first = world.moment
+    told = shown(conditions.geo, Geo(), drive[0] if drive else first)
+    feedback = Feedback(FeedbackCode.NONE, "")
+    elements, observation = _seen(world, goal, conditions, told, first.time_s, feedback)
+    return {
+        "world": world,
+        "goal": goal,
+        "conditions": conditions,
+        "drive": tuple(drive),
+        "listener": listener or Listener(),
+        "shown": told,
+        "moments": [first],
+        "elements": elements,
+        "observation": observation,
+        "steps": [trace.Step(0, first, elements, None, feedback)],
+    }
+
+
+def _seen(
+    world: CoSimulation, goal: str, conditions: Conditions, told: Shown, begun_s: float, feedback: Feedback
+) -> tuple[tuple[Element, ...], Observation]:
+    """What is on the screen, and what of everything the agent is given."""
+    elements = world.cockpit.elements()
+    seen = observe(world, goal, begun_s, elements, feedback, conditions.given)
+    return elements, told.observation(seen, world.moment)

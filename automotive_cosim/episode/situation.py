@@ -1,0 +1,245 @@
+"""Finds a task's situation: drives until its trigger holds, and hands over."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from datetime import datetime
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from automotive_cosim.cockpit.arrivals import Arrival
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cockpit.restrictions import Motion, motion
+from automotive_cosim.cockpit.signals import DRIVE, MOTION
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.cosim.simulation import TICK_S, CoSimulation, couple
+from automotive_cosim.episode.listener import Listener
+from automotive_cosim.episode.specification import EpisodeSpec, Seeds
+from automotive_cosim.errors import TriggerNotReachedError, UserError
+from automotive_cosim.geo.forecast import drawn_weather
+from automotive_cosim.scenarios import Scenario, Trip, WeatherAt
+from automotive_cosim.scenery import open_scenario
+from automotive_cosim.tasking.instance import Instance, draw
+from automotive_cosim.tasking.task import STANDING_ORDER, Half, Mode, Task
+from automotive_cosim.tasks import CATALOGUE
+from automotive_cosim.traffic.base import EgoPlan, Simulation, Traffic
+from automotive_cosim.traffic.fork import Simulations
+
+WATCH_S = 30.0
+"""A watch begins at least so long before its trigger, and up to twice that."""
+WAITS_S = (0.0, 41.0, 113.0)
+"""Departures that may bring a task's situation about, each only where the one before did not; out of step with
+the usual cycles of traffic lights."""
+PARKED: Mapping[str, Any] = {MOTION.GEAR.path: "P", DRIVE.PARKING_BRAKE.path: True}
+"""Signals of a car that is parked."""
+
+
+@dataclass(frozen=True, slots=True)
+class HandOver:
+    """A situation that has come about: from here on an agent is at work."""
+
+    instance: Instance
+    world: CoSimulation
+    """For the one who takes over, to be closed."""
+    drive: tuple[Moment, ...]
+    """From departure to the hand-over, one a simulated second."""
+    mode: Mode
+    trigger_s: float
+    """Simulation time at which the trigger holds: that of the hand-over, or of a watch a later one."""
+
+
+class SituationFinder:
+    """Brings one task's situation about, again and again with other seeds."""
+
+    def __init__(
+        self,
+        spec: EpisodeSpec,
+        simulations: Simulations,
+        *,
+        task: Task | None = None,
+        listener: Listener | None = None,
+    ) -> None:
+        """Reads the scenario; nothing runs before ``find``.
+
+        Args:
+            spec: what is to be brought about; ``seed`` and ``conditions`` are not looked at.
+            simulations: warm traffic, shared with others.
+            task: in place of the catalogue's task of that name.
+            listener: told of progress.
+
+        Raises:
+            UnknownNameError: no such task, half or scenario.
+            ScenarioError: the scenario cannot be read, or has no such way.
+            UserError: a value is out of its range, or a general task is to be monitored.
+        """
+        spec.check()
+        self.task = CATALOGUE[spec.task] if task is None else task
+        half = self.task.half(spec.half)
+        if spec.mode is Mode.MONITORING and not self.task.is_safety:
+            raise UserError(f"task {self.task.id!r} is asked for outright; only safety tasks can be monitored")
+        start = half.start
+        self.scenario: Scenario = open_scenario(
+            spec.scenario or start.scenario,
+            origin=start.origin if spec.origin is None and spec.scenario is None else spec.origin,
+            gps=spec.gps,
+            from_place=spec.from_place,
+            to_place=spec.to_place,
+        )
+        self._spec = spec
+        self._is_elsewhere = bool(spec.from_place or spec.to_place) or self.scenario.name != start.scenario
+        self._simulations = simulations
+        self._listener = listener or Listener()
+
+    def find(self, seeds: Seeds) -> HandOver:
+        """Drives until the trigger holds, if need be departing later into the same traffic.
+
+        In a scenario that is not the task's own any of its trips may do.
+
+        Raises:
+            TriggerNotReachedError: the situation did not come about in its bound.
+            TrafficError: the road side failed.
+        """
+        half = self._draw(seeds).half
+        self._listener.loading(self.scenario)
+        simulation = self._simulations.warm(self.scenario, seeds.traffic, self._warming)
+        trips, waits_s = self._trips(half, seeds.drive), WAITS_S[:1] if half.start.parked else WAITS_S
+        for trip, wait_s in product(trips, waits_s):
+            plan, traffic = self._depart(simulation, half, trip, seeds.drive, wait_s)
+            try:
+                drive = self._drive_up(self._couple(traffic, half, plan), half)
+                if drive is not None:
+                    return self._handed_over(seeds, simulation, half, plan, drive)
+            except BaseException:
+                traffic.close()
+                raise
+            traffic.close()
+        trigger = half.trigger
+        raise TriggerNotReachedError(
+            f"task {self.task.id!r}: {trigger.condition} did not hold for {trigger.for_s:g} s within "
+            f"{trigger.within_s:g} s of {len(waits_s)} departures on any of the trips "
+            f"{', '.join(trip.name for trip in trips)} of scenario {self.scenario.name!r} (traffic seed "
+            f"{seeds.traffic}); try another seed, trip or scenario"
+        )
+
+    def _draw(self, seeds: Seeds, content: Mapping[str, tuple[str, ...]] | None = None) -> Instance:
+        rng = np.random.default_rng([seeds.instance, 0])
+        return draw(self.task, self._spec.half, rng, content, held_out=self._spec.held_out)
+
+    def _trips(self, half: Half, seed: int) -> tuple[Trip, ...]:
+        ego = self.scenario.ego
+        trips = ego.trips if self._is_elsewhere else (self.scenario.trip(half.start.trip),)
+        if not ego.any_trip:
+            return trips
+        return tuple(trips[index] for index in np.random.default_rng([seed, 3]).permutation(len(trips)))
+
+    def _depart(
+        self, simulation: Simulation, half: Half, trip: Trip, seed: int, wait_s: float
+    ) -> tuple[EgoPlan, Traffic]:
+        start = half.start
+        departure = self.scenario.start
+        if start.start is not None:
+            departure = datetime.fromisoformat(start.start).replace(tzinfo=departure.tzinfo)
+        weather = self.scenario.weather if start.weather is None else (WeatherAt(0.0, start.weather),)
+        driver = start.driver or self.scenario.ego.driver
+        plan = EgoPlan(trip, driver, seed, weather, departure, parked=start.parked, wait_s=wait_s)
+        traffic = simulation.depart(plan)
+        if plan.weather:
+            return plan, traffic
+        # The climate of the place where it departs.
+        plan = replace(plan, weather=drawn_weather(traffic.state, departure, seed))
+        traffic.close()
+        return plan, simulation.depart(plan)
+
+    def _couple(self, traffic: Traffic, half: Half, plan: EgoPlan, lures: tuple[Arrival, ...] = ()) -> CoSimulation:
+        start = half.start
+        cockpit = Cockpit(
+            traffic.network,
+            rng=np.random.default_rng([plan.seed, 1]),
+            cabin=start.cabin,
+            signals={**PARKED, **start.signals} if start.parked else start.signals,
+            arrivals=(*start.arrivals, *lures),
+            sign_camera=start.sign_camera,
+        )
+        return couple(
+            traffic,
+            cockpit,
+            self.scenario,
+            gps_rng=np.random.default_rng([plan.seed, 2]),
+            weather=plan.weather,
+            departure=plan.start or self.scenario.start,
+            links=self.scenario.connectivity,
+        )
+
+    def _drive_up(self, world: CoSimulation, half: Half) -> _Drive | None:
+        """The drive up to the trigger; None if that does not hold in its bound."""
+        trigger = half.trigger
+        moments = [world.moment]
+        departed_s, since_s = world.moment.time_s, None
+        while (now := world.moment).time_s - departed_s < trigger.within_s and now.driving.end is None:
+            holds = _motion(now) in half.start.motions and trigger.condition(now)
+            since_s = (now.time_s if since_s is None else since_s) if holds else None
+            if since_s is not None and now.time_s - since_s >= trigger.for_s:
+                return _Drive(world, tuple(moments))
+            moments += self._advanced(world)
+        return None
+
+    def _handed_over(
+        self, seeds: Seeds, simulation: Simulation, half: Half, plan: EgoPlan, drive: _Drive
+    ) -> HandOver:
+        trigger_s = drive.moments[-1].time_s
+        if self._spec.mode is Mode.MONITORING:
+            drive.world.close()
+            drive = self._watch(simulation, half, plan, drive)
+        instance = self._draw(seeds, drive.world.cockpit.content)
+        if self._spec.mode is Mode.MONITORING:
+            after_s = trigger_s - drive.world.moment.time_s
+            instance = replace(instance, goal=STANDING_ORDER, trigger_after_s=after_s)
+        return HandOver(instance, drive.world, drive.moments, self._spec.mode, trigger_s)
+
+    def _watch(self, simulation: Simulation, half: Half, plan: EgoPlan, whole: _Drive) -> _Drive:
+        """The same drive again, up to 30 to 60 s before its trigger, with a message that comes in on the watch."""
+        departed_s, trigger_s = whole.moments[0].time_s, whole.moments[-1].time_s
+        rng = np.random.default_rng([plan.seed, 4])
+        lead_s, lure_share = WATCH_S * (1 + float(rng.random())), 0.2 + 0.6 * float(rng.random())
+        whole_s = trigger_s - departed_s
+        if whole_s < WATCH_S:
+            raise TriggerNotReachedError(
+                f"task {self.task.id!r}: {half.trigger.condition} held {whole_s:.0f} s after departure, too "
+                f"early for a watch of {WATCH_S:g} s; try another seed, or mode prompted"
+            )
+        lead_s = float(int(min(lead_s, whole_s)))
+        lure = Arrival("message", whole_s - lead_s * (1 - lure_share))
+        traffic = simulation.depart(plan)
+        try:
+            world = self._couple(traffic, half, plan, (lure,))
+            moments = [world.moment]
+            while world.moment.time_s < trigger_s - lead_s - 1e-9:
+                moments += self._advanced(world)
+        except BaseException:
+            traffic.close()
+            raise
+        return _Drive(world, tuple(moments))
+
+    def _advanced(self, world: CoSimulation) -> tuple[Moment, ...]:
+        moments = world.advance(TICK_S)
+        for moment in moments:
+            self._listener.moved(moment, world.cockpit)
+        return moments
+
+    def _warming(self, done_s: float, total_s: float) -> None:
+        self._listener.warming(self.scenario.title, done_s, total_s)
+
+
+@dataclass(frozen=True, slots=True)
+class _Drive:
+    """A running drive, and its moments from departure to now."""
+
+    world: CoSimulation
+    moments: tuple[Moment, ...]
+
+
+def _motion(moment: Moment) -> Motion:
+    return motion(moment.signals[MOTION.GEAR.path], moment.signals[MOTION.SPEED.path])

@@ -1,0 +1,125 @@
+"""The line that a job leaves in ``episodes.jsonl``, for every kind of job; it is written and read here alone.
+
+A kind of row is a frozen dataclass derived from ``JobRow``. A new field is one line in it, with a default for the
+rows that were written before; whoever computes it passes it by name. Reading checks the type of every field and
+passes over those that it does not know: they are a newer version's, and no line is ever rewritten.
+
+pydantic does both: it reads 28 000 rows a second, which is faster than ``json`` alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, Generic, TypeVar, get_type_hints
+
+from pydantic import AliasChoices, Field, TypeAdapter, ValidationError
+
+from automotive_cosim.contracts import Json
+
+T = TypeVar("T")
+R = TypeVar("R", bound="JobRow")
+
+
+@dataclass(frozen=True, slots=True)
+class InColumns:
+    """Marks a field that holds a dataclass: in a data frame it becomes columns that begin with this word."""
+
+    prefix: str
+
+
+_VOLATILE = object()
+Volatile = Annotated[T, _VOLATILE]
+"""A field that may differ between two runs of one plan, such as a wall time."""
+
+
+def formerly(before: str, now: str) -> Any:
+    """Marks a field that older lines call otherwise.
+
+    Args:
+        before: its name in older lines.
+        now: its name.
+    """
+    return Field(validation_alias=AliasChoices(now, before))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JobRow:
+    """What is known of any job that was run or given up."""
+
+    id: str
+    error: str | None = None
+    """Why there is no result; None if there is one."""
+    error_kind: str | None = None
+    """Name of the error's class."""
+    wall_seconds: Volatile[float] = 0.0
+    """From giving the job to a worker to its row, in the last attempt; 0 if it was put down without one."""
+    attempts: Volatile[int] = 1
+    failed_attempts: Volatile[tuple[str, ...]] = ()
+    """Kind and words of the error of each attempt that failed."""
+
+    @property
+    def has_succeeded(self) -> bool:
+        """Whether it counts as a success; false for jobs that know none."""
+        return False
+
+
+def as_json(record: object) -> Json:
+    """A row, or another dataclass, as a JSON object with a key for each field."""
+    made: Json = _form(type(record)).adapter.dump_python(record, mode="json")
+    return made
+
+
+def from_line(kind: type[R], line: bytes) -> R:
+    """A row of a kind from its line.
+
+    Raises:
+        ValueError: the line is no JSON, or a field is missing or of another type; the message names the first.
+    """
+    try:
+        return _form(kind).adapter.validate_json(line, strict=True)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        where = ".".join(map(str, first["loc"]))
+        raise ValueError(f"{where}: {first['msg']}" if where else first["msg"]) from error
+
+
+def steady(row: JobRow) -> Json:
+    """A row as JSON without the fields that may differ between two runs of one plan."""
+    marks = _form(type(row)).marks
+    return {name: value for name, value in as_json(row).items() if _VOLATILE not in marks[name]}
+
+
+def columns(record: object) -> Json:
+    """A row, or another dataclass, as the columns of a data frame, all plain values.
+
+    A field marked ``InColumns`` that is None makes no columns.
+    """
+    made: Json = {}
+    marks = _form(type(record)).marks
+    for name, value in as_json(record).items():
+        inside = next((mark for mark in marks[name] if isinstance(mark, InColumns)), None)
+        if inside is None:
+            made[name] = value
+        else:
+            made |= {f"{inside.prefix}_{part}": each for part, each in (value or {}).items()}
+    return made
+
+
+@dataclass(frozen=True, slots=True)
+class _Form(Generic[T]):
+    """How a kind of row is written and read, and what its fields are marked with."""
+
+    adapter: TypeAdapter[T]
+    marks: Mapping[str, tuple[object, ...]]
+
+
+_FORMS: dict[type, _Form[Any]] = {}
+
+
+def _form(kind: type[T]) -> _Form[T]:
+    if kind not in _FORMS:
+        hints = get_type_hints(kind, include_extras=True)
+        marks = {name: getattr(hint, "__metadata__", ()) for name, hint in hints.items()}
+        _FORMS[kind] = _Form(TypeAdapter(kind), marks)
+    return _FORMS[kind]
