@@ -10,7 +10,7 @@ import numpy as np
 from annotated_types import Ge, Gt
 
 from automotive_cosim.errors import UnknownNameError
-from automotive_cosim.formats.annotations import Latitude, Longitude
+from automotive_cosim.formats.annotations import Latitude, Longitude, OneOf
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted
 from automotive_cosim.interface.controls import GeoInput
@@ -67,12 +67,12 @@ class EpisodeSpec:
     """Where it ends. If only one of the two is given the other is drawn."""
     seed: Annotated[int, Ge(0)] = 0
     """Of the traffic, and of everything that is drawn."""
-    mode: Mode = Mode.PROMPTED
+    mode: Annotated[Mode, OneOf(Mode)] = Mode.PROMPTED
     """When the agent is called."""
     held_out: bool = False
     """Whether the driver says the task's held-out phrasing (``tasking.instance.Instance.held_out``); else any is
     drawn."""
-    geo: GeoInput = GeoInput.FULL
+    geo: Annotated[GeoInput, OneOf(GeoInput, "geo control")] = GeoInput.FULL
     """What the agent is told of where it is."""
     max_steps: Annotated[int, Ge(1)] = MAX_STEPS
     """Actions after which the episode is cut off."""

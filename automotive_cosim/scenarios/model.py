@@ -48,7 +48,9 @@ class Trip:
     name: str
     """By which tasks and incidents mean it."""
     from_edge: Edge
+    """Where it begins."""
     to_edge: Edge
+    """Where it ends."""
     via: tuple[Edge, ...] = ()
     """Edges on the way, in driving order."""
     about: str = ""
@@ -85,6 +87,7 @@ class LinkAt:
     held until the next."""
 
     at_s: float
+    """Seconds after the ego's departure."""
     best: Annotated[str, OneOf(LINKS)]
     """The best link there is, of ``LINKS``; where the road is it may still be worse, or none."""
 
@@ -116,6 +119,7 @@ class Street:
     """``[[streets]]``: a street the scenario is about."""
 
     name: str
+    """As the network spells it."""
     maxspeed: tuple[str, ...] = ()
     """What its signs say, as OpenStreetMap writes it: ``"50"``, ``"20 mph"``, ``"none"``; ``"unposted"`` where no
     sign stands. Each of these, and no other."""

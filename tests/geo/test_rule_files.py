@@ -100,7 +100,12 @@ def test_a_well_formed_file_reads(tmp_path: Path) -> None:
         ('unit = "mph"\n', "", 11, "a number needs a unit"),
         ('unit = "mph"', 'unit = "mph"\nwhen = 3', 17, "when is 3; it must be a table"),
         ('unit = "mph"', 'unit = "mph"\nwhen = { visibility_below_m = inf }', 17, "must be a number of metres"),
-        ('unit = "mph"', 'unit = "mph"\nwhen = { inside = [[0, 0], [1, 1], [200, 0]] }', 17, "it must be a longitude"),
+        (
+            'unit = "mph"',
+            'unit = "mph"\nwhen = { inside = [[0, 0], [1, 1], [200, 0]] }',
+            17,
+            "it must be a longitude",
+        ),
         ('unit = "mph"', 'unit = "mph"\ncaps = "no"', 17, "caps is 'no'; it must be true"),
         ('unit = "mph"', 'unit = "mph"\nbinds = "everyone"', 17, "no road user named 'everyone'"),
         ('text = "everywhere"', 'text = ""', 14, "text is empty: it must be one line of text"),
