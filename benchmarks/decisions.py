@@ -1,7 +1,7 @@
-"""What a decision costs: run ``python benchmarks/decisions.py [--profile] [--json]``.
+"""What a decision costs: run ``python benchmarks/decisions.py [--profile] [--check]``.
 
-Plays random actions, drawn from a seed, on ``grid`` and prints processor time, which bears a busy machine better than
-the clock does: that of this process, where the cockpit, place and judge are, and that of the simulations' processes.
+Plays random actions, drawn from a seed, on ``grid`` and prints processor time, which bears a busy machine better
+than the clock does: that of this process, where cockpit, place and judge are, and of the simulations' processes.
 
 | figure | what |
 |---|---|
@@ -11,7 +11,8 @@ the clock does: that of this process, where the cockpit, place and judge are, an
 | ``reset_sumo_ms``, ``reset_wall_ms`` | of the simulations' processes, and by the clock, a reset on warm traffic |
 | ``per_s`` | decisions a second by the clock, which counts only on an idle machine |
 
-``--profile`` adds where this process spends it, by part of the project: a library's time counts for whoever calls it.
+``--profile`` adds where this process spends it, by part of the project: a library's time counts for its callers.
+``--check`` compares the traces of every environment of a vector with those of the same environment alone.
 """
 
 from __future__ import annotations
@@ -137,31 +138,32 @@ def action(env: gym.Env[Any, Any], rng: np.random.Generator) -> Any:
     """Of a flat environment any; of the other a tap on something that can be tapped, and at times an end."""
     if isinstance(env.action_space, gym.spaces.Discrete):
         return rng.integers(env.action_space.n)
-    elements = env.unwrapped.observation.elements  # type: ignore[attr-defined]
+    elements = env.unwrapped.episode.elements  # type: ignore[attr-defined]
     can = [index for index, element in enumerate(elements) if element.is_clickable and element.is_enabled]
     if rng.random() < 0.15:
         return {"action_type": "status", "goal_status": "complete"}
     return {"action_type": "click", "index": int(rng.choice(can))}
 
 
-def vector(count: int, rounds: int, children: Children, *, check: bool) -> dict[str, Any]:
+def vector(mode: str | None, count: int, rounds: int, children: Children, *, check: bool) -> dict[str, Any]:
     """As many environments over one warm simulation, and whether each does what it does alone."""
-    rng = np.random.default_rng(SEED)
+    actions = np.random.default_rng(SEED).integers(100, size=(rounds, count))
     with closing(Simulations()) as pool:
-        options = {"tasks": TASKS, "scenario": SCENARIO, "simulations": pool}
-        envs = gym.make_vec("AutomotiveCosim/Flat-v0", num_envs=count, vectorization_mode="sync", **options)
-        seeds = [SEED] * count
-        actions = rng.integers(envs.single_action_space.n, size=(rounds, count))
-        envs.reset(seed=seeds)
-        traces: list[list[str]] = [[] for _ in range(count)]
+        options: dict[str, Any] = {"tasks": TASKS, "scenario": SCENARIO, "simulations": pool}
+        envs = gym.make_vec("AutomotiveCosim/Flat-v0", num_envs=count, vectorization_mode=mode, **options)
+        actions %= envs.single_action_space.n
+        shared = {"traffic_seed": SEED}
+        envs.reset(seed=SEED, options=shared)
+        ended: list[list[Any]] = [[] for _ in range(count)]
         clock = Clock(children)
         for row in actions:
-            *_, infos = envs.step(row)
-            for index in np.flatnonzero(infos.get("_trace_sha256", np.zeros(count))):
-                traces[index].append(infos["trace_sha256"][index])
+            _, _, terminated, truncated, _ = envs.step(row)
+            for index in np.flatnonzero(terminated | truncated):
+                ended[index].append(envs.envs[index].unwrapped.episode)
         ours, sumo, wall = clock.lap()
         envs.close()
-        alone = [_alone(options, actions[:, index], seeds[index]) for index in range(count if check else 0)]
+        traces = [[episode.trace_sha256 for episode in episodes] for episodes in ended]
+        alone = [_alone(options, actions[:, i], SEED + i, shared) for i in range(count if check else 0)]
     decisions = count * rounds
     return {
         "envs": count,
@@ -174,20 +176,20 @@ def vector(count: int, rounds: int, children: Children, *, check: bool) -> dict[
     }
 
 
-def _alone(options: dict[str, Any], actions: Any, seed: int) -> list[str]:
+def _alone(options: dict[str, Any], actions: Any, seed: int, shared: dict[str, int]) -> list[str]:
     """The traces of one environment by itself; the step after an episode's end resets, as in a vector."""
     with closing(gym.make("AutomotiveCosim/Flat-v0", **options)) as env:
-        env.reset(seed=seed)
+        env.reset(seed=seed, options=shared)
         traces, over = [], False
         for number in actions:
             if over:
                 env.reset()
                 over = False
                 continue
-            *_, terminated, truncated, info = env.step(number)
+            *_, terminated, truncated, _ = env.step(number)
             over = terminated or truncated
             if over:
-                traces.append(info["trace_sha256"])
+                traces.append(env.unwrapped.episode.trace_sha256)  # type: ignore[attr-defined]
     return traces
 
 
@@ -242,7 +244,8 @@ def main() -> None:
                     figures[name]["parts"] = shares(profile)
         if chosen.only in (None, "vector"):
             rounds = max(1, chosen.decisions // chosen.envs)
-            figures["vector"] = vector(chosen.envs, rounds, children, check=chosen.check)
+            for name, mode in (("vector", None), ("vector_sync", "sync")):
+                figures[name] = vector(mode, chosen.envs, rounds, children, check=chosen.check)
     print(json.dumps(_rounded(figures), indent=1))
 
 

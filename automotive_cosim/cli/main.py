@@ -1,6 +1,7 @@
 """``automotive-cosim``: the commands, and what an error looks like.
 
-Exit codes: 0 done, 2 the user can mend it, 3 the machinery failed, 130 interrupted, 143 terminated.
+Exit codes: 0 done, 1 a check failed, 2 an error that the user can fix, 3 an infrastructure error,
+130 interrupted, 143 terminated.
 """
 
 from __future__ import annotations
@@ -35,13 +36,13 @@ from automotive_cosim.cli import (
 from automotive_cosim.errors import InfrastructureError, UserError
 
 INTERRUPTED = 130
-"""What typer makes of Ctrl-C: 128 and the signal's number, as shells do."""
+"""Typer's exit code for Ctrl-C: 128 plus the signal's number, as in shells."""
 TERMINATED = 143
 """The same for SIGTERM: ``kill``, a container that is stopped, a batch system whose time is up."""
 
 app = typer.Typer(
     name="automotive-cosim",
-    help="An agent at the cockpit of a car that drives through live SUMO traffic.",
+    help="Agents that operate the cockpit of a car in live SUMO traffic.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
@@ -76,7 +77,7 @@ def _version(wanted: bool) -> None:
 @app.callback()
 def _options(
     version: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and end.")
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and exit.")
     ] = False,
     debug: Annotated[
         bool, typer.Option("--debug", envvar="AUTOMOTIVE_COSIM_DEBUG", help="Show the traceback of an error.")
@@ -92,11 +93,11 @@ def main() -> None:
 
     def terminate(number: int, frame: object) -> None:
         terminations.append(number)
-        raise KeyboardInterrupt  # so that it ends as after Ctrl-C, which may be ignored from the start (nohup)
+        raise KeyboardInterrupt  # ends as after Ctrl-C, which may be ignored from the start (nohup)
 
     signal.signal(signal.SIGTERM, terminate)
     for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):  # a street's name must not end a run where the locale is ASCII
+        if isinstance(stream, io.TextIOWrapper):  # a street's name must not end a run under an ASCII locale
             stream.reconfigure(errors="replace")
     try:
         code = app(standalone_mode=False) or 0

@@ -24,7 +24,7 @@ def elements(screen: Screen, scale: float = 1.0) -> tuple[Element, ...]:
 
 @lru_cache(maxsize=512)
 def _part(child: Widget, scale: float) -> tuple[Element, ...]:
-    """Of one widget that lies on the screen itself; most of them come again, and equal ones get the same elements."""
+    """Of one widget that lies on the screen itself. Most come again; equal ones get the same elements."""
     return tuple(_element(widget, scale) for widget in child.walk() if _listed(widget))
 
 

@@ -40,7 +40,7 @@ from automotive_cosim.cockpit.signals import (
     LIGHTS,
     MOTION,
     OUTSIDE,
-    Kind,
+    LeafKind,
     Signals,
     named,
 )
@@ -190,7 +190,7 @@ class Cockpit:
         """
         signal = named(path)
         self.signals[signal] = value
-        if signal.kind is not Kind.ACTUATOR:
+        if signal.kind is not LeafKind.ACTUATOR:
             self._state.injected = {**self._state.injected, path: self.signals[signal]}
         self._tree = None
 
@@ -545,7 +545,7 @@ class Cockpit:
 
     def _set_up(self, path: str, value: Any) -> None:
         signal = named(path)
-        if signal.kind is not Kind.ACTUATOR:
+        if signal.kind is not LeafKind.ACTUATOR:
             self.signals[signal] = value
             return
         refusal = self._state.vehicle.command(signal, value)

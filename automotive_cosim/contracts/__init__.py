@@ -15,7 +15,7 @@ place        weather, position fix, connection, surroundings
 observation  what an agent sees
 action       what an agent does
 requests     what the cockpit asks of the road, and the answer
-plain        factors between units, and JSON
+plain        factors between units, JSON, numbers in texts, and how progress is told
 """
 
 from automotive_cosim.contracts.action import Action, ActionType, Direction, GoalStatus, Reason
@@ -42,7 +42,7 @@ from automotive_cosim.contracts.observation import (
     VehicleState,
 )
 from automotive_cosim.contracts.place import Connectivity, GpsFix, Surroundings, Weather
-from automotive_cosim.contracts.plain import KMH_PER_MPS, MPH_PER_MPS, Json
+from automotive_cosim.contracts.plain import KMH_PER_MPS, MPH_PER_MPS, Json, Tell
 from automotive_cosim.contracts.requests import (
     Alert,
     AlertKind,
@@ -97,6 +97,7 @@ __all__ = [
     "Severity",
     "SlowDown",
     "Surroundings",
+    "Tell",
     "TrafficLight",
     "VehicleState",
     "Weather",

@@ -21,6 +21,7 @@ from automotive_cosim.geo.gps import Gps
 from automotive_cosim.geo.locate import Geo
 from automotive_cosim.scenarios import LinkAt, Scenario, WeatherAt
 from automotive_cosim.traffic.base import Traffic
+from automotive_cosim.traffic.shadow import SharedTraffic
 
 TICK_S = 1.0
 """The cockpit, the receiver and the place are updated this often; the road runs on SUMO's own step."""
@@ -30,7 +31,7 @@ TICK_S = 1.0
 class CoSimulation:
     """Owns its parts: closing it ends its traffic. ``moment`` is the newest state."""
 
-    traffic: Traffic
+    traffic: SharedTraffic
     car: Car
     moment: Moment
 
@@ -66,6 +67,13 @@ class CoSimulation:
         """An exact copy that goes its own way from this instant."""
         return CoSimulation(self.traffic.branch(), self.car.copy(), self.moment)
 
+    def shadow(self) -> CoSimulation:
+        """An exact copy from this instant on at whose cockpit nobody acts, to be driven beside this one.
+
+        It has a simulation of its own only from where something is asked of this road. Close it first.
+        """
+        return CoSimulation(self.traffic.shadow(), self.car.copy(), self.moment)
+
     def close(self) -> None:
         """Ends the drive; harmless when called again."""
         self.traffic.close()
@@ -96,4 +104,5 @@ def couple(
     car = Car(
         cockpit, Gps(gps_rng) if scenario.has_place else None, Modem(links), Geo(), weather, departure, state.time_s
     )
-    return CoSimulation(traffic, car, car.sense(traffic, (state,), (), 0.0))
+    shared = SharedTraffic(traffic, scenario.sumo.step_length_s)
+    return CoSimulation(shared, car, car.sense(shared, (state,), (), 0.0))

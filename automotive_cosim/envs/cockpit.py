@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import gymnasium as gym
@@ -12,10 +12,18 @@ import numpy.typing as npt
 from automotive_cosim.cockpit.actions import check, parse
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import Action
+from automotive_cosim.envs.pool import POOL
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.situation import SituationFinder
-from automotive_cosim.episode.specification import ACTION_COST_S, Conditions, EpisodeSpec, SeedSource, mode_of
+from automotive_cosim.episode.specification import (
+    ACTION_COST_S,
+    SEED_LIMIT,
+    Conditions,
+    EpisodeSpec,
+    SeedSource,
+    mode_of,
+)
 from automotive_cosim.interface import spaces
 from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.interface.observe import ALL, Channel
@@ -46,7 +54,8 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
     when the task's deadline is over; a status declared before that only ends the agent's own part.
 
     Seeds: ``reset(seed=s)`` warms the traffic of seed ``s`` and draws everything else from it. ``reset()``
-    keeps that traffic and draws a new instance and drive, which is quick.
+    keeps that traffic and draws a new instance and drive, which is quick. ``options={"traffic_seed": t}`` takes the
+    traffic of seed ``t`` in place of ``s``.
     """
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 1}  # noqa: RUF012, gymnasium's own form
@@ -78,7 +87,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
             half, mode, scenario, origin, gps, from_place, to_place, held_out: as in ``EpisodeSpec``.
             channels, geo, max_steps, action_cost_s: as in ``Conditions``.
             render_mode: ``"rgb_array"`` or None.
-            simulations: warm simulations to share with other environments; by default its own.
+            simulations: warm simulations; by default those that the environments of this process share.
             listener: told of progress.
 
         Raises:
@@ -92,9 +101,10 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         self._conditions = Conditions(
             frozenset(map(Channel, channels)), GeoInput(geo), max_steps, action_cost_s=action_cost_s
         )
-        self._simulations = simulations or Simulations()
-        self._owns_simulations = simulations is None
-        self._finder = SituationFinder(spec, self._simulations, task=given, listener=listener)
+        self._leave: Callable[[], object] | None = None
+        if simulations is None:
+            simulations, self._leave = POOL.join(self)
+        self._finder = SituationFinder(spec, simulations, task=given, listener=listener)
         self._listener = listener
         self._seeds = SeedSource()
         self._episode: Episode | None = None
@@ -130,7 +140,10 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         super().reset(seed=seed)
         self._end()
         self._episode = None
-        hand_over = self._finder.find(self._seeds.next(seed))
+        if seed is not None:
+            self._seeds = SeedSource(seed)
+        self._seeds.traffic = traffic_seed(options, self._seeds.traffic)
+        hand_over = self._finder.find(self._seeds.next())
         self._episode = Episode.take_over(hand_over, self._conditions, self._listener)
         return self._encoded(), self._info()
 
@@ -152,10 +165,10 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         return self.episode.screenshot() if self.render_mode else None
 
     def close(self) -> None:
-        """Ends the drive and, if they are its own, the warm simulations."""
+        """Ends the drive and, if nobody else shares them, the warm simulations."""
         self._end()
-        if self._owns_simulations:
-            self._simulations.close()
+        if self._leave is not None:
+            self._leave()
 
     def _encoded(self) -> dict[str, Any]:
         return spaces.encode(self.episode.observation, self._conditions.given)
@@ -175,6 +188,11 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
     def _end(self) -> None:
         if self._episode is not None:
             self._episode.close()
+
+
+def traffic_seed(options: Mapping[str, Any] | None, own: int) -> int:
+    """The traffic that the options of a ``reset`` ask for, or else its own."""
+    return int((options or {}).get("traffic_seed", own)) % SEED_LIMIT
 
 
 def outcome(episode: Episode) -> tuple[float, bool, bool]:

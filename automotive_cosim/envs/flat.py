@@ -19,7 +19,7 @@ It holds less than ``CockpitEnv`` does: no picture, no place, and only the contr
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from hashlib import blake2b
 from typing import Any
 
@@ -28,7 +28,8 @@ import numpy as np
 import numpy.typing as npt
 
 from automotive_cosim.contracts import Action, ActionType, GoalStatus, Observation
-from automotive_cosim.envs.cockpit import outcome
+from automotive_cosim.envs.cockpit import outcome, traffic_seed
+from automotive_cosim.envs.pool import POOL
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import SEED_LIMIT, Conditions, EpisodeSpec, SeedSource
@@ -95,7 +96,7 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
             scenario: runs all in another scenario than the tasks' own.
             max_steps: actions after which an episode is cut off.
             goal_bonus: potential of a state in which the goal holds; 0 except for training.
-            simulations: warm simulations to share; by default its own.
+            simulations: warm simulations; by default those that the environments of this process share.
 
         Raises:
             UnknownNameError: no such task or scenario.
@@ -103,9 +104,10 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
         """
         if not tasks or not controls:
             raise UserError("a flat environment needs at least one task and one control")
-        self._simulations = simulations or Simulations()
-        self._owns_simulations = simulations is None
-        self._finders = [SituationFinder(EpisodeSpec(task, scenario=scenario), self._simulations) for task in tasks]
+        self._leave: Callable[[], object] | None = None
+        if simulations is None:
+            simulations, self._leave = POOL.join(self)
+        self._finders = [SituationFinder(EpisodeSpec(task, scenario=scenario), simulations) for task in tasks]
         self._seeds: list[SeedSource] = []
         """One a task, so that what is drawn for one does not depend on the others."""
         self._conditions = Conditions(frozenset({Channel.ELEMENTS, Channel.VEHICLE}), max_steps=max_steps)
@@ -132,7 +134,7 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[npt.NDArray[np.float32], dict[str, Any]]:
-        """Draws a task, a phrasing and a drive; as in ``CockpitEnv`` only a seed warms other traffic.
+        """Draws a task, a phrasing and a drive. Seeds are those of ``CockpitEnv``.
 
         Raises:
             TriggerNotReachedError: the situation did not come about.
@@ -142,8 +144,10 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
         self._end()
         self._episode = None
         if seed is not None or not self._seeds:
-            traffic_seed = int(self.np_random.integers(SEED_LIMIT)) if seed is None else seed
-            self._seeds = [SeedSource(traffic_seed) for _ in self._finders]
+            own = int(self.np_random.integers(SEED_LIMIT)) if seed is None else seed
+            self._seeds = [SeedSource(own) for _ in self._finders]
+        for source in self._seeds:
+            source.traffic = traffic_seed(options, source.traffic)
         number = int(self.np_random.integers(len(self._finders)))
         hand_over = self._finders[number].find(self._seeds[number].next())
         self._episode = Episode.take_over(hand_over, self._conditions)
@@ -169,10 +173,10 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
         return self._numbers(), reward, terminated, truncated, info
 
     def close(self) -> None:
-        """Ends the drive and, if they are its own, the warm simulations."""
+        """Ends the drive and, if nobody else shares them, the warm simulations."""
         self._end()
-        if self._owns_simulations:
-            self._simulations.close()
+        if self._leave is not None:
+            self._leave()
 
     def _end(self) -> None:
         if self._episode is not None:

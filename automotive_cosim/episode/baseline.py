@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation
-
-ROUNDING_S = 1e-9
+from automotive_cosim.episode.specification import ROUNDING_S
 
 
 class Baseline:
     """Driven beside the episode, and only as far as that has come; its branches share it."""
 
     def __init__(self, world: CoSimulation) -> None:
-        """Takes over a branch of the hand-over."""
+        """Takes over a shadow of the hand-over's world."""
         self._world = world
         self._moments: list[Moment] = [world.moment]
 

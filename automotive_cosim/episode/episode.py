@@ -7,11 +7,11 @@ from typing import Any
 
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S
-from automotive_cosim.episode.baseline import ROUNDING_S, Baseline
+from automotive_cosim.episode.baseline import Baseline
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.session import Session, beginning
 from automotive_cosim.episode.situation import HandOver
-from automotive_cosim.episode.specification import Conditions, End
+from automotive_cosim.episode.specification import ROUNDING_S, Conditions, End
 from automotive_cosim.tasking.instance import Instance
 from automotive_cosim.tasking.task import Mode
 from automotive_cosim.tasking.verdict import Verdict, judge
@@ -49,7 +49,7 @@ class Episode(Session):
             instance=instance,
             mode=hand_over.mode,
             trigger_s=hand_over.trigger_s,
-            baseline=Baseline(world.branch()),
+            baseline=Baseline(world.shadow()),
         )
 
     def branch(self, max_steps: int | None = None) -> Episode:
@@ -68,6 +68,7 @@ class Episode(Session):
             conditions=conditions,
             moments=list(self.moments),
             steps=list(self.steps),
+            hashed=self.hashed.copy(),
             owns_baseline=False,
         )
 
@@ -77,9 +78,9 @@ class Episode(Session):
 
     def close(self) -> None:
         """Ends the drive and, if it is its own, the baseline run; harmless when called again."""
-        self.world.close()
         if self.owns_baseline:
             self.baseline.close()
+        self.world.close()
 
     @property
     def watched_from_s(self) -> float | None:

@@ -26,7 +26,7 @@ from automotive_cosim.contracts import (
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import CoSimulation
 from automotive_cosim.episode.listener import Listener
-from automotive_cosim.episode.specification import Conditions, End
+from automotive_cosim.episode.specification import ROUNDING_S, Conditions, End
 from automotive_cosim.geo import sensor
 from automotive_cosim.geo.locate import Geo
 from automotive_cosim.geo.reckoning import Roads
@@ -63,6 +63,8 @@ class Session:
     """The code it gave with that."""
     end: End | None = None
     """Why it is over; None while it is not."""
+    hashed: trace.Hash = field(default_factory=trace.Hash, repr=False)
+    """Of the steps that somebody has asked the hash of."""
     _roads: Roads | None = field(default=None, repr=False)
 
     @classmethod
@@ -128,7 +130,9 @@ class Session:
     @property
     def trace_sha256(self) -> str:
         """The hash of what happened so far."""
-        return trace.sha256([step.as_json() for step in self.steps])
+        for step in self.steps[self.hashed.count :]:
+            self.hashed.add(step)
+        return self.hashed.hex
 
     def screenshot(self) -> npt.NDArray[np.uint8]:
         """The cockpit's screen, (height, width, 3)."""
@@ -176,7 +180,7 @@ class Session:
         if len(self.steps) > self.conditions.max_steps:
             return End.OUT_OF_STEPS
         most_s = self.conditions.max_sim_s
-        return End.OUT_OF_TIME if most_s is not None and self.seconds >= most_s else None
+        return End.OUT_OF_TIME if most_s is not None and self.seconds >= most_s - ROUNDING_S else None
 
     def _finish(self, end: End) -> None:
         self.end = end

@@ -104,18 +104,18 @@ class SituationFinder:
         """
         half = self._draw(seeds).half
         self._listener.loading(self.scenario)
-        simulation = self._simulations.warm(self.scenario, seeds.traffic, self._warming)
         trips, waits_s = self._trips(half, seeds.drive), WAITS_S[:1] if half.start.parked else WAITS_S
-        for trip, wait_s in product(trips, waits_s):
-            plan, traffic = self._depart(simulation, half, trip, seeds.drive, wait_s)
-            try:
-                drive = self._drive_up(self._couple(traffic, half, plan), half)
-                if drive is not None:
-                    return self._handed_over(seeds, simulation, half, plan, drive)
-            except BaseException:
+        with self._simulations.held(self.scenario, seeds.traffic, self._warming) as simulation:
+            for trip, wait_s in product(trips, waits_s):
+                plan, traffic = self._depart(simulation, half, trip, seeds.drive, wait_s)
+                try:
+                    drive = self._drive_up(self._couple(traffic, half, plan), half)
+                    if drive is not None:
+                        return self._handed_over(seeds, simulation, half, plan, drive)
+                except BaseException:
+                    traffic.close()
+                    raise
                 traffic.close()
-                raise
-            traffic.close()
         trigger = half.trigger
         raise TriggerNotReachedError(
             f"task {self.task.id!r}: {trigger.condition} did not hold for {trigger.for_s:g} s within "

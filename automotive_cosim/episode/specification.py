@@ -22,6 +22,8 @@ ACTION_COST_S = 1.0
 s)."""
 MAX_STEPS = 20
 """Actions that an episode may take."""
+ROUNDING_S = 1e-9
+"""Sums of simulated seconds are equal up to this."""
 SEED_LIMIT = 2**31
 """SUMO takes seeds below this."""
 
@@ -126,14 +128,12 @@ class SeedSource:
     def __init__(self, seed: int | None = None) -> None:
         """Begins with this seed; None begins at random."""
         self._rng = np.random.default_rng(seed)
-        self._traffic = int(self._rng.integers(SEED_LIMIT)) if seed is None else seed % SEED_LIMIT
+        self.traffic = int(self._rng.integers(SEED_LIMIT)) if seed is None else int(seed) % SEED_LIMIT
+        """The next episodes' traffic; the seed's own, unless set to another."""
 
-    def next(self, seed: int | None = None) -> Seeds:
-        """Seeds of the next episode: a seed chooses other traffic, None keeps it and draws a new instance."""
-        if seed is not None:
-            self._rng = np.random.default_rng(seed)
-            self._traffic = seed % SEED_LIMIT
-        return Seeds(self._traffic, int(self._rng.integers(SEED_LIMIT)))
+    def next(self) -> Seeds:
+        """Seeds of the next episode: in the same traffic another instance."""
+        return Seeds(self.traffic, int(self._rng.integers(SEED_LIMIT)))
 
 
 class End(StrEnum):

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 Steps = tuple[str | int, ...]
 """The way to a value: keys of tables and indices of lists."""
-Place = Callable[[Steps], tuple[str, str]]
+Locator = Callable[[Steps], tuple[str, str]]
 """Says where a value stands, such as ``"plan.toml line 12 [limits]"``, and what it is called there."""
 
 MOST_PROBLEMS = 8
@@ -33,7 +33,7 @@ MOST_COMPLAINTS = 200
 """Looked at; where pydantic has more of them the first are as good."""
 
 
-def checked(kind: type[T], values: object, place: Place, error: type[UserError] = UserError) -> T:
+def checked(kind: type[T], values: object, place: Locator, error: type[UserError] = UserError) -> T:
     """What the values say, as an instance of a type.
 
     Args:
@@ -95,7 +95,7 @@ class _Problem(NamedTuple):
     reason: str = ""
 
 
-def _told(found: Sequence[ErrorDetails], root: Json, values: object, place: Place) -> list[str]:
+def _told(found: Sequence[ErrorDetails], root: Json, values: object, place: Locator) -> list[str]:
     """One line for each problem, in the order of the type's fields."""
     problems: dict[Steps, _Problem] = {}
     for entry in found:
@@ -157,7 +157,7 @@ def _labels(schema: Json) -> set[object]:
     return {schema.get("title"), *(field.get("const") for field in schema.get("properties", {}).values())}
 
 
-def _line(problem: _Problem, together: Sequence[_Problem], root: Json, place: Place) -> str:
+def _line(problem: _Problem, together: Sequence[_Problem], root: Json, place: Locator) -> str:
     kind, steps, value, schemas, reason = problem
     if kind == "json_invalid":
         return f"{place(())[0]} cannot be read: {'it is nested too deeply' if 'recursion' in reason else reason}"

@@ -18,7 +18,8 @@ from enum import StrEnum
 from typing import Any, Protocol
 
 from automotive_cosim.contracts import KMH_PER_MPS, STANDING_BELOW_MPS, DrivingState, LimitSource
-from automotive_cosim.geo.context import AppliedRule, GeoContext
+from automotive_cosim.geo.applied import AppliedRule
+from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.rules import Rule, Status
 from automotive_cosim.geo.text import KM_PER_MILE
 
@@ -57,7 +58,7 @@ SIGN = "posted"
 """Stands for the rule where a sign sets the limit."""
 
 
-class Kind(StrEnum):
+class ViolationKind(StrEnum):
     """What was done."""
 
     SPEED = "speed"
@@ -95,7 +96,7 @@ class Observed(Protocol):
 class Violation:
     """A rule broken without a break from one instant to another."""
 
-    kind: Kind
+    kind: ViolationKind
     rule: str
     """Id of the rule, or ``"posted"`` for a sign."""
     text: str
@@ -116,7 +117,7 @@ class Violation:
 class _Breach:
     """One rule broken at one instant."""
 
-    kind: Kind
+    kind: ViolationKind
     rule: str
     text: str
     law: str
@@ -127,7 +128,7 @@ class _Breach:
     """Speed over limit."""
 
     @property
-    def key(self) -> tuple[Kind, str, str]:
+    def key(self) -> tuple[ViolationKind, str, str]:
         return self.kind, self.rule, self.text
 
 
@@ -137,7 +138,7 @@ def violations(states: Iterable[Observed]) -> tuple[Violation, ...]:
     Args:
         states: a drive in the order of time, e.g. the moments of an episode.
     """
-    open_runs: dict[tuple[Kind, str, str], list[tuple[float, _Breach]]] = {}
+    open_runs: dict[tuple[ViolationKind, str, str], list[tuple[float, _Breach]]] = {}
     closed: list[list[tuple[float, _Breach]]] = []
     for state in states:
         now = {breach.key: breach for breach in _breaches(state)}
@@ -167,13 +168,13 @@ def _interval(run: Sequence[tuple[float, _Breach]]) -> Violation:
 def _lasted(run: Sequence[tuple[float, _Breach]]) -> bool:
     """Whether it went on for longer than a lawful driver may need."""
     match run[0][1].kind:
-        case Kind.SPEED:
+        case ViolationKind.SPEED:
             return any(_held_s(run, ratio) >= seconds for ratio, seconds in ISA_CASCADE)
-        case Kind.LAMPS:
+        case ViolationKind.LAMPS:
             return _held_s(run) > LAMP_TIME_S
-        case Kind.DISTANCE:
+        case ViolationKind.DISTANCE:
             return _held_s(run) > GAP_TIME_S
-        case Kind.HORN | Kind.SCREEN:
+        case ViolationKind.HORN | ViolationKind.SCREEN:
             return True
 
 
@@ -243,7 +244,7 @@ def _speeding(state: Observed) -> Iterator[_Breach]:
         return
     words = f"{limit.kmh:.0f} km/h {limit.text}"
     over_kmh, ratio = speed_kmh - limit.kmh, speed_kmh / limit.kmh
-    yield _Breach(Kind.SPEED, limit.rule, words, limit.law, limit.status, over_kmh, "km/h", ratio)
+    yield _Breach(ViolationKind.SPEED, limit.rule, words, limit.law, limit.status, over_kmh, "km/h", ratio)
 
 
 # --- lamps, distance, horn, screens -------------------------------------------------------------------------
@@ -267,7 +268,7 @@ def _lamps(state: Observed) -> Iterator[_Breach]:
             continue
         for applied in _certain(state.context, topic):
             if (applied.value == "required" and not any(shown)) or (applied.value == "forbidden" and any(shown)):
-                yield _breach(Kind.LAMPS, applied.rule)
+                yield _breach(ViolationKind.LAMPS, applied.rule)
 
 
 def _too_close(state: Observed) -> Iterator[_Breach]:
@@ -280,19 +281,19 @@ def _too_close(state: Observed) -> Iterator[_Breach]:
             gap = leader.gap_m / speed_mps if rule.unit == "s" else leader.gap_m
             if gap < applied.value:
                 short = applied.value - gap
-                yield _Breach(Kind.DISTANCE, rule.id, rule.text, rule.law, rule.status, short, rule.unit)
+                yield _Breach(ViolationKind.DISTANCE, rule.id, rule.text, rule.law, rule.status, short, rule.unit)
 
 
 def _horn_and_screen(state: Observed) -> Iterator[_Breach]:
     signals = state.signals
     if signals.get(HORN) and not _in_danger(state.driving):
-        yield from (_breach(Kind.HORN, found.rule) for found in _forbidden(state.context, "horn"))
+        yield from (_breach(ViolationKind.HORN, found.rule) for found in _forbidden(state.context, "horn"))
     shows_film = signals.get(MEDIA_ACTION) == "PLAY" and signals.get(MEDIA_SOURCE) in MOVING_PICTURES
     if shows_film and _moving(state):
-        yield from (_breach(Kind.SCREEN, found.rule) for found in _forbidden(state.context, "screens"))
+        yield from (_breach(ViolationKind.SCREEN, found.rule) for found in _forbidden(state.context, "screens"))
 
 
-def _breach(kind: Kind, rule: Rule) -> _Breach:
+def _breach(kind: ViolationKind, rule: Rule) -> _Breach:
     return _Breach(kind, rule.id, rule.text, rule.law, rule.status)
 
 

@@ -8,57 +8,104 @@ made for simple readers too: ``Speed limit here: 50 km/h (posted on Avenue Foch)
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
+from functools import cached_property
 
-from automotive_cosim.contracts import KMH_PER_MPS, GpsFix, LimitSource, RoadHere, Weather
-from automotive_cosim.geo.climate import ClimateNorm
-from automotive_cosim.geo.place import Place
-from automotive_cosim.geo.rules import TOPICS, Rule, Value
-from automotive_cosim.geo.sun import Sun
+from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, GpsFix, LimitSource, RoadHere, Weather
+from automotive_cosim.geo.applied import AppliedRule, built_up, limits, other_rules, situation_at
+from automotive_cosim.geo.climate import ClimateNorm, climate_norm
+from automotive_cosim.geo.place import NOWHERE, Atlas, Place
+from automotive_cosim.geo.rules import TOPICS, Rule
+from automotive_cosim.geo.situation import Situation
+from automotive_cosim.geo.sun import Sun, sun_at
 from automotive_cosim.geo.text import BUDGET_TOKENS, KM_PER_MILE, Line, amount_of_speed, position, within_budget
 from automotive_cosim.geo.weather import visibility_class
 from automotive_cosim.geo.weather import words as weather_words
 
 
-@dataclass(frozen=True, slots=True)
-class AppliedRule:
-    """A rule that place, road and date leave open here."""
-
-    rule: Rule
-    jurisdiction: str
-    """Code of the country, region or city whose rule it is."""
-    value: Value | None
-    """Its answer now: None if it does not apply now."""
-    certain: bool
-    """False where the situation does not tell whether it is this answer."""
-
-
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class GeoContext:
-    """Place, road, law, sky and weather at one instant. States facts and rules; judges nothing."""
+    """Place, road, law, sky and weather at one instant. States facts and rules; judges nothing.
 
-    place: Place
+    It holds what it is made of; what follows from that is found when first asked for, since most instants are asked
+    for little or nothing.
+    """
+
+    driving: DrivingState
+    """Of which road, traffic and motion count, not the position."""
     gps: GpsFix | None
-    road: RoadHere
-    speed_kmh: float
-    heading_deg: float
-    local_time: datetime
-    built_up: bool | None
-    built_up_source: str
-    """``"network"``, ``"road class"``, ``"place"`` or ``"unknown"``."""
-    posted_limit_kmh: float | None
-    """None where no sign is known, or the sign lifts every limit."""
-    default_limits: tuple[AppliedRule, ...]
-    """The law's limit for this road. Several where the network does not tell which; none where no law is known."""
-    reduced_limits: tuple[AppliedRule, ...]
-    """Lower limits of this road under conditions of weather, light or hour, whether or not these hold now."""
-    rules: tuple[AppliedRule, ...]
-    """The other topics, in the order of ``rules.TOPICS``."""
-    sun: Sun | None
-    """None where the position is not known, as with ``climate``."""
+    """Gives the place, by its last fix; None leaves that unknown."""
     weather: Weather | None
-    climate: ClimateNorm | None
+    local_time: datetime
+    """Zone-aware."""
+    atlas: Atlas = field(compare=False, repr=False)
+
+    @property
+    def road(self) -> RoadHere:
+        """The road that the car is on."""
+        return self.driving.road
+
+    @property
+    def speed_kmh(self) -> float:
+        """Of the car."""
+        return self.driving.speed_mps * KMH_PER_MPS
+
+    @property
+    def heading_deg(self) -> float:
+        """Clockwise from north."""
+        return self.driving.heading_deg
+
+    @cached_property
+    def place(self) -> Place:
+        """Country, region, city and whose rules hold.
+
+        Raises:
+            GeoDataError: a rule file of the country is broken.
+        """
+        return NOWHERE if self.gps is None else self.atlas.place(self.gps.lon_deg, self.gps.lat_deg)
+
+    @cached_property
+    def sun(self) -> Sun | None:
+        """None where the position is not known, as with ``climate``."""
+        return None if self.gps is None else sun_at(self.gps.lon_deg, self.gps.lat_deg, self.local_time)
+
+    @cached_property
+    def climate(self) -> ClimateNorm | None:
+        """The month's normals of the nearest station; None too where that is far."""
+        return None if self.gps is None else climate_norm(self.gps.lon_deg, self.gps.lat_deg, self.local_time.month)
+
+    @property
+    def built_up(self) -> bool | None:
+        """Whether the road is in a built-up area; None if nothing tells."""
+        return self._built_up[0]
+
+    @property
+    def built_up_source(self) -> str:
+        """``"network"``, ``"road class"``, ``"place"`` or ``"unknown"``."""
+        return self._built_up[1]
+
+    @property
+    def posted_limit_kmh(self) -> float | None:
+        """None where no sign is known, or the sign lifts every limit."""
+        posted = self.road.posted_limit_mps if self.road.limit_source is LimitSource.POSTED else None
+        return None if posted is None else posted * KMH_PER_MPS
+
+    @property
+    def default_limits(self) -> tuple[AppliedRule, ...]:
+        """The law's limit for this road. Several where the network does not tell which; none where no law is
+        known."""
+        return tuple(found for found in self._limits if found.rule.fixed)
+
+    @property
+    def reduced_limits(self) -> tuple[AppliedRule, ...]:
+        """Lower limits of this road under conditions of weather, light or hour, whether or not these hold now."""
+        return tuple(found for found in self._limits if not found.rule.fixed)
+
+    @cached_property
+    def rules(self) -> tuple[AppliedRule, ...]:
+        """The other topics, in the order of ``rules.TOPICS``."""
+        return tuple(other_rules(self.place, self._situation))
 
     @property
     def country(self) -> str:
@@ -87,6 +134,18 @@ class GeoContext:
     def text(self, budget_tokens: int = BUDGET_TOKENS) -> str:
         """What holds here, one fact a line: as many lines, from the first, as the budget takes."""
         return within_budget(self.lines, budget_tokens)
+
+    @cached_property
+    def _built_up(self) -> tuple[bool | None, str]:
+        return built_up(self.road, self.place)
+
+    @cached_property
+    def _situation(self) -> Situation:
+        return situation_at(self.driving, self.gps, self.weather, self.local_time, self.sun, self.built_up)
+
+    @cached_property
+    def _limits(self) -> tuple[AppliedRule, ...]:
+        return tuple(limits(self.place, self._situation))
 
 
 # --- in words ---------------------------------------------------------------------------------------------

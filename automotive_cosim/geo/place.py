@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
 import shapely
 import tzfpy
@@ -59,13 +59,18 @@ class Atlas:
     """
 
     def __init__(self, folders: Sequence[Path] = ()) -> None:
+        self._folders = tuple(folders)
         self._files: dict[str, Path] = {}
         for folder in (*folders, Path(str(files("automotive_cosim.geo.data")))):
             if not folder.is_dir():
                 raise GeoDataError(f"{folder} is no folder; give one that holds rule files such as FR.toml")
-            for name in sorted(name for name in os.listdir(folder) if name.endswith(".toml")):
+            for name in sorted(path.name for path in folder.iterdir() if path.suffix == ".toml"):
                 self._files.setdefault(name.removesuffix(".toml"), folder / name)
         self._countries: dict[str, tuple[Jurisdiction, ...]] = {}
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickled by its folders alone: the files are there for whoever unpickles it."""
+        return (Atlas, (self._folders,)) if self._folders else (shipped, ())
 
     def codes(self) -> tuple[str, ...]:
         """Every country, region and city that has a file."""
@@ -132,6 +137,12 @@ class Atlas:
             if there == country:
                 found |= {layer.code for layer in self._layers(there, lon, lat) if layer.kind == "region"}
         return tuple(sorted(found - own - {""}))
+
+
+@cache
+def shipped() -> Atlas:
+    """The atlas of the shipped rules alone, one in a process."""
+    return Atlas()
 
 
 def check_position(lon_deg: float, lat_deg: float) -> None:

@@ -38,7 +38,7 @@ from automotive_cosim.formats.annotations import Called, Chosen, Form, Made, One
 from automotive_cosim.formats.files import read_text
 from automotive_cosim.formats.toml import parse
 from automotive_cosim.geo.rules import ANSWERS, TOPICS, UNITS, USERS, Case, Jurisdiction, Rule, Status, Value
-from automotive_cosim.geo.situation import Area, Test, When
+from automotive_cosim.geo.situation import AreaPolygon, Test, When
 
 if TYPE_CHECKING:
     from pydantic import GetJsonSchemaHandler
@@ -171,7 +171,7 @@ class RegionEntry:
     within: Annotated[str, Form(r"^[A-Z]{2}$", "FR")]
     """The country's code."""
     kind: Literal["region", "city"]
-    polygon: Area
+    polygon: AreaPolygon
     """Where it is, as at least three [lon, lat] corners in degrees."""
 
     def __post_init__(self) -> None:

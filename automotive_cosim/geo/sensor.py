@@ -64,7 +64,7 @@ class Known(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Reply:
+class QueryReply:
     """What came of a query."""
 
     ok: bool
@@ -74,7 +74,7 @@ class Reply:
     """Simulated seconds it took, on top of those of the action."""
 
 
-def ask(text: str, drive: Sequence[Known], *, with_position: bool = True, roads: Roads | None = None) -> Reply:
+def ask(text: str, drive: Sequence[Known], *, with_position: bool = True, roads: Roads | None = None) -> QueryReply:
     """Answers a query at the last instant of ``drive``.
 
     Args:
@@ -91,7 +91,7 @@ def ask(text: str, drive: Sequence[Known], *, with_position: bool = True, roads:
     subjects = [subject for subject in offered if asked & subject.words or (subject.by_topic and topics)]
     if not subjects:
         names = ", ".join(subject.name for subject in offered)
-        return Reply(False, f"nothing is known of that; there are: {names}", ON_BOARD_S)
+        return QueryReply(False, f"nothing is known of that; there are: {names}", ON_BOARD_S)
     link = drive[-1].connectivity
     lines: list[str] = []
     for subject in subjects:
@@ -104,7 +104,7 @@ def ask(text: str, drive: Sequence[Known], *, with_position: bool = True, roads:
     over_the_air = link.online and any(not subject.on_board for subject in subjects)
     cost_s = OVER_THE_AIR_S[link.kind] if over_the_air else ON_BOARD_S
     text = _within(list(dict.fromkeys(lines)))
-    return Reply(len(out_of_reach) < len(subjects), text, NO_LINK_S if out_of_reach else cost_s)
+    return QueryReply(len(out_of_reach) < len(subjects), text, NO_LINK_S if out_of_reach else cost_s)
 
 
 def _within(lines: Sequence[str]) -> str:
@@ -122,14 +122,14 @@ def _within(lines: Sequence[str]) -> str:
 
 # --- what can be asked ------------------------------------------------------------------------------------
 
-Answer = Callable[[Sequence[Known], frozenset[str]], Iterator[str]]
+Answering = Callable[[Sequence[Known], frozenset[str]], Iterator[str]]
 
 
 @dataclass(frozen=True, slots=True)
 class _Subject:
     name: str
     words: frozenset[str]
-    answer: Answer
+    answer: Answering
     on_board: bool
     by_topic: bool = False
     """Asked for by the word of a rule's topic too."""

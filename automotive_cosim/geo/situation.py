@@ -137,7 +137,7 @@ def polygon(corners: Sequence[tuple[float, float]]) -> shapely.Polygon:
 
 
 Corner = Annotated[tuple[Longitude, Latitude], Called("a pair [lon, lat] in degrees")]
-Area = Annotated[shapely.Polygon, Made(Annotated[tuple[Corner, ...], MinLen(3)], polygon)]
+AreaPolygon = Annotated[shapely.Polygon, Made(Annotated[tuple[Corner, ...], MinLen(3)], polygon)]
 """Written as a list of corners."""
 
 
@@ -221,7 +221,7 @@ CONDITIONS: dict[str, Condition] = {
     "lanes_at_most": Condition("a number", float, lambda now, lanes: now.lanes <= lanes, fixed=True),
     "road_classes": Condition("a list of OSM highway values", _TEXTS, _on_class, fixed=True),
     "streets": Condition("a list of street names, * for any text", _STREETS, _on_street, fixed=True),
-    "inside": Condition("a list of [lon, lat] corners", Area, _inside, fixed=True),
+    "inside": Condition("a list of [lon, lat] corners", AreaPolygon, _inside, fixed=True),
     "season": Condition('["MM-DD", "MM-DD"], both included', tuple[_DAY, _DAY], _in_season, fixed=True),
     "since": Condition("a date", date, lambda now, day: now.local_time.date() >= day, fixed=True),
     "weekdays": Condition(

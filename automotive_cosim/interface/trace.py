@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Iterable
 from dataclasses import dataclass, fields, is_dataclass
 from functools import cache, lru_cache
 from typing import Any
@@ -52,9 +53,13 @@ class Step:
 class Hash:
     """The trace's hash, taken on step by step, so that the end of a long episode need not wait for it."""
 
-    def __init__(self) -> None:
-        """Of no step yet."""
+    def __init__(self, steps: Iterable[Step] = ()) -> None:
+        """Of these steps."""
         self._digest = hashlib.sha256()
+        self.count = 0
+        """Steps taken in."""
+        for step in steps:
+            self.add(step)
 
     def add(self, step: Step) -> None:
         """Takes the next step in."""
@@ -66,6 +71,7 @@ class Hash:
         }
         whole = ",".join(f'"{name}":{texts[name]}' for name in sorted(HASHED))
         self._digest.update(f"{{{whole}}}\n".encode())
+        self.count += 1
 
     @property
     def hex(self) -> str:
@@ -75,7 +81,7 @@ class Hash:
     def copy(self) -> Hash:
         """One that goes its own way from here."""
         twin = Hash()
-        twin._digest = self._digest.copy()
+        twin._digest, twin.count = self._digest.copy(), self.count
         return twin
 
 
@@ -84,7 +90,7 @@ _LEAVES = frozenset((str, int, float, bool, type(None)))
 
 def plain(value: Any) -> Any:
     """Frozen data as JSON has it. As ``dataclasses.asdict``, which is ten times slower because it copies leaves."""
-    kind = type(value)
+    kind: type = type(value)
     if kind in _LEAVES:
         return value
     names = _names(kind)
@@ -97,7 +103,7 @@ def plain(value: Any) -> Any:
 
 @cache
 def _names(kind: type) -> tuple[str, ...] | None:
-    """Of a dataclass's fields; None of any other class."""
+    """The fields of a dataclass; None of any other class."""
     return tuple(field.name for field in fields(kind)) if is_dataclass(kind) else None
 
 

@@ -38,7 +38,7 @@ from automotive_cosim.proof import mutations
 from automotive_cosim.proof.ground import Ground, Played, Script, finish
 from automotive_cosim.tasking.checks import NothingDone
 from automotive_cosim.tasking.task import Basis, Half, Task
-from automotive_cosim.tasking.triggers import All, Condition, Parked, Standing
+from automotive_cosim.tasking.triggers import All, Parked, Standing, TriggerCondition
 from automotive_cosim.tasking.verdict import judge
 from automotive_cosim.traffic.fork import Simulations
 
@@ -53,7 +53,7 @@ PATIENCE = 200
 BY_NUMBER = re.compile(r"\b(element|index|widget)\s*(number\s*)?\d", re.IGNORECASE)
 
 Wrong = Iterator[str]
-Strategy = Callable[[Ground], Played]
+GateStrategy = Callable[[Ground], Played]
 
 
 # --- one half ---------------------------------------------------------------------------------------------
@@ -61,8 +61,8 @@ Strategy = Callable[[Ground], Played]
 
 def oracle(ground: Ground) -> Wrong:
     """Every way of the expert."""
-    for number, way in enumerate((ground.instance.moves, *ground.half.ways)):
-        played = ground.play(ground.oracle(way))
+    others = (ground.play(ground.oracle(way)) for way in ground.half.ways)
+    for number, played in enumerate((ground.reference, *others)):
         if not played.success:
             yield f"way {number}: {played.why}"
         elif played.seconds > PACE * ground.half.deadline.seconds:
@@ -156,7 +156,7 @@ def _wins(ground: Ground, right: Played, moments: tuple[object, ...]) -> bool:
 # --- strategies over all halves ---------------------------------------------------------------------------
 
 
-def _strategies(grounds: dict[str, Ground]) -> Iterator[tuple[str, Strategy]]:
+def _strategies(grounds: dict[str, Ground]) -> Iterator[tuple[str, GateStrategy]]:
     yield "no-op", lambda ground: ground.play(ground.agent(NoOp()), give_up=True)
     for status in GoalStatus:
         yield str(status), partial(Ground.declares, status=status)
@@ -260,7 +260,7 @@ def road(ground: Ground, simulations: Simulations) -> Wrong:
     yield "its trigger is reached by a parked car"
 
 
-def _stands(condition: Condition) -> bool:
+def _stands(condition: TriggerCondition) -> bool:
     """Whether it holds of a standing car alone."""
     if isinstance(condition, All):
         return any(map(_stands, condition.conditions))
@@ -279,7 +279,7 @@ def repeat(ground: Ground, simulations: Simulations) -> Wrong:
 
 def hash_of_oracle(ground: Ground) -> str:
     """The hash of the expert's episode."""
-    return ground.play(ground.oracle()).trace_sha256
+    return ground.reference.trace_sha256
 
 
 def reach(task: Task, seed: int, simulations: Simulations) -> Wrong:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from automotive_cosim.agents.base import Agent, Privileged
 from automotive_cosim.agents.oracle import Oracle
@@ -15,7 +16,7 @@ from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import MAX_STEPS, Conditions, EpisodeSpec, SeedSource
 from automotive_cosim.errors import ActionError, OutOfBudgetError
 from automotive_cosim.interface.observe import ALL, Channel
-from automotive_cosim.interface.trace import Step, sha256
+from automotive_cosim.interface.trace import Hash, Step
 from automotive_cosim.tasking.instance import Instance
 from automotive_cosim.tasking.moves import Move
 from automotive_cosim.tasking.task import Half, Task
@@ -50,7 +51,7 @@ class Played:
     @property
     def trace_sha256(self) -> str:
         """The hash of what happened."""
-        return sha256([step.as_json() for step in self.steps])
+        return Hash(self.steps).hex
 
     @property
     def success(self) -> bool:
@@ -85,7 +86,7 @@ class Script:
         return action
 
 
-@dataclass(slots=True)
+@dataclass
 class Ground:
     """A task's half at its hand-over, with one seed."""
 
@@ -120,6 +121,11 @@ class Ground:
     def play(self, actor: Actor, max_steps: int = MAX_STEPS, *, give_up: bool = False) -> Played:
         """An episode from the hand-over; with ``give_up`` it ends as soon as it can no longer succeed."""
         return finish(self.episode.branch(max_steps), actor, give_up=give_up)
+
+    @cached_property
+    def reference(self) -> Played:
+        """The episode of the reference solution."""
+        return self.play(self.oracle())
 
     def oracle(self, moves: Sequence[Move] | None = None) -> Oracle:
         """An oracle that knows this instance."""

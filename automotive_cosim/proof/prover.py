@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import json
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.errors import TrafficError, TriggerNotReachedError
+from automotive_cosim.errors import TrafficError, TriggerNotReachedError, UserError
 from automotive_cosim.proof import gates
 from automotive_cosim.proof.ground import Ground
 from automotive_cosim.run.row import JobRow, Volatile
@@ -47,6 +49,8 @@ class Proof(JobRow):
     """By gate that was tried; an empty list is a pass."""
     oracle_steps: dict[str, int] = field(default_factory=dict)
     """Actions of the reference solution by half, the declaration included."""
+    traces: dict[str, str] = field(default_factory=dict)
+    """SHA-256 of the reference solution's trace by half."""
     gate_seconds: Volatile[dict[str, float]] = field(default_factory=dict)
     """Wall time by gate."""
 
@@ -62,6 +66,7 @@ class _Findings:
 
     wrong: dict[str, list[str]] = field(default_factory=dict)
     oracle_steps: dict[str, int] = field(default_factory=dict)
+    traces: dict[str, str] = field(default_factory=dict)
     seconds: dict[str, float] = field(default_factory=dict)
 
     def take(self, gate: str, wrong: Iterator[str], half: str = "") -> None:
@@ -118,6 +123,7 @@ class Prover:
             seed=seed,
             wrong=found.wrong,
             oracle_steps=found.oracle_steps,
+            traces=found.traces,
             gate_seconds=found.seconds,
             error=None if broken is None else f"{type(broken).__name__}: {broken}",
             error_kind=None if broken is None else type(broken).__name__,
@@ -128,8 +134,9 @@ class Prover:
         self._simulations.close()
 
     def _prove_half(self, found: _Findings, half: str, ground: Ground) -> None:
-        right = ground.play(ground.oracle())
+        right = ground.reference
         found.oracle_steps[half] = len(right.actions)
+        found.traces[half] = right.trace_sha256
         for gate in ("oracle", "start", "prefix", "late", "random"):
             if gate in self._chosen:
                 found.take(gate, getattr(gates, gate)(ground), half)
@@ -162,6 +169,32 @@ class Prover:
             return gates.hash_of_oracle(ground)
 
 
+def read_traces(path: Path) -> Mapping[str, str]:
+    """The traces that ``validate --json`` printed: a SHA-256 by task, half and seed.
+
+    Raises:
+        UserError: the file cannot be read, or holds none.
+    """
+    try:
+        traces = json.loads(path.read_text(encoding="utf-8"))["traces"]
+    except (OSError, ValueError, LookupError, TypeError) as error:
+        raise UserError(
+            f"cannot read traces from {path}: {error}; give a file that `automotive-cosim validate --json` printed"
+        ) from error
+    if not isinstance(traces, dict) or not all(isinstance(sha256, str) for sha256 in traces.values()):
+        raise UserError(f"{path} holds no traces; give a file that `automotive-cosim validate --json` printed")
+    return traces
+
+
+def changed_traces(before: Mapping[str, str], now: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
+    """Names of the traces that are not what they were, and why, in order."""
+    return tuple(
+        (name, "its reference solution gives another trace" if name in before else "its trace is not on record")
+        for name, sha256 in sorted(now.items())
+        if before.get(name) != sha256
+    )
+
+
 def as_json(proofs: Sequence[Proof], task_ids: Sequence[str], seeds: Sequence[int]) -> Json:
     """All of it as one JSON object."""
     tried = [gate for gate in GATES if any(gate in proof.wrong for proof in proofs)]
@@ -181,6 +214,9 @@ def as_json(proofs: Sequence[Proof], task_ids: Sequence[str], seeds: Sequence[in
         },
         "seconds": {gate: round(sum(proof.gate_seconds.get(gate, 0.0) for proof in proofs), 1) for gate in tried},
         "errors": [{"task": proof.task, "seed": proof.seed, "why": proof.error} for proof in proofs if proof.error],
+        "traces": {
+            f"{proof.task}/{half}/{proof.seed}": sha256 for proof in proofs for half, sha256 in proof.traces.items()
+        },
         "oracle_steps": {
             proof.task: proof.oracle_steps for proof in proofs if proof.seed == seeds[0] and proof.oracle_steps
         },

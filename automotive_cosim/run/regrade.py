@@ -1,4 +1,4 @@
-"""Stored episodes judged again by the checks as they are now."""
+"""Judges stored episodes again by the current checks."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from automotive_cosim.tasks import CATALOGUE
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """What became different of one part of a verdict."""
+    """The change of one part of a verdict."""
 
     part: str
     before: bool
     now: bool
     why: str
-    """The present judgement's reason."""
+    """The reason by the current checks."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,15 +40,15 @@ class Regraded:
 
     @property
     def differs(self) -> bool:
-        """Whether success or any part of the verdict is another one."""
+        """Whether success or any part of the verdict differs."""
         return self.now is not None and (self.now is not self.before or bool(self.changes))
 
 
 def regrade(folder: Path) -> Iterator[Regraded]:
-    """Judges every episode of an evaluation that has a verdict once more; nothing is written.
+    """Judges every episode of an evaluation that has a verdict again; nothing is written.
 
     Raises:
-        UserError: it is no evaluation's folder, or is broken.
+        UserError: it is not an evaluation's folder, or is damaged.
     """
     read_evaluation(folder)
     rows = read_rows(folder, EpisodeRow)

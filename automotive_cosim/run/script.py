@@ -1,4 +1,4 @@
-"""An agent that plays actions written down in a file, one JSON object a line."""
+"""An agent that plays actions from a file, one JSON object per line."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from automotive_cosim.formats.files import read_text
 from automotive_cosim.interface.observe import ALL
 
 
-class Script:
-    """Plays its actions one a step, whatever it observes, then waits until the episode is over."""
+class ScriptedAgent:
+    """Plays one action per step, whatever it observes, then waits until the episode is over."""
 
     name = "script"
     model = "none"
@@ -33,11 +33,11 @@ class Script:
         return self._left.popleft() if self._left else Action(ActionType.WAIT, seconds=1)
 
 
-def read_script(path: Path) -> Script:
-    """Reads a file of actions; empty lines are passed over.
+def read_script(path: Path) -> ScriptedAgent:
+    """Reads a file of actions; empty lines are ignored.
 
     Raises:
-        ActionError: the file cannot be read, holds no action, or a line is malformed; it names file and line.
+        ActionError: the file cannot be read, has no action, or a line is malformed; it names file and line.
     """
     actions = []
     for number, line in enumerate(read_text(path, ActionError).split("\n"), start=1):
@@ -47,5 +47,5 @@ def read_script(path: Path) -> Script:
             except ActionError as error:
                 raise ActionError(f"{path}, line {number}: {error}") from error
     if not actions:
-        raise ActionError(f"{path} holds no action; write one JSON object a line")
-    return Script(actions)
+        raise ActionError(f"{path} has no actions; write one JSON object per line")
+    return ScriptedAgent(actions)

@@ -15,7 +15,7 @@ from automotive_cosim.run.store import opened
 from automotive_cosim.studies.drive import planned, run_drive
 from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
 from automotive_cosim.studies.plan import DriveJob, StudyPlan
-from automotive_cosim.studies.policies import Rule
+from automotive_cosim.studies.policies import PolicyRule
 from automotive_cosim.studies.results import choices
 from automotive_cosim.studies.rows import DriveRow
 from automotive_cosim.studies.traffic import PULSE_S
@@ -71,7 +71,7 @@ def _stages(plan: StudyPlan) -> list[tuple[int, ...]]:
 
 def _is_narrow(plan: StudyPlan, rows: Sequence[DriveRow]) -> bool:
     """Whether the mean gain of rerouting always is known closely enough."""
-    found = [each for each in choices(rows, (Rule.ALWAYS,)) if each.age_s == plan.ages_s[0]]
+    found = [each for each in choices(rows, (PolicyRule.ALWAYS,)) if each.age_s == plan.ages_s[0]]
     mean = seed_mean((each.seed, each.gain.time_s) for each in found)
     if plan.half_width_s is None or mean is None or mean.interval is None:
         return False

@@ -20,7 +20,7 @@ from automotive_cosim.studies import compare
 from automotive_cosim.studies.compare import Future
 from automotive_cosim.studies.driver import decided
 from automotive_cosim.studies.plan import DriveJob
-from automotive_cosim.studies.policies import Rule, parse_policy
+from automotive_cosim.studies.policies import PolicyRule, parse_policy
 from automotive_cosim.studies.rows import Branch, Decision, DriveRow, News
 from automotive_cosim.studies.traffic import gridlock
 from automotive_cosim.traffic.accounts import Pulse
@@ -151,7 +151,7 @@ class _Drive:
         if now.road.edge_id.startswith(":"):
             return False
         news = {age_s: traffic.alternatives(age_s) for age_s in plan.ages_s}
-        own = traffic.own_choice() if Rule.SUMO in self._rules else now.ahead.route_edges
+        own = traffic.own_choice() if PolicyRule.SUMO in self._rules else now.ahead.route_edges
         ways = _ways(now, news, own)
         if not ways and not plan.agents:
             self.looks += 1

@@ -13,7 +13,7 @@ AGENT = "agent:"
 DELAY = "delay:"
 
 
-class Rule(StrEnum):
+class PolicyRule(StrEnum):
     """How a policy decides."""
 
     NEVER = "never"
@@ -35,7 +35,7 @@ class Policy:
 
     text: str
     """As it was named."""
-    rule: Rule
+    rule: PolicyRule
     delay_s: float = 0.0
     agent: str = ""
 
@@ -47,7 +47,7 @@ def parse_policy(text: str) -> Policy:
         UserError: it is none of them.
     """
     if text.startswith(AGENT) and text != AGENT:
-        return Policy(text, Rule.AGENT, agent=text.removeprefix(AGENT))
+        return Policy(text, PolicyRule.AGENT, agent=text.removeprefix(AGENT))
     if text.startswith(DELAY):
         try:
             delay_s = float(text.removeprefix(DELAY))
@@ -55,11 +55,11 @@ def parse_policy(text: str) -> Policy:
             delay_s = math.nan
         if not 0 <= delay_s <= 3_600:
             raise UserError(f"policy {text!r} needs seconds of delay from 0 to 3600, as in delay:60")
-        return Policy(text, Rule.DELAY, delay_s=delay_s)
-    if text not in {Rule.NEVER, Rule.ALWAYS, Rule.SUMO, Rule.BEST}:
-        known = (Rule.NEVER, Rule.ALWAYS, "delay:60", Rule.SUMO, Rule.BEST, "agent:asurada")
+        return Policy(text, PolicyRule.DELAY, delay_s=delay_s)
+    if text not in {PolicyRule.NEVER, PolicyRule.ALWAYS, PolicyRule.SUMO, PolicyRule.BEST}:
+        known = (PolicyRule.NEVER, PolicyRule.ALWAYS, "delay:60", PolicyRule.SUMO, PolicyRule.BEST, "agent:asurada")
         raise UnknownNameError("policy", text, known)
-    return Policy(text, Rule(text))
+    return Policy(text, PolicyRule(text))
 
 
 def chosen(policy: Policy, decision: Decision, age_s: float) -> int | None:
@@ -75,17 +75,17 @@ def chosen(policy: Policy, decision: Decision, age_s: float) -> int | None:
     """
     news = next(each for each in decision.news if each.age_s == age_s)
     match policy.rule:
-        case Rule.NEVER:
+        case PolicyRule.NEVER:
             return None
-        case Rule.BEST:
+        case PolicyRule.BEST:
             return best(decision)
-        case Rule.AGENT:
+        case PolicyRule.AGENT:
             number: int | None = decision.agents[policy.agent]
-        case Rule.SUMO:
+        case PolicyRule.SUMO:
             number = decision.own
-        case Rule.ALWAYS:
+        case PolicyRule.ALWAYS:
             number = news.branch
-        case Rule.DELAY:
+        case PolicyRule.DELAY:
             is_worth = news.delay_s >= policy.delay_s and (news.promised_s or 0.0) > 0
             number = news.branch if is_worth else None
     return number if decision.complies else None

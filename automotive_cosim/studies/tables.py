@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 
-from automotive_cosim.report.tables import Row, Table
+from automotive_cosim.report.tables import Table, TableRow
 from automotive_cosim.studies.intervals import LEAST_SEEDS, SeedMean, seed_mean
-from automotive_cosim.studies.policies import Rule, parse_policy
+from automotive_cosim.studies.policies import PolicyRule, parse_policy
 from automotive_cosim.studies.results import NOISE, Noise, Study
 from automotive_cosim.studies.rows import PolicyChoice
 
@@ -45,13 +45,13 @@ def groups(study: Study) -> list[tuple[float, str, float, list[PolicyChoice]]]:
 
 def goes_by_news(policy: str) -> bool:
     """Whether a policy decides by the plan's traffic news; the others know the present, the future or nothing."""
-    return parse_policy(policy).rule in (Rule.ALWAYS, Rule.DELAY)
+    return parse_policy(policy).rule in (PolicyRule.ALWAYS, PolicyRule.DELAY)
 
 
 def policies(study: Study) -> Table:
     """What each policy gained for who follows it."""
     floor = study.noise()
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     for share, policy, age_s, chosen in groups(study):
         wins, ties, losses = outcomes(chosen, floor)
         rows.append(
@@ -90,7 +90,7 @@ def policies(study: Study) -> Table:
 
 def costs(study: Study) -> Table:
     """What else it changed, for the ego and for everybody who was there."""
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     for share, policy, age_s, chosen in groups(study):
         if policy in STAYING:
             continue
@@ -132,7 +132,7 @@ def by_congestion(study: Study) -> Table:
     first_s = study.plan.ages_s[0]
     chosen = [each for each in study.choices if each.age_s == first_s and each.policy not in STAYING]
     named = list(dict.fromkeys(each.policy for each in chosen))
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     for low, high in BINS:
         here = [each for each in chosen if low <= each.time_index < high]
         if here:
@@ -149,7 +149,7 @@ def by_congestion(study: Study) -> Table:
 
 def by_age(study: Study) -> Table:
     """Time saved by the age of the news, at the same decisions."""
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     if len(study.plan.ages_s) > 1:
         named = [name for name in study.plan.policies if goes_by_news(name)]
         for age_s in study.plan.ages_s:
@@ -165,7 +165,7 @@ def by_age(study: Study) -> Table:
 
 def by_share(study: Study) -> Table:
     """Time saved by how many of the others reroute too; each share's traffic was warmed up on its own."""
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     shares = sorted({each.share for each in study.choices})
     for share in shares if len(shares) > 1 else ():
         here = [each for each in study.choices if (each.share, each.age_s) == (share, study.plan.ages_s[0])]
@@ -216,7 +216,7 @@ def stops_helping(study: Study) -> str:
 def noise_floor(study: Study) -> Table:
     """What the placebos changed."""
     floor = study.noise()
-    rows: tuple[Row, ...] = ()
+    rows: tuple[TableRow, ...] = ()
     if floor.placebos:
         rows = (
             ("One other car 0.1 % faster", str(floor.placebos), f"{floor.time_s:.1f}", f"{floor.others_s:.1f}"),

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, Generic, Protocol, TypeVar
 
 from automotive_cosim.cockpit.signals import Signal
 from automotive_cosim.contracts import AlertKind, RoadRequest
@@ -28,17 +28,38 @@ class Check(Protocol):
         ...
 
 
-@dataclass(frozen=True, slots=True)
-class SignalIs:
-    """A signal has one of these values."""
+T = TypeVar("T")
 
-    signal: Signal[Any]
-    values: tuple[Any, ...]
+
+@dataclass(frozen=True, slots=True)
+class _OfSignal(Generic[T]):
+    """What a check of one signal has."""
+
+    signal: Signal[T]
 
     @property
     def writes(self) -> frozenset[str]:
         """The signal itself."""
         return frozenset({self.signal.path})
+
+
+@dataclass(frozen=True, slots=True)
+class _OfData:
+    """What a check of one entry of ``Moment.commands`` has."""
+
+    key: str
+
+    @property
+    def writes(self) -> frozenset[str]:
+        """The entry itself."""
+        return frozenset({self.key})
+
+
+@dataclass(frozen=True, slots=True)
+class SignalIs(_OfSignal[Any]):
+    """A signal has one of these values."""
+
+    values: tuple[Any, ...]
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Compares the value now."""
@@ -49,16 +70,10 @@ class SignalIs:
 
 
 @dataclass(frozen=True, slots=True)
-class SignalRaised:
+class SignalRaised(_OfSignal[float]):
     """A numeric signal stands at least ``by`` above its value at the start."""
 
-    signal: Signal[float]
     by: float
-
-    @property
-    def writes(self) -> frozenset[str]:
-        """The signal itself."""
-        return frozenset({self.signal.path})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Compares now with the start."""
@@ -69,16 +84,10 @@ class SignalRaised:
 
 
 @dataclass(frozen=True, slots=True)
-class SignalLowered:
+class SignalLowered(_OfSignal[float]):
     """A numeric signal stands at least ``by`` below its value at the start."""
 
-    signal: Signal[float]
     by: float
-
-    @property
-    def writes(self) -> frozenset[str]:
-        """The signal itself."""
-        return frozenset({self.signal.path})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Compares now with the start."""
@@ -89,17 +98,11 @@ class SignalLowered:
 
 
 @dataclass(frozen=True, slots=True)
-class SignalWithin:
+class SignalWithin(_OfSignal[float]):
     """A numeric signal lies between two values, both included."""
 
-    signal: Signal[float]
     low: float
     high: float
-
-    @property
-    def writes(self) -> frozenset[str]:
-        """The signal itself."""
-        return frozenset({self.signal.path})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Compares the value now."""
@@ -110,15 +113,8 @@ class SignalWithin:
 
 
 @dataclass(frozen=True, slots=True)
-class SignalChanged:
+class SignalChanged(_OfSignal[Any]):
     """A signal has another value than at the start, whichever."""
-
-    signal: Signal[Any]
-
-    @property
-    def writes(self) -> frozenset[str]:
-        """The signal itself."""
-        return frozenset({self.signal.path})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Compares now with the start."""
@@ -129,16 +125,10 @@ class SignalChanged:
 
 
 @dataclass(frozen=True, slots=True)
-class AppDataIs:
+class AppDataIs(_OfData):
     """An entry of the apps' data (``State.commands``) has one of these values."""
 
-    key: str
     values: tuple[Any, ...]
-
-    @property
-    def writes(self) -> frozenset[str]:
-        """The entry itself."""
-        return frozenset({self.key})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Compares the value now."""
@@ -149,17 +139,11 @@ class AppDataIs:
 
 
 @dataclass(frozen=True, slots=True)
-class AppDataHas:
+class AppDataHas(_OfData):
     """A list of the apps' data holds that entry, or no longer does; the rest of it is as it was."""
 
-    key: str
     entry: Any
     there: bool = True
-
-    @property
-    def writes(self) -> frozenset[str]:
-        """The list itself."""
-        return frozenset({self.key})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Compares the lists without the entry, then looks for it."""
@@ -174,18 +158,12 @@ class AppDataHas:
 
 
 @dataclass(frozen=True, slots=True)
-class Filed:
+class Filed(_OfData):
     """One of several lists by name (playlists) holds that entry, or no longer does; the others are as they were."""
 
-    key: str
     name: str
     entry: Any
     there: bool = True
-
-    @property
-    def writes(self) -> frozenset[str]:
-        """The lists."""
-        return frozenset({self.key})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Compares the lists without the entry, then looks for it."""
@@ -199,17 +177,11 @@ class Filed:
 
 
 @dataclass(frozen=True, slots=True)
-class Entered:
+class Entered(_OfData):
     """Exactly one entry was added to a list that only grows (messages sent, calls, payments, memos), and with
     ``entry`` it is that one. Of an entry that is a mapping only the fields named in ``entry`` count."""
 
-    key: str
     entry: Any = None
-
-    @property
-    def writes(self) -> frozenset[str]:
-        """The list itself."""
-        return frozenset({self.key})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Looks at what came in since the start."""
@@ -225,16 +197,10 @@ class Entered:
 
 
 @dataclass(frozen=True, slots=True)
-class EnteredOf:
+class EnteredOf(_OfData):
     """Exactly one entry was added to a list that only grows: what a signal said at the start, e.g. who rang."""
 
-    key: str
     signal: Signal[str]
-
-    @property
-    def writes(self) -> frozenset[str]:
-        """The list itself."""
-        return frozenset({self.key})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Looks at what came in since the start."""
@@ -246,16 +212,10 @@ class EnteredOf:
 
 
 @dataclass(frozen=True, slots=True)
-class Counted:
+class Counted(_OfData):
     """A counter (horn, washer, trip.resets) stands so much higher than at the start."""
 
-    key: str
     by: int = 1
-
-    @property
-    def writes(self) -> frozenset[str]:
-        """The counter itself."""
-        return frozenset({self.key})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Subtracts."""

@@ -47,7 +47,7 @@ class Slide:
 
 
 @dataclass(frozen=True, slots=True)
-class Type:
+class TypeText:
     """Types into a text field."""
 
     resource_id: str
@@ -72,4 +72,4 @@ class Do:
     action: Action
 
 
-Move = Open | Tap | TapUntil | Slide | Type | Warn | Do
+Move = Open | Tap | TapUntil | Slide | TypeText | Warn | Do

@@ -17,7 +17,7 @@ from automotive_cosim.cockpit.restrictions import Motion
 from automotive_cosim.contracts import GoalStatus, Reason, Weather
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.tasking.checks import Check
-from automotive_cosim.tasking.moves import Move, Open, Slide, Tap, TapUntil, Type
+from automotive_cosim.tasking.moves import Move, Open, Slide, Tap, TapUntil, TypeText
 from automotive_cosim.tasking.parameters import Choices, names
 from automotive_cosim.tasking.triggers import Trigger
 
@@ -218,7 +218,7 @@ class Task:
                 isinstance(move, TapUntil) or (isinstance(move, Tap) and move.times != 1) for move in moves
             ),
             "slide": any(isinstance(move, Slide) for move in moves),
-            "type": any(isinstance(move, Type) for move in moves),
+            "type": any(isinstance(move, TypeText) for move in moves),
             "alert": any("alerts" in half.goal.writes for half in halves if not names(half.goal)),
             "decline": any(half.declares is not GoalStatus.COMPLETE for half in halves),
             "infer": self.is_implicit,

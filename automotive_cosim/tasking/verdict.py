@@ -65,10 +65,10 @@ INVARIANTS: tuple[Invariant, ...] = (
     Invariant(
         "dipped beam in the dark",
         lambda m: (
-            m.context.sun is not None
-            and m.context.sun.is_set
-            and m.driving.speed_mps > 0.1
+            m.driving.speed_mps > 0.1
             and not (m.signals[LIGHTS.LOW_BEAM.path] or m.signals[LIGHTS.HIGH_BEAM.path])
+            and m.context.sun is not None
+            and m.context.sun.is_set
         ),
         "UN R48: between sunset and sunrise the road is too dark to be seen on",
     ),

@@ -16,7 +16,7 @@ from typing import Protocol
 from automotive_cosim.contracts import Answer, DrivingState, RoadNetwork, RoadRequest, RouteOption
 from automotive_cosim.scenarios import Trip, WeatherAt
 
-Progress = Callable[[float, float], None]
+WarmUpProgress = Callable[[float, float], None]
 """Told the simulated seconds of the warm-up that are done, and how many there are."""
 
 

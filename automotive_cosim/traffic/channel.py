@@ -18,7 +18,7 @@ class ClosedError(Exception):
     """The other side has closed its end, or died."""
 
 
-class Channel:
+class MessageChannel:
     """One end of a connection. Both ends are this package, started by the same user."""
 
     def __init__(self, connection: socket.socket) -> None:

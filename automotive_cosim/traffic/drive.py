@@ -14,7 +14,7 @@ Call = int | RoadRequest
 """One call of a drive, as a replay repeats it: a number of steps or a request."""
 
 
-class Road(Protocol):
+class Stepper(Protocol):
     """Something that moves the ego by one step."""
 
     step_s: float
@@ -31,7 +31,7 @@ class Road(Protocol):
 class EgoDrive:
     """One drive on a road, from its first instant on."""
 
-    def __init__(self, road: Road, driver: Driver, now: Instant) -> None:
+    def __init__(self, road: Stepper, driver: Driver, now: Instant) -> None:
         """Takes over, and lets the driver set the pedals."""
         self._road = road
         self._driver = driver

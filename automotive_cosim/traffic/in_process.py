@@ -5,7 +5,7 @@ from __future__ import annotations
 from automotive_cosim.contracts import Answer, DrivingState, RoadNetwork, RoadRequest, RouteOption
 from automotive_cosim.errors import TrafficError
 from automotive_cosim.scenarios import Scenario
-from automotive_cosim.traffic.base import Advance, EgoPlan, Progress, Traffic
+from automotive_cosim.traffic.base import Advance, EgoPlan, Traffic, WarmUpProgress
 from automotive_cosim.traffic.drive import Call, EgoDrive
 from automotive_cosim.traffic.fork import replayed
 from automotive_cosim.traffic.options import Setup
@@ -24,7 +24,7 @@ class InProcess:
         self,
         scenario: Scenario,
         seed: int = 0,
-        progress: Progress | None = None,
+        progress: WarmUpProgress | None = None,
         *,
         allow_unprojected: bool = False,
     ) -> None:

@@ -25,7 +25,7 @@ from automotive_cosim.contracts import Answer, RoadNetwork, RoadRequest, RouteOp
 from automotive_cosim.errors import CosimError, TrafficError
 from automotive_cosim.traffic.accounts import Pulse, Settled
 from automotive_cosim.traffic.base import EgoPlan
-from automotive_cosim.traffic.channel import LOADING_LIMIT_S, Channel, ClosedError
+from automotive_cosim.traffic.channel import LOADING_LIMIT_S, ClosedError, MessageChannel
 from automotive_cosim.traffic.drive import Call, EgoDrive
 from automotive_cosim.traffic.ledger import Ledger, nudge, own_choice, settle
 from automotive_cosim.traffic.options import OUTPUTS, Setup
@@ -45,7 +45,7 @@ DESCRIPTORS = Path("/proc/self/fd")
 class Server:
     """Answers the messages of one connection."""
 
-    def __init__(self, channel: Channel, hang_limit_s: float) -> None:
+    def __init__(self, channel: MessageChannel, hang_limit_s: float) -> None:
         """Takes the connection over.
 
         Args:
@@ -103,7 +103,7 @@ class Server:
         child = os.fork()
         if not child:
             self._channel.close()
-            self._channel = Channel(connection)
+            self._channel = MessageChannel(connection)
             self._set_alarm()
             reopen_files()
             if outputs is not None:
@@ -249,7 +249,7 @@ def main() -> None:
     else:
         signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # children need no waiting for
         connection = socket.socket(fileno=int(sys.argv[1]))
-    Server(Channel(connection), float(sys.argv[2])).run()
+    Server(MessageChannel(connection), float(sys.argv[2])).run()
     os._exit(0)  # without tearing the simulation down piece by piece
 
 

@@ -15,8 +15,8 @@ from typing import Any, NoReturn
 
 from automotive_cosim.contracts import RoadNetwork
 from automotive_cosim.errors import CosimError, TrafficError
-from automotive_cosim.traffic.base import Progress
-from automotive_cosim.traffic.channel import LOADING_LIMIT_S, Channel, ClosedError
+from automotive_cosim.traffic.base import WarmUpProgress
+from automotive_cosim.traffic.channel import LOADING_LIMIT_S, ClosedError, MessageChannel
 from automotive_cosim.traffic.options import Setup
 
 TIMEOUT_S = 20.0
@@ -50,7 +50,7 @@ class _Complaints:
 class RemoteProcess:
     """A simulation's process, seen from here."""
 
-    def __init__(self, channel: Channel, complaints: _Complaints, timeout_s: float) -> None:
+    def __init__(self, channel: MessageChannel, complaints: _Complaints, timeout_s: float) -> None:
         self._channel = channel
         self._complaints = complaints
         self._timeout_s = timeout_s
@@ -61,7 +61,9 @@ class RemoteProcess:
         """Runs even if nobody closes it: a process whose connection is gone ends."""
 
     @classmethod
-    def start(cls, setup: Setup, progress: Progress | None, timeout_s: float) -> tuple[RemoteProcess, RoadNetwork]:
+    def start(
+        cls, setup: Setup, progress: WarmUpProgress | None, timeout_s: float
+    ) -> tuple[RemoteProcess, RoadNetwork]:
         """Starts a process that loads and warms up; returns it with the network.
 
         Raises:
@@ -70,7 +72,7 @@ class RemoteProcess:
             TrafficError: the process died or hung.
         """
         ours, theirs = socket.socketpair()
-        process = cls(Channel(ours), _Complaints(), timeout_s)
+        process = cls(MessageChannel(ours), _Complaints(), timeout_s)
         with theirs:
             popen = _popen(theirs, process._complaints.descriptor, timeout_s + ALARM_MARGIN_S)
         process._popen, process.pid = popen, popen.pid
@@ -93,7 +95,7 @@ class RemoteProcess:
             TrafficError: the process or its copy died or hung.
         """
         ours, theirs = socket.socketpair()
-        child = RemoteProcess(Channel(ours), self._complaints, self._timeout_s)
+        child = RemoteProcess(MessageChannel(ours), self._complaints, self._timeout_s)
         try:
             with theirs:
                 child.pid = self.call("fork", outputs, hand_over=theirs)
@@ -112,7 +114,7 @@ class RemoteProcess:
         self,
         name: str,
         *arguments: object,
-        progress: Progress | None = None,
+        progress: WarmUpProgress | None = None,
         timeout_s: float | None = None,
         hand_over: socket.socket | None = None,
     ) -> Any:
@@ -139,7 +141,7 @@ class RemoteProcess:
         except ClosedError:
             self._give_up(self._death())
 
-    def receive(self, progress: Progress | None = None, timeout_s: float | None = None) -> Any:
+    def receive(self, progress: WarmUpProgress | None = None, timeout_s: float | None = None) -> Any:
         """Waits for an answer; raises as ``call``."""
         limit_s = max(self._timeout_s, timeout_s or 0.0)
         try:
@@ -201,7 +203,7 @@ class RemoteProcess:
         return f"the simulation (process {self.pid}) died: {cause}" + (f"; it said: {said}" if said else "")
 
 
-def _end(channel: Channel, popen: subprocess.Popen[bytes]) -> None:
+def _end(channel: MessageChannel, popen: subprocess.Popen[bytes]) -> None:
     """Ends a process that we started, and waits for it."""
     channel.close()
     try:

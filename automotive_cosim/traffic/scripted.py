@@ -14,7 +14,7 @@ from automotive_cosim.errors import ScenarioError, TrafficError
 from automotive_cosim.traffic.base import Advance, EgoPlan
 from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.ego import Driver
-from automotive_cosim.traffic.kinematics import Car
+from automotive_cosim.traffic.kinematics import ScriptedCar
 from automotive_cosim.traffic.profiles import profile
 from automotive_cosim.traffic.stretches import Layout, Leader, LonLat, Stretch
 
@@ -66,7 +66,9 @@ class Scripted:
             UnknownNameError: no such driver.
         """
         start_mps = 0.0 if plan.parked else self._start_mps
-        car = Car(self._layout, profile(plan.driver), self._step_s, self._start_s, start_mps, parked=plan.parked)
+        car = ScriptedCar(
+            self._layout, profile(plan.driver), self._step_s, self._start_s, start_mps, parked=plan.parked
+        )
         return ScriptedTraffic(EgoDrive(car, Driver(plan, car, self._step_s), car.now), self.network)
 
     def close(self) -> None:

@@ -16,7 +16,7 @@ from collections import deque
 from weakref import WeakSet
 
 from automotive_cosim.contracts import Answer, DrivingState, RoadNetwork, RoadRequest, RouteOption
-from automotive_cosim.traffic.base import Drive, Event, Traffic
+from automotive_cosim.traffic.base import Advance, Event, Traffic
 
 
 class SharedTraffic:
@@ -43,7 +43,11 @@ class SharedTraffic:
         """As ``Traffic.state``."""
         return self._traffic.state
 
-    def advance(self, duration_s: float) -> Drive:
+    def start(self, duration_s: float) -> None:
+        """As ``Traffic.start``."""
+        self._traffic.start(duration_s)
+
+    def advance(self, duration_s: float) -> Advance:
         """As ``Traffic.advance``."""
         passed = self._traffic.advance(duration_s)
         for shadow in self._shadows:
@@ -67,11 +71,11 @@ class SharedTraffic:
         """As ``Traffic.branch``; it has no shadows."""
         return SharedTraffic(self._traffic.branch(), self._step_s)
 
-    def shadow(self) -> Shadow:
+    def shadow(self) -> SharedTraffic:
         """An exact copy from this instant on, for somebody who asks nothing of the road."""
         shadow = Shadow(self, self._step_s)
         self._shadows.add(shadow)
-        return shadow
+        return SharedTraffic(shadow, self._step_s)
 
     def dismiss(self, shadow: Shadow) -> None:
         """Tells it nothing more."""
@@ -105,7 +109,12 @@ class Shadow:
         """As ``Traffic.state``."""
         return self._state
 
-    def advance(self, duration_s: float) -> Drive:
+    def start(self, duration_s: float) -> None:
+        """As ``Traffic.start``; does nothing for as long as it is told."""
+        if self._own is not None and not self._ahead:
+            self._own.start(duration_s)
+
+    def advance(self, duration_s: float) -> Advance:
         """As ``Traffic.advance``. What the other has not driven yet is driven in a simulation of its own."""
         steps = round(duration_s / self._step_s)
         told = [self._ahead.popleft() for _ in range(min(steps, len(self._ahead)))]
@@ -116,7 +125,7 @@ class Shadow:
             states, events = states + rest.states, events + rest.events
         if states:
             self._state = states[-1]
-        return Drive(states, events, until_held=False)
+        return Advance(states, events)
 
     def request(self, request: RoadRequest) -> Answer:
         """As ``Traffic.request``.
@@ -155,7 +164,7 @@ class Shadow:
 
     # --- told by the other ----------------------------------------------------------------------------------
 
-    def see(self, passed: Drive) -> None:
+    def see(self, passed: Advance) -> None:
         """Takes note of what it drove."""
         events = deque(passed.events)
         for state in passed.states:

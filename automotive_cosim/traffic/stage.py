@@ -18,7 +18,7 @@ CAR_TYPE = "automotive_cosim.car"
 """The same, as the weather makes it."""
 
 
-class Stage:
+class IncidentStage:
     """What scenes work with."""
 
     def __init__(self, sumo: LibSumo, network: Network, surface: Surface, ego_id: str) -> None:

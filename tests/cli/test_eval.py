@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.store import opened, read_trace, write_trace
 
 GRID = ("--tasks", "hvac_fan_max", "--scenarios", "grid")
@@ -31,7 +32,7 @@ def test_a_run_is_told_and_the_same_command_finds_it_done(cli, tmp_path):
     again = cli("eval", "--agents", "oracle", *GRID)
     assert again.code == 0
     assert "1 of 1 episodes; 100% succeeded" in again.out
-    assert "1 of 1 judged episodes succeeded; 0 errors" in again.out
+    assert "1 of 1 judged episode succeeded; 0 errors" in again.out
     assert len(list((tmp_path / "runs").iterdir())) == 1
 
 
@@ -50,8 +51,8 @@ def test_errors_are_listed_and_set_the_exit_code(cli):
     )
     assert ran.code == 3
     assert "TriggerNotReachedError" in ran.out
-    assert "1 of 1 judged episodes succeeded; 1 errors" in ran.out
-    assert ran.err.startswith("error: 1 of 2 episodes ended in an error")
+    assert "1 of 1 judged episode succeeded; 1 error\n" in ran.out
+    assert ran.err.startswith("error: 1 of 2 episodes ended in an infrastructure error")
 
 
 @pytest.mark.parametrize(
@@ -64,8 +65,8 @@ def test_errors_are_listed_and_set_the_exit_code(cli):
         (("--agents", "t3a", "--pictures", "some"), "no choice of pictures"),
         (("--agents", "t3a", "--workers", "0"), "whole number"),
         (("--agents", "t3a", "--executor", "rya"), "did you mean 'ray'?"),
-        (("--agents", "t3a", "--ray-address", "10.0.0.4:6379"), "--ray-address is for --executor ray"),
-        (("--agents", "t3a", "--ray-send", "."), "--ray-send is for --executor ray"),
+        (("--agents", "t3a", "--ray-address", "10.0.0.4:6379"), "--ray-address requires --executor ray"),
+        (("--agents", "t3a", "--ray-send", "."), "--ray-send requires --executor ray"),
         (("--agents", "t3a", "--scenarios", ""), "--scenarios is empty"),
         (("--plan", "none.toml"), "none.toml"),
     ],
@@ -121,7 +122,7 @@ def test_a_stop_says_how_to_go_on(program, tmp_path, until, session, in_backgrou
     assert process.returncode == (143 if in_background else 130)
     assert err.endswith("error: interrupted\n")
     assert "Traceback" not in err
-    assert "the same command goes on" in err
+    assert "rerun the command to resume" in err
     assert lines.read_bytes().endswith(b"\n")
     until(lambda: not session(process.pid))
 
@@ -150,11 +151,11 @@ def test_a_stored_episode_is_run_again_and_compared_step_by_step(cli, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("plan", "said"), [(None, "is no evaluation"), ({"tasks": ["all"]}, "no episodes of agents")]
+    ("plan", "said"), [(None, "is not an evaluation"), ({"tasks": ["all"]}, "no episodes of agents")]
 )
 def test_a_folder_that_is_no_evaluation_is_told(cli, tmp_path, plan, said):
     if plan is not None:
-        with opened(tmp_path / "f", plan, parts=()):
+        with opened(tmp_path / "f", plan, JobRow, parts=()):
             pass
     for command in (("report", "f"), ("replay", "f", "x"), ("regrade", "f"), ("compare", "f", "f")):
         ran = cli(*command)

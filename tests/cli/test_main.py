@@ -77,7 +77,7 @@ def test_a_task_is_shown_with_its_words_and_halves(cli, task):
 @pytest.mark.parametrize("task", ["hvac_fan_max", "road_over_the_line"])
 def test_a_picture_shows_what_the_expert_does(cli, tmp_path, task):
     path = tmp_path / "task.png"
-    assert f"{path} shows what the expert does" in cli("tasks", "show", task, "--picture", str(path)).out
+    assert f"{path} shows the reference solution" in cli("tasks", "show", task, "--picture", str(path)).out
     with Image.open(path) as picture:
         lines = sum(-(-(len(CATALOGUE[task].half(half).moves) + 2) // 3) for half in CATALOGUE[task].halves)
         assert picture.width > 3 * 640

@@ -12,7 +12,7 @@ import pytest
 from automotive_cosim.errors import TrafficError
 from automotive_cosim.proof import batch, gates, prover
 from automotive_cosim.proof.batch import ProofPlan
-from automotive_cosim.proof.prover import Prover
+from automotive_cosim.proof.prover import Proof, Prover
 from automotive_cosim.run.store import read_rows
 
 PROGRAM = (sys.executable, "-c", "from automotive_cosim.cli.main import main; main()", "validate")
@@ -119,7 +119,7 @@ def test_another_plan_or_a_changed_task_wants_another_folder(validate, tmp_path)
     changed = validate("own_one", "--seeds", "1", "--out", "f")
     assert (changed.returncode, changed.stderr.count("\n")) == (2, 1)
     assert "other plan: task_files was" in changed.stderr
-    assert len(read_rows(tmp_path / "f")) == 1
+    assert len(read_rows(tmp_path / "f", Proof)) == 1
 
 
 @pytest.mark.slow
@@ -145,13 +145,13 @@ def test_however_it_is_ended_no_worker_is_left_and_the_command_goes_on(
         _, said = process.communicate()
     if how == "ctrl-c":
         assert process.returncode == 130
-        assert "what has been proven is in f; the same command goes on" in said
+        assert "finished proofs are in f; rerun the command to resume" in said
         assert "Traceback" not in said
     kept = lines.read_bytes()
     again = subprocess.run(words, capture_output=True, text=True, check=False)
     assert again.returncode == 0, again.stderr
     assert lines.read_bytes().startswith(kept)
-    assert read_rows(tmp_path / "f").keys() == {"own_one-seed0", "own_waits-seed0"}
+    assert read_rows(tmp_path / "f", Proof).keys() == {"own_one-seed0", "own_waits-seed0"}
 
 
 def test_a_task_that_breaks_the_proof_costs_that_one_alone_and_is_tried_again(validate, tmp_path):
@@ -159,9 +159,9 @@ def test_a_task_that_breaks_the_proof_costs_that_one_alone_and_is_tried_again(va
     assert ran.returncode == 3
     assert "own_raises, seed 0\n    RuntimeError: no such thing\n" in ran.stderr
     assert "own_dies, seed 0\n    WorkerDied: its process ended with code -9\n" in ran.stderr
-    assert ran.stderr.endswith("error: 2 of 3 proofs ended in an error; nothing is proven by them\n")
-    assert ran.stdout.endswith("3 tasks, 1 seeds: 0 gates failed, 2 errors\n")
-    attempts = {row["task"]: row["attempts"] for row in read_rows(tmp_path / "f").values()}
+    assert ran.stderr.endswith("error: 2 of 3 proofs ended in an infrastructure error\n")
+    assert ran.stdout.endswith("3 tasks, 1 seed: 0 gates failed, 2 errors\n")
+    attempts = {row.task: row.attempts for row in read_rows(tmp_path / "f", Proof).values()}
     assert attempts == {"own_one": 1, "own_raises": 2, "own_dies": 2}
 
 

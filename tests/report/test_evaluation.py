@@ -6,6 +6,7 @@ import json
 import re
 import shutil
 import subprocess
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import pytest
@@ -18,6 +19,8 @@ from automotive_cosim.report.results import Contestant, load_results, pairs, rea
 from automotive_cosim.report.summary import held_out, main, safety
 from automotive_cosim.report.tables import Cell, Table
 from automotive_cosim.run.collect import failed, planned
+from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
+from automotive_cosim.run.harm import DriveFigures
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.rerun import compare
 from automotive_cosim.run.store import opened, write_trace
@@ -27,8 +30,7 @@ TASKS = [
     "phenomenon_rear_window_fogged", "road_speed_80_in_50",
 ]  # fmt: skip
 PLAN = make_plan({"agents": ["asurada", "t3a", "always-alert"], "tasks": TASKS, "seeds": [0, 1], "repeats": 2})
-PARTS = ("goal", "clean", "safe", "in_time", "declared")
-DRIVE = {"overspeed_m": 4.0, "min_time_to_collision_s": None, "arrival_s": 60.0, "energy_wh": 9.0}
+DRIVE = DriveFigures(overspeed_m=4.0, min_time_to_collision_s=None, arrival_s=60.0, energy_wh=9.0)
 CHROMIUM = shutil.which("chromium")
 
 
@@ -46,25 +48,22 @@ def succeeds(job):
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     folder = tmp_path_factory.mktemp("evaluation") / "e"
-    with opened(folder, PLAN.as_json()) as store:
+    with opened(folder, PLAN.as_json(), EpisodeRow) as store:
         for job in PLAN.jobs():
             if job.setup.agent == "t3a" and job.setup.task == "hvac_fan_max" and job.setup.seed == 1:
-                store.append(
-                    failed(job, "WorkerDied", "its <process> ended") | {"attempts": 3, "failed_attempts": []}
-                )
+                store.append(replace(failed(job, "WorkerDied", "its <process> ended"), attempts=3))
                 continue
             success = succeeds(job)
-            parts = dict.fromkeys(PARTS, True) | {"goal": success}
-            row = planned(job) | {
-                "country": "FR", "success": success, "reward": float(success), "end": "declared", "parts": parts,
-                "alerts": int(job.setup.agent == "always-alert"), "steps": 3, "speed_compliance": 0.9,
-                "min_time_to_collision_s": 4.0, "interaction_s": 2.0, "within_guideline": True, "tokens_in": 900,
-                "prompt_tokens": [400, 500], "drive": DRIVE, "untouched_drive": DRIVE,
-                "tokens_out": 40, "cost_usd": 0.0, "model_seconds": 0.0, "trace_sha256": "ab" * 32, "error": None,
-                "error_kind": None, "held_out": job.setup.seed == 1,
-            }  # fmt: skip
+            parts = PartsHeld(goal=success, clean=True, safe=True, in_time=True, declared=True)
+            row = replace(
+                planned(job), country="FR", success=success, reward=float(success), end="declared", parts=parts,
+                alerts=int(job.setup.agent == "always-alert"), steps=3, speed_compliance=0.9,
+                min_time_to_collision_s=4.0, interaction_s=2.0, within_guideline=True, tokens_in=900,
+                prompt_tokens=(400, 500), drive=DRIVE, baseline_drive=DRIVE, tokens_out=40,
+                trace_sha256="ab" * 32, held_out=job.setup.seed == 1,
+            )  # fmt: skip
             store.append(row)
-            verdict = {"parts": {name: {"ok": ok, "why": "because"} for name, ok in parts.items()}}
+            verdict = {"parts": {name: {"ok": ok, "why": "because"} for name, ok in asdict(parts).items()}}
             timeline = [{"at_s": 0.0, "kind": "hand_over", "text": "hand-over"}]
             write_trace(
                 folder,
@@ -113,12 +112,12 @@ def test_each_figure_leads_to_its_episodes(folder):
         for row in table.rows:
             for cell in row:
                 if isinstance(cell, Cell) and (judged := re.search(r"(\d+)/(\d+)(, (\d+) errors?)?$", cell.text)):
-                    listed = [each for each in found.rows if each["id"] in cell.episodes]
+                    listed = [each for each in found.rows if each.id in cell.episodes]
                     assert len(listed) == len(cell.episodes)
                     assert len(listed) >= int(judged[2]) + int(judged[4] or 0)
     section = re.search(r'<h2 id="sources">.*?</div>', text, re.DOTALL)
     assert section is not None
-    assert f'title="{found.rows[0]["id"]}"' in section[0]
+    assert f'title="{found.rows[0].id}"' in section[0]
 
 
 def test_the_main_table_has_the_papers_shape_and_says_what_rules_is(folder):
@@ -126,7 +125,7 @@ def test_the_main_table_has_the_papers_shape_and_says_what_rules_is(folder):
     assert table.columns[3:] == ("Explicit control", "Implicit intent", "Driving alignment", "Environment alerts")
     rows = {str(row[1]): row for row in table.rows}
     assert "no language model" in str(rows["asurada"][0])
-    assert "must fail" in next(name for name in rows if name.startswith("always-alert"))
+    assert "negative control" in next(name for name in rows if name.startswith("always-alert"))
     assert set(map(str, rows["Human"][3:])) == {"not measured"}
     # Two tasks of explicit control, two seeds, two repeats; one task's second seed is an error.
     assert str(rows["t3a"][3]).endswith("6/6, 2 errors")
@@ -158,18 +157,19 @@ def test_pairs_need_both_halves_and_alarms_are_counted(folder):
     assert won == {"asurada": "100", "t3a": "0", "always-alert": "0"}
     assert str(rows["always-alert"][6]).startswith("100%")
     assert str(rows["asurada"][6]).startswith("0%")
-    assert len(pairs(found.rows)) * 2 == sum(bool(row["pair"]) for row in found.rows)
+    assert len(pairs(found.rows)) * 2 == sum(bool(row.pair) for row in found.rows)
 
 
 def test_an_error_in_a_half_is_one_of_the_pair_unless_the_other_is_lost():
+    half = next(planned(job) for job in PLAN.jobs() if job.pair)
+
     def outcome(first, second):
-        halves = [{"pair": "p", "success": first}, {"pair": "p", "success": second}]
-        return pairs(halves)[0][0]["success"]
+        return pairs([replace(half, success=success) for success in (first, second)])[0][0].success
 
     assert [outcome(True, True), outcome(True, None), outcome(None, None), outcome(False, None)] == [
         True, None, None, False,
     ]  # fmt: skip
-    assert pairs([{"pair": "p", "success": True}]) == []
+    assert pairs([replace(half, success=True)]) == []
 
 
 def test_tables_and_plots_are_files(folder):
@@ -211,11 +211,11 @@ def test_the_report_is_the_same_each_time(folder):
 
 
 def test_a_folder_without_episodes_is_told(tmp_path):
-    with pytest.raises(UserError, match="no evaluation"):
+    with pytest.raises(UserError, match="not an evaluation"):
         write_report(tmp_path)
-    with opened(tmp_path / "e", PLAN.as_json()):
+    with opened(tmp_path / "e", PLAN.as_json(), EpisodeRow):
         pass
-    with pytest.raises(UserError, match="no episode yet"):
+    with pytest.raises(UserError, match="no episodes yet"):
         commands.report(tmp_path / "e")
 
 

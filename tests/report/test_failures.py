@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter, deque
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -12,8 +13,10 @@ from automotive_cosim.agents import Oracle, Stage, StageName
 from automotive_cosim.contracts import Action, ActionType, AlertKind, Direction, GoalStatus, Observation, Reason
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.report.failures import FailureClass, failure_class
-from automotive_cosim.run.collect import Collector, Pictures
+from automotive_cosim.run.collect import Collector, Pictures, planned
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
+from automotive_cosim.run.episode_row import PartsHeld
+from automotive_cosim.run.plan import EpisodeJob, Limits
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
@@ -135,14 +138,7 @@ def classified(task: str, half: str, moves: Sequence[Any], thought: str, simulat
     result = run_episode(setup, Planted(moves, thought), [collector], simulations=simulations)
     assert result.verdict is not None, result.error
     assert result.success is False
-    row = {
-        "task": task,
-        "half": half,
-        "parts": {name: part["ok"] for name, part in result.verdict["parts"].items()},
-    }
-    judged = collector.judged()
-    assert judged is not None
-    return failure_class(row | {"parameters": judged.parameters}, collector.trace(result))
+    return failure_class(collector.row(EpisodeJob(setup, 0, Limits()), result), collector.trace(result))
 
 
 @pytest.fixture(scope="module")
@@ -164,7 +160,7 @@ def test_of_five_planted_faults_of_a_class_four_are_told(planted, simulations):
 def test_doing_nothing_is_of_no_class():
     step = {"step": 0, "elements": [], "action": None, "feedback": {"code": "none"}, "thought": ""}
     wait = step | {"step": 1, "action": {"action_type": "wait"}, "feedback": {"code": "ok"}}
-    parts = dict.fromkeys(("goal", "in_time", "declared"), False) | {"clean": True, "safe": True}
-    row = {"task": FAN, "half": "first", "parts": parts}
+    parts = PartsHeld(goal=False, clean=True, safe=True, in_time=False, declared=False)
+    row = replace(planned(EpisodeJob(EpisodeSetup(FAN), 0, Limits())), success=False, parts=parts)
     assert failure_class(row, [step, wait, {"result": {}}]) is FailureClass.UNCLASSIFIED
-    assert failure_class(row | {"task": "gone"}, [step]) is FailureClass.UNCLASSIFIED
+    assert failure_class(replace(row, task="gone"), [step]) is FailureClass.UNCLASSIFIED

@@ -1,5 +1,7 @@
 """Tables that say why and at what price, on rows made by hand whose figures can be reckoned in the head."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -8,19 +10,18 @@ from automotive_cosim.report import findings
 from automotive_cosim.report.case import contrast
 from automotive_cosim.report.results import Results
 from automotive_cosim.report.stats import clustered_mean
+from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.harm import DriveFigures
 from automotive_cosim.run.store import write_trace
+from automotive_cosim.tasking.task import Dimension, Module
 
 
-def row(task="t", half="first", geo="full", success=True, **changes):
-    agent = changes.get("agent", "asurada")
-    named = {
-        "task": task, "half": half, "geo": geo, "agent": agent, "model": "rules", "mode": "prompted", "seed": 0,
-        "repeat": 0,
-    }  # fmt: skip
-    return named | {
-        "id": f"{task}-{half}-{agent}-{geo}", "pair": f"{task}-{agent}-{geo}", "scenario": "grid", "module": "road",
-        "dimension": "driving_alignment", "success": success, "tags": [], "skills": [],
-    } | changes  # fmt: skip
+def row(task="t", half="first", geo="full", success=True, *, agent="asurada", **more):
+    named = {"module": Module.ROAD, "dimension": Dimension.DRIVING_ALIGNMENT} | more
+    return EpisodeRow(
+        id=f"{task}-{half}-{agent}-{geo}", pair=f"{task}-{agent}-{geo}", task=task, half=half, geo=geo, agent=agent,
+        model="rules", seed=0, repeat=0, scenario="grid", success=success, **named,
+    )  # fmt: skip
 
 
 def results(*rows, folder=None):
@@ -28,13 +29,13 @@ def results(*rows, folder=None):
 
 
 def figures(overspeed_m, ttc_s=5.0):
-    return {"overspeed_m": overspeed_m, "min_time_to_collision_s": ttc_s, "arrival_s": 60.0, "energy_wh": 8.0}
+    return DriveFigures(overspeed_m, ttc_s, arrival_s=60.0, energy_wh=8.0)
 
 
 def test_harm_is_the_difference_to_the_twin():
     found = results(
-        row("a", drive=figures(10.0), untouched_drive=figures(100.0)),
-        row("b", drive=figures(20.0, None), untouched_drive=figures(30.0)),
+        row("a", drive=figures(10.0), baseline_drive=figures(100.0)),
+        row("b", drive=figures(20.0, None), baseline_drive=figures(30.0)),
         row("a", half="second", drive=None),
     )
     ((label, half, overspeed, ttc, delay, energy),) = findings.harm(found).rows
@@ -42,7 +43,7 @@ def test_harm_is_the_difference_to_the_twin():
     assert str(overspeed) == "-50.0 (-90.0 to -10.0), n=2"
     assert str(ttc).endswith("n=1")
     assert str(delay).startswith("+0.0")
-    assert overspeed.episodes == tuple(each["id"] for each in found.rows[:2])
+    assert overspeed.episodes == tuple(each.id for each in found.rows[:2])
     assert str(energy).startswith("+0.0")
 
 
@@ -63,7 +64,7 @@ def test_place_is_worth_what_decided_pairs_lose_without_it_and_placebo_nothing()
     for number in range(6):
         for half in ("first", "second"):
             for geo in ("full", "none"):
-                rows.append(row(f"p{number}", half, geo, geo == "full" or half == "first", tags=["place"]))
+                rows.append(row(f"p{number}", half, geo, geo == "full" or half == "first", tags=("place",)))
                 rows.append(row(f"q{number}", half, geo, number % 2 == 0))
     ((_, other, decided, placebo),) = findings.place_effect(results(*rows)).rows
     assert other == "none"
@@ -71,27 +72,30 @@ def test_place_is_worth_what_decided_pairs_lose_without_it_and_placebo_nothing()
     assert "n=6" in str(decided)
     assert str(placebo).startswith("+0%")
     assert len(decided.episodes) == 24
-    alone = [each | {"agent": "always-alert"} for each in rows]
+    alone = [replace(each, agent="always-alert") for each in rows]
     assert findings.place_effect(results(*alone)).rows == ()
 
 
 def test_labels_count_an_episode_for_each_it_has():
-    found = results(row("a", skills=["type", "infer"]), row("b", skills=["type"], success=False), row("c"))
-    rows = {each[0]: str(each[1]) for each in findings.by_label(found, "skills", "Skill").rows}
+    found = results(row("a", skills=("type", "infer")), row("b", skills=("type",), success=False), row("c"))
+    rows = {each[0]: str(each[1]) for each in findings.by_label(found, "Skill", lambda row: row.skills).rows}
     assert list(rows) == ["infer", "type"]
     assert rows["infer"].endswith("1/1")
     assert rows["type"].endswith("1/2")
 
 
 def test_prompts_tell_their_percentiles():
-    found = results(row("a", prompt_tokens=[100, 200, 300]), row("b", prompt_tokens=[400, 500]), row("c"))
+    found = results(row("a", prompt_tokens=(100, 200, 300)), row("b", prompt_tokens=(400, 500)), row("c"))
     (told,) = findings.prompts(found).rows
     assert [str(cell) for cell in told[1:]] == ["full", "5", "120", "200", "300", "400", "480"]
 
 
 def test_tasks_are_counted_once_and_add_up():
     found = results(
-        row("a"), row("a", geo="none"), row("b", dimension="environment_alerts"), row("c", module="hvac")
+        row("a"),
+        row("a", geo="none"),
+        row("b", dimension=Dimension.ENVIRONMENT_ALERTS),
+        row("c", module=Module.HVAC),
     )
     rows = {each[0]: each[1:] for each in findings.distribution(found).rows}
     assert rows["Road"] == ("0", "0", "1", "1", "2")
@@ -103,20 +107,20 @@ def test_the_case_is_one_that_place_decides_and_shows_both_sides(tmp_path, episo
     (tmp_path / "traces").mkdir()
     rows = [
         row("a", geo="full"), row("a", geo="none", success=False),
-        row("b", geo="full", tags=["place"]), row("b", geo="wrong", success=False, tags=["place"]),
+        row("b", geo="full", tags=("place",)), row("b", geo="wrong", success=False, tags=("place",)),
         row("c", geo="full", success=False), row("c", geo="none", success=True),
     ]  # fmt: skip
     step = {"step": 0, "time_s": 5.0, "elements": [], "action": None, "thought": ""}
     alert = {"action_type": "show_alert", "kind": "speed"}
     lines = [step, step | {"step": 1, "time_s": 6.0, "action": alert, "thought": "80 is more than 50"}]
     for each in rows:
-        write_trace(tmp_path, each["id"], [*lines, {"result": episode(success=each["success"])}])
-    pictures = tmp_path / "pictures" / rows[2]["id"]
+        write_trace(tmp_path, each.id, [*lines, {"result": episode(success=each.success)}])
+    pictures = tmp_path / "pictures" / rows[2].id
     pictures.mkdir(parents=True)
     Image.new("RGB", (64, 36)).save(pictures / "step_000.jpg")
     sides = contrast(results(*rows, folder=tmp_path))
     assert sides is not None
-    assert [side.row["id"] for side in sides] == [rows[2]["id"], rows[3]["id"]]
+    assert [side.row.id for side in sides] == [rows[2].id, rows[3].id]
     assert sides[0].steps == (("+0.0 s", "warns the driver of speed", "80 is more than 50"),)
     assert sides[0].picture.startswith("data:image/jpeg")
     assert sides[1].picture == ""

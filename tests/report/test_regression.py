@@ -1,5 +1,6 @@
 """Two evaluations made by hand, compared as a check on a change would."""
 
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import pytest
@@ -7,6 +8,7 @@ import pytest
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.regression import changes, junit, markdown
 from automotive_cosim.run.collect import failed, planned
+from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.store import opened
 
@@ -16,14 +18,14 @@ PLAN = make_plan({"agents": ["asurada"], "tasks": TASKS, "seeds": [0, 1]})
 
 def write(folder, lost=(), errors=(), agent="asurada"):
     """An evaluation in which the named episodes are lost or broken, and all others won."""
-    with opened(folder, PLAN.as_json()) as store:
+    with opened(folder, PLAN.as_json(), EpisodeRow) as store:
         for number, job in enumerate(PLAN.jobs()):
             if number in errors:
-                row = failed(job, "WorkerDied", "its process ended")
+                row = failed(job, "WorkerDied", "the worker died")
             else:
-                parts = {"goal": number not in lost, "in_time": True}
-                row = planned(job) | {"success": number not in lost, "parts": parts, "error": None}
-            store.append(row | {"agent": agent})
+                won = number not in lost
+                row = replace(planned(job), success=won, parts=PartsHeld(won, True, True, True, True))
+            store.append(replace(row, agent=agent))
     return folder
 
 

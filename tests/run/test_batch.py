@@ -12,10 +12,12 @@ from automotive_cosim.interface.trace import sha256
 from automotive_cosim.run import batch
 from automotive_cosim.run.batch import run_plan
 from automotive_cosim.run.collect import Pictures
+from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.executor import LostError
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.processes import Processes
-from automotive_cosim.run.store import VOLATILE, read_rows, read_trace, trace_file
+from automotive_cosim.run.row import steady as steady_part
+from automotive_cosim.run.store import read_rows, read_trace, trace_file
 
 TROUBLE = """
 import os, pathlib, time
@@ -50,10 +52,7 @@ def plan(*agents, **values):
 
 
 def steady(folder):
-    return {
-        name: {key: value for key, value in row.items() if key not in VOLATILE}
-        for name, row in read_rows(folder).items()
-    }
+    return {name: steady_part(row) for name, row in read_rows(folder, EpisodeRow).items()}
 
 
 @pytest.fixture
@@ -77,13 +76,12 @@ def test_order_and_number_of_workers_do_not_show(tmp_path, monkeypatch):
     monkeypatch.setattr(type(wanted), "jobs", lambda self: jobs(self)[::-1])
     run_plan(wanted, tmp_path / "two", executor=Processes(2))
     assert steady(tmp_path / "one") == steady(tmp_path / "two")
-    for row in read_rows(tmp_path / "one").values():
-        *steps, result = read_trace(tmp_path / "one", row["id"])
-        assert sha256(steps) == row["trace_sha256"] == result["result"]["trace_sha256"]
-        assert len(steps) == row["steps"] + 1
+    for row in read_rows(tmp_path / "one", EpisodeRow).values():
+        *steps, result = read_trace(tmp_path / "one", row.id)
+        assert sha256(steps) == row.trace_sha256 == result["result"]["trace_sha256"]
+        assert len(steps) == row.steps + 1
         assert (
-            trace_file(tmp_path / "one", row["id"]).read_bytes()
-            == trace_file(tmp_path / "two", row["id"]).read_bytes()
+            trace_file(tmp_path / "one", row.id).read_bytes() == trace_file(tmp_path / "two", row.id).read_bytes()
         )
 
 
@@ -99,47 +97,47 @@ def test_a_worker_that_dies_again_and_again_costs_its_episode_alone(trouble):
     end = run_plan(plan("oracle", "trouble:Dies"), trouble / "e", retries=2)
     assert (end.planned, end.judged, end.successes, end.errors) == (2, 1, 1, 1)
     assert tries(trouble) == 3
-    row = next(row for row in read_rows(trouble / "e").values() if row["agent"] == "trouble:Dies")
-    assert row["success"] is None
-    assert row["error_kind"] == "WorkerDied"
-    assert (row["attempts"], len(row["failed_attempts"])) == (3, 3)
+    row = next(row for row in read_rows(trouble / "e", EpisodeRow).values() if row.agent == "trouble:Dies")
+    assert row.success is None
+    assert row.error_kind == "WorkerDied"
+    assert (row.attempts, len(row.failed_attempts)) == (3, 3)
 
 
 def test_an_attempt_that_fails_is_made_again_and_told(trouble):
     end = run_plan(plan("trouble:DiesOnce"), trouble / "e", retries=1)
     assert (end.judged, end.errors) == (1, 0)
-    (row,) = read_rows(trouble / "e").values()
-    assert row["attempts"] == 2
-    assert "WorkerDied" in row["failed_attempts"][0]
+    (row,) = read_rows(trouble / "e", EpisodeRow).values()
+    assert row.attempts == 2
+    assert "WorkerDied" in row.failed_attempts[0]
 
 
 def test_an_agent_that_hangs_is_ended_when_its_wall_time_is_over(trouble):
     began_s = time.monotonic()
     run_plan(plan("trouble:Hangs", limits={"wall_s": 12}), trouble / "e", retries=0)
     assert time.monotonic() - began_s < 60
-    (row,) = read_rows(trouble / "e").values()
-    assert (row["error_kind"], row["success"]) == ("WallTime", None)
+    (row,) = read_rows(trouble / "e", EpisodeRow).values()
+    assert (row.error_kind, row.success) == ("WallTime", None)
 
 
 def test_steps_simulated_time_and_tokens_are_limited_and_judged(trouble):
     run_plan(plan("trouble:Waits", limits={"steps": 3}), trouble / "a")
     run_plan(plan("trouble:Waits", limits={"sim_s": 12}), trouble / "b")
     run_plan(plan("asurada", limits={"tokens": 10}), trouble / "c")
-    ends = {name: next(iter(read_rows(trouble / name).values())) for name in "abc"}
-    assert [(row["end"], row["success"]) for row in ends.values()] == [
+    ends = {name: next(iter(read_rows(trouble / name, EpisodeRow).values())) for name in "abc"}
+    assert [(row.end, row.success) for row in ends.values()] == [
         ("out_of_steps", False), ("out_of_time", False), ("out_of_budget", False),
     ]  # fmt: skip
-    assert ends["a"]["steps"] == 3
-    assert ends["b"]["steps"] == 3
-    assert ends["b"]["sim_seconds"] == 15.0
+    assert ends["a"].steps == 3
+    assert ends["b"].steps == 3
+    assert ends["b"].sim_seconds == 15.0
 
 
 def test_a_trigger_out_of_reach_is_an_error_that_is_not_tried_again(tmp_path):
     wanted = plan("oracle", tasks=["road_speed_80_in_50"], everywhere=True)
     end = run_plan(wanted, tmp_path / "e", retries=5)
     assert (end.done, end.judged, end.errors) == (2, 1, 1)
-    row = next(row for row in read_rows(tmp_path / "e").values() if row["half"] == "second")
-    assert (row["success"], row["error_kind"], row["attempts"]) == (None, "TriggerNotReachedError", 1)
+    row = next(row for row in read_rows(tmp_path / "e", EpisodeRow).values() if row.half == "second")
+    assert (row.success, row.error_kind, row.attempts) == (None, "TriggerNotReachedError", 1)
     assert run_plan(wanted, tmp_path / "e").ran == 0
 
 
@@ -148,9 +146,9 @@ def test_a_trigger_out_of_reach_is_sought_once_for_all_contestants(tmp_path):
     there = {"tasks": ["road_speed_80_in_50"], "everywhere": True}
     end = run_plan(plan("no-op", "always-alert", **there), tmp_path / "both")
     assert (end.planned, end.done, end.ran, end.errors) == (4, 4, 4, 2)
-    rows = [row for row in read_rows(tmp_path / "both").values() if row["error"]]
-    assert sorted(row["wall_seconds"] > 0 for row in rows) == [False, True]
-    assert {row["attempts"] for row in rows} == {1}
+    rows = [row for row in read_rows(tmp_path / "both", EpisodeRow).values() if row.error]
+    assert sorted(row.wall_seconds > 0 for row in rows) == [False, True]
+    assert {row.attempts for row in rows} == {1}
     run_plan(plan("no-op", **there), tmp_path / "alone")
     assert steady(tmp_path / "alone").items() <= steady(tmp_path / "both").items()
 
@@ -162,7 +160,7 @@ def test_pictures_are_kept_by_choice(tmp_path):
         kept = list((tmp_path / choice / "pictures").iterdir())
         assert len(kept) == count
         for folder in kept:
-            steps = read_rows(tmp_path / choice)[folder.name]["steps"]
+            steps = read_rows(tmp_path / choice, EpisodeRow)[folder.name].steps
             assert len(list(folder.glob("step_*.jpg"))) == steps + 1
 
 
@@ -174,7 +172,7 @@ def test_a_disk_that_is_full_stops_the_run_and_the_command_goes_on(tmp_path, mon
         (tmp_path / "e" / "traces" / f".{wanted.jobs()[0].id}.jsonl.gz.part").mkdir()
     else:
         (tmp_path / "e" / "traces").chmod(0o500)
-    with pytest.raises(UserError, match=r"cannot write to .* the same command goes on"):
+    with pytest.raises(UserError, match=r"cannot write to .* rerun the command to resume"):
         run_plan(plan("oracle"), tmp_path / "e")
     for left in (tmp_path / "e" / "traces").iterdir():
         left.rmdir()
@@ -199,7 +197,7 @@ def test_a_kill_loses_at_most_the_running_episodes(program, trouble, until, sess
     process.kill()
     process.wait()
     until(lambda: not session(process.pid))
-    kept = read_rows(trouble / "e")
+    kept = read_rows(trouble / "e", EpisodeRow)
     assert 2 <= len(kept) < 8
     before = tries(trouble)
     wanted = plan("trouble:Slow", seeds=[0, 1], repeats=4, limits={"steps": 4})
@@ -259,13 +257,13 @@ class Poor:
 
 
 @pytest.mark.parametrize(
-    ("loses", "said", "started"), [(False, "has become ready in 600 s", 2), (True, "its node is gone", 7)]
+    ("loses", "said", "started"), [(False, "became ready in 600 s", 2), (True, "its node is gone", 7)]
 )
 def test_workers_that_never_get_ready_end_the_run_and_the_command_goes_on(tmp_path, loses, said, started):
     poor = Poor(loses=loses)
-    with pytest.raises(InfrastructureError, match=f"{said}.*; the same command goes on"):
+    with pytest.raises(InfrastructureError, match=f"{said}.*; rerun the command to resume"):
         run_plan(plan("oracle"), tmp_path / "e", executor=poor)
     assert (poor.started, poor.ended) == (started, started)
     assert all(300 < each_s <= 600 for each_s in poor.waited_s), "a busy machine takes some of the 600 s"
-    assert not read_rows(tmp_path / "e")
+    assert not read_rows(tmp_path / "e", EpisodeRow)
     assert run_plan(plan("oracle"), tmp_path / "e").successes == 1

@@ -8,13 +8,13 @@ from types import SimpleNamespace
 import pytest
 
 from automotive_cosim.agents import make_agent
-from automotive_cosim.contracts import GoalStatus
+from automotive_cosim.contracts import GoalStatus, PullOver, Reroute, SlowDown
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.batch import run_plan
 from automotive_cosim.run.collect import Collector, Pictures
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
 from automotive_cosim.run.harm import drive_figures, nearest_s, overspeed
-from automotive_cosim.run.moments import judged_file, read_judged, write_judged
+from automotive_cosim.run.moments import MOVED, judged_file, read_judged, write_judged
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.regrade import regrade
 from automotive_cosim.tasking.instance import Instance
@@ -91,6 +91,30 @@ def test_fields_that_come_and_go_are_borne_and_other_classes_refused(kept):
         read_judged(folder, "a")
     with pytest.raises(UserError, match="there is no"):
         read_judged(folder, "b")
+
+
+def test_requests_to_the_road_come_back_and_those_of_an_older_format_are_refused(kept):
+    folder, judged = kept
+    *before, last = judged.trace
+    requests = [Reroute("A 4"), SlowDown(30.0), PullOver()]
+    asked = replace(judged, trace=(*before, replace(last, commands={**last.commands, "requests": requests})))
+    write_judged(folder, "a", asked)
+    assert read_judged(folder, "a").trace[-1].commands["requests"] == requests
+    texts = {**last.commands, "requests": [repr(request) for request in requests]}
+    write_judged(folder, "a", replace(judged, trace=(*before, replace(last, commands=texts))))
+    with pytest.raises(UserError, match="older format"):
+        read_judged(folder, "a")
+
+
+def test_classes_that_have_moved_since_are_found(kept):
+    folder, judged = kept
+    path = judged_file(folder, "a")
+    text = lzma.decompress(path.read_bytes()).decode()
+    for old, new in MOVED.items():
+        assert new in text
+        text = text.replace(new, old)
+    path.write_bytes(lzma.compress(text.encode()))
+    assert read_judged(folder, "a") == judged
 
 
 def driving(time_s, speed_mps, limit_mps, closing_s=None):

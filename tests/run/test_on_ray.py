@@ -14,8 +14,10 @@ import pytest
 from automotive_cosim.errors import SetupError, UserError
 from automotive_cosim.run.batch import run_plan
 from automotive_cosim.run.collect import Pictures
+from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.plan import make_plan
-from automotive_cosim.run.store import VOLATILE, read_rows, stamp
+from automotive_cosim.run.row import steady as steady_part
+from automotive_cosim.run.store import read_rows, stamp
 
 pytest.importorskip("ray", reason="the extra `ray` is not installed")
 on_ray = pytest.importorskip("automotive_cosim.run.on_ray")  # before Ray, whose environment it sets
@@ -64,10 +66,7 @@ def plan(*agents, **values):
 
 
 def steady(folder):
-    return {
-        name: {key: value for key, value in row.items() if key not in VOLATILE}
-        for name, row in read_rows(folder).items()
-    }
+    return {name: steady_part(row) for name, row in read_rows(folder, EpisodeRow).items()}
 
 
 def files(folder):
@@ -148,8 +147,11 @@ def test_what_dies_or_hangs_on_a_node_costs_its_episode_alone(cluster, mine):
         hangs = plan("mine:Hangs", limits={"wall_s": 3})
         run_plan(hangs, mine.parent / "hangs", executor=executor, retries=0)
     assert (end.planned, end.judged, end.successes, end.errors) == (2, 1, 1, 1)
-    rows = [*read_rows(mine.parent / "e").values(), *read_rows(mine.parent / "hangs").values()]
-    kinds = {row["agent"]: row["error_kind"] for row in rows}
+    rows = [
+        *read_rows(mine.parent / "e", EpisodeRow).values(),
+        *read_rows(mine.parent / "hangs", EpisodeRow).values(),
+    ]
+    kinds = {row.agent: row.error_kind for row in rows}
     assert kinds == {"oracle": None, "mine:Dies": "WorkerDied", "mine:Hangs": "WallTime"}
 
 
@@ -158,7 +160,7 @@ def test_files_that_cannot_be_written_here_stop_the_run_and_the_command_goes_on(
     blocked = tmp_path / "e" / "traces" / f".{wanted.jobs()[0].id}.jsonl.gz.part"
     blocked.mkdir(parents=True)
     with OnRay(cluster.address) as executor:
-        with pytest.raises(UserError, match=r"cannot write to .* the same command goes on"):
+        with pytest.raises(UserError, match=r"cannot write to .* rerun the command to resume"):
             run_plan(wanted, tmp_path / "e", executor=executor)
         blocked.rmdir()
         assert run_plan(wanted, tmp_path / "e", executor=executor).successes == 1
@@ -179,11 +181,11 @@ def test_a_node_that_is_lost_costs_only_its_running_episodes(cluster, mine):
         until(lambda: executor.count == 1)
     assert lost == [2]
     assert (end.planned, end.judged, end.errors, end.ran) == (6, 6, 0, 6)
-    rows = read_rows(mine.parent / "e").values()
-    failures = [failure for row in rows for failure in row["failed_attempts"]]
+    rows = read_rows(mine.parent / "e", EpisodeRow).values()
+    failures = [failure for row in rows for failure in row.failed_attempts]
     assert len(failures) <= 1, "the node ran one episode at a time"
     assert all(failure.startswith("WorkerDied: ") for failure in failures)
-    assert len({(row["seed"], row["trace_sha256"]) for row in rows}) == 2
+    assert len({(row.seed, row.trace_sha256) for row in rows}) == 2
 
 
 def test_a_cluster_of_its_own_is_ended_by_ctrl_c_and_the_same_plan_goes_on(program, mine, ray_folder):
@@ -201,9 +203,9 @@ def test_a_cluster_of_its_own_is_ended_by_ctrl_c_and_the_same_plan_goes_on(progr
     out, err = process.communicate(timeout=60)
     assert (process.returncode, out) == (130, ""), err
     assert "Traceback" not in err
-    assert "the same command goes on" in err
+    assert "rerun the command to resume" in err
     until(lambda: not marked("own"))
-    kept = len(read_rows(mine.parent / "e"))
+    kept = len(read_rows(mine.parent / "e", EpisodeRow))
     assert 1 <= kept < 3
     again = subprocess.run(
         [sys.executable, "-c", code, "eval", *arguments], capture_output=True, text=True, check=True

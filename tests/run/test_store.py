@@ -5,83 +5,85 @@ import sys
 import pytest
 
 from automotive_cosim.errors import UserError
+from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.store import opened, read_manifest, read_rows, read_trace, trace_file, write_trace
 
 PLAN = {"agents": ["oracle"]}
 
 
 def test_a_line_cut_short_costs_that_line_alone(tmp_path):
-    with opened(tmp_path / "e", PLAN) as store:
-        store.append({"id": "a", "success": True})
-        store.append({"id": "b", "success": True})
+    with opened(tmp_path / "e", PLAN, JobRow) as store:
+        store.append(JobRow(id="a"))
+        store.append(JobRow(id="b"))
     path = tmp_path / "e" / "episodes.jsonl"
     whole = path.read_bytes()
     for cut in range(len(whole)):
         path.write_bytes(whole[:cut])
         left = whole[:cut].count(b"\n")
-        assert len(read_rows(tmp_path / "e")) == left
-        with opened(tmp_path / "e", PLAN) as store:
+        assert len(read_rows(tmp_path / "e", JobRow)) == left
+        with opened(tmp_path / "e", PLAN, JobRow) as store:
             assert len(store.rows) == left
-            store.append({"id": "c", "success": False})
-        assert set(read_rows(tmp_path / "e")) == {*"ab"[:left], "c"}
+            store.append(JobRow(id="c"))
+        assert set(read_rows(tmp_path / "e", JobRow)) == {*"ab"[:left], "c"}
 
 
 def test_the_newest_line_of_an_episode_holds(tmp_path):
-    with opened(tmp_path / "e", PLAN) as store:
-        store.append({"id": "a", "success": None})
-        store.append({"id": "a", "success": True})
-    assert read_rows(tmp_path / "e") == {"a": {"id": "a", "success": True}}
+    with opened(tmp_path / "e", PLAN, JobRow) as store:
+        store.append(JobRow(id="a", error="gone"))
+        store.append(JobRow(id="a"))
+    assert read_rows(tmp_path / "e", JobRow) == {"a": JobRow(id="a")}
 
 
 def test_a_broken_line_in_the_middle_is_named(tmp_path):
-    with opened(tmp_path / "e", PLAN) as store:
-        store.append({"id": "a"})
+    with opened(tmp_path / "e", PLAN, JobRow) as store:
+        store.append(JobRow(id="a"))
     path = tmp_path / "e" / "episodes.jsonl"
     path.write_text("{]\n" + path.read_text())
     with pytest.raises(UserError, match="line 1"):
-        read_rows(tmp_path / "e")
+        read_rows(tmp_path / "e", JobRow)
 
 
 def test_two_evaluations_in_one_folder_are_refused(program, tmp_path):
     script = (
-        "import sys, pathlib; from automotive_cosim.run.store import opened\n"
-        f"with opened(pathlib.Path(sys.argv[1]), {PLAN!r}): print('in', flush=True); sys.stdin.read()"
+        "import sys, pathlib; from automotive_cosim.run.row import JobRow\n"
+        "from automotive_cosim.run.store import opened\n"
+        f"with opened(pathlib.Path(sys.argv[1]), {PLAN!r}, JobRow): print('in', flush=True); sys.stdin.read()"
     )
     other = program(sys.executable, "-c", script, tmp_path / "e", stdin=subprocess.PIPE, stdout=subprocess.PIPE)
     assert other.stdout is not None
     assert other.stdout.readline() == "in\n"
-    with pytest.raises(UserError, match="another evaluation"), opened(tmp_path / "e", PLAN):
+    with pytest.raises(UserError, match="another evaluation"), opened(tmp_path / "e", PLAN, JobRow):
         pass
     other.kill()
     other.wait()
-    with opened(tmp_path / "e", PLAN):
+    with opened(tmp_path / "e", PLAN, JobRow):
         pass
 
 
 def test_another_plan_version_or_format_is_refused_and_nothing_lost(tmp_path):
     folder = tmp_path / "e"
-    with opened(folder, PLAN) as store:
-        store.append({"id": "a"})
+    with opened(folder, PLAN, JobRow) as store:
+        store.append(JobRow(id="a"))
     with (
         pytest.raises(UserError, match=r"other plan: agents was \['oracle'\] and is \['t3a'\]"),
-        opened(folder, {"agents": ["t3a"]}),
+        opened(folder, {"agents": ["t3a"]}, JobRow),
     ):
         pass
     path = folder / "manifest.json"
     manifest = read_manifest(folder)
     manifest["starts"][0]["versions"]["libsumo"] = "0.0.1"
     path.write_text(json.dumps(manifest))
-    with pytest.raises(UserError, match="other versions: libsumo"), opened(folder, PLAN):
+    with pytest.raises(UserError, match="other versions: libsumo"), opened(folder, PLAN, JobRow):
         pass
     path.write_text(json.dumps(manifest | {"format": 0}))
-    with pytest.raises(UserError, match="format 0"), opened(folder, PLAN):
+    with pytest.raises(UserError, match="format 0"), opened(folder, PLAN, JobRow):
         pass
-    assert set(read_rows(folder)) == {"a"}
+    assert set(read_rows(folder, JobRow)) == {"a"}
 
 
 def test_each_start_stands_in_the_manifest(tmp_path):
     for _ in range(2):
-        with opened(tmp_path / "e", PLAN):
+        with opened(tmp_path / "e", PLAN, JobRow):
             pass
     starts = read_manifest(tmp_path / "e")["starts"]
     assert len(starts) == 2
@@ -93,10 +95,10 @@ def test_folders_that_cannot_be_are_told(tmp_path):
     (tmp_path / "other").mkdir()
     (tmp_path / "other" / "mine.txt").touch()
     for folder in (tmp_path / "file", tmp_path / "other", tmp_path / "file" / "below"):
-        with pytest.raises(UserError) as caught, opened(folder, PLAN):
+        with pytest.raises(UserError) as caught, opened(folder, PLAN, JobRow):
             pass
         assert "\n" not in str(caught.value)
-    with pytest.raises(UserError, match="no evaluation"):
+    with pytest.raises(UserError, match="not an evaluation"):
         read_manifest(tmp_path)
 
 
@@ -104,12 +106,12 @@ def test_a_full_disk_keeps_what_was_written(tmp_path, monkeypatch):
     def full(descriptor):
         raise OSError(28, "No space left on device")
 
-    with opened(tmp_path / "e", PLAN) as store:
-        store.append({"id": "a"})
+    with opened(tmp_path / "e", PLAN, JobRow) as store:
+        store.append(JobRow(id="a"))
         monkeypatch.setattr("os.fsync", full)
         with pytest.raises(UserError, match="No space left"):
-            store.append({"id": "b"})
-    assert set(read_rows(tmp_path / "e")) == {"a"}
+            store.append(JobRow(id="b"))
+    assert set(read_rows(tmp_path / "e", JobRow)) == {"a"}
 
 
 def test_a_trace_comes_back_and_has_one_form(tmp_path):

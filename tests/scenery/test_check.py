@@ -13,13 +13,13 @@ from automotive_cosim.errors import ScenarioError
 from automotive_cosim.scenarios import Ego, Scenario, Street, Trip
 from automotive_cosim.scenarios.incidents import Breakdown, EmergencyVehicle, Incident
 from automotive_cosim.scenery import open_scenario
-from automotive_cosim.scenery.check import Proof, check
+from automotive_cosim.scenery.check import ScenarioProof, check
 from automotive_cosim.traffic import stability
 
 GRID = scenarios.load("grid")
 
 
-def _failing(proof: Proof) -> dict[str, str]:
+def _failing(proof: ScenarioProof) -> dict[str, str]:
     return {item.name: item.detail for item in proof.items if not item.ok}
 
 
@@ -31,11 +31,11 @@ AVENUE = GRID.trip("avenue")
 
 
 @pytest.fixture(scope="module")
-def proof() -> Proof:
+def proof() -> ScenarioProof:
     return check(GRID, quick=True)
 
 
-def test_every_thing_declared_is_looked_at(proof: Proof) -> None:
+def test_every_thing_declared_is_looked_at(proof: ScenarioProof) -> None:
     names = [item.name for item in proof.items]
     assert names[:3] == ["loads", "place", "roads"]
     assert {f"trip {trip.name}" for trip in GRID.ego.trips} <= set(names)
@@ -53,10 +53,10 @@ def test_every_shipped_scenario_names_its_streets() -> None:
     ("street", "said"),
     [
         (Street("Avenue Foch"), "is not in the network"),
-        (Street("Avenue Centrale", ("30",)), "30 stands nowhere"),
+        (Street("Avenue Centrale", ("30",)), "there is no sign for 30"),
         (Street("Avenue Centrale", ("50", "30 mph")), "30 mph stands nowhere"),
         (Street("Avenue Centrale", ("unposted",)), "unposted stands nowhere"),
-        (Street("Rue du Nord", ("30",)), "30 stands nowhere"),
+        (Street("Rue du Nord", ("30",)), "there is no sign for 30"),
     ],
 )
 def test_a_street_that_is_otherwise_fails(street: Street, said: str) -> None:

@@ -18,7 +18,7 @@ from automotive_cosim.scenarios import Ego, Trip
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.scenery.labels import Labels, place_labels
 from automotive_cosim.scenery.opening import network_of
-from automotive_cosim.scenery.picture import ASPECTS, Frame, draw_scenario, save_picture, trip_colour
+from automotive_cosim.scenery.picture import ASPECTS, Viewport, draw_scenario, save_picture, trip_colour
 
 GRID = scenarios.load("grid")
 
@@ -42,7 +42,7 @@ def test_every_shipped_scenario_has_its_picture(name: str) -> None:
 @pytest.mark.parametrize("name", ["grid", "border", "gulf"])
 def test_all_roads_lie_on_the_map(name: str) -> None:
     network = network_of(scenarios.load(name))
-    frame = Frame.around(network.edges.values())
+    frame = Viewport.around(network.edges.values())
     assert ASPECTS[0] - 0.01 <= frame.width / frame.height <= ASPECTS[1] + 0.01
     for edge in network.edges.values():
         pixels = frame.pixels(edge.shape_m)
@@ -65,7 +65,7 @@ def test_the_same_scenario_is_drawn_the_same() -> None:
 @pytest.mark.parametrize("name", ["paris_centre", "london"])
 def test_names_and_signs_do_not_cover_each_other(name: str) -> None:
     network = network_of(scenarios.load(name))
-    frame = Frame.around(network.edges.values())
+    frame = Viewport.around(network.edges.values())
     labels = Labels(Image.new("RGB", (frame.width, frame.height)), frame.pixels)
     place_labels(labels, network)
     assert len(labels.taken) > 40

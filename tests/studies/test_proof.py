@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import closing
-from dataclasses import replace
+from dataclasses import astuple, replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from automotive_cosim.contracts import EgoEnd, Json, Reroute
+from automotive_cosim.contracts import EgoEnd, Reroute
 from automotive_cosim.scenarios import load
-from automotive_cosim.studies.compare import METRICS
 from automotive_cosim.studies.drive import run_drive
 from automotive_cosim.studies.plan import StudyPlan
+from automotive_cosim.studies.rows import DriveRow, Totals
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked, RemoteTraffic
 
@@ -25,7 +25,7 @@ STEP_S = 0.1
 
 
 @pytest.fixture(scope="module")
-def driven(small: StudyPlan, tmp_path_factory: pytest.TempPathFactory) -> tuple[Json, Path]:
+def driven(small: StudyPlan, tmp_path_factory: pytest.TempPathFactory) -> tuple[DriveRow, Path]:
     """The row of the one drive, and the folder of SUMO's outputs."""
     outputs = tmp_path_factory.mktemp("outputs")
     (job,) = replace(small, step_s=STEP_S).jobs()
@@ -55,32 +55,33 @@ def reckoned_s() -> tuple[float, float]:
     return leaves_s + length_m("exit") / SPEED_MPS, other_s
 
 
-def test_the_gain_is_the_one_reckoned_by_hand(driven: tuple[Json, Path]) -> None:
+def test_the_gain_is_the_one_reckoned_by_hand(driven: tuple[DriveRow, Path]) -> None:
     row, _ = driven
-    (decision,) = row["decisions"]
-    (branch,) = decision["branches"]
+    (decision,) = row.decisions
+    stay = row.stay
+    assert stay is not None
+    (branch,) = decision.branches
     stay_s, other_s = reckoned_s()
-    assert row["stay"]["time_s"] == pytest.approx(stay_s, abs=1.0), "to the time it takes to speed up again"
-    assert branch["totals"]["time_s"] == pytest.approx(other_s, abs=1.0)
-    assert branch["gains"]["time_s"] == pytest.approx(stay_s - other_s, abs=1.0)
-    assert branch["gains"]["distance_m"] == pytest.approx(length_m("main") - length_m("out", "back"), abs=1e-6)
-    assert branch["gains"]["stops"] == 0
-    assert branch["others"]["gain_s"] == 0, "the lorries never have the ego before them"
+    assert stay.time_s == pytest.approx(stay_s, abs=1.0), "to the time it takes to speed up again"
+    assert branch.totals.time_s == pytest.approx(other_s, abs=1.0)
+    assert branch.gains.time_s == pytest.approx(stay_s - other_s, abs=1.0)
+    assert branch.gains.distance_m == pytest.approx(length_m("main") - length_m("out", "back"), abs=1e-6)
+    assert branch.gains.stops == 0
+    assert branch.others.gain_s == 0, "the lorries never have the ego before them"
 
 
-def test_sumos_own_outputs_say_the_same(driven: tuple[Json, Path]) -> None:
+def test_sumos_own_outputs_say_the_same(driven: tuple[DriveRow, Path]) -> None:
     row, outputs = driven
-    (decision,) = row["decisions"]
-    told = [row["stay"], decision["branches"][0]["totals"], decision["placebo"]["totals"]]
+    told = futures(row)
     found = list(trips(outputs))
     assert len(found) == len(told)
-    for totals, trip in zip(sorted(told, key=ordered), sorted(found, key=ordered), strict=True):
-        assert totals["time_s"] == pytest.approx(trip["time_s"], abs=1e-6)
-        assert totals["distance_m"] == pytest.approx(trip["distance_m"], abs=0.01)
-        assert totals["stops"] == trip["stops"]
-        assert totals["standing_s"] == pytest.approx(trip["standing_s"], abs=1e-6)
-        assert totals["co2_g"] == pytest.approx(trip["co2_g"], rel=0.005), "to the step in which it arrives"
-        assert totals["fuel_g"] == pytest.approx(trip["fuel_g"], rel=0.005)
+    for totals, trip in paired(told, found):
+        assert totals.time_s == pytest.approx(trip.time_s, abs=1e-6)
+        assert totals.distance_m == pytest.approx(trip.distance_m, abs=0.01)
+        assert totals.stops == trip.stops
+        assert totals.standing_s == pytest.approx(trip.standing_s, abs=1e-6)
+        assert totals.co2_g == pytest.approx(trip.co2_g, rel=0.005), "to the step in which it arrives"
+        assert totals.fuel_g == pytest.approx(trip.fuel_g, rel=0.005)
 
 
 def test_they_say_the_same_where_cars_stop_and_waver(tmp_path: Path) -> None:
@@ -90,33 +91,42 @@ def test_they_say_the_same_where_cars_stop_and_waver(tmp_path: Path) -> None:
         simulation.watch()
         simulation.run_on(100.0)
         row = run_drive(job, simulation, ())
-    (decision,) = row["decisions"]
-    told = [row["stay"], *(branch["totals"] for branch in [*decision["branches"], decision["placebo"]])]
-    assert any(totals["stops"] for totals in told)
-    for totals, trip in zip(sorted(told, key=ordered), sorted(trips(tmp_path), key=ordered), strict=True):
+    told = futures(row)
+    assert any(totals.stops for totals in told)
+    for totals, trip in paired(told, trips(tmp_path)):
         for name in ("time_s", "distance_m", "stops", "standing_s"):
-            assert totals[name] == pytest.approx(trip[name], abs=0.5), name
-        assert totals["co2_g"] == pytest.approx(trip["co2_g"], rel=0.02)
+            assert getattr(totals, name) == pytest.approx(getattr(trip, name), abs=0.5), name
+        assert totals.co2_g == pytest.approx(trip.co2_g, rel=0.02)
 
 
-def ordered(totals: Json) -> tuple[float, ...]:
-    return tuple(round(totals[name], 1) for name in METRICS)
+def futures(row: DriveRow) -> list[Totals]:
+    """The drive's own, the branches' of its one decision, and the placebo's."""
+    (decision,) = row.decisions
+    assert row.stay is not None
+    assert decision.placebo is not None
+    return [row.stay, *(branch.totals for branch in decision.branches), decision.placebo.totals]
 
 
-def trips(outputs: Path) -> Iterator[Json]:
+def paired(told: Iterable[Totals], found: Iterable[Totals]) -> Iterator[tuple[Totals, Totals]]:
+    """In the order of their values, as nothing names them."""
+    ordered = (sorted(each, key=lambda one: [round(value, 1) for value in astuple(one)]) for each in (told, found))
+    return zip(*ordered, strict=True)
+
+
+def trips(outputs: Path) -> Iterator[Totals]:
     """The ego's trip in every future that was driven to its end, by SUMO's tripinfo."""
     for path in sorted(outputs.glob("*/tripinfo.xml")):
         for trip in ET.parse(path).getroot():
             if trip.get("id") == "ego":
                 (emissions,) = trip.iter("emissions")
-                yield {
-                    "time_s": float(trip.attrib["duration"]),
-                    "distance_m": float(trip.attrib["routeLength"]),
-                    "stops": int(trip.attrib["waitingCount"]),
-                    "standing_s": float(trip.attrib["waitingTime"]),
-                    "co2_g": float(emissions.attrib["CO2_abs"]) / 1000,
-                    "fuel_g": float(emissions.attrib["fuel_abs"]) / 1000,
-                }
+                yield Totals(
+                    time_s=float(trip.attrib["duration"]),
+                    distance_m=float(trip.attrib["routeLength"]),
+                    stops=int(trip.attrib["waitingCount"]),
+                    standing_s=float(trip.attrib["waitingTime"]),
+                    co2_g=float(emissions.attrib["CO2_abs"]) / 1000,
+                    fuel_g=float(emissions.attrib["fuel_abs"]) / 1000,
+                )
 
 
 def test_branches_without_a_choice_stay_the_same_to_the_last(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import product
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,55 +12,56 @@ import pytest
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.studies import compare
-from automotive_cosim.studies.compare import METRICS, Future
+from automotive_cosim.studies.compare import Future
 from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
 from automotive_cosim.studies.plan import StudyPlan, make_study
 from automotive_cosim.studies.policies import best, chosen, parse_policy
 from automotive_cosim.studies.results import choices, noise
+from automotive_cosim.studies.rows import NOTHING, Branch, Decision, DriveRow, News, OthersTotals
 from automotive_cosim.studies.tables import outcomes
 from automotive_cosim.studies.traffic import gridlock
 from automotive_cosim.traffic.accounts import Account, Pulse, Settled
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.scripted import Scripted, Stretch
 
-OTHERS = {"count": 3, "gain_s": 4.0, "changed": 1, "unfinished_stay": 0, "unfinished": 0}
+OTHERS = OthersTotals(count=3, gain_s=4.0, changed=1, unfinished_stay=0, unfinished=0)
 
 
-def branch(gain_s: float) -> Json:
-    return {"gains": dict.fromkeys(METRICS, 0.0) | {"time_s": gain_s}, "others": OTHERS}
+def branch(gain_s: float) -> Branch:
+    return Branch(gains=replace(NOTHING, time_s=gain_s), totals=NOTHING, others=OTHERS)
 
 
-def decision(*gains_s: float, offered_s: float | None = 80.0, delay_s: float = 70.0, **more: object) -> Json:
+def decision(*gains_s: float, offered_s: float | None = 80.0, delay_s: float = 70.0, **more: Any) -> Decision:
     """One whose present way is said to take 100 s, with a branch for each gain; the first is the one offered."""
-    news = {"age_s": 0.0, "stay_s": 100.0, "delay_s": delay_s, "offered_s": offered_s}
-    row: Json = {
-        "at_s": 900.0,
-        "edge": "a",
-        "delay_s": delay_s,
-        "eta_s": 100.0,
-        "complies": True,
-        "news": [news | {"branch": None if offered_s is None else 0}],
-        "own": None,
-        "agents": {},
-        "agents_rerouted": [],
-        "excluded": "",
-        "placebo": None,
-        "branches": [branch(gain_s) for gain_s in gains_s],
-    }
-    return row | more
+    number = None if offered_s is None else 0
+    news = News(age_s=0.0, stay_s=100.0, delay_s=delay_s, offered_s=offered_s, branch=number)
+    made = Decision(
+        at_s=900.0,
+        edge="a",
+        delay_s=delay_s,
+        eta_s=100.0,
+        relative_speed=0.5,
+        complies=True,
+        news=(news,),
+        own=None,
+        agents={},
+        agents_rerouted=(),
+        branches=tuple(branch(gain_s) for gain_s in gains_s),
+    )
+    return replace(made, **more)
 
 
-def drive(*decisions: Json, seed: int = 0) -> Json:
-    return {
-        "id": f"d{seed}",
-        "scenario": "grid",
-        "share": 0.5,
-        "seed": seed,
-        "departure_s": 0.0,
-        "trip": "avenue",
-        "stay": dict.fromkeys(METRICS, 200.0),
-        "decisions": list(decisions),
-    }
+def drive(*decisions: Decision, seed: int = 0) -> DriveRow:
+    return DriveRow(
+        id=f"d{seed}",
+        scenario="grid",
+        share=0.5,
+        seed=seed,
+        departure_s=0.0,
+        trip="avenue",
+        stay=replace(NOTHING, time_s=200.0),
+        decisions=decisions,
+    )
 
 
 @pytest.mark.parametrize(
@@ -79,7 +81,7 @@ def drive(*decisions: Json, seed: int = 0) -> Json:
         ("always", decision(30.0, complies=False), None),
     ],
 )
-def test_who_chooses_what(policy: str, row: Json, expected: int | None) -> None:
+def test_who_chooses_what(policy: str, row: Decision, expected: int | None) -> None:
     assert chosen(parse_policy(policy), row, 0.0) == expected
 
 
@@ -94,23 +96,23 @@ def test_nobody_beats_hindsight() -> None:
     for gains in product((-20.0, 0.0, 15.0), repeat=2):
         row = decision(*gains, own=1)
         for each in choices([drive(row)], ("never", "always", "delay:60", "sumo", "best")):
-            assert each["regret_s"] == max(0.0, *gains) - each["gain_time_s"] >= 0
-            assert each["policy"] != "best" or each["regret_s"] == 0
+            assert each.regret_s == max(0.0, *gains) - each.gain.time_s >= 0
+            assert each.policy != "best" or each.regret_s == 0
         number = best(row)
         assert (0.0 if number is None else gains[number]) == max(0.0, *gains)
 
 
 def test_who_stays_changes_nothing() -> None:
     (each,) = choices([drive(decision(30.0))], ("never",))
-    assert not each["rerouted"]
-    assert all(each[f"gain_{name}"] == 0 for name in METRICS)
-    assert each["others_gain_s"] == 0
-    assert each["stay_time_s"] == 200
+    assert not each.rerouted
+    assert each.gain == NOTHING
+    assert each.others_gain_s == 0
+    assert each.stay.time_s == 200
 
 
 def test_what_does_not_count_is_in_no_choice() -> None:
     rows = [drive(decision(30.0), decision(500.0, excluded="gridlock"))]
-    assert [each["gain_time_s"] for each in choices(rows, ("always",))] == [30.0]
+    assert [each.gain.time_s for each in choices(rows, ("always",))] == [30.0]
 
 
 def test_gains_up_to_what_the_placebos_change_are_ties() -> None:
@@ -186,11 +188,11 @@ def test_who_has_not_arrived_is_not_forgotten() -> None:
     """Whoever is late in only one of the futures counts there up to the instant both are known until."""
     stay, other = future(500.0, a=100.0, b=200.0, d=480.0), future(400.0, a=90.0, c=300.0)
     found = compare.others(stay, other, ["a", "b", "c", "d"])
-    assert found["gain_s"] == (100 - 90) + (200 - 400) + (400 - 300) + (400 - 400)
-    assert (found["unfinished_stay"], found["unfinished"]) == (2, 2)
-    assert (found["count"], found["changed"]) == (4, 3)
+    assert found.gain_s == (100 - 90) + (200 - 400) + (400 - 300) + (400 - 400)
+    assert (found.unfinished_stay, found.unfinished) == (2, 2)
+    assert (found.count, found.changed) == (4, 3)
     back = compare.others(other, stay, ["a", "b", "c", "d"])
-    assert back["gain_s"] == -found["gain_s"]
+    assert back.gain_s == -found.gain_s
 
 
 @pytest.mark.parametrize(

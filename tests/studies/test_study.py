@@ -15,11 +15,13 @@ from automotive_cosim.cli.study import app
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.processes import Processes
-from automotive_cosim.run.store import VOLATILE, read_rows
+from automotive_cosim.run.row import steady as steady_part
+from automotive_cosim.run.store import read_rows
 from automotive_cosim.studies.batch import run_study
 from automotive_cosim.studies.page import write_study
 from automotive_cosim.studies.plan import StudyPlan
 from automotive_cosim.studies.results import load_study, read_study
+from automotive_cosim.studies.rows import NOTHING, DriveRow
 
 from .conftest import MORE_TRIPS, Draw
 
@@ -30,10 +32,7 @@ JAMMED = """<routes>
 
 
 def steady(folder: Path) -> dict[str, Json]:
-    return {
-        name: {key: value for key, value in row.items() if key not in VOLATILE}
-        for name, row in read_rows(folder).items()
-    }
+    return {name: steady_part(row) for name, row in read_rows(folder, DriveRow).items()}
 
 
 @pytest.fixture(scope="module")
@@ -77,9 +76,9 @@ def test_what_has_nothing_to_decide_is_counted_and_kept_out(folder: Path) -> Non
     assert study.excluded["drive", "start is goal"] == 4
     assert study.excluded["drive", "no congestion met"] == 4
     assert study.excluded["drive", "no alternative"] == 4
-    assert {row["trip"] for row in study.rows if not row["excluded"]} == {"across"}
+    assert {row.trip for row in study.rows if not row.excluded} == {"across"}
     assert len(study.decisions) == 8
-    assert {each["trip"] for each in study.choices} == {"across"}
+    assert {each.trip for each in study.choices} == {"across"}
 
 
 def test_old_news_offers_nothing_worth_it(folder: Path) -> None:
@@ -122,8 +121,8 @@ def test_each_share_is_traffic_of_its_own(two_ways: Draw, tmp_path: Path) -> Non
     plan = StudyPlan(str(two_ways()), (0.0,), seeds=(0,), per_drive=1, shares=(0.0, 1.0), placebo_every=0)
     run_study(plan, tmp_path / "shares")
     study = read_study(tmp_path / "shares")
-    assert [row["share"] for row in study.rows] == [0.0, 1.0]
-    assert {each["share"] for each in study.choices} == {0.0, 1.0}
+    assert [row.share for row in study.rows] == [0.0, 1.0]
+    assert {each.share for each in study.choices} == {0.0, 1.0}
     write_study(tmp_path / "shares")
     assert "Too few seeds" in (tmp_path / "shares" / "tables" / "by_share.md").read_text()
 
@@ -135,7 +134,7 @@ def test_seeds_are_added_only_until_enough_is_known(two_ways: Draw, tmp_path: Pa
         str(two_ways()), (0.0,), seeds=tuple(range(14)), per_drive=1, placebo_every=0, half_width_s=1.0
     )
     run_study(plan, tmp_path / "until", executor=Processes(2))
-    assert {row["seed"] for row in read_study(tmp_path / "until").rows} == set(range(10))
+    assert {row.seed for row in read_study(tmp_path / "until").rows} == set(range(10))
 
 
 AGENTS = """
@@ -174,15 +173,16 @@ def test_an_agent_gains_what_its_taps_do_and_one_that_does_nothing_changes_nothi
     plan = StudyPlan(str(two_ways()), (0.0,), seeds=(0,), per_drive=1, policies=policies, agent_steps=6)
     run_study(plan, tmp_path / "agent")
     study = read_study(tmp_path / "agent")
-    (decision,) = study.decisions
-    idle = decision["branches"][decision["agents"]["mine:Idle"]]
-    assert all(gain == 0 for gain in idle["gains"].values())
-    assert idle["others"]["changed"] == 0
-    taps = decision["branches"][decision["agents"]["mine:Taps"]]
-    always = decision["branches"][decision["news"][0]["branch"]]
-    assert taps["totals"] == always["totals"], "the way is the same, wherever on the first road it was chosen"
-    assert {each["policy"]: each["gain_time_s"] > 0 for each in study.choices}["agent:mine:Taps"]
-    turned = {each["policy"]: each["rerouted"] for each in study.choices}
+    (point,) = study.decisions
+    decision = point.decision
+    idle = decision.branches[decision.agents["mine:Idle"]]
+    assert idle.gains == NOTHING
+    assert idle.others.changed == 0
+    taps = decision.branches[decision.agents["mine:Taps"]]
+    always = decision.branches[decision.news[0].branch]
+    assert taps.totals == always.totals, "the way is the same, wherever on the first road it was chosen"
+    assert {each.policy: each.gain.time_s > 0 for each in study.choices}["agent:mine:Taps"]
+    turned = {each.policy: each.rerouted for each in study.choices}
     assert turned["agent:mine:Taps"]
     assert not turned["agent:mine:Idle"]
 
@@ -194,13 +194,14 @@ def test_the_reference_agents_get_there_faster(name: str, two_ways: Draw, tmp_pa
     plan = StudyPlan(str(two_ways()), (0.0,), seeds=(0,), per_drive=1, policies=policies)
     run_study(plan, tmp_path / "agent")
     study = read_study(tmp_path / "agent")
-    (decision,) = study.decisions
-    agents = decision["branches"][decision["agents"][name]]
-    always = decision["branches"][decision["news"][0]["branch"]]
-    assert agents["totals"] == always["totals"]
-    choice = {each["policy"]: each for each in study.choices}[f"agent:{name}"]
-    assert choice["rerouted"]
-    assert choice["gain_time_s"] > 0
+    (point,) = study.decisions
+    decision = point.decision
+    agents = decision.branches[decision.agents[name]]
+    always = decision.branches[decision.news[0].branch]
+    assert agents.totals == always.totals
+    choice = {each.policy: each for each in study.choices}[f"agent:{name}"]
+    assert choice.rerouted
+    assert choice.gain.time_s > 0
 
 
 def invoke(*words: str) -> tuple[str, Exception | None]:
@@ -229,7 +230,7 @@ def test_the_command_says_when_nothing_counts(two_ways: Draw, tmp_path: Path) ->
     words = ["reroute", "--scenario", str(two_ways(more=MORE_TRIPS)), "--departures", "8:30", "--seeds", "0"]
     text, error = invoke(*words, "--trips", "stands,free", "--out", str(tmp_path / "out"))
     assert isinstance(error, UserError)
-    assert "no decision counts" in str(error)
+    assert "no decision counted" in str(error)
     assert "start is goal" in text
 
 
@@ -265,7 +266,7 @@ def test_a_sumo_configuration_is_studied_as_it_is_between_places(two_ways: Draw,
     before = {path.name: path.read_bytes() for path in configuration.parent.iterdir()}
     run_study(plan, tmp_path / "s")
     study = read_study(tmp_path / "s")
-    assert [(row["trip"], len(row["decisions"])) for row in study.rows] == [("chosen", 1)]
+    assert [(row.trip, len(row.decisions)) for row in study.rows] == [("chosen", 1)]
     assert {path.name: path.read_bytes() for path in configuration.parent.iterdir()} == before
     with pytest.raises(UserError, match="no street or edge 'nowhere'"):
         replace(plan, from_place="nowhere").check()

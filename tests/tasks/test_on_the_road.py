@@ -57,7 +57,7 @@ def test_a_task_of_each_module_passes_every_gate(module: str):
     prover = Prover(tuple(gate for gate in GATES if gate not in ("random", "reach")))
     proof = prover.prove(task.id, SEED)
     prover.close()
-    assert proof.error == ""
+    assert proof.error is None
     assert {gate: wrong for gate, wrong in proof.wrong.items() if wrong} == {}
     assert set(proof.wrong) >= {"oracle", "start", "trivial", "repeat"}
 

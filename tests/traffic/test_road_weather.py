@@ -14,7 +14,7 @@ from automotive_cosim.scenarios import Scenario, Trip, WeatherAt, load
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.in_process import InProcess
-from automotive_cosim.traffic.road_weather import G_MPS2, Condition, condition_of, sight_speed_mps
+from automotive_cosim.traffic.road_weather import G_MPS2, RoadCondition, condition_of, sight_speed_mps
 from automotive_cosim.traffic.scripted import Scripted, Stretch
 
 Variant = Callable[[Callable[[Path], None]], Scenario]
@@ -66,7 +66,7 @@ def test_one_can_stop_within_sight(visibility_m: float, friction: float) -> None
 # --- the ego ----------------------------------------------------------------------------------------------
 
 
-def hits(simulation: InProcess, plan: EgoPlan, condition: Condition, brakes_before_m: float) -> bool:
+def hits(simulation: InProcess, plan: EgoPlan, condition: RoadCondition, brakes_before_m: float) -> bool:
     """Whether the ego, at 50 km/h, hits something that stands ahead and that it sees only so far before."""
     import libsumo
 
@@ -95,8 +95,8 @@ def test_stopping_distances_are_those_of_physics(empty: Scenario, friction: floa
     plan = EgoPlan(empty.trip("avenue"), "average", seed=3)
     with closing(InProcess(empty, seed=1)) as simulation:
         distance_m = (50 / KMH_PER_MPS) ** 2 / (2 * friction * G_MPS2)
-        assert not hits(simulation, plan, Condition(friction), 1.15 * distance_m)
-        assert hits(simulation, plan, Condition(friction), 0.85 * distance_m)
+        assert not hits(simulation, plan, RoadCondition(friction), 1.15 * distance_m)
+        assert hits(simulation, plan, RoadCondition(friction), 0.85 * distance_m)
 
 
 def fastest_kmh(forked: Forked, plan: EgoPlan, weather: Weather) -> float:

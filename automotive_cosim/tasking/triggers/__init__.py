@@ -11,7 +11,7 @@ surroundings  sky, place, position fix and connection
 car           the car's own signals
 """
 
-from automotive_cosim.tasking.triggers.base import All, Condition, Not, Trigger
+from automotive_cosim.tasking.triggers.base import All, Not, Trigger, TriggerCondition
 from automotive_cosim.tasking.triggers.car import SignalAbove, SignalBelow, SignalHas
 from automotive_cosim.tasking.triggers.motion import Driving, OverPosted, Parked, SpeedAbove, SpeedBetween, Standing
 from automotive_cosim.tasking.triggers.others import (
@@ -61,7 +61,6 @@ __all__ = [
     "BuiltUp",
     "CentreLine",
     "CollisionWithin",
-    "Condition",
     "Dark",
     "DelayAbove",
     "Driving",
@@ -98,6 +97,7 @@ __all__ = [
     "SpeedBetween",
     "Standing",
     "Trigger",
+    "TriggerCondition",
     "TunnelWithin",
     "Unposted",
     "VisibilityBetween",

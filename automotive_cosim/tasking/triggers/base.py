@@ -13,7 +13,7 @@ ANY = 1e9
 """Farther, faster and more than anything."""
 
 
-class Condition(Protocol):
+class TriggerCondition(Protocol):
     """A question about one moment."""
 
     def __call__(self, moment: Moment) -> bool:
@@ -25,7 +25,7 @@ class Condition(Protocol):
 class Trigger:
     """The situation a task starts from: ``condition`` has held for ``for_s`` without a break."""
 
-    condition: Condition
+    condition: TriggerCondition
     for_s: float
     within_s: float
     """Simulated seconds from departure after which the trigger counts as not reached."""
@@ -35,7 +35,7 @@ class Trigger:
 class All:
     """Every one of them holds."""
 
-    conditions: tuple[Condition, ...]
+    conditions: tuple[TriggerCondition, ...]
 
     def __call__(self, moment: Moment) -> bool:
         """Asks each."""
@@ -49,7 +49,7 @@ class All:
 class Not:
     """It does not hold."""
 
-    condition: Condition
+    condition: TriggerCondition
 
     def __call__(self, moment: Moment) -> bool:
         """Asks it."""
