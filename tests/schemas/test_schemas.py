@@ -11,7 +11,9 @@ from pathlib import Path
 import pytest
 
 from automotive_cosim import schemas
+from automotive_cosim.errors import UserError
 from automotive_cosim.formats.checked import as_json
+from automotive_cosim.run.plan import read_plan
 from automotive_cosim.schemas import make
 
 jsonschema = pytest.importorskip("jsonschema")
@@ -76,7 +78,7 @@ def test_the_plans_and_rules_in_the_docs_pass() -> None:
     if not DOCS.is_dir():
         pytest.skip("not run from a checkout")
     seen = set()
-    for path in DOCS.glob("*.md"):
+    for path in set(DOCS.glob("*.md")) - {DOCS / "formats.md"}:
         for text in re.findall(r"```toml\n(.*?)```", path.read_text(encoding="utf-8"), re.DOTALL):
             table = tomllib.loads(text)
             name = "plan" if "agents" in table else "rules" if "jurisdiction" in table else ""
@@ -84,3 +86,22 @@ def test_the_plans_and_rules_in_the_docs_pass() -> None:
                 _check(name, table)
                 seen.add(name)
     assert seen == {"plan", "rules"}
+
+
+def test_the_refusal_in_the_docs_is_what_one_gets(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    if not DOCS.is_dir():
+        pytest.skip("not run from a checkout")
+    page = (DOCS / "formats.md").read_text(encoding="utf-8")
+    (plan,) = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
+    monkeypatch.chdir(tmp_path)
+    Path("plan.toml").write_text(plan, encoding="utf-8")
+    with pytest.raises(UserError) as refused:
+        read_plan(Path("plan.toml"))
+    assert "".join(f"error: {problem}\n" for problem in refused.value.args) in page
+
+
+def test_the_docs_name_every_schema() -> None:
+    if not DOCS.is_dir():
+        pytest.skip("not run from a checkout")
+    page = (DOCS / "formats.md").read_text(encoding="utf-8")
+    assert tuple(sorted(re.findall(r"^\| `(\w+)` \|", page, re.MULTILINE))) == schemas.names()
