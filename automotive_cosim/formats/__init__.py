@@ -4,7 +4,8 @@
 
 annotations  what an annotation says of a field: names, forms, what is made of it
 checked      values -> an instance, or the problems in words
-toml         a file, and in which line of it things stand
+files        the text of a file
+toml         a TOML file, and in which line of it things stand
 words        what came and what was expected, from a JSON Schema
 schema       the JSON Schema of a type
 """

@@ -85,6 +85,11 @@ def test_plain_csv_is_read_also_gzipped_and_without_occupancy(tmp_path: Path) ->
         ([HEADER, "yesterday;1;Avenue;1;1"], "line 2: 'yesterday' is not a date and time"),
         ([HEADER, "2023-11-06 00:00:00+00:00;1;Avenue;many;1"], "line 2: Débit horaire is 'many'"),
         (_plain(range(2, 24)), "no count for hour 0, 1 of a working day"),
+        (
+            [HEADER, "0001-01-01 00:00:00+23:59;1;Avenue;1;1"],
+            "line 2: '0001-01-01 00:00:00+23:59' is not a date",
+        ),
+        ([*_plain(), f'3,"{"9" * 200_000}'], "field larger than field limit"),
         ([*_plain(), "24,9"], "line 26: hour '24' is not a whole number from 0 to 23"),
         ([*_plain(), "3,-1"], "line 26: vehicles_per_hour is '-1'"),
         ([*_plain(), "3,nan"], "line 26: vehicles_per_hour is 'nan'"),
