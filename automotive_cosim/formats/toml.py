@@ -1,4 +1,4 @@
-"""TOML files that users write: read whole, and refused by line, table and field."""
+"""Reads TOML files that users write; errors name line, table and field."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ from automotive_cosim.formats.checked import Steps, checked
 T = TypeVar("T")
 
 MOST_BYTES = 4 * 2**20
-"""Nobody writes more by hand, and a wrong path may be a device that never ends."""
+"""Size limit: nobody writes more by hand, and a wrong path may be a device that never ends."""
 
 LABELS = {"id": " {}", "kind": " of kind '{}'", "name": " '{}'"}
-"""What tells one entry of a list of tables from another, and how a refusal names it."""
+"""Keys that identify an entry of a list of tables, and how an error names it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Document:
-    """A TOML file and where in it things stand."""
+    """A TOML file with the lines of its entries."""
 
     path: Path
     table: dict[str, Any]
     error: type[UserError]
-    """What a refusal raises."""
+    """The class of errors."""
     text: str = field(repr=False)
 
     def read(self, kind: type[T]) -> T:
@@ -41,12 +41,12 @@ class Document:
         return checked(kind, self.table, self.place, self.error)
 
     def refused(self, steps: Steps, why: str) -> UserError:
-        """The error to raise because of what stands there."""
+        """The error to raise about a value."""
         where, name = self.place(steps)
         return self.error(f"{where}: {name} {why}" if name else f"{where}: {why}")
 
     def place(self, steps: Steps) -> tuple[str, str]:
-        """File, line and table of a value, and what it is called in that table."""
+        """File, line and table of a value, and its name in that table."""
         lines, tables = _lines(self.text)
         line = next((lines[steps[:end]] for end in range(len(steps), 0, -1) if steps[:end] in lines), None)
         table = next(steps[:end] for end in range(len(steps), -1, -1) if steps[:end] in tables)
@@ -54,7 +54,7 @@ class Document:
         return where + self._header(table), dotted(steps[len(table) :])
 
     def _header(self, table: Steps) -> str:
-        """How the file writes a table's name, with what tells it from others of that name."""
+        """A table's name as written in the file, with what identifies it among others of that name."""
         if not table:
             return ""
         name = ".".join(str(step) for step in table if isinstance(step, str))
@@ -71,7 +71,7 @@ def read_toml(path: Path, error: type[UserError] = UserError) -> Document:
     """Reads a file.
 
     Raises:
-        UserError: of that class: it is missing, too large, or no TOML.
+        UserError: of that class: it is missing, too large, or not TOML.
     """
     try:
         with path.open("rb") as file:
@@ -83,19 +83,19 @@ def read_toml(path: Path, error: type[UserError] = UserError) -> Document:
     except OSError as broken:
         raise error(f"cannot read {path}: {broken.strerror or broken}") from broken
     except UnicodeDecodeError as broken:
-        raise error(f"{path} is not TOML: it is no UTF-8 text; save it as UTF-8") from broken
+        raise error(f"{path} is not TOML: it is not UTF-8 text; save it as UTF-8") from broken
     except (ValueError, RecursionError) as broken:
         why = "it is nested too deeply" if isinstance(broken, RecursionError) else str(broken)
         raise error(f"{path} is not TOML: {why}") from broken
 
 
-# --- where things stand -------------------------------------------------------------------------------------
+# --- the lines of entries -------------------------------------------------------------------------------------
 
 _OPAQUE = re.compile(
     r'#[^\n]*|"""(?:\\.|[^\\])*?"""(?:"{0,2})|\'\'\'.*?\'\'\'(?:\'{0,2})|"(?:\\.|[^"\\\n])*"|\'[^\'\n]*\'',
     re.DOTALL,
 )
-"""Comments and texts of a well-formed file: what may hold brackets, equal signs and line ends that mean nothing."""
+"""Comments and texts of a well-formed file, in which brackets, equal signs and line ends mean nothing."""
 
 
 def dotted(steps: Steps) -> str:
@@ -141,7 +141,7 @@ def _depth(line: str) -> int:
 
 
 def _keys(written: str) -> tuple[str, ...]:
-    """The keys of ``a."b c".d``, by the same reader as the file's."""
+    """The keys of ``a."b c".d``, parsed like the file."""
     inner: Any = tomllib.loads(f"{written} = 0")
     keys = []
     while isinstance(inner, dict):

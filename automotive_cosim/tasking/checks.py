@@ -1,7 +1,7 @@
 """Checks: goals as predicates on the state, without effects.
 
-A ``Check`` judges the outcome of the situation that a trigger (``triggers``) started. Each is a frozen dataclass, so
-it can be compared and stored; ``str`` describes it in words. Values may be parameters until they are bound.
+A ``Check`` judges the outcome of the situation that a trigger (``triggers``) started. Each is a frozen dataclass,
+so it can be compared and stored; ``str`` describes it in words. Values may be parameters until they are bound.
 """
 
 from __future__ import annotations
@@ -230,7 +230,8 @@ class RoadAsked:
     """Exactly one irrevocable request was made to the road: ``Reroute``, ``PullOver``, ``SlowDown``."""
 
     request: type[RoadRequest] | RoadRequest
-    """Its class or the exact request: ``RoadAsked(Reroute)`` accepts any, ``RoadAsked(Reroute("A 4"))`` only that."""
+    """Its class or the exact request: ``RoadAsked(Reroute)`` accepts any, ``RoadAsked(Reroute("A 4"))`` only
+    that."""
 
     @property
     def writes(self) -> frozenset[str]:
