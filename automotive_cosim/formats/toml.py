@@ -1,4 +1,4 @@
-"""TOML files that users write: read whole, and refused by line, table and field."""
+"""Reads TOML files that users write; errors name line, table and field."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ _DEEP = re.compile(r"""(?<![\w.-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[
 """A key of more parts than anybody writes: ``tomllib`` takes the square of their number in memory."""
 
 LABELS = {"id": " {}", "kind": " of kind '{}'", "name": " '{}'"}
-"""What tells one entry of a list of tables from another, and how a refusal names it."""
+"""Keys that identify an entry of a list of tables, and how an error names it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Document:
-    """A TOML file and where in it things stand."""
+    """A TOML file with the lines of its entries."""
 
     path: Path
     table: dict[str, Any]
     error: type[UserError]
-    """What a refusal raises."""
+    """The class of errors."""
     text: str = field(repr=False)
 
     def read(self, kind: type[T]) -> T:
@@ -42,12 +42,12 @@ class Document:
         return checked(kind, self.table, self.place, self.error)
 
     def refused(self, steps: Steps, why: str) -> UserError:
-        """The error to raise because of what stands there."""
+        """The error to raise about a value."""
         where, name = self.place(steps)
         return self.error(f"{where}: {name} {why}" if name else f"{where}: {why}")
 
     def place(self, steps: Steps) -> tuple[str, str]:
-        """File, line and table of a value, and what it is called in that table."""
+        """File, line and table of a value, and its name in that table."""
         lines, tables = _lines(self.text)
         line = next((lines[steps[:end]] for end in range(len(steps), 0, -1) if steps[:end] in lines), None)
         table = next(steps[:end] for end in range(len(steps), -1, -1) if steps[:end] in tables)
@@ -55,7 +55,7 @@ class Document:
         return where + self._header(table), dotted(steps[len(table) :])
 
     def _header(self, table: Steps) -> str:
-        """How the file writes a table's name, with what tells it from others of that name."""
+        """A table's name as written in the file, with what identifies it among others of that name."""
         if not table:
             return ""
         name = ".".join(str(step) for step in table if isinstance(step, str))
@@ -92,13 +92,13 @@ def parse(text: str, path: Path, error: type[UserError] = UserError) -> Document
         raise error(f"{path} is not TOML: {why}") from broken
 
 
-# --- where things stand -------------------------------------------------------------------------------------
+# --- the lines of entries -------------------------------------------------------------------------------------
 
 _OPAQUE = re.compile(
     r'#[^\n]*|"""(?:\\.|[^\\])*?"""(?:"{0,2})|\'\'\'.*?\'\'\'(?:\'{0,2})|"(?:\\.|[^"\\\n])*"|\'[^\'\n]*\'',
     re.DOTALL,
 )
-"""Comments and texts of a well-formed file: what may hold brackets, equal signs and line ends that mean nothing."""
+"""Comments and texts of a well-formed file, in which brackets, equal signs and line ends mean nothing."""
 
 
 def dotted(steps: Steps) -> str:
@@ -147,7 +147,7 @@ def _depth(line: str) -> int:
 
 
 def _keys(written: str) -> tuple[str, ...]:
-    """The keys of ``a."b c".d``, by the same reader as the file's."""
+    """The keys of ``a."b c".d``, parsed like the file."""
     inner: Any = tomllib.loads(f"{written} = 0")
     keys = []
     while isinstance(inner, dict):

@@ -230,7 +230,8 @@ class RoadAsked:
     """Exactly one irrevocable request was made to the road: ``Reroute``, ``PullOver``, ``SlowDown``."""
 
     request: type[RoadRequest] | RoadRequest
-    """Its class or the exact one: ``RoadAsked(Reroute)`` accepts any, ``RoadAsked(Reroute("A 4"))`` only that."""
+    """Its class or the exact request: ``RoadAsked(Reroute)`` accepts any, ``RoadAsked(Reroute("A 4"))`` only
+    that."""
 
     @property
     def writes(self) -> frozenset[str]:

@@ -97,7 +97,7 @@ def test_a_well_formed_file_reads(tmp_path: Path) -> None:
         ("value = 30", "cases = [30]", 15, "cases[0] is 30; it must be a table"),
         ("value = 30", "cases = [{ value = -1 }]", 15, "cases[0].value is -1"),
         ('unit = "mph"', "unit = 3", 16, "unit is 3; it must be one of"),
-        ('unit = "mph"\n', "", 11, "a number needs a unit"),
+        ('unit = "mph"\n', "", 11, "a number requires a unit"),
         ('unit = "mph"', 'unit = "mph"\nwhen = 3', 17, "when is 3; it must be a table"),
         ('unit = "mph"', 'unit = "mph"\nwhen = { visibility_below_m = inf }', 17, "must be a number of metres"),
         (

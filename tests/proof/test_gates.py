@@ -134,7 +134,7 @@ def test_an_expert_too_slow_is_seen(ground):
 
 def test_a_goal_that_holds_at_the_start_is_seen(ground):
     (wrong,) = gates.start(ground(changed(goal=SignalIs(SEAT.DRIVER_HEATING, (0.0,)))))
-    assert wrong.startswith("already so")
+    assert wrong.startswith("holds already")
 
 
 def test_a_widget_named_by_its_number_is_seen(ground):
@@ -156,7 +156,7 @@ def test_a_deadline_that_does_not_count_is_seen(ground, monkeypatch):
 
 def test_a_goal_that_survives_being_undone_is_seen(ground):
     stand = ground(changed(goal=EverHeated()))
-    assert list(gates.undone(stand, stand.reference)) == ["succeeds with everything put back"]
+    assert list(gates.undone(stand, stand.reference)) == ["succeeds with everything reverted"]
 
 
 def test_a_goal_that_takes_the_wrong_seat_is_seen(ground):
@@ -208,16 +208,16 @@ def test_only_what_is_lost_is_given_up(ground):
     easy = ground(replace(SOUND, first=replace(SOUND.first, goal=AnyOf((SOUND.first.goal, NothingDone())))))
     for at in (easy, ground(SOUND)):
         for number in range(8):
-            whole, short = (at.play(at.agent(Random(number)), give_up=give_up) for give_up in (False, True))
+            whole, short = (at.play(at.agent(Random(number)), stop_when_lost=stop) for stop in (False, True))
             assert whole.success == short.success
             assert len(short.actions) <= len(whole.actions)
-    assert easy.play(easy.oracle(), give_up=True).success
+    assert easy.play(easy.oracle(), stop_when_lost=True).success
 
 
 def test_a_side_effect_that_stays_ends_a_hopeless_run(ground):
     at = ground(SOUND)
     alerts = Script((Action(ActionType.SHOW_ALERT, kind=AlertKind.SPEED), Action(ActionType.WAIT, seconds=1)))
-    assert len(at.play(alerts, give_up=True).actions) == 1
+    assert len(at.play(alerts, stop_when_lost=True).actions) == 1
     assert len(at.play(alerts).actions) > 1
 
 
