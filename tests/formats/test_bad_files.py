@@ -255,7 +255,7 @@ WRONG = [
     ("rules", "weekdays = [7]", "weekdays = [8]", "cases", "weekdays[0] is 8; it must be a whole number", True),
     ("rules", "weekdays = [7]", "weekdays = 7", "cases", "cases[0].when.weekdays is 7", True),
     ("rules", 'value = "allowed"', 'value = "alowed"', "cases", "no value named 'alowed': did you mean", True),
-    ("rules", 'id = "XX-town.horn"', 'id = "XX-town.limit"', "id", "stands twice", False),
+    ("rules", 'id = "XX-town.horn"', 'id = "XX-town.limit"', "id", "occurs twice", False),
     ("rules", 'topic = "horn"\n', "", "[[rules]]", "lacks 'topic'; give one of 'limit'", True),
 ]
 
