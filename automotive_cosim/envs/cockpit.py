@@ -1,4 +1,4 @@
-"""The environment: a task in a car in traffic, as gymnasium's ``Env``."""
+"""The environment: a task in a car in traffic, as a gymnasium ``Env``."""
 
 from __future__ import annotations
 
@@ -36,25 +36,25 @@ StepResult = tuple[dict[str, Any], float, bool, bool, dict[str, Any]]
 
 
 class CockpitEnv(gym.Env[dict[str, Any], Any]):
-    """An agent at the cockpit of a car that drives through live traffic.
+    """An agent at the cockpit of a car in live traffic.
 
-    ``reset`` loads the task's scenario, warms its traffic, puts the ego on the road and drives until the task's
+    ``reset`` loads the task's scenario, warms up its traffic, puts the ego on the road and drives until the task's
     trigger holds: that instant is the hand-over. ``step`` performs one action, which costs simulated time. The
     episode ends when the agent declares a status, when the ego's drive ends, or after ``max_steps`` (truncated).
 
-    The observation and action spaces stand in ``automotive_cosim.interface.spaces``; ``step`` also takes an
+    ``automotive_cosim.interface.spaces`` documents the observation and action spaces; ``step`` also takes an
     ``Action``, a JSON object or its text. ``env.unwrapped.episode`` is the typed episode behind it: its
     ``observation``, ``moments``, ``steps`` and ``verdict``; it can be branched.
 
     The reward is 1 at the end of a successful episode, else 0. ``info`` holds ``step``, ``action_result`` and
     ``events`` of the road; at the end also ``verdict`` and ``trace_sha256``.
 
-    In ``mode="monitoring"`` the hand-over comes 30 to 60 s earlier, the goal is one standing order, the same for
-    every task, and nothing marks the trigger; a message comes in meanwhile that asks for nothing. The episode ends
-    when the task's deadline is over; a status declared before that only ends the agent's own part.
+    In ``mode="monitoring"`` the hand-over is 30 to 60 s earlier, the goal is one standing order, the same for every
+    task, and nothing marks the trigger; meanwhile a message arrives that requires nothing. The episode ends when
+    the task's deadline is over; a status declared before that only ends the agent's own part.
 
-    Seeds: ``reset(seed=s)`` warms the traffic of seed ``s`` and draws everything else from it. ``reset()``
-    keeps that traffic and draws a new instance and drive, which is quick. ``options={"traffic_seed": t}`` takes the
+    Seeds: ``reset(seed=s)`` warms up the traffic of seed ``s`` and draws everything else from it. ``reset()`` keeps
+    that traffic and draws a new instance and drive, which is quick. ``options={"traffic_seed": t}`` takes the
     traffic of seed ``t`` in place of ``s``.
     """
 
@@ -92,7 +92,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
 
         Raises:
             UnknownNameError: no such task, half, mode or scenario.
-            ScenarioError: the scenario cannot be read, or has no such way.
+            ScenarioError: the scenario cannot be read, or has no such route.
             UserError: ``origin`` is no position on earth, or a general task is to be monitored.
         """
         given = None if isinstance(task, str) else task
@@ -114,7 +114,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
 
     @property
     def episode(self) -> Episode:
-        """The episode that runs, or has just ended.
+        """The episode that is running, or has just ended.
 
         Raises:
             ResetNeeded: there has been none yet.
@@ -125,7 +125,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
 
     @property
     def scenario(self) -> Scenario:
-        """Where it takes place."""
+        """The scenario in which it takes place."""
         return self._finder.scenario
 
     def reset(
@@ -134,8 +134,8 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         """Starts an episode at the instant its trigger holds.
 
         Raises:
-            TriggerNotReachedError: the situation did not come about in its bound.
-            TrafficError: the road side failed.
+            TriggerNotReachedError: the situation did not arise within its time limit.
+            TrafficError: the traffic simulation failed.
         """
         super().reset(seed=seed)
         self._end()
@@ -153,7 +153,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         Raises:
             ActionError: the action is malformed; nothing has happened.
             ResetNeeded: the episode is over, or there has been none.
-            TrafficError: the road side failed.
+            TrafficError: the traffic simulation failed.
         """
         if self.episode.end is not None:
             raise gym.error.ResetNeeded("the episode has ended; call reset() to start another")
@@ -196,7 +196,7 @@ def traffic_seed(options: Mapping[str, Any] | None, own: int) -> int:
 
 
 def outcome(episode: Episode) -> tuple[float, bool, bool]:
-    """Reward, terminated and truncated, as gymnasium tells them apart."""
+    """Reward, terminated and truncated, as in gymnasium."""
     if episode.end is None or episode.verdict is None:
         return 0.0, False, False
     return float(episode.verdict.success), not episode.end.is_cut_off, episode.end.is_cut_off

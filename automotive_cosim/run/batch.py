@@ -1,7 +1,7 @@
-"""Runs jobs in workers; what is done stays done, whatever ends the run.
+"""Runs jobs in workers; finished jobs stay finished, however the run ends.
 
-Jobs depend on nothing but their setup, so neither their order, nor the number of workers, nor where they are shows
-in the results.
+Jobs depend only on their setup, so neither their order, nor the number of workers, nor where they run affects the
+results.
 """
 
 from __future__ import annotations
@@ -26,20 +26,20 @@ from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.store import Store, cannot_write, opened
 
 FINAL_KINDS = frozenset({TriggerNotReachedError.__name__})
-"""Errors that come again for certain, so that trying again is no use."""
+"""Errors that are certain to recur, so retrying is useless."""
 PATIENCE_S = 600.0
-"""Wall time that a batch waits for its first worker, or for another one when all are lost."""
+"""Wall time that a batch waits for its first worker, or for another one when all have died."""
 STILLBORN = 3
-"""So often all workers in a row may be lost before they are ready."""
+"""How often in a row all workers may die before they are ready."""
 
 
 @dataclass(frozen=True, slots=True)
 class Progress(Generic[R]):
-    """How far a run is."""
+    """The progress of a run."""
 
     planned: int
     done: int
-    """Jobs that need no further run, those of earlier starts included."""
+    """Jobs that need no further run, including those of earlier starts."""
     judged: int
     successes: int
     errors: int
@@ -48,9 +48,9 @@ class Progress(Generic[R]):
     seconds: float
     """Wall time since this start."""
     left_s: float | None
-    """Wall time to the end, as ``Pace`` expects it; None while there is nothing to go by."""
+    """Wall time to the end, as estimated by ``Pace``; None while there is no basis for an estimate."""
     ended: R | None
-    """The row of the job that ended just now; None at the start."""
+    """The row of the job that has just ended; None at the start."""
 
 
 def run_plan(
@@ -62,20 +62,20 @@ def run_plan(
     pictures: Pictures = Pictures.NONE,
     tell: Callable[[Progress[EpisodeRow]], None] = lambda progress: None,
 ) -> Progress[EpisodeRow]:
-    """Runs what is left of a plan; episodes that ended in an error are tried again.
+    """Runs the remaining episodes of a plan and retries those that ended in an error.
 
     Args:
         plan: what to run.
-        folder: where the results are or go.
+        folder: results folder, new or to be resumed.
         executor: where to run it.
-        retries: how often an episode that the machinery broke is tried again before it is put down as an error.
-        pictures: which to keep.
+        retries: how often an episode is retried after an infrastructure error before the error is recorded.
+        pictures: which screenshots to keep.
         tell: called at the start and after every episode.
 
     Raises:
-        UserError: the plan names what does not exist, or the folder cannot take its results.
-        InfrastructureError: there is no worker to be had.
-        KeyboardInterrupt: passed on; the running episodes are lost, and no other.
+        UserError: the plan names something that does not exist, or the folder cannot take its results.
+        InfrastructureError: no worker becomes available.
+        KeyboardInterrupt: passed on; only the running episodes are lost.
     """
     plan.check()
     jobs = plan.jobs()
@@ -94,15 +94,15 @@ def run_jobs(
     retries: int = 2,
     tell: Callable[[Progress[R]], None] = lambda progress: None,
 ) -> Progress[R]:
-    """Runs those of the jobs that have no row yet, or one of an error.
+    """Runs the jobs that have no row yet, or the row of an error.
 
     Args:
         jobs: what to run.
-        store: where the rows are and go.
-        opener: makes what runs them, in each worker.
-        failed: the row of a job whose worker is no more, from the job, the kind of error and why.
+        store: where the rows are read and written.
+        opener: makes the runner of each worker.
+        failed: makes the row of a job whose worker died, from the job, the kind of error and the reason.
         executor: where to run them.
-        retries: how often a job that ended in an error is tried again before its row is put down.
+        retries: how often a job is retried after an error before its row is written.
         tell: called at the start and after every job.
 
     Raises:
@@ -123,9 +123,9 @@ class _Place(Generic[J, R]):
     worker: Worker[J, R]
     job: J | None = None
     since_s: float = 0.0
-    """When it was given the job, monotonic."""
+    """When it was given the job (monotonic clock)."""
     is_cold: bool = True
-    """It has to warm up the simulation for the job."""
+    """Whether it has to warm up the simulation for the job."""
     warm: SimulationKey | None = None
     """The simulation it ran last."""
 
@@ -135,13 +135,13 @@ class _Place(Generic[J, R]):
         self.worker.give(job)
 
     def turn(self) -> JobTurn[J] | None:
-        """Its time with the job so far; None if it has none."""
+        """How long it has worked on its job; None if it has none."""
         return JobTurn(self.job, self.is_cold, time.monotonic() - self.since_s) if self.job else None
 
 
 @dataclass
 class _Queue(Generic[J]):
-    """Jobs by simulation and kind; one of each kind goes first, to know how long the others take."""
+    """Jobs by simulation and kind; one of each kind goes first, to learn how long the others take."""
 
     groups: dict[SimulationKey, dict[Hashable, deque[J]]] = field(default_factory=dict)
     tried: set[Hashable] = field(default_factory=set)
@@ -152,7 +152,7 @@ class _Queue(Generic[J]):
             self.groups.setdefault(job.simulation, {}).setdefault(job.kind, deque()).append(job)
 
     def take(self, warm: SimulationKey | None, busy: Counter[SimulationKey]) -> J | None:
-        """The next job for a worker: of the simulation it has, else of one that nobody has, else shared work."""
+        """The next job for a worker: of its own simulation, else of one that no worker has, else shared work."""
         if warm is not None and warm in self.groups:
             return self._first(warm)
         left = {simulation: sum(map(len, kinds.values())) for simulation, kinds in self.groups.items()}
@@ -161,7 +161,7 @@ class _Queue(Generic[J]):
         return self._first(max(pool, key=lambda simulation: pool[simulation])) if pool else None
 
     def remove(self, job: J) -> bool:
-        """Takes a certain job; false if it does not wait."""
+        """Takes a particular job; false if it is not waiting."""
         jobs = self.groups.get(job.simulation, {}).get(job.kind, ())
         if job not in jobs:
             return False
@@ -169,7 +169,7 @@ class _Queue(Generic[J]):
         return True
 
     def waiting(self) -> dict[SimulationKey, dict[Hashable, int]]:
-        """How many there are."""
+        """The number of waiting jobs."""
         return {
             simulation: {kind: len(jobs) for kind, jobs in kinds.items()}
             for simulation, kinds in self.groups.items()
@@ -268,14 +268,14 @@ class _Batch(Generic[J, R]):
                     place.give(job)
 
     def _wait(self) -> None:
-        """Waits for an answer, a death, a worker that becomes ready, or the end of somebody's time."""
+        """Waits until a worker answers, dies, becomes ready or exceeds its time limit."""
         awaited = [place for place in self._places if place.job or not place.worker.is_ready]
         handles = {handle: place for place in awaited for handle in place.worker.handles}
         now_s = time.monotonic()
         ends_s = [place.since_s + place.job.wall_s for place in awaited if place.job]
         ready = self._executor.wait(list(handles), max(0.0, min(ends_s, default=now_s + PATIENCE_S) - now_s))
         if not ends_s and not ready:
-            raise InfrastructureError(f"no worker has become ready in {PATIENCE_S:g} s; the same command goes on")
+            raise InfrastructureError(f"no worker became ready in {PATIENCE_S:g} s; rerun the command to resume")
         for place in {handles[handle]: None for handle in ready}:
             self._answered(place)
         for place in awaited:
@@ -296,7 +296,7 @@ class _Batch(Generic[J, R]):
             self._ended(turn.job, answer, turn.seconds)
 
     def _lost(self, place: _Place[J, R], kind: str, why: str) -> None:
-        """Puts down the job of a worker that is no more."""
+        """Records the failed attempt of a worker that died."""
         turn = self._finished(place)
         self._places.remove(place)
         place.worker.end(at_once=True)
@@ -305,7 +305,7 @@ class _Batch(Generic[J, R]):
             return
         self._stillborn += 1
         if self._stillborn >= STILLBORN * self._executor.count:
-            raise InfrastructureError(f"no worker gets ready: {why}; the same command goes on")
+            raise InfrastructureError(f"no worker becomes ready: {why}; rerun the command to resume")
 
     def _finished(self, place: _Place[J, R]) -> JobTurn[J] | None:
         """Takes the job from a worker, if it has one."""
@@ -332,7 +332,7 @@ class _Batch(Generic[J, R]):
         self._give_up_like(job, row)
 
     def _give_up_like(self, job: J, row: R) -> None:
-        """Puts down the jobs whose situation is known not to come about, without another try."""
+        """Records the jobs whose situation is known not to arise as errors, without another attempt."""
         if row.error is not None and row.error_kind in FINAL_KINDS:
             for other in self._alike.pop(job.situation, []):
                 if self._queue.remove(other):
@@ -340,5 +340,5 @@ class _Batch(Generic[J, R]):
 
 
 def _is_open(row: JobRow | None) -> bool:
-    """Whether a job is to be run: it has no row yet, or one of an error that may not come again."""
+    """Whether a job must run: it has no row yet, or that of an error that may not recur."""
     return row is None or (row.error is not None and row.error_kind not in FINAL_KINDS)

@@ -1,9 +1,9 @@
-"""How long the rest of a batch takes, from what its jobs have taken so far.
+"""Estimates how long the rest of a batch takes, from what its jobs have taken so far.
 
-A worker that turns to another simulation warms it up first: that job is *cold* and takes the warm-up beside its
-own time. The own time depends on the kind of job (who acts) and on the scenario. So a job is expected to take
-the mean of the warm ones of its kind in its scenario, drawn towards the mean of its kind while few are known,
-and a warm-up what the cold ones took beyond that. The sum is shared among as many workers as there is work for.
+A worker that changes to another simulation warms it up first: that job is *cold* and takes the warm-up on top of
+its own time. The own time depends on the kind of job (which agent acts) and on the scenario. So a job is expected
+to take the mean of the warm jobs of its kind in its scenario, drawn towards the mean of its kind while few are
+known, and a warm-up what the cold ones took beyond that. The sum is divided by the workers that have work.
 """
 
 from __future__ import annotations
@@ -17,20 +17,20 @@ from automotive_cosim.run.executor import J
 
 SimulationKey = tuple[str, int]
 SHARED_FROM = 4
-"""So many jobs must wait for a simulation before a second worker warms it up too."""
+"""This many jobs must wait for a simulation before a second worker warms it up too."""
 DRAWN_BY = 2.0
-"""What is known of all scenarios weighs as much as so many jobs of one."""
+"""The mean over all scenarios weighs as much as this many jobs of one."""
 
 
 @dataclass(frozen=True, slots=True)
 class JobTurn(Generic[J]):
-    """A worker's time with a job."""
+    """The time that a worker spends on a job."""
 
     job: J
     is_cold: bool
-    """The worker had to warm its simulation up."""
+    """Whether the worker had to warm up its simulation."""
     seconds: float
-    """So far, or in all."""
+    """Seconds so far, or in total."""
 
 
 @dataclass(slots=True)
@@ -48,7 +48,7 @@ class _Means:
         self.count += 1
 
     def of(self, scenario: str) -> float:
-        """Zero while nothing is known at all."""
+        """The mean; zero while nothing is known at all."""
         if not self.count:
             return 0.0
         total_s, count = self.scenarios.get(scenario, (0.0, 0))
@@ -56,14 +56,14 @@ class _Means:
 
 
 class Pace:
-    """Hears how long each job took and says how long the others will take."""
+    """Is told how long each job took, and estimates how long the others will take."""
 
     def __init__(self) -> None:
         self._own: dict[Hashable, _Means] = defaultdict(_Means)
         self._cold: list[JobTurn[Any]] = []
 
     def took(self, turn: JobTurn[Any]) -> None:
-        """A job has ended, well or not."""
+        """Takes note of a job that has ended, with or without an error."""
         if turn.is_cold:
             self._cold.append(turn)
         else:
@@ -72,11 +72,11 @@ class Pace:
     def left_s(
         self, waiting: Mapping[SimulationKey, Mapping[Hashable, int]], running: Sequence[JobTurn[Any]], workers: int
     ) -> float | None:
-        """Wall time until everything has ended; None while there is a kind of job that nothing is known of.
+        """Wall time until everything has ended; None while nothing is known of some kind of job.
 
         Args:
             waiting: how many jobs wait, by simulation and kind, in the order in which they are taken.
-            running: the jobs that workers have.
+            running: the jobs that workers are running.
             workers: how many there are or may be.
         """
         warm_ups = self._warm_ups()
