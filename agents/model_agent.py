@@ -1,4 +1,4 @@
-"""Agents behind which a model thinks: T3A, M3A and ASURADA, one cycle over different inputs.
+"""Agents that use a model: T3A, M3A and ASURADA, one cycle over different inputs.
 
 reflect on the last action -> remember -> perceive -> interpret -> plan -> act
 """
@@ -12,14 +12,14 @@ from automotive_cosim.agents import answer, prompt
 from automotive_cosim.agents.base import Stage, StageName
 from automotive_cosim.agents.marks import marked, png
 from automotive_cosim.agents.memory import Memory, Strategy, where, why
-from automotive_cosim.agents.settings import AgentSettings, Profile
+from automotive_cosim.agents.settings import AgentProfile, AgentSettings
 from automotive_cosim.contracts import Action, Observation
 from automotive_cosim.errors import ActionError, OutOfBudgetError
 from automotive_cosim.interface.observe import Channel
-from automotive_cosim.models.base import ChatModel, Message, Reply, digest
+from automotive_cosim.models.base import ChatMessage, ChatModel, ModelReply, digest
 
 LONGEST_LESSON, LONGEST_PLAN = 300, 2000
-"""Characters of its own words that it carries on to the next turn."""
+"""Characters of its own text that it carries over to the next turn."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,18 +33,23 @@ class _Turn:
 
 
 class ModelAgent:
-    """Asks its model twice a turn: what came of the last action, and what to do now.
+    """Asks its model twice per turn: about the result of the last action, and what to do now.
 
-    ``stages`` tells how the last turn went.
+    ``stages`` records the last turn.
     """
 
-    def __init__(self, profile: Profile, chat_model: ChatModel, settings: AgentSettings = AgentSettings()) -> None:  # noqa: B008, frozen
-        """Takes its parts.
+    def __init__(
+        self,
+        profile: AgentProfile,
+        chat_model: ChatModel,
+        settings: AgentSettings = AgentSettings(),  # noqa: B008, frozen
+    ) -> None:
+        """Puts the agent together.
 
         Args:
-            profile: which agent.
-            chat_model: what thinks for it.
-            settings: what is taken away from the profile, the budget, and the memory's file.
+            profile: which agent it is.
+            chat_model: the model to ask.
+            settings: what to take away from the profile, the budget, and the memory's file.
 
         Raises:
             UserError: the memory's file cannot be used.
@@ -68,11 +73,11 @@ class ModelAgent:
 
     @property
     def channels(self) -> frozenset[Channel]:
-        """The profile's channels, less what the settings take away."""
+        """The profile's channels without those that the settings take away."""
         return self._profile.channels
 
     def reset(self, goal: str) -> None:
-        """Forgets the episode before, but for what the memory keeps."""
+        """Forgets the previous episode, except for what the memory keeps."""
         self.stages.clear()
         self._history: list[str] = []
         self._done: list[str] = []
@@ -86,7 +91,7 @@ class ModelAgent:
         """One turn of the cycle.
 
         Raises:
-            ActionError: the answer holds no action, a malformed one, or one that this agent does not have.
+            ActionError: the answer has no action, a malformed one, or one that this agent does not have.
             OutOfBudgetError: the episode's tokens or seconds are spent.
             ModelError: the model does not answer.
         """
@@ -102,7 +107,7 @@ class ModelAgent:
         return action
 
     def learn(self, success: bool) -> None:
-        """Keeps what was done in this episode and whether it worked, if it has a memory."""
+        """Stores what was done in this episode and whether it worked, if it has a memory."""
         if self._memory is None or self._first is None or self._last is None:
             return
         steps = [*self._done, prompt.action_words(self._last.action, self._last.seen)]
@@ -168,14 +173,14 @@ class ModelAgent:
     def _sees(self) -> bool:
         return Channel.SCREENSHOT in self.channels and self._chat_model.sees_pictures
 
-    def _ask(self, text: str, pictures: Sequence[bytes]) -> tuple[Reply, str]:
+    def _ask(self, text: str, pictures: Sequence[bytes]) -> tuple[ModelReply, str]:
         settings = self._settings
         if self._tokens >= settings.most_tokens or self._seconds >= settings.most_seconds:
             raise OutOfBudgetError(
                 f"the episode's budget is spent: {self._tokens} of {settings.most_tokens} tokens, "
                 f"{self._seconds:.0f} of {settings.most_seconds:g} s"
             )
-        messages = [Message("user", text, tuple(pictures))]
+        messages = [ChatMessage("user", text, tuple(pictures))]
         reply = self._chat_model.chat(messages)
         self._tokens += reply.tokens_in + reply.tokens_out
         self._seconds += reply.seconds
@@ -186,7 +191,7 @@ class ModelAgent:
         name: StageName,
         seen: Observation,
         text: str,
-        reply: Reply | None = None,
+        reply: ModelReply | None = None,
         asked: str = "",
         pictures: int = 0,
     ) -> None:

@@ -6,17 +6,17 @@ the same for reinforcement learning.
 
 from __future__ import annotations
 
-import signal
-import sys
-from pathlib import Path
-
-if Path(sys.argv[0]).stem == "automotive-cosim" and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-    # Ctrl-C while the command line still loads ends it in silence; once it has loaded it takes the signal back.
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-
 import gymnasium
 
 __version__ = "0.1.0"
 
-gymnasium.register(id="AutomotiveCosim/Cockpit-v0", entry_point="automotive_cosim.envs.cockpit:CockpitEnv")
-gymnasium.register(id="AutomotiveCosim/Flat-v0", entry_point="automotive_cosim.envs.flat:FlatEnv")
+gymnasium.register(
+    id="AutomotiveCosim/Cockpit-v0",
+    entry_point="automotive_cosim.envs.cockpit:CockpitEnv",
+    vector_entry_point="automotive_cosim.envs.vector:cockpits",
+)
+gymnasium.register(
+    id="AutomotiveCosim/Flat-v0",
+    entry_point="automotive_cosim.envs.flat:FlatEnv",
+    vector_entry_point="automotive_cosim.envs.vector:flats",
+)

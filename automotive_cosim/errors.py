@@ -1,20 +1,21 @@
 """Every error the package raises on purpose, as one tree.
 
 CosimError                 anything a caller may want to catch at once
-├── UserError              the user can mend it; the command line prints one line and exits with 2
+├── UserError              the user can fix it; the command line prints one line and exits with 2
 │   ├── UnknownNameError        no scenario, task, agent, … of that name ("did you mean")
-│   ├── ScenarioError      a scenario's files are missing, broken or contradict each other
-│   ├── GeoDataError       a file of places and traffic rules is broken
+│   ├── ScenarioError      a scenario's files are missing, invalid or contradictory
+│   ├── GeoDataError       a file of places and traffic rules is invalid
 │   ├── ImportMapError     a map extract cannot be turned into a scenario
 │   ├── CountsError        a file of traffic counts cannot be read, or does not fit the scenario
-│   ├── ActionError        an action is malformed (wrong type, missing or surplus fields)
+│   ├── ActionError        an action is malformed (wrong type, missing or extra fields)
 │   ├── SignalError        a vehicle signal was given a value it cannot have
 │   └── SetupError         the installation lacks something (SUMO's version, system libraries, an extra)
-├── InfrastructureError    not the agent's fault and not the user's: counted apart, never as a failure
+├── InfrastructureError    neither the agent's fault nor the user's: counted apart, never as a failure
 │   ├── TrafficError       the simulation refused a call, died, hung or lost the ego without a reason
+│   │   └── NoRoomError    the ego waited for a gap in the traffic to depart into, and none came
 │   ├── ModelError         a model could not be reached, or did not answer
 │   └── TriggerNotReachedError  the drive up to the hand-over ended before the task's trigger held
-└── OutOfBudgetError       the agent has spent its tokens or its time: the episode is judged as it stands
+└── OutOfBudgetError       the agent has spent its tokens or its time: the episode is judged as it is
 """
 
 from __future__ import annotations
@@ -28,7 +29,10 @@ class CosimError(Exception):
 
 
 class UserError(CosimError):
-    """What came, what was expected, what to do, on one line."""
+    """An error that the user can fix: what came, what was expected and what to do, one line for each problem."""
+
+    def __str__(self) -> str:
+        return "\n".join(map(str, self.args))
 
 
 class UnknownNameError(UserError):
@@ -36,16 +40,16 @@ class UnknownNameError(UserError):
 
     Args:
         kind: what was looked for, e.g. ``"scenario"``.
-        name: the name as it came.
-        known: the names there are.
+        name: the name that was given.
+        known: the names that exist.
         hint: how to list them, e.g. ``"automotive-cosim scenarios list"``.
     """
 
     def __init__(self, kind: str, name: str, known: Iterable[str], hint: str = "") -> None:
         choices = sorted(known)
         close = get_close_matches(name, choices, n=1, cutoff=0.5)
-        mend = f"did you mean '{close[0]}'?" if close else f"there are: {', '.join(choices) or 'none'}."
-        super().__init__(f"no {kind} named {name!r}: {mend}" + (f" List them with `{hint}`." if hint else ""))
+        fix = f"did you mean '{close[0]}'?" if close else f"there are: {', '.join(choices) or 'none'}."
+        super().__init__(f"no {kind} named {name!r}: {fix}" + (f" List them with `{hint}`." if hint else ""))
         self.kind = kind
         self.name = name
 
@@ -75,7 +79,7 @@ class SignalError(UserError):
 
 
 class SetupError(UserError):
-    """Something the installation lacks, with the command that mends it."""
+    """Something that the installation lacks, with the command that installs it."""
 
 
 class InfrastructureError(CosimError):
@@ -83,7 +87,11 @@ class InfrastructureError(CosimError):
 
 
 class TrafficError(InfrastructureError):
-    """The road side failed."""
+    """The traffic simulation failed."""
+
+
+class NoRoomError(TrafficError):
+    """The ego could not depart: its road is full."""
 
 
 class ModelError(InfrastructureError):
@@ -91,8 +99,8 @@ class ModelError(InfrastructureError):
 
 
 class TriggerNotReachedError(InfrastructureError):
-    """The situation a task waits for did not come about in its bound."""
+    """The situation that a task waits for did not arise within its time limit."""
 
 
 class OutOfBudgetError(CosimError):
-    """An agent that has spent what it may; a failure of its own."""
+    """An agent that has spent its budget; this is its own failure."""

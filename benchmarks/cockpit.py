@@ -60,20 +60,21 @@ def outside(network: RoadNetwork, route: tuple[Road, ...], second: int) -> Surro
 
 
 def measure(network: RoadNetwork) -> dict[str, dict[str, float]]:
-    """Milliseconds by screen: the tree, its elements, a changed frame, an unchanged one, and a screen anew."""
+    """Milliseconds by screen: the tree, its elements, a changed, an unchanged and a redrawn frame."""
     x_min, y_min, x_max, y_max = network.bounds_m
     middle = ((x_min + x_max) / 2, (y_min + y_max) / 2)
     route = tuple(sorted(network.roads, key=lambda road: math.dist(road.shape_m[0], middle))[:25])
     figures = {}
     for screen in SCREENS:
         cockpit = Cockpit(network, rng=np.random.default_rng(1))
-        times: dict[str, list[float]] = {name: [] for name in ("tree", "elements", "changed", "unchanged", "anew")}
+        names = ("tree", "elements", "changed", "unchanged", "redrawn")
+        times: dict[str, list[float]] = {name: [] for name in names}
         for second in range(FRAMES):
             cockpit.sense(outside(network, route, second), 1.0)
             cockpit.open_app("apps")
             cockpit.screenshot()
             cockpit.open_app(screen)
-            _timed(times["anew"], cockpit.screenshot)
+            _timed(times["redrawn"], cockpit.screenshot)
             cockpit.sense(outside(network, route, second + 1), 1.0)
             _timed(times["tree"], lambda: cockpit.tree)  # noqa: B023
             _timed(times["elements"], cockpit.elements)

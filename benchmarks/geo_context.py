@@ -24,7 +24,7 @@ from automotive_cosim.contracts import (
     RoadHere,
     Weather,
 )
-from automotive_cosim.geo.context import Geo
+from automotive_cosim.geo.locate import Geo
 
 ROUNDS = 2000
 CITIES = (

@@ -15,7 +15,6 @@ from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Modu
 from automotive_cosim.tasking.triggers import (
     AirBetween,
     All,
-    Condition,
     Driving,
     InTunnel,
     Not,
@@ -23,6 +22,7 @@ from automotive_cosim.tasking.triggers import (
     SignalAbove,
     SignalBelow,
     Trigger,
+    TriggerCondition,
 )
 from automotive_cosim.tasks.forms import decline
 from automotive_cosim.tasks.hvac import SHUT_WINDOWS
@@ -84,7 +84,7 @@ REAR_SEATS = (SEAT.REAR_LEFT_HEATING, SEAT.REAR_RIGHT_HEATING)
 
 def _half(
     start: Start,
-    situation: Condition,
+    situation: TriggerCondition,
     goal: Check,
     moves: tuple[Move, ...],
     source: str,
@@ -94,11 +94,11 @@ def _half(
     return Half(start, _when(situation), goal, moves, LOOK, Basis.PHYSICS, source, may_write=may_write, ways=ways)
 
 
-def _rest(start: Start, situation: Condition, source: str) -> Half:
+def _rest(start: Start, situation: TriggerCondition, source: str) -> Half:
     return decline(start, _when(situation), LOOK, Basis.PHYSICS, source, reasons=ALREADY, needed=False)
 
 
-def _when(situation: Condition) -> Trigger:
+def _when(situation: TriggerCondition) -> Trigger:
     return Trigger(All((Driving(), situation)), for_s=3.0, within_s=240.0)
 
 

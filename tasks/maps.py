@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.cockpit.places import SORTS, Kind
+from automotive_cosim.cockpit.places import SORTS, PlaceKind
 from automotive_cosim.cockpit.signals import ENERGY, VOICE
+from automotive_cosim.contracts import Reroute
 from automotive_cosim.tasking.checks import (
     AllOf,
     AnyOf,
@@ -17,14 +18,14 @@ from automotive_cosim.tasking.checks import (
     SignalLowered,
     SignalWithin,
 )
-from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil, Type
+from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil, TypeText
 from automotive_cosim.tasking.parameters import FromCockpit, param
 from automotive_cosim.tasking.task import Module, Start
 from automotive_cosim.tasking.triggers import All, DelayAbove, SpeedBetween, Trigger
 from automotive_cosim.tasks.forms import COMFORT, ERRAND, PARIS, asked, hinted, locked
 
 
-def named(*kinds: Kind) -> tuple[str, ...]:
+def named(*kinds: PlaceKind) -> tuple[str, ...]:
     """Every name that a place of these kinds can have."""
     return tuple(SORTS[kind].pattern.format(word) for kind in kinds for word in SORTS[kind].words.split())
 
@@ -36,21 +37,21 @@ CITIES = ("london", "new_york", "tokyo")
 """Scenarios with places of every kind."""
 TOWNS = (*CITIES, "grid")
 """Scenarios with streets in every direction."""
-SPOKEN: dict[str, Kind] = {
-    "supermarket": Kind.SHOP,
-    "coffee place": Kind.CAFE,
-    "museum": Kind.MUSEUM,
-    "hotel": Kind.HOTEL,
-    "pharmacy": Kind.PHARMACY,
-    "charging point": Kind.CHARGING,
-    "car park": Kind.PARKING,
-    "restaurant": Kind.RESTAURANT,
+SPOKEN: dict[str, PlaceKind] = {
+    "supermarket": PlaceKind.SHOP,
+    "coffee place": PlaceKind.CAFE,
+    "museum": PlaceKind.MUSEUM,
+    "hotel": PlaceKind.HOTEL,
+    "pharmacy": PlaceKind.PHARMACY,
+    "charging point": PlaceKind.CHARGING,
+    "car park": PlaceKind.PARKING,
+    "restaurant": PlaceKind.RESTAURANT,
 }
 """What the driver says and the kind of place that it means."""
 ALL_NAMED = {
     name: kind
     for kind, sort in SORTS.items()
-    if sort.count == len(sort.words.split()) and kind not in (Kind.HOME, Kind.WORK)
+    if sort.count == len(sort.words.split()) and kind not in (PlaceKind.HOME, PlaceKind.WORK)
     for name in named(kind)
 }
 """Places that every larger town has, and their kinds."""
@@ -224,7 +225,7 @@ EXPLICIT = (
             "Recalculate with the traffic of this minute.",
             "Check again which road gets me there soonest.",
         ),
-        RoadAsked("Reroute", "destination='', edges=()"),
+        RoadAsked(Reroute()),
         Open("map"),
         Tap("map.faster_route"),
         ways=((Open("map"), Tap("map.route"), Tap("route.tab.ways"), Tap(text="Look for a faster way")),),
@@ -241,7 +242,7 @@ EXPLICIT = (
         ),
         AllOf(
             (
-                AppDataIs("navigation.destination", named(Kind.CHARGING)),
+                AppDataIs("navigation.destination", named(PlaceKind.CHARGING)),
                 AppDataIs("navigation.onward", (param("place"),)),
             )
         ),
@@ -280,7 +281,7 @@ EXPLICIT = (
         Tap("place.pay"),
         Tap(param("stay", {"two hours": "parking.time.120", "four hours": "parking.time.240"})),
         Tap("parking.pay"),
-        parameters={"park": named(Kind.PARKING), "stay": ("two hours", "four hours")},
+        parameters={"park": named(PlaceKind.PARKING), "stay": ("two hours", "four hours")},
         may_write=frozenset({"parking.zone"}),
         tags=frozenset({"two_modules"}),
         scenarios=CITIES,
@@ -369,7 +370,7 @@ EXPLICIT = (
         ),
         AppDataHas("navigation.favourites", param("street")),
         Open("map"),
-        Type("map.search", "{street}"),
+        TypeText("map.search", "{street}"),
         Tap("map.place.0"),
         Tap("place.save"),
         parameters={"street": FromCockpit("streets")},
@@ -388,7 +389,7 @@ IMPLICIT = (
             "I'd give anything for a decent meal.",
             "If I don't get a bite soon I'll turn grumpy.",
         ),
-        AppDataIs("navigation.destination", named(Kind.RESTAURANT, Kind.CAFE)),
+        AppDataIs("navigation.destination", named(PlaceKind.RESTAURANT, PlaceKind.CAFE)),
         Open("map"),
         Tap("map.list.explore"),
         Tap("explore.kind.restaurant"),
@@ -408,7 +409,7 @@ IMPLICIT = (
             "This cough keeps getting worse, some syrup would do me good.",
             "Got nothing left against the fever, and the little one is burning up.",
         ),
-        AppDataIs("navigation.destination", named(Kind.PHARMACY)),
+        AppDataIs("navigation.destination", named(PlaceKind.PHARMACY)),
         Open("map"),
         Tap("map.list.explore"),
         Tap("explore.kind.pharmacy"),
@@ -427,7 +428,7 @@ IMPLICIT = (
             "Running on the last drop of current, aren't we?",
             "With so few kilometres in the tank I won't dare the ring road.",
         ),
-        AppDataIs("navigation.destination", named(Kind.CHARGING)),
+        AppDataIs("navigation.destination", named(PlaceKind.CHARGING)),
         Open("map"),
         Tap("map.list.explore"),
         Tap("explore.kind.charging"),
@@ -448,7 +449,7 @@ IMPLICIT = (
             "A shower and a pillow, that's all I want now.",
             "My eyes are closing, let's check in anywhere.",
         ),
-        AppDataIs("navigation.destination", named(Kind.HOTEL)),
+        AppDataIs("navigation.destination", named(PlaceKind.HOTEL)),
         Open("map"),
         Tap("map.list.explore"),
         Tap("explore.kind.hotel"),
@@ -517,7 +518,7 @@ IMPLICIT = (
             "Nobody moves an inch up there! What am I to tell {who}?",
             "At this rate I could walk to {who}.",
         ),
-        RoadAsked("Reroute"),
+        RoadAsked(Reroute),
         Open("map"),
         Tap("map.faster_route"),
         ways=((Open("map"), Tap("map.route"), Tap("route.tab.ways"), Tap("route.way.0")),),

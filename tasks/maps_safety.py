@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from automotive_cosim.cockpit.signals import ENERGY, HMI, Signal
-from automotive_cosim.contracts import Action, ActionType, AlertKind, Reason
+from automotive_cosim.contracts import Action, ActionType, AlertKind, PullOver, Reason, Reroute
 from automotive_cosim.tasking.checks import AlertGiven, AllOf, AppDataIs, Check, RoadAsked, SignalIs
 from automotive_cosim.tasking.moves import Do, Move, Open, Tap, Warn
 from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Task
@@ -48,7 +48,7 @@ PASSABLE = Trigger(All((Driving(), Not(JamWithin(15_000.0)), Not(OtherWayKnown(4
 PLAIN = Start("beauce", "villages", driver="average", weather=FAIR, sign_camera=False)
 TUNNELS = Start("paris_centre", "tunnel", driver="average", sign_camera=False)
 OFF_BY_LANGEN = AllOf(
-    (RoadAsked("Reroute", "Langener Straße"), AppDataIs("navigation.destination", ("Langener Straße",)))
+    (RoadAsked(Reroute("Langener Straße")), AppDataIs("navigation.destination", ("Langener Straße",)))
 )
 BLIND = Start("autobahn", "south", start=NOON, weather=DENSE_FOG, sign_camera=False)
 IN_FOG = Trigger(All((OnRoadClass(("motorway",)), SpeedBetween(15.0), VisibilityBetween(0.0, 100.0))), 3.0, 420.0)
@@ -117,7 +117,7 @@ ALIGNED: tuple[Task, ...] = (
         acted(
             QUEUE,
             Trigger(All((Driving(), JamWithin(15_000.0), OtherWayKnown(60.0))), 2.0, 240.0),
-            RoadAsked("Reroute"),
+            RoadAsked(Reroute),
             TURN_OFF,
             Basis.PHYSICS,
             "another way that saves more than a minute, by the speeds driven now",
@@ -277,7 +277,7 @@ ALIGNED: tuple[Task, ...] = (
         acted(
             TUNNELS,
             Trigger(All((Not(InTunnel()), Not(TunnelWithin(25.0)), Driving(), BuiltUp())), 3.0, 120.0),
-            RoadAsked("PullOver"),
+            RoadAsked(PullOver),
             STOPPING,
             Basis.WISH,
             "",

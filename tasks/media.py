@@ -16,7 +16,7 @@ from automotive_cosim.tasking.checks import (
     SignalLowered,
     SignalWithin,
 )
-from automotive_cosim.tasking.moves import Open, Slide, Tap, Type
+from automotive_cosim.tasking.moves import Open, Slide, Tap, TypeText
 from automotive_cosim.tasking.parameters import FromCockpit, param
 from automotive_cosim.tasking.task import Module
 from automotive_cosim.tasks.forms import COMFORT, PARIS, asked, hinted, locked
@@ -345,7 +345,7 @@ EXPLICIT = (
         ),
         AllOf((PLAYS, SignalIs(MEDIA.TRACK, (param("track"),)))),
         Open("media"),
-        Type("media.search", "{track}", enter=True),
+        TypeText("media.search", "{track}", enter=True),
         parameters={"track": FromCockpit("tracks")},
         may_write=ANY_ENTRY,
     ),

@@ -11,7 +11,6 @@ from automotive_cosim.tasking.moves import Move, Open, Tap
 from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Task
 from automotive_cosim.tasking.triggers import (
     All,
-    Condition,
     Driving,
     LessGripThan,
     Not,
@@ -20,6 +19,7 @@ from automotive_cosim.tasking.triggers import (
     SignalBelow,
     SpeedBetween,
     Trigger,
+    TriggerCondition,
     Unposted,
 )
 from automotive_cosim.tasks.forms import decline
@@ -65,8 +65,8 @@ def _warned(
     kind: AlertKind,
     start: Start,
     quiet: Start,
-    trouble: Condition,
-    calm: Condition,
+    trouble: TriggerCondition,
+    calm: TriggerCondition,
     deadline: Deadline,
     source: str,
     ways: tuple[tuple[Move, ...], ...] = (),
@@ -80,7 +80,7 @@ def _warned(
 
 
 def _set(
-    start: Start, trouble: Condition, goal: Check, moves: tuple[Move, ...], deadline: Deadline, source: str
+    start: Start, trouble: TriggerCondition, goal: Check, moves: tuple[Move, ...], deadline: Deadline, source: str
 ) -> Half:
     """A half in which a setting answers to what is outside."""
     trigger = Trigger(All((Driving(), trouble)), for_s=3.0, within_s=300.0)

@@ -58,8 +58,9 @@ def lit_by_law(
     difference: str,
     **parameters: tuple[str, ...],
 ) -> Task:
-    """A pair on lamps; the place decides where the difference says so."""
-    tags = frozenset({"lamps", "place"} if difference.startswith("place") else {"lamps"})
+    """A pair on lamps; the place decides where the halves lie in two."""
+    places = {(half.start.scenario, half.start.origin) for half in (first, second)}
+    tags = frozenset({"lamps", "place"} if len(places) == 2 else {"lamps"})
     return Task(
         task_id, Module.PHENOMENON, dimension, says, first, second, difference, parameters=parameters, tags=tags
     )

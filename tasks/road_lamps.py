@@ -14,7 +14,6 @@ from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Modu
 from automotive_cosim.tasking.triggers import (
     All,
     BuiltUp,
-    Condition,
     Dark,
     Driving,
     LeaderWithin,
@@ -22,6 +21,7 @@ from automotive_cosim.tasking.triggers import (
     Not,
     OncomingWithin,
     Trigger,
+    TriggerCondition,
     TunnelWithin,
 )
 from automotive_cosim.tasks.forms import decline, in_company
@@ -88,7 +88,7 @@ def night(scenario: str, trip: str, weather: Weather, lamps: Mapping[str, Any] =
     return Start(scenario, trip, start=NIGHT, weather=weather, signals=lamps, sign_camera=False)
 
 
-def when(*conditions: Condition, for_s: float = 2.0, within_s: float = 420.0) -> Trigger:
+def when(*conditions: TriggerCondition, for_s: float = 2.0, within_s: float = 420.0) -> Trigger:
     """All of them for a while, on the way."""
     return Trigger(All((Driving(), *conditions)), for_s, within_s)
 

@@ -10,7 +10,6 @@ from automotive_cosim.tasking.moves import Move, Open, Slide, Tap
 from automotive_cosim.tasking.task import Basis, Dimension, Half, Module, Start, Task
 from automotive_cosim.tasking.triggers import (
     All,
-    Condition,
     Dark,
     Driving,
     InCountry,
@@ -19,6 +18,7 @@ from automotive_cosim.tasking.triggers import (
     SignalAbove,
     SignalBelow,
     Trigger,
+    TriggerCondition,
 )
 from automotive_cosim.tasks.forms import decline
 from automotive_cosim.tasks.hvac import SHUT_WINDOWS
@@ -55,7 +55,7 @@ def _pair(
     return Task(task_id, Module.SYSTEM, dimension, says, first, second, difference, parameters, tags)
 
 
-def _when(situation: Condition, within_s: float = 240.0) -> Trigger:
+def _when(situation: TriggerCondition, within_s: float = 240.0) -> Trigger:
     return Trigger(All((Driving(), situation)), for_s=3.0, within_s=within_s)
 
 

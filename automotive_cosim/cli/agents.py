@@ -1,10 +1,10 @@
-"""``automotive-cosim agents``: who can be put at the cockpit."""
+"""``automotive-cosim agents``: the agents that can operate the cockpit."""
 
 from __future__ import annotations
 
 import typer
 
-app = typer.Typer(help="Who can be put at the cockpit.", invoke_without_command=True)
+app = typer.Typer(help="The agents that can operate the cockpit.", invoke_without_command=True)
 
 
 @app.callback()
@@ -27,13 +27,13 @@ def list_agents() -> None:
 
 @app.command()
 def show(name: str) -> None:
-    """Show what an agent is given and what it can do, and the prompt of one that has a model."""
+    """Show an agent's inputs and actions and, if it uses a model, its prompt."""
     from importlib.resources import files
 
     from automotive_cosim.agents import PROFILES, make_agent
 
     agent = make_agent(name)
-    typer.echo(f"{agent.name}: gets {', '.join(sorted(agent.channels)) or 'nothing but the goal'}")
+    typer.echo(f"{agent.name}: gets {', '.join(sorted(agent.channels)) or 'only the goal'}")
     if name in PROFILES:
-        typer.echo(f"acts by {', '.join(sorted(PROFILES[name].actions))}\n")
+        typer.echo(f"actions: {', '.join(sorted(PROFILES[name].actions))}\n")
         typer.echo(files("automotive_cosim.agents").joinpath("prompts", f"{name}.md").read_text("utf-8"), nl=False)

@@ -1,4 +1,4 @@
-"""What the commands share that run many things for a long time."""
+"""Options and progress shared by the commands that run for a long time."""
 
 from __future__ import annotations
 
@@ -26,25 +26,26 @@ EXECUTORS = ("processes", "ray")
 Workers = Annotated[
     int | None,
     typer.Option(
-        help="How many at a time.",
+        help="How many run in parallel.",
         metavar="N",
         parser=whole_number(1, 4096),
-        show_default="1; with ray the CPUs of the cluster",
+        show_default="1; with ray, the CPUs of the cluster",
     ),
 ]
 ExecutorName = Annotated[
-    str, typer.Option("--executor", help="Where the work is done: processes of this machine, or ray for a cluster.")
+    str, typer.Option("--executor", help="Where to run: processes of this machine, or ray for a cluster.")
 ]
 RayAddress = Annotated[
     str | None,
     typer.Option(
-        help="A running Ray cluster, as in 10.0.0.4:6379.", show_default="RAY_ADDRESS, else one of its own here"
+        help="A running Ray cluster, as in 10.0.0.4:6379.",
+        show_default="RAY_ADDRESS, else a new one on this machine",
     ),
 ]
 RaySend = Annotated[
     Path | None,
     typer.Option(
-        help="A folder of your own agents, tasks or scenarios that every node gets a copy of, to run in it.",
+        help="A folder of your own agents, tasks or scenarios. Every node gets a copy and runs in it.",
         metavar="FOLDER",
         show_default=False,
     ),
@@ -52,11 +53,11 @@ RaySend = Annotated[
 
 
 def executor_of(name: str, workers: int | None, ray_address: str | None, ray_send: Path | None) -> Executor:
-    """What the options above ask for.
+    """The executor that the options above select.
 
     Raises:
         UnknownNameError: there is no such executor.
-        UserError: an option of the other one is given.
+        UserError: an option belongs to another executor.
         SetupError: ray is not installed.
     """
     from automotive_cosim.run.processes import Processes
@@ -69,17 +70,17 @@ def executor_of(name: str, workers: int | None, ray_address: str | None, ray_sen
         return OnRay(ray_address or os.environ.get("RAY_ADDRESS"), workers, ray_send)
     for option, value in (("--ray-address", ray_address), ("--ray-send", ray_send)):
         if value is not None:
-            raise UserError(f"{option} is for --executor ray; give both or neither")
+            raise UserError(f"{option} requires --executor ray; give both or neither")
     return Processes(workers or 1)
 
 
-class View(Generic[R]):
-    """Tells how far the run is: a bar at a terminal, else a line now and then."""
+class ProgressView(Generic[R]):
+    """Shows the progress of a run: a bar in a terminal, else a line now and then."""
 
     EVERY_S = 15.0
 
     def __init__(self, console: Console, what: str, said: Callable[[Progress[R]], str]) -> None:
-        """What is being run, and what is said beside its count."""
+        """``what`` is being run; ``said`` gives the text next to its count."""
         from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
         from rich.progress import Progress as Bar
 
@@ -91,7 +92,7 @@ class View(Generic[R]):
         self._task = self._bar.add_task("", total=None, said="") if self._bar else None
         self._said_s = -self.EVERY_S
 
-    def __enter__(self) -> View[R]:
+    def __enter__(self) -> ProgressView[R]:
         if self._bar:
             self._bar.start()
         return self
@@ -101,7 +102,7 @@ class View(Generic[R]):
             self._bar.stop()
 
     def tell(self, progress: Progress[R]) -> None:
-        """Shows a state."""
+        """Shows the current progress."""
         said = self._words(progress)
         if self._bar and self._task is not None:
             self._bar.update(self._task, total=progress.planned, completed=progress.done, said=said)
@@ -114,19 +115,19 @@ def words(name: str, text: str) -> list[str]:
     """The words between commas.
 
     Raises:
-        UserError: there is none.
+        UserError: there are none.
     """
     found = [word.strip() for word in text.split(",") if word.strip()]
     if not found:
-        raise UserError(f"--{name} is empty; leave it out to take the default")
+        raise UserError(f"--{name} is empty; omit it to use the default")
     return found
 
 
 def seeds_in(text: str) -> list[int]:
-    """Whole numbers and ranges of them between commas.
+    """Whole numbers and ranges, separated by commas.
 
     Raises:
-        UserError: something else came.
+        UserError: the text has anything else.
     """
     seeds: list[int] = []
     for word in words("seeds", text):
@@ -138,7 +139,7 @@ def seeds_in(text: str) -> list[int]:
 
 
 def time_left(progress: Progress[Any]) -> str:
-    """For example ``, 3:05 left`` or ``, 1:03:05 left``; empty where it is not known, or nothing is left."""
+    """For example ``, 3:05 left`` or ``, 1:03:05 left``; empty if unknown or if nothing is left."""
     left_s = progress.left_s
     if left_s is None or progress.done == progress.planned:
         return ""

@@ -1,4 +1,4 @@
-"""``automotive-cosim bench``: what the coupling costs on this machine, beside bare SUMO."""
+"""``automotive-cosim bench``: what the coupling costs on this machine, compared with bare SUMO."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def bench(
     ] = 2000,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")] = False,
 ) -> None:
-    """Time bare sumo, a libsumo loop and the environment side by side; resets and memory too."""
+    """Time bare SUMO, a libsumo loop and the environment side by side; also resets and memory."""
     from rich.console import Console
 
     from automotive_cosim.run.measure import measure
@@ -54,20 +54,24 @@ def _table(figures: Figures) -> Table:
         ratio = f"{seconds / bare:.2f} of bare sumo" if bare else ""
         return f"{seconds * 1000:.3f} ms", ratio
 
-    table.add_row("bare sumo, a step", *per_step(bare))
-    table.add_row("libsumo loop, a step", *per_step(figures.libsumo_s_per_step))
-    inside = f"{figures.in_process_ratio:.2f} of the bare steps of the same process"
-    table.add_row("driving states in one process, a step", f"{figures.in_process_s_per_step * 1000:.3f} ms", inside)
-    table.add_row("driving states, forked, ten steps a message", *per_step(figures.forked_s_per_step))
-    table.add_row("driving states, forked, one step a message", *per_step(figures.forked_single_s_per_step))
-    table.add_row("environment, a step", *per_step(figures.env_s_per_step))
-    table.add_row("environment with rendering, a step", *per_step(figures.env_rendered_s_per_step))
+    table.add_row("bare sumo, per step", *per_step(bare))
+    table.add_row("libsumo loop, per step", *per_step(figures.libsumo_s_per_step))
+    inside = f"{figures.in_process_ratio:.2f} of bare steps in the same process"
+    table.add_row(
+        "driving states in one process, per step", f"{figures.in_process_s_per_step * 1000:.3f} ms", inside
+    )
+    table.add_row("driving states, forked, ten steps per message", *per_step(figures.forked_s_per_step))
+    table.add_row("driving states, forked, one step per message", *per_step(figures.forked_single_s_per_step))
+    table.add_row("environment, per step", *per_step(figures.env_s_per_step))
+    table.add_row("environment with rendering, per step", *per_step(figures.env_rendered_s_per_step))
     warm_up = f"{figures.warm_up_s:g} s of traffic before the ego departs"
     table.add_row("reset by reload and warm-up", f"{figures.reset_reload_s:.2f} s", warm_up)
     ratio = f"{figures.reset_reload_s / figures.reset_fork_s:.0f} times as fast"
     table.add_row("reset by fork", f"{figures.reset_fork_s * 1000:.0f} ms", ratio)
-    table.add_row("memory of one environment", _megabytes(figures.rss_mb), "all its processes, shared pages once")
-    table.add_row("memory of each further one", _megabytes(figures.rss_per_extra_env_mb), "on the same traffic")
+    table.add_row(
+        "memory of one environment", _megabytes(figures.rss_mb), "all its processes, shared pages counted once"
+    )
+    table.add_row("memory of each additional one", _megabytes(figures.rss_per_extra_env_mb), "on the same traffic")
     return table
 
 

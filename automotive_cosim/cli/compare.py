@@ -1,4 +1,4 @@
-"""``automotive-cosim compare``: two evaluations, for checks on every change."""
+"""``automotive-cosim compare``: compares two evaluations, as a check on every change."""
 
 from __future__ import annotations
 
@@ -11,17 +11,15 @@ from automotive_cosim.errors import UserError
 
 
 def compare(
-    before: Annotated[Path, typer.Argument(help="What `eval` left before the change.", show_default=False)],
-    after: Annotated[Path, typer.Argument(help="What it left after the change.", show_default=False)],
+    before: Annotated[Path, typer.Argument(help="Results folder of `eval` before the change.", show_default=False)],
+    after: Annotated[Path, typer.Argument(help="Results folder of `eval` after the change.", show_default=False)],
     threshold: Annotated[
         float, typer.Option(help="By how many percentage points success may fall.", metavar="POINTS")
     ] = 0.0,
     junit: Annotated[
-        Path | None, typer.Option(help="File for a JUnit report, a case an instance.", show_default=False)
+        Path | None, typer.Option(help="File for a JUnit report with one case per instance.", show_default=False)
     ] = None,
-    markdown: Annotated[
-        Path | None, typer.Option(help="File for the summary that is printed.", show_default=False)
-    ] = None,
+    markdown: Annotated[Path | None, typer.Option(help="File for the printed summary.", show_default=False)] = None,
 ) -> None:
     """Compare two evaluations on the same instances; exit code 1 if success fell by more than the threshold."""
     from automotive_cosim.report import regression

@@ -17,56 +17,64 @@ from automotive_cosim.errors import UnknownNameError, UserError
 
 if TYPE_CHECKING:
     from automotive_cosim.contracts import DrivingState, Json, Weather
-    from automotive_cosim.geo.context import AppliedRule, GeoContext
+    from automotive_cosim.geo.applied import AppliedRule
+    from automotive_cosim.geo.context import GeoContext
 
 FASTEST_KMH = 1000.0
-"""More is no car's speed."""
+"""No car is faster."""
 
 OTHER_ROADS = frozenset(("service", "pedestrian", "track", "road", "busway"))
-"""OSM highway values that networks may have beside those that maps are imported with."""
+"""OSM highway values that networks may have in addition to those that an import keeps."""
 
 COMMAND_SETTINGS = {"ignore_unknown_options": True}
-"""Lets a negative number stand as a plain argument."""
+"""Lets a negative number be a plain argument."""
 
 
 def context(
     lat: Annotated[float, typer.Argument(help="Degrees north; negative is south.")],
     lon: Annotated[float, typer.Argument(help="Degrees east; negative is west.")],
     time: Annotated[
-        str, typer.Option(help="ISO date and time, in the place's own zone unless it names one; now by default.")
+        str, typer.Option(help="ISO date and time, in the local zone unless it names one; now by default.")
     ] = "",
     speed: Annotated[
-        float, typer.Option(parser=number(0, FASTEST_KMH), metavar="KMH", help="Of the car, in km/h.")
+        float, typer.Option(parser=number(0, FASTEST_KMH), metavar="KMH", help="Speed of the car in km/h.")
     ] = 0.0,
     heading: Annotated[
         float,
-        typer.Option(parser=number(0, 360), metavar="DEG", help="Of the car, degrees clockwise from north."),
+        typer.Option(
+            parser=number(0, 360), metavar="DEG", help="Heading of the car in degrees clockwise from north."
+        ),
     ] = 0.0,
     weather: Annotated[int | None, typer.Option(help="WMO weather code as Open-Meteo uses it.")] = None,
     visibility: Annotated[
         float | None,
-        typer.Option(parser=number(0, 1e6), metavar="M", help="Metres, instead of the code's usual one."),
+        typer.Option(
+            parser=number(0, 1e6),
+            metavar="M",
+            help="Visibility in metres, instead of the usual one for the weather code.",
+        ),
     ] = None,
     draw: Annotated[
-        int | None, typer.Option(metavar="SEED", help="Draw the weather from the climate of place and month.")
+        int | None,
+        typer.Option(metavar="SEED", help="Seed to draw the weather from the climate of the place and month."),
     ] = None,
     online: Annotated[
-        bool, typer.Option("--online", help="Ask Open-Meteo for the weather; the climate stands in for it.")
+        bool, typer.Option("--online", help="Ask Open-Meteo for the weather; if that fails, use the climate.")
     ] = False,
     road: Annotated[str, typer.Option(help="OSM highway value, e.g. motorway, primary, residential.")] = "",
     street: Annotated[str, typer.Option(help="Name of the street.")] = "",
     rules: Annotated[
-        list[Path] | None, typer.Option(help="Folder with your own rule files, before the shipped ones.")
+        list[Path] | None, typer.Option(help="Folder with your own rule files, which override the shipped ones.")
     ] = None,
     budget: Annotated[
         int | None,
-        typer.Option(parser=whole_number(1, 10**6), metavar="N", help="At most so many tokens of text."),
+        typer.Option(parser=whole_number(1, 10**6), metavar="N", help="Limit of the text in tokens."),
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
-    """Print what traffic law, sky and climate say of a place."""
+    """Print the traffic law, sky and climate at a place."""
     from automotive_cosim.contracts import GpsFix
-    from automotive_cosim.geo.context import Geo
+    from automotive_cosim.geo.locate import Geo
 
     _check(road, rules or ())
     geo = Geo(rules or ())
@@ -93,7 +101,7 @@ def _check(road: str, folders: Sequence[Path]) -> None:
         raise UnknownNameError("road class", road, ROAD_CLASSES | OTHER_ROADS)
     for folder in folders:
         if folder.is_dir() and not any(folder.glob("*.toml")):
-            raise UserError(f"--rules {folder} holds no rule file; give a folder with files such as FR.toml")
+            raise UserError(f"--rules {folder} has no rule files; give a folder with files such as FR.toml")
 
 
 def _time(text: str, zone_name: str) -> datetime:
@@ -105,7 +113,7 @@ def _time(text: str, zone_name: str) -> datetime:
         # There and back through UTC: a clock time that summer time skips becomes the one an hour later.
         return time.replace(tzinfo=time.tzinfo or zone).astimezone(UTC).astimezone(zone)
     except (ValueError, OverflowError) as error:
-        raise UserError(f"{text!r} is no date and time; give one like 2026-03-20T18:30") from error
+        raise UserError(f"{text!r} is not a date and time; give one such as 2026-03-20T18:30") from error
 
 
 def _weather(
@@ -116,7 +124,7 @@ def _weather(
 
     if code is None:
         if visibility_m is not None:
-            raise UserError("--visibility goes with a weather code; give --weather too, e.g. --weather 45 for fog")
+            raise UserError("--visibility requires --weather, e.g. --weather 45 for fog")
         return None
     norm = climate_norm(lon, lat, local_time.month)
     found = typical_weather(code, norm.temperature_c, norm.humidity_pct) if norm else typical_weather(code)
@@ -127,9 +135,9 @@ def _report(code: int | None, seed: int, online: bool, lat: float, lon: float, l
     from automotive_cosim.geo.forecast import Climate, OpenMeteo
 
     if code is not None:
-        raise UserError("--weather states the weather; leave out --draw and --online")
+        raise UserError("--weather states the weather; omit --draw and --online")
     if seed < 0:
-        raise UserError(f"--draw {seed} is no seed; give a whole number from 0 on")
+        raise UserError(f"--draw {seed} is not a seed; give a whole number from 0")
     source = OpenMeteo(Climate(seed)) if online else Climate(seed)
     report = source.report(lon, lat, local_time)
     if report.note:
@@ -138,7 +146,7 @@ def _report(code: int | None, seed: int, online: bool, lat: float, lon: float, l
 
 
 def _driving(road_class: str, street: str, speed_kmh: float, heading_deg: float) -> DrivingState:
-    """A car alone on one lane without a sign."""
+    """A car alone on a road with one lane and no sign."""
     from automotive_cosim import contracts
 
     road = contracts.RoadHere(

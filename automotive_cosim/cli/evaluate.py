@@ -1,4 +1,4 @@
-"""``automotive-cosim eval``: a plan of episodes, run in parallel, resumed by the same command."""
+"""``automotive-cosim eval``: runs a plan of episodes in parallel; rerun the command to resume."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ import typer
 
 from automotive_cosim.cli.batches import (
     ExecutorName,
+    ProgressView,
     RayAddress,
     RaySend,
-    View,
     Workers,
     executor_of,
     seeds_in,
@@ -21,6 +21,7 @@ from automotive_cosim.cli.batches import (
     words,
 )
 from automotive_cosim.cli.options import TasksFrom, whole_number
+from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.errors import InfrastructureError
 
 if TYPE_CHECKING:
@@ -34,46 +35,57 @@ if TYPE_CHECKING:
 def evaluate(
     plan_file: Annotated[
         Path | None,
-        typer.Option("--plan", help="TOML file with the plan; options replace what it says.", show_default=False),
+        typer.Option("--plan", help="TOML file with the plan; options override it.", show_default=False),
     ] = None,
     agents: Annotated[
         str | None,
-        typer.Option(help="Who acts, with commas; package.module:Class is your own.", show_default=False),
+        typer.Option(
+            help="Agents, separated by commas; package.module:Class is one of your own.", show_default=False
+        ),
     ] = None,
     models: Annotated[
-        str | None, typer.Option(help="Models behind them, with commas.", show_default="rules")
+        str | None, typer.Option(help="Models for the agents, separated by commas.", show_default="rules")
     ] = None,
     tasks: Annotated[
         str | None,
         typer.Option(
-            help="Ids, patterns, tags, modules, dimensions, general, safety, all; with commas.", show_default="all"
+            help="Ids, patterns, tags, modules, dimensions, general, safety or all; separated by commas.",
+            show_default="all",
         ),
     ] = None,
     scenarios: Annotated[
         str | None,
-        typer.Option(help="In place of the tasks' own, for those that can run there.", show_default=False),
+        typer.Option(
+            help="Scenarios, separated by commas, instead of the tasks' own, for tasks that can run there.",
+            show_default=False,
+        ),
     ] = None,
     everywhere: Annotated[
-        bool, typer.Option("--everywhere", help="Take tasks also to scenarios that they do not name.")
+        bool, typer.Option("--everywhere", help="Also run tasks in scenarios that they do not name.")
     ] = False,
-    seeds: Annotated[str | None, typer.Option(help="As in 0-4 or 0,3,7.", show_default="0")] = None,
+    seeds: Annotated[str | None, typer.Option(help="Seeds, as in 0-4 or 0,3,7.", show_default="0")] = None,
     geo: Annotated[
         str | None,
         typer.Option(
-            help="Geo controls, with commas: full, gps, context, wrong, irrelevant, none.", show_default="full"
+            help="Geo controls, separated by commas: full, gps, context, wrong, irrelevant, none.",
+            show_default="full",
         ),
     ] = None,
     modes: Annotated[
         str | None,
-        typer.Option(help="When agents are called: prompted or monitoring, with commas.", show_default="prompted"),
+        typer.Option(
+            help="When agents are called, separated by commas: prompted, monitoring.", show_default="prompted"
+        ),
     ] = None,
     repeats: Annotated[
         int | None,
-        typer.Option(help="Runs of each episode.", metavar="N", parser=whole_number(1, 1000), show_default="1"),
+        typer.Option(
+            help="How often to run each episode.", metavar="N", parser=whole_number(1, 1000), show_default="1"
+        ),
     ] = None,
     held_out: Annotated[
         bool,
-        typer.Option("--held-out", help="Only each task's last phrasing, which the rule stand-in is not made on."),
+        typer.Option("--held-out", help="Use only each task's last phrasing, which `rules` is not built from."),
     ] = False,
     workers: Workers = None,
     executor: ExecutorName = "processes",
@@ -82,23 +94,23 @@ def evaluate(
     retries: Annotated[
         int,
         typer.Option(
-            help="Further attempts after an error that is not the agent's.",
+            help="Further attempts after an infrastructure error.",
             metavar="N",
             parser=whole_number(0, 100),
         ),
     ] = 2,
-    pictures: Annotated[str, typer.Option(help="Keep the cockpit's pictures of: none, failures or all.")] = "none",
+    pictures: Annotated[str, typer.Option(help="Keep the screenshots of: none, failures or all.")] = "none",
     out: Annotated[
         Path | None,
         typer.Option(
-            help="Folder of the results; the same one goes on.", show_default="runs/eval-<digest of the plan>"
+            help="Results folder; an existing one is resumed.", show_default="runs/eval-<digest of the plan>"
         ),
     ] = None,
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Show the plan and end.")] = False,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Show the plan and exit.")] = False,
     tasks_from: TasksFrom = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")] = False,
 ) -> None:
-    """Run agents over tasks, scenarios and seeds. The same command goes on where a run was stopped."""
+    """Run agents over tasks, scenarios and seeds. Rerun the command to resume."""
     from rich.console import Console
 
     from automotive_cosim.errors import UnknownNameError
@@ -127,38 +139,42 @@ def evaluate(
     _announce(console, plan, folder)
     if dry_run:
         return
-    with where, View(console, "episodes", _said) as view:
+    with where, ProgressView(console, "episodes", _said) as view:
         try:
             end = run_plan(
                 plan, folder, executor=where, retries=retries, pictures=Pictures(pictures), tell=view.tell
             )
         except KeyboardInterrupt:
-            typer.echo(f"what has ended is in {folder}; the same command goes on", err=True)
+            typer.echo(f"finished episodes are in {folder}; rerun the command to resume", err=True)
             raise
     rows = read_rows(folder, EpisodeRow)
     errors = [rows[job.id] for job in jobs if rows[job.id].success is None]
-    size = round(megabytes(folder), 1)
+    size_mb = megabytes(folder)
     if as_json:
         told = {"planned": end.planned, "judged": end.judged, "successes": end.successes, "errors": end.errors}
-        typer.echo(json.dumps(told | {"ran": end.ran, "megabytes": size, "out": str(folder)}))
+        typer.echo(json.dumps(told | {"ran": end.ran, "megabytes": round(size_mb, 1), "out": str(folder)}))
     else:
-        console.print(f"{end.successes} of {end.judged} judged episodes succeeded; {end.errors} errors")
+        console.print(
+            f"{end.successes} of {counted(end.judged, 'judged episode')} succeeded; {counted(end.errors, 'error')}"
+        )
         for line in standings(read_results(folder)):
             console.print(f"  {line}", soft_wrap=True)
         for row in errors:
             console.print(f"  error in {row.id}: {row.error_kind}: {row.error}", soft_wrap=True)
         console.print(
-            f"Results in {folder} ({size} MB); `automotive-cosim report {folder}` shows them", soft_wrap=True
+            f"Results in {folder} ({megabytes_in_words(size_mb)}); "
+            f"write report.html with `automotive-cosim report {folder}`",
+            soft_wrap=True,
         )
     if errors:
         raise InfrastructureError(
-            f"{len(errors)} of {end.planned} episodes ended in an error; they are no failures of an agent"
+            f"{len(errors)} of {counted(end.planned, 'episode')} ended in an infrastructure error and do not count"
         )
 
 
 def _said(progress: Progress[EpisodeRow]) -> str:
     rate = f"{progress.successes / progress.judged:.0%} succeeded" if progress.judged else "none judged yet"
-    errors = f", {progress.errors} errors" if progress.errors else ""
+    errors = f", {counted(progress.errors, 'error')}" if progress.errors else ""
     return rate + errors + time_left(progress)
 
 
@@ -171,7 +187,9 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
     table.add_row("tasks", f"{len({job.setup.task for job in jobs})}, pairs in both halves")
     table.add_row("scenarios", ", ".join(sorted({job.scenario for job in jobs})))
     if left_out := plan.left_out():
-        table.add_row("left out", f"{len(left_out)} tasks that cannot run there; --everywhere takes them along")
+        table.add_row(
+            "left out", f"{counted(len(left_out), 'task')} that cannot run there; --everywhere includes them"
+        )
     table.add_row("seeds", ", ".join(map(str, plan.seeds)))
     table.add_row("geo controls", ", ".join(plan.geo))
     table.add_row("modes", ", ".join(plan.modes))
@@ -180,9 +198,12 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
     limits = plan.limits
     table.add_row(
         "at most",
-        f"{limits.steps} steps, {limits.sim_s:g} s simulated, {limits.wall_s:g} s real, {limits.tokens} tokens",
+        f"{counted(limits.steps, 'step')}, {limits.sim_s:g} s simulated, {limits.wall_s:g} s real, "
+        f"{limits.tokens:,} tokens",
     )
-    table.add_row("episodes", f"{len(jobs)} from {len({job.simulation for job in jobs})} warm simulations")
+    table.add_row(
+        "episodes", f"{len(jobs):,} from {counted(len({job.simulation for job in jobs}), 'warm simulation')}"
+    )
     table.add_row("folder", str(folder))
     console.print(table)
     if any(job.setup.model == "rules" for job in jobs):

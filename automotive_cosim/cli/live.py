@@ -13,6 +13,7 @@ from rich.text import Text
 
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import KMH_PER_MPS, ActionType
+from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.run.episode import EpisodeResult, Shot, Watcher
@@ -25,16 +26,16 @@ PLAIN_EVERY_S = 10.0
 
 
 class Notes(Watcher):
-    """Says on the standard error what was assumed of a scenario, and nothing else."""
+    """Prints what was assumed of a scenario to the standard error, and nothing else."""
 
     def loading(self, scenario: Scenario) -> None:
-        """As ``Watcher`` says."""
+        """See ``Watcher``."""
         for note in scenario.notes:
             print(f"note: {note}", file=sys.stderr)
 
 
 class Live(Watcher):
-    """Shows an episode as it runs, and at its end the verdict with what happened when."""
+    """Shows an episode as it runs, and at its end the verdict and the timeline."""
 
     def __init__(self, console: Console | None = None) -> None:
         self._console = console or Console(highlight=False)
@@ -53,7 +54,7 @@ class Live(Watcher):
         for note in scenario.notes:
             self._console.print(Text(f"note: {note}", style="yellow"), soft_wrap=True)
         size_mb = read_configuration(scenario.config).net.stat().st_size / 1e6
-        what = f"loading the network ({size_mb:.1f} MB)"
+        what = f"loading the network ({megabytes_in_words(size_mb)})"
         if self._console.is_terminal:
             row = Table.grid(padding=(0, 2))
             row.add_row(what, ProgressBar(width=40, pulse=True))
@@ -62,7 +63,7 @@ class Live(Watcher):
             self._console.print(f"{scenario.title}: {what}", soft_wrap=True)
 
     def warming(self, scenario: str, done_s: float, total_s: float) -> None:
-        """A bar; without a terminal a line at the start and at the end."""
+        """A bar; without a terminal, a line at the start and at the end."""
         if self._console.is_terminal:
             bar = ProgressBar(total=total_s, completed=done_s, width=40)
             row = Table.grid(padding=(0, 2))
@@ -98,7 +99,7 @@ class Live(Watcher):
         self._action = f"{step.number}  {action_in_words(step.action, shot.seen)}"
         self._thought = shot.thought
         if step.action is not None and step.action.action_type is ActionType.STATUS:
-            self._title = "after the end: how the drive goes on"
+            self._title = "after the end: how the drive continues"
         if self._console.is_terminal:
             self._show(self._panel(step.moment))
         else:
@@ -108,7 +109,7 @@ class Live(Watcher):
         self._begins = step.moment
 
     def finished(self, result: EpisodeResult) -> None:
-        """The verdict, and what happened when."""
+        """The verdict and the timeline."""
         if self._display is not None:
             self._display.stop()
         if result.steps or result.verdict:
@@ -160,7 +161,11 @@ def _traffic(moment: Moment) -> str:
     driving = moment.driving
     here = f"{driving.around.relative_speed:.0%} of free flow here, {driving.ahead.relative_speed:.0%} ahead"
     jam_m = driving.ahead.jam_distance_m
-    return here + ("" if jam_m is None else f", jam in {jam_m:.0f} m") + f", {driving.vehicle_count} vehicles"
+    return (
+        here
+        + ("" if jam_m is None else f", jam in {jam_m:.0f} m")
+        + f", {counted(driving.vehicle_count, 'vehicle')}"
+    )
 
 
 def _verdict(result: EpisodeResult) -> Text:
@@ -168,7 +173,7 @@ def _verdict(result: EpisodeResult) -> Text:
         lines = [Text(f"no verdict: {result.end}", style="bold yellow")]
     else:
         word, style = ("success", "bold green") if result.success else ("not solved", "bold red")
-        lines = [Text.assemble((word, style), f"  reward {result.reward:g}, {result.steps} steps")]
+        lines = [Text.assemble((word, style), f"  reward {result.reward:g}, {counted(result.steps, 'step')}")]
     for name, part in (result.verdict["parts"] if result.verdict else {}).items():
         mark = ("yes", "green") if part["ok"] else ("no ", "red")
         lines.append(Text.assemble(f"  {name.replace('_', ' '):<9} ", mark, "  ", (part["why"], "dim")))

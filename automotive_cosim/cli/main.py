@@ -1,6 +1,7 @@
 """``automotive-cosim``: the commands, and what an error looks like.
 
-Exit codes: 0 done, 2 the user can mend it, 3 the machinery failed, 130 interrupted.
+Exit codes: 0 done, 1 a check failed, 2 an error that the user can fix, 3 an infrastructure error,
+130 interrupted, 143 terminated.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from automotive_cosim.cli import (
     results,
     run,
     scenarios,
+    schema,
     screens,
     signals,
     study,
@@ -34,11 +36,13 @@ from automotive_cosim.cli import (
 from automotive_cosim.errors import InfrastructureError, UserError
 
 INTERRUPTED = 130
-"""What typer makes of Ctrl-C: 128 and the signal's number, as shells do."""
+"""Typer's exit code for Ctrl-C: 128 plus the signal's number, as in shells."""
+TERMINATED = 143
+"""The same for SIGTERM: ``kill``, a container that is stopped, a batch system whose time is up."""
 
 app = typer.Typer(
     name="automotive-cosim",
-    help="An agent at the cockpit of a car that drives through live SUMO traffic.",
+    help="Agents that operate the cockpit of a car in live SUMO traffic.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
@@ -54,6 +58,7 @@ app.command()(results.regrade)
 app.command()(bench.bench)
 app.command()(playback.playback)
 app.command()(screens.screens)
+app.command()(schema.schema)
 app.command(context_settings=context.COMMAND_SETTINGS)(context.context)
 app.add_typer(study.app, name="study")
 app.add_typer(scenarios.app, name="scenarios")
@@ -72,7 +77,7 @@ def _version(wanted: bool) -> None:
 @app.callback()
 def _options(
     version: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and end.")
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and exit.")
     ] = False,
     debug: Annotated[
         bool, typer.Option("--debug", envvar="AUTOMOTIVE_COSIM_DEBUG", help="Show the traceback of an error.")
@@ -84,19 +89,24 @@ def _options(
 
 def main() -> None:
     """Runs the command line and ends the process; an error is one line on stderr."""
-    if signal.getsignal(signal.SIGINT) is signal.SIG_DFL:  # see the package's __init__
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+    terminations: list[int] = []
+
+    def terminate(number: int, frame: object) -> None:
+        terminations.append(number)
+        raise KeyboardInterrupt  # ends as after Ctrl-C, which may be ignored from the start (nohup)
+
+    signal.signal(signal.SIGTERM, terminate)
     for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):  # a street's name must not end a run where the locale is ASCII
+        if isinstance(stream, io.TextIOWrapper):  # a street's name must not end a run under an ASCII locale
             stream.reconfigure(errors="replace")
     try:
         code = app(standalone_mode=False) or 0
     except (UserError, InfrastructureError, typer.TyperException) as error:
         if os.environ.get("AUTOMOTIVE_COSIM_DEBUG"):
             raise
-        message = error.format_message() if isinstance(error, typer.TyperException) else str(error)
-        if message:  # the help that stands in for a missing command has been printed
-            print("error: " + " ".join(message.split()), file=sys.stderr)
+        problems = [error.format_message()] if isinstance(error, typer.TyperException) else error.args
+        for problem in filter(None, map(str, problems)):  # none: the help for a missing command has been printed
+            print("error: " + " ".join(problem.split()), file=sys.stderr)
         code = 3 if isinstance(error, InfrastructureError) else 2
     except OSError as error:
         if os.environ.get("AUTOMOTIVE_COSIM_DEBUG"):
@@ -105,4 +115,5 @@ def main() -> None:
         code = 2
     if code == INTERRUPTED:
         print("error: interrupted", file=sys.stderr)
+        code = TERMINATED if terminations else INTERRUPTED
     sys.exit(code)

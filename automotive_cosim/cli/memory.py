@@ -1,4 +1,4 @@
-"""``automotive-cosim memory``: what ASURADA has kept from earlier episodes."""
+"""``automotive-cosim memory``: what ASURADA remembers of earlier episodes."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ import typer
 
 from automotive_cosim.errors import UserError
 
-app = typer.Typer(help="What ASURADA has kept from earlier episodes.", no_args_is_help=True)
+app = typer.Typer(help="What ASURADA remembers of earlier episodes.", no_args_is_help=True)
 
 
 @app.command()
 def show(
     file: Annotated[Path, typer.Argument(help="The file given to `run --memory`.")],
-    place: Annotated[str, typer.Option(help="Only places whose name holds this.")] = "",
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON list.")] = False,
+    place: Annotated[str, typer.Option(help="Only places whose name contains this.")] = "",
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON list and nothing else.")] = False,
 ) -> None:
-    """Show which strategy was tried where, at what, and how often it worked, the latest first."""
+    """Show which strategy was tried where, for what, and how often it worked; the latest first."""
     from automotive_cosim.agents.memory import Memory
 
     if not file.is_file():
-        raise UserError(f"there is no memory in {file}; `automotive-cosim run --memory {file}` makes one")
+        raise UserError(f"there is no memory in {file}; `automotive-cosim run --memory {file}` creates one")
     kept = [strategy for strategy in Memory(file).all() if place.casefold() in strategy.place.casefold()]
     if as_json:
         typer.echo(json.dumps([strategy.as_json() for strategy in kept], ensure_ascii=False))

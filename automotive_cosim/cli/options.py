@@ -12,7 +12,7 @@ import typer
 
 
 def _use_tasks_from(folder: Path | None) -> None:
-    """Set before anything imports the catalogue; worker processes inherit it."""
+    """Sets the variable before anything imports the catalogue; worker processes inherit it."""
     if folder is not None:
         os.environ["AUTOMOTIVE_COSIM_TASKS"] = str(folder.resolve())
 
@@ -21,17 +21,17 @@ TasksFrom = Annotated[
     Path | None,
     typer.Option(
         "--tasks-from",
-        help="A folder of your own tasks beside the catalogue's.",
+        help="A folder of your own tasks, in addition to the catalogue.",
         callback=_use_tasks_from,
         is_eager=True,
         show_default=False,
     ),
 ]
-"""For every command that names tasks; its value is taken at once and needed by nobody afterwards."""
+"""For every command that names tasks; its callback handles the value, so the command ignores it."""
 
 
 def whole_number(least: int, most: int) -> Callable[[str], int]:
-    """A parser of whole numbers in a range, whose complaint says what came and what is wanted."""
+    """A parser of whole numbers in a range, whose error says what came and what was expected."""
 
     def parse(text: str) -> int:
         try:
@@ -39,14 +39,14 @@ def whole_number(least: int, most: int) -> Callable[[str], int]:
         except ValueError:
             number = least - 1
         if not least <= number <= most:
-            raise typer.BadParameter(f"{text!r} is no whole number from {least} to {most}")
+            raise typer.BadParameter(f"{text!r} is not a whole number from {least} to {most}")
         return number
 
     return parse
 
 
 def number(least: float, most: float) -> Callable[[str], float]:
-    """A parser of numbers in a range, ends included, whose complaint says what came and what is wanted."""
+    """A parser of numbers in a range, ends included, whose error says what came and what was expected."""
 
     def parse(text: str) -> float:
         try:
@@ -54,18 +54,20 @@ def number(least: float, most: float) -> Callable[[str], float]:
         except ValueError:
             value = math.nan
         if not least <= value <= most:
-            raise typer.BadParameter(f"{text!r} is no number from {least:g} to {most:g}")
+            raise typer.BadParameter(f"{text!r} is not a number from {least:g} to {most:g}")
         return value
 
     return parse
 
 
 def lon_lat(text: str) -> tuple[float, float]:
-    """Reads ``LON,LAT`` in degrees; whether that is on earth is for others to say."""
+    """Reads ``LON,LAT`` in degrees, without checking that it is on earth."""
     try:
         lon_deg, lat_deg = (float(part) for part in text.split(","))
     except ValueError:
         lon_deg = lat_deg = math.nan
     if not (math.isfinite(lon_deg) and math.isfinite(lat_deg)):
-        raise typer.BadParameter(f"--origin {text!r} is no longitude and latitude; give degrees such as 9.19,45.46")
+        raise typer.BadParameter(
+            f"--origin {text!r} is not a longitude and latitude; give degrees such as 9.19,45.46"
+        )
     return lon_deg, lat_deg

@@ -1,4 +1,4 @@
-"""``automotive-cosim playback``: a recorded episode once more."""
+"""``automotive-cosim playback``: shows a recorded episode again."""
 
 from __future__ import annotations
 
@@ -7,25 +7,27 @@ from typing import Annotated
 
 import typer
 
+from automotive_cosim.contracts.plain import counted
+
 
 def playback(
-    folder: Annotated[Path, typer.Argument(help="What `run` left.", show_default=False)],
-    film: Annotated[Path | None, typer.Option(help="Writes the screens as an animation, .webp or .gif.")] = None,
-    speed: Annotated[float, typer.Option(help="Times as fast as it was.", min=0.1, max=1000)] = 4.0,
-    wait: Annotated[bool, typer.Option("--wait/--at-once", help="Keep the episode's time between steps.")] = True,
+    folder: Annotated[Path, typer.Argument(help="Results folder of `run`.", show_default=False)],
+    film: Annotated[Path | None, typer.Option(help="Write the screens as an animation, .webp or .gif.")] = None,
+    speed: Annotated[float, typer.Option(help="How many times as fast as recorded.", min=0.1, max=1000)] = 4.0,
+    wait: Annotated[bool, typer.Option("--wait/--at-once", help="Keep the recorded time between steps.")] = True,
 ) -> None:
-    """Tells a recorded episode step by step, at its own pace, or makes a film of its screens."""
+    """Print a recorded episode step by step, at its own pace, or write its screens as an animation."""
     from time import sleep
 
     from automotive_cosim.errors import UserError
     from automotive_cosim.report.playback import frames, write_film
 
     if film is not None and film.suffix not in (".webp", ".gif"):
-        raise UserError(f"{film} is no animation; give --film a name ending in .webp or .gif")
+        raise UserError(f"{film} is not an animation; give --film a name ending in .webp or .gif")
     shown = list(frames(folder))
     if film is not None:
         write_film(shown, film, speed)
-        typer.echo(f"{film} written, {len(shown)} steps")
+        typer.echo(f"{film} written, {counted(len(shown), 'step')}")
         return
     before_s = 0.0
     for frame in shown:

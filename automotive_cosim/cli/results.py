@@ -1,4 +1,4 @@
-"""``automotive-cosim report``, ``replay`` and ``regrade``: what is done with an evaluation's folder."""
+"""``automotive-cosim report``, ``replay`` and ``regrade``: commands on an evaluation's folder."""
 
 from __future__ import annotations
 
@@ -8,12 +8,13 @@ from typing import Annotated
 import typer
 
 from automotive_cosim.cli.options import TasksFrom
+from automotive_cosim.contracts.plain import counted
 
-Folder = Annotated[Path, typer.Argument(help="What `eval` left.", show_default=False)]
+Folder = Annotated[Path, typer.Argument(help="Results folder of `eval`.", show_default=False)]
 
 
 def report(folder: Folder, tasks_from: TasksFrom = None) -> None:
-    """Write report.html, and the tables and plots as files, into the folder of an evaluation or a study."""
+    """Write report.html, tables and plots into the folder of an evaluation or a study."""
     from automotive_cosim.report.evaluation import write_report
     from automotive_cosim.run.store import read_manifest
     from automotive_cosim.studies.page import write_study
@@ -24,10 +25,10 @@ def report(folder: Folder, tasks_from: TasksFrom = None) -> None:
 
 def replay(
     folder: Folder,
-    episode: Annotated[str, typer.Argument(help="Its id, or the beginning of it.", show_default=False)],
+    episode: Annotated[str, typer.Argument(help="Id of the episode, or its beginning.", show_default=False)],
     tasks_from: TasksFrom = None,
 ) -> None:
-    """Run a stored episode's actions again and compare the trace step by step; exit code 1 if it differs."""
+    """Repeat a stored episode's actions and compare the trace step by step; exit code 1 if it differs."""
     from automotive_cosim.run.rerun import rerun
 
     compared = rerun(folder, episode)
@@ -36,13 +37,15 @@ def replay(
         typer.echo(f"step {step.number:3d}  {step.sha256[:16]}  {differs}")
     different = [step for step in compared if step.differs]
     if different:
-        typer.echo(f"{len(different)} of {len(compared)} steps differ, from step {different[0].number} on")
+        typer.echo(
+            f"{len(different)} of {counted(len(compared), 'step')} differ, from step {different[0].number} on"
+        )
         raise typer.Exit(1)
-    typer.echo(f"all {len(compared)} steps are the same")
+    typer.echo("the only step is the same" if len(compared) == 1 else f"all {len(compared)} steps are the same")
 
 
 def regrade(folder: Folder, tasks_from: TasksFrom = None) -> None:
-    """Judge the stored episodes by the present checks and print what changes; nothing is written."""
+    """Judge the stored episodes by the current checks and print what changes; nothing is written."""
     from automotive_cosim.run.regrade import regrade as judged_again
 
     words = {True: "solved", False: "not solved", None: "not judged"}

@@ -1,4 +1,4 @@
-"""``automotive-cosim run``: one episode, shown, judged and recorded."""
+"""``automotive-cosim run``: runs, shows, judges and records one episode."""
 
 from __future__ import annotations
 
@@ -33,79 +33,90 @@ HEADLINE = (
 
 
 def run(
-    task: Annotated[str, typer.Option(help="Task id; `tasks list` names them.")] = "road_speed_80_in_50",
+    task: Annotated[str, typer.Option(help="Id of the task; `tasks list` lists them.")] = "road_speed_80_in_50",
     half: Annotated[str, typer.Option(help="Half of a pair: first or second.")] = "first",
     agent: Annotated[
-        str, typer.Option(help="Who acts; `agents` names them; package.module:Class is your own.")
+        str, typer.Option(help="Agent; `agents` lists them; package.module:Class is one of your own.")
     ] = "asurada",
     model: Annotated[
-        str, typer.Option(help="The model behind the agent: rules, replay/FOLDER, openai/NAME or PROVIDER/NAME.")
+        str, typer.Option(help="Model for the agent: rules, replay/FOLDER, openai/NAME or PROVIDER/NAME.")
     ] = "rules",
     tasks_from: TasksFrom = None,
     mode: Annotated[
-        str, typer.Option(help="When it is called: prompted, at the trigger; monitoring, up to a minute before it.")
+        str,
+        typer.Option(help="When the agent is called: prompted, at the trigger; monitoring, up to a minute before."),
     ] = "prompted",
     geo: Annotated[
-        str, typer.Option(help="What it is told of the place: full, gps, context, wrong, irrelevant or none.")
+        str,
+        typer.Option(help="What the agent is told of the place: full, gps, context, wrong, irrelevant or none."),
     ] = "full",
     without: Annotated[
         str,
         typer.Option(
-            help="Parts of it to switch off, with commas: gps, context, queries, screen, reflection, memory."
+            help="Parts of the agent to switch off, separated by commas: "
+            "gps, context, queries, screen, reflection, memory."
         ),
     ] = "",
     memory: Annotated[
         Path | None,
-        typer.Option(help="File in which ASURADA keeps what worked, for later runs.", show_default=False),
+        typer.Option(help="File in which ASURADA remembers what worked, for later runs.", show_default=False),
     ] = None,
     most_tokens: Annotated[
-        int, typer.Option(help="The model's budget.", metavar="N", parser=whole_number(1, 10**9))
+        int, typer.Option(help="Budget of tokens for the model.", metavar="N", parser=whole_number(1, 10**9))
     ] = 2_000_000,
     most_seconds: Annotated[
-        int, typer.Option(help="How long to wait for the model in all.", metavar="N", parser=whole_number(1, 10**6))
+        int,
+        typer.Option(
+            help="Total time to wait for the model, in seconds.", metavar="N", parser=whole_number(1, 10**6)
+        ),
     ] = 1800,
     scenario: Annotated[
         str | None,
         typer.Option(
-            help="A scenario's name or folder, any .sumocfg or .net.xml(.gz), in place of the task's own.",
+            help="A scenario's name or folder, or any .sumocfg or .net.xml(.gz), instead of the task's own.",
             show_default=False,
         ),
     ] = None,
     from_place: Annotated[
         str,
-        typer.Option("--from", help="Where the car's way begins: a street, an edge or LON,LAT.", metavar="PLACE"),
+        typer.Option("--from", help="Where the car's route begins: a street, an edge or LON,LAT.", metavar="PLACE"),
     ] = "",
-    to_place: Annotated[str, typer.Option("--to", help="Where it ends; likewise.", metavar="PLACE")] = "",
+    to_place: Annotated[
+        str, typer.Option("--to", help="Where the car's route ends: a street, an edge or LON,LAT.", metavar="PLACE")
+    ] = "",
     origin: Annotated[
         str,
         typer.Option(
-            help="Puts the middle of the network there, with that place's law, clock and climate.",
+            help="Move the middle of the network there, with that place's law, clock and climate.",
             metavar="LON,LAT",
             show_default=False,
         ),
     ] = "",
     no_gps: Annotated[
-        bool, typer.Option("--no-gps", help="No GPS: no place is known, and the network needs no projection.")
+        bool, typer.Option("--no-gps", help="No GPS: the place is unknown, and the network needs no projection.")
     ] = False,
     seed: Annotated[
-        int, typer.Option(help="Same seed, same trace.", metavar="N", parser=whole_number(0, 2**31 - 1))
+        int,
+        typer.Option(
+            help="Seed; the same seed gives the same trace.", metavar="N", parser=whole_number(0, 2**31 - 1)
+        ),
     ] = 0,
     out: Annotated[
         Path | None,
-        typer.Option(help="Folder for the record.", show_default="runs/<time>-<task>-<agent>-seed<seed>"),
+        typer.Option(help="Folder for the results.", show_default="runs/<time>-<task>-<agent>-seed<seed>"),
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace the record in --out.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace the results in --out.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")] = False,
     actions: Annotated[
         Path | None,
         typer.Option(
-            help="Play a file of actions, one JSON object a line, in place of an agent.", show_default=False
+            help="Play a file of actions, one JSON object per line, instead of an agent.", show_default=False
         ),
     ] = None,
 ) -> None:
     """Run one episode: a task, an agent, a seed.
 
-    With no option: a car comes to drive 80 km/h where 50 is posted in Paris, and an agent is asked to watch.
+    Without options, a car drives 80 km/h where 50 is posted in Paris, and the agent has been asked to warn of that.
     """
     from rich.console import Console
 
@@ -122,7 +133,7 @@ def run(
     from automotive_cosim.tasking.task import Mode
 
     if scenario == "":
-        raise UserError("--scenario is empty; name a scenario, or leave the option out to take the task's own")
+        raise UserError("--scenario is empty; name a scenario, or omit the option to use the task's own")
     off = parts(name.strip() for name in without.split(",") if name.strip())
     settings = AgentSettings(geo_input(geo), off, memory, seed, most_tokens, float(most_seconds))
     player = read_script(actions) if actions else make_agent(agent, model, settings)
@@ -145,7 +156,7 @@ def run(
     folder = out or default_folder(setup)
     check_folder(folder, force=force)
     recorder = Recorder(folder, setup, {"actions": str(actions) if actions else None, "out": str(folder)})
-    # A panel that redraws itself and a person who types get in each other's way.
+    # A panel that redraws itself would interfere with a person who types.
     view = Live(Console(force_terminal=False, highlight=False)) if player.name == "human" else Live()
     watchers = [recorder, Film(folder), Notes() if as_json else view]
     try:
@@ -153,7 +164,7 @@ def run(
     except KeyboardInterrupt:
         if recorder.begun:
             write_page(folder)
-            typer.echo(f"what was recorded is in {folder}", err=True)
+            typer.echo(f"recorded so far: {folder}", err=True)
         raise
     if recorder.begun:
         write_page(folder)

@@ -1,4 +1,4 @@
-"""``automotive-cosim scenarios``: what there is, whether it holds, how it looks, and maps turned into more."""
+"""``automotive-cosim scenarios``: lists, checks, draws and imports scenarios."""
 
 from __future__ import annotations
 
@@ -13,18 +13,19 @@ import typer
 
 from automotive_cosim import scenarios
 from automotive_cosim.cli.options import number, whole_number
+from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.errors import UserError
 
 if TYPE_CHECKING:
     from rich.text import Text
 
+    from automotive_cosim.contracts import Tell
     from automotive_cosim.osm import ImportReport
     from automotive_cosim.osm.day import Day
-    from automotive_cosim.osm.importer import Progress
     from automotive_cosim.scenarios import Scenario
-    from automotive_cosim.scenery.check import Proof
+    from automotive_cosim.scenery.check import ScenarioProof
 
-app = typer.Typer(help="The scenarios there are, and maps turned into more.", no_args_is_help=True)
+app = typer.Typer(help="List, check, draw and import scenarios.", no_args_is_help=True)
 
 
 @app.command("list")
@@ -69,8 +70,8 @@ def _weather(scenario: Scenario) -> str:
     if not scenario.weather:
         return "drawn by seed from the climate of the place and month"
     first = scenario.weather[0].weather
-    changes = f", {len(scenario.weather) - 1} changes to come" if len(scenario.weather) > 1 else ""
-    return f"{first.temperature_2m:g} C, {first.precipitation:g} mm/h, {first.visibility:g} m visible{changes}"
+    changes = f", {counted(len(scenario.weather) - 1, 'change')} to come" if len(scenario.weather) > 1 else ""
+    return f"{first.temperature_2m:g} °C, {first.precipitation:g} mm/h, visibility {first.visibility:g} m{changes}"
 
 
 def _print_notes(scenario: Scenario) -> None:
@@ -80,20 +81,22 @@ def _print_notes(scenario: Scenario) -> None:
 
 Names = Annotated[
     list[str] | None,
-    typer.Argument(help=f"{WHICH}; by default all that are shipped.", metavar="[SCENARIO]...", show_default=False),
+    typer.Argument(
+        help=f"{WHICH}; by default, all shipped scenarios.", metavar="[SCENARIO]...", show_default=False
+    ),
 ]
 
 
 @app.command("check")
 def check_scenarios(
     names: Names = None,
-    quick: Annotated[bool, typer.Option("--quick", help="Leave out the hour of traffic.")] = False,
+    quick: Annotated[bool, typer.Option("--quick", help="Skip the hour of traffic.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")] = False,
 ) -> None:
     """Prove that scenarios do what they say; exit code 1 if one does not.
 
-    Each is loaded, warmed up and placed, held to the streets and limits that it names, every trip of the ego is
-    driven to its goal, its situations are met, and its traffic flows for an hour.
+    Each is loaded, warmed up and placed. Its streets and limits are compared with those that it names, every trip
+    of the ego is driven to its end, its situations must occur, and its traffic must flow for an hour.
     """
     from automotive_cosim.scenery import open_scenario
     from automotive_cosim.scenery.check import check
@@ -112,7 +115,7 @@ def check_scenarios(
         raise typer.Exit(1)
 
 
-def _print_proof(proof: Proof) -> None:
+def _print_proof(proof: ScenarioProof) -> None:
     from rich.console import Console
     from rich.table import Table
     from rich.text import Text
@@ -136,7 +139,9 @@ def render(
     names: Names = None,
     out: Annotated[
         Path | None,
-        typer.Option(help="A .png or .webp file, or a folder for several.", show_default="NAME.webp right here"),
+        typer.Option(
+            help="A .png or .webp file, or a folder for several.", show_default="NAME.webp in the working folder"
+        ),
     ] = None,
 ) -> None:
     """Draw scenarios from above: road classes, names, limits, tunnels and the ego's trips."""
@@ -147,7 +152,7 @@ def render(
     to_file = out is not None and not out.is_dir() and bool(out.suffix)
     if out and to_file and (out.suffix.lower() not in ENDINGS or len(found) > 1):
         wanted = "a folder" if len(found) > 1 else f"a file that ends in {' or '.join(ENDINGS)}"
-        raise UserError(f"--out {out} will not do here; give {wanted}")
+        raise UserError(f"--out {out} cannot be used here; give {wanted}")
     for scenario in found:
         target = out if out and to_file else (out or Path()) / f"{scenario.name}.webp"
         save_picture(scenario, target)
@@ -157,26 +162,28 @@ def render(
 @app.command("import")
 def import_scenario(
     file: Annotated[Path, typer.Argument(help="OSM extract: .osm, .osm.gz, .osm.bz2 or .osm.pbf.")],
-    out: Annotated[Path | None, typer.Option(help="Folder to make; by default the scenario's name.")] = None,
-    name: Annotated[str, typer.Option(help="The scenario's name; by default the file's.")] = "",
+    out: Annotated[Path | None, typer.Option(help="Folder to create; by default, the scenario's name.")] = None,
+    name: Annotated[str, typer.Option(help="The scenario's name; by default, the file's.")] = "",
     country: Annotated[
-        str, typer.Option(help="ISO 3166-1 code such as FR; by default found from the map's position.")
+        str, typer.Option(help="ISO 3166-1 code such as FR; by default, from the map's position.")
     ] = "",
     bbox: Annotated[
-        str, typer.Option(metavar="W,S,E,N", help="Take only what lies within, in degrees.", show_default="all")
+        str,
+        typer.Option(metavar="W,S,E,N", help="Use only what is within this box, in degrees.", show_default="all"),
     ] = "",
     density: Annotated[
-        float, typer.Option(help="Vehicles at a time per km of lane if all drove freely, before scaling down.")
+        float, typer.Option(help="Vehicles per km of lane at a time if all drove freely, before scaling down.")
     ] = 1.0,
     seed: Annotated[
-        int, typer.Option(parser=whole_number(0, 2**31 - 2), metavar="N", help="Of the traffic and the ego trips.")
+        int,
+        typer.Option(parser=whole_number(0, 2**31 - 2), metavar="N", help="Seed of the traffic and the ego trips."),
     ] = 0,
     force: Annotated[bool, typer.Option("--force", help="Replace the scenario in --out.")] = False,
 ) -> None:
     """Turn an OpenStreetMap extract into a scenario.
 
     The traffic is scaled down until it flows for an hour after its warm-up. Reading the map, building the network
-    and trying the traffic takes one to three minutes for a district of a city.
+    and testing the traffic take one to three minutes for a city district.
     """
     from automotive_cosim.osm import Area, ImportOptions, import_map
     from automotive_cosim.osm.importer import scenario_name
@@ -198,11 +205,11 @@ def import_scenario(
 
 @app.command("day")
 def scale_to_a_day(
-    folder: Annotated[Path, typer.Argument(help="Folder that `scenarios import` made.")],
+    folder: Annotated[Path, typer.Argument(help="Folder made by `scenarios import`.")],
     counts: Annotated[
         Path,
         typer.Option(
-            help="Hourly counts: Open Data Paris' CSV as it is (medians over Mondays to Fridays, by local hour), or"
+            help="Hourly counts: a CSV of Open Data Paris (medians over Mondays to Fridays, by local hour), or"
             " hour,vehicles_per_hour[,occupancy]."
         ),
     ],
@@ -210,11 +217,9 @@ def scale_to_a_day(
         str, typer.Option(metavar="ID", help="The counted road: an edge, or the number of its OpenStreetMap way.")
     ],
     arc: Annotated[
-        str, typer.Option(metavar="ID", help="Which detector of a file of several.", show_default="the only one")
+        str, typer.Option(metavar="ID", help="Which detector, in a file of several.", show_default="the only one")
     ] = "",
-    out: Annotated[
-        Path | None, typer.Option(help="Folder to make.", show_default="FOLDER with _day at its end")
-    ] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder to create.", show_default="FOLDER_day")] = None,
     at: Annotated[
         int, typer.Option(parser=whole_number(1, 23), metavar="HOUR", help="Local hour at which the ego departs.")
     ] = 8,
@@ -224,27 +229,27 @@ def scale_to_a_day(
             parser=number(0, 10),
             metavar="X",
             help="Traffic that passes elsewhere in the busiest hour, as a share of the import's.",
-            show_default="what the traffic past the road leaves of it",
+            show_default="the rest beside the counted traffic",
         ),
     ] = None,
     days: Annotated[
-        int, typer.Option(parser=whole_number(1, 50), metavar="N", help="Days that are simulated at most.")
+        int, typer.Option(parser=whole_number(1, 50), metavar="N", help="Maximum number of days to simulate.")
     ] = 4,
     minutes: Annotated[
         float,
         typer.Option(
             parser=number(5, 60),
             metavar="M",
-            help="Simulated of each hour: fewer are faster, their figures noisier.",
+            help="Minutes of each hour to simulate: fewer are faster and noisier.",
         ),
     ] = 60.0,
-    seed: Annotated[int, typer.Option(parser=whole_number(0, 2**31 - 2), metavar="N", help="Of the day.")] = 0,
+    seed: Annotated[int, typer.Option(parser=whole_number(0, 2**31 - 2), metavar="N", help="Seed of the day.")] = 0,
     force: Annotated[bool, typer.Option("--force", help="Replace the scenario in --out.")] = False,
 ) -> None:
     """Scale an imported scenario's traffic over a day to the counts of one road.
 
-    This is no calibration: one road is met, and what all others carry stays random. Days are simulated until every
-    hour is near its count; one takes ten to fifteen minutes of a core for a district of a city.
+    This is no calibration: it matches one road, and the flows on all others stay random. Days are simulated until
+    every hour is near its count; each takes ten to fifteen minutes of one core for a city district.
     """
     from automotive_cosim.osm.day import DayOptions, make_day
     from automotive_cosim.report.day import require_plots, write_day
@@ -274,30 +279,30 @@ def download_map(
         typer.Option(
             envvar="AUTOMOTIVE_COSIM_OVERPASS",
             metavar="URL",
-            help="An Overpass server's interpreter; whoever runs it sets the rules of its use.",
+            help="URL of an Overpass server's interpreter; its operator sets the terms of use.",
         ),
     ],
-    out: Annotated[Path, typer.Option(help="File to make, for `scenarios import`.")] = Path("map.osm"),
+    out: Annotated[Path, typer.Option(help="File to create, for `scenarios import`.")] = Path("map.osm"),
     timeout: Annotated[
-        float, typer.Option(parser=number(1, 3600), metavar="S", help="Seconds of silence after which to give up.")
+        float, typer.Option(parser=number(1, 3600), metavar="S", help="Seconds of silence before stopping.")
     ] = 180.0,
     tries: Annotated[
-        int, typer.Option(parser=whole_number(1, 20), metavar="N", help="How often a busy server is asked.")
+        int, typer.Option(parser=whole_number(1, 20), metavar="N", help="How often to ask a busy server.")
     ] = 4,
     max_mb: Annotated[
-        float, typer.Option(parser=number(0.001, 10_000), metavar="MB", help="The largest map that is taken.")
+        float, typer.Option(parser=number(0.001, 10_000), metavar="MB", help="Size limit of the map.")
     ] = 500.0,
 ) -> None:
     """Fetch the roads of an area from an Overpass server of your choice."""
     from automotive_cosim.osm import Area
     from automotive_cosim.osm.folder import ATTRIBUTION
-    from automotive_cosim.osm.overpass import Limits, download
+    from automotive_cosim.osm.overpass import DownloadLimits, download
 
     with _progress() as tell:
-        limits = Limits(timeout_s=timeout, tries=tries, size_mb=max_mb)
+        limits = DownloadLimits(timeout_s=timeout, tries=tries, size_mb=max_mb)
         found = download(endpoint, Area.parse(bbox), out, limits, tell=tell)
     dated = f", as of {found.map_date}" if found.map_date else ""
-    typer.echo(f"{out}: {found.size_mb:.2f} MB{dated}\n{ATTRIBUTION}")
+    typer.echo(f"{out}: {megabytes_in_words(found.size_mb)}{dated}\n{ATTRIBUTION}")
     if found.note:
         typer.echo(found.note)
     typer.echo(f"turn it into a scenario: automotive-cosim scenarios import {out}")
@@ -339,8 +344,8 @@ def _print_day(day: Day, folder: Path, page: Path) -> None:
 
 
 @contextmanager
-def _progress() -> Iterator[Progress]:
-    """A line on stderr that says what is being done; nothing but its last state where stderr is no terminal."""
+def _progress() -> Iterator[Tell]:
+    """A line on stderr with the current activity; only its last state if stderr is not a terminal."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
@@ -369,16 +374,16 @@ def _print_report(report: ImportReport, folder: Path, took_s: float) -> None:
         ("posted limit", f"{report.posted_share:.2%} of the length"),
         ("derestricted", f"{report.derestricted_km:.1f} km"),
         ("signals", f"{report.signals}, roundabouts {report.roundabouts}"),
-        ("tunnels", f"{report.tunnels} edges ({report.tunnel_km:.1f} km)"),
+        ("tunnels", f"{counted(report.tunnels, 'edge')} ({report.tunnel_km:.1f} km)"),
         ("lamps", f"known for {report.lit_known_share:.0%} of the length"),
         ("built-up", f"or not: known for {report.built_up_known_share:.0%} of the length"),
         ("schools", f"{report.school_zone_km:.1f} km; limits by the clock on {report.timed_limit_km:.1f} km"),
         ("bus lanes", f"{report.bus_lane_km:.1f} km, speed cameras {report.speed_cameras}"),
         ("traffic", f"{report.vehicles_per_hour:.0f} vehicles per hour, about {flow.vehicles_mean:.0f} at a time"),
-        ("scale", f"{report.scale:g} of the density asked for"),
+        ("scale", f"{report.scale:g} of the requested density"),
         ("halted", f"{flow.halted_share_mean:.1%} on average, {flow.halted_share_max:.1%} in the worst minute"),
         ("teleports", f"{flow.teleports} in {flow.observed_s / 60:.0f} min"),
-        ("took", f"{took_s:.0f} s, {size_mb:.2f} MB"),
+        ("took", f"{took_s:.0f} s, {megabytes_in_words(size_mb)}"),
         *(("guessed" if index == 0 else "", text) for index, text in enumerate(report.guessed)),
         ("drive it", f"automotive-cosim run --scenario {folder}"),
         ("map", report.attribution),

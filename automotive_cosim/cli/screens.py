@@ -1,4 +1,4 @@
-"""``automotive-cosim screens``: every screen of the cockpit on one picture."""
+"""``automotive-cosim screens``: every screen of the cockpit in one picture."""
 
 from __future__ import annotations
 
@@ -11,14 +11,12 @@ import typer
 
 def screens(
     out: Annotated[Path, typer.Option(help="Picture to write: .webp, .png or .jpg.")] = Path("screens.webp"),
-    scenario: Annotated[str, typer.Option(help="Where the car drives.")] = "paris_centre",
-    language: Annotated[str, typer.Option(help="Of the screens: en, fr, de or ja.")] = "en",
-    width: Annotated[int, typer.Option(help="Of each screen, in pixels.", min=160, max=1280)] = 400,
-    each: Annotated[
-        Path | None, typer.Option(help="Folder for every screen as a picture of its own at full size.")
-    ] = None,
+    scenario: Annotated[str, typer.Option(help="Scenario in which the car drives.")] = "paris_centre",
+    language: Annotated[str, typer.Option(help="Language of the screens: en, fr, de or ja.")] = "en",
+    width: Annotated[int, typer.Option(help="Width of each screen in pixels.", min=160, max=1280)] = 400,
+    each: Annotated[Path | None, typer.Option(help="Folder for a full-size picture of each screen.")] = None,
 ) -> None:
-    """Draws every screen by day and by night, as it is at the start of a drive."""
+    """Draw every screen by day and by night, as it is at the start of a drive."""
     from automotive_cosim.cockpit.signals import HMI
     from automotive_cosim.episode.situation import SituationFinder
     from automotive_cosim.episode.specification import EpisodeSpec, SeedSource
@@ -27,7 +25,9 @@ def screens(
     from automotive_cosim.traffic.fork import Simulations
 
     if out.suffix not in (".webp", ".png", ".jpg"):
-        raise UserError(f"{out} is no picture that can be written; give --out a name ending in .webp, .png or .jpg")
+        raise UserError(
+            f"{out} is not a picture format that can be written; give --out a name ending in .webp, .png or .jpg"
+        )
     with closing(Simulations()) as simulations:
         finder = SituationFinder(EpisodeSpec(scenario=scenario), simulations)
         with closing(finder.find(SeedSource(0).next()).world) as world:

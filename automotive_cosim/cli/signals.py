@@ -13,7 +13,7 @@ app = typer.Typer(help="The vehicle's signals.", no_args_is_help=True)
 
 @app.command("list")
 def list_() -> None:
-    """One line a signal: path, kind, legal values, default."""
+    """List the signals: path, kind, valid values, default."""
     from automotive_cosim.cockpit.signals import CATALOGUE
 
     width = max(map(len, CATALOGUE))
@@ -26,7 +26,7 @@ def list_() -> None:
 def export(
     out: Annotated[Path | None, typer.Option(help="File to write; standard output if not given.")] = None,
 ) -> None:
-    """The signals as a VSS tree in JSON."""
+    """Export the signals as a VSS tree in JSON."""
     from automotive_cosim.cockpit import vss
 
     text = json.dumps(vss.tree(), indent=2, ensure_ascii=False) + "\n"

@@ -1,4 +1,4 @@
-"""``automotive-cosim study``: what rerouting gains, from futures that leave the very same traffic."""
+"""``automotive-cosim study``: how much rerouting gains, from futures forked from identical traffic."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ import typer
 
 from automotive_cosim.cli.batches import (
     ExecutorName,
+    ProgressView,
     RayAddress,
     RaySend,
-    View,
     Workers,
     executor_of,
     seeds_in,
@@ -21,6 +21,7 @@ from automotive_cosim.cli.batches import (
     words,
 )
 from automotive_cosim.cli.options import whole_number
+from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import InfrastructureError, UserError
 
 if TYPE_CHECKING:
@@ -31,65 +32,72 @@ if TYPE_CHECKING:
     from automotive_cosim.studies.results import Study
     from automotive_cosim.studies.rows import DriveRow
 
-app = typer.Typer(help="Studies: what rerouting gains in the very same traffic.", no_args_is_help=True)
+app = typer.Typer(help="Studies: how much rerouting gains in identical traffic.", no_args_is_help=True)
 
 
 @app.command()
 def reroute(
     scenario: Annotated[
-        str, typer.Option(help="Name as in `scenarios list`, folder, .sumocfg or .net.xml.")
+        str, typer.Option(help="A scenario's name or folder, or any .sumocfg or .net.xml.")
     ] = "paris_centre",
     departures: Annotated[
         str | None,
         typer.Option(
-            help="When the ego sets out: seconds after the warm-up, or clock times, with commas.",
+            help="When the ego departs: seconds after the warm-up or clock times, separated by commas.",
             show_default="0,300,600,900",
         ),
     ] = None,
     trips: Annotated[
-        str | None, typer.Option(help="Ego trips of the scenario, with commas.", show_default="all")
+        str | None, typer.Option(help="Ego trips of the scenario, separated by commas.", show_default="all")
     ] = None,
     from_place: Annotated[
-        str, typer.Option("--from", help="Where the ego's way begins: an edge, a street or LON,LAT.")
+        str, typer.Option("--from", help="Where the ego's route begins: an edge, a street or LON,LAT.")
     ] = "",
     to_place: Annotated[
-        str, typer.Option("--to", help="Where it ends; with one of the two the other is drawn.")
+        str, typer.Option("--to", help="Where it ends; if only one of the two is given, the other is drawn.")
     ] = "",
     seeds: Annotated[
-        str, typer.Option(help="Of the traffic, as in 0-9; 10 for an interval, 30 to publish.")
+        str, typer.Option(help="Seeds of the traffic, as in 0-9; at least 10 for an interval, 30 to publish.")
     ] = "0-9",
     shares: Annotated[
         str | None,
-        typer.Option(help="Shares of the other cars that reroute, 0 to 1, with commas.", show_default="scenario's"),
+        typer.Option(
+            help="Shares of the other cars that reroute, 0 to 1, separated by commas.", show_default="scenario's"
+        ),
     ] = None,
-    ages: Annotated[str, typer.Option(help="Ages of the traffic news in seconds, with commas.")] = "0",
-    compliance: Annotated[float, typer.Option(help="Probability that the driver does as told.")] = 1.0,
+    ages: Annotated[str, typer.Option(help="Ages of the traffic news in seconds, separated by commas.")] = "0",
+    compliance: Annotated[float, typer.Option(help="Probability that the driver follows the advice.")] = 1.0,
     policies: Annotated[
         str,
         typer.Option(
-            help="Who decides, with commas: never, always, delay:SECONDS, sumo, best, agent:NAME, agent:NAME/MODEL."
+            help="Policies, separated by commas: never, always, delay:SECONDS, sumo, best, agent:NAME, "
+            "agent:NAME/MODEL."
         ),
     ] = "never,always,delay:60,sumo,best",
     driver: Annotated[str, typer.Option(help="Driver profile of the ego.", show_default="scenario's")] = "",
-    delay: Annotated[float, typer.Option(help="Expected delay in seconds from which on a decision is due.")] = 30.0,
+    delay: Annotated[float, typer.Option(help="Expected delay, in seconds, from which a decision is due.")] = 30.0,
     every: Annotated[float, typer.Option(help="Seconds between two decisions of a drive.")] = 60.0,
     per_drive: Annotated[
-        int, typer.Option(help="Decisions of a drive at most.", metavar="N", parser=whole_number(1, 50))
+        int, typer.Option(help="Maximum number of decisions per drive.", metavar="N", parser=whole_number(1, 50))
     ] = 5,
     placebo_every: Annotated[
         int,
-        typer.Option(help="One placebo in so many drives; 0 for none.", metavar="N", parser=whole_number(0, 10**6)),
+        typer.Option(
+            help="One placebo in this many drives; 0 for none.", metavar="N", parser=whole_number(0, 10**6)
+        ),
     ] = 1,
-    scale: Annotated[float | None, typer.Option(help="Multiplies the demand.", show_default="scenario's")] = None,
+    scale: Annotated[float | None, typer.Option(help="Factor on the demand.", show_default="scenario's")] = None,
     step: Annotated[float, typer.Option(help="SUMO's step length in seconds.")] = 1.0,
     equilibrium_gap: Annotated[
         float | None,
-        typer.Option(help="Declares demand from duaIterate, with this relative gap.", show_default=False),
+        typer.Option(
+            help="Declare that the demand comes from duaIterate with this relative gap.", show_default=False
+        ),
     ] = None,
     until: Annotated[
         float | None,
         typer.Option(
-            help="Stop adding seeds once the mean gain is known to +- so many seconds.", show_default=False
+            help="Add seeds until the mean gain is known to within this many seconds.", show_default=False
         ),
     ] = None,
     workers: Workers = None,
@@ -99,15 +107,15 @@ def reroute(
     out: Annotated[
         Path | None,
         typer.Option(
-            help="Folder of the results; the same one goes on.", show_default="runs/study-<digest of the plan>"
+            help="Results folder; an existing one is resumed.", show_default="runs/study-<digest of the plan>"
         ),
     ] = None,
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Show the plan and end.")] = False,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Show the plan and exit.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")] = False,
 ) -> None:
     """Fork the running traffic at every decision to reroute and drive both futures.
 
-    The same command goes on where a study was stopped.
+    Rerun the command to resume a stopped study.
     """
     from rich.console import Console
 
@@ -152,22 +160,22 @@ def reroute(
 
     def said(progress: Progress[DriveRow]) -> str:
         count = sum(len(row.decisions) for row in read_rows(folder, DriveRow).values())
-        errors = f", {progress.errors} errors" if progress.errors else ""
-        return f"{count} decisions{errors}{time_left(progress)}"
+        errors = f", {counted(progress.errors, 'error')}" if progress.errors else ""
+        return f"{counted(count, 'decision')}{errors}{time_left(progress)}"
 
-    with where, View(console, "drives", said) as view:
+    with where, ProgressView(console, "drives", said) as view:
         try:
             run_study(plan, folder, executor=where, tell=view.tell)
         except KeyboardInterrupt:
-            typer.echo(f"what has ended is in {folder}; the same command goes on", err=True)
+            typer.echo(f"finished drives are in {folder}; rerun the command to resume", err=True)
             raise
     page = write_study(folder)
     _tell(console, read_study(folder), page, as_json=as_json)
 
 
 @app.command()
-def report(folder: Annotated[Path, typer.Argument(help="What a study left.", show_default=False)]) -> None:
-    """Write report.html, choices.csv and the tables and plots as files into a study's folder."""
+def report(folder: Annotated[Path, typer.Argument(help="Results folder of a study.", show_default=False)]) -> None:
+    """Write report.html, choices.csv, tables and plots into a study's folder."""
     from automotive_cosim.studies.page import write_study
 
     page = write_study(folder)
@@ -175,7 +183,7 @@ def report(folder: Annotated[Path, typer.Argument(help="What a study left.", sho
 
 
 def _tell(console: Console, study: Study, page: Path, *, as_json: bool) -> None:
-    """Says what came out; raises where that is nothing."""
+    """Prints the result; raises if there is none."""
     from automotive_cosim.studies.page import cost_s, warnings
     from automotive_cosim.studies.tables import excluded, policies
 
@@ -190,17 +198,17 @@ def _tell(console: Console, study: Study, page: Path, *, as_json: bool) -> None:
                 console.print(table.markdown(), soft_wrap=True)
         for warning in warnings(study):
             console.print(warning, soft_wrap=True)
-        console.print(f"{count} decisions count; the report is {page}", soft_wrap=True)
+        console.print(f"{counted(count, 'decision')} counted; the report is {page}", soft_wrap=True)
     if errors:
         first = errors[0]
         raise InfrastructureError(
-            f"{len(errors)} of {len(study.rows)} drives ended in an error, the first one {first.id}: "
-            f"{first.error_kind}: {first.error}; the same command runs them again"
+            f"{len(errors)} of {counted(len(study.rows), 'drive')} ended in an error, the first one {first.id}: "
+            f"{first.error_kind}: {first.error}; rerun the command to retry them"
         )
     if not count:
         told_why = ", ".join(f"{number} {name}" for name, number in kept_out.items())
         raise UserError(
-            f"no decision counts ({told_why}): choose other trips or departures, lower --delay, or change --scale"
+            f"no decision counted ({told_why}): choose other trips or departures, lower --delay, or change --scale"
         )
 
 
@@ -215,13 +223,15 @@ def _announce(console: Console, plan: StudyPlan, folder: Path) -> None:
     table.add_row("seeds", f"{len(plan.seeds)}")
     table.add_row("policies", ", ".join(plan.policies))
     table.add_row("demand", plan.demand())
-    table.add_row("drives", f"{len(jobs)} from {len({job.simulation for job in jobs})} warm simulations")
+    table.add_row(
+        "drives", f"{len(jobs):,} from {counted(len({job.simulation for job in jobs}), 'warm simulation')}"
+    )
     table.add_row("folder", str(folder))
     console.print(table)
 
 
 def _departures(scenario: str, text: str) -> tuple[float, ...]:
-    """Seconds after the warm-up; clock times count from the scenario's."""
+    """Departures in seconds after the warm-up; clock times are relative to the scenario's start."""
     from automotive_cosim.scenery import open_scenario
 
     found = []
@@ -244,7 +254,7 @@ def _numbers(name: str, text: str) -> list[float]:
         try:
             found.append(float(word))
         except ValueError:
-            raise UserError(f"--{name} has {word!r}; give numbers with commas between them") from None
+            raise UserError(f"--{name} has {word!r}; give numbers separated by commas") from None
     return found
 
 

@@ -1,4 +1,4 @@
-"""``automotive-cosim tasks``: the catalogue."""
+"""``automotive-cosim tasks``: lists, shows and exports the catalogue."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from automotive_cosim.cli.options import TasksFrom, whole_number
+from automotive_cosim.contracts.plain import counted
 
 if TYPE_CHECKING:
     from automotive_cosim.tasking.parameters import Choices
@@ -21,11 +22,13 @@ if TYPE_CHECKING:
 PICTURES = (".webp", ".png", ".jpg")
 PICTURE_WIDTH = 640
 
-app = typer.Typer(help="The tasks there are.", no_args_is_help=True)
+app = typer.Typer(help="List, show and export tasks.", no_args_is_help=True)
 
 Words = Annotated[
     str,
-    typer.Option("--tasks", help="Ids, patterns, tags, modules, dimensions, general, safety, all; with commas."),
+    typer.Option(
+        "--tasks", help="Ids, patterns, tags, modules, dimensions, general, safety or all; separated by commas."
+    ),
 ]
 
 
@@ -35,7 +38,7 @@ def list_(
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON list and nothing else.")] = False,
     tasks_from: TasksFrom = None,
 ) -> None:
-    """One line a task, then how many there are of each kind."""
+    """List the tasks, one per line, then their numbers by module and dimension."""
     from automotive_cosim.tasking.catalogue import described
 
     chosen = _chosen(tasks)
@@ -45,7 +48,7 @@ def list_(
     width = max(len(task.id) for task in chosen)
     for task in chosen:
         halves = "pair" if task.second else "single"
-        steps = f"{task.optimal_steps} steps"
+        steps = counted(task.optimal_steps, "step")
         typer.echo(f"{task.id:<{width}}  {halves:<6}  {task.dimension:<18}  {task.difficulty:<6}  {steps}")
     typer.echo(f"\n{_cells(chosen)}\n{_instances(chosen)}")
 
@@ -56,7 +59,7 @@ def export(
     tasks: Words = "all",
     tasks_from: TasksFrom = None,
 ) -> None:
-    """Write the catalogue to a file, one row a task."""
+    """Write the catalogue to a file, one row per task."""
     from automotive_cosim.errors import UserError
     from automotive_cosim.tasking.catalogue import described
 
@@ -76,35 +79,36 @@ def export(
         )
         text = lines.getvalue()
     else:
-        raise UserError(f"{path} is neither .json nor .csv; name it by what it is to hold")
+        raise UserError(f"{path} is neither .json nor .csv; give a name with one of these endings")
     try:
         path.write_text(text, encoding="utf-8")
     except OSError as error:
         raise UserError(f"cannot write {path}: {error.strerror}") from error
-    typer.echo(f"{len(rows)} tasks in {path}")
+    typer.echo(f"{counted(len(rows), 'task')} written to {path}")
 
 
 @app.command()
 def show(
-    task: Annotated[str, typer.Argument(help="Its id.", show_default=False)],
+    task: Annotated[str, typer.Argument(help="Id of the task.", show_default=False)],
     tasks_from: TasksFrom = None,
     picture: Annotated[
         Path | None,
         typer.Option(
-            help="Also draw what the expert does, screen by screen, to a .webp, .png or .jpg.", show_default=False
+            help="Also draw the reference solution, screen by screen, to a .webp, .png or .jpg.", show_default=False
         ),
     ] = None,
-    seed: Annotated[int, typer.Option(help="Of the picture.", metavar="N", parser=whole_number(0, 10**6))] = 0,
+    seed: Annotated[int, typer.Option(help="Seed of the picture.", metavar="N", parser=whole_number(0, 10**6))] = 0,
 ) -> None:
-    """What a task says, when it starts, and what is right in it."""
+    """Show what the driver says, when the task starts, and what is right."""
     from automotive_cosim.errors import UserError
     from automotive_cosim.tasks import CATALOGUE
 
     if picture is not None and picture.suffix not in PICTURES:
-        raise UserError(f"{picture} is no picture that can be written; name it {', '.join(PICTURES)}")
+        raise UserError(f"{picture} is not a picture format that can be written; name it {', '.join(PICTURES)}")
 
     entry = CATALOGUE[task]
-    typer.echo(f"{entry.id}  ({entry.module}, {entry.dimension}, {entry.difficulty}, {entry.optimal_steps} steps)")
+    steps = counted(entry.optimal_steps, "step")
+    typer.echo(f"{entry.id}  ({entry.module}, {entry.dimension}, {entry.difficulty}, {steps})")
     for words in entry.templates:
         typer.echo(f"  “{words}”")
     for name, choices in entry.parameters.items():
@@ -127,7 +131,7 @@ def show(
             drawn.save(picture, quality=85)
         except OSError as error:
             raise UserError(f"cannot write {picture}: {error.strerror}") from error
-        typer.echo(f"\n{picture} shows what the expert does, with seed {seed}")
+        typer.echo(f"\n{picture} shows the reference solution, with seed {seed}")
 
 
 def _choices(choices: Choices) -> str:
@@ -146,15 +150,15 @@ def _half(half: Half) -> Iterable[str]:
     if start.start:
         yield f"when      {start.start}"
     yield f"trigger   {half.trigger.condition}, for {half.trigger.for_s:g} s"
-    yield f"goal      {half.goal}, then declares {half.declares}"
+    yield f"goal      {half.goal}, then declare {half.declares}"
     for number, way in enumerate((half.moves, *half.ways)):
-        yield f"expert    {'or ' if number else ''}{', '.join(map(_move, way)) or 'declares at once'}"
+        yield f"solution  {'or ' if number else ''}{', '.join(map(_move, way)) or 'declare at once'}"
     yield f"deadline  {half.deadline.seconds:g} s: {half.deadline.reason}"
     yield f"basis     {half.basis}: {half.rule}" if half.rule else f"basis     {half.basis}"
 
 
 def _move(move: object) -> str:
-    from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil, Type, Warn
+    from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil, TypeText, Warn
 
     match move:
         case Open(name):
@@ -165,7 +169,7 @@ def _move(move: object) -> str:
             return f"tap {resource_id} until {shown} reads {text!r}"
         case Slide(resource_id, value):
             return f"slide {resource_id} to {value}"
-        case Type(resource_id, text):
+        case TypeText(resource_id, text):
             return f"type {text!r} into {resource_id}"
         case Warn(kind):
             return f"alert {kind}"
@@ -202,7 +206,7 @@ def _cells(tasks: list[Task]) -> str:
 
 
 def _instances(tasks: list[Task]) -> str:
-    """How many different instances there are, a cockpit's content counted as it is drawn."""
+    """The number of different instances, with the cockpit's content counted as it is drawn."""
     from automotive_cosim.tasking.instance import instances
 
     return f"{sum(map(instances, tasks)):,} instances by words, parameters and scenario"

@@ -1,4 +1,4 @@
-"""``automotive-cosim validate``: the proof of the tasks."""
+"""``automotive-cosim validate``: proves tasks."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import typer
 
 from automotive_cosim.cli.batches import words
 from automotive_cosim.cli.options import TasksFrom, whole_number
+from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import InfrastructureError
 
 if TYPE_CHECKING:
@@ -21,39 +22,52 @@ if TYPE_CHECKING:
 
 FAILED = 1
 TABLE_WIDTH = 170
-"""Of a table that goes into a file: every gate's name is whole."""
+"""Width of a table that goes into a file: no gate's name is cut off."""
 
 
 def validate(
     tasks: Annotated[
-        str, typer.Option(help="Ids, patterns, tags, modules, dimensions, general, safety, all; with commas.")
+        str,
+        typer.Option(help="Ids, patterns, tags, modules, dimensions, general, safety or all; separated by commas."),
     ] = "all",
     seeds: Annotated[
         int,
-        typer.Option(help="How many seeds prove each task.", metavar="N", parser=whole_number(1, 1000)),
+        typer.Option(help="How many seeds to prove each task with.", metavar="N", parser=whole_number(1, 1000)),
     ] = 3,
     first_seed: Annotated[
-        int, typer.Option(help="The first of them.", metavar="N", parser=whole_number(0, 10**6))
+        int, typer.Option(help="The first seed.", metavar="N", parser=whole_number(0, 10**6))
     ] = 0,
     gates: Annotated[
-        str, typer.Option(help="Gates to try, with commas; `all` or names as the table has them.")
+        str, typer.Option(help="Gates to try, separated by commas, by their names in the table; or `all`.")
     ] = "all",
-    workers: Annotated[int, typer.Option(help="Processes.", metavar="N", parser=whole_number(1, 256))] = 1,
+    workers: Annotated[
+        int, typer.Option(help="Number of processes.", metavar="N", parser=whole_number(1, 256))
+    ] = 1,
     out: Annotated[
         Path | None,
-        typer.Option(help="Folder of the proofs; the same one goes on. None keeps nothing.", show_default=False),
+        typer.Option(
+            help="Folder for the proofs; an existing one is resumed. Without it, nothing is kept.",
+            show_default=False,
+        ),
+    ] = None,
+    against: Annotated[
+        Path | None,
+        typer.Option(
+            help="What --json printed before: the reference solutions must still give the same traces.",
+            show_default=False,
+        ),
     ] = None,
     tasks_from: TasksFrom = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")] = False,
 ) -> None:
-    """Prove tasks: solvable by public actions, free for nobody, clean, repeatable.
+    """Prove that tasks are solvable by public actions, but not by trivial strategies, and repeat exactly.
 
-    Exit code 1 if a gate fails, else 3 if a proof broke off. With --out the same command goes on where it stopped.
+    Exit code 1 if a gate fails, else 3 if a proof could not be completed. With --out, rerun the command to resume.
     """
     from rich.console import Console
 
     from automotive_cosim.proof.batch import prove
-    from automotive_cosim.proof.prover import GATES
+    from automotive_cosim.proof.prover import GATES, changed_traces, read_traces
     from automotive_cosim.proof.prover import as_json as json_of
     from automotive_cosim.run.plan import choose
 
@@ -61,6 +75,7 @@ def validate(
     asked = words("tasks", tasks)
     task_ids = choose(asked)
     numbers = tuple(range(first_seed, first_seed + seeds))
+    before = None if against is None else read_traces(against)
     console = Console(stderr=True)
 
     def tell(proof: Proof, done: int, planned: int) -> None:
@@ -75,9 +90,12 @@ def validate(
         proofs = prove(asked, numbers, chosen, workers=workers, out=out, tell=tell)
     except KeyboardInterrupt:
         if out is not None:
-            typer.echo(f"what has been proven is in {out}; the same command goes on", err=True)
+            typer.echo(f"finished proofs are in {out}; rerun the command to resume", err=True)
         raise
     result = json_of(proofs, task_ids, numbers)
+    changed = changed_traces(before, result["traces"]) if before is not None else ()
+    for name, why in changed:
+        console.print(f"[red]✗[/] {name}: {why}", highlight=False)
     if as_json:
         typer.echo(json.dumps(result))
     else:
@@ -85,18 +103,19 @@ def validate(
         shown.print(_table(proofs, chosen), width=None if shown.is_terminal else TABLE_WIDTH, no_wrap=True)
         failed = sum(bool(entry["failed"]) for entry in result["gates"].values())
         typer.echo(
-            f"{len(task_ids)} tasks, {len(numbers)} seeds: {failed} gates failed, {len(result['errors'])} errors"
+            f"{counted(len(task_ids), 'task')}, {counted(len(numbers), 'seed')}: "
+            f"{counted(failed, 'gate')} failed, {counted(len(result['errors']), 'error')}"
         )
-    if any(entry["failed"] for entry in result["gates"].values()):
+    if changed or any(entry["failed"] for entry in result["gates"].values()):
         raise typer.Exit(FAILED)
     if result["errors"]:
         raise InfrastructureError(
-            f"{len(result['errors'])} of {len(proofs)} proofs ended in an error; nothing is proven by them"
+            f"{len(result['errors'])} of {counted(len(proofs), 'proof')} ended in an infrastructure error"
         )
 
 
 def _table(proofs: Sequence[Proof], gates: Sequence[str]) -> Table:
-    """Tasks by gates: how many seeds pass, of how many."""
+    """Tasks by gates, with the number of seeds that pass out of those tried."""
     from rich.table import Table
 
     table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 1, 0, 0))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
 from itertools import chain
 
@@ -13,19 +12,6 @@ from automotive_cosim.contracts import BoundingBox, Element
 PACKAGE = "org.automotive_cosim.cockpit"
 
 
-@dataclass(frozen=True, slots=True)
-class Listing:
-    """The elements of a tree, by the widgets that lie on the screen itself."""
-
-    screen: Screen
-    parts: tuple[tuple[Element, ...], ...]
-
-    @property
-    def elements(self) -> tuple[Element, ...]:
-        """All of them, in drawing order."""
-        return tuple(chain.from_iterable(self.parts))
-
-
 def elements(screen: Screen, scale: float = 1.0) -> tuple[Element, ...]:
     """All that has words, listens or scrolls, in drawing order.
 
@@ -33,19 +19,13 @@ def elements(screen: Screen, scale: float = 1.0) -> tuple[Element, ...]:
         screen: the tree.
         scale: pixels per logical pixel.
     """
-    return listing(screen, scale).elements
+    return tuple(chain.from_iterable(_part(child, scale) for child in screen.children))
 
 
-def listing(screen: Screen, scale: float, before: Listing | None = None) -> Listing:
-    """The same, by parts; those of widgets that ``before``, of the same scale, has too are taken from there."""
-    known = {} if before is None else dict(zip(map(id, before.screen.children), before.parts, strict=True))
-    return Listing(
-        screen,
-        tuple(
-            known.get(id(child)) or tuple(_element(widget, scale) for widget in child.walk() if _listed(widget))
-            for child in screen.children
-        ),
-    )
+@lru_cache(maxsize=512)
+def _part(child: Widget, scale: float) -> tuple[Element, ...]:
+    """Of one widget that lies on the screen itself. Most come again; equal ones get the same elements."""
+    return tuple(_element(widget, scale) for widget in child.walk() if _listed(widget))
 
 
 def _listed(widget: Widget) -> bool:

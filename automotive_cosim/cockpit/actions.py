@@ -41,6 +41,12 @@ DISTANCE_LIMIT_PX = 8192
 """Longest drag of a finger: beyond any screen."""
 SECONDS_LIMIT = 10
 """Longest ``wait``."""
+RANGES: Mapping[str, tuple[int, int]] = {
+    "seconds": (1, SECONDS_LIMIT),
+    "distance_px": (1, DISTANCE_LIMIT_PX),
+    "speed_kmh": (0, 300),
+}
+"""Least and most of some fields."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,6 +120,7 @@ _TYPES: Mapping[str, type] = {
     "clear_text": bool,
     "on": bool,
 }
+_JSON_TYPES = {int: "integer", float: "number", str: "string", bool: "boolean"}
 
 
 def parse(value: str | Json) -> Action:
@@ -169,12 +176,11 @@ def check(action: Action) -> Action:
             raise ActionError(f"{name}: {field} has {len(said)} characters; at most {TEXT_LIMIT} are allowed")
         if any("\ud800" <= character <= "\udfff" for character in said):
             raise ActionError(f"{name}: {field} holds half a surrogate pair, which is no character")
-    if action.seconds is not None and not 1 <= action.seconds <= SECONDS_LIMIT:
-        raise ActionError(f"{name}: seconds is {action.seconds}; it goes from 1 to {SECONDS_LIMIT}")
-    if action.distance_px is not None and not 1 <= action.distance_px <= DISTANCE_LIMIT_PX:
-        raise ActionError(f"{name}: distance_px is {action.distance_px}; it goes from 1 to {DISTANCE_LIMIT_PX}")
-    if action.speed_kmh is not None and not 0 <= action.speed_kmh <= 300:
-        raise ActionError(f"{name}: speed_kmh is {action.speed_kmh:g}; it goes from 0 to 300")
+    for field, (least, most) in RANGES.items():
+        value = getattr(action, field)
+        if value is not None and not least <= value <= most:
+            came = f"{value:g}" if isinstance(value, float) else value
+            raise ActionError(f"{name}: {field} is {came}; it goes from {least} to {most}")
     return action
 
 
@@ -186,6 +192,47 @@ def to_json(action: Action) -> Json:
 def grammar(kinds: Collection[ActionType] = tuple(ActionType)) -> str:
     """The actions of these kinds, each as one line of JSON with its meaning, for a prompt."""
     return "\n".join(f"- {takes.about}: {_example(kind, takes)}" for kind, takes in FIELDS.items() if kind in kinds)
+
+
+def json_schema() -> Json:
+    """What ``check`` lets pass, as a JSON Schema: one member a type, with the fields it takes."""
+    return {
+        "title": "Action",
+        "description": "One thing that an agent does.",
+        "type": "object",
+        "required": ["action_type"],
+        "properties": {"action_type": {"enum": [str(kind) for kind in FIELDS]}},
+        "oneOf": [_member(kind, takes) for kind, takes in FIELDS.items()],
+    }
+
+
+def _member(kind: ActionType, takes: Takes) -> Json:
+    named = (("index", "x", "y") if takes.target else ()) + takes.required + takes.optional
+    schema: Json = {
+        "title": str(kind),
+        "description": takes.about,
+        "properties": {"action_type": {"const": str(kind)}} | {name: _value(name) for name in named},
+        "required": ["action_type", *takes.required],
+        "additionalProperties": False,
+    }
+    if takes.target:
+        has_x, has_y, has_index = ({"required": [name]} for name in ("x", "y", "index"))
+        schema["oneOf"] = [
+            has_index | {"not": {"anyOf": [has_x, has_y]}},
+            {"required": ["x", "y"], "not": has_index},
+        ]
+    return schema
+
+
+def _value(name: str) -> Json:
+    if name in _ENUMS:
+        return {"enum": [str(member) for member in _ENUMS[name]]}
+    schema: Json = {"type": _JSON_TYPES[_TYPES[name]]}
+    if _TYPES[name] is str:
+        schema["maxLength"] = TEXT_LIMIT
+    if name in RANGES:
+        schema["minimum"], schema["maximum"] = RANGES[name]
+    return schema
 
 
 def position(text: str) -> tuple[float, float] | None:

@@ -13,7 +13,7 @@ from automotive_cosim.cockpit.theme import DAY, NIGHT, Colour
 _FINE = 3
 Lamps = tuple[bool, bool, bool, bool, bool, bool]
 """Position, low beam, high beam, front fog, rear fog, hazard."""
-Points = list[tuple[float, float]]
+Outline = list[tuple[float, float]]
 
 HALF_LENGTH, HALF_WIDTH = 150.0, 66.0
 """Of the car, in units of which the picture is 300 wide."""
@@ -44,7 +44,7 @@ def car(width: int, height: int, lamps: Lamps, windshield: int, rear_window: int
     light = _light(width, height, lamps, night)
     fine = light.resize((width * _FINE, height * _FINE), Image.Resampling.NEAREST)
 
-    def place(points: Points) -> Points:
+    def place(points: Outline) -> Outline:
         return [((x + dx * unit) * _FINE, (y + dy * unit) * _FINE) for dx, dy in points]
 
     _body(ImageDraw.Draw(fine), place, round(unit * _FINE), (windshield, rear_window), night)
@@ -98,7 +98,7 @@ def _halo(picture: Image.Image, x: float, y: float, radius: float, colour: Colou
 
 def _body(
     brush: ImageDraw.ImageDraw,
-    place: Callable[[Points], Points],
+    place: Callable[[Outline], Outline],
     pen: int,
     opaque: tuple[int, int],
     night: bool,
@@ -132,7 +132,7 @@ def _body(
         brush.line(place([(side * 47, 20), (side * 56, 20)]), roof, 3 * pen)
 
 
-def _lamps(brush: ImageDraw.ImageDraw, place: Callable[[Points], Points], lamps: Lamps, night: bool) -> None:
+def _lamps(brush: ImageDraw.ImageDraw, place: Callable[[Outline], Outline], lamps: Lamps, night: bool) -> None:
     position, low, high, front_fog, rear_fog, hazard = lamps
     dull: Colour = (150, 164, 184) if night else (226, 232, 239)
     for side in (-1, 1):
@@ -154,7 +154,7 @@ def _lamps(brush: ImageDraw.ImageDraw, place: Callable[[Points], Points], lamps:
         brush.polygon(place(_oval(-20, 143, 9, 4.5, 2)), RED)
 
 
-def _oval(x: float, y: float, across: float, down: float, power: float) -> Points:
+def _oval(x: float, y: float, across: float, down: float, power: float) -> Outline:
     """A superellipse."""
     turn = np.linspace(0, 2 * np.pi, 96, endpoint=False)
     cos, sin = np.cos(turn), np.sin(turn)

@@ -40,7 +40,7 @@ from automotive_cosim.cockpit.signals import (
     LIGHTS,
     MOTION,
     OUTSIDE,
-    Kind,
+    LeafKind,
     Signals,
     named,
 )
@@ -158,7 +158,7 @@ class Cockpit:
         update.settle(self._state)
         self._tree: Screen | None = None
         self._frame: _Frame | None = None
-        self._listing: accessibility.Listing | None = None
+        self._listed: tuple[Screen, tuple[Element, ...]] | None = None
 
     def copy(self) -> Cockpit:
         """An independent copy."""
@@ -167,7 +167,7 @@ class Cockpit:
         twin._width = self._width
         twin._tree = self._tree
         twin._frame = self._frame
-        twin._listing = self._listing
+        twin._listed = self._listed
         return twin
 
     # --- the world ----------------------------------------------------------------------------------------
@@ -190,7 +190,7 @@ class Cockpit:
         """
         signal = named(path)
         self.signals[signal] = value
-        if signal.kind is not Kind.ACTUATOR:
+        if signal.kind is not LeafKind.ACTUATOR:
             self._state.injected = {**self._state.injected, path: self.signals[signal]}
         self._tree = None
 
@@ -395,9 +395,9 @@ class Cockpit:
     def elements(self) -> tuple[Element, ...]:
         """The accessibility tree as a list."""
         screen = self._screen
-        if self._listing is None or self._listing.screen is not screen:
-            self._listing = accessibility.listing(screen, self._scale, self._listing)
-        return self._listing.elements
+        if self._listed is None or self._listed[0] is not screen:
+            self._listed = screen, accessibility.elements(screen, self._scale)
+        return self._listed[1]
 
     def screenshot(self) -> npt.NDArray[np.uint8]:
         """The display, (height, width, 3), RGB, read-only; the same array as long as nothing changes."""
@@ -545,7 +545,7 @@ class Cockpit:
 
     def _set_up(self, path: str, value: Any) -> None:
         signal = named(path)
-        if signal.kind is not Kind.ACTUATOR:
+        if signal.kind is not LeafKind.ACTUATOR:
             self.signals[signal] = value
             return
         refusal = self._state.vehicle.command(signal, value)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from automotive_cosim.cockpit.places import Atlas, Kind
+from automotive_cosim.cockpit.places import Gazetteer, PlaceKind
 from automotive_cosim.cockpit.signals import HMI, HVAC, MIRROR, SEAT, Signal, Signals
 from automotive_cosim.cockpit.theme import Icon
 
@@ -99,13 +99,13 @@ FILM_S = 40.0
 """Length of a topic's film."""
 APPOINTMENTS = 4
 _OCCASIONS = (
-    ("Check-up", Kind.HOSPITAL),
-    ("Team meeting", Kind.WORK),
-    ("A meal with Nora", Kind.RESTAURANT),
-    ("Parents' evening", Kind.SCHOOL),
-    ("Training", Kind.GYM),
-    ("Groceries", Kind.SHOP),
-    ("Meet the visitors", Kind.STATION),
+    ("Check-up", PlaceKind.HOSPITAL),
+    ("Team meeting", PlaceKind.WORK),
+    ("A meal with Nora", PlaceKind.RESTAURANT),
+    ("Parents' evening", PlaceKind.SCHOOL),
+    ("Training", PlaceKind.GYM),
+    ("Groceries", PlaceKind.SHOP),
+    ("Meet the visitors", PlaceKind.STATION),
 )
 ZONES = ("Zone A", "Zone B", "Zone C")
 PRICES = {"Zone A": 4.0, "Zone B": 2.5, "Zone C": 1.2}
@@ -141,7 +141,7 @@ class Timer:
 
 
 @dataclass(frozen=True, slots=True)
-class Profile:
+class UserProfile:
     """What a driver likes: values of signals."""
 
     name: str
@@ -163,7 +163,7 @@ class Desk:
 
     memory: tuple[tuple[float, ...], ...]
     """Values of ``REMEMBERED`` by place of the memory."""
-    profiles: tuple[Profile, ...]
+    profiles: tuple[UserProfile, ...]
     agenda: tuple[Appointment, ...]
     profile: str = PROFILES[0]
     installed: tuple[str, ...] = PREINSTALLED
@@ -213,7 +213,7 @@ class Desk:
         }
 
 
-def desk(rng: np.random.Generator, atlas: Atlas) -> Desk:
+def desk(rng: np.random.Generator, atlas: Gazetteer) -> Desk:
     """Draws what others have stored before, and the day's appointments at places of the network."""
     memory = tuple(_seat(rng) for _ in range(3))
     hours = np.sort(rng.choice(np.arange(8, 21), APPOINTMENTS, replace=False))
@@ -236,9 +236,9 @@ def _seat(rng: np.random.Generator) -> tuple[float, ...]:
     return tuple(step(signal) for signal in REMEMBERED)
 
 
-def _profile(name: str, seat: tuple[float, ...]) -> Profile:
+def _profile(name: str, seat: tuple[float, ...]) -> UserProfile:
     warmth = {"Driver 1": 21.0, "Driver 2": 22.5, "Guest": 20.0}[name]
-    return Profile(
+    return UserProfile(
         name,
         (
             *zip(REMEMBERED, seat, strict=True),

@@ -9,7 +9,7 @@ from automotive_cosim.cockpit import calls
 from automotive_cosim.cockpit.desk import PRICES, Ticket
 from automotive_cosim.cockpit.media import Entry, queue
 from automotive_cosim.cockpit.messages import (
-    Decline,
+    DeclineCall,
     Dial,
     HangUp,
     Honk,
@@ -17,8 +17,8 @@ from automotive_cosim.cockpit.messages import (
     Pay,
     Read,
     Record,
-    Reply,
     ResetTrip,
+    SendReply,
     TakeCall,
     Wash,
 )
@@ -40,9 +40,9 @@ def run(state: State, message: Message) -> Feedback:
             return calls.hang_up(state)
         case TakeCall():
             return calls.answer(state)
-        case Decline():
+        case DeclineCall():
             return calls.decline(state)
-        case Reply(to, text):
+        case SendReply(to, text):
             return calls.reply(state, to, text)
         case Read(who):
             return calls.read(state, who)

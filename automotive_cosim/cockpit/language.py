@@ -32,7 +32,7 @@ _WORD = re.compile(r"[^\W\d_]{2}")
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class Language:
     """One language."""
 
     words: Mapping[str, str]
@@ -43,14 +43,14 @@ class Table:
 
 
 @lru_cache
-def table(language: str, answers: bool = False) -> Table:
+def table(language: str, answers: bool = False) -> Language:
     """The table of a language other than English; with or without what only answers say."""
     given: dict[str, dict[str, str]] = tomllib.loads(
         files("automotive_cosim.cockpit").joinpath("languages", f"{language}.toml").read_text("utf-8")
     )
     texts = given["words"] | (given["answers"] if answers else {})
     forms = sorted((text for text in texts if "{}" in text), key=_fixed, reverse=True)
-    return Table(
+    return Language(
         {text: said for text, said in texts.items() if "{}" not in text},
         given["keys"],
         tuple((_pattern(form), texts[form]) for form in forms),

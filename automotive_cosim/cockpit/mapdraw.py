@@ -29,7 +29,7 @@ LANE_M = 3.2
 
 
 @dataclass(frozen=True, slots=True)
-class Scene:
+class MapScene:
     """What a map shows beside the roads."""
 
     camera: Camera
@@ -43,7 +43,7 @@ class Scene:
     """Edges driven slower than free, and their speed over the limit."""
 
 
-def draw(roads: RoadMap, scene: Scene, width: int, height: int, scale: float, night: bool) -> Image.Image:
+def draw(roads: RoadMap, scene: MapScene, width: int, height: int, scale: float, night: bool) -> Image.Image:
     """The picture of that size in pixels, without names; ``scale`` is pixels per logical pixel."""
     camera = scene.camera
     view = View(camera, scale / camera.metres_per_pixel, width / 2, height * camera.down)

@@ -7,15 +7,15 @@ from itertools import pairwise
 
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.map import ZOOMS_M_PER_PX, Camera, RoadMap, View, camera_of
-from automotive_cosim.cockpit.mapdraw import Scene
+from automotive_cosim.cockpit.mapdraw import MapScene
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.contracts import IncidentKind, Road
 
-Ego = tuple[float, float, float]
+EgoPose = tuple[float, float, float]
 """x and y in metres, heading in degrees."""
 
 
-def ego(state: State) -> Ego | None:
+def ego(state: State) -> EgoPose | None:
     """Where the car is; None before the first look outside."""
     if state.outside is None:
         return None
@@ -39,14 +39,14 @@ def panned(state: State, right: float, down: float) -> tuple[float, float]:
     return min(max(x_m, x_min), x_max), min(max(y_m, y_min), y_max)
 
 
-def scene(state: State, camera: Camera) -> Scene:
+def scene(state: State, camera: Camera) -> MapScene:
     """All that is drawn beside the roads; of the traffic what was heard last."""
     if state.outside is None:
-        return Scene(camera)
+        return MapScene(camera)
     ahead = state.outside.driving.ahead
     others = tuple(other.edges for other in ahead.alternatives)
     slow = () if state.heard is None else state.heard.driving.ahead.slow_edges
-    return Scene(camera, ego(state), ahead.route_edges, others, slow)
+    return MapScene(camera, ego(state), ahead.route_edges, others, slow)
 
 
 def jam(state: State) -> tuple[float, float] | None:

@@ -132,19 +132,20 @@ def library(rng: np.random.Generator) -> Library:
     total = PHONE_TRACKS + USB_TRACKS
     titles = _pairs(rng, _ADJECTIVES, _NOUNS, total)
     artists = _pairs(rng, _FIRST, _LAST, total // 4)
-    tracks = [
-        Entry("", title, artists[int(rng.integers(len(artists)))], float(rng.integers(140, 330)))
-        for title in titles
-    ]
-    phone = tuple(replace(entry, uri=f"track:{i}") for i, entry in enumerate(tracks[:PHONE_TRACKS]))
-    usb = tuple(replace(entry, uri=f"usb:{i}") for i, entry in enumerate(tracks[PHONE_TRACKS:]))
+    drawn = rng.integers((0, 140), (len(artists), 330), (total, 2)).tolist()
+    uris = (*(f"track:{i}" for i in range(PHONE_TRACKS)), *(f"usb:{i}" for i in range(USB_TRACKS)))
+    tracks = tuple(
+        Entry(uri, title, artists[by], float(length_s))
+        for uri, title, (by, length_s) in zip(uris, titles, drawn, strict=True)
+    )
+    phone, usb = tracks[:PHONE_TRACKS], tracks[PHONE_TRACKS:]
     sources = {"BLUETOOTH": phone, "USB": usb, **_radio(rng), "INTERNET": _podcasts(rng)}
     playlists = tuple(
-        Playlist(name, tuple(phone[int(i)].uri for i in rng.permutation(len(phone))[: rng.integers(12, 21)]))
+        Playlist(name, tuple(phone[i].uri for i in rng.permutation(len(phone))[: rng.integers(12, 21)]))
         for name in _PLAYLISTS.split("|")
     )
     by_uri = {entry.uri: entry for entries in sources.values() for entry in entries}
-    liked = (phone[int(i)].uri for i in rng.permutation(len(phone))[:8])
+    liked = (phone[i].uri for i in rng.permutation(len(phone))[:8])
     return Library(sources, playlists, (*liked, sources["FM"][3].uri, sources["DAB"][5].uri), by_uri)
 
 
@@ -173,4 +174,4 @@ def _podcasts(rng: np.random.Generator) -> tuple[Entry, ...]:
 def _pairs(rng: np.random.Generator, words: str, more: str, count: int) -> list[str]:
     first, second = words.split(), more.split()
     chosen = rng.choice(len(first) * len(second), count, replace=False)
-    return [f"{first[int(i) // len(second)]} {second[int(i) % len(second)]}" for i in chosen]
+    return [f"{first[i // len(second)]} {second[i % len(second)]}" for i in chosen.tolist()]

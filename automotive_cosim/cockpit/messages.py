@@ -178,12 +178,12 @@ class TakeCall:
 
 
 @dataclass(frozen=True, slots=True)
-class Decline:
+class DeclineCall:
     """Turn down the call that rings."""
 
 
 @dataclass(frozen=True, slots=True)
-class Reply:
+class SendReply:
     """Send somebody a message."""
 
     to: str
@@ -253,8 +253,8 @@ Message = (
     | Dial
     | HangUp
     | TakeCall
-    | Decline
-    | Reply
+    | DeclineCall
+    | SendReply
     | Read
     | Pay
     | Record

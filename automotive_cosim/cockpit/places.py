@@ -18,7 +18,7 @@ PLACES = 80
 FAVOURITE_STREETS = 6
 
 
-class Kind(StrEnum):
+class PlaceKind(StrEnum):
     """What a place is."""
 
     HOME = "home"
@@ -49,46 +49,46 @@ class Sort:
     words: str
 
 
-SORTS: Mapping[Kind, Sort] = {
-    Kind.HOME: Sort("Home", Icon.HOME, 1, "Home", "Home"),
-    Kind.WORK: Sort("Work", Icon.WORK, 1, "Work", "Work"),
-    Kind.CHARGING: Sort(
+SORTS: Mapping[PlaceKind, Sort] = {
+    PlaceKind.HOME: Sort("Home", Icon.HOME, 1, "Home", "Home"),
+    PlaceKind.WORK: Sort("Work", Icon.WORK, 1, "Work", "Work"),
+    PlaceKind.CHARGING: Sort(
         "Charging",
         Icon.CHARGING,
         10,
         "{} Charging",
         "Volta Lumen Amber Spark Pulse Helio Nova Plus Metro Ion Rapid",
     ),
-    Kind.PARKING: Sort(
+    PlaceKind.PARKING: Sort(
         "Parking", Icon.PARKING, 8, "{} Car Park", "Central North South Market Station Theatre Garden Bridge"
     ),
-    Kind.RESTAURANT: Sort(
+    PlaceKind.RESTAURANT: Sort(
         "Restaurants",
         Icon.RESTAURANT,
         10,
         "{} Kitchen",
         "Olive Basil Saffron Anchor Lantern Corner Ginger Cedar Bay Fig",
     ),
-    Kind.CAFE: Sort("Cafés", Icon.CAFE, 8, "Café {}", "Horizon Luna Aroma Paloma Bloom Tempo Verde Azur"),
-    Kind.SHOP: Sort("Shops", Icon.SHOP, 8, "{} Market", "Fresh Daily Green Family Golden Corner Union City"),
-    Kind.HOSPITAL: Sort("Hospitals", Icon.HOSPITAL, 3, "{} Hospital", "General University Children's"),
-    Kind.PHARMACY: Sort("Pharmacies", Icon.PHARMACY, 6, "{} Pharmacy", "Linden Crown Park Sun Eagle Bridge"),
-    Kind.HOTEL: Sort("Hotels", Icon.HOTEL, 6, "Hotel {}", "Aurora Central Bellevue Meridian Royal Astoria"),
-    Kind.STATION: Sort("Stations", Icon.STATION, 3, "{} Station", "Central East West"),
-    Kind.MUSEUM: Sort("Museums", Icon.MUSEUM, 4, "{} Museum", "City Science Modern Maritime"),
-    Kind.SCHOOL: Sort("Schools", Icon.SCHOOL, 4, "{} School", "Hill River Oak Meadow"),
-    Kind.PARK: Sort("Parks", Icon.PARK, 4, "{} Park", "Lake Rose Castle Maple"),
-    Kind.GYM: Sort("Gyms", Icon.GYM, 4, "{} Gym", "Iron Active Summit Pace"),
+    PlaceKind.CAFE: Sort("Cafés", Icon.CAFE, 8, "Café {}", "Horizon Luna Aroma Paloma Bloom Tempo Verde Azur"),
+    PlaceKind.SHOP: Sort("Shops", Icon.SHOP, 8, "{} Market", "Fresh Daily Green Family Golden Corner Union City"),
+    PlaceKind.HOSPITAL: Sort("Hospitals", Icon.HOSPITAL, 3, "{} Hospital", "General University Children's"),
+    PlaceKind.PHARMACY: Sort("Pharmacies", Icon.PHARMACY, 6, "{} Pharmacy", "Linden Crown Park Sun Eagle Bridge"),
+    PlaceKind.HOTEL: Sort("Hotels", Icon.HOTEL, 6, "Hotel {}", "Aurora Central Bellevue Meridian Royal Astoria"),
+    PlaceKind.STATION: Sort("Stations", Icon.STATION, 3, "{} Station", "Central East West"),
+    PlaceKind.MUSEUM: Sort("Museums", Icon.MUSEUM, 4, "{} Museum", "City Science Modern Maritime"),
+    PlaceKind.SCHOOL: Sort("Schools", Icon.SCHOOL, 4, "{} School", "Hill River Oak Meadow"),
+    PlaceKind.PARK: Sort("Parks", Icon.PARK, 4, "{} Park", "Lake Rose Castle Maple"),
+    PlaceKind.GYM: Sort("Gyms", Icon.GYM, 4, "{} Gym", "Iron Active Summit Pace"),
 }
 """Counts add up to ``PLACES``."""
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class Destination:
     """Somewhere to go."""
 
     name: str
-    kind: Kind
+    kind: PlaceKind
     street: str
     edge_id: str
     x_m: float
@@ -107,38 +107,38 @@ class Place:
 
 
 @dataclass(frozen=True, slots=True)
-class Atlas:
+class Gazetteer:
     """All places, and the streets that stand among the favourites from the start."""
 
-    places: tuple[Place, ...]
+    places: tuple[Destination, ...]
     streets: tuple[str, ...]
 
-    def find(self, name: str) -> Place | None:
+    def find(self, name: str) -> Destination | None:
         """The place of that name."""
         return next((place for place in self.places if place.name == name), None)
 
-    def at(self, edge_id: str) -> Place | None:
+    def at(self, edge_id: str) -> Destination | None:
         """The place on that edge of the network."""
         return next((place for place in self.places if place.edge_id == edge_id), None)
 
-    def of(self, kind: Kind) -> tuple[Place, ...]:
+    def of(self, kind: PlaceKind) -> tuple[Destination, ...]:
         """All of one kind."""
         return tuple(place for place in self.places if place.kind is kind)
 
     @property
     def favourites(self) -> tuple[str, ...]:
         """Home, work and some streets: what the driver has saved."""
-        own = [place.name for place in self.places if place.kind in (Kind.HOME, Kind.WORK)]
+        own = [place.name for place in self.places if place.kind in (PlaceKind.HOME, PlaceKind.WORK)]
         return (*own, *self.streets)
 
 
-def atlas(roads: RoadMap, rng: np.random.Generator) -> Atlas:
+def atlas(roads: RoadMap, rng: np.random.Generator) -> Gazetteer:
     """Draws the places of a network, each on a street of its own."""
     streets = tuple(roads.names[int(i)] for i in rng.permutation(len(roads.names))[:FAVOURITE_STREETS])
     addresses = _addresses(roads)
     chosen = rng.permutation(len(addresses))[:PLACES]
     names = _names(rng)[: len(chosen)]
-    return Atlas(
+    return Gazetteer(
         tuple(
             _place(roads, addresses[int(at)], kind, name, rng)
             for at, (kind, name) in zip(chosen, names, strict=True)
@@ -147,13 +147,13 @@ def atlas(roads: RoadMap, rng: np.random.Generator) -> Atlas:
     )
 
 
-def _names(rng: np.random.Generator) -> list[tuple[Kind, str]]:
+def _names(rng: np.random.Generator) -> list[tuple[PlaceKind, str]]:
     """One of each kind in turn, so that a small network has some of all."""
     left = {
         kind: [sort.pattern.format(word) for word in rng.permutation(sort.words.split())[: sort.count]]
         for kind, sort in SORTS.items()
     }
-    names: list[tuple[Kind, str]] = []
+    names: list[tuple[PlaceKind, str]] = []
     while any(left.values()):
         names += [(kind, words.pop()) for kind, words in left.items() if words]
     return names
@@ -170,20 +170,20 @@ def _addresses(roads: RoadMap) -> tuple[int, ...]:
     return tuple(fit or range(len(roads.roads)))
 
 
-def _place(roads: RoadMap, at: int, kind: Kind, name: str, rng: np.random.Generator) -> Place:
+def _place(roads: RoadMap, at: int, kind: PlaceKind, name: str, rng: np.random.Generator) -> Destination:
     road = roads.roads[at]
     x_m, y_m = road.shape_m[len(road.shape_m) // 2]
-    return Place(name, kind, road.name or "Unnamed road", road.edge_id, x_m, y_m, _detail(kind, rng))
+    return Destination(name, kind, road.name or "Unnamed road", road.edge_id, x_m, y_m, _detail(kind, rng))
 
 
-def _detail(kind: Kind, rng: np.random.Generator) -> str:
-    if kind is Kind.CHARGING:
+def _detail(kind: PlaceKind, rng: np.random.Generator) -> str:
+    if kind is PlaceKind.CHARGING:
         plugs = int(rng.integers(2, 9))
         return f"{rng.choice([22, 50, 150, 300])} kW, {rng.integers(0, plugs + 1)} of {plugs} free"
-    if kind is Kind.PARKING:
+    if kind is PlaceKind.PARKING:
         return f"{rng.integers(3, 240)} spaces free, {rng.integers(10, 45) / 10:.1f} an hour"
-    if kind in (Kind.HOME, Kind.WORK):
+    if kind in (PlaceKind.HOME, PlaceKind.WORK):
         return "Your address"
-    if kind is Kind.HOSPITAL:
+    if kind is PlaceKind.HOSPITAL:
         return "Emergency room, day and night"
     return f"Open until {rng.integers(17, 24)}:00"

@@ -20,7 +20,7 @@ from automotive_cosim.errors import SignalError, UnknownNameError
 T = TypeVar("T")
 
 
-class Kind(StrEnum):
+class LeafKind(StrEnum):
     """VSS's kinds of leaf."""
 
     ACTUATOR = "actuator"
@@ -36,7 +36,7 @@ class Signal(Generic[T]):
     """One leaf of the tree: what it is called and which values it takes."""
 
     path: str
-    kind: Kind
+    kind: LeafKind
     default: T
     unit: str = ""
     """VSS's word for the unit."""
@@ -52,6 +52,10 @@ class Signal(Generic[T]):
 
     def __str__(self) -> str:
         return self.path
+
+    def __hash__(self) -> int:
+        """By the path, which only one has: widgets and messages that hold signals are hashed on every step."""
+        return hash(self.path)
 
     @property
     def low(self) -> float:
@@ -118,40 +122,40 @@ def _enter(signal: Signal[T]) -> Signal[T]:
 
 
 def _switch(path: str, default: bool = False, *, overlay: bool = False) -> Signal[bool]:
-    return _enter(Signal(f"Vehicle.{path}", Kind.ACTUATOR, default, overlay=overlay))
+    return _enter(Signal(f"Vehicle.{path}", LeafKind.ACTUATOR, default, overlay=overlay))
 
 
 def _is(path: str, default: bool = False, *, overlay: bool = False) -> Signal[bool]:
-    return _enter(Signal(f"Vehicle.{path}", Kind.SENSOR, default, overlay=overlay))
+    return _enter(Signal(f"Vehicle.{path}", LeafKind.SENSOR, default, overlay=overlay))
 
 
 def _choice(path: str, default: str, allowed: str, *, overlay: bool = False) -> Signal[str]:
     return _enter(
-        Signal(f"Vehicle.{path}", Kind.ACTUATOR, default, allowed=tuple(allowed.split()), overlay=overlay)
+        Signal(f"Vehicle.{path}", LeafKind.ACTUATOR, default, allowed=tuple(allowed.split()), overlay=overlay)
     )
 
 
 def _set(
     path: str, default: float, unit: str, low: float, high: float, step: float = 1.0, *, overlay: bool = False
 ) -> Signal[float]:
-    return _enter(Signal(f"Vehicle.{path}", Kind.ACTUATOR, default, unit, low, high, step, overlay=overlay))
+    return _enter(Signal(f"Vehicle.{path}", LeafKind.ACTUATOR, default, unit, low, high, step, overlay=overlay))
 
 
 def _measure(
     path: str, default: float, unit: str, low: float | None, high: float | None, *, overlay: bool = False
 ) -> Signal[float]:
-    return _enter(Signal(f"Vehicle.{path}", Kind.SENSOR, default, unit, low, high, overlay=overlay))
+    return _enter(Signal(f"Vehicle.{path}", LeafKind.SENSOR, default, unit, low, high, overlay=overlay))
 
 
 def _maybe(path: str, unit: str, low: float, high: float | None, *, overlay: bool = False) -> Signal[float | None]:
     signal: Signal[float | None] = Signal(
-        f"Vehicle.{path}", Kind.SENSOR, None, unit, low, high, optional=True, overlay=overlay
+        f"Vehicle.{path}", LeafKind.SENSOR, None, unit, low, high, optional=True, overlay=overlay
     )
     return _enter(signal)
 
 
 def _text(path: str, *, overlay: bool = False) -> Signal[str]:
-    return _enter(Signal(f"Vehicle.{path}", Kind.SENSOR, "", overlay=overlay))
+    return _enter(Signal(f"Vehicle.{path}", LeafKind.SENSOR, "", overlay=overlay))
 
 
 class HVAC:
@@ -327,7 +331,9 @@ class MOTION:
     SPEED = _measure("Speed", 0.0, "km/h", 0, 400)
     IS_MOVING = _is("IsMoving")
     GEAR = _enter(
-        Signal("Vehicle.Powertrain.Transmission.Gear", Kind.SENSOR, "D", allowed=("P", "R", "N", "D"), overlay=True)
+        Signal(
+            "Vehicle.Powertrain.Transmission.Gear", LeafKind.SENSOR, "D", allowed=("P", "R", "N", "D"), overlay=True
+        )
     )
     HEADING = _measure("CurrentLocation.Heading", 0.0, "degrees", 0, 360)
     LATITUDE = _maybe("CurrentLocation.Latitude", "degrees", -90, 90)
@@ -364,7 +370,7 @@ class MEDIA:
     VOLUME = _set("Cabin.Infotainment.Media.Volume", 30.0, "percent", 0, 100, 5)
     MUTED = _switch("Cabin.Infotainment.Media.IsMuted", overlay=True)
     SOURCE = _choice("Cabin.Infotainment.Media.Played.Source", "BLUETOOTH", "BLUETOOTH FM DAB USB INTERNET")
-    SELECTED = _enter(Signal("Vehicle.Cabin.Infotainment.Media.SelectedURI", Kind.ACTUATOR, ""))
+    SELECTED = _enter(Signal("Vehicle.Cabin.Infotainment.Media.SelectedURI", LeafKind.ACTUATOR, ""))
     """What was chosen; what plays now is ``PLAYED``."""
     SHUFFLE = _switch("Cabin.Infotainment.Media.IsShuffleActive", overlay=True)
     REPEAT = _switch("Cabin.Infotainment.Media.IsRepeatActive", overlay=True)
@@ -459,7 +465,8 @@ class Signals:
         return value
 
     def __setitem__(self, signal: Signal[T], value: T) -> None:
-        self._values[signal.path] = signal.check(value)
+        if self._values[signal.path] is not value:
+            self._values[signal.path] = signal.check(value)
 
     def __iter__(self) -> Iterator[Signal[Any]]:
         return iter(CATALOGUE.values())
@@ -483,7 +490,7 @@ class Signals:
         return twin
 
 
-ACTUATORS = tuple(path for path, signal in CATALOGUE.items() if signal.kind is Kind.ACTUATOR)
+ACTUATORS = tuple(path for path, signal in CATALOGUE.items() if signal.kind is LeafKind.ACTUATOR)
 """Paths of all that can be commanded."""
 
 

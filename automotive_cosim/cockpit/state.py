@@ -14,7 +14,7 @@ from automotive_cosim.cockpit.map import RoadMap
 from automotive_cosim.cockpit.media import Library, Listening
 from automotive_cosim.cockpit.navigation import Navigation
 from automotive_cosim.cockpit.people import Directory, Phone
-from automotive_cosim.cockpit.places import Atlas
+from automotive_cosim.cockpit.places import Gazetteer
 from automotive_cosim.cockpit.restrictions import ENTRIES_LIMIT, REASONS, Restriction, restrictions
 from automotive_cosim.cockpit.signals import HMI, MOTION, Signals
 from automotive_cosim.cockpit.theme import Icon
@@ -60,7 +60,7 @@ class AlertDraft:
 
 
 @dataclass(frozen=True, slots=True)
-class AlertGiven:
+class AlertRecord:
     """One line of the history."""
 
     clock: str
@@ -91,7 +91,7 @@ class State:
     vehicle: Vehicle
     roads: RoadMap
     library: Library
-    atlas: Atlas
+    atlas: Gazetteer
     directory: Directory
     navigation: Navigation
     listening: Listening
@@ -125,7 +125,7 @@ class State:
     panned: tuple[float, float] | None = None
     """Where the map looks in metres of the network, if not at the car."""
     draft: AlertDraft = field(default_factory=AlertDraft)
-    alerts: tuple[AlertGiven, ...] = ()
+    alerts: tuple[AlertRecord, ...] = ()
     notices: tuple[Notice, ...] = ()
     calls: tuple[str, ...] = ()
     asked: tuple[RoadRequest, ...] = ()
@@ -227,7 +227,7 @@ class State:
                 for given in self.alerts
             ],
             "calls": list(self.calls),
-            "requests": [repr(request) for request in self.asked],
+            "requests": list(self.asked),
             "horn": self.horns,
             "washer": self.washes,
             **self.navigation.commands(),

@@ -38,7 +38,7 @@ from automotive_cosim.cockpit.messages import (
 from automotive_cosim.cockpit.restrictions import STRING_LIMIT
 from automotive_cosim.cockpit.screens.safety import KINDS
 from automotive_cosim.cockpit.signals import ADAS, LIGHTS, MEDIA, Signal
-from automotive_cosim.cockpit.state import AlertDraft, AlertGiven, State
+from automotive_cosim.cockpit.state import AlertDraft, AlertRecord, State
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.contracts import (
     Alert,
@@ -228,7 +228,7 @@ def give_alert(state: State, alert: Alert) -> Feedback:
         text += (
             f" to {alert.speed_kmh:.0f} km/h" if alert.kind is AlertKind.SPEED else f": {alert.speed_kmh:.0f} km/h"
         )
-    state.alerts += (AlertGiven(state.clock, alert),)
+    state.alerts += (AlertRecord(state.clock, alert),)
     state.pending += (alert,)
     state.notify(text, icon, alert.severity)
     return Feedback(FeedbackCode.OK, f"{name} alert given to the driver: {text}")
@@ -260,7 +260,7 @@ def answered(state: State, request: RoadRequest, answer: Answer) -> None:
     """Shows the road's reply where it belongs."""
     if isinstance(request, Alert) and state.alerts:
         *rest, last = state.alerts
-        state.alerts = (*rest, AlertGiven(last.clock, last.alert, answer.reason))
+        state.alerts = (*rest, AlertRecord(last.clock, last.alert, answer.reason))
     if isinstance(request, Cruise) and not answer.accepted:
         state.signals[ADAS.CRUISE_ACTIVE] = False
         state.signals[ADAS.LIMITER_ACTIVE] = False

@@ -30,7 +30,7 @@ from automotive_cosim.cockpit.signals import (
     OUTSIDE,
     SEAT,
     TYRE,
-    Kind,
+    LeafKind,
     Signal,
     Signals,
 )
@@ -260,7 +260,7 @@ def resolve(name: str, value: Any, area: int = GLOBAL) -> tuple[Signal[Any], Any
     """
     known = _named(name)
     signal = _at(name, known, area)
-    if not known.writable or signal.kind is not Kind.ACTUATOR:
+    if not known.writable or signal.kind is not LeafKind.ACTUATOR:
         raise SignalError(f"{name} can only be read")
     try:
         translated = known.codec.write(value)

@@ -13,7 +13,7 @@ from typing import ClassVar, Literal
 
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.map import RoadMap
-from automotive_cosim.cockpit.mapdraw import Scene
+from automotive_cosim.cockpit.mapdraw import MapScene
 from automotive_cosim.cockpit.messages import Message, Set
 from automotive_cosim.cockpit.signals import Signal
 from automotive_cosim.cockpit.theme import Icon, Type
@@ -281,7 +281,7 @@ class MapView(Widget):
     """The moving map."""
 
     roads: RoadMap
-    scene: Scene
+    scene: MapScene
     on_double_tap: Message | None = None
     pans: bool = False
     """A swipe moves it."""

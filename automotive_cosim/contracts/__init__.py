@@ -1,25 +1,26 @@
-"""The nouns that flow through the co-simulation, once round the loop.
+"""The data types that flow through the co-simulation, once round the loop.
 
     SUMO -> DrivingState -> GpsFix -> GeoContext -> vehicle signals -> Element -> Observation -> Action
       ^                                                                                            |
       +----------------------------------------- RoadRequest <-------------------------------------+
 
-Everything here is frozen data without behaviour of its own. Units stand in the field names: ``_s`` seconds,
+Everything here is frozen data without behaviour of its own. Field names carry the units: ``_s`` seconds,
 ``_m`` metres, ``_mps`` metres per second, ``_mps2`` metres per second squared, ``_deg`` degrees, ``_kmh``
-kilometres per hour, ``_c`` degrees Celsius, ``_pct`` per cent. ``None`` means that there is no such thing
+kilometres per hour, ``_c`` degrees Celsius, ``_pct`` per cent. ``None`` means that there is none
 (no leader, no limit, no projection), never zero.
 
-driving      what the car does on the road, and what is around and ahead of it
+driving      the car's state on the road, and what is around and ahead of it
 roads        the network as a map draws it
 place        weather, position fix, connection, surroundings
 observation  what an agent sees
 action       what an agent does
-requests     what the cockpit asks of the road, and the answer
-plain        factors between units, and JSON
+requests     the cockpit's requests to the road, and the answers
+plain        factors between units, JSON, numbers in texts, and how progress is told
 """
 
 from automotive_cosim.contracts.action import Action, ActionType, Direction, GoalStatus, Reason
 from automotive_cosim.contracts.driving import (
+    STANDING_BELOW_MPS,
     Around,
     DrivingState,
     EgoEnd,
@@ -41,7 +42,7 @@ from automotive_cosim.contracts.observation import (
     VehicleState,
 )
 from automotive_cosim.contracts.place import Connectivity, GpsFix, Surroundings, Weather
-from automotive_cosim.contracts.plain import KMH_PER_MPS, MPH_PER_MPS, Json
+from automotive_cosim.contracts.plain import KMH_PER_MPS, MPH_PER_MPS, Json, Tell
 from automotive_cosim.contracts.requests import (
     Alert,
     AlertKind,
@@ -59,6 +60,7 @@ from automotive_cosim.contracts.roads import Road, RoadNetwork
 __all__ = [
     "KMH_PER_MPS",
     "MPH_PER_MPS",
+    "STANDING_BELOW_MPS",
     "Action",
     "ActionType",
     "Alert",
@@ -95,6 +97,7 @@ __all__ = [
     "Severity",
     "SlowDown",
     "Surroundings",
+    "Tell",
     "TrafficLight",
     "VehicleState",
     "Weather",

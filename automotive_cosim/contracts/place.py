@@ -1,29 +1,33 @@
-"""Where the car is: weather, fix, connection, surroundings."""
+"""The car's surroundings: weather, position fix, link."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from datetime import datetime
+from typing import Annotated
+
+from annotated_types import Ge, Le
 
 from automotive_cosim.contracts.driving import DrivingState
 
 
 @dataclass(frozen=True, slots=True)
 class Weather:
-    """The weather at the car, in Open-Meteo's field names and units, WMO 4677 codes."""
+    """The weather at the car, in Open-Meteo's field names and units."""
 
-    temperature_2m: float
+    temperature_2m: Annotated[float, Ge(-100), Le(70)]
     """Degrees Celsius."""
-    relative_humidity_2m: float
+    relative_humidity_2m: Annotated[float, Ge(0), Le(100)]
     """Per cent."""
-    precipitation: float
+    precipitation: Annotated[float, Ge(0)]
     """Millimetres per hour."""
-    weather_code: int
-    cloud_cover: float
+    weather_code: Annotated[int, Ge(0), Le(99)]
+    """WMO 4677."""
+    cloud_cover: Annotated[float, Ge(0), Le(100)]
     """Per cent."""
-    visibility: float
+    visibility: Annotated[float, Ge(0)]
     """Metres."""
-    wind_speed_10m: float
+    wind_speed_10m: Annotated[float, Ge(0)]
     """Kilometres per hour."""
 
 
@@ -37,13 +41,13 @@ class GpsFix:
     accuracy_m: float
     """One standard deviation of the horizontal error."""
     age_s: float
-    """Since the fix was taken."""
+    """Seconds since the fix was taken."""
     heading_deg: float
 
 
 @dataclass(frozen=True, slots=True)
 class Connectivity:
-    """The car's link to the outside."""
+    """The car's link to the outside world."""
 
     online: bool
     kind: str
@@ -54,14 +58,14 @@ class Connectivity:
 
 @dataclass(frozen=True, slots=True)
 class Surroundings:
-    """Everything outside the cockpit at one instant, as the cockpit's sensors meet it."""
+    """Everything outside the cockpit at one instant, as the input of its sensors."""
 
     driving: DrivingState
     weather: Weather
     local_time: datetime
     """Zone-aware."""
     sun_elevation_deg: float | None
-    """None where the position is not known."""
+    """None if the position is unknown."""
     gps: GpsFix | None
     """None in a network without projection."""
     connectivity: Connectivity

@@ -17,20 +17,21 @@ from automotive_cosim.contracts import Action, Element, Feedback
 from automotive_cosim.cosim.car import Car
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.geo.connectivity import Modem
-from automotive_cosim.geo.context import Geo
 from automotive_cosim.geo.gps import Gps
+from automotive_cosim.geo.locate import Geo
 from automotive_cosim.scenarios import LinkAt, Scenario, WeatherAt
 from automotive_cosim.traffic.base import Traffic
+from automotive_cosim.traffic.shadow import SharedTraffic
 
 TICK_S = 1.0
-"""The cockpit, the receiver and the place are updated this often; the road runs on SUMO's own step."""
+"""Update interval of the cockpit, the receiver and the place; the road runs at SUMO's own step."""
 
 
 @dataclass(slots=True)
 class CoSimulation:
     """Owns its parts: closing it ends its traffic. ``moment`` is the newest state."""
 
-    traffic: Traffic
+    traffic: SharedTraffic
     car: Car
     moment: Moment
 
@@ -40,17 +41,17 @@ class CoSimulation:
         return self.car.cockpit
 
     def perform(self, action: Action, elements: tuple[Element, ...]) -> Feedback:
-        """Carries out an action now and passes on what it asks of the road; no time passes."""
+        """Performs an action now and passes on its requests to the road; no time passes."""
         feedback = actions.perform(action, self.cockpit, elements)
         for request in self.cockpit.drain_requests():
             self.cockpit.answered(request, self.traffic.request(request))
         return self.cockpit.spoken(feedback)
 
     def advance(self, duration_s: float) -> tuple[Moment, ...]:
-        """Lets time pass, in ticks; shorter than asked if the ego's drive ends.
+        """Lets time pass, in ticks; less than requested if the ego's drive ends.
 
         Raises:
-            TrafficError: the road side failed.
+            TrafficError: the traffic simulation failed.
         """
         moments = []
         left_s = duration_s
@@ -63,11 +64,18 @@ class CoSimulation:
         return tuple(moments)
 
     def branch(self) -> CoSimulation:
-        """An exact copy that goes its own way from this instant."""
+        """An exact copy that is independent from this instant."""
         return CoSimulation(self.traffic.branch(), self.car.copy(), self.moment)
 
+    def shadow(self) -> CoSimulation:
+        """An exact copy with nobody at its cockpit, to be driven along with this one.
+
+        It gets a simulation of its own only when a request is made to this road. Close it first.
+        """
+        return CoSimulation(self.traffic.shadow(), self.car.copy(), self.moment)
+
     def close(self) -> None:
-        """Ends the drive; harmless when called again."""
+        """Ends the drive; may be called again."""
         self.traffic.close()
 
 
@@ -85,15 +93,16 @@ def couple(
 
     Args:
         traffic: the ego's drive.
-        cockpit: the car's.
-        scenario: whose network it is; without a place on earth the car gets no receiver.
-        gps_rng: draws the receiver's errors.
+        cockpit: the car's cockpit.
+        scenario: the scenario; without a place on earth, the car has no receiver.
+        gps_rng: source of the receiver's errors.
         weather: the timeline, in seconds after departure.
         departure: local time of the traffic's present state, zone-aware.
-        links: the best link to the outside there is, in seconds after departure.
+        links: the best available link over time, in seconds after departure.
     """
     state = traffic.state
     car = Car(
         cockpit, Gps(gps_rng) if scenario.has_place else None, Modem(links), Geo(), weather, departure, state.time_s
     )
-    return CoSimulation(traffic, car, car.sense(traffic, (state,), (), 0.0))
+    shared = SharedTraffic(traffic, scenario.sumo.step_length_s)
+    return CoSimulation(shared, car, car.sense(shared, (state,), (), 0.0))

@@ -1,13 +1,13 @@
-"""Traffic law broken on a drive, as intervals: for judges and reports, never for an agent.
+"""Violations of traffic law on a drive, as intervals: for judges and reports, never for an agent.
 
     from automotive_cosim import geo
 
     for found in geo.violations(env.unwrapped.episode.moments):
         print(found.from_s, found.to_s, found.rule, found.law, found.margin, found.unit)
 
-Only what the context is certain of is checked: a limit that the network leaves open, or a lamp whose signal the car
-lacks, breaks nothing. What a car does by itself is not asked for: daytime running lamps light up without a switch
-(UN R48, 6.19). A rule's ``status`` stands in each entry, so that a judge can keep to the verified ones.
+Only what the context is certain of is checked: a limit that the network does not determine, or a lamp whose signal
+the car lacks, is no violation. What a car does by itself is not checked: daytime running lamps need no switch (UN
+R48, 6.19). Each entry has its rule's ``status``, so a judge can select the verified ones.
 """
 
 from __future__ import annotations
@@ -17,28 +17,30 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any, Protocol
 
-from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, LimitSource
-from automotive_cosim.geo.context import STANDING_BELOW_MPS, AppliedRule, GeoContext
+from automotive_cosim.contracts import KMH_PER_MPS, STANDING_BELOW_MPS, DrivingState, LimitSource
+from automotive_cosim.geo.applied import AppliedRule
+from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.rules import Rule, Status
 from automotive_cosim.geo.text import KM_PER_MILE
 
 EQUAL_UP_TO_KMH = 1.0
-"""So much above the limit still counts as equal (Regulation (EU) 2021/1958, annex I)."""
+"""Tolerance above the limit (Regulation (EU) 2021/1958, annex I)."""
 
 ISA_FROM_KMH = 20.0
-"""Slower than this, intelligent speed assistance need not act (same annex) and no following distance is asked."""
+"""Below this speed, intelligent speed assistance need not act (same annex) and no following distance is
+required."""
 
 ISA_CASCADE = ((1.0, 6.0), (1.1, 5.0), (1.2, 4.0), (1.3, 3.0))
-"""(speed over limit, seconds): the tone sounds once that ratio has been held so long (same annex)."""
+"""(ratio of speed to limit, seconds): the tone sounds once that ratio has lasted that long (same annex)."""
 
 LAMP_TIME_S = 2.0
-"""An automatic switch may take so long to light the dipped beam (UN R48, 6.2.7)."""
+"""How long an automatic switch may take to light the dipped beam (UN R48, 6.2.7)."""
 
 GAP_TIME_S = 3.0
-"""Somebody who cuts in leaves a gap that takes a while to open; our choice."""
+"""Time to reopen a gap after another vehicle cuts in; our choice."""
 
 DANGER_BELOW_S = 2.7
-"""Time to collision under which a horn warns of danger, as every law allows; our choice."""
+"""Time to collision below which the horn warns of danger, which every law allows; our choice."""
 
 LOW_BEAM = "Vehicle.Body.Lights.Beam.Low.IsOn"
 HIGH_BEAM = "Vehicle.Body.Lights.Beam.High.IsOn"
@@ -51,14 +53,14 @@ MEDIA_SOURCE = "Vehicle.Cabin.Infotainment.Media.Played.Source"
 """Paths of the Vehicle Signal Specification 6.0; a car may lack some."""
 
 MOVING_PICTURES = ("TV", "DVD")
-"""Media sources that show pictures, in VSS's words."""
+"""Media sources that show moving pictures, as VSS values."""
 
 SIGN = "posted"
-"""Stands for the rule where a sign sets the limit."""
+"""Id of the rule if a sign sets the limit."""
 
 
-class Kind(StrEnum):
-    """What was done."""
+class ViolationKind(StrEnum):
+    """Kinds of violations."""
 
     SPEED = "speed"
     LAMPS = "lamps"
@@ -77,7 +79,7 @@ class Observed(Protocol):
 
     @property
     def driving(self) -> DrivingState:
-        """On the road."""
+        """State of the drive."""
         ...
 
     @property
@@ -87,36 +89,36 @@ class Observed(Protocol):
 
     @property
     def signals(self) -> Mapping[str, Any]:
-        """VSS path to value; what the car lacks is missing."""
+        """VSS path to value, without signals that the car lacks."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class Violation:
-    """A rule broken without a break from one instant to another."""
+    """A rule broken continuously from one instant to another."""
 
-    kind: Kind
+    kind: ViolationKind
     rule: str
     """Id of the rule, or ``"posted"`` for a sign."""
     text: str
     """The rule in words."""
     law: str
     status: Status
-    """A sign counts as verified: it stands there."""
+    """Status of the rule; a sign counts as verified."""
     from_s: float
     to_s: float
     """The first and the last instant at which it was broken, simulation time."""
     margin: float
-    """The worst distance from what is lawful; 1 where there is nothing to measure."""
+    """The largest deviation from what is lawful; 1 if there is nothing to measure."""
     unit: str
-    """Of the margin: ``km/h``, ``m``, ``s``, or empty."""
+    """Unit of the margin: ``km/h``, ``m``, ``s``, or empty."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Breach:
     """One rule broken at one instant."""
 
-    kind: Kind
+    kind: ViolationKind
     rule: str
     text: str
     law: str
@@ -124,20 +126,20 @@ class _Breach:
     margin: float = 1.0
     unit: str = ""
     ratio: float = 1.0
-    """Speed over limit."""
+    """Ratio of speed to limit."""
 
     @property
-    def key(self) -> tuple[Kind, str, str]:
+    def key(self) -> tuple[ViolationKind, str, str]:
         return self.kind, self.rule, self.text
 
 
 def violations(states: Iterable[Observed]) -> tuple[Violation, ...]:
-    """What was broken, in the order of its beginning.
+    """The violations, ordered by their beginning.
 
     Args:
-        states: a drive in the order of time, e.g. the moments of an episode.
+        states: a drive in chronological order, e.g. the moments of an episode.
     """
-    open_runs: dict[tuple[Kind, str, str], list[tuple[float, _Breach]]] = {}
+    open_runs: dict[tuple[ViolationKind, str, str], list[tuple[float, _Breach]]] = {}
     closed: list[list[tuple[float, _Breach]]] = []
     for state in states:
         now = {breach.key: breach for breach in _breaches(state)}
@@ -165,20 +167,20 @@ def _interval(run: Sequence[tuple[float, _Breach]]) -> Violation:
 
 
 def _lasted(run: Sequence[tuple[float, _Breach]]) -> bool:
-    """Whether it went on for longer than a lawful driver may need."""
+    """Whether it lasted longer than a lawful driver may need."""
     match run[0][1].kind:
-        case Kind.SPEED:
+        case ViolationKind.SPEED:
             return any(_held_s(run, ratio) >= seconds for ratio, seconds in ISA_CASCADE)
-        case Kind.LAMPS:
+        case ViolationKind.LAMPS:
             return _held_s(run) > LAMP_TIME_S
-        case Kind.DISTANCE:
+        case ViolationKind.DISTANCE:
             return _held_s(run) > GAP_TIME_S
-        case Kind.HORN | Kind.SCREEN:
+        case ViolationKind.HORN | ViolationKind.SCREEN:
             return True
 
 
 def _held_s(run: Sequence[tuple[float, _Breach]], ratio: float = 1.0) -> float:
-    """The longest time without a break at that ratio of speed to limit or more."""
+    """The longest continuous time at that ratio of speed to limit or more."""
     longest_s, since_s = 0.0, None
     for time_s, breach in run:
         if breach.ratio < ratio:
@@ -201,7 +203,7 @@ def _breaches(state: Observed) -> Iterator[_Breach]:
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """The limit that binds at one instant."""
+    """The limit that applies at one instant."""
 
     kmh: float
     rule: str
@@ -211,10 +213,9 @@ class Limit:
 
 
 def binding_limit(context: GeoContext) -> Limit | None:
-    """The lowest limit that is certain to hold: the sign's, else the law's; lowered by weather, light or hour.
+    """The lowest limit that certainly applies: the sign's, else the law's; lowered by weather, light or hour.
 
-    A sign is lowered only by those rules that lower signs too (``caps``). None where no limit is known or there is
-    none.
+    A sign is lowered only by rules that also lower signs (``caps``). None if no limit is known or there is none.
     """
     signed = context.road.limit_source is LimitSource.POSTED
     found: list[Limit] = []
@@ -243,7 +244,7 @@ def _speeding(state: Observed) -> Iterator[_Breach]:
         return
     words = f"{limit.kmh:.0f} km/h {limit.text}"
     over_kmh, ratio = speed_kmh - limit.kmh, speed_kmh / limit.kmh
-    yield _Breach(Kind.SPEED, limit.rule, words, limit.law, limit.status, over_kmh, "km/h", ratio)
+    yield _Breach(ViolationKind.SPEED, limit.rule, words, limit.law, limit.status, over_kmh, "km/h", ratio)
 
 
 # --- lamps, distance, horn, screens -------------------------------------------------------------------------
@@ -255,7 +256,7 @@ _LAMPS = {
     "rear_fog": (REAR_FOG,),
     "hazard_lights": (HAZARD,),
 }
-"""Topic -> lamps, one of which does what the topic asks for."""
+"""Topic -> lamps, one of which satisfies the topic."""
 
 
 def _lamps(state: Observed) -> Iterator[_Breach]:
@@ -267,7 +268,7 @@ def _lamps(state: Observed) -> Iterator[_Breach]:
             continue
         for applied in _certain(state.context, topic):
             if (applied.value == "required" and not any(shown)) or (applied.value == "forbidden" and any(shown)):
-                yield _breach(Kind.LAMPS, applied.rule)
+                yield _breach(ViolationKind.LAMPS, applied.rule)
 
 
 def _too_close(state: Observed) -> Iterator[_Breach]:
@@ -280,19 +281,19 @@ def _too_close(state: Observed) -> Iterator[_Breach]:
             gap = leader.gap_m / speed_mps if rule.unit == "s" else leader.gap_m
             if gap < applied.value:
                 short = applied.value - gap
-                yield _Breach(Kind.DISTANCE, rule.id, rule.text, rule.law, rule.status, short, rule.unit)
+                yield _Breach(ViolationKind.DISTANCE, rule.id, rule.text, rule.law, rule.status, short, rule.unit)
 
 
 def _horn_and_screen(state: Observed) -> Iterator[_Breach]:
     signals = state.signals
     if signals.get(HORN) and not _in_danger(state.driving):
-        yield from (_breach(Kind.HORN, found.rule) for found in _forbidden(state.context, "horn"))
+        yield from (_breach(ViolationKind.HORN, found.rule) for found in _forbidden(state.context, "horn"))
     shows_film = signals.get(MEDIA_ACTION) == "PLAY" and signals.get(MEDIA_SOURCE) in MOVING_PICTURES
     if shows_film and _moving(state):
-        yield from (_breach(Kind.SCREEN, found.rule) for found in _forbidden(state.context, "screens"))
+        yield from (_breach(ViolationKind.SCREEN, found.rule) for found in _forbidden(state.context, "screens"))
 
 
-def _breach(kind: Kind, rule: Rule) -> _Breach:
+def _breach(kind: ViolationKind, rule: Rule) -> _Breach:
     return _Breach(kind, rule.id, rule.text, rule.law, rule.status)
 
 

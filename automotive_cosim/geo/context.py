@@ -1,93 +1,125 @@
-"""The geo-context: what holds where the car is, as data and as the text an agent reads."""
+"""The geo-context: what applies where the car is, as data and as the text an agent reads.
+
+The text has one fact per line, in a fixed order, each with its source. Rules are stated with their conditions,
+whether or not these hold now, so nothing in the text reveals when something is due. The line of the limit also
+suits simple readers: ``Speed limit here: 50 km/h (posted on Avenue Foch)``.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 from datetime import datetime
-from pathlib import Path
+from functools import cached_property
 
-from automotive_cosim.contracts import (
-    KMH_PER_MPS,
-    DrivingState,
-    GpsFix,
-    LimitSource,
-    RoadHere,
-    Weather,
-)
-from automotive_cosim.geo import text
+from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, GpsFix, LimitSource, RoadHere, Weather
+from automotive_cosim.geo.applied import AppliedRule, built_up, limits, other_rules, situation_at
 from automotive_cosim.geo.climate import ClimateNorm, climate_norm
 from automotive_cosim.geo.place import NOWHERE, Atlas, Place
-from automotive_cosim.geo.rules import TOPICS, Rule, Value
-from automotive_cosim.geo.situation import Situation, Test
+from automotive_cosim.geo.rules import TOPICS, Rule
+from automotive_cosim.geo.situation import Situation
 from automotive_cosim.geo.sun import Sun, sun_at
-from automotive_cosim.geo.weather import phenomena
-
-MOTORWAYS = ("motorway", "motorway_link")
-STREETS = ("residential", "living_street", "pedestrian")
-"""OSM highway values that stand for built-up land where the network says nothing of it."""
-
-MAYBE_DUAL = ("trunk", "trunk_link", "primary", "secondary")
-"""Roads that may have a central reservation if they have two lanes or more in one direction."""
-
-MAYBE_EXPRESSWAY = ("trunk", "trunk_link", "")
-"""Roads that may be closed to slow traffic; the network does not say which."""
-
-STANDING_BELOW_MPS = 0.1
+from automotive_cosim.geo.text import BUDGET_TOKENS, KM_PER_MILE, Line, amount_of_speed, position, within_budget
+from automotive_cosim.geo.weather import visibility_class
+from automotive_cosim.geo.weather import words as weather_words
 
 
-@dataclass(frozen=True, slots=True)
-class AppliedRule:
-    """A rule that place, road and date leave open here."""
-
-    rule: Rule
-    jurisdiction: str
-    """Code of the country, region or city whose rule it is."""
-    value: Value | None
-    """Its answer now: None if it does not apply now."""
-    certain: bool
-    """False where the situation does not tell whether it is this answer."""
-
-
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class GeoContext:
-    """Place, road, law, sky and weather at one instant. States facts and rules; judges nothing."""
+    """Place, road, law, sky and weather at one instant. States facts and rules; judges nothing.
 
-    place: Place
+    It holds its inputs; what follows from them is computed on first use, since most instants need little or
+    nothing.
+    """
+
+    driving: DrivingState
+    """Source of road, traffic and motion; its position is not used."""
     gps: GpsFix | None
-    road: RoadHere
-    speed_kmh: float
-    heading_deg: float
-    local_time: datetime
-    built_up: bool | None
-    built_up_source: str
-    """``"network"``, ``"road class"``, ``"place"`` or ``"unknown"``."""
-    posted_limit_kmh: float | None
-    """None where no sign is known, or the sign lifts every limit."""
-    default_limits: tuple[AppliedRule, ...]
-    """The law's limit for this road. Several where the network does not tell which; none where no law is known."""
-    reduced_limits: tuple[AppliedRule, ...]
-    """Lower limits of this road under conditions of weather, light or hour, whether or not these hold now."""
-    rules: tuple[AppliedRule, ...]
-    """The other topics, in the order of ``rules.TOPICS``."""
-    sun: Sun | None
-    """None where the position is not known, as with ``climate``."""
+    """Source of the place, by its last fix; None leaves it unknown."""
     weather: Weather | None
-    climate: ClimateNorm | None
+    local_time: datetime
+    """Zone-aware."""
+    atlas: Atlas = field(compare=False, repr=False)
+
+    @property
+    def road(self) -> RoadHere:
+        """The road that the car is on."""
+        return self.driving.road
+
+    @property
+    def speed_kmh(self) -> float:
+        """Speed of the car."""
+        return self.driving.speed_mps * KMH_PER_MPS
+
+    @property
+    def heading_deg(self) -> float:
+        """Heading, clockwise from north."""
+        return self.driving.heading_deg
+
+    @cached_property
+    def place(self) -> Place:
+        """Country, region, city, and whose rules apply.
+
+        Raises:
+            GeoDataError: a rule file of the country is invalid.
+        """
+        return NOWHERE if self.gps is None else self.atlas.place(self.gps.lon_deg, self.gps.lat_deg)
+
+    @cached_property
+    def sun(self) -> Sun | None:
+        """The sun; None if the position is unknown, as for ``climate``."""
+        return None if self.gps is None else sun_at(self.gps.lon_deg, self.gps.lat_deg, self.local_time)
+
+    @cached_property
+    def climate(self) -> ClimateNorm | None:
+        """The month's normals of the nearest station; None also if that is far."""
+        return None if self.gps is None else climate_norm(self.gps.lon_deg, self.gps.lat_deg, self.local_time.month)
+
+    @property
+    def built_up(self) -> bool | None:
+        """Whether the road is in a built-up area; None if unknown."""
+        return self._built_up[0]
+
+    @property
+    def built_up_source(self) -> str:
+        """``"network"``, ``"road class"``, ``"place"`` or ``"unknown"``."""
+        return self._built_up[1]
+
+    @property
+    def posted_limit_kmh(self) -> float | None:
+        """The posted limit; None if no sign is known, or the sign lifts every limit."""
+        posted = self.road.posted_limit_mps if self.road.limit_source is LimitSource.POSTED else None
+        return None if posted is None else posted * KMH_PER_MPS
+
+    @property
+    def default_limits(self) -> tuple[AppliedRule, ...]:
+        """The legal limits for this road: several if the network does not determine which, none if no law is
+        known."""
+        return tuple(found for found in self._limits if found.rule.fixed)
+
+    @property
+    def reduced_limits(self) -> tuple[AppliedRule, ...]:
+        """Lower limits of this road under conditions of weather, light or hour, whether or not these hold now."""
+        return tuple(found for found in self._limits if not found.rule.fixed)
+
+    @cached_property
+    def rules(self) -> tuple[AppliedRule, ...]:
+        """The other topics, in the order of ``rules.TOPICS``."""
+        return tuple(other_rules(self.place, self._situation))
 
     @property
     def country(self) -> str:
-        """ISO 3166-1 code; empty where it is not known."""
+        """ISO 3166-1 code; empty if unknown."""
         return self.place.country
 
     @property
     def default_limit(self) -> AppliedRule | None:
-        """The law's limit for this road if there is no doubt which."""
+        """The legal limit for this road if it is certain."""
         return self.default_limits[0] if len(self.default_limits) == 1 and self.default_limits[0].certain else None
 
     @property
     def speed_unit(self) -> str:
-        """The country's: ``"km/h"`` or ``"mph"``; km/h where the country is not known."""
+        """The country's unit of speed: ``"km/h"`` or ``"mph"``; km/h if the country is unknown."""
         return self.place.law.speed_unit if self.place.law else "km/h"
 
     def rule(self, topic: str) -> AppliedRule | None:
@@ -95,144 +127,188 @@ class GeoContext:
         return next((found for found in self.rules if found.rule.topic == topic and found.value is not None), None)
 
     @property
-    def lines(self) -> tuple[text.Line, ...]:
-        """Every line of the text with what it rests on, the most important first."""
-        return tuple(text.lines(self))
+    def lines(self) -> tuple[Line, ...]:
+        """Every line of the text with its source, the most important first."""
+        return tuple(_lines(self))
 
-    def text(self, budget_tokens: int = text.BUDGET_TOKENS) -> str:
-        """What holds here, one fact a line: as many lines, from the first, as the budget takes."""
-        return text.within_budget(self.lines, budget_tokens)
+    def text(self, budget_tokens: int = BUDGET_TOKENS) -> str:
+        """The context as text, one fact per line: as many lines, from the first, as the budget allows."""
+        return within_budget(self.lines, budget_tokens)
 
+    @cached_property
+    def _built_up(self) -> tuple[bool | None, str]:
+        return built_up(self.road, self.place)
 
-class Geo:
-    """Makes contexts. Holds nothing of a drive, so that branches share it.
+    @cached_property
+    def _situation(self) -> Situation:
+        return situation_at(self.driving, self.gps, self.weather, self.local_time, self.sun, self.built_up)
 
-    Args:
-        folders: the user's own rule files, which stand before the shipped ones.
-    """
-
-    def __init__(self, folders: Sequence[Path] = ()) -> None:
-        self.atlas = Atlas(folders)
-
-    def locate(
-        self, driving: DrivingState, gps: GpsFix | None, weather: Weather | None, local_time: datetime
-    ) -> GeoContext:
-        """What holds here and now.
-
-        Args:
-            driving: gives the road, the traffic and the motion; its position is not read.
-            gps: gives the place, by its last fix; None leaves the place unknown.
-            weather: None leaves it unknown.
-            local_time: zone-aware.
-        """
-        place = self.atlas.place(gps.lon_deg, gps.lat_deg) if gps else NOWHERE
-        sun = sun_at(gps.lon_deg, gps.lat_deg, local_time) if gps else None
-        built_up, built_up_source = _built_up(driving.road, place)
-        situation = _situation(driving, gps, weather, local_time, sun, built_up)
-        road = driving.road
-        limits = tuple(_limits(place, situation))
-        posted = road.posted_limit_mps if road.limit_source is LimitSource.POSTED else None
-        return GeoContext(
-            place=place,
-            gps=gps,
-            road=road,
-            speed_kmh=driving.speed_mps * KMH_PER_MPS,
-            heading_deg=driving.heading_deg,
-            local_time=local_time,
-            built_up=built_up,
-            built_up_source=built_up_source,
-            posted_limit_kmh=None if posted is None else posted * KMH_PER_MPS,
-            default_limits=tuple(found for found in limits if found.rule.fixed),
-            reduced_limits=tuple(found for found in limits if not found.rule.fixed),
-            rules=tuple(_other_rules(place, situation)),
-            sun=sun,
-            weather=weather,
-            climate=climate_norm(gps.lon_deg, gps.lat_deg, local_time.month) if gps else None,
-        )
+    @cached_property
+    def _limits(self) -> tuple[AppliedRule, ...]:
+        return tuple(limits(self.place, self._situation))
 
 
-def _built_up(road: RoadHere, place: Place) -> tuple[bool | None, str]:
-    if road.built_up is not None:
-        return road.built_up, "network"
-    if road.road_class in MOTORWAYS:
-        return False, "road class"
-    if road.road_class in STREETS:
-        return True, "road class"
-    return (True, "place") if place.city else (None, "unknown")
+# --- in words ---------------------------------------------------------------------------------------------
 
 
-def _dual_carriageway(road: RoadHere) -> bool | None:
-    if road.road_class in MOTORWAYS:
-        return True
-    if road.lane_count >= 2 and (road.road_class in MAYBE_DUAL or not road.road_class):
-        return None
-    return False
+def _lines(context: GeoContext) -> Iterator[Line]:
+    yield Line(f"Place: {_place(context)}", "place")
+    yield Line(f"Position: {_position(context)}", "gps")
+    yield Line(f"Road: {_road(context)}", "road")
+    yield Line(f"Speed limit here: {_posted(context)}", "road")
+    if context.road.limit_hours:
+        yield Line(f"Posted for certain hours: {context.road.limit_hours}", "road")
+    yield from _limits(context)
+    yield Line(f"Speed: {_speed(context.speed_kmh, context)}, heading {_compass(context.heading_deg)}", "motion")
+    yield Line(f"Time: {_time(context)}", "sky")
+    yield Line(f"Weather: {_weather(context)}", "weather")
+    if context.climate:
+        yield Line(_climate(context), "climate")
+    if context.place.law:
+        law = context.place.law
+        yield Line(f"Country: traffic keeps {law.driving_side}; emergency call {', '.join(law.emergency)}", "place")
+    yield from (Line(_rule(found.rule), found.rule.id) for found in context.rules)
 
 
-def _situation(
-    driving: DrivingState,
-    gps: GpsFix | None,
-    weather: Weather | None,
-    local_time: datetime,
-    sun: Sun | None,
-    built_up: bool | None,
-) -> Situation:
-    road, around = driving.road, driving.around
-    return Situation(
-        local_time=local_time,
-        lon_deg=gps.lon_deg if gps else None,
-        lat_deg=gps.lat_deg if gps else None,
-        street=road.name,
-        road_class=road.road_class,
-        motorway=road.road_class in MOTORWAYS if road.road_class else None,
-        dual_carriageway=_dual_carriageway(road),
-        expressway=None if road.road_class in MAYBE_EXPRESSWAY else False,
-        built_up=built_up,
-        lit=road.lit,
-        centre_line=road.centre_line,
-        lanes=road.lane_count,
-        tunnel=road.in_tunnel,
-        speed_kmh=driving.speed_mps * KMH_PER_MPS,
-        standing=driving.speed_mps < STANDING_BELOW_MPS,
-        oncoming_m=around.oncoming.gap_m if around.oncoming else None,
-        leader_m=around.leader.gap_m if around.leader else None,
-        phenomena=phenomena(weather) if weather else None,
-        visibility_m=weather.visibility if weather else None,
-        after_sunset=sun.is_set if sun else None,
+def _place(context: GeoContext) -> str:
+    place = context.place
+    if not place.time_zone:
+        return "unknown"
+    country = f"{place.country_name} ({place.country})" if place.country else "no country (at sea)"
+    named = ", ".join(part for part in (place.city, place.region, country) if part)
+    border = f"; within 2 km of {', '.join(place.near_border_to)}" if place.near_border_to else ""
+    return f"{named}{border}"
+
+
+def _position(context: GeoContext) -> str:
+    gps = context.gps
+    if gps is None:
+        return "unknown"
+    where = position(gps.lon_deg, gps.lat_deg)
+    if gps.has_fix:
+        return f"{where}, within {gps.accuracy_m:.0f} m"
+    return f"no fix, {gps.age_s:.0f} s ago {where}"
+
+
+def _road(context: GeoContext) -> str:
+    road = context.road
+    lanes = f"{road.lane_count} lane" + ("s" if road.lane_count != 1 else "")
+    parts = [road.name or "unnamed", road.road_class.replace("_", " ") or "class unknown", lanes]
+    if context.built_up is None:
+        parts.append("built-up or not: unknown")
+    else:
+        parts.append("built-up" if context.built_up else "outside built-up areas")
+    if road.lit is not None:
+        parts.append("lit" if road.lit else "unlit")
+    if road.in_tunnel:
+        parts.append("tunnel")
+    if road.school_zone:
+        parts.append("school zone")
+    return ", ".join(parts)
+
+
+def _posted(context: GeoContext) -> str:
+    road = context.road
+    if road.limit_source is LimitSource.ASSUMED:
+        assumed = road.posted_limit_mps
+        hint = f"; the map assumes {_speed(assumed * KMH_PER_MPS, context)}" if assumed is not None else ""
+        return f"not posted{hint}"
+    if context.posted_limit_kmh is None:
+        return "none"
+    return f"{_speed(context.posted_limit_kmh, context)} (posted on {road.name or 'this road'})"
+
+
+def _speed(kmh: float, context: GeoContext) -> str:
+    return amount_of_speed(kmh, context.speed_unit)
+
+
+def _limits(context: GeoContext) -> Iterator[Line]:
+    if not context.default_limits:
+        yield Line("Default limit: unknown", "road")
+    for found in context.default_limits:
+        yield Line(_rule(found.rule), found.rule.id)
+    for found in context.reduced_limits:
+        if not _is_lower(found, context):
+            continue
+        yield Line(_rule(found.rule, "Reduced limit"), found.rule.id)
+
+
+def _is_lower(reduced: AppliedRule, context: GeoContext) -> bool:
+    """Whether it could be the lowest limit on this road."""
+    if context.posted_limit_kmh is not None:
+        here = [context.posted_limit_kmh]
+    else:
+        here = [_kmh(found.rule) for found in context.default_limits]
+    return not here or _kmh(reduced.rule) < max(here) - 0.5
+
+
+def _kmh(limit: Rule) -> float:
+    value = limit.cases[0].value
+    if isinstance(value, str):
+        return float("inf")
+    return value * KM_PER_MILE if limit.unit == "mph" else value
+
+
+def _rule(rule: Rule, label: str = "") -> str:
+    value = rule.cases[0].value if len(rule.cases) == 1 else ""
+    amount = f"{value:g} {rule.unit} " if isinstance(value, float) else ""
+    if rule.topic == "limit" and value == "none":
+        amount = "none "
+    basis = f"{rule.country} {rule.law}, {rule.status} {rule.as_of}"
+    return f"{label or TOPICS[rule.topic]}: {amount}{rule.text} ({basis})"
+
+
+def _time(context: GeoContext) -> str:
+    time = context.local_time
+    clock = f"{time:%Y-%m-%d %H:%M}, {_DAYS[time.weekday()]}"
+    sun = context.sun
+    if sun is None:
+        return clock
+    side = "above" if sun.elevation_deg >= 0 else "below"
+    sky = f"{clock}; {sun.darkness}, sun {abs(sun.elevation_deg):.0f}° {side} the horizon"
+    if not sun.glares(context.heading_deg):
+        return sky
+    return f"{sky}, {abs(sun.off_heading_deg(context.heading_deg)):.0f}° off the way ahead"
+
+
+def _weather(context: GeoContext) -> str:
+    weather = context.weather
+    if weather is None:
+        return "unknown"
+    parts = [weather_words(weather.weather_code), _temperature(weather.temperature_2m, context)]
+    parts.append(f"humidity {weather.relative_humidity_2m:.0f} %")
+    if weather.precipitation > 0:
+        parts.append(f"{weather.precipitation:.1f} mm/h")
+    visibility = visibility_class(weather.visibility).replace("_", " ")
+    parts.append(f"visibility {weather.visibility:.0f} m ({visibility})")
+    parts.append(f"wind {weather.wind_speed_10m:.0f} km/h")
+    return ", ".join(parts)
+
+
+def _temperature(celsius: float, context: GeoContext) -> str:
+    if context.place.law and context.place.law.temperature_unit == "F":
+        return f"{celsius * 9 / 5 + 32:.0f} °F"
+    return f"{celsius:.0f} °C"
+
+
+def _climate(context: GeoContext) -> str:
+    norm = context.climate
+    assert norm is not None
+    return (
+        f"Usual in {_MONTHS[norm.month - 1]} at {norm.station}: "
+        f"{_temperature(norm.usual_low_c, context)} at night to {_temperature(norm.usual_high_c, context)} by day, "
+        f"{norm.precipitation_mm:.0f} mm in the month, humidity {norm.humidity_pct:.0f} % "
+        f"(normals 1991-2020, {norm.status})"
     )
 
 
-def _applied(rule: Rule, jurisdiction: str, situation: Situation) -> AppliedRule:
-    return AppliedRule(rule, jurisdiction, *rule.answer(situation))
+def _compass(heading_deg: float) -> str:
+    return _POINTS[round(heading_deg / 45) % 8]
 
 
-def _limits(place: Place, situation: Situation) -> Iterator[AppliedRule]:
-    """The limits that may be this road's, without those that an earlier one rules out.
-
-    A limit that lowers signs is ruled out by its own layer only: fog slows a street of a city's limit too.
-    """
-    doubts: list[frozenset[Test]] = []
-    for layer in place.layers:
-        for rule in layer.by_topic.get("limit", ()):
-            if rule.may_apply(situation) is False:
-                continue
-            doubt = frozenset(test for test in rule.tests if test.fixed and test.holds(situation) is None)
-            ruled_out = any(earlier <= doubt for earlier in doubts)
-            if not ruled_out or rule.caps:
-                yield _applied(rule, layer.code, situation)
-            if rule.fixed:
-                doubts.append(doubt)
-                if not doubt:
-                    break
-
-
-def _other_rules(place: Place, situation: Situation) -> Iterator[AppliedRule]:
-    """Per topic the rules of the innermost layer that has one for this road."""
-    for topic in TOPICS:
-        if topic == "limit":
-            continue
-        for layer in place.layers:
-            applied = [rule for rule in layer.by_topic.get(topic, ()) if rule.may_apply(situation) is not False]
-            yield from (_applied(rule, layer.code, situation) for rule in applied)
-            if applied:
-                break
+_DAYS = ("Monday", "Tuesday", "Wednesday", "Thursday", "Friday", "Saturday", "Sunday")
+_MONTHS = (
+    *("January", "February", "March", "April", "May", "June"),
+    *("July", "August", "September", "October", "November", "December"),
+)
+_POINTS = ("north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west")

@@ -1,29 +1,33 @@
-"""The conditions a rule may name, and the situation they are asked of.
+"""The conditions that a rule may have, and the situation on which they are evaluated.
 
-A condition is one entry of a rule's ``when`` table. It holds, does not hold, or cannot be told because the
-situation does not say; several in one table must all hold. Those marked *fixed* depend on place, road and date
-alone; the others change while one stands still (weather, light, traffic, the clock).
+A condition is one entry of a rule's ``when`` table. It holds, does not hold, or is unknown because the situation
+does not say; several in one table must all hold. Those marked *fixed* depend only on place, road and date; the
+others change even while the car is stationary (weather, light, traffic, the clock).
 """
 
 from __future__ import annotations
 
 import unicodedata
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import date, datetime, time
 from fnmatch import fnmatchcase
-from math import isfinite
-from typing import Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import shapely
+from annotated_types import Ge, Le, MinLen
 
-from automotive_cosim.errors import UnknownNameError
+from automotive_cosim.formats.annotations import Called, Form, Latitude, Longitude, Made, OneOf
 from automotive_cosim.geo.weather import PHENOMENA
+
+if TYPE_CHECKING:
+    from pydantic import GetCoreSchemaHandler
+    from pydantic_core import CoreSchema
 
 
 @dataclass(frozen=True, slots=True)
 class Situation:
-    """Place, road, sky, traffic and motion at one instant; None where nothing tells."""
+    """Place, road, sky, traffic and motion at one instant; None if unknown."""
 
     local_time: datetime
     lon_deg: float | None
@@ -33,19 +37,19 @@ class Situation:
     motorway: bool | None
     dual_carriageway: bool | None
     expressway: bool | None
-    """For motor vehicles only, but no motorway."""
+    """For motor vehicles only, but not a motorway."""
     built_up: bool | None
     lit: bool | None
     centre_line: bool | None
     lanes: int
-    """In the direction of travel."""
+    """Number of lanes in the direction of travel."""
     tunnel: bool
     speed_kmh: float
     standing: bool
     oncoming_m: float | None
-    """None: nobody within sight."""
+    """Distance of oncoming traffic; None if none is in sight."""
     leader_m: float | None
-    """None: nobody ahead."""
+    """Distance of the vehicle ahead; None without one."""
     phenomena: frozenset[str] | None
     visibility_m: float | None
     after_sunset: bool | None
@@ -55,12 +59,12 @@ class Situation:
 class Condition:
     """One word of the ``when`` language.
 
-    ``expects`` says what stands beside the word, ``parse`` turns that into the argument of ``holds`` (ValueError or
-    TypeError if it cannot).
+    ``takes`` is the type of the word's value, which becomes the argument of ``holds``; ``expects`` describes it in
+    words.
     """
 
     expects: str
-    parse: Callable[[Any], Any]
+    takes: Any
     holds: Callable[[Situation, Any], bool | None]
     fixed: bool = False
 
@@ -74,16 +78,16 @@ class Test:
 
     @property
     def fixed(self) -> bool:
-        """Whether it depends on place, road and date alone."""
+        """Whether it depends only on place, road and date."""
         return CONDITIONS[self.word].fixed
 
     def holds(self, situation: Situation) -> bool | None:
-        """True, False, or None where the situation does not tell."""
+        """True, False, or None if the situation does not determine it."""
         return CONDITIONS[self.word].holds(situation, self.argument)
 
 
 def all_hold(tests: tuple[Test, ...], situation: Situation) -> bool | None:
-    """False if one fails, else None if one cannot be told, else True."""
+    """False if one fails, else None if one is unknown, else True."""
     unknown = False
     for test in tests:
         holds = test.holds(situation)
@@ -93,45 +97,38 @@ def all_hold(tests: tuple[Test, ...], situation: Situation) -> bool | None:
     return None if unknown else True
 
 
-def parse_when(table: object) -> tuple[Test, ...]:
-    """Reads a ``when`` table.
+class _When:
+    """A table of conditions, each word with its value."""
 
-    Raises:
-        UnknownNameError: a word that is no condition.
-        ValueError: no table, or an argument that its condition does not take.
-    """
-    if not isinstance(table, dict):
-        raise ValueError(f"when = {table!r} is no table of conditions")
-    tests = []
-    for word, argument in table.items():
-        if word not in CONDITIONS:
-            raise UnknownNameError("condition", word, CONDITIONS)
-        condition = CONDITIONS[word]
-        try:
-            tests.append(Test(word, condition.parse(argument)))
-        except (TypeError, ValueError, shapely.errors.ShapelyError) as error:
-            raise ValueError(f"{word} takes {condition.expects}, not {argument!r}") from error
-    return tuple(tests)
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        from pydantic_core import core_schema
+        from typing_extensions import TypedDict
+
+        words = {word: Annotated[one.takes, Called(one.expects)] for word, one in CONDITIONS.items()}
+        table: Any = TypedDict("Conditions", words, total=False)  # type: ignore[misc]
+        return core_schema.no_info_after_validator_function(
+            lambda read: tuple(Test(word, argument) for word, argument in read.items()),
+            handler.generate_schema(table),
+        )
+
+
+When = Annotated[tuple[Test, ...], _When()]
+"""Conditions, written as a table: ``{ motorway = true, weather = ["rain"] }``."""
 
 
 def folded(name: str) -> str:
-    """A street name for comparing: no accents, case, hyphens, apostrophes or double spaces."""
+    """A street name for comparison, without accents, case, hyphens, apostrophes or double spaces."""
     plain = unicodedata.normalize("NFKD", name)
     plain = "".join(" " if char in "-'’" else char for char in plain if not unicodedata.combining(char))
     return " ".join(plain.casefold().split())
 
 
-def polygon(points: Any) -> shapely.Polygon:
-    """A polygon from at least three [lon, lat] pairs in degrees.
+def polygon(corners: Sequence[tuple[float, float]]) -> shapely.Polygon:
+    """A polygon from at least three longitudes and latitudes in degrees.
 
     Raises:
-        ValueError: too few points, some off the earth, or edges that cross.
+        ValueError: its edges cross.
     """
-    corners = [(float(lon), float(lat)) for lon, lat in points]
-    if len(corners) < 3:
-        raise ValueError("a polygon has three corners or more")
-    if not all(-180 <= lon <= 180 and -90 <= lat <= 90 for lon, lat in corners):
-        raise ValueError("a corner is not on earth; write [lon, lat] in degrees")
     area = shapely.Polygon(corners)
     if not area.is_valid:
         raise ValueError("the polygon's edges cross")
@@ -139,36 +136,12 @@ def polygon(points: Any) -> shapely.Polygon:
     return area
 
 
-# --- what stands beside the words ---------------------------------------------------------------------------
+Corner = Annotated[tuple[Longitude, Latitude], Called("a pair [lon, lat] in degrees")]
+AreaPolygon = Annotated[shapely.Polygon, Made(Annotated[tuple[Corner, ...], MinLen(3)], polygon)]
+"""Written as a list of corners."""
 
 
-def _yes_or_no(value: Any) -> bool:
-    if not isinstance(value, bool):
-        raise TypeError
-    return value
-
-
-def _number(value: Any) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
-        raise TypeError
-    return float(value)
-
-
-def _words(value: Any) -> tuple[str, ...]:
-    if not isinstance(value, list) or not value or not all(isinstance(word, str) for word in value):
-        raise TypeError
-    return tuple(value)
-
-
-def _streets(value: Any) -> tuple[str, ...]:
-    return tuple(folded(word) for word in _words(value))
-
-
-def _phenomena(value: Any) -> frozenset[str]:
-    found = frozenset(_words(value))
-    if not found <= PHENOMENA:
-        raise ValueError
-    return found
+# --- the values of the words ---------------------------------------------------------------------------
 
 
 def _month_day(text: str) -> tuple[int, int]:
@@ -176,27 +149,16 @@ def _month_day(text: str) -> tuple[int, int]:
     return day.month, day.day
 
 
-def _season(value: Any) -> tuple[tuple[int, int], tuple[int, int]]:
-    first, last = _words(value)
-    return _month_day(first), _month_day(last)
+def _some(kind: Any) -> Any:
+    return Annotated[tuple[kind, ...], MinLen(1)]
 
 
-def _hours(value: Any) -> tuple[time, time]:
-    first, last = _words(value)
-    return time.fromisoformat(first), time.fromisoformat(last)
-
-
-def _weekdays(value: Any) -> frozenset[int]:
-    days = frozenset(value)
-    if not days or not days <= set(range(1, 8)):
-        raise ValueError
-    return days
-
-
-def _date(value: Any) -> date:
-    if not isinstance(value, date) or isinstance(value, datetime):
-        raise TypeError
-    return value
+_TEXTS = _some(str)
+_STREETS = Annotated[Any, Made(_TEXTS, lambda names: tuple(map(folded, names)))]
+_PHENOMENA = Annotated[Any, Made(_some(Annotated[str, OneOf(sorted(PHENOMENA))]), frozenset)]
+_DAY = Annotated[str, Form(r"^\d\d-\d\d$", "03-31", _month_day)]
+_HOUR = Annotated[str, Form(r"^\d\d:\d\d$", "08:00", time.fromisoformat)]
+_WEEKDAYS = Annotated[Any, Made(_some(Annotated[int, Ge(1), Le(7)]), frozenset)]
 
 
 # --- when they hold -----------------------------------------------------------------------------------------
@@ -250,30 +212,30 @@ def _within(distance_m: float | None, metres: float) -> bool:
 
 
 CONDITIONS: dict[str, Condition] = {
-    "built_up": Condition("true or false", _yes_or_no, _same("built_up"), fixed=True),
-    "motorway": Condition("true or false", _yes_or_no, _same("motorway"), fixed=True),
-    "dual_carriageway": Condition("true or false", _yes_or_no, _same("dual_carriageway"), fixed=True),
-    "expressway": Condition("true or false", _yes_or_no, _same("expressway"), fixed=True),
-    "centre_line": Condition("true or false", _yes_or_no, _same("centre_line"), fixed=True),
-    "lanes_at_least": Condition("a number", _number, lambda now, lanes: now.lanes >= lanes, fixed=True),
-    "lanes_at_most": Condition("a number", _number, lambda now, lanes: now.lanes <= lanes, fixed=True),
-    "road_classes": Condition("a list of OSM highway values", _words, _on_class, fixed=True),
-    "streets": Condition("a list of street names, * for any text", _streets, _on_street, fixed=True),
-    "inside": Condition("a list of [lon, lat] corners", polygon, _inside, fixed=True),
-    "season": Condition('["MM-DD", "MM-DD"], both included', _season, _in_season, fixed=True),
-    "since": Condition("a date", _date, lambda now, day: now.local_time.date() >= day, fixed=True),
+    "built_up": Condition("true or false", bool, _same("built_up"), fixed=True),
+    "motorway": Condition("true or false", bool, _same("motorway"), fixed=True),
+    "dual_carriageway": Condition("true or false", bool, _same("dual_carriageway"), fixed=True),
+    "expressway": Condition("true or false", bool, _same("expressway"), fixed=True),
+    "centre_line": Condition("true or false", bool, _same("centre_line"), fixed=True),
+    "lanes_at_least": Condition("a number", float, lambda now, lanes: now.lanes >= lanes, fixed=True),
+    "lanes_at_most": Condition("a number", float, lambda now, lanes: now.lanes <= lanes, fixed=True),
+    "road_classes": Condition("a list of OSM highway values", _TEXTS, _on_class, fixed=True),
+    "streets": Condition("a list of street names, * for any text", _STREETS, _on_street, fixed=True),
+    "inside": Condition("a list of [lon, lat] corners", AreaPolygon, _inside, fixed=True),
+    "season": Condition('["MM-DD", "MM-DD"], both included', tuple[_DAY, _DAY], _in_season, fixed=True),
+    "since": Condition("a date", date, lambda now, day: now.local_time.date() >= day, fixed=True),
     "weekdays": Condition(
-        "a list of 1 (Monday) to 7", _weekdays, lambda now, days: now.local_time.isoweekday() in days
+        "a list of 1 (Monday) to 7", _WEEKDAYS, lambda now, days: now.local_time.isoweekday() in days
     ),
-    "hours": Condition('["HH:MM", "HH:MM"], the last excluded', _hours, _in_hours),
-    "lit": Condition("true or false", _yes_or_no, _same("lit")),
-    "tunnel": Condition("true or false", _yes_or_no, _same("tunnel")),
-    "after_sunset": Condition("true or false", _yes_or_no, _same("after_sunset")),
-    "standing": Condition("true or false", _yes_or_no, _same("standing")),
-    "weather": Condition(f"a list of {', '.join(sorted(PHENOMENA))}", _phenomena, _in_weather),
-    "visibility_below_m": Condition("metres", _number, _sees_less),
-    "speed_above_kmh": Condition("km/h", _number, lambda now, kmh: now.speed_kmh > kmh),
-    "oncoming_within_m": Condition("metres", _number, lambda now, m: _within(now.oncoming_m, m)),
-    "leader_within_m": Condition("metres", _number, lambda now, m: _within(now.leader_m, m)),
+    "hours": Condition('["HH:MM", "HH:MM"], the last excluded', tuple[_HOUR, _HOUR], _in_hours),
+    "lit": Condition("true or false", bool, _same("lit")),
+    "tunnel": Condition("true or false", bool, _same("tunnel")),
+    "after_sunset": Condition("true or false", bool, _same("after_sunset")),
+    "standing": Condition("true or false", bool, _same("standing")),
+    "weather": Condition(f"a list of {', '.join(sorted(PHENOMENA))}", _PHENOMENA, _in_weather),
+    "visibility_below_m": Condition("a number of metres", float, _sees_less),
+    "speed_above_kmh": Condition("a number of km/h", float, lambda now, kmh: now.speed_kmh > kmh),
+    "oncoming_within_m": Condition("a number of metres", float, lambda now, m: _within(now.oncoming_m, m)),
+    "leader_within_m": Condition("a number of metres", float, lambda now, m: _within(now.leader_m, m)),
 }
-"""Every word a ``when`` table may hold."""
+"""Every word that a ``when`` table may have."""

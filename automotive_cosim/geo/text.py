@@ -1,23 +1,10 @@
-"""The geo-context in words: one fact a line, in a fixed order, each with what it rests on.
-
-Rules are stated with their conditions, whether or not these hold now, so that nothing in the text tells when
-something is due. The line of the limit is made for simple readers too:
-``Speed limit here: 50 km/h (posted on Avenue Foch)``.
-"""
+"""Lines of text for an agent: their sources, how many fit, and amounts in words."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 from math import ceil
-from typing import TYPE_CHECKING
-
-from automotive_cosim.contracts import KMH_PER_MPS, LimitSource
-from automotive_cosim.geo.rules import TOPICS, Rule
-from automotive_cosim.geo.weather import visibility_class, words
-
-if TYPE_CHECKING:
-    from automotive_cosim.geo.context import AppliedRule, GeoContext
 
 BUDGET_TOKENS = 1500
 """Enough for every line of the countries that have most."""
@@ -40,29 +27,9 @@ class Line:
     source: str
 
 
-def lines(context: GeoContext) -> Iterator[Line]:
-    """All lines, the most important first."""
-    yield Line(f"Place: {_place(context)}", "place")
-    yield Line(f"Position: {_position(context)}", "gps")
-    yield Line(f"Road: {_road(context)}", "road")
-    yield Line(f"Speed limit here: {_posted(context)}", "road")
-    if context.road.limit_hours:
-        yield Line(f"Posted for certain hours: {context.road.limit_hours}", "road")
-    yield from _limits(context)
-    yield Line(f"Speed: {_speed(context.speed_kmh, context)}, heading {_compass(context.heading_deg)}", "motion")
-    yield Line(f"Time: {_time(context)}", "sky")
-    yield Line(f"Weather: {_weather(context)}", "weather")
-    if context.climate:
-        yield Line(_climate(context), "climate")
-    if context.place.law:
-        law = context.place.law
-        yield Line(f"Country: traffic keeps {law.driving_side}; emergency call {', '.join(law.emergency)}", "place")
-    yield from (Line(_rule(found.rule), found.rule.id) for found in context.rules)
-
-
 def within_budget(all_lines: Iterable[Line], budget_tokens: int) -> str:
-    """The first lines that together take no more than ``budget_tokens``, at four characters a token. A name on
-    the map that holds a line break makes no second line."""
+    """The first lines that together take at most ``budget_tokens``, at four characters per token. A line break in a
+    name of the map does not make a second line."""
     kept: list[str] = []
     tokens = 0
     for line in all_lines:
@@ -71,26 +38,6 @@ def within_budget(all_lines: Iterable[Line], budget_tokens: int) -> str:
             break
         kept.append(" ".join(line.text.split()))
     return "\n".join(kept)
-
-
-def _place(context: GeoContext) -> str:
-    place = context.place
-    if not place.time_zone:
-        return "unknown"
-    country = f"{place.country_name} ({place.country})" if place.country else "no country (at sea)"
-    named = ", ".join(part for part in (place.city, place.region, country) if part)
-    border = f"; within 2 km of {', '.join(place.near_border_to)}" if place.near_border_to else ""
-    return f"{named}{border}"
-
-
-def _position(context: GeoContext) -> str:
-    gps = context.gps
-    if gps is None:
-        return "unknown"
-    where = position(gps.lon_deg, gps.lat_deg)
-    if gps.has_fix:
-        return f"{where}, within {gps.accuracy_m:.0f} m"
-    return f"no fix, {gps.age_s:.0f} s ago {where}"
 
 
 def position(lon_deg: float, lat_deg: float) -> str:
@@ -102,130 +49,6 @@ def _degrees(value: float, positive: str, negative: str) -> str:
     return f"{abs(value):.4f}°{negative if value < 0 else positive}"
 
 
-def _road(context: GeoContext) -> str:
-    road = context.road
-    lanes = f"{road.lane_count} lane" + ("s" if road.lane_count != 1 else "")
-    parts = [road.name or "unnamed", road.road_class.replace("_", " ") or "class unknown", lanes]
-    if context.built_up is None:
-        parts.append("built-up or not: unknown")
-    else:
-        parts.append("built-up" if context.built_up else "outside built-up areas")
-    if road.lit is not None:
-        parts.append("lit" if road.lit else "unlit")
-    if road.in_tunnel:
-        parts.append("tunnel")
-    if road.school_zone:
-        parts.append("school zone")
-    return ", ".join(parts)
-
-
-def _posted(context: GeoContext) -> str:
-    road = context.road
-    if road.limit_source is LimitSource.ASSUMED:
-        assumed = road.posted_limit_mps
-        hint = f"; the map assumes {_speed(assumed * KMH_PER_MPS, context)}" if assumed is not None else ""
-        return f"not posted{hint}"
-    if context.posted_limit_kmh is None:
-        return "none"
-    return f"{_speed(context.posted_limit_kmh, context)} (posted on {road.name or 'this road'})"
-
-
-def _speed(kmh: float, context: GeoContext) -> str:
-    return amount_of_speed(kmh, context.speed_unit)
-
-
 def amount_of_speed(kmh: float, unit: str) -> str:
     """A speed in words, in ``"km/h"`` or ``"mph"``."""
     return f"{kmh / KM_PER_MILE if unit == 'mph' else kmh:.0f} {unit}"
-
-
-def _limits(context: GeoContext) -> Iterator[Line]:
-    if not context.default_limits:
-        yield Line("Default limit: unknown", "road")
-    for found in context.default_limits:
-        yield Line(_rule(found.rule), found.rule.id)
-    for found in context.reduced_limits:
-        if not _is_lower(found, context):
-            continue
-        yield Line(_rule(found.rule, "Reduced limit"), found.rule.id)
-
-
-def _is_lower(reduced: AppliedRule, context: GeoContext) -> bool:
-    """Whether it could be the lowest limit on this road."""
-    if context.posted_limit_kmh is not None:
-        here = [context.posted_limit_kmh]
-    else:
-        here = [_kmh(found.rule) for found in context.default_limits]
-    return not here or _kmh(reduced.rule) < max(here) - 0.5
-
-
-def _kmh(limit: Rule) -> float:
-    value = limit.cases[0].value
-    if isinstance(value, str):
-        return float("inf")
-    return value * KM_PER_MILE if limit.unit == "mph" else value
-
-
-def _rule(rule: Rule, label: str = "") -> str:
-    value = rule.cases[0].value if len(rule.cases) == 1 else ""
-    amount = f"{value:g} {rule.unit} " if isinstance(value, float) else ""
-    if rule.topic == "limit" and value == "none":
-        amount = "none "
-    basis = f"{rule.country} {rule.law}, {rule.status} {rule.as_of}"
-    return f"{label or TOPICS[rule.topic]}: {amount}{rule.text} ({basis})"
-
-
-def _time(context: GeoContext) -> str:
-    time = context.local_time
-    clock = f"{time:%Y-%m-%d %H:%M}, {_DAYS[time.weekday()]}"
-    sun = context.sun
-    if sun is None:
-        return clock
-    side = "above" if sun.elevation_deg >= 0 else "below"
-    sky = f"{clock}; {sun.darkness}, sun {abs(sun.elevation_deg):.0f}° {side} the horizon"
-    if not sun.glares(context.heading_deg):
-        return sky
-    return f"{sky}, {abs(sun.off_heading_deg(context.heading_deg)):.0f}° off the way ahead"
-
-
-def _weather(context: GeoContext) -> str:
-    weather = context.weather
-    if weather is None:
-        return "unknown"
-    parts = [words(weather.weather_code), _temperature(weather.temperature_2m, context)]
-    parts.append(f"humidity {weather.relative_humidity_2m:.0f} %")
-    if weather.precipitation > 0:
-        parts.append(f"{weather.precipitation:.1f} mm/h")
-    visibility = visibility_class(weather.visibility).replace("_", " ")
-    parts.append(f"visibility {weather.visibility:.0f} m ({visibility})")
-    parts.append(f"wind {weather.wind_speed_10m:.0f} km/h")
-    return ", ".join(parts)
-
-
-def _temperature(celsius: float, context: GeoContext) -> str:
-    if context.place.law and context.place.law.temperature_unit == "F":
-        return f"{celsius * 9 / 5 + 32:.0f} °F"
-    return f"{celsius:.0f} °C"
-
-
-def _climate(context: GeoContext) -> str:
-    norm = context.climate
-    assert norm is not None
-    return (
-        f"Usual in {_MONTHS[norm.month - 1]} at {norm.station}: "
-        f"{_temperature(norm.usual_low_c, context)} at night to {_temperature(norm.usual_high_c, context)} by day, "
-        f"{norm.precipitation_mm:.0f} mm in the month, humidity {norm.humidity_pct:.0f} % "
-        f"(normals 1991-2020, {norm.status})"
-    )
-
-
-_DAYS = ("Monday", "Tuesday", "Wednesday", "Thursday", "Friday", "Saturday", "Sunday")
-_MONTHS = (
-    *("January", "February", "March", "April", "May", "June"),
-    *("July", "August", "September", "October", "November", "December"),
-)
-_POINTS = ("north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west")
-
-
-def _compass(heading_deg: float) -> str:
-    return _POINTS[round(heading_deg / 45) % 8]

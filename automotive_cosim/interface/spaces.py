@@ -1,4 +1,4 @@
-"""Gymnasium spaces of observations and actions, and the way to and from the typed ones.
+"""Gymnasium spaces of observations and actions, and conversions to and from the typed ones.
 
 Observation (``Dict``; a withheld channel has no key):
 
@@ -6,10 +6,10 @@ Observation (``Dict``; a withheld channel has no key):
 |---|---|---|
 | ``goal`` | uint8 (512,) | what the driver said, UTF-8, zero-padded |
 | ``time_s`` | float64 () | simulated seconds since the hand-over |
-| ``feedback`` | ``code`` Discrete, ``text`` uint8 (1024,) | what came of the last action |
+| ``feedback`` | ``code`` Discrete, ``text`` uint8 (1024,) | result of the last action |
 | ``screenshot`` | uint8 (height, width, 3) | RGB |
 | ``elements`` | ``count``, ``bbox``, ``kind``, ``flags``, ``text``, ``description``, ``resource_id`` | 128 |
-| ``vehicle`` | one float32 or Discrete per field of ``VehicleState``, ``*_valid`` where it can be absent | |
+| ``vehicle`` | one float32 or Discrete per field of ``VehicleState``, ``*_valid`` if it can be absent | |
 | ``gps`` | ``available``, ``fix``, ``lon_lat``, ``accuracy_m``, ``age_s``, ``heading_deg`` | |
 | ``connectivity`` | ``online``, ``kind``, ``signal`` | |
 | ``context`` | uint8 (8192,) | the geo-context as text |
@@ -22,7 +22,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from copy import copy
 from dataclasses import fields
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 import numpy as np
@@ -92,7 +92,7 @@ BOUNDS: Mapping[str, tuple[float, float]] = {
     "leader_gap_m": (0, 10_000),
     "leader_time_to_collision_s": (0, 10_000),
 }
-"""Of the numeric fields of ``VehicleState``; values beyond are clipped."""
+"""Bounds of the numeric fields of ``VehicleState``; values beyond are clipped."""
 OPTIONAL = ("speed_limit_sign_kmh", "leader_gap_m", "leader_time_to_collision_s")
 
 
@@ -105,7 +105,7 @@ class AnyText(spaces.Text):
 
 
 def observation_space(channels: frozenset[Channel], width: int, height: int) -> spaces.Dict:
-    """The space of what an agent with these channels gets; see the module's table."""
+    """The observation space of an agent with these channels; see the module's table."""
     known: dict[Channel, spaces.Space[Any]] = {
         Channel.SCREENSHOT: _bytes_space(height, width, 3),
         Channel.ELEMENTS: _elements_space(),
@@ -133,8 +133,8 @@ def observation_space(channels: frozenset[Channel], width: int, height: int) -> 
 
 
 def action_space(width: int, height: int) -> spaces.Dict:
-    """The space of actions. ``target`` says whether ``index`` or ``x``, ``y`` count; an action type ignores the
-    fields that it does not take, so that every sample is well formed."""
+    """The action space. ``target`` says whether ``index`` or ``x``, ``y`` is used; an action type ignores fields
+    that it does not take, so every sample is well formed."""
     return spaces.Dict(
         {
             "action_type": spaces.Discrete(len(ActionType)),
@@ -219,7 +219,7 @@ def encode(observation: Observation, channels: frozenset[Channel]) -> dict[str, 
 
 
 def decode(encoded: Mapping[str, Any]) -> Observation:
-    """The typed observation behind a sample of the space, so far as the space holds it."""
+    """The typed observation behind a sample of the space, as far as the space contains it."""
     feedback = encoded["feedback"]
     return Observation(
         goal=_text(encoded["goal"]),
@@ -252,26 +252,35 @@ def _elements_space() -> spaces.Dict:
     )
 
 
+_TEXTS = {"text": ELEMENT_TEXT_BYTES, "description": ELEMENT_TEXT_BYTES, "resource_id": RESOURCE_ID_BYTES}
+
+
 def _encode_elements(elements: tuple[Element, ...]) -> dict[str, Any]:
-    shown = elements[:MAX_ELEMENTS]
+    count = min(len(elements), MAX_ELEMENTS)
     encoded: dict[str, Any] = {
-        "count": len(shown),
+        "count": count,
         "bbox": np.zeros((MAX_ELEMENTS, 4), np.int16),
         "kind": np.zeros(MAX_ELEMENTS, np.uint8),
         "flags": np.zeros((MAX_ELEMENTS, len(FLAGS)), np.int8),
-        "text": np.zeros((MAX_ELEMENTS, ELEMENT_TEXT_BYTES), np.uint8),
-        "description": np.zeros((MAX_ELEMENTS, ELEMENT_TEXT_BYTES), np.uint8),
-        "resource_id": np.zeros((MAX_ELEMENTS, RESOURCE_ID_BYTES), np.uint8),
+        **{name: np.zeros((MAX_ELEMENTS, size), np.uint8) for name, size in _TEXTS.items()},
     }
-    for row, element in enumerate(shown):
-        box = element.bbox_pixels
-        encoded["bbox"][row] = (box.x_min, box.y_min, box.x_max, box.y_max)
-        encoded["kind"][row] = KINDS.index(element.class_name) if element.class_name in KINDS else 0
-        encoded["flags"][row] = [getattr(element, flag) for flag in FLAGS]
-        encoded["text"][row] = _bytes(element.text, ELEMENT_TEXT_BYTES)
-        encoded["description"][row] = _bytes(element.content_description, ELEMENT_TEXT_BYTES)
-        encoded["resource_id"][row] = _bytes(element.resource_id, RESOURCE_ID_BYTES)
+    columns = zip(*map(_row, elements[:count]), strict=True)
+    for name, column in zip(("bbox", "kind", "flags", *_TEXTS), columns, strict=bool(count)):
+        encoded[name][:count] = np.stack(column) if name in _TEXTS else column
     return encoded
+
+
+@lru_cache(maxsize=4096)
+def _row(element: Element) -> tuple[Any, ...]:
+    """Of one element, in the order of the encoded fields; most of a screen is the same from step to step."""
+    box = element.bbox_pixels
+    words = (element.text, element.content_description, element.resource_id)
+    return (
+        (box.x_min, box.y_min, box.x_max, box.y_max),
+        KINDS.index(element.class_name) if element.class_name in KINDS else 0,
+        tuple(getattr(element, flag) for flag in FLAGS),
+        *(_bytes(text, size) for text, size in zip(words, _TEXTS.values(), strict=True)),
+    )
 
 
 def _decode_elements(encoded: Mapping[str, Any]) -> tuple[Element, ...]:
@@ -312,7 +321,8 @@ def _encode_vehicle(vehicle: VehicleState) -> dict[str, Any]:
         if field.name in OPTIONAL:
             encoded[f"{field.name}_valid"] = int(value is not None)
         if field.name in BOUNDS:
-            encoded[field.name] = np.array(np.clip(value or 0.0, *BOUNDS[field.name]), np.float32)
+            low, high = BOUNDS[field.name]
+            encoded[field.name] = np.array(min(high, max(low, value or 0.0)), np.float32)
         elif field.name == "gear":
             encoded["gear"] = GEARS.index(value)
         elif field.name == "restrictions":
@@ -391,7 +401,7 @@ def _bytes_space(*shape: int) -> spaces.Box:
 
 @cache
 def _first_bytes(shape: tuple[int, ...]) -> spaces.Box:
-    """Nobody samples from this one, so that copies have random generators of their own."""
+    """Nobody samples from this one, so copies have random generators of their own."""
     return spaces.Box(0, 255, shape, np.uint8)
 
 

@@ -1,4 +1,4 @@
-"""The trace: what an episode was, step by step, in canonical bytes.
+"""The trace of an episode, step by step, in canonical bytes.
 
 A line of ``steps.jsonl`` is one step. The hash covers each step's traffic, signals, elements and action, and
 nothing that differs between machines, folders or runs: no wall time, no path, no version.
@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Iterable
 from dataclasses import dataclass, fields, is_dataclass
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 from automotive_cosim.cockpit.actions import to_json
@@ -49,10 +50,51 @@ class Step:
         }
 
 
+class Hash:
+    """The trace's hash, updated step by step, so the end of a long episode need not wait for it."""
+
+    def __init__(self, steps: Iterable[Step] = ()) -> None:
+        """Of these steps."""
+        self._digest = hashlib.sha256()
+        self.count = 0
+        """Steps taken in."""
+        for step in steps:
+            self.add(step)
+
+    def add(self, step: Step) -> None:
+        """Adds the next step."""
+        texts = {
+            "traffic": _text(plain(step.moment.driving)),
+            "signals": _text(dict(step.moment.signals)),
+            "elements": f"[{','.join(map(_element, step.elements))}]",
+            "action": _text(None if step.action is None else to_json(step.action)),
+        }
+        whole = ",".join(f'"{name}":{texts[name]}' for name in sorted(HASHED))
+        self._digest.update(f"{{{whole}}}\n".encode())
+        self.count += 1
+
+    @property
+    def hex(self) -> str:
+        """Of the steps so far; what ``sha256`` gives for their JSON."""
+        return self._digest.hexdigest()
+
+    def copy(self) -> Hash:
+        """An independent copy."""
+        twin = Hash()
+        twin._digest, twin.count = self._digest.copy(), self.count
+        return twin
+
+
+_LEAVES = frozenset((str, int, float, bool, type(None)))
+
+
 def plain(value: Any) -> Any:
-    """Frozen data as JSON has it. As ``dataclasses.asdict``, which is ten times slower because it copies leaves."""
-    if is_dataclass(value) and not isinstance(value, type):
-        names = _names(type(value))
+    """Frozen data as JSON. Like ``dataclasses.asdict``, which is ten times slower because it copies leaves."""
+    kind: type = type(value)
+    if kind in _LEAVES:
+        return value
+    names = _names(kind)
+    if names is not None:
         return {name: plain(getattr(value, name)) for name in names}
     if isinstance(value, tuple | list):
         return [plain(entry) for entry in value]
@@ -60,18 +102,31 @@ def plain(value: Any) -> Any:
 
 
 @cache
-def _names(kind: type) -> tuple[str, ...]:
-    return tuple(field.name for field in fields(kind))
+def _names(kind: type) -> tuple[str, ...] | None:
+    """The fields of a dataclass; None of any other class."""
+    return tuple(field.name for field in fields(kind)) if is_dataclass(kind) else None
+
+
+_ENCODER = json.JSONEncoder(sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
+
+
+def _text(value: Any) -> str:
+    return _ENCODER.encode(value)
+
+
+@lru_cache(maxsize=4096)
+def _element(element: Element) -> str:
+    """An element as JSON, cached: most of a screen is the same from step to step and episode to episode."""
+    return _text(plain(element))
 
 
 def canonical(value: Any) -> bytes:
-    """JSON with sorted keys, no blanks, UTF-8; NaN and infinity are refused."""
-    text = json.dumps(value, sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
-    return text.encode()
+    """JSON with sorted keys, without spaces, in UTF-8; NaN and infinity are refused."""
+    return _text(value).encode()
 
 
 def sha256(steps: list[Json]) -> str:
-    """The trace's hash over what ``HASHED`` names of every step, as a hexadecimal string."""
+    """The trace's hash over the parts in ``HASHED`` of every step, as a hexadecimal string."""
     digest = hashlib.sha256()
     for step in steps:
         digest.update(canonical({name: step[name] for name in HASHED}))

@@ -1,8 +1,8 @@
-"""Models behind the agents: one chat protocol, several back ends.
+"""Models for the agents: one chat protocol, several back ends.
 
 ``rules``               a deterministic stand-in that reads the prompt by keywords; runs anywhere
 ``replay/FOLDER``       the answers recorded in an episode's folder, for an exact re-run
-``openai/NAME``         OpenAI, or what ``OPENAI_BASE_URL`` names
+``openai/NAME``         OpenAI, or the server that ``OPENAI_BASE_URL`` names
 ``PROVIDER/NAME``       any OpenAI-compatible endpoint: ``PROVIDER_API_KEY`` and ``PROVIDER_BASE_URL``
 
 The last two take settings: ``openai/NAME?seed=3&timeout_s=30``; see ``remote.Settings``.
@@ -13,11 +13,11 @@ from __future__ import annotations
 from pathlib import Path
 
 from automotive_cosim.errors import UnknownNameError
-from automotive_cosim.models.base import ChatModel, Message, Reply
+from automotive_cosim.models.base import ChatMessage, ChatModel, ModelReply
 from automotive_cosim.models.replay import Replay
 from automotive_cosim.models.rules import Rules
 
-__all__ = ["MODELS", "ChatModel", "Message", "Replay", "Reply", "Rules", "make_model"]
+__all__ = ["MODELS", "ChatMessage", "ChatModel", "ModelReply", "Replay", "Rules", "make_model"]
 
 MODELS = ("rules", "replay/FOLDER", "openai/NAME", "PROVIDER/NAME")
 """The forms of a model's name."""

@@ -1,7 +1,7 @@
 """Any OpenAI-compatible endpoint, through the ``openai`` package.
 
-Key and address come from ``<PROVIDER>_API_KEY`` and ``<PROVIDER>_BASE_URL``. The key is in no message, log or
-record: whatever is said about an endpoint passes ``_Endpoint.clean``.
+Key and address come from ``<PROVIDER>_API_KEY`` and ``<PROVIDER>_BASE_URL``. The key never gets into a message,
+log or record: every text about an endpoint passes ``_Endpoint.clean``.
 """
 
 from __future__ import annotations
@@ -12,38 +12,39 @@ import os
 import re
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, field, replace
+from types import NoneType
+from typing import TYPE_CHECKING, Any, get_args, get_type_hints
 from urllib.parse import parse_qsl
 
 from automotive_cosim.errors import ModelError, SetupError, UnknownNameError, UserError
-from automotive_cosim.models.base import Message, Reply
+from automotive_cosim.models.base import ChatMessage, ModelReply
 
 if TYPE_CHECKING:
     import openai
 
 BODY_LIMIT_BYTES = 4_000_000
-"""Longest body that is read; an answer of a few thousand tokens has some tens of kilobytes."""
+"""Longest body to read; an answer of a few thousand tokens has some tens of kilobytes."""
 LONGEST_PAUSE_S = 60.0
 FIRST_PAUSE_S = 0.5
 SHORTEST_KEY = 12
-"""What is shorter is no secret but a word for a local server, and may occur in any answer."""
+"""A shorter key is no secret but a dummy for a local server, and may occur in any answer."""
 
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """What can stand behind the ``?`` of a model's name. ``none`` leaves a value to the provider."""
+    """The settings after the ``?`` of a model's name. ``none`` leaves a value to the provider."""
 
     seed: int | None = 0
     temperature: float | None = 0.0
     max_tokens: int | None = 1024
-    """Longest answer."""
+    """Longest answer, in tokens."""
     timeout_s: float = 60.0
-    """For one attempt, from the question to the answer's last byte."""
+    """Time limit of one attempt, from the question to the answer's last byte."""
     retries: int = 4
-    """Further attempts after one that failed for a passing reason."""
+    """Further attempts after a transient failure."""
     per_minute: float | None = None
-    """At most so many questions a minute."""
+    """Maximum number of questions per minute."""
     usd_per_million_in: float = 0.0
     usd_per_million_out: float = 0.0
 
@@ -52,27 +53,27 @@ class Settings:
         """Settings from ``name=value&name=value``.
 
         Raises:
-            UserError: an unknown name, or a value that is no number or out of range.
+            UserError: an unknown name, or a value that is not a number or out of range.
         """
-        known = {entry.name: entry for entry in fields(cls)}
+        known = {name: get_args(kind) or (kind,) for name, kind in get_type_hints(cls).items()}
         chosen: dict[str, Any] = {}
         for name, value in parse_qsl(query, keep_blank_values=True):
             if name not in known:
                 raise UnknownNameError("model setting", name, known)
-            chosen[name] = _number(name, value, str(known[name].type))
+            chosen[name] = _number(name, value, known[name])
         return replace(cls(), **chosen)
 
 
-def _number(name: str, value: str, kind: str) -> float | int | None:
-    if value == "none" and "None" in kind:
+def _number(name: str, value: str, kinds: tuple[type, ...]) -> float | int | None:
+    if value == "none" and NoneType in kinds:
         return None
     try:
-        number = int(value) if kind.startswith("int") else float(value)
+        number = int(value) if int in kinds else float(value)
     except ValueError:
         number = -1
     positive = name in ("timeout_s", "max_tokens", "per_minute")
     if not 0 <= number < 1e12 or (positive and number == 0):
-        wanted = "a whole number" if kind.startswith("int") else "a number"
+        wanted = "a whole number" if int in kinds else "a number"
         raise UserError(f"model setting {name} is {value!r}; give {wanted} {'above' if positive else 'from'} 0")
     return number
 
@@ -90,9 +91,11 @@ def make_remote(spec: str) -> Remote:
     prefix = re.sub(r"\W", "_", provider).upper()
     key, base_url = os.environ.get(f"{prefix}_API_KEY", ""), os.environ.get(f"{prefix}_BASE_URL", "")
     if not key:
-        raise SetupError(f"model {whole!r} needs the key in {prefix}_API_KEY; a local server takes any word")
+        raise SetupError(
+            f"model {whole!r} requires a key in {prefix}_API_KEY; for a local server, any word will do"
+        )
     if not base_url and provider != "openai":
-        raise SetupError(f"model {whole!r} needs its address in {prefix}_BASE_URL, e.g. http://127.0.0.1:8000/v1")
+        raise SetupError(f"model {whole!r} requires an address in {prefix}_BASE_URL, e.g. http://127.0.0.1:8000/v1")
     return Remote(spec, model, settings, _Endpoint(provider, base_url or None, key))
 
 
@@ -103,7 +106,7 @@ class _Endpoint:
     key: str = field(repr=False)
 
     def clean(self, text: str) -> str:
-        """The text without the key, whoever put it there."""
+        """The text without the key, wherever it came from."""
         return text.replace(self.key, "***") if len(self.key) >= SHORTEST_KEY else text
 
     def client(self, timeout_s: float) -> openai.OpenAI:
@@ -117,7 +120,7 @@ class _Endpoint:
 
 
 class _PassingError(Exception):
-    """Worth another attempt."""
+    """A failure worth another attempt."""
 
     def __init__(self, why: str, pause_s: float | None = None) -> None:
         super().__init__(why)
@@ -137,14 +140,14 @@ class Remote:
         endpoint: _Endpoint,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
-        """Connects to nothing yet.
+        """Makes the model without connecting to it.
 
         Args:
-            name: as it is written into results.
+            name: the name written into results.
             model: the provider's name of it.
-            settings: how it is asked.
-            endpoint: where.
-            sleep: waits so many seconds, between attempts and for the rate limit.
+            settings: how to ask it.
+            endpoint: where to ask it.
+            sleep: waits for a number of seconds, between attempts and for the rate limit.
 
         Raises:
             SetupError: the ``openai`` package is missing.
@@ -157,8 +160,8 @@ class Remote:
         self._client = endpoint.client(settings.timeout_s)
         self._next_s = 0.0
 
-    def chat(self, messages: Sequence[Message]) -> Reply:
-        """Asks, and asks again after a failure that may pass, each time after a longer pause.
+    def chat(self, messages: Sequence[ChatMessage]) -> ModelReply:
+        """Asks, and repeats the question after a transient failure, each time after a longer pause.
 
         Raises:
             ModelError: refused, or every attempt failed.
@@ -189,7 +192,7 @@ class Remote:
             self._sleep(self._next_s - now_s)
         self._next_s = max(now_s, self._next_s) + 60 / self._settings.per_minute
 
-    def _ask(self, messages: Sequence[Message]) -> Reply:
+    def _ask(self, messages: Sequence[ChatMessage]) -> ModelReply:
         import httpx2
         import openai
 
@@ -204,9 +207,8 @@ class Remote:
             raise _PassingError(f"{type(error).__name__}: {error}") from None
         return self._read(body)
 
-    def _post(self, messages: Sequence[Message]) -> bytes:
-        """The body of the answer. It is read piece by piece, so that the time limit holds for a server that
-        trickles, too."""
+    def _post(self, messages: Sequence[ChatMessage]) -> bytes:
+        """The body of the answer. It is read in pieces, so that the time limit applies to a slow server too."""
         settings = self._settings
         longest = "max_completion_tokens" if self._endpoint.provider == "openai" else "max_tokens"
         wanted: dict[str, Any] = {
@@ -229,7 +231,7 @@ class Remote:
                     raise _PassingError(f"the answer has over {BODY_LIMIT_BYTES} bytes")
         return body
 
-    def _read(self, body: bytes) -> Reply:
+    def _read(self, body: bytes) -> ModelReply:
         try:
             told = json.loads(body)
             choice = told["choices"][0]
@@ -240,16 +242,16 @@ class Remote:
             finish = str(choice.get("finish_reason") or "stop")
         except (ValueError, LookupError, TypeError, AttributeError, RecursionError):
             shown = body[:80].decode(errors="replace")
-            raise _PassingError(f"the answer is no chat completion: {shown!r}") from None
+            raise _PassingError(f"the answer is not a chat completion: {shown!r}") from None
         settings = self._settings
         cost_usd = (tokens_in * settings.usd_per_million_in + tokens_out * settings.usd_per_million_out) / 1e6
-        # Half a surrogate pair is valid JSON and no text: it could not be written into a record.
+        # Half a surrogate pair is valid JSON but not valid text: it could not be written into a record.
         text = self._endpoint.clean(_text(content)).encode("utf-8", "replace").decode()
-        return Reply(text, tokens_in, tokens_out, cost_usd, finish=finish)
+        return ModelReply(text, tokens_in, tokens_out, cost_usd, finish=finish)
 
 
 def _pause(header: str | None) -> float | None:
-    """The server's own wish, in seconds; None without one, or with a date."""
+    """The pause that the server requests, in seconds; None without one, or with a date."""
     try:
         return max(0.0, float(header)) if header else None
     except ValueError:
@@ -265,7 +267,7 @@ def _text(content: object) -> str:
     return ""
 
 
-def _wire(message: Message) -> dict[str, Any]:
+def _wire(message: ChatMessage) -> dict[str, Any]:
     if not message.pictures:
         return {"role": message.role, "content": message.text}
     parts: list[dict[str, Any]] = [{"type": "text", "text": message.text}]

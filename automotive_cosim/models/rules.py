@@ -1,12 +1,12 @@
 """``rules``: a deterministic stand-in for a language model.
 
-It gets the text a language model would get and nothing else, and reads it by headings and keywords. It is no
-language model and its success rates say nothing about one: it shows that the pipeline carries the information
-an agent needs, and what becomes of the same rules when they are given less. It sees no pixels, so that an agent
-with screenshots does exactly what the same agent does without them.
+It gets the text that a language model would get and nothing else, and reads it by headings and keywords. It is not
+a language model, and its success rates say nothing about one: it shows that the pipeline carries the information
+that an agent needs, and how the same rules fare when they are given less. It sees no pixels, so an agent with
+screenshots does exactly what the same agent does without them.
 
-What it knows stands in ``skills.py``; this module reads the prompt and follows a plan. A plan is carried from
-turn to turn by the prompt itself, in the section "Your plan".
+Its knowledge is in ``skills.py``; this module reads the prompt and follows a plan. The prompt itself carries the
+plan from turn to turn, in the section "Your plan".
 """
 
 from __future__ import annotations
@@ -15,33 +15,33 @@ import json
 import re
 from collections.abc import Mapping, Sequence
 
-from automotive_cosim.models.base import Message, Reply, estimated_tokens
-from automotive_cosim.models.page import Line, Page
-from automotive_cosim.models.skills import SKILLS, Decline, Move, Wait, Way
+from automotive_cosim.models.base import ChatMessage, ModelReply, estimated_tokens
+from automotive_cosim.models.page import ListedElement, Page
+from automotive_cosim.models.skills import SKILLS, Course, Decline, SkillMove, Wait
 
 MOST_SCROLLS = 6
-"""So often it scrolls for one element before it gives up."""
+"""How often it scrolls for one element before it stops looking."""
 STOPPED = {
     "restricted": "safety",
     "disabled": "not_possible",
     "refused": "not_possible",
     "no_such_element": "not_possible",
 }
-"""Results after which a plan cannot go on, and the reason to decline with."""
+"""Results after which a plan cannot continue, and the reason to decline with."""
 
 
 class Rules:
-    """See the module; ``chat`` is a pure function of the messages. Its token counts are estimates."""
+    """The stand-in; ``chat`` is a pure function of the messages. Its token counts are estimates."""
 
     name = "rules"
     sees_pictures = False
 
-    def chat(self, messages: Sequence[Message]) -> Reply:
+    def chat(self, messages: Sequence[ChatMessage]) -> ModelReply:
         """Answers a prompt with an action, or a request to look back with one line."""
         page = Page.read(messages[-1].text)
         text = _look_back(page) if page.looks_back else _answer(page)
         asked = [message.text for message in messages]
-        return Reply(text, estimated_tokens(*asked), estimated_tokens(text))
+        return ModelReply(text, estimated_tokens(*asked), estimated_tokens(text))
 
 
 def _answer(page: Page) -> str:
@@ -56,7 +56,7 @@ def _answer(page: Page) -> str:
     return _go_on(page, decided.because, (*decided.moves, ("status", "complete", "none")), 0)
 
 
-def _decide(page: Page) -> Way | Decline | Wait:
+def _decide(page: Page) -> Course | Decline | Wait:
     goal = page.goal.lower()
     for skill in SKILLS:
         if any(re.search(word, goal) for word in skill.words):
@@ -64,7 +64,7 @@ def _decide(page: Page) -> Way | Decline | Wait:
     return Decline("infeasible", "none", "I do not know what is wanted.")
 
 
-def _go_on(page: Page, because: str, moves: Sequence[Move], scrolls: int) -> str:
+def _go_on(page: Page, because: str, moves: Sequence[SkillMove], scrolls: int) -> str:
     """The first of the moves, with the others as the plan."""
     if page.plan and page.result in STOPPED:
         return _say(f"The car says {page.result}.", _status("infeasible", STOPPED[page.result]))
@@ -79,8 +79,8 @@ def _go_on(page: Page, because: str, moves: Sequence[Move], scrolls: int) -> str
     return _say(f"I cannot find {move[1]}.", _status("infeasible", "not_possible"))
 
 
-def _action(page: Page, move: Move) -> dict[str, object] | None:
-    """The action of one move; None if what it is about is not on the screen."""
+def _action(page: Page, move: SkillMove) -> dict[str, object] | None:
+    """The action of one move; None if its element is not on the screen."""
     kind, about = move[0], move[1]
     if kind == "open":
         return {"action_type": "open_app", "app_name": about}
@@ -102,10 +102,10 @@ def _action(page: Page, move: Move) -> dict[str, object] | None:
 
 
 TRACK_INSET_PX = 20
-"""A slider's track begins and ends so far inside its bounds, as its picture shows."""
+"""How far inside its bounds a slider's track begins and ends, as in its picture."""
 
 
-def _on_track(line: Line, share: float) -> dict[str, object]:
+def _on_track(line: ListedElement, share: float) -> dict[str, object]:
     left, top, right, bottom = line.bounds
     x = left + TRACK_INSET_PX + share * (right - left - 2 * TRACK_INSET_PX)
     return {"action_type": "click", "x": round(x), "y": (top + bottom) // 2}
@@ -115,13 +115,13 @@ def _status(status: str, reason: str) -> dict[str, object]:
     return {"action_type": "status", "goal_status": status, "reason": reason}
 
 
-def _say(because: str, action: Mapping[str, object], rest: Sequence[Move] = (), scrolls: int = 0) -> str:
+def _say(because: str, action: Mapping[str, object], rest: Sequence[SkillMove] = (), scrolls: int = 0) -> str:
     plan = f"Plan: {json.dumps({'moves': rest, 'scrolls': scrolls})}\n" if rest else ""
     return f"Situation: {because}\n{plan}Action: {json.dumps(action)}"
 
 
-def _plan(text: str) -> tuple[tuple[Move, ...], int]:
-    """The moves left of a plan and how often it has scrolled for the first; nothing if it is none of ours."""
+def _plan(text: str) -> tuple[tuple[SkillMove, ...], int]:
+    """The remaining moves of a plan and how often it has scrolled for the first; empty if it is not ours."""
     try:
         plan = json.loads(text)
         return tuple(tuple(map(str, move)) for move in plan["moves"]), int(plan["scrolls"])

@@ -1,9 +1,9 @@
-"""What the rule model knows, as a table: words of a wish, and how it is fulfilled in this cockpit.
+"""The rule model's knowledge as a table: the words of a request, and how to fulfil it in this cockpit.
 
-To add one, write a ``Skill`` into ``SKILLS``, above those whose words are more general: the first whose words are
-found in the goal decides. ``do`` is a ``Way``, a ``Decline``, a ``Wait``, or a function that reads the ``Page`` and
-returns one of them. The words are made from a task's first phrasings; its last ones are held out
-(``tasking.instance.Instance.held_out``) and must not be looked at here.
+To add one, write a ``Skill`` into ``SKILLS``, above those whose words are more general: the first whose words occur
+in the goal decides. ``do`` is a ``Course``, a ``Decline``, a ``Wait``, or a function that reads the ``Page`` and
+returns one of them. The words are taken from a task's first phrasings; its last ones are held out
+(``tasking.instance.Instance.held_out``) and must not be used here.
 """
 
 from __future__ import annotations
@@ -15,26 +15,26 @@ from dataclasses import dataclass
 from automotive_cosim.models.page import Page
 
 SPEEDING_MARGIN_KMH = 3.0
-"""Above the limit by more than this counts as too fast: 1 km/h of rounding and 3 % of tolerance at 50 km/h, as
-Regulation (EU) 2021/1958 grants a speed assistant."""
+"""A speed further above the limit is too fast: 1 km/h of rounding and the 3 % of tolerance at 50 km/h that
+Regulation (EU) 2021/1958 grants to a speed assistant."""
 RAIN_PCT = 20.0
-"""Rain intensity from which drops, not fog, are what lies on the glass."""
+"""Rain intensity from which the glass is covered by drops, not fog."""
 
-Move = tuple[str, ...]
-"""One step of a way; the functions below make them."""
+SkillMove = tuple[str, ...]
+"""One step of a ``Course``; the functions below make them."""
 
 
 @dataclass(frozen=True, slots=True)
-class Way:
-    """Moves to carry out one after another, and why."""
+class Course:
+    """Moves to carry out in order, and why."""
 
     because: str
-    moves: tuple[Move, ...]
+    moves: tuple[SkillMove, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Decline:
-    """Nothing is to be done: ``infeasible`` or ``not_needed``, with a reason code."""
+    """Nothing has to be done: ``infeasible`` or ``not_needed``, with a reason code."""
 
     status: str
     reason: str
@@ -43,63 +43,63 @@ class Decline:
 
 @dataclass(frozen=True, slots=True)
 class Wait:
-    """Nothing is to be done yet."""
+    """Nothing has to be done yet."""
 
     because: str
     seconds: int = 1
 
 
-Decision = Way | Decline | Wait
+SkillDecision = Course | Decline | Wait
 
 
 @dataclass(frozen=True, slots=True)
 class Skill:
-    """A wish and what to do about it."""
+    """A request and what to do about it."""
 
     words: tuple[str, ...]
-    """Regular expressions on the goal in lower case, of which any must be found."""
-    do: Decision | Callable[[Page], Decision]
+    """Regular expressions on the goal in lower case, of which one must match."""
+    do: SkillDecision | Callable[[Page], SkillDecision]
 
 
-def opened(app: str) -> Move:
+def opened(app: str) -> SkillMove:
     """Opens an app."""
     return ("open", app)
 
 
-def tap(resource_id: str) -> Move:
-    """Taps the element with this id, or with this text after ``=``; scrolls for it if need be."""
+def tap(resource_id: str) -> SkillMove:
+    """Taps the element with this id, or with this text after ``=``; scrolls to it if necessary."""
     return ("tap", resource_id)
 
 
-def slide(resource_id: str, share: float) -> Move:
-    """Sets a slider to that share of its range, 0 to 1."""
+def slide(resource_id: str, share: float) -> SkillMove:
+    """Sets a slider to a share of its range, 0 to 1."""
     return ("slide", resource_id, f"{share:.3f}")
 
 
-def typed(resource_id: str, text: str) -> Move:
+def typed(resource_id: str, text: str) -> SkillMove:
     """Types into a text field."""
     return ("type", resource_id, text)
 
 
-def say(text: str) -> Move:
-    """Tells the driver."""
+def say(text: str) -> SkillMove:
+    """Says something to the driver."""
     return ("say", text)
 
 
-def call(action_type: str, **fields: object) -> Move:
+def call(action_type: str, **fields: object) -> SkillMove:
     """Any other action, e.g. ``call("show_alert", kind="speed")``."""
     return ("do", json.dumps({"action_type": action_type} | fields))
 
 
-def in_app(app: str, *ids: str, because: str) -> Way:
+def in_app(app: str, *ids: str, because: str) -> Course:
     """Opens an app and taps elements."""
-    return Way(because, (opened(app), *map(tap, ids)))
+    return Course(because, (opened(app), *map(tap, ids)))
 
 
 # --- decisions that read the page -------------------------------------------------------------------------
 
 
-def _watch_speed(page: Page) -> Decision:
+def _watch_speed(page: Page) -> SkillDecision:
     speed, limit = page.number("speed_kmh"), page.limit_kmh()
     if speed is None or limit is None:
         return Decline("not_needed", "none", f"At {speed} km/h and no limit known there is nothing to say.")
@@ -109,21 +109,21 @@ def _watch_speed(page: Page) -> Decision:
     return Decline("not_needed", "already_so", f"{speed:.0f} km/h is within the limit of {limit:.0f}.")
 
 
-def _tell_limit(page: Page) -> Decision:
+def _tell_limit(page: Page) -> SkillDecision:
     limit = page.limit_kmh()
     if limit is None:
         return Decline("not_needed", "none", "There is no limit that I could name.")
-    return Way(f"The limit is {limit:.0f} km/h.", (call("show_alert", kind="speed", speed_kmh=round(limit, 1)),))
+    return Course(f"The limit is {limit:.0f} km/h.", (call("show_alert", kind="speed", speed_kmh=round(limit, 1)),))
 
 
-def _high_beam(page: Page) -> Decision:
+def _high_beam(page: Page) -> SkillDecision:
     if page.forbids_high_beam():
         return Decline("infeasible", "law", "High beam is not allowed on a road like this.")
     return in_app("vehicle", "lights.high_beam", because="Nothing speaks against high beam here.")
 
 
-def _fog_lamp(rule: str, switch: str) -> Callable[[Page], Decision]:
-    def decide(page: Page) -> Decision:
+def _fog_lamp(rule: str, switch: str) -> Callable[[Page], SkillDecision]:
+    def decide(page: Page) -> SkillDecision:
         if page.allows_now(rule) is False:
             return Decline("infeasible", "law", f"{rule}: not allowed in this weather here.")
         return in_app("vehicle", switch, because=f"{rule}: allowed here.")
@@ -131,7 +131,7 @@ def _fog_lamp(rule: str, switch: str) -> Callable[[Page], Decision]:
     return decide
 
 
-def _rear_fog_left_on(page: Page) -> Decision:
+def _rear_fog_left_on(page: Page) -> SkillDecision:
     if page.is_on("is_rear_fog_on") and page.allows_now("Rear fog lamp") is False:
         return in_app(
             "vehicle", "lights.rear_fog", because="The rear fog lamp is not allowed in this weather here."
@@ -139,14 +139,14 @@ def _rear_fog_left_on(page: Page) -> Decision:
     return Decline("not_needed", "already_so", "The rear fog lamp may stay as it is.")
 
 
-def _windshield(page: Page) -> Decision:
+def _windshield(page: Page) -> SkillDecision:
     outside, inside = page.number("ambient_temperature_c"), page.number("cabin_temperature_c")
     if outside is not None and inside is not None and outside > inside:
         return in_app("vehicle", "wiper.front.slow", because="Warm damp air outside meets cold glass: wipe it off.")
     return in_app("climate", "hvac.front_defroster", because="The glass is fogged from inside: blow dry air on it.")
 
 
-def _rear_window(page: Page) -> Decision:
+def _rear_window(page: Page) -> SkillDecision:
     if (page.number("rain_intensity_pct") or 0.0) > RAIN_PCT:
         return in_app("vehicle", "wiper.rear.slow", because="It is rain on the outside: wipe it.")
     return in_app("climate", "hvac.rear_defroster", because="The glass is fogged from inside: heat it.")

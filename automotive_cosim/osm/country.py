@@ -1,4 +1,4 @@
-"""What a map leaves unsaid and its country decides: the side of the road, and the limit where none is mapped.
+"""A country's defaults for what a map does not say: the driving side, and the limit where none is mapped.
 
 The limits are those of the country's traffic code for a car in the dry, as collected on the OpenStreetMap wiki's
 page "Default speed limits" and corrected where the code itself says otherwise (FR: code de la route R413-2 and -3;
@@ -23,75 +23,75 @@ LEFT_HAND = frozenset((
     "WS", "ZA", "ZM", "ZW",
 ))
 # fmt: on
-"""ISO 3166-1 codes of where people drive on the left."""
+"""ISO 3166-1 codes of the countries that drive on the left."""
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class CountryLimits:
     """General limits of a country, km/h."""
 
     street: float
-    """Built-up, a residential street."""
+    """In built-up areas, on a residential street."""
     town: float
-    """Built-up, any larger road."""
+    """In built-up areas, on any larger road."""
     rural: float
     dual: float
     """Rural, separate carriageways (expressway, motor road)."""
     motorway: float
 
 
-def _mph(street: float, town: float, rural: float, dual: float, motorway: float) -> Limits:
-    return Limits(*(round(limit * KMH_PER_MPH, 3) for limit in (street, town, rural, dual, motorway)))
+def _mph(street: float, town: float, rural: float, dual: float, motorway: float) -> CountryLimits:
+    return CountryLimits(*(round(limit * KMH_PER_MPH, 3) for limit in (street, town, rural, dual, motorway)))
 
 
-LIMITS: Mapping[str, Limits] = {
-    "AE": Limits(40, 60, 100, 100, 120),
-    "AR": Limits(40, 60, 110, 120, 130),
-    "AT": Limits(50, 50, 100, 100, 130),
-    "AU": Limits(50, 50, 100, 100, 110),
-    "BE": Limits(50, 50, 70, 120, 120),
-    "BG": Limits(50, 50, 90, 120, 140),
-    "BR": Limits(30, 60, 100, 110, 110),
-    "CA": Limits(50, 50, 80, 100, 100),
-    "CH": Limits(50, 50, 80, 100, 120),
-    "CN": Limits(30, 50, 70, 70, 120),
-    "CZ": Limits(50, 50, 90, 110, 130),
-    "DE": Limits(50, 50, 100, 130, 130),
-    "DK": Limits(50, 50, 80, 80, 130),
-    "EE": Limits(50, 50, 90, 90, 90),
-    "ES": Limits(30, 50, 90, 90, 120),
-    "FI": Limits(50, 50, 80, 80, 120),
-    "FR": Limits(50, 50, 80, 110, 130),
+LIMITS: Mapping[str, CountryLimits] = {
+    "AE": CountryLimits(40, 60, 100, 100, 120),
+    "AR": CountryLimits(40, 60, 110, 120, 130),
+    "AT": CountryLimits(50, 50, 100, 100, 130),
+    "AU": CountryLimits(50, 50, 100, 100, 110),
+    "BE": CountryLimits(50, 50, 70, 120, 120),
+    "BG": CountryLimits(50, 50, 90, 120, 140),
+    "BR": CountryLimits(30, 60, 100, 110, 110),
+    "CA": CountryLimits(50, 50, 80, 100, 100),
+    "CH": CountryLimits(50, 50, 80, 100, 120),
+    "CN": CountryLimits(30, 50, 70, 70, 120),
+    "CZ": CountryLimits(50, 50, 90, 110, 130),
+    "DE": CountryLimits(50, 50, 100, 130, 130),
+    "DK": CountryLimits(50, 50, 80, 80, 130),
+    "EE": CountryLimits(50, 50, 90, 90, 90),
+    "ES": CountryLimits(30, 50, 90, 90, 120),
+    "FI": CountryLimits(50, 50, 80, 80, 120),
+    "FR": CountryLimits(50, 50, 80, 110, 130),
     "GB": _mph(30, 30, 60, 70, 70),
-    "GR": Limits(50, 50, 90, 110, 130),
-    "HR": Limits(50, 50, 90, 110, 130),
-    "HU": Limits(50, 50, 90, 110, 130),
-    "IE": Limits(50, 50, 80, 100, 120),
-    "IN": Limits(70, 70, 70, 100, 120),
-    "IT": Limits(50, 50, 90, 110, 130),
-    "JP": Limits(30, 60, 60, 60, 100),
-    "KR": Limits(50, 50, 60, 80, 100),
-    "LT": Limits(50, 50, 90, 120, 130),
-    "LU": Limits(50, 50, 90, 90, 130),
-    "LV": Limits(50, 50, 90, 90, 90),
-    "NL": Limits(50, 50, 80, 100, 100),
-    "NO": Limits(50, 50, 80, 80, 110),
-    "NZ": Limits(50, 50, 100, 100, 100),
-    "PL": Limits(50, 50, 90, 100, 140),
-    "PT": Limits(50, 50, 90, 100, 120),
-    "RO": Limits(50, 50, 90, 100, 130),
-    "SE": Limits(50, 50, 70, 70, 110),
-    "SI": Limits(50, 50, 90, 110, 130),
-    "SK": Limits(50, 50, 90, 130, 130),
-    "TR": Limits(50, 50, 90, 110, 130),
+    "GR": CountryLimits(50, 50, 90, 110, 130),
+    "HR": CountryLimits(50, 50, 90, 110, 130),
+    "HU": CountryLimits(50, 50, 90, 110, 130),
+    "IE": CountryLimits(50, 50, 80, 100, 120),
+    "IN": CountryLimits(70, 70, 70, 100, 120),
+    "IT": CountryLimits(50, 50, 90, 110, 130),
+    "JP": CountryLimits(30, 60, 60, 60, 100),
+    "KR": CountryLimits(50, 50, 60, 80, 100),
+    "LT": CountryLimits(50, 50, 90, 120, 130),
+    "LU": CountryLimits(50, 50, 90, 90, 130),
+    "LV": CountryLimits(50, 50, 90, 90, 90),
+    "NL": CountryLimits(50, 50, 80, 100, 100),
+    "NO": CountryLimits(50, 50, 80, 80, 110),
+    "NZ": CountryLimits(50, 50, 100, 100, 100),
+    "PL": CountryLimits(50, 50, 90, 100, 140),
+    "PT": CountryLimits(50, 50, 90, 100, 120),
+    "RO": CountryLimits(50, 50, 90, 100, 130),
+    "SE": CountryLimits(50, 50, 70, 70, 110),
+    "SI": CountryLimits(50, 50, 90, 110, 130),
+    "SK": CountryLimits(50, 50, 90, 130, 130),
+    "TR": CountryLimits(50, 50, 90, 110, 130),
     "US": _mph(30, 30, 55, 65, 65),
-    "ZA": Limits(60, 60, 100, 100, 120),
+    "ZA": CountryLimits(60, 60, 100, 100, 120),
 }
-WORLD = Limits(50, 50, 80, 100, 120)
-"""For a country without a row above: the commonest values among those that have one."""
+WORLD = CountryLimits(50, 50, 80, 100, 120)
+"""For a country without a row above: the most common values among those that have one."""
 
 LIVING_STREET_KMH = 20.0
-"""Mapped living streets without a limit; the codes say 20 km/h (FR R110-2, BE, CH) or walking pace (DE)."""
+"""Limit of mapped living streets without one; the codes say 20 km/h (FR R110-2, BE, CH) or walking pace (DE)."""
 
 
 def country_codes() -> frozenset[str]:
@@ -100,19 +100,19 @@ def country_codes() -> frozenset[str]:
     return frozenset(line[:2] for line in text.splitlines() if line and not line.startswith("#"))
 
 
-def limits_of(country: str) -> Limits:
+def limits_of(country: str) -> CountryLimits:
     """The general limits of a country, ``WORLD`` for one that is not listed."""
     return LIMITS.get(country, WORLD)
 
 
 def assumed_limit_kmh(country: str, road_class: str, *, built_up: bool, dual: bool) -> float:
-    """The limit a road most likely has where the map states none.
+    """The most likely limit of a road for which the map states none.
 
     Args:
         country: ISO 3166-1 code.
         road_class: OSM highway value.
-        built_up: the road lies in a town or village.
-        dual: it is one carriageway of two.
+        built_up: whether the road lies in a town or village.
+        dual: whether it is one carriageway of two.
     """
     limits = limits_of(country)
     if road_class == "motorway":

@@ -25,7 +25,7 @@ from automotive_cosim.run.words import action_in_words, is_over
 
 WIDTH, HEIGHT = 1280, 720
 SCALE = 0.75
-"""Of the film's pixels: 960 x 540."""
+"""Pixels per unit of the layout: the film has 960 x 540."""
 COCKPIT = Rect(20, 20, 848, 477)
 ROAD = Rect(884, 20, 376, 477)
 SIGN = Rect(ROAD.x + 12, ROAD.y + 12, ROAD.width - 24, 52)
@@ -38,8 +38,8 @@ QUALITY = 72
 
 
 @dataclass(frozen=True, slots=True)
-class Frame:
-    """One picture of the film before it is composed."""
+class FilmFrame:
+    """The content of one frame before it is composed."""
 
     time_s: float
     cockpit: Image.Image
@@ -52,22 +52,22 @@ class Film(Watcher):
     """Collects frames while an episode runs and writes the film when it is over."""
 
     def __init__(self, folder: Path) -> None:
-        """``folder`` is the record's; nothing is written before the end."""
+        """``folder`` is the record's folder; nothing is written before the end."""
         self._path = folder / "episode.webp"
-        self._before: deque[Frame] = deque(maxlen=BEFORE_FRAMES)
-        self._steps: list[Frame] = []
-        self._after: list[Frame] = []
+        self._before: deque[FilmFrame] = deque(maxlen=BEFORE_FRAMES)
+        self._steps: list[FilmFrame] = []
+        self._after: list[FilmFrame] = []
         self._map: RoadMap | None = None
         self._hand_over_s = 0.0
 
     def moved(self, moment: Moment, cockpit: Cockpit) -> None:
-        """Takes a picture now and then: of the drive up, and of what may turn out to be the aftermath."""
+        """Takes a picture now and then: before the hand-over, and after each step in case it is the last."""
         if self._map is None:
             if not self._before or moment.time_s - self._before[-1].time_s >= BEFORE_EVERY_S:
                 title, words = "The drive up to the hand-over", "nobody acts yet"
                 self._before.append(_frame(moment.time_s, cockpit.screenshot(), title, words, BEFORE_MS))
         elif not self._after or moment.time_s - self._after[-1].time_s >= AFTER_EVERY_S:
-            title, words = "After the end", "how the drive goes on"
+            title, words = "After the end", "how the drive continues"
             self._after.append(_frame(moment.time_s, cockpit.screenshot(), title, words, AFTER_MS))
 
     def handed_over(self, episode: Episode, shot: Shot) -> None:
@@ -78,7 +78,7 @@ class Film(Watcher):
         self._steps.append(_frame(self._hand_over_s, shot.screenshot, "The driver says", words, STEP_MS))
 
     def stepped(self, shot: Shot) -> None:
-        """One frame a step."""
+        """Adds one frame per step."""
         self._after.clear()
         step = shot.step
         title = f"{step.number}  {action_in_words(step.action, shot.seen)}"
@@ -105,7 +105,7 @@ class Film(Watcher):
         )
         draft.replace(self._path)
 
-    def _compose(self, frame: Frame, result: EpisodeResult) -> Image.Image:
+    def _compose(self, frame: FilmFrame, result: EpisodeResult) -> Image.Image:
         assert self._map is not None
         at_s = frame.time_s - self._hand_over_s
         past = [sample for sample in result.path if sample.at_s <= at_s + 0.05]
@@ -120,9 +120,11 @@ class Film(Watcher):
         return canvas.image
 
 
-def _frame(time_s: float, screenshot: npt.NDArray[np.uint8], title: str, words: str, milliseconds: int) -> Frame:
+def _frame(
+    time_s: float, screenshot: npt.NDArray[np.uint8], title: str, words: str, milliseconds: int
+) -> FilmFrame:
     picture = Image.fromarray(screenshot).resize(_pixels(COCKPIT), Image.Resampling.LANCZOS)
-    return Frame(time_s, picture, title, words, milliseconds)
+    return FilmFrame(time_s, picture, title, words, milliseconds)
 
 
 def _pixels(rect: Rect) -> tuple[int, int]:
@@ -160,7 +162,7 @@ def _limit_sign(canvas: Canvas, rect: Rect, limit_kmh: float) -> None:
     canvas.text(rect, f"{limit_kmh:.0f}", Type.STRONG, (10, 10, 10), "centre")
 
 
-def _info(canvas: Canvas, frame: Frame, here: Sample, at_s: float) -> None:
+def _info(canvas: Canvas, frame: FilmFrame, here: Sample, at_s: float) -> None:
     """Clock, speed, and what is being done and why."""
     canvas.box(INFO, NIGHT.surface, 14)
     inner = INFO.inset(18, 12)

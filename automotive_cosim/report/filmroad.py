@@ -1,4 +1,4 @@
-"""The road from above, heading up, with the way that was driven."""
+"""The road from above, heading up, with a trail of the route driven so far."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from PIL import Image, ImageDraw
 from automotive_cosim.cockpit.drawing import Canvas
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.map import EGO_DOWN, Camera, RoadMap
-from automotive_cosim.cockpit.mapdraw import Scene, draw
+from automotive_cosim.cockpit.mapdraw import MapScene, draw
 from automotive_cosim.cockpit.theme import NIGHT, Type
 from automotive_cosim.run.timeline import Sample
 from automotive_cosim.run.words import is_over
@@ -31,7 +31,7 @@ def draw_road(
 
     Args:
         canvas: the frame.
-        area: where on it.
+        area: where to draw on it.
         road_map: the network.
         past: the drive so far, oldest first; red where it was above the limit.
         avoid: boxes without street names.
@@ -39,7 +39,7 @@ def draw_road(
     here = past[-1]
     camera = Camera(here.x_m, here.y_m, here.heading_deg, METRES_PER_PIXEL)
     width, height = round(area.width * canvas.scale), round(area.height * canvas.scale)
-    scene = Scene(camera, (here.x_m, here.y_m, here.heading_deg))
+    scene = MapScene(camera, (here.x_m, here.y_m, here.heading_deg))
     picture = draw(road_map, scene, width, height, canvas.scale, night=True)
     trail = _Trail(camera, area, canvas.scale * FINE)
     trail.drive(past)
@@ -54,7 +54,7 @@ def draw_road(
 
 
 class _Trail:
-    """Masks of the way within the limit and above it."""
+    """Masks of the trail, within the limit and above it."""
 
     def __init__(self, camera: Camera, area: Rect, scale: float) -> None:
         self._camera = camera
@@ -78,7 +78,7 @@ class _Trail:
                 brush.ellipse((x - r, y - r, x + r, y + r), 255)
 
     def _point(self, sample: Sample) -> tuple[float, float]:
-        """Where a sample stands in the area, in pixels of the layout."""
+        """Position of a sample in the area, in pixels of the layout."""
         camera = self._camera
         turn = math.radians(camera.heading_deg)
         dx = (sample.x_m - camera.x_m) / camera.metres_per_pixel

@@ -1,4 +1,4 @@
-"""Two evaluations of the same instances, one before a change and one after it, for checks on every change."""
+"""Compares two evaluations of the same instances, before and after a change."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from automotive_cosim.report.tables import Table
 from automotive_cosim.run.episode_row import EpisodeRow
 
 MOST_LISTED = 30
-"""Instances of one kind that a summary names; the JUnit file has all of them."""
+"""How many instances of one kind a summary lists; the JUnit file has all of them."""
 
 
 @dataclass(frozen=True, slots=True)
-class Case:
+class ComparedInstance:
     """One instance in both evaluations."""
 
     name: str
     before: EpisodeRow
     after: EpisodeRow | None
-    """None where the later evaluation has no such episode."""
+    """None if the later evaluation has no such episode."""
 
     @property
     def kind(self) -> str:
@@ -40,42 +40,42 @@ class Case:
     def why(self) -> str:
         """What is missing now."""
         if self.after is None:
-            return "there is no such episode"
+            return "the episode is missing"
         if self.after.success is None:
             why = self.after.error
-            return f"{self.after.error_kind}: {why}" if why else "a half of it is not judged"
+            return f"{self.after.error_kind}: {why}" if why else "one half is not judged"
         missing = [part.replace("_", " ") for part in self.after.missing]
         return f"missing: {', '.join(missing)}" if missing else ""
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class SuccessChange:
     """One contestant's success before and after."""
 
     contestant: Contestant
     unit: str
     """``episodes`` or ``pairs``."""
-    cases: tuple[Case, ...]
+    cases: tuple[ComparedInstance, ...]
     found: Comparison | None
-    """After against before; None where nothing was judged both times."""
+    """After compared with before; None if nothing was judged both times."""
 
     def count(self, kind: str) -> int:
-        """Cases of a kind."""
+        """The cases of one kind."""
         return sum(case.kind == kind for case in self.cases)
 
     def is_worse(self, allowed: float) -> bool:
-        """Whether success fell by more than ``allowed`` (0 to 1), or what was judged before is not judged now."""
+        """Whether success fell by more than ``allowed`` (0 to 1), or something judged before is not judged now."""
         return self.count("error") > 0 or self.found is None or -self.found.difference > allowed + 1e-9
 
 
-def changes(before: Path, after: Path) -> tuple[Change, ...]:
+def changes(before: Path, after: Path) -> tuple[SuccessChange, ...]:
     """Compares two evaluations' folders on what was judged in the first.
 
     Raises:
-        UserError: one is no evaluation, or no contestant is in both.
+        UserError: one folder is not an evaluation's, or no contestant is in both.
     """
     old, new = read_results(before), read_results(after)
-    found: list[Change] = []
+    found: list[SuccessChange] = []
     for each in old.contestants:
         if each in new.contestants:
             found.append(_change(each, "episodes", old.of(each), new.of(each)))
@@ -87,11 +87,13 @@ def changes(before: Path, after: Path) -> tuple[Change, ...]:
     return tuple(found)
 
 
-def _change(each: Contestant, unit: str, old: Iterable[EpisodeRow], new: Iterable[EpisodeRow]) -> Change:
+def _change(each: Contestant, unit: str, old: Iterable[EpisodeRow], new: Iterable[EpisodeRow]) -> SuccessChange:
     key = pair_instance if unit == "pairs" else instance
     news = {key(row): row for row in new}
     cases = tuple(
-        Case(" ".join(map(str, key(row))), row, news.get(key(row))) for row in old if row.success is not None
+        ComparedInstance(" ".join(map(str, key(row))), row, news.get(key(row)))
+        for row in old
+        if row.success is not None
     )
     judged = {case.name: case for case in cases if case.kind != "error"}
     clusters: dict[Hashable, Hashable] = {name: case.before.task for name, case in judged.items()}
@@ -100,10 +102,10 @@ def _change(each: Contestant, unit: str, old: Iterable[EpisodeRow], new: Iterabl
         {name: bool(case.before.success) for name, case in judged.items()},
         clusters,
     )
-    return Change(each, unit, cases, found)
+    return SuccessChange(each, unit, cases, found)
 
 
-def markdown(found: Sequence[Change], allowed: float) -> str:
+def markdown(found: Sequence[SuccessChange], allowed: float) -> str:
     """A summary for a pull request."""
     rows = []
     for each in found:
@@ -131,13 +133,13 @@ def markdown(found: Sequence[Change], allowed: float) -> str:
         ("", "Contestant", "Of", "Before", "After", "Difference", "Lost", "Won", "Not judged now"),
         tuple(rows),
         "On the instances that were judged before, with 95 % intervals over tasks. Worse: a fall of "
-        f"more than {allowed:.1%}, or something that is not judged any more.",
+        f"more than {allowed:.1%}, or something that is no longer judged.",
         heads=3,
     )
     return table.markdown() + "".join(_listed(each, kind) for each in found for kind in ("lost", "error", "won"))
 
 
-def _listed(each: Change, kind: str) -> str:
+def _listed(each: SuccessChange, kind: str) -> str:
     cases = [case for case in each.cases if case.kind == kind]
     if not cases or each.unit == "pairs":
         return ""
@@ -148,8 +150,8 @@ def _listed(each: Change, kind: str) -> str:
     return f"\n**{title}, {each.contestant.label}**\n\n" + "\n".join(lines) + "\n"
 
 
-def junit(found: Sequence[Change]) -> str:
-    """JUnit XML: a suite a contestant, a case an instance; what is lost fails, what is not judged is an error."""
+def junit(found: Sequence[SuccessChange]) -> str:
+    """JUnit XML, one suite per contestant, one case per instance; lost ones fail, ones not judged are errors."""
     root = ElementTree.Element("testsuites", name="automotive-cosim compare")
     for each in found:
         suite = ElementTree.SubElement(

@@ -1,7 +1,7 @@
-"""Runs jobs in workers; what is done stays done, whatever ends the run.
+"""Runs jobs in workers; finished jobs stay finished, however the run ends.
 
-Jobs depend on nothing but their setup, so neither their order, nor the number of workers, nor where they are shows
-in the results.
+Jobs depend only on their setup, so neither their order, nor the number of workers, nor where they run affects the
+results.
 """
 
 from __future__ import annotations
@@ -19,28 +19,28 @@ from automotive_cosim.run import worker
 from automotive_cosim.run.collect import Pictures, failed
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.executor import CannotWrite, Executor, J, LostError, Opener, R, Worker
-from automotive_cosim.run.pace import Pace, Turn
+from automotive_cosim.run.pace import JobTurn, Pace
 from automotive_cosim.run.plan import Plan
 from automotive_cosim.run.processes import Processes
-from automotive_cosim.run.queue import JobQueue, Simulation
+from automotive_cosim.run.queue import JobQueue, SimulationKey
 from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.store import Store, cannot_write, opened
 
 FINAL_KINDS = frozenset({TriggerNotReachedError.__name__})
-"""Errors that come again for certain, so that trying again is no use."""
+"""Errors that are certain to recur, so retrying is useless."""
 PATIENCE_S = 600.0
-"""Wall time that a batch waits for its first worker, or for another one when all are lost."""
+"""Wall time that a batch waits for its first worker, or for another one when all have died."""
 STILLBORN = 3
-"""So often all workers in a row may be lost before they are ready."""
+"""How often in a row all workers may die before they are ready."""
 
 
 @dataclass(frozen=True, slots=True)
 class Progress(Generic[R]):
-    """How far a run is."""
+    """The progress of a run."""
 
     planned: int
     done: int
-    """Jobs that need no further run, those of earlier starts included."""
+    """Jobs that need no further run, including those of earlier starts."""
     judged: int
     successes: int
     errors: int
@@ -49,9 +49,9 @@ class Progress(Generic[R]):
     seconds: float
     """Wall time since this start."""
     left_s: float | None
-    """Wall time to the end, as ``Pace`` expects it; None while there is nothing to go by."""
+    """Wall time to the end, as estimated by ``Pace``; None while there is no basis for an estimate."""
     ended: R | None
-    """The row of the job that ended just now; None at the start."""
+    """The row of the job that has just ended; None at the start."""
 
 
 def run_plan(
@@ -63,20 +63,20 @@ def run_plan(
     pictures: Pictures = Pictures.NONE,
     tell: Callable[[Progress[EpisodeRow]], None] = lambda progress: None,
 ) -> Progress[EpisodeRow]:
-    """Runs what is left of a plan; episodes that ended in an error are tried again.
+    """Runs the remaining episodes of a plan and retries those that ended in an error.
 
     Args:
         plan: what to run.
-        folder: where the results are or go.
+        folder: results folder, new or to be resumed.
         executor: where to run it.
-        retries: how often an episode that the machinery broke is tried again before it is put down as an error.
-        pictures: which to keep.
+        retries: how often an episode is retried after an infrastructure error before the error is recorded.
+        pictures: which screenshots to keep.
         tell: called at the start and after every episode.
 
     Raises:
-        UserError: the plan names what does not exist, or the folder cannot take its results.
-        InfrastructureError: there is no worker to be had.
-        KeyboardInterrupt: passed on; the running episodes are lost, and no other.
+        UserError: the plan names something that does not exist, or the folder cannot take its results.
+        InfrastructureError: no worker becomes available.
+        KeyboardInterrupt: passed on; only the running episodes are lost.
     """
     plan.check()
     jobs = plan.jobs()
@@ -95,15 +95,15 @@ def run_jobs(
     retries: int = 2,
     tell: Callable[[Progress[R]], None] = lambda progress: None,
 ) -> Progress[R]:
-    """Runs those of the jobs that have no row yet, or one of an error.
+    """Runs the jobs that have no row yet, or the row of an error.
 
     Args:
         jobs: what to run.
-        store: where the rows are and go.
-        opener: makes what runs them, in each worker.
-        failed: the row of a job whose worker is no more, from the job, the kind of error and why.
+        store: where the rows are read and written.
+        opener: makes the runner of each worker.
+        failed: makes the row of a job whose worker died, from the job, the kind of error and the reason.
         executor: where to run them.
-        retries: how often a job that ended in an error is tried again before its row is put down.
+        retries: how often a job is retried after an error before its row is written.
         tell: called at the start and after every job.
 
     Raises:
@@ -124,10 +124,10 @@ class _Place(Generic[J, R]):
     worker: Worker[J, R]
     job: J | None = None
     since_s: float = 0.0
-    """When it was given the job, monotonic."""
+    """When it was given the job (monotonic clock)."""
     is_cold: bool = True
-    """It has to warm up the simulation for the job."""
-    warm: Simulation | None = None
+    """Whether it has to warm up the simulation for the job."""
+    warm: SimulationKey | None = None
     """The simulation it ran last."""
 
     def give(self, job: J) -> None:
@@ -135,9 +135,9 @@ class _Place(Generic[J, R]):
         self.job, self.since_s, self.warm = job, time.monotonic(), job.simulation
         self.worker.give(job)
 
-    def turn(self, job: J) -> Turn:
-        """Its time with the job so far."""
-        return Turn(job, self.is_cold, time.monotonic() - self.since_s)
+    def turn(self, job: J) -> JobTurn:
+        """How long it has worked on its job."""
+        return JobTurn(job, self.is_cold, time.monotonic() - self.since_s)
 
 
 @dataclass(slots=True)
@@ -148,7 +148,7 @@ class _Tally:
     successes: int = 0
     errors: int = 0
     closed: int = 0
-    """Those that need no further run."""
+    """Rows of jobs that need no further run."""
 
     def count(self, row: JobRow | None, by: int = 1) -> None:
         if row is not None:
@@ -239,14 +239,14 @@ class _Batch(Generic[J, R]):
                     place.give(job)
 
     def _wait(self) -> None:
-        """Waits for an answer, a death, a worker that becomes ready, or the end of somebody's time."""
+        """Waits until a worker answers, dies, becomes ready or exceeds its time limit."""
         awaited = [place for place in self._places if place.job or not place.worker.is_ready]
         handles = {handle: place for place in awaited for handle in place.worker.handles}
         now_s = time.monotonic()
         ends_s = [place.since_s + place.job.wall_s for place in awaited if place.job]
         ready = self._executor.wait(list(handles), max(0.0, min(ends_s, default=now_s + PATIENCE_S) - now_s))
         if not ends_s and not ready:
-            raise InfrastructureError(f"no worker has become ready in {PATIENCE_S:g} s; the same command goes on")
+            raise InfrastructureError(f"no worker became ready in {PATIENCE_S:g} s; rerun the command to resume")
         for place in {handles[handle]: None for handle in ready}:
             self._answered(place)
         for place in awaited:
@@ -267,7 +267,7 @@ class _Batch(Generic[J, R]):
             self._turn_over(place, place.job, answer)
 
     def _lost(self, place: _Place[J, R], kind: str, why: str) -> None:
-        """Puts down the job of a worker that is no more."""
+        """Records the failed attempt of a worker that died."""
         self._places.remove(place)
         place.worker.end(at_once=True)
         if place.job is not None:
@@ -275,10 +275,10 @@ class _Batch(Generic[J, R]):
             return
         self._stillborn += 1
         if self._stillborn >= STILLBORN * self._executor.count:
-            raise InfrastructureError(f"no worker gets ready: {why}; the same command goes on")
+            raise InfrastructureError(f"no worker becomes ready: {why}; rerun the command to resume")
 
     def _turn_over(self, place: _Place[J, R], job: J, row: R) -> None:
-        """A worker no longer has a job."""
+        """Takes a job from a worker that has ended with it, or died."""
         turn, place.job = place.turn(job), None
         self._pace.took(turn, is_out_of_reach=row.error_kind in FINAL_KINDS)
         self._ended(job, replace(row, wall_seconds=round(turn.seconds, 3)))
@@ -301,7 +301,7 @@ class _Batch(Generic[J, R]):
         self._give_up_like(job, row)
 
     def _give_up_like(self, job: J, row: R) -> None:
-        """Puts down the jobs whose situation is known not to come about, without another try."""
+        """Records the jobs whose situation is known not to arise as errors, without another attempt."""
         if row.error is not None and row.error_kind in FINAL_KINDS:
             for other in self._alike.pop(job.situation, []):
                 if self._queue.remove(other):
@@ -309,5 +309,5 @@ class _Batch(Generic[J, R]):
 
 
 def _is_open(row: JobRow | None) -> bool:
-    """Whether a job is to be run: it has no row yet, or one of an error that may not come again."""
+    """Whether a job must run: it has no row yet, or that of an error that may not recur."""
     return row is None or (row.error is not None and row.error_kind not in FINAL_KINDS)

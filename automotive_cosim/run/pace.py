@@ -1,10 +1,10 @@
-"""How long the rest of a batch takes, from what its jobs have taken so far.
+"""Estimates how long the rest of a batch takes, from what its jobs have taken so far.
 
-A worker that turns to another simulation warms it up first: that job is *cold* and takes the warm-up beside its own
-time. The own time goes by the kind of job (who acts) and by the scenario: it is expected to be the mean over the
-warm jobs of that kind in that scenario, drawn towards the mean of the kind while few are known. A warm-up is what
-the cold jobs took beyond that. A situation that does not come about takes its time once for all jobs that wait for
-it. With these times the rest is played through as the queue will hand it out.
+A worker that changes to another simulation warms it up first: that job is *cold* and takes the warm-up on top of
+its own time. The own time depends on the kind of job (which agent acts) and on the scenario: it is expected to be the
+mean over the warm jobs of that kind in that scenario, drawn towards the mean of the kind while few are known. A
+warm-up takes what the cold jobs took beyond that. A situation that does not arise costs its time once for all jobs
+that wait for it. With these times the rest is played through the way the queue will hand it out.
 """
 
 from __future__ import annotations
@@ -16,30 +16,30 @@ from dataclasses import dataclass, field
 from heapq import heapify, heappop, heappush
 
 from automotive_cosim.run.executor import Job
-from automotive_cosim.run.queue import Simulation, next_simulation
+from automotive_cosim.run.queue import SimulationKey, next_simulation
 
 TRIALS = 3
-"""So many jobs of a kind must have ended in a warm simulation before it is known how long the others take."""
+"""This many jobs of a kind must have ended in a warm simulation before it is known how long the others take."""
 DRAWN_BY = 2.0
-"""What is known of all scenarios weighs as much as so many jobs of one."""
+"""The mean over all scenarios weighs as much as this many jobs of one."""
 HALF = 0.5
-"""A running job counts as half a job of its time so far, as on average it is half done: the short ones end first
-and would make the mean too small. One that is overdue is expected to take half as long again."""
+"""A running job counts as half a job with its time so far, since on average it is half done: the short ones end
+first and would make the mean too small. One that is overdue is expected to take half as long again."""
 STEPS = 200
-"""The rest is played through in about so many steps, however many jobs there are."""
+"""The rest is played through in about this many steps, however many jobs there are."""
 
-Waiting = Mapping[Simulation, Mapping[Hashable, int]]
+Waiting = Mapping[SimulationKey, Mapping[Hashable, int]]
 
 
 @dataclass(frozen=True, slots=True)
-class Turn:
-    """A worker's time with a job."""
+class JobTurn:
+    """The time that a worker spends on a job."""
 
     job: Job
     is_cold: bool
-    """The worker had to warm the simulation up."""
+    """Whether the worker had to warm up its simulation."""
     seconds: float
-    """So far, or in all."""
+    """Seconds so far, or in total."""
 
     @property
     def scenario(self) -> str:
@@ -48,26 +48,26 @@ class Turn:
 
 
 class Pace:
-    """Hears how long each job took and says how long the others will take."""
+    """Is told how long each job took, and estimates how long the others will take."""
 
-    def __init__(self, untried: Mapping[Hashable, Simulation]) -> None:
-        """Knows of no job yet.
+    def __init__(self, untried: Mapping[Hashable, SimulationKey]) -> None:
+        """Knows no job yet.
 
         Args:
-            untried: the simulation of each situation of which it is not known whether it comes about.
+            untried: for each situation of which it is not known whether it arises, its simulation.
         """
         self._untried = dict(untried)
         self._own: dict[Hashable, _Means] = defaultdict(_Means)
         self._search = _Means()
-        self._cold: list[Turn] = []
+        self._cold: list[JobTurn] = []
 
     @property
     def timed(self) -> frozenset[Hashable]:
-        """Kinds of which enough jobs are known."""
+        """Kinds of which enough jobs have been measured."""
         return frozenset(kind for kind, means in self._own.items() if means.count >= TRIALS)
 
-    def took(self, turn: Turn, *, is_out_of_reach: bool) -> None:
-        """A job has ended, well or not; ``is_out_of_reach`` says that its situation did not come about."""
+    def took(self, turn: JobTurn, *, is_out_of_reach: bool) -> None:
+        """Takes note of a job that has ended; ``is_out_of_reach`` if its situation did not arise."""
         if self._untried.pop(turn.job.situation, None) is not None:
             self._search.add(turn.scenario, turn.seconds if is_out_of_reach else 0.0)
         if is_out_of_reach:
@@ -77,13 +77,15 @@ class Pace:
         else:
             self._own[turn.job.kind].add(turn.scenario, turn.seconds)
 
-    def left_s(self, waiting: Waiting, running: Sequence[Turn], idle: Sequence[Simulation | None]) -> float | None:
-        """Wall time until everything has ended; None while too little is known of a kind of job that waits.
+    def left_s(
+        self, waiting: Waiting, running: Sequence[JobTurn], idle: Sequence[SimulationKey | None]
+    ) -> float | None:
+        """Wall time until everything has ended; None while too little is known of some kind of waiting job.
 
         Args:
             waiting: how many jobs wait, by simulation and kind.
-            running: the jobs that workers have.
-            idle: what each of the other workers, also of those yet to be started, has warm.
+            running: the jobs that workers are running.
+            idle: the warm simulation of each other worker, including those yet to be started.
         """
         if not self._knows(waiting, {*idle, *(turn.job.simulation for turn in running)}):
             return None
@@ -102,8 +104,8 @@ class Pace:
         places += [_Place(0.0, simulation) for simulation in idle]
         return _played_s(work, places)
 
-    def _knows(self, waiting: Waiting, held: Container[Simulation | None]) -> bool:
-        """A job that is alone in its simulation is cold: its own time need not be known apart from the warm-up."""
+    def _knows(self, waiting: Waiting, held: Container[SimulationKey | None]) -> bool:
+        """Whether there is a basis. A job alone in its simulation is cold, so only the sum of its times matters."""
         needed: Counter[Hashable] = Counter()
         for simulation, kinds in waiting.items():
             if simulation in held or sum(kinds.values()) > 1:
@@ -128,7 +130,7 @@ class _Means:
         self.count += count
 
     def of(self, scenario: str) -> float:
-        """Zero while nothing is known at all."""
+        """The mean; zero while nothing is known at all."""
         if not self.count:
             return 0.0
         sum_s, known = self.sums.get(scenario, (0.0, 0.0))
@@ -138,7 +140,7 @@ class _Means:
 class _Expected:
     """How long jobs and warm-ups are expected to take."""
 
-    def __init__(self, own: Mapping[Hashable, _Means], cold: Sequence[Turn], running: Sequence[Turn]) -> None:
+    def __init__(self, own: Mapping[Hashable, _Means], cold: Sequence[JobTurn], running: Sequence[JobTurn]) -> None:
         self._own = {kind: deepcopy(means) for kind, means in own.items() if means.count}
         for turn in running:
             if not turn.is_cold and turn.job.kind in self._own:
@@ -152,11 +154,11 @@ class _Expected:
         return self._own[kind].of(scenario) if kind in self._own else 0.0
 
     def warm_up_s(self, scenario: str) -> float:
-        """What a cold job takes more."""
+        """What a cold job takes on top."""
         return self._warm_ups.of(scenario)
 
-    def rest_s(self, turn: Turn) -> float:
-        """What a running job will yet take."""
+    def rest_s(self, turn: JobTurn) -> float:
+        """What is left of a running job."""
         takes_s = self.own_s(turn.job.kind, turn.scenario)
         takes_s += self.warm_up_s(turn.scenario) if turn.is_cold else 0.0
         return max(takes_s - turn.seconds, HALF * turn.seconds)
@@ -164,11 +166,11 @@ class _Expected:
 
 @dataclass(frozen=True, slots=True)
 class _Work:
-    """What waits of one simulation."""
+    """The waiting jobs of one simulation."""
 
     count: int
     own_s: float
-    """Of all together."""
+    """Of all of them together."""
     warm_up_s: float
 
 
@@ -178,11 +180,11 @@ class _Place:
 
     free_s: float
     """From now."""
-    warm: Simulation | None = field(compare=False)
+    warm: SimulationKey | None = field(compare=False)
     is_busy: bool = field(default=False, compare=False)
 
 
-def _played_s(work: Mapping[Simulation, _Work], places: list[_Place]) -> float:
+def _played_s(work: Mapping[SimulationKey, _Work], places: list[_Place]) -> float:
     """When the last worker ends, if everything takes as long as expected."""
     left = {simulation: each.count for simulation, each in work.items()}
     busy = Counter(place.warm for place in places if place.is_busy)

@@ -1,4 +1,4 @@
-"""Which job a worker gets next: one of the simulation that it has warm, so that few are warmed up twice."""
+"""Which job a worker gets next: preferably one of its warm simulation, so that few are warmed up twice."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ from typing import Generic
 
 from automotive_cosim.run.executor import J
 
-Simulation = tuple[str, int]
+SimulationKey = tuple[str, int]
 SHARED_FROM = 4
-"""So many jobs must be left of a simulation for a second worker to warm it up too."""
+"""This many jobs must wait for a simulation before a second worker warms it up too."""
 
 
 def next_simulation(
-    left: Mapping[Simulation, int], warm: Simulation | None, busy: Mapping[Simulation | None, int]
-) -> Simulation | None:
-    """What a worker turns to: the simulation it has, else one that nobody has, else one that is worth sharing.
+    left: Mapping[SimulationKey, int], warm: SimulationKey | None, busy: Mapping[SimulationKey | None, int]
+) -> SimulationKey | None:
+    """The simulation for a worker: its own, else one that no worker has, else one that is worth sharing.
 
     Args:
-        left: jobs that wait, by simulation; at least one each.
-        warm: what the worker ran last.
-        busy: how many workers run which.
+        left: number of waiting jobs by simulation, at least one each.
+        warm: the simulation that the worker ran last.
+        busy: number of workers that run each.
     """
     if warm in left:
         return warm
@@ -30,11 +30,11 @@ def next_simulation(
 
 
 class JobQueue(Generic[J]):
-    """Jobs that wait, by simulation and kind."""
+    """Waiting jobs by simulation and kind."""
 
     def __init__(self, jobs: Iterable[J]) -> None:
-        self._groups: dict[Simulation, dict[Hashable, deque[J]]] = {}
-        self._left: Counter[Simulation] = Counter()
+        self._groups: dict[SimulationKey, dict[Hashable, deque[J]]] = {}
+        self._left: Counter[SimulationKey] = Counter()
         for job in jobs:
             self.put(job)
 
@@ -44,15 +44,15 @@ class JobQueue(Generic[J]):
         self._left[job.simulation] += 1
 
     def take(
-        self, warm: Simulation | None, busy: Mapping[Simulation | None, int], timed: Container[Hashable]
+        self, warm: SimulationKey | None, busy: Mapping[SimulationKey | None, int], timed: Container[Hashable]
     ) -> J | None:
         """The next job for a worker, of ``next_simulation``.
 
         Args:
-            warm: what the worker ran last.
-            busy: how many workers run which.
-            timed: kinds of which it is known how long they take; others go first where it can be told, which is in
-                a warm simulation, and last in a cold one.
+            warm: the simulation that the worker ran last.
+            busy: number of workers that run each.
+            timed: kinds whose duration is known. The others go first in a warm simulation, where it can be
+                measured, and last in a cold one.
         """
         simulation = next_simulation(self._left, warm, busy)
         if simulation is None:
@@ -64,7 +64,7 @@ class JobQueue(Generic[J]):
         return job
 
     def remove(self, job: J) -> bool:
-        """Takes a certain job; false if it does not wait."""
+        """Takes a particular job; false if it is not waiting."""
         kinds = self._groups.get(job.simulation, {})
         if job not in kinds.get(job.kind, ()):
             return False
@@ -76,8 +76,8 @@ class JobQueue(Generic[J]):
             del self._left[job.simulation], self._groups[job.simulation]
         return True
 
-    def counts(self) -> dict[Simulation, dict[Hashable, int]]:
-        """How many wait."""
+    def counts(self) -> dict[SimulationKey, dict[Hashable, int]]:
+        """The number of waiting jobs."""
         return {
             simulation: {kind: len(jobs) for kind, jobs in kinds.items()}
             for simulation, kinds in self._groups.items()

@@ -1,4 +1,4 @@
-"""What happened when, in seconds from the hand-over."""
+"""The timeline of an episode, in seconds since the hand-over."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ QUIET = frozenset({ActionType.WAIT, ActionType.STATUS})
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class TimelineEntry:
     """One event of an episode."""
 
     at_s: float
-    """Seconds from the hand-over; negative before it."""
+    """Seconds since the hand-over; negative before it."""
     kind: str
     """One of departure, hand_over, action, alert, road, limit, goal, declared, end."""
     text: str
@@ -39,7 +39,7 @@ class Sample:
 
 
 def samples(moments: Iterable[Moment], hand_over_s: float) -> tuple[Sample, ...]:
-    """The drive in compact rows, one a moment, rounded to what a plot shows."""
+    """The drive in compact rows, one per moment, rounded to what a plot shows."""
     return tuple(
         Sample(
             at_s=round(moment.time_s - hand_over_s, 2),
@@ -54,13 +54,13 @@ def samples(moments: Iterable[Moment], hand_over_s: float) -> tuple[Sample, ...]
     )
 
 
-def timeline(moments: Sequence[Moment], steps: Sequence[Step], goal_s: float | None) -> tuple[Entry, ...]:
+def timeline(moments: Sequence[Moment], steps: Sequence[Step], goal_s: float | None) -> tuple[TimelineEntry, ...]:
     """The events of an episode in order.
 
     Args:
         moments: from departure to the end of the aftermath.
         steps: from the hand-over to the end.
-        goal_s: seconds from the hand-over since when the goal held to the end.
+        goal_s: seconds from the hand-over until the goal held for the rest of the episode.
     """
     zero_s = steps[0].moment.time_s
     entries = [
@@ -74,44 +74,44 @@ def timeline(moments: Sequence[Moment], steps: Sequence[Step], goal_s: float | N
     return tuple(sorted(entries, key=lambda entry: entry.at_s))
 
 
-def _entry(moment: Moment, zero_s: float, kind: str, text: str) -> Entry:
+def _entry(moment: Moment, zero_s: float, kind: str, text: str) -> TimelineEntry:
     driving = moment.driving
     limit = limit_kmh(driving.road)
     posted = "no limit posted" if limit is None else f"{limit:g} posted"
     speed = f"{driving.speed_mps * KMH_PER_MPS:.0f} km/h, {posted}"
-    return Entry(round(moment.time_s - zero_s, 2), kind, f"{text} {road_in_words(driving.road)}: {speed}")
+    return TimelineEntry(round(moment.time_s - zero_s, 2), kind, f"{text} {road_in_words(driving.road)}: {speed}")
 
 
-def _goal(goal_s: float | None) -> Iterable[Entry]:
+def _goal(goal_s: float | None) -> Iterable[TimelineEntry]:
     if goal_s:
-        yield Entry(round(goal_s, 2), "goal", "goal reached, and it holds to the end")
+        yield TimelineEntry(round(goal_s, 2), "goal", "goal reached, and it holds to the end")
 
 
-def _actions(steps: Sequence[Step], zero_s: float) -> Iterable[Entry]:
-    """What the agent did. An action is done at the instant of the observation it answers."""
+def _actions(steps: Sequence[Step], zero_s: float) -> Iterable[TimelineEntry]:
+    """The agent's actions, each at the instant of the observation that it answers."""
     for before, step in pairwise(steps):
         at_s = round(before.moment.time_s - zero_s, 2)
         given = step.moment.commands["alerts"][len(before.moment.commands["alerts"]) :]
         action = step.action
         words = action_in_words(action, before.elements)
         if action is None or action.action_type not in QUIET:
-            yield Entry(at_s, "action", words)
+            yield TimelineEntry(at_s, "action", words)
         for alert in given:
-            yield Entry(at_s, "alert", f"alert to the driver: {alert['kind']} ({alert['severity']})")
+            yield TimelineEntry(at_s, "alert", f"alert to the driver: {alert['kind']} ({alert['severity']})")
         if action is not None and action.action_type is ActionType.STATUS:
-            yield Entry(at_s, "declared", words)
+            yield TimelineEntry(at_s, "declared", words)
 
 
-def _roadside(moments: Sequence[Moment], zero_s: float) -> Iterable[Entry]:
+def _roadside(moments: Sequence[Moment], zero_s: float) -> Iterable[TimelineEntry]:
     for moment in moments:
         for event in moment.events:
-            yield Entry(round(event.time_s - zero_s, 2), "road", event.text)
+            yield TimelineEntry(round(event.time_s - zero_s, 2), "road", event.text)
         if moment.driving.end is not None:
-            yield Entry(round(moment.time_s - zero_s, 2), "end", f"the drive ends: {moment.driving.end}")
+            yield TimelineEntry(round(moment.time_s - zero_s, 2), "end", f"the drive ends: {moment.driving.end}")
 
 
-def _back_at_limit(moments: Sequence[Moment], zero_s: float) -> Iterable[Entry]:
-    """The first time after the hand-over that a speed above the limit has come down to it."""
+def _back_at_limit(moments: Sequence[Moment], zero_s: float) -> Iterable[TimelineEntry]:
+    """The first time after the hand-over at which a speed above the limit has fallen to it."""
     states = [state for moment in moments for state in moment.passed if state.time_s >= zero_s]
     for before, now in pairwise(states):
         limit_mps = now.road.posted_limit_mps
@@ -120,5 +120,5 @@ def _back_at_limit(moments: Sequence[Moment], zero_s: float) -> Iterable[Entry]:
         at_most_mps = limit_mps + ROUNDING_KMH / KMH_PER_MPS
         if before.speed_mps > at_most_mps >= now.speed_mps:
             speed_kmh = now.speed_mps * KMH_PER_MPS
-            yield Entry(round(now.time_s - zero_s, 2), "limit", f"back at the limit: {speed_kmh:.0f} km/h")
+            yield TimelineEntry(round(now.time_s - zero_s, 2), "limit", f"back at the limit: {speed_kmh:.0f} km/h")
             return

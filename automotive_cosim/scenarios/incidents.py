@@ -1,4 +1,4 @@
-"""What a scenario may stage on its roads: the kinds of ``[[incidents]]``.
+"""The incidents that a scenario may stage on its roads: the kinds of ``[[incidents]]``.
 
     [[incidents]]
     kind = "breakdown"
@@ -8,58 +8,70 @@
     from_s = 20.0
 
 Times are seconds after the ego's departure, which is the scenario's ``start``; negative ones lie in the warm-up,
-for incidents without ``trip``. Each kind's further fields stand in its class. ``traffic.situations`` stages them
+for incidents without ``trip``. Each kind's own fields are in its class. ``traffic.situations`` stages them
 in SUMO.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import time
-from typing import ClassVar
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Gt, Le, MinLen
+
+from automotive_cosim.formats.annotations import Form, TaggedBy
 
 FOR_GOOD_S = 86_400.0
+EdgeId = Annotated[str, MinLen(1)]
+"""Id of an edge of the network."""
+LocalTime = Annotated[time, Form(r"^\d\d:\d\d(:\d\d(\.\d+)?)?$", "08:00:00", time.fromisoformat)]
+"""A local time of day."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Incident:
-    """What all kinds have."""
+    """Fields of all kinds."""
 
-    kind: ClassVar[str] = ""
+    kind: str
+    """Which of the classes below."""
     from_s: float = 0.0
+    """Seconds after the ego's departure."""
     to_s: float = FOR_GOOD_S
+    """Seconds after the ego's departure; without it, the incident stays."""
     trip: str = ""
-    """Name of the ego's trip that it belongs to; empty: it happens whatever the ego does."""
+    """Name of the ego's trip that it belongs to; if empty, it happens on every trip."""
 
     def __post_init__(self) -> None:
-        _require(self, self.from_s < self.to_s, "from_s must be before to_s")
-        _require(self, self.from_s >= 0 or not self.trip, "what belongs to a trip cannot begin in the warm-up")
+        if self.from_s >= self.to_s:
+            raise ValueError(f"from_s = {self.from_s:g} is not before to_s = {self.to_s:g}")
+        if self.from_s < 0 and self.trip:
+            raise ValueError(f"from_s = {self.from_s:g}: an incident of a trip cannot begin in the warm-up")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EgoIncident(Incident):
-    """One that comes about around the ego, from ``from_s`` on and once it has driven ``at_m``."""
+    """An incident that arises around the ego, after ``from_s`` and once it has driven ``at_m``."""
 
-    at_m: float = 0.0
+    from_s: Annotated[float, Ge(0)] = 0.0
+    """Seconds after the ego's departure."""
+    at_m: Annotated[float, Ge(0)] = 0.0
+    """Metres that the ego must have driven."""
 
-    def __post_init__(self) -> None:
-        Incident.__post_init__(self)
-        _require(self, self.from_s >= 0 and self.at_m >= 0, "from_s and at_m count from the ego's departure")
 
-
-# --- on the road, whoever comes ---------------------------------------------------------------------------
+# --- on the road, whatever the ego does ---------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Breakdown(Incident):
     """A car stands in a lane with its hazard lights on."""
 
-    kind = "breakdown"
-    edge: str
-    position_m: float
+    kind: Literal["breakdown"] = "breakdown"
+    edge: EdgeId
+    """Where it stands."""
+    position_m: Annotated[float, Ge(0)]
     """Its front bumper, from the start of the edge."""
-    lane: int = 0
+    lane: Annotated[int, Ge(0)] = 0
     """Among the edge's lanes for cars, 0 nearest the kerb."""
 
 
@@ -67,83 +79,79 @@ class Breakdown(Incident):
 class Roadworks(Incident):
     """A lower limit is signed, and lanes may be closed."""
 
-    kind = "roadworks"
-    edge: str
-    limit_kmh: float
-    closed_lanes: tuple[int, ...] = ()
-
-    def __post_init__(self) -> None:
-        Incident.__post_init__(self)
-        _require(self, self.limit_kmh > 0, "limit_kmh must be above 0")
+    kind: Literal["roadworks"] = "roadworks"
+    edge: EdgeId
+    """Where they are."""
+    limit_kmh: Annotated[float, Gt(0)]
+    """What is signed there."""
+    closed_lanes: tuple[Annotated[int, Ge(0)], ...] = ()
+    """Among the edge's lanes for cars, 0 nearest the kerb."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Jam(Incident):
-    """A queue before a narrow place at the end of the last edge; its tail is ``length_m`` further back at first."""
+    """A queue before a bottleneck at the end of the last edge; its tail is ``length_m`` further back at first."""
 
-    kind = "jam"
-    edges: tuple[str, ...]
+    kind: Literal["jam"] = "jam"
+    edges: Annotated[tuple[EdgeId, ...], MinLen(1)]
     """In driving order, each leading to the next; together at least as long as the queue."""
-    length_m: float
-    hold_s: float = 20.0
-    """One vehicle a lane passes the narrow place in about this time."""
-
-    def __post_init__(self) -> None:
-        Incident.__post_init__(self)
-        _require(self, bool(self.edges) and self.length_m > 0 and self.hold_s > 0, "edges, length_m, hold_s: none")
+    length_m: Annotated[float, Gt(0)]
+    """Of the queue, at first."""
+    hold_s: Annotated[float, Gt(0)] = 20.0
+    """Average time between vehicles per lane that pass the bottleneck."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Closure(Incident):
-    """A road closed to all but the authorities; the others go round."""
+    """A road closed to all except the authorities; other vehicles go round."""
 
-    kind = "closure"
-    edge: str
+    kind: Literal["closure"] = "closure"
+    edge: EdgeId
+    """What is closed."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SchoolZone(Incident):
-    """A lower limit at certain hours of school days, Monday to Friday, by the clock of the place."""
+    """A lower limit at certain hours of school days, Monday to Friday, in local time."""
 
-    kind = "school_zone"
-    edges: tuple[str, ...]
-    limit_kmh: float
-    opens: time
-    """``opens = 08:00:00``, TOML's local time."""
-    closes: time
+    kind: Literal["school_zone"] = "school_zone"
+    edges: Annotated[tuple[EdgeId, ...], MinLen(1)]
+    """The roads beside the school."""
+    limit_kmh: Annotated[float, Gt(0)]
+    """What holds between the two times."""
+    opens: LocalTime
+    """Local time of the place, as in ``opens = 08:00:00``."""
+    closes: LocalTime
+    """Later on the same day."""
 
     def __post_init__(self) -> None:
         Incident.__post_init__(self)
-        _require(self, self.limit_kmh > 0 and self.opens < self.closes, "limit_kmh above 0, opens before closes")
-        _require(self, bool(self.edges), "it needs at least one edge")
+        if self.opens >= self.closes:
+            raise ValueError(f"opens = {self.opens} is not before closes = {self.closes}")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RushHour(Incident):
     """The demand is multiplied; several in a row make a profile."""
 
-    kind = "rush_hour"
-    scale: float
-
-    def __post_init__(self) -> None:
-        Incident.__post_init__(self)
-        _require(self, self.scale > 0, "scale must be above 0")
+    kind: Literal["rush_hour"] = "rush_hour"
+    scale: Annotated[float, Gt(0)]
+    """Factor on the demand."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tractor(Incident):
     """A slow vehicle drives from one edge to another."""
 
-    kind = "tractor"
-    from_edge: str
-    to_edge: str
-    speed_kmh: float = 25.0
+    kind: Literal["tractor"] = "tractor"
+    from_edge: EdgeId
+    """Where it sets out."""
+    to_edge: EdgeId
+    """Where it leaves the road."""
+    speed_kmh: Annotated[float, Gt(0)] = 25.0
     """25 is a common speed on the plates that slow vehicles carry in Germany (StVZO section 58)."""
-    length_m: float = 9.0
-
-    def __post_init__(self) -> None:
-        Incident.__post_init__(self)
-        _require(self, self.speed_kmh > 0 and self.length_m > 0, "speed_kmh and length_m must be above 0")
+    length_m: Annotated[float, Gt(0)] = 9.0
+    """With its trailer."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -153,16 +161,15 @@ class Pedestrians(Incident):
     The network needs sidewalks and crossings (``netconvert --sidewalks.guess --crossings.guess``).
     """
 
-    kind = "pedestrians"
-    from_edge: str
-    to_edge: str
-    every_s: float = 10.0
+    kind: Literal["pedestrians"] = "pedestrians"
+    from_edge: EdgeId
+    """They come from its end."""
+    to_edge: EdgeId
+    """They go to its start."""
+    every_s: Annotated[float, Ge(1)] = 10.0
     """Time between two groups."""
-    group: int = 3
-
-    def __post_init__(self) -> None:
-        Incident.__post_init__(self)
-        _require(self, self.every_s >= 1 and self.group >= 1, "every_s and group must be at least 1")
+    group: Annotated[int, Ge(1)] = 3
+    """Number of people who walk together."""
 
 
 # --- around the ego ---------------------------------------------------------------------------------------
@@ -170,61 +177,46 @@ class Pedestrians(Incident):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EmergencyVehicle(EgoIncident):
-    """An ambulance with blue light comes up from behind on the ego's way.
+    """An ambulance with blue lights comes up from behind on the ego's route.
 
-    Others make a corridor for it only where ``[sumo] lateral_resolution_m`` asks for SUMO's sublane model.
+    Other drivers form a corridor for it only if ``[sumo] lateral_resolution_m`` enables SUMO's sublane model.
     """
 
-    kind = "emergency"
-    behind_m: float = 250.0
-    """Where it appears: out of sight, on the way that the ego has come."""
-    speed_ratio: float = 1.5
-    """What it drives where it can, over the limit."""
-
-    def __post_init__(self) -> None:
-        EgoIncident.__post_init__(self)
-        _require(self, self.behind_m > 0 and self.speed_ratio > 0, "behind_m and speed_ratio must be above 0")
+    kind: Literal["emergency"] = "emergency"
+    behind_m: Annotated[float, Gt(0)] = 250.0
+    """Distance behind the ego at which it appears, out of sight on the ego's route."""
+    speed_ratio: Annotated[float, Gt(0)] = 1.5
+    """Its factor on the limit, where traffic allows."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BrakingLeader(EgoIncident):
-    """The vehicle ahead of the ego brakes hard. Where there is none, a car pulls out before the ego first."""
+    """The vehicle ahead of the ego brakes hard. If there is none, a car first pulls out in front of the ego."""
 
-    kind = "braking_leader"
-    within_m: float = 80.0
-    """How near a vehicle must be to be the one."""
-    ahead_m: float = 30.0
+    kind: Literal["braking_leader"] = "braking_leader"
+    within_m: Annotated[float, Gt(0)] = 80.0
+    """How near a vehicle must be to count as the one ahead."""
+    ahead_m: Annotated[float, Gt(0)] = 30.0
     """Gap to a car that pulls out."""
-    deceleration_mps2: float = 6.0
-    to_kmh: float = 0.0
-    hold_s: float = 4.0
-    """It keeps that speed so long, then drives on."""
-
-    def __post_init__(self) -> None:
-        EgoIncident.__post_init__(self)
-        _require(self, self.ahead_m > 0 and self.within_m > 0, "ahead_m and within_m must be above 0")
-        _require(self, 0 < self.deceleration_mps2 <= 10, "deceleration_mps2 must be above 0 and at most 10")
-        _require(self, self.to_kmh >= 0 and self.hold_s >= 0, "to_kmh and hold_s must not be negative")
+    deceleration_mps2: Annotated[float, Gt(0), Le(10)] = 6.0
+    """How hard."""
+    to_kmh: Annotated[float, Ge(0)] = 0.0
+    """The speed that it brakes to."""
+    hold_s: Annotated[float, Ge(0)] = 4.0
+    """How long it keeps that speed before it drives on."""
 
 
-KINDS: Mapping[str, type[Incident]] = {
-    kind.kind: kind
-    for kind in (
-        Breakdown,
-        Roadworks,
-        Jam,
-        Closure,
-        SchoolZone,
-        RushHour,
-        Tractor,
-        Pedestrians,
-        EmergencyVehicle,
-        BrakingLeader,
-    )
-}
-"""By the name that ``kind`` has in the file."""
-
-
-def _require(incident: Incident, holds: bool, rule: str) -> None:
-    if not holds:
-        raise ValueError(f"[[incidents]] of kind {incident.kind!r}: {rule}")
+AnyIncident = Annotated[
+    Breakdown
+    | Roadworks
+    | Jam
+    | Closure
+    | SchoolZone
+    | RushHour
+    | Tractor
+    | Pedestrians
+    | EmergencyVehicle
+    | BrakingLeader,
+    TaggedBy("kind"),
+]
+"""One of ``[[incidents]]``."""

@@ -7,60 +7,65 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
+from typing import Annotated
+
+from annotated_types import Ge, Gt, Le, MinLen
 
 from automotive_cosim.contracts import Weather
 from automotive_cosim.errors import UnknownNameError
-from automotive_cosim.scenarios.incidents import Incident
+from automotive_cosim.formats.annotations import Called, Latitude, Longitude, OneOf
+from automotive_cosim.scenarios.incidents import AnyIncident, EdgeId
 
 
 @dataclass(frozen=True, slots=True)
 class Sumo:
     """``[sumo]``: how SUMO runs."""
 
-    config: str
+    config: Annotated[str, MinLen(1)]
     """The ``.sumocfg``, relative to the folder."""
-    step_length_s: float = 0.1
+    step_length_s: Annotated[float, Ge(0.01), Le(10)] = 0.1
     """0.1 for safety (the ego acts each step), 1 for studies."""
-    action_step_length_s: float = 1.0
+    action_step_length_s: Annotated[float, Ge(0.01), Le(10)] = 1.0
     """How often the other drivers act; a multiple of the step length."""
-    warm_up_s: float = 900.0
+    warm_up_s: Annotated[float, Ge(0), Le(86_400)] = 900.0
     """Traffic runs this long before the ego departs."""
-    scale: float = 1.0
-    """Multiplies the demand."""
-    background_rerouting: float = 0.6
+    scale: Annotated[float, Ge(0), Le(100)] = 1.0
+    """Factor on the demand."""
+    background_rerouting: Annotated[float, Ge(0), Le(1)] = 0.6
     """Share of the other vehicles that reroute by current travel times."""
-    random_traffic_per_km_h: float = 0.0
-    """Vehicles that set out each hour per kilometre of lane, from and to anywhere: for a network without demand of
-    its own."""
-    lateral_resolution_m: float | None = None
-    """Width of SUMO's sublanes, e.g. 0.8: vehicles then make a corridor for blue lights, at about twice the cost.
+    random_traffic_per_km_h: Annotated[float, Ge(0)] = 0.0
+    """Random departures per hour and kilometre of lane, for a network without demand of its own."""
+    lateral_resolution_m: Annotated[float, Gt(0)] | None = None
+    """Width of SUMO's sublanes, e.g. 0.8: vehicles then form a corridor for blue lights, at about twice the cost.
     None keeps each vehicle in the middle of its lane."""
 
 
 @dataclass(frozen=True, slots=True)
 class Trip:
-    """``[[ego.trips]]``: one way through the network."""
+    """``[[ego.trips]]``: one route through the network."""
 
     name: str
-    from_edge: str
-    to_edge: str
-    via: tuple[str, ...] = ()
+    """Name by which tasks and incidents refer to it."""
+    from_edge: EdgeId
+    """Where it begins."""
+    to_edge: EdgeId
+    """Where it ends."""
+    via: tuple[EdgeId, ...] = ()
+    """Edges on the way, in driving order."""
     about: str = ""
+    """A description for human readers."""
 
 
 @dataclass(frozen=True, slots=True)
 class Ego:
     """``[ego]``: the car that the cockpit belongs to."""
 
-    trips: tuple[Trip, ...]
+    trips: Annotated[tuple[Trip, ...], MinLen(1), Called("a list of [[ego.trips]] entries, not empty")]
+    """The trips that it may drive; a task selects one."""
     driver: str = "average"
     """Name of a driver profile (``traffic.profiles.PROFILES``)."""
     any_trip: bool = False
-    """Which of the trips is driven is drawn by seed."""
-
-
-DRAWN = "climate"
-"""What a scenario says instead of a timeline to have its weather drawn."""
+    """Whether the trip is drawn by seed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +77,7 @@ class WeatherAt:
 
 
 LINKS = ("none", "4g", "5g")
-"""Kinds of a car's link to the outside, the better ones last."""
+"""Kinds of the car's link, from worst to best."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,12 +86,13 @@ class LinkAt:
     held until the next."""
 
     at_s: float
-    best: str
-    """The best link there is, of ``LINKS``; where the road is it may still be worse, or none."""
+    """Seconds after the ego's departure."""
+    best: Annotated[str, OneOf(LINKS)]
+    """The best available link, of ``LINKS``; on the road, e.g. in a tunnel, it may be worse or none."""
 
 
 def link_at(timeline: Sequence[LinkAt], since_departure_s: float) -> str:
-    """The best link that a timeline leaves at an instant; before its first entry there is no bound.
+    """The best link that a timeline allows at an instant; before its first entry, there is no limit.
 
     Args:
         timeline: entries in the order of their ``at_s``.
@@ -97,7 +103,7 @@ def link_at(timeline: Sequence[LinkAt], since_departure_s: float) -> str:
 
 
 def weather_at(timeline: Sequence[WeatherAt], since_departure_s: float) -> Weather:
-    """The weather of a timeline at an instant; before its first entry that first entry holds.
+    """The weather of a timeline at an instant; before its first entry, that entry applies.
 
     Args:
         timeline: entries in the order of their ``at_s``, at least one.
@@ -109,40 +115,57 @@ def weather_at(timeline: Sequence[WeatherAt], since_departure_s: float) -> Weath
 
 @dataclass(frozen=True, slots=True)
 class Street:
-    """``[[streets]]``: a street the scenario is about."""
+    """``[[streets]]``: a street to check in the network."""
 
     name: str
+    """As the network spells it."""
     maxspeed: tuple[str, ...] = ()
-    """What its signs say, as OpenStreetMap writes it: ``"50"``, ``"20 mph"``, ``"none"``; ``"unposted"`` where no
-    sign stands. Each of these, and no other."""
+    """The limits of its signs, in OpenStreetMap's notation: ``"50"``, ``"20 mph"``, ``"none"``; ``"unposted"``
+    where there is no sign. All of these, and no others."""
 
 
-@dataclass(frozen=True, slots=True)
-class Scenario:
-    """One ``scenario.toml``, checked."""
+Origin = Annotated[tuple[Longitude, Latitude], Called("a pair [lon, lat] in degrees")]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Described:
+    """The content of a ``scenario.toml``."""
 
     name: str
+    """The folder's name, by which commands refer to it."""
     title: str
+    """For human readers, one line."""
     about: str
-    folder: Path
+    """For human readers, a sentence or two."""
     country: str
-    """ISO 3166-1 code the map's defaults were taken from; where the car is follows from its position."""
+    """ISO 3166-1 code of the map's defaults; the law that applies follows from the car's position."""
+    sumo: Sumo
+    """How SUMO runs."""
+    ego: Ego
+    """The car that the cockpit belongs to."""
+    incidents: Annotated[tuple[AnyIncident, ...], Called("a list of [[incidents]] entries")] = ()
+    """Incidents staged on the roads."""
+    connectivity: Annotated[tuple[LinkAt, ...], Called("a list of [[connectivity]] entries")] = ()
+    """The car's link over time, in the order of ``at_s``; unlimited without entries."""
+    has_place: bool = True
+    """False if the network has no position on earth, so there is no GPS and no known place."""
+    origin: Origin | None = None
+    """Longitude and latitude to which the network's middle is moved; without it, the network stays where it is."""
+    streets: Annotated[tuple[Street, ...], Called("a list of [[streets]] entries")] = ()
+    """Streets that the network must have; ``scenarios check`` verifies them."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Scenario(Described):
+    """A scenario to run: the content of its file, with its folder and start time."""
+
+    folder: Path
     start: datetime
     """Local time at simulation second ``warm_up_s``; zone-aware."""
-    sumo: Sumo
-    ego: Ego
     weather: tuple[WeatherAt, ...]
     """Empty if the file says ``weather = "climate"``: drawn by seed from the climate of the place and month."""
-    incidents: tuple[Incident, ...] = ()
-    connectivity: tuple[LinkAt, ...] = ()
-    has_place: bool = True
-    """False: its network lies nowhere on earth, so that there is no GPS and no place is known."""
-    origin: tuple[float, float] | None = None
-    """Longitude and latitude that the network's middle is moved to; None leaves it where it is."""
-    streets: tuple[Street, ...] = ()
-    """Streets that the network must have; ``scenarios check`` looks for them."""
     notes: tuple[str, ...] = ()
-    """What was assumed for want of better, in words for the user."""
+    """Assumptions, in words for the user."""
 
     @property
     def config(self) -> Path:
@@ -153,7 +176,7 @@ class Scenario:
         """The ego trip of that name.
 
         Raises:
-            UnknownNameError: the scenario has none such.
+            UnknownNameError: the scenario has no such trip.
         """
         for trip in self.ego.trips:
             if trip.name == name:

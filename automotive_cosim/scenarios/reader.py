@@ -1,22 +1,23 @@
-"""Reads ``scenario.toml``, field by field."""
+"""Reads ``scenario.toml``."""
 
 from __future__ import annotations
 
-import tomllib
-from collections.abc import Mapping, Sequence
-from dataclasses import MISSING, fields
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields
 from datetime import datetime
 from importlib.resources import files
 from itertools import pairwise
-from math import isfinite
 from pathlib import Path
-from typing import Any, TypeVar
-from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
+from typing import Annotated, Literal
+from zoneinfo import ZoneInfo
+
+from annotated_types import MinLen
 
 from automotive_cosim.contracts import Weather
-from automotive_cosim.errors import ScenarioError, UnknownNameError
-from automotive_cosim.scenarios.incidents import KINDS, Incident
-from automotive_cosim.scenarios.model import DRAWN, LINKS, Ego, LinkAt, Scenario, Street, Sumo, Trip, WeatherAt
+from automotive_cosim.errors import ScenarioError, UnknownNameError, UserError
+from automotive_cosim.formats.annotations import Called, Form
+from automotive_cosim.formats.toml import Document, read_toml
+from automotive_cosim.scenarios.model import Described, LinkAt, Scenario, WeatherAt
 
 
 def shipped() -> tuple[str, ...]:
@@ -26,11 +27,11 @@ def shipped() -> tuple[str, ...]:
 
 
 def load(name_or_folder: str | Path) -> Scenario:
-    """Reads a shipped scenario by name, or any folder that holds a ``scenario.toml``.
+    """Reads a shipped scenario by name, or any folder with a ``scenario.toml``.
 
     Raises:
         UnknownNameError: neither a shipped name nor a folder.
-        ScenarioError: the file is missing, is no TOML, or has a wrong, surplus or missing field.
+        ScenarioError: the file is missing, is not TOML, or has a wrong, extra or missing field.
     """
     folder = Path(name_or_folder)
     if not (folder / "scenario.toml").is_file():
@@ -40,138 +41,79 @@ def load(name_or_folder: str | Path) -> Scenario:
         if str(name_or_folder) not in names:
             raise UnknownNameError("scenario", str(name_or_folder), names, "automotive-cosim scenarios list")
         folder = Path(str(files("automotive_cosim").joinpath("sumo_scenarios"))) / str(name_or_folder)
-    path = folder / "scenario.toml"
-    try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise ScenarioError(f"{path} is not TOML: {error}") from error
-    return _scenario(table, folder.resolve(), path)
+    document = read_toml(folder / "scenario.toml", ScenarioError)
+    file = document.read(ScenarioFile)
+    if problems := tuple(str(problem) for problem in _contradictions(file, document)):
+        raise ScenarioError(*problems)
+    return Scenario(
+        **{field.name: getattr(file, field.name) for field in fields(Described)},
+        folder=folder.resolve(),
+        start=file.start.replace(tzinfo=file.time_zone),
+        weather=() if isinstance(file.weather, str) else tuple(entry.timed for entry in file.weather),
+    )
 
 
-def _scenario(table: dict[str, Any], folder: Path, path: Path) -> Scenario:
+def _zone(name: str) -> ZoneInfo:
     try:
-        ego = dict(table.pop("ego"))
-        trips = tuple(_read(Trip, trip, f"{path} [[ego.trips]]") for trip in ego.pop("trips"))
-        sumo = _read(Sumo, table.pop("sumo"), f"{path} [sumo]")
-        zone = ZoneInfo(table.pop("time_zone"))
-        start = datetime.fromisoformat(str(table.pop("start")))
-        rows = table.pop("weather")
-        if isinstance(rows, str) and rows != DRAWN:
-            raise ScenarioError(f'{path}: weather = {rows!r}; write [[weather]] entries, or weather = "{DRAWN}"')
-        weather = () if rows == DRAWN else tuple(_weather_at(row, path) for row in rows)
-        incidents = tuple(_incident(row, path) for row in table.pop("incidents", ()))
-        links = tuple(_read(LinkAt, row, f"{path} [[connectivity]]") for row in table.pop("connectivity", ()))
-        streets = tuple(_read(Street, row, f"{path} [[streets]]") for row in table.pop("streets", ()))
-        scenario = _read(
-            Scenario,
-            table
-            | {
-                "folder": folder,
-                "start": start.replace(tzinfo=start.tzinfo or zone),
-                "sumo": sumo,
-                "ego": _read(Ego, ego | {"trips": trips}, f"{path} [ego]"),
-                "weather": weather,
-                "incidents": incidents,
-                "connectivity": links,
-                "streets": streets,
-            },
-            str(path),
+        return ZoneInfo(name)
+    except (KeyError, ValueError, OSError) as error:
+        raise ValueError("there is no such time zone; give an IANA name such as Europe/Paris") from error
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WeatherEntry(Weather):
+    """``[[weather]]``: the weather from ``at_s`` on, held until the next."""
+
+    at_s: float
+    """Seconds after the ego's departure; 0 in the first entry."""
+
+    @property
+    def timed(self) -> WeatherAt:
+        """The entry as a ``WeatherAt``."""
+        return WeatherAt(self.at_s, Weather(*(getattr(self, field.name) for field in fields(Weather))))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ScenarioFile(Described):
+    """``scenario.toml``: what SUMO's own files have no word for."""
+
+    start: Annotated[
+        datetime,
+        Form(
+            r"^\d{4}-\d\d-\d\d([T ]\d\d:\d\d(:\d\d(\.\d+)?)?)?$",
+            "2026-03-10T08:30:00",
+            datetime.fromisoformat,
+        ),
+    ]
+    """Local date and time at which the ego departs, after the warm-up."""
+    time_zone: Annotated[ZoneInfo, Form(r"^[A-Za-z][A-Za-z0-9_+/-]*$", "Europe/Paris", _zone)]
+    """Whose clock ``start`` is read from."""
+    weather: (
+        Annotated[tuple[WeatherEntry, ...], MinLen(1), Called("a list of [[weather]] entries")] | Literal["climate"]
+    )
+    """``"climate"`` draws it by seed from the normals of place and month."""
+
+
+def _contradictions(file: ScenarioFile, document: Document) -> Iterator[UserError]:
+    """What no field alone is to blame for."""
+    trips = [trip.name for trip in file.ego.trips]
+    for index, incident in enumerate(file.incidents):
+        if incident.trip and incident.trip not in trips:
+            unknown = UnknownNameError(f"trip of scenario {file.name!r}", incident.trip, trips)
+            yield document.refused(("incidents", index, "trip"), f"is {incident.trip!r}: {unknown}")
+    if not isinstance(file.weather, str):
+        if file.weather[0].at_s != 0:
+            yield document.refused(("weather", 0, "at_s"), f"is {file.weather[0].at_s:g}; the first entry's is 0")
+        yield from _disorder("weather", file.weather, document)
+    yield from _disorder("connectivity", file.connectivity, document)
+    if not (document.path.parent / file.sumo.config).is_file():
+        yield document.refused(
+            ("sumo", "config"), f"is {file.sumo.config!r}; {document.path.parent} has no such file"
         )
-    except ZoneInfoNotFoundError as error:
-        raise ScenarioError(f"{path}: {error.args[0]}; time_zone is a name such as Europe/Paris") from error
-    except KeyError as error:
-        raise ScenarioError(f"{path} lacks {error.args[0]!r}") from error
-    except (TypeError, ValueError) as error:
-        raise ScenarioError(f"{path}: {error}") from error
-    for incident in scenario.incidents:
-        if incident.trip:
-            scenario.trip(incident.trip)
-    _check_links(scenario.connectivity, f"{path} [[connectivity]]")
-    _check_ranges(scenario.sumo, f"{path} [sumo]")
-    if not scenario.ego.trips:
-        raise ScenarioError(f"{path} has no [[ego.trips]]; add one with name, from_edge and to_edge")
-    if rows != DRAWN and (not weather or weather[0].at_s != 0):
-        raise ScenarioError(f'{path}: the first [[weather]] must have at_s = 0, or say weather = "{DRAWN}"')
-    if not scenario.config.is_file():
-        raise ScenarioError(f"{path}: {scenario.sumo.config} is not in {folder}")
-    return scenario
 
 
-def _weather_at(row: dict[str, Any], path: Path) -> WeatherAt:
-    row = dict(row)
-    return WeatherAt(float(row.pop("at_s")), _read(Weather, row, f"{path} [[weather]]"))
-
-
-def _incident(row: dict[str, Any], path: Path) -> Incident:
-    row = dict(row)
-    kind = row.pop("kind")
-    if kind not in KINDS:
-        raise ScenarioError(f"{path} [[incidents]]: {UnknownNameError('kind', str(kind), KINDS)}")
-    return _read(KINDS[kind], row, f"{path} [[incidents]] of kind {kind!r}")
-
-
-def _check_links(links: Sequence[LinkAt], where: str) -> None:
-    for link in links:
-        if link.best not in LINKS:
-            raise ScenarioError(f"{where}: {UnknownNameError('best', link.best, LINKS)}")
-    if any(later.at_s <= earlier.at_s for earlier, later in pairwise(links)):
-        raise ScenarioError(f"{where}: the entries must stand in the order of their at_s")
-
-
-def _check_ranges(sumo: Sumo, where: str) -> None:
-    ranges = {
-        "step_length_s": (0.01, 10.0),
-        "action_step_length_s": (0.01, 10.0),
-        "warm_up_s": (0.0, 86_400.0),
-        "scale": (0.0, 100.0),
-        "background_rerouting": (0.0, 1.0),
-    }
-    for name, (low, high) in ranges.items():
-        value = getattr(sumo, name)
-        if not low <= value <= high:
-            raise ScenarioError(f"{where}: {name} is {value:g}; it goes from {low:g} to {high:g}")
-
-
-T = TypeVar("T")
-
-
-def _read(kind: type[T], table: Mapping[str, Any], where: str) -> T:
-    known = {field.name: field for field in fields(kind)}  # type: ignore[arg-type]
-    for name in table:
-        if name not in known:
-            raise ScenarioError(f"{where}: {UnknownNameError('field', name, known)}")
-    for name, field in known.items():
-        if name not in table and field.default is MISSING and field.default_factory is MISSING:
-            raise ScenarioError(f"{where} lacks {name!r}")
-    values = {name: tuple(value) if isinstance(value, list) else value for name, value in table.items()}
-    for name, value in values.items():
-        _check_type(str(known[name].type), value, f"{where}: {name}")
-    return kind(**values)
-
-
-_SIMPLE: dict[str, tuple[type, ...]] = {"str": (str,), "int": (int,), "float": (int, float), "bool": (bool,)}
-
-
-def _check_type(annotation: str, value: Any, what: str) -> None:
-    """Plain fields only; what is nested has been read by a class of its own."""
-    wanted = annotation.removesuffix(" | None")
-    if wanted == "tuple[float, float]":
-        right = isinstance(value, tuple) and len(value) == 2 and all(type(part) in (int, float) for part in value)
-    elif wanted == "tuple[str, ...]":
-        right = isinstance(value, tuple) and all(isinstance(entry, str) for entry in value)
-    elif wanted in _SIMPLE and value is not None:
-        right = isinstance(value, _SIMPLE[wanted]) and isinstance(value, bool) == (wanted == "bool")
-    else:
-        return
-    if not right or (isinstance(value, float) and not isfinite(value)):
-        raise ScenarioError(f"{what} is {value!r}; it must be {_WORDS.get(wanted, wanted)}")
-
-
-_WORDS = {
-    "str": "a text",
-    "int": "a whole number",
-    "float": "a number",
-    "bool": "true or false",
-    "tuple[str, ...]": "a list of texts",
-    "tuple[float, float]": "a list of two numbers",
-}
+def _disorder(name: str, entries: Sequence[WeatherEntry | LinkAt], document: Document) -> Iterator[UserError]:
+    for index, (earlier_s, later_s) in enumerate(pairwise(entry.at_s for entry in entries), start=1):
+        if later_s <= earlier_s:
+            why = f"is {later_s:g} after {earlier_s:g}; the entries must stand in the order of their at_s"
+            yield document.refused((name, index, "at_s"), why)

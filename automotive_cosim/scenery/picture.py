@@ -1,4 +1,4 @@
-"""Draws a scenario: its roads by class, tunnels, names, limits and the ways of the ego, north up."""
+"""Draws a scenario, north up: roads by class, tunnels, names, limits and the ego's trips."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 from PIL import Image, ImageDraw
 from shapely import LineString, Polygon, box
 
@@ -17,7 +16,7 @@ from automotive_cosim.cockpit.theme import DAY, Colour, Weight, font
 from automotive_cosim.errors import ScenarioError, UserError
 from automotive_cosim.geo.place import Atlas
 from automotive_cosim.scenarios import Scenario
-from automotive_cosim.scenery.labels import Labels, place_labels
+from automotive_cosim.scenery.labels import Labels, Points, place_labels
 from automotive_cosim.scenery.opening import network_of
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.network import Edge, Network
@@ -27,10 +26,10 @@ FINE = 2
 """Oversampling of the roads."""
 
 MAP_PIXELS = 1_100_000
-"""Of the map, whatever its shape."""
+"""Pixels of the map, whatever its shape."""
 
 ASPECTS = (0.62, 1.9)
-"""Width over height of the map, at least and at most."""
+"""Minimum and maximum ratio of the map's width to its height."""
 
 MARGIN, HEAD, ROW = 36, 84, 30
 """Around the map's roads, the height of the title and that of a line of the legend, pixels."""
@@ -47,22 +46,20 @@ TRIP_COLOURS: tuple[Colour, ...] = (
 TRIP_WIDTH = 4.0
 TUNNEL: Colour = (128, 140, 156)
 DASH = 8.0
-"""Of tunnels, at least."""
+"""Minimum length of a tunnel's dashes."""
 ATTRIBUTED = "OpenStreetMap"
 """Scenarios made from its data say so in ``about``; so must their pictures."""
 CLASSES = (("motorway, trunk", "motorway"), ("primary, secondary", "primary"), ("other streets", "residential"))
-"""For the legend: words and a road class that is drawn so."""
+"""The legend: texts, each with a road class drawn that way."""
 
 ENDINGS = (".webp", ".png")
 QUALITY = 75
-"""Of WebP, which is lossy."""
-
-Points = npt.NDArray[np.float64]
+"""Quality of WebP, which is lossy."""
 
 
 @dataclass(frozen=True, slots=True)
-class Frame:
-    """Where the network's metres lie on the picture."""
+class Viewport:
+    """Maps the network's metres to the picture's pixels."""
 
     left_m: float
     top_m: float
@@ -71,8 +68,8 @@ class Frame:
     height: int
 
     @classmethod
-    def around(cls, edges: Iterable[Edge]) -> Frame:
-        """A frame of the usual size that holds all roads."""
+    def around(cls, edges: Iterable[Edge]) -> Viewport:
+        """A frame of the usual size that contains all roads."""
         points = np.array([point for edge in edges for point in edge.shape_m])
         (x_min, y_min), (x_max, y_max) = points.min(axis=0), points.max(axis=0)
         wide_m, high_m = max(x_max - x_min, 1.0), max(y_max - y_min, 1.0)
@@ -94,11 +91,11 @@ def draw_scenario(scenario: Scenario) -> Image.Image:
     """The scenario's picture, RGB.
 
     Raises:
-        ScenarioError: its network cannot be read, or a trip has no way through it.
+        ScenarioError: its network cannot be read, or a trip has no route through it.
     """
     network = network_of(scenario)
     edges = tuple(network.edges.values())
-    frame = Frame.around(edges)
+    frame = Viewport.around(edges)
     roads = _roads(frame, edges)
     _trips(roads, frame, network, scenario)
     picture = roads.reduce(FINE)
@@ -110,10 +107,10 @@ def draw_scenario(scenario: Scenario) -> Image.Image:
 
 
 def save_picture(scenario: Scenario, path: Path) -> None:
-    """Draws the scenario into a file whose ending is one of ``ENDINGS``; it is there whole or not at all.
+    """Draws the scenario into a file whose suffix is one of ``ENDINGS``, completely or not at all.
 
     Raises:
-        ScenarioError: as ``draw_scenario``.
+        ScenarioError: see ``draw_scenario``.
         UserError: the file cannot be written.
     """
     picture = draw_scenario(scenario)
@@ -123,10 +120,12 @@ def save_picture(scenario: Scenario, path: Path) -> None:
         picture.save(draft, path.suffix[1:].upper(), quality=QUALITY, method=6)
         draft.replace(path)
     except OSError as error:
-        raise UserError(f"cannot write {path} ({error.strerror}); give --out a place where you may") from error
+        raise UserError(
+            f"cannot write {path} ({error.strerror}); give --out a folder that you may write to"
+        ) from error
 
 
-def _roads(frame: Frame, edges: Sequence[Edge]) -> Image.Image:
+def _roads(frame: Viewport, edges: Sequence[Edge]) -> Image.Image:
     picture = Image.new("RGB", (frame.width * FINE, frame.height * FINE), DAY.land)
     brush = ImageDraw.Draw(picture)
     order = sorted(edges, key=lambda edge: (not edge.in_tunnel, rank(edge.road_class)))
@@ -141,21 +140,23 @@ def _roads(frame: Frame, edges: Sequence[Edge]) -> Image.Image:
     return picture
 
 
-def _trips(picture: Image.Image, frame: Frame, network: Network, scenario: Scenario) -> None:
-    """The ways side by side where they share a road."""
+def _trips(picture: Image.Image, frame: Viewport, network: Network, scenario: Scenario) -> None:
+    """Draws the trips side by side where they share a road."""
     brush = ImageDraw.Draw(picture)
     count = len(scenario.ego.trips)
     for number, trip in enumerate(scenario.ego.trips):
         way = way_through(network, (trip.from_edge, *trip.via, trip.to_edge))
         if not way:
-            raise ScenarioError(f"trip {trip.name!r} of scenario {scenario.name!r} has no way through the network")
+            raise ScenarioError(
+                f"trip {trip.name!r} of scenario {scenario.name!r} has no route through the network"
+            )
         line = np.concatenate([frame.pixels(network.edges[edge].shape_m) for edge in way])
         aside = (number - (count - 1) / 2) * (TRIP_WIDTH + 0.5)
         _stroke(brush, _shifted(line, aside) * FINE, TRIP_WIDTH * FINE, trip_colour(number))
 
 
-def _ends(picture: Image.Image, frame: Frame, network: Network, scenario: Scenario) -> list[Polygon]:
-    """A disc with the trip's number where it begins, a ring where it ends; returns what they cover."""
+def _ends(picture: Image.Image, frame: Viewport, network: Network, scenario: Scenario) -> list[Polygon]:
+    """Draws a disc with the trip's number where it begins and a ring where it ends; returns what they cover."""
     brush = ImageDraw.Draw(picture)
     face = font(Weight.BOLD, 15)
     taken: list[tuple[float, float]] = []
@@ -171,7 +172,7 @@ def _ends(picture: Image.Image, frame: Frame, network: Network, scenario: Scenar
     return [box(x - 12, y - 12, x + 12, y + 12) for x, y in taken]
 
 
-def _scale_bar(picture: Image.Image, frame: Frame, edges: Iterable[Edge]) -> Polygon:
+def _scale_bar(picture: Image.Image, frame: Viewport, edges: Iterable[Edge]) -> Polygon:
     brush = ImageDraw.Draw(picture)
     longest_m = 0.22 * frame.width / frame.pixels_per_m
     power = 10 ** math.floor(math.log10(longest_m))
@@ -187,8 +188,8 @@ def _scale_bar(picture: Image.Image, frame: Frame, edges: Iterable[Edge]) -> Pol
     return area
 
 
-def _emptiest(frame: Frame, width: float, height: float, edges: Iterable[Edge]) -> Polygon:
-    """The corner of the map with the fewest roads, the lower right one if it is a draw."""
+def _emptiest(frame: Viewport, width: float, height: float, edges: Iterable[Edge]) -> Polygon:
+    """The corner of the map with the fewest roads, the lower right one in a tie."""
     roads = [LineString(frame.pixels(edge.shape_m)) for edge in edges]
     right, bottom = frame.width - 12 - width, frame.height - 12 - height
     corners = ((right, bottom), (12, bottom), (right, 12), (12, 12))
@@ -197,7 +198,7 @@ def _emptiest(frame: Frame, width: float, height: float, edges: Iterable[Edge]) 
 
 
 def _where(scenario: Scenario, network: Network) -> str:
-    """The countries that the trips begin and end in."""
+    """The countries in which the trips begin and end."""
     if network.map.projection is None:
         return "no place on earth"
     atlas, reference = Atlas(), GeoReference(network.map)
@@ -256,12 +257,12 @@ def cut(text: str, weight: Weight, size: int, width: float) -> str:
 
 
 def trip_colour(number: int) -> Colour:
-    """Of the n-th trip, from 0."""
+    """Colour of the n-th trip, from 0."""
     return TRIP_COLOURS[number % len(TRIP_COLOURS)]
 
 
 def rank(road_class: str) -> int:
-    """The greater the road, the further up it is drawn."""
+    """Drawing order: larger roads above smaller ones."""
     if road_class in MOTORWAYS:
         return 3
     return 2 if road_class in AVENUES else 0 if road_class in QUIET else 1
@@ -271,7 +272,7 @@ def _colour(road_class: str) -> Colour:
     return (DAY.street, DAY.street, DAY.avenue, DAY.motorway)[rank(road_class)]
 
 
-def _width(edge: Edge, frame: Frame) -> float:
+def _width(edge: Edge, frame: Viewport) -> float:
     least = (2.5, 3.5, 5.0, 6.5)[rank(edge.road_class)]
     return FINE * max(least, len(edge.lane_ids) * 3.2 * frame.pixels_per_m)
 
@@ -294,7 +295,7 @@ def _dashed(brush: ImageDraw.ImageDraw, line: Points, width: float, colour: Colo
 
 
 def _shifted(line: Points, aside: float) -> Points:
-    """The line, so many pixels further to its right."""
+    """The line, moved to its right by a number of pixels."""
     kept = np.concatenate(([True], np.any(np.diff(line, axis=0) != 0, axis=1)))
     line = line[kept]
     if len(line) < 2:

@@ -1,4 +1,4 @@
-"""Who decides whether to reroute, and what came of it, judged on futures that have all been driven."""
+"""Who decides whether to reroute, and the result, judged on futures that have all been driven."""
 
 from __future__ import annotations
 
@@ -13,29 +13,29 @@ AGENT = "agent:"
 DELAY = "delay:"
 
 
-class Rule(StrEnum):
+class PolicyRule(StrEnum):
     """How a policy decides."""
 
     NEVER = "never"
     ALWAYS = "always"
-    """Takes the quickest other way by the news, also where the news says that it is slower."""
+    """Takes the quickest other route by the news, even if the news says that it is slower."""
     DELAY = "delay"
-    """Takes it if the delay expected on the present way is long enough and the other way is said to be quicker."""
+    """Takes it if enough delay is expected on the present route and the other is expected to be quicker."""
     SUMO = "sumo"
-    """Goes where SUMO's rerouting device would."""
+    """Takes the route of SUMO's rerouting device."""
     BEST = "best"
-    """Knows how every future ends: nobody can do better with the same choices."""
+    """Knows how every future ends: the best possible with the same choices."""
     AGENT = "agent"
     """An agent of the benchmark at the cockpit."""
 
 
 @dataclass(frozen=True, slots=True)
 class Policy:
-    """One of them."""
+    """One policy."""
 
     text: str
-    """As it was named."""
-    rule: Rule
+    """Its name as given."""
+    rule: PolicyRule
     delay_s: float = 0.0
     agent: str = ""
 
@@ -47,52 +47,52 @@ def parse_policy(text: str) -> Policy:
         UserError: it is none of them.
     """
     if text.startswith(AGENT) and text != AGENT:
-        return Policy(text, Rule.AGENT, agent=text.removeprefix(AGENT))
+        return Policy(text, PolicyRule.AGENT, agent=text.removeprefix(AGENT))
     if text.startswith(DELAY):
         try:
             delay_s = float(text.removeprefix(DELAY))
         except ValueError:
             delay_s = math.nan
         if not 0 <= delay_s <= 3_600:
-            raise UserError(f"policy {text!r} needs seconds of delay from 0 to 3600, as in delay:60")
-        return Policy(text, Rule.DELAY, delay_s=delay_s)
-    if text not in {Rule.NEVER, Rule.ALWAYS, Rule.SUMO, Rule.BEST}:
-        known = (Rule.NEVER, Rule.ALWAYS, "delay:60", Rule.SUMO, Rule.BEST, "agent:asurada")
+            raise UserError(f"policy {text!r} requires seconds of delay from 0 to 3600, as in delay:60")
+        return Policy(text, PolicyRule.DELAY, delay_s=delay_s)
+    if text not in {PolicyRule.NEVER, PolicyRule.ALWAYS, PolicyRule.SUMO, PolicyRule.BEST}:
+        known = (PolicyRule.NEVER, PolicyRule.ALWAYS, "delay:60", PolicyRule.SUMO, PolicyRule.BEST, "agent:asurada")
         raise UnknownNameError("policy", text, known)
-    return Policy(text, Rule(text))
+    return Policy(text, PolicyRule(text))
 
 
 def chosen(policy: Policy, decision: Decision, age_s: float) -> int | None:
     """The future that a policy's choice leads to.
 
     Args:
-        policy: who decides.
-        decision: of a drive.
-        age_s: of the news it has; SUMO's device, hindsight and agents have their own.
+        policy: the policy.
+        decision: a decision of a drive.
+        age_s: age of its news; SUMO's device, hindsight and agents have their own.
 
     Returns:
-        The number of the branch; None for staying.
+        The number of the branch; None for keeping the route.
     """
     news = next(each for each in decision.news if each.age_s == age_s)
     match policy.rule:
-        case Rule.NEVER:
+        case PolicyRule.NEVER:
             return None
-        case Rule.BEST:
+        case PolicyRule.BEST:
             return best(decision)
-        case Rule.AGENT:
+        case PolicyRule.AGENT:
             number: int | None = decision.agents[policy.agent]
-        case Rule.SUMO:
+        case PolicyRule.SUMO:
             number = decision.own
-        case Rule.ALWAYS:
+        case PolicyRule.ALWAYS:
             number = news.branch
-        case Rule.DELAY:
+        case PolicyRule.DELAY:
             is_worth = news.delay_s >= policy.delay_s and (news.promised_s or 0.0) > 0
             number = news.branch if is_worth else None
     return number if decision.complies else None
 
 
 def best(decision: Decision) -> int | None:
-    """The branch with the shortest travel time; None where staying is as short."""
+    """The branch with the shortest travel time; None if keeping the route is as short."""
     times = {number: branch.gains.time_s for number, branch in enumerate(decision.branches)}
     quickest = max(times, key=lambda number: times[number], default=None)
     return quickest if quickest is not None and times[quickest] > 0 else None

@@ -2,7 +2,7 @@
 
 A ``Simulation`` holds a scenario's traffic, loaded and warmed up without the ego. ``depart`` puts the ego into an
 exact copy of it and gives a ``Traffic``: one drive, which can be branched at any instant. The implementations
-(``sumo.InProcess``, ``fork.Forked``, ``scripted.Scripted``) are interchangeable; the SUMO ones give identical
+(``in_process.InProcess``, ``fork.Forked``, ``scripted.Scripted``) are interchangeable; the SUMO ones give identical
 states for one seed.
 """
 
@@ -16,7 +16,7 @@ from typing import Protocol
 from automotive_cosim.contracts import Answer, DrivingState, RoadNetwork, RoadRequest, RouteOption
 from automotive_cosim.scenarios import Trip, WeatherAt
 
-Progress = Callable[[float, float], None]
+WarmUpProgress = Callable[[float, float], None]
 """Told the simulated seconds of the warm-up that are done, and how many there are."""
 
 
@@ -35,23 +35,6 @@ class EgoPlan:
     """Stands beside the first lane of its trip and stays there."""
     wait_s: float = 0.0
     """Traffic that passes before it departs, so that it meets other cars and other lights."""
-
-
-class Predicate(Protocol):
-    """A question about the driving state. Implementations are frozen dataclasses at module level, so that they
-    can be sent to the simulation's process and evaluated there on every step."""
-
-    def __call__(self, state: DrivingState) -> bool:
-        """True while it holds."""
-        ...
-
-
-@dataclass(frozen=True, slots=True)
-class Until:
-    """Ends an advance once ``predicate`` has held without a break for ``for_s``."""
-
-    predicate: Predicate
-    for_s: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,13 +56,12 @@ class Event:
 
 
 @dataclass(frozen=True, slots=True)
-class Drive:
-    """What one ``advance`` saw."""
+class Advance:
+    """What one ``Traffic.advance`` saw."""
 
     states: tuple[DrivingState, ...]
     """One per SUMO step, in order; empty only if the ego had already ended."""
     events: tuple[Event, ...]
-    until_held: bool
 
 
 class Traffic(Protocol):
@@ -104,8 +86,8 @@ class Traffic(Protocol):
         """
         ...
 
-    def advance(self, duration_s: float, until: Until | None = None) -> Drive:
-        """Lets the traffic run for ``duration_s``, or until the predicate holds or the ego's drive ends.
+    def advance(self, duration_s: float) -> Advance:
+        """Lets the traffic run for ``duration_s``, or until the ego's drive ends.
 
         Raises:
             TrafficError: the simulation failed; the text names the cause.
@@ -145,7 +127,8 @@ class Simulation(Protocol):
 
         Raises:
             ScenarioError: its trip has no route, or its edges are not in the network.
-            TrafficError: it could not be inserted.
+            NoRoomError: no gap opened for it.
+            TrafficError: the simulation failed.
         """
         ...
 

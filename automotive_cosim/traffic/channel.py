@@ -8,6 +8,9 @@ import struct
 from contextlib import suppress
 from typing import Any
 
+LOADING_LIMIT_S = 300.0
+"""Wall time that the simulation may take to load a network without a sign of life."""
+
 _LENGTH = struct.Struct("!Q")
 
 
@@ -15,7 +18,7 @@ class ClosedError(Exception):
     """The other side has closed its end, or died."""
 
 
-class Channel:
+class MessageChannel:
     """One end of a connection. Both ends are this package, started by the same user."""
 
     def __init__(self, connection: socket.socket) -> None:

@@ -9,15 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 from shapely import LineString, Point
 
 from automotive_cosim.traffic.base import Event
-
-if TYPE_CHECKING:
-    from automotive_cosim.traffic.instant import Seen
-    from automotive_cosim.traffic.sumo import Sumo
+from automotive_cosim.traffic.instant import Seen
+from automotive_cosim.traffic.sumo import LibSumo
 
 LOOK_S = 0.5
 LONGEST_PET_S = 5.0
@@ -70,7 +67,7 @@ class _Way:
 class Conflicts:
     """Watches the junctions that the ego comes to."""
 
-    def __init__(self, sumo: Sumo, ego_id: str) -> None:
+    def __init__(self, sumo: LibSumo, ego_id: str) -> None:
         """Starts with nothing in sight."""
         self._sumo = sumo
         self._ego = ego_id

@@ -1,4 +1,4 @@
-"""The loop of one drive, the same on every road: step, driver, predicate."""
+"""The loop of one drive, the same on every road: step, driver."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import Protocol
 
 from automotive_cosim.contracts import Answer, DrivingState, RoadRequest, RouteOption
-from automotive_cosim.traffic.base import Drive, Event, Until
+from automotive_cosim.traffic.base import Advance, Event
 from automotive_cosim.traffic.ego import Driver
 from automotive_cosim.traffic.instant import Instant
 
@@ -14,7 +14,7 @@ Call = int | RoadRequest
 """One call of a drive, as a replay repeats it: a number of steps or a request."""
 
 
-class Road(Protocol):
+class Stepper(Protocol):
     """Something that moves the ego by one step."""
 
     step_s: float
@@ -31,7 +31,7 @@ class Road(Protocol):
 class EgoDrive:
     """One drive on a road, from its first instant on."""
 
-    def __init__(self, road: Road, driver: Driver, now: Instant) -> None:
+    def __init__(self, road: Stepper, driver: Driver, now: Instant) -> None:
         """Takes over, and lets the driver set the pedals."""
         self._road = road
         self._driver = driver
@@ -43,14 +43,11 @@ class EgoDrive:
         """The newest state."""
         return self._now.state
 
-    def advance(
-        self, duration_s: float, until: Until | None = None, beat: Callable[[], None] | None = None
-    ) -> Drive:
+    def advance(self, duration_s: float, beat: Callable[[], None] | None = None) -> Advance:
         """As ``Traffic.advance``; ``beat`` is called after every step."""
         road, driver = self._road, self._driver
         passed: list[Instant] = []
         events: list[Event] = []
-        held_since_s: float | None = None
         for _ in range(round(duration_s / road.step_s)):
             if self._now.end is not None:
                 break
@@ -62,14 +59,7 @@ class EgoDrive:
                 events += driver.tick(now)
             if beat is not None:
                 beat()
-            if until is not None:
-                if not until.predicate(now.state):
-                    held_since_s = None
-                else:
-                    held_since_s = now.time_s if held_since_s is None else held_since_s
-                    if now.time_s - held_since_s >= until.for_s - 1e-9:
-                        return Drive(_states(passed), tuple(events), until_held=True)
-        return Drive(_states(passed), tuple(events), until_held=False)
+        return Advance(tuple(instant.state for instant in passed), tuple(events))
 
     def request(self, request: RoadRequest) -> Answer:
         """As ``Traffic.request``."""
@@ -83,10 +73,6 @@ class EgoDrive:
         """Repeats what was done on an equal drive."""
         for call in calls:
             if isinstance(call, int):
-                self.advance(call * self._road.step_s, beat=beat)
+                self.advance(call * self._road.step_s, beat)
             else:
                 self.request(call)
-
-
-def _states(passed: Sequence[Instant]) -> tuple[DrivingState, ...]:
-    return tuple(now.state for now in passed)

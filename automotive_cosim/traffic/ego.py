@@ -30,8 +30,8 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.traffic.base import EgoPlan, Event
 from automotive_cosim.traffic.instant import Instant
-from automotive_cosim.traffic.profiles import Profile, profile
-from automotive_cosim.traffic.road_weather import DRY, Condition, Forecast
+from automotive_cosim.traffic.profiles import DriverProfile, profile
+from automotive_cosim.traffic.road_weather import DRY, Forecast, RoadCondition
 
 REACTION_SPREAD = 0.25
 """Standard deviation of the logarithm of a reaction time: brake reactions are log-normal (Taoka, 1989)."""
@@ -180,7 +180,7 @@ class Driver:
     pedals: Pedals
     step_s: float
     hazard_lights: bool = False
-    _profile: Profile = field(init=False)
+    _profile: DriverProfile = field(init=False)
     _draws: np.random.Generator = field(init=False)
     _intents: list[_Intent] = field(default_factory=list)
     _bounds: _Bounds = field(default_factory=_Bounds)
@@ -194,7 +194,7 @@ class Driver:
     """Speed over the limit that the driver chooses in this weather."""
     _own_top_mps: float = field(init=False)
     _corridor_until_s: float = math.inf
-    _condition: Condition = DRY
+    _condition: RoadCondition = DRY
     _forecast: Forecast | None = None
 
     def __post_init__(self) -> None:
@@ -344,7 +344,7 @@ class Driver:
 
     # --- weather ------------------------------------------------------------------------------------------
 
-    def _meet(self, condition: Condition) -> None:
+    def _meet(self, condition: RoadCondition) -> None:
         """Adapts to another weather as far as the driver is cautious; the grip asks nobody."""
         if condition != self._condition:
             self._condition = condition

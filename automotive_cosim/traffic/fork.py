@@ -8,11 +8,11 @@ and repeats the calls so far: the same states, only slower.
 from __future__ import annotations
 
 import os
-import pickle
 import sys
+import threading
 from collections import OrderedDict
-from collections.abc import Sequence
-from contextlib import closing
+from collections.abc import Iterator, Sequence
+from contextlib import closing, contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -20,13 +20,13 @@ from typing import Any
 from automotive_cosim.contracts import Answer, DrivingState, RoadNetwork, RoadRequest, RouteOption
 from automotive_cosim.errors import SetupError, TrafficError
 from automotive_cosim.scenarios import Scenario
-from automotive_cosim.traffic.base import Drive, EgoPlan, Progress, Until
+from automotive_cosim.traffic.accounts import Pulse, Settled
+from automotive_cosim.traffic.base import Advance, EgoPlan, WarmUpProgress
 from automotive_cosim.traffic.drive import Call
-from automotive_cosim.traffic.ledger import Pulse, Settled
 from automotive_cosim.traffic.options import Setup
 from automotive_cosim.traffic.profiles import profile
 from automotive_cosim.traffic.remote import TIMEOUT_S, RemoteProcess
-from automotive_cosim.traffic.wire import Packed, pack_state, unpack_drive, unpack_state
+from automotive_cosim.traffic.wire import Packed, pack_state, unpack_advance, unpack_state
 
 CAN_FORK = sys.platform == "linux"
 """Files are reopened through /proc, which only Linux has."""
@@ -39,7 +39,7 @@ class Forked:
         self,
         scenario: Scenario,
         seed: int = 0,
-        progress: Progress | None = None,
+        progress: WarmUpProgress | None = None,
         *,
         allow_unprojected: bool = False,
         timeout_s: float = TIMEOUT_S,
@@ -73,8 +73,8 @@ class Forked:
         Raises:
             ScenarioError: its trip has no route, or its edges are not in the network.
             UnknownNameError: no such driver.
-            TrafficError: it could not be inserted, or the simulation died or hung; the next one can depart all the
-                same.
+            NoRoomError: no gap opened for it; the next one can depart all the same.
+            TrafficError: the simulation died or hung; likewise.
         """
         profile(plan.driver)
         if self._is_closed:
@@ -142,22 +142,19 @@ class RemoteTraffic:
     def start(self, duration_s: float) -> None:
         """As ``Traffic.start``."""
         if self._started_s is None:
-            self._process.send("advance", duration_s, None)
+            self._process.send("advance", duration_s)
             self._started_s = duration_s
 
-    def advance(self, duration_s: float, until: Until | None = None) -> Drive:
-        """As ``Traffic.advance``; the predicate must be defined in a module that can be imported."""
-        if self._started_s is None:
-            pickled = None if until is None else pickle.dumps(until)
-            drive = unpack_drive(self._process.call("advance", duration_s, pickled))
-        else:
-            assert (duration_s, until) == (self._started_s, None), "another advance was started"
-            self._started_s = None
-            drive = unpack_drive(self._process.receive())
-        if drive.states:
-            self._state = drive.states[-1]
-        self._remember(len(drive.states))
-        return drive
+    def advance(self, duration_s: float) -> Advance:
+        """As ``Traffic.advance``."""
+        self.start(duration_s)
+        assert duration_s == self._started_s, "another advance was started"
+        self._started_s = None
+        advance = unpack_advance(self._process.receive())
+        if advance.states:
+            self._state = advance.states[-1]
+        self._remember(len(advance.states))
+        return advance
 
     def request(self, request: RoadRequest) -> Answer:
         """As ``Traffic.request``."""
@@ -221,12 +218,14 @@ class _Source:
     """Where copies of a warm simulation come from."""
 
     def __init__(
-        self, setup: Setup, timeout_s: float, *, by_replay: bool, progress: Progress | None = None
+        self, setup: Setup, timeout_s: float, *, by_replay: bool, progress: WarmUpProgress | None = None
     ) -> None:
         self.by_replay = by_replay
         self._setup = setup
         self._timeout_s = timeout_s
         self._drives = 0
+        self._lock = threading.Lock()
+        """Held while the warm process is asked for a copy: threads may depart at the same time."""
         self._warm: RemoteProcess | None
         self._warm, self.network = RemoteProcess.start(
             self._writing("drive-1" if by_replay else "warm"), progress, timeout_s
@@ -234,7 +233,8 @@ class _Source:
 
     def departed(self, plan: EgoPlan, calls: Sequence[Call] = ()) -> RemoteTraffic:
         """A drive in a process of its own, after the calls."""
-        process = self._taken() if self.by_replay else self._ready().fork(self._next_outputs())
+        with self._lock:
+            process = self._taken() if self.by_replay else self._ready().fork(self._next_outputs())
         try:
             state = process.call("depart", plan)
             if calls:
@@ -311,12 +311,15 @@ class Simulations:
         self._count_limit = count_limit
         self._memory_limit_bytes = memory_limit_bytes
         self._kept: OrderedDict[Setup, Forked] = OrderedDict()
+        self._held: list[Forked] = []
+        """Once for each thread that is about to depart from it."""
+        self._lock = threading.Lock()
 
     def warm(
         self,
         scenario: Scenario,
         seed: int = 0,
-        progress: Progress | None = None,
+        progress: WarmUpProgress | None = None,
         *,
         allow_unprojected: bool = False,
     ) -> Forked:
@@ -332,14 +335,32 @@ class Simulations:
         self._kept.move_to_end(setup)
         return self._kept[setup]
 
+    @contextmanager
+    def held(self, scenario: Scenario, seed: int, progress: WarmUpProgress | None = None) -> Iterator[Forked]:
+        """As ``warm``, for threads: while one makes a simulation the others wait, and none is ended while held.
+
+        Raises:
+            as ``Forked``.
+        """
+        with self._lock:
+            simulation = self.warm(scenario, seed, progress)
+            self._held.append(simulation)
+        try:
+            yield simulation
+        finally:
+            with self._lock:
+                self._held.remove(simulation)
+                self._make_room()
+
     def close(self) -> None:
         """Ends them all; harmless when called again."""
         while self._kept:
             self._kept.popitem()[1].close()
 
     def _make_room(self) -> None:
-        while len(self._kept) > 1 and (
-            len(self._kept) > self._count_limit
-            or sum(simulation.memory_bytes for simulation in self._kept.values()) > self._memory_limit_bytes
-        ):
-            self._kept.popitem(last=False)[1].close()
+        for setup in list(self._kept)[:-1]:
+            memory_bytes = sum(simulation.memory_bytes for simulation in self._kept.values())
+            if len(self._kept) <= self._count_limit and memory_bytes <= self._memory_limit_bytes:
+                break
+            if self._kept[setup] not in self._held:
+                self._kept.pop(setup).close()

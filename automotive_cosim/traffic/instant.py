@@ -50,7 +50,7 @@ class Instant(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Known:
+class KnownInstant:
     """An instant whose state has been made already."""
 
     state: DrivingState

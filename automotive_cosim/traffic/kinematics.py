@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from automotive_cosim.contracts import (
     KMH_PER_MPS,
+    STANDING_BELOW_MPS,
     Around,
     DrivingState,
     EgoEnd,
@@ -17,21 +18,20 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.traffic.base import Event
 from automotive_cosim.traffic.ego import EASING_MPS2, RefusedError
-from automotive_cosim.traffic.instant import Known, other_vehicle
-from automotive_cosim.traffic.profiles import Profile
+from automotive_cosim.traffic.instant import KnownInstant, other_vehicle
+from automotive_cosim.traffic.profiles import DriverProfile
 from automotive_cosim.traffic.road_weather import G_MPS2
-from automotive_cosim.traffic.sensing import STANDING_BELOW_MPS
 from automotive_cosim.traffic.steering import STOPPING_MPS2, STOPPING_RESERVE_M
 from automotive_cosim.traffic.stretches import Layout, Stretch
 
 
-class Car:
+class ScriptedCar:
     """Moves by steps and has the driver's pedals (``drive.Road`` and ``ego.Pedals``)."""
 
     def __init__(
         self,
         layout: Layout,
-        driver: Profile,
+        driver: DriverProfile,
         step_s: float,
         start_s: float,
         start_mps: float,
@@ -56,9 +56,9 @@ class Car:
         self._leader_m = math.inf
         """Where the leader's rear bumper is."""
         self._enter(0)
-        self.now = Known(self._sense(hazard_lights=False))
+        self.now = KnownInstant(self._sense(hazard_lights=False))
 
-    def step(self, *, hazard_lights: bool) -> tuple[Known, tuple[Event, ...]]:
+    def step(self, *, hazard_lights: bool) -> tuple[KnownInstant, tuple[Event, ...]]:
         """As ``drive.Road``."""
         before_mps = self._speed_mps
         self._speed_mps = self._next_speed()
@@ -77,7 +77,7 @@ class Car:
         index = self._layout.index_at(self._along_m)
         if index != self._index:
             self._enter(index)
-        self.now = Known(self._sense(hazard_lights=hazard_lights))
+        self.now = KnownInstant(self._sense(hazard_lights=hazard_lights))
         return self.now, ()
 
     def alternatives(self, age_s: float) -> tuple[RouteOption, ...]:
@@ -174,8 +174,8 @@ class Car:
         leader = self._layout.stretches[index].leader
         self._leader_m = math.inf if leader is None else self._along_m + leader.gap_m
 
-    def _ended(self, end: EgoEnd) -> Known:
-        self.now = Known(replace(self.now.state, time_s=self._time_s(), end=end))
+    def _ended(self, end: EgoEnd) -> KnownInstant:
+        self.now = KnownInstant(replace(self.now.state, time_s=self._time_s(), end=end))
         return self.now
 
     def _time_s(self) -> float:

@@ -7,75 +7,20 @@ each of them arrived, what the ego used up on the way, and whether the traffic a
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-from automotive_cosim.traffic.sumo import EGO
-
-if TYPE_CHECKING:
-    from automotive_cosim.traffic.drive import EgoDrive
-    from automotive_cosim.traffic.sumo import Sumo
-    from automotive_cosim.traffic.world import World
-
-HALTED_MPS = 0.1
-"""SUMO counts a vehicle as halted up to this speed (SUMO_const_haltingSpeed)."""
-
-STUCK_S = 300.0
-"""Waiting this long without a break is being stuck: SUMO's own time to teleport."""
+from automotive_cosim.traffic.accounts import HALTED_MPS, STUCK_S, Account, Pulse, Settled
+from automotive_cosim.traffic.drive import EgoDrive
+from automotive_cosim.traffic.sumo import EGO, LibSumo
+from automotive_cosim.traffic.world import World
 
 NUDGE = 1.001
 """A placebo multiplies one car's speed factor by this."""
 
 
-@dataclass(frozen=True, slots=True)
-class Pulse:
-    """How the traffic as a whole is doing. Counts of events begin when the ledger was opened."""
-
-    time_s: float
-    running: int
-    """Vehicles on the road."""
-    halted: int
-    """Of them, slower than ``HALTED_MPS``."""
-    stuck: int
-    """Of them, waiting for ``STUCK_S`` or longer."""
-    backlog: int
-    """Vehicles that are due and found no room to enter."""
-    departed: int
-    teleported: int
-
-
-@dataclass(frozen=True, slots=True)
-class Account:
-    """What the ego's drive came to since its departure, counted as SUMO's tripinfo counts it."""
-
-    departed_s: float
-    """Simulation time at the end of the step it was inserted in."""
-    stops: int
-    """How often it came to a halt."""
-    standing_s: float
-    co2_g: float
-    fuel_g: float
-    """Both by SUMO's emission model for the vehicle's class."""
-
-
-@dataclass(frozen=True, slots=True)
-class Settled:
-    """How a future ended."""
-
-    time_s: float
-    """When it was left alone: enough of everybody had arrived, or its time was over."""
-    is_complete: bool
-    """False if the time was over first."""
-    arrivals_s: dict[str, float]
-    """Simulation time at which each vehicle that was waited for arrived; who has not is missing."""
-    ego: Account
-    pulse: Pulse
-
-
 class Ledger:
     """Notes a step after it has been made; a fork takes its copy along."""
 
-    def __init__(self, sumo: Sumo, step_s: float) -> None:
+    def __init__(self, sumo: LibSumo, step_s: float) -> None:
         """Opens it.
 
         Args:
@@ -180,7 +125,7 @@ def settle(
         if is_complete():
             break
         if drive.state.end is None:
-            drive.advance(world.step_s, beat=after_step)
+            drive.advance(world.step_s, after_step)
         else:
             world.step()
             after_step()
@@ -192,7 +137,7 @@ def settle(
     return Settled(pulse.time_s, is_complete(), arrivals_s, ledger.account(), pulse)
 
 
-def own_choice(sumo: Sumo) -> tuple[str, ...]:
+def own_choice(sumo: LibSumo) -> tuple[str, ...]:
     """The way that SUMO's rerouting device would send the ego on now; the ego takes it, so ask a copy.
 
     The device routes by travel times averaged over its adaptation interval; where no vehicle carries one, SUMO
@@ -202,7 +147,7 @@ def own_choice(sumo: Sumo) -> tuple[str, ...]:
     return tuple(sumo.route(EGO)[sumo.route_index(EGO) :])
 
 
-def nudge(sumo: Sumo, place: float) -> str:
+def nudge(sumo: LibSumo, place: float) -> str:
     """Lets one other car aim at a speed 0.1 % higher; returns which, empty if there is none.
 
     Args:

@@ -10,7 +10,6 @@ from __future__ import annotations
 import faulthandler
 import gc
 import os
-import pickle
 import shutil
 import signal
 import socket
@@ -22,16 +21,16 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from automotive_cosim import errors
 from automotive_cosim.contracts import Answer, RoadNetwork, RoadRequest, RouteOption
-from automotive_cosim.errors import CosimError
-from automotive_cosim.traffic.base import EgoPlan, Until
-from automotive_cosim.traffic.channel import Channel, ClosedError
+from automotive_cosim.errors import CosimError, TrafficError
+from automotive_cosim.traffic.accounts import Pulse, Settled
+from automotive_cosim.traffic.base import EgoPlan
+from automotive_cosim.traffic.channel import LOADING_LIMIT_S, ClosedError, MessageChannel
 from automotive_cosim.traffic.drive import Call, EgoDrive
-from automotive_cosim.traffic.ledger import Ledger, Pulse, Settled, nudge, own_choice, settle
+from automotive_cosim.traffic.ledger import Ledger, nudge, own_choice, settle
 from automotive_cosim.traffic.options import OUTPUTS, Setup
 from automotive_cosim.traffic.sumo import load_library
-from automotive_cosim.traffic.wire import Packed, pack_drive, pack_state
+from automotive_cosim.traffic.wire import Packed, pack_advance, pack_state
 from automotive_cosim.traffic.world import World
 
 if sys.platform != "win32":
@@ -40,16 +39,13 @@ if sys.platform != "win32":
 BEAT_S = 1.0
 """Wall time between two signs of life during a long call."""
 
-LOADING_LIMIT_S = 300.0
-"""Wall time that loading a network may take."""
-
 DESCRIPTORS = Path("/proc/self/fd")
 
 
 class Server:
     """Answers the messages of one connection."""
 
-    def __init__(self, channel: Channel, hang_limit_s: float) -> None:
+    def __init__(self, channel: MessageChannel, hang_limit_s: float) -> None:
         """Takes the connection over.
 
         Args:
@@ -82,12 +78,12 @@ class Server:
         except ClosedError:
             raise
         except CosimError as error:
-            return "error", (type(error).__name__, str(error))
+            return "error", (type(error), str(error))
         except Exception as error:  # whatever it is, the other side has to hear of it
             traceback.print_exc()
             place = traceback.extract_tb(error.__traceback__)[-1]
             text = f"{type(error).__name__}: {error} ({Path(place.filename).name}, line {place.lineno})"
-            return "error", (errors.TrafficError.__name__, text)
+            return "error", (TrafficError, text)
 
     # --- the calls ----------------------------------------------------------------------------------------
 
@@ -107,7 +103,7 @@ class Server:
         child = os.fork()
         if not child:
             self._channel.close()
-            self._channel = Channel(connection)
+            self._channel = MessageChannel(connection)
             self._set_alarm()
             reopen_files()
             if outputs is not None:
@@ -122,10 +118,10 @@ class Server:
         self._drive = self._world.depart(plan, self._after_step)
         return pack_state(self._drive.state)
 
-    def do_advance(self, duration_s: float, until: bytes | None) -> Packed:
-        """Advances; the predicate is evaluated here."""
+    def do_advance(self, duration_s: float) -> Packed:
+        """Lets the traffic run."""
         assert self._drive is not None
-        return pack_drive(self._drive.advance(duration_s, _load_until(until), self._after_step))
+        return pack_advance(self._drive.advance(duration_s, self._after_step))
 
     def do_request(self, request: RoadRequest) -> Answer:
         """Asks something of the driver or the car."""
@@ -208,19 +204,6 @@ class Server:
             signal.setitimer(signal.ITIMER_REAL, 0)
 
 
-def _load_until(pickled: bytes | None) -> Until | None:
-    if pickled is None:
-        return None
-    try:
-        until = pickle.loads(pickled)
-    except (AttributeError, ImportError) as error:
-        raise errors.TrafficError(
-            f"the predicate cannot be loaded in the simulation's process ({error}): define it in a module"
-        ) from error
-    assert isinstance(until, Until)
-    return until
-
-
 def reopen_files() -> None:
     """Gives this process its own position in every file it was forked with.
 
@@ -266,7 +249,7 @@ def main() -> None:
     else:
         signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # children need no waiting for
         connection = socket.socket(fileno=int(sys.argv[1]))
-    Server(Channel(connection), float(sys.argv[2])).run()
+    Server(MessageChannel(connection), float(sys.argv[2])).run()
     os._exit(0)  # without tearing the simulation down piece by piece
 
 

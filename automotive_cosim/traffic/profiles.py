@@ -9,7 +9,7 @@ from automotive_cosim.errors import UnknownNameError
 
 
 @dataclass(frozen=True, slots=True)
-class Profile:
+class DriverProfile:
     """A kind of driver, in SUMO's terms where it has them (Krauss model)."""
 
     name: str
@@ -37,10 +37,10 @@ class Profile:
     """How far speed and gap are adapted to the weather: 1 as much as the others do, 0 not at all."""
 
 
-PROFILES: Mapping[str, Profile] = {
+PROFILES: Mapping[str, DriverProfile] = {
     profile.name: profile
     for profile in (
-        Profile(
+        DriverProfile(
             name="calm",
             about="keeps just under the limit and well back",
             speed_ratio=0.95,
@@ -56,7 +56,7 @@ PROFILES: Mapping[str, Profile] = {
             compliance=1.0,
             caution=1.0,
         ),
-        Profile(
+        DriverProfile(
             name="average",
             about="keeps the limit",
             speed_ratio=1.0,
@@ -72,7 +72,7 @@ PROFILES: Mapping[str, Profile] = {
             compliance=0.95,
             caution=1.0,
         ),
-        Profile(
+        DriverProfile(
             name="steady",
             about="exactly the limit, without wavering: for studies that reckon by hand",
             speed_ratio=1.0,
@@ -88,7 +88,7 @@ PROFILES: Mapping[str, Profile] = {
             compliance=1.0,
             caution=1.0,
         ),
-        Profile(
+        DriverProfile(
             name="hurried",
             about="far over the limit where the road is clear",
             speed_ratio=1.62,
@@ -104,7 +104,7 @@ PROFILES: Mapping[str, Profile] = {
             compliance=0.9,
             caution=0.0,
         ),
-        Profile(
+        DriverProfile(
             name="tailgating",
             about="a little over the limit and close behind whoever is ahead",
             speed_ratio=1.1,
@@ -120,7 +120,7 @@ PROFILES: Mapping[str, Profile] = {
             compliance=0.85,
             caution=0.0,
         ),
-        Profile(
+        DriverProfile(
             name="drowsy",
             about="uneven in speed and late to react",
             speed_ratio=1.0,
@@ -149,7 +149,7 @@ not measured.
 """
 
 
-def profile(name: str) -> Profile:
+def profile(name: str) -> DriverProfile:
     """The profile of that name.
 
     Raises:

@@ -12,10 +12,10 @@ from typing import Any, TypeVar, cast
 
 from automotive_cosim.contracts import Around, DrivingState, OtherVehicle, RoadAhead, RoadHere, TrafficLight
 
-Record = TypeVar("Record")
+Noun = TypeVar("Noun")
 
 
-def maker(kind: type[Record]) -> type[Record]:
+def maker(kind: type[Noun]) -> type[Noun]:
     """What makes records of a frozen dataclass with slots from all their fields, in order.
 
     It is typed as the class, so that its arguments are checked, but knows neither defaults nor names.
@@ -27,7 +27,7 @@ def maker(kind: type[Record]) -> type[Record]:
         record.__class__ = kind
         return record
 
-    return cast("type[Record]", make)
+    return cast("type[Noun]", make)
 
 
 make_state, make_road, make_ahead = maker(DrivingState), maker(RoadHere), maker(RoadAhead)

@@ -13,11 +13,10 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, NoReturn
 
-from automotive_cosim import errors
 from automotive_cosim.contracts import RoadNetwork
 from automotive_cosim.errors import CosimError, TrafficError
-from automotive_cosim.traffic.base import Progress
-from automotive_cosim.traffic.channel import Channel, ClosedError
+from automotive_cosim.traffic.base import WarmUpProgress
+from automotive_cosim.traffic.channel import LOADING_LIMIT_S, ClosedError, MessageChannel
 from automotive_cosim.traffic.options import Setup
 
 TIMEOUT_S = 20.0
@@ -25,9 +24,6 @@ TIMEOUT_S = 20.0
 
 ALARM_MARGIN_S = 5.0
 """The simulation's own alarm comes this much later, for when nobody is left to end it."""
-
-LOADING_LIMIT_S = 300.0
-"""Wall time that loading a network may take."""
 
 CLOSING_LIMIT_S = 2.0
 
@@ -54,7 +50,7 @@ class _Complaints:
 class RemoteProcess:
     """A simulation's process, seen from here."""
 
-    def __init__(self, channel: Channel, complaints: _Complaints, timeout_s: float) -> None:
+    def __init__(self, channel: MessageChannel, complaints: _Complaints, timeout_s: float) -> None:
         self._channel = channel
         self._complaints = complaints
         self._timeout_s = timeout_s
@@ -65,7 +61,9 @@ class RemoteProcess:
         """Runs even if nobody closes it: a process whose connection is gone ends."""
 
     @classmethod
-    def start(cls, setup: Setup, progress: Progress | None, timeout_s: float) -> tuple[RemoteProcess, RoadNetwork]:
+    def start(
+        cls, setup: Setup, progress: WarmUpProgress | None, timeout_s: float
+    ) -> tuple[RemoteProcess, RoadNetwork]:
         """Starts a process that loads and warms up; returns it with the network.
 
         Raises:
@@ -74,7 +72,7 @@ class RemoteProcess:
             TrafficError: the process died or hung.
         """
         ours, theirs = socket.socketpair()
-        process = cls(Channel(ours), _Complaints(), timeout_s)
+        process = cls(MessageChannel(ours), _Complaints(), timeout_s)
         with theirs:
             popen = _popen(theirs, process._complaints.descriptor, timeout_s + ALARM_MARGIN_S)
         process._popen, process.pid = popen, popen.pid
@@ -97,7 +95,7 @@ class RemoteProcess:
             TrafficError: the process or its copy died or hung.
         """
         ours, theirs = socket.socketpair()
-        child = RemoteProcess(Channel(ours), self._complaints, self._timeout_s)
+        child = RemoteProcess(MessageChannel(ours), self._complaints, self._timeout_s)
         try:
             with theirs:
                 child.pid = self.call("fork", outputs, hand_over=theirs)
@@ -116,7 +114,7 @@ class RemoteProcess:
         self,
         name: str,
         *arguments: object,
-        progress: Progress | None = None,
+        progress: WarmUpProgress | None = None,
         timeout_s: float | None = None,
         hand_over: socket.socket | None = None,
     ) -> Any:
@@ -143,7 +141,7 @@ class RemoteProcess:
         except ClosedError:
             self._give_up(self._death())
 
-    def receive(self, progress: Progress | None = None, timeout_s: float | None = None) -> Any:
+    def receive(self, progress: WarmUpProgress | None = None, timeout_s: float | None = None) -> Any:
         """Waits for an answer; raises as ``call``."""
         limit_s = max(self._timeout_s, timeout_s or 0.0)
         try:
@@ -163,9 +161,9 @@ class RemoteProcess:
             self._broken = "the simulation was interrupted"
             raise
         if outcome == "error":
-            name, text = value
-            kind_of_error: type[CosimError] = getattr(errors, name)
-            raise kind_of_error.__new__(kind_of_error, text)  # the text is whole already
+            kind: type[CosimError]
+            kind, text = value
+            raise kind.__new__(kind, text)  # the text is whole already
         return value
 
     def close(self) -> None:
@@ -205,7 +203,7 @@ class RemoteProcess:
         return f"the simulation (process {self.pid}) died: {cause}" + (f"; it said: {said}" if said else "")
 
 
-def _end(channel: Channel, popen: subprocess.Popen[bytes]) -> None:
+def _end(channel: MessageChannel, popen: subprocess.Popen[bytes]) -> None:
     """Ends a process that we started, and waits for it."""
     channel.close()
     try:

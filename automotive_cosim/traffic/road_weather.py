@@ -9,14 +9,11 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from automotive_cosim.contracts import Weather
 from automotive_cosim.scenarios import WeatherAt, weather_at
 from automotive_cosim.traffic.network import Network
-
-if TYPE_CHECKING:
-    from automotive_cosim.traffic.sumo import Sumo
+from automotive_cosim.traffic.sumo import LibSumo
 
 G_MPS2 = 9.81
 
@@ -38,7 +35,7 @@ COMFORTABLE_MPS2 = 3.4
 
 
 @dataclass(frozen=True, slots=True)
-class Condition:
+class RoadCondition:
     """How a road is to be driven; the ratios are to what is done on a dry road in clear air."""
 
     friction: float = 1.0
@@ -49,7 +46,7 @@ class Condition:
     """Speed from which one can stop within sight."""
 
 
-DRY = Condition()
+DRY = RoadCondition()
 
 # Friction: Wallman and Astrom, "Friction measurement methods and the correlation between road friction and
 # traffic safety" (VTI meddelande 911A, 2001): dry 0.8 to 1.0, wet 0.7 to 0.8, packed snow 0.20 to 0.30, loose snow
@@ -77,7 +74,7 @@ _OF_CODES: dict[frozenset[int], tuple[float, tuple[float, float]]] = {
 """Friction, and the ratios of speed and headway, of weather codes (WMO 4677; freezing rain and rime are ice)."""
 
 
-def condition_of(weather: Weather) -> Condition:
+def condition_of(weather: Weather) -> RoadCondition:
     """What the weather makes of a road in the open."""
     friction, ratios = 1.0, (1.0, 1.0)
     for codes, effect in _OF_CODES.items():
@@ -89,7 +86,7 @@ def condition_of(weather: Weather) -> Condition:
         ratios = (min(ratios[0], LOW_VISIBILITY[0]), max(ratios[1], LOW_VISIBILITY[1]))
     hot = max(0.0, weather.temperature_2m - WARM_FROM_C)
     friction = min(friction, 1.0 - LOSS_PER_KELVIN * hot)
-    return Condition(friction, *ratios, sight_speed_mps(weather.visibility, friction))
+    return RoadCondition(friction, *ratios, sight_speed_mps(weather.visibility, friction))
 
 
 def sight_speed_mps(visibility_m: float, friction: float) -> float:
@@ -108,7 +105,7 @@ class Forecast:
         self.until_s = -math.inf
         """Simulation time up to which the condition read last holds."""
 
-    def read(self, time_s: float) -> Condition:
+    def read(self, time_s: float) -> RoadCondition:
         """The condition at a simulation time."""
         if not self._timeline:
             self.until_s = math.inf
@@ -137,7 +134,7 @@ class Surface:
     Lanes in tunnels stay dry. Speeds wanted are each vehicle's own, the rest is its type's.
     """
 
-    def __init__(self, sumo: Sumo, network: Network, left_out: tuple[str, ...]) -> None:
+    def __init__(self, sumo: LibSumo, network: Network, left_out: tuple[str, ...]) -> None:
         """Starts dry.
 
         Args:
@@ -154,7 +151,7 @@ class Surface:
         self._factors: dict[str, float] = {}
         """Speed factor of each vehicle on a dry road, kept while it is not."""
 
-    def put(self, condition: Condition) -> None:
+    def put(self, condition: RoadCondition) -> None:
         """Changes the condition for everything on the road."""
         if condition == self.condition:
             return

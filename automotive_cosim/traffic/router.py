@@ -14,14 +14,12 @@ from __future__ import annotations
 from collections import ChainMap
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from automotive_cosim.contracts import RouteOption
+from automotive_cosim.traffic.congestion import Congestion
 from automotive_cosim.traffic.network import Crossing, Network
-
-if TYPE_CHECKING:
-    from automotive_cosim.traffic.congestion import Congestion
-    from automotive_cosim.traffic.sumo import Sumo
+from automotive_cosim.traffic.sumo import LibSumo
 
 NEVER_S = 1e8
 """Three years of simulated time; the edges' times are written for as long from there on."""
@@ -50,7 +48,7 @@ SLOWEST_MPS = 0.5
 class Router:
     """Finds ways for the ego and leaves nothing behind."""
 
-    def __init__(self, sumo: Sumo, network: Network, congestion: Congestion, type_id: str) -> None:
+    def __init__(self, sumo: LibSumo, network: Network, congestion: Congestion, type_id: str) -> None:
         """Takes a running simulation.
 
         Args:

@@ -14,10 +14,8 @@ from automotive_cosim.scenarios import incidents
 from automotive_cosim.traffic.congestion import JAM_BELOW
 from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.posted import TimedLimit
-from automotive_cosim.traffic.stage import CAR_TYPE, Stage
-
-HAZARD_SIGNAL = 4
-"""SUMO's bit for the hazard lights (VEH_SIGNAL_BLINKER_EMERGENCY)."""
+from automotive_cosim.traffic.stage import CAR_TYPE, IncidentStage
+from automotive_cosim.traffic.sumo import HAZARD_SIGNAL
 
 AUTHORITY = ("authority",)
 """Whom a closed lane is left open to."""
@@ -74,7 +72,7 @@ class _Scene:
 class _Breakdown(_Scene):
     """A stopped car."""
 
-    def __init__(self, stage: Stage, incident: incidents.Breakdown) -> None:
+    def __init__(self, stage: IncidentStage, incident: incidents.Breakdown) -> None:
         self._stage, self._incident = stage, incident
         self._lane = stage.lane(incident.edge, incident.lane)
         length_m = stage.edge(incident.edge).length_m
@@ -100,7 +98,7 @@ class _Breakdown(_Scene):
 class _Roadworks(_Scene):
     """A lower limit and closed lanes."""
 
-    def __init__(self, stage: Stage, incident: incidents.Roadworks) -> None:
+    def __init__(self, stage: IncidentStage, incident: incidents.Roadworks) -> None:
         self._stage, self._incident = stage, incident
         self._closed = tuple(stage.lane(incident.edge, lane) for lane in incident.closed_lanes)
         if len(set(self._closed)) >= len(stage.edge(incident.edge).lane_ids):
@@ -129,7 +127,7 @@ class _Roadworks(_Scene):
 class _Jam(_Scene):
     """A queue, and a place that lets one vehicle a lane pass at a time."""
 
-    def __init__(self, stage: Stage, incident: incidents.Jam) -> None:
+    def __init__(self, stage: IncidentStage, incident: incidents.Jam) -> None:
         self._stage, self._incident = stage, incident
         self._edges = [stage.edge(edge) for edge in incident.edges]
         for here, there in zip(incident.edges, incident.edges[1:], strict=False):
@@ -179,7 +177,7 @@ class _Jam(_Scene):
 class _Closure(_Scene):
     """A road that all but the authorities go round."""
 
-    def __init__(self, stage: Stage, incident: incidents.Closure) -> None:
+    def __init__(self, stage: IncidentStage, incident: incidents.Closure) -> None:
         self._stage = stage
         self._edge = stage.edge(incident.edge)
         self._seen: set[str] = set()
@@ -235,7 +233,7 @@ class _Closure(_Scene):
 class _SchoolZone(_Scene):
     """A limit by the clock."""
 
-    def __init__(self, stage: Stage, incident: incidents.SchoolZone) -> None:
+    def __init__(self, stage: IncidentStage, incident: incidents.SchoolZone) -> None:
         self._stage, self._edges = stage, incident.edges
         for edge in incident.edges:
             stage.edge(edge)
@@ -263,7 +261,7 @@ class _SchoolZone(_Scene):
 class _RushHour(_Scene):
     """More demand."""
 
-    def __init__(self, stage: Stage, incident: incidents.RushHour) -> None:
+    def __init__(self, stage: IncidentStage, incident: incidents.RushHour) -> None:
         self._stage, self._incident = stage, incident
 
     def begin(self) -> str:
@@ -280,7 +278,7 @@ class _RushHour(_Scene):
 class _Tractor(_Scene):
     """A slow vehicle."""
 
-    def __init__(self, stage: Stage, incident: incidents.Tractor) -> None:
+    def __init__(self, stage: IncidentStage, incident: incidents.Tractor) -> None:
         self._stage, self._incident = stage, incident
         stage.edge(incident.from_edge)
         stage.edge(incident.to_edge)
@@ -306,7 +304,7 @@ class _Tractor(_Scene):
 class _Pedestrians(_Scene):
     """Groups that cross."""
 
-    def __init__(self, stage: Stage, incident: incidents.Pedestrians) -> None:
+    def __init__(self, stage: IncidentStage, incident: incidents.Pedestrians) -> None:
         self._stage, self._incident = stage, incident
         try:
             self._walk = stage.sumo.simulation.findIntermodalRoute(incident.from_edge, incident.to_edge)
@@ -342,7 +340,7 @@ class _Pedestrians(_Scene):
 class _EmergencyVehicle(_Scene):
     """An ambulance on the way that the ego has come."""
 
-    def __init__(self, stage: Stage, incident: incidents.EmergencyVehicle) -> None:
+    def __init__(self, stage: IncidentStage, incident: incidents.EmergencyVehicle) -> None:
         self._stage, self._incident = stage, incident
         self._sent = False
 
@@ -369,7 +367,7 @@ class _EmergencyVehicle(_Scene):
 class _BrakingLeader(_Scene):
     """The vehicle ahead brakes."""
 
-    def __init__(self, stage: Stage, incident: incidents.BrakingLeader) -> None:
+    def __init__(self, stage: IncidentStage, incident: incidents.BrakingLeader) -> None:
         self._stage, self._incident = stage, incident
         self._has_called = False
         self._braking = ""
@@ -421,7 +419,7 @@ class _BrakingLeader(_Scene):
         self._braking, self._left_s = "", -1.0
 
 
-SCENES: Mapping[type[incidents.Incident], Callable[[Stage, Any], Scene]] = {
+SCENES: Mapping[type[incidents.Incident], Callable[[IncidentStage, Any], Scene]] = {
     incidents.Breakdown: _Breakdown,
     incidents.Roadworks: _Roadworks,
     incidents.Jam: _Jam,
@@ -436,7 +434,7 @@ SCENES: Mapping[type[incidents.Incident], Callable[[Stage, Any], Scene]] = {
 """Who stages which incident."""
 
 
-def scene_of(stage: Stage, incident: incidents.Incident) -> Scene:
+def scene_of(stage: IncidentStage, incident: incidents.Incident) -> Scene:
     """How an incident is staged.
 
     Raises:

@@ -11,10 +11,10 @@ from collections.abc import Sequence
 
 from automotive_cosim.contracts import KMH_PER_MPS, Answer, DrivingState, RoadNetwork, RoadRequest, RouteOption
 from automotive_cosim.errors import ScenarioError, TrafficError
-from automotive_cosim.traffic.base import Drive, EgoPlan, Until
+from automotive_cosim.traffic.base import Advance, EgoPlan
 from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.ego import Driver
-from automotive_cosim.traffic.kinematics import Car
+from automotive_cosim.traffic.kinematics import ScriptedCar
 from automotive_cosim.traffic.profiles import profile
 from automotive_cosim.traffic.stretches import Layout, Leader, LonLat, Stretch
 
@@ -66,7 +66,9 @@ class Scripted:
             UnknownNameError: no such driver.
         """
         start_mps = 0.0 if plan.parked else self._start_mps
-        car = Car(self._layout, profile(plan.driver), self._step_s, self._start_s, start_mps, parked=plan.parked)
+        car = ScriptedCar(
+            self._layout, profile(plan.driver), self._step_s, self._start_s, start_mps, parked=plan.parked
+        )
         return ScriptedTraffic(EgoDrive(car, Driver(plan, car, self._step_s), car.now), self.network)
 
     def close(self) -> None:
@@ -94,9 +96,9 @@ class ScriptedTraffic:
     def start(self, duration_s: float) -> None:
         """As ``Traffic.start``: nothing to do."""
 
-    def advance(self, duration_s: float, until: Until | None = None) -> Drive:
+    def advance(self, duration_s: float) -> Advance:
         """As ``Traffic.advance``."""
-        return self._open().advance(duration_s, until)
+        return self._open().advance(duration_s)
 
     def request(self, request: RoadRequest) -> Answer:
         """As ``Traffic.request``."""

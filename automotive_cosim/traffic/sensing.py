@@ -4,19 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
-from automotive_cosim.contracts import RoadIncident
+from automotive_cosim.contracts import STANDING_BELOW_MPS, RoadIncident
 from automotive_cosim.traffic.congestion import Congestion, Route
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.instant import Lane, Light, Other, Seen
 from automotive_cosim.traffic.network import Edge, Network
-
-if TYPE_CHECKING:
-    from automotive_cosim.traffic.sumo import Sumo
-
-STANDING_BELOW_MPS = 0.1
-"""Slower than this is standing, as SUMO counts halted vehicles."""
+from automotive_cosim.traffic.sumo import LibSumo
 
 LEADER_RANGE_M = 200.0
 SIGHT_M = 300.0
@@ -37,7 +31,7 @@ class Sensor:
 
     def __init__(
         self,
-        sumo: Sumo,
+        sumo: LibSumo,
         ego_id: str,
         network: Network,
         congestion: Congestion,
@@ -232,7 +226,7 @@ class Sensor:
         return nearest[1], gap_m, other_mps, other_mps - speed_mps
 
 
-def _converter(sumo: Sumo, network: Network) -> Callable[[float, float], tuple[float | None, float | None]]:
+def _converter(sumo: LibSumo, network: Network) -> Callable[[float, float], tuple[float | None, float | None]]:
     """From metres to longitude and latitude: SUMO's own unless the network was moved."""
     if network.map.projection is None:
         return lambda x_m, y_m: (None, None)

@@ -5,20 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 from datetime import datetime
-from typing import TYPE_CHECKING
 
 from automotive_cosim.contracts import LimitSource
 from automotive_cosim.traffic.network import DERESTRICTED_MPS, Edge, Network
 from automotive_cosim.traffic.posted import TimedLimit, in_force
-
-if TYPE_CHECKING:
-    from automotive_cosim.traffic.sumo import Sumo
+from automotive_cosim.traffic.sumo import LibSumo
 
 
 class Signs:
     """Puts limits up and takes them down. Where incidents do so the lowest of theirs holds, else the network's."""
 
-    def __init__(self, sumo: Sumo, network: Network) -> None:
+    def __init__(self, sumo: LibSumo, network: Network) -> None:
         self._sumo = sumo
         self._edges = network.edges
         self._as_built: dict[str, tuple[Edge, tuple[float, ...]]] = {}

@@ -16,7 +16,7 @@ from automotive_cosim.scenarios.incidents import EgoIncident, Incident
 from automotive_cosim.traffic.base import EgoPlan, Event
 from automotive_cosim.traffic.scenes import Scene, scene_of
 from automotive_cosim.traffic.sensing import Sensor
-from automotive_cosim.traffic.stage import Stage
+from automotive_cosim.traffic.stage import IncidentStage
 
 
 @dataclass(slots=True)
@@ -30,7 +30,7 @@ class _Entry:
 class Situations:
     """The incidents of one simulation."""
 
-    def __init__(self, stage: Stage, scenario: Scenario) -> None:
+    def __init__(self, stage: IncidentStage, scenario: Scenario) -> None:
         """Reads what the scenario declares.
 
         Raises:

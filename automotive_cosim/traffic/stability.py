@@ -58,10 +58,10 @@ PROC = Path("/proc")
 WINDOW_S = 60.0
 """The halted share is averaged over this, about one cycle of the signals."""
 
-Progress = Callable[[float], None]
+StabilityProgress = Callable[[float], None]
 """Told the share of the simulation that is done, 0 to 1."""
 
-Step = dict[str, float]
+StepFigures = dict[str, float]
 """One ``step`` of SUMO's summary output."""
 
 
@@ -118,7 +118,7 @@ def measure(
     seed: int = 0,
     step_length_s: float = 1.0,
     give_up_at: float = 1.0,
-    on_progress: Progress | None = None,
+    on_progress: StabilityProgress | None = None,
 ) -> Stability:
     """Runs the scenario's traffic, without the ego, through its warm-up and ``observe_s`` more.
 
@@ -173,7 +173,7 @@ def _options(setup: Setup, end_s: float, scratch: Path) -> list[str]:
 _ATTRIBUTE = re.compile(r'(\w+)="(-?[\d.]+)"')
 
 
-def summary(config: str, options: Sequence[str], scratch: Path) -> Generator[Step, None, None]:
+def summary(config: str, options: Sequence[str], scratch: Path) -> Generator[StepFigures, None, None]:
     """Runs SUMO and yields its summary as it comes. Closing the iterator ends SUMO.
 
     Args:
@@ -284,9 +284,9 @@ class _Tally:
 
     warm_s: float
     """Simulation time at which the warm-up ends."""
-    before: Step = field(default_factory=dict)
+    before: StepFigures = field(default_factory=dict)
     """The last step of the warm-up: SUMO's counts run from the start."""
-    last: Step = field(default_factory=dict)
+    last: StepFigures = field(default_factory=dict)
     minute_start_s: float = 0.0
     running: list[float] = field(default_factory=list)
     """Vehicle-steps of each minute, the last one unfinished; likewise ``halting``."""
@@ -296,7 +296,7 @@ class _Tally:
     steps: int = 0
     vehicles_max: int = 0
 
-    def add(self, step: Step) -> bool:
+    def add(self, step: StepFigures) -> bool:
         """Takes one step in; true at the end of every minute, of the warm-up too."""
         minute_is_over = step["time"] - self.minute_start_s >= WINDOW_S
         if minute_is_over:

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.traffic.network import Edge, Network
+from automotive_cosim.traffic.road_weather import Surface
+from automotive_cosim.traffic.sensing import Sensor
 from automotive_cosim.traffic.signs import Signs
-
-if TYPE_CHECKING:
-    from automotive_cosim.traffic.road_weather import Surface
-    from automotive_cosim.traffic.sensing import Sensor
-    from automotive_cosim.traffic.sumo import Sumo
+from automotive_cosim.traffic.sumo import LibSumo
 
 TEMPLATE_TYPE = "automotive_cosim.template"
 """A passenger car as SUMO has it, whatever the weather makes of the others' types."""
@@ -21,10 +18,10 @@ CAR_TYPE = "automotive_cosim.car"
 """The same, as the weather makes it."""
 
 
-class Stage:
+class IncidentStage:
     """What scenes work with."""
 
-    def __init__(self, sumo: Sumo, network: Network, surface: Surface, ego_id: str) -> None:
+    def __init__(self, sumo: LibSumo, network: Network, surface: Surface, ego_id: str) -> None:
         self.sumo = sumo
         self.network = network
         self._surface = surface

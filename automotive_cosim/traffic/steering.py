@@ -4,21 +4,15 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 from automotive_cosim.contracts import DrivingState, Reroute, RouteOption
 from automotive_cosim.traffic.ego import RefusedError
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.network import Network
 from automotive_cosim.traffic.road_weather import G_MPS2
-
-if TYPE_CHECKING:
-    from automotive_cosim.traffic.router import Router
-    from automotive_cosim.traffic.sensing import Sensor
-    from automotive_cosim.traffic.sumo import Sumo
-
-HAZARD_SIGNAL = 4
-"""SUMO's bit for the hazard lights (VEH_SIGNAL_BLINKER_EMERGENCY)."""
+from automotive_cosim.traffic.router import Router
+from automotive_cosim.traffic.sensing import Sensor
+from automotive_cosim.traffic.sumo import HAZARD_SIGNAL, LibSumo
 
 PARKING = 1
 """SUMO's stop flag: off the lane, so that the others can pass."""
@@ -51,7 +45,7 @@ WALK_M = 400.0
 class SumoPedals:
     """Implements ``ego.Pedals``."""
 
-    def __init__(self, sumo: Sumo, ego_id: str, network: Network, sensor: Sensor, router: Router) -> None:
+    def __init__(self, sumo: LibSumo, ego_id: str, network: Network, sensor: Sensor, router: Router) -> None:
         self._sumo = sumo
         self._ego = ego_id
         self._network = network

@@ -1,7 +1,7 @@
 """The boundary to SUMO: the only module that imports libsumo.
 
-``Sumo`` is libsumo with types: each attribute is the library's own function, so a call costs nothing extra. libsumo
-holds one simulation per process; ``InProcess`` is that one, ``fork.Forked`` keeps each in a process of its own.
+``LibSumo`` is libsumo with types: each attribute is the library's own function, so a call costs nothing extra.
+libsumo holds one simulation per process.
 """
 
 from __future__ import annotations
@@ -12,18 +12,9 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any
 
-from automotive_cosim.errors import ScenarioError, SetupError, TrafficError
-from automotive_cosim.scenarios import Scenario
-from automotive_cosim.traffic.base import EgoPlan, Progress
-from automotive_cosim.traffic.options import Setup
-
-if TYPE_CHECKING:
-    from automotive_cosim.contracts import Answer, DrivingState, RoadNetwork, RoadRequest, RouteOption
-    from automotive_cosim.traffic.base import Drive, Traffic, Until
-    from automotive_cosim.traffic.drive import Call, EgoDrive
-    from automotive_cosim.traffic.world import World
+from automotive_cosim.errors import ScenarioError, SetupError
 
 VERSION = "1.28"
 """SUMO's version that networks, scenarios and results belong to."""
@@ -37,43 +28,47 @@ SUMO_VARIABLES = ("SUMO_HOME", "PROJ_DATA", "PROJ_LIB")
 EGO = "ego"
 EGO_TYPE = "automotive_cosim.ego"
 
+HAZARD_SIGNAL = 4
+"""SUMO's bit for the hazard lights (VEH_SIGNAL_BLINKER_EMERGENCY)."""
 
-class Sumo:
+
+class LibSumo:
     """libsumo's functions that are used here, typed. Lengths in m, speeds in m/s, times in s."""
 
     def __init__(self, library: Any) -> None:
         vehicle, lane, edge, simulation = library.vehicle, library.lane, library.edge, library.simulation
+        compiled = _compiled(library)
         self.refusals: tuple[type[Exception], ...] = (library.TraCIException, library.FatalTraCIError)
         self.start: Callable[[list[str]], tuple[int, str]] = library.start
         self.close: Callable[[], None] = library.close
-        # the same without the library's list of listeners, which nobody uses here
-        self.step: Callable[[], object] = getattr(library, "_libsumo_step", library.simulationStep)
-        self.time: Callable[[], float] = _direct(simulation.getTime)
-        self.arrived: Callable[[], Sequence[str]] = _direct(simulation.getArrivedIDList)
-        self.arrived_count: Callable[[], int] = _direct(simulation.getArrivedNumber)
-        self.departed: Callable[[], Sequence[str]] = _direct(simulation.getDepartedIDList)
-        self.departed_count: Callable[[], int] = _direct(simulation.getDepartedNumber)
-        self.teleporting: Callable[[], Sequence[str]] = _direct(simulation.getStartingTeleportIDList)
-        self.teleporting_count: Callable[[], int] = _direct(simulation.getStartingTeleportNumber)
-        self.colliding_count: Callable[[], int] = _direct(simulation.getCollidingVehiclesNumber)
-        self.collisions: Callable[[], Sequence[Any]] = _direct(simulation.getCollisions)
-        self.to_lon_lat: Callable[[float, float], tuple[float, float]] = _direct(simulation.convertGeo)
+        # without the library's list of listeners, which nobody uses here
+        self.step: Callable[[], object] = compiled("simulation_step")
+        self.time: Callable[[], float] = compiled("simulation_getTime")
+        self.arrived: Callable[[], Sequence[str]] = compiled("simulation_getArrivedIDList")
+        self.arrived_count: Callable[[], int] = compiled("simulation_getArrivedNumber")
+        self.departed: Callable[[], Sequence[str]] = compiled("simulation_getDepartedIDList")
+        self.departed_count: Callable[[], int] = compiled("simulation_getDepartedNumber")
+        self.teleporting: Callable[[], Sequence[str]] = compiled("simulation_getStartingTeleportIDList")
+        self.teleporting_count: Callable[[], int] = compiled("simulation_getStartingTeleportNumber")
+        self.colliding_count: Callable[[], int] = compiled("simulation_getCollidingVehiclesNumber")
+        self.collisions: Callable[[], Sequence[Any]] = compiled("simulation_getCollisions")
+        self.to_lon_lat: Callable[[float, float], tuple[float, float]] = compiled("simulation_convertGeo")
         self.find_road: Callable[[float, float, bool, str], tuple[str, float, int]] = simulation.convertRoad
         self.find_route: Callable[..., Any] = simulation.findRoute
-        self.position: Callable[[str], tuple[float, float]] = _direct(vehicle.getPosition)
-        self.angle: Callable[[str], float] = _direct(vehicle.getAngle)
-        self.speed: Callable[[str], float] = _direct(vehicle.getSpeed)
-        self.acceleration: Callable[[str], float] = _direct(vehicle.getAcceleration)
-        self.edge_of: Callable[[str], str] = _direct(vehicle.getRoadID)
-        self.lane_of: Callable[[str], str] = _direct(vehicle.getLaneID)
-        self.lane_index: Callable[[str], int] = _direct(vehicle.getLaneIndex)
-        self.lane_position: Callable[[str], float] = _direct(vehicle.getLanePosition)
-        self.driven: Callable[[str], float] = _direct(vehicle.getDistance)
+        self.position: Callable[[str], tuple[float, float]] = compiled("vehicle_getPosition")
+        self.angle: Callable[[str], float] = compiled("vehicle_getAngle")
+        self.speed: Callable[[str], float] = compiled("vehicle_getSpeed")
+        self.acceleration: Callable[[str], float] = compiled("vehicle_getAcceleration")
+        self.edge_of: Callable[[str], str] = compiled("vehicle_getRoadID")
+        self.lane_of: Callable[[str], str] = compiled("vehicle_getLaneID")
+        self.lane_index: Callable[[str], int] = compiled("vehicle_getLaneIndex")
+        self.lane_position: Callable[[str], float] = compiled("vehicle_getLanePosition")
+        self.driven: Callable[[str], float] = compiled("vehicle_getDistance")
         self.route: Callable[[str], Sequence[str]] = vehicle.getRoute
-        self.route_index: Callable[[str], int] = _direct(vehicle.getRouteIndex)
+        self.route_index: Callable[[str], int] = compiled("vehicle_getRouteIndex")
         self.next_lights: Callable[[str], Sequence[tuple[str, int, float, str]]] = vehicle.getNextTLS
         self.leader: Callable[[str, float], tuple[str, float] | None] = vehicle.getLeader
-        self.follower: Callable[[str, float], tuple[str, float]] = _direct(vehicle.getFollower)
+        self.follower: Callable[[str, float], tuple[str, float]] = compiled("vehicle_getFollower")
         self.min_gap: Callable[[str], float] = vehicle.getMinGap
         self.length: Callable[[str], float] = vehicle.getLength
         self.vehicle_class: Callable[[str], str] = vehicle.getVehicleClass
@@ -94,7 +89,7 @@ class Sumo:
         self.lane: Any = lane
         self.person: Any = library.person
         self.simulation: Any = simulation
-        self.light_state: Callable[[str], str] = _direct(library.trafficlight.getRedYellowGreenState)
+        self.light_state: Callable[[str], str] = compiled("trafficlight_getRedYellowGreenState")
         self.friction: Callable[[str], float] = lane.getFriction
         self.lane_speed: Callable[[str], float] = lane.getMaxSpeed
         self.adapt_travel_time: Callable[[str, float, float, float], None] = edge.adaptTraveltime
@@ -110,23 +105,28 @@ class Sumo:
                 yield lane.rpartition("_")[0], speed(vehicle)
 
 
-Function = TypeVar("Function", bound=Callable[..., Any])
+def _compiled(library: Any) -> Callable[[str], Any]:
+    """Finds the library's C functions by name. Its Python functions only hand their arguments on to them, which
+    costs a second call each time."""
+    functions = getattr(library, "_libsumo", None)
+
+    def find(name: str) -> Any:
+        function = getattr(functions, name, None)
+        if function is None:
+            raise SetupError(
+                f"libsumo {library.__version__} has no function _libsumo.{name}; reinstall it: "
+                f"pip install --force-reinstall 'libsumo=={VERSION}.0'"
+            )
+        return function
+
+    return find
 
 
-def _direct(function: Function) -> Function:
-    """The C function behind a Python function of the library that does nothing but call it: that saves a call."""
-    names = function.__code__.co_names
-    if len(names) == 2 and names[0] == "_libsumo":
-        direct: Function = getattr(function.__globals__["_libsumo"], names[1])
-        return direct
-    return function
-
-
-def load_library() -> Sumo:
+def load_library() -> LibSumo:
     """Imports libsumo with its own data, whatever the environment says, and leaves the environment as it was.
 
     Raises:
-        SetupError: it is not installed, lacks a system library, or has another version.
+        SetupError: it is not installed, lacks a system library or a function, or has another version.
     """
     kept = {name: os.environ.pop(name, None) for name in SUMO_VARIABLES}
     try:
@@ -142,14 +142,14 @@ def load_library() -> Sumo:
         raise SetupError(
             f"libsumo {libsumo.__version__} is installed, {VERSION}.x is needed: pip install 'libsumo=={VERSION}.0'"
         )
-    return Sumo(libsumo)
+    return LibSumo(libsumo)
 
 
 _OWN_DATA: dict[str, str] = {}
 """Where libsumo found its data when it was first imported."""
 
 
-def start(sumo: Sumo, command: list[str]) -> None:
+def start(sumo: LibSumo, command: list[str]) -> None:
     """Starts a simulation; what SUMO prints meanwhile goes into the error.
 
     Raises:
@@ -204,137 +204,3 @@ def _cause(text: str, printed: Sequence[str]) -> str:
         if errors:
             text = " ".join(printed[errors[0] : errors[0] + 3])
     return re.sub(r"\s+", " ", text).strip().removeprefix("Error: ")
-
-
-class InProcess:
-    """A simulation in this process: nothing to send, but no second one beside it.
-
-    A second ``depart`` loads and warms up again; ``branch`` replays the drive in a process of its own.
-    """
-
-    _current: InProcess | None = None
-
-    def __init__(
-        self,
-        scenario: Scenario,
-        seed: int = 0,
-        progress: Progress | None = None,
-        *,
-        allow_unprojected: bool = False,
-    ) -> None:
-        """Loads the scenario and warms its traffic up.
-
-        Args:
-            scenario: what to run.
-            seed: of SUMO's random numbers.
-            progress: told how far the warm-up is.
-            allow_unprojected: take a network without projection, with lon and lat None.
-
-        Raises:
-            ScenarioError: the scenario cannot be loaded.
-            SetupError: libsumo is missing or unfit.
-            TrafficError: this process holds another simulation.
-        """
-        if InProcess._current is not None:
-            raise TrafficError("this process already holds a simulation; close it first, or use fork.Forked")
-        self.setup = Setup(scenario, seed, allow_unprojected)
-        self.world: World | None = None
-        self._progress = progress
-        InProcess._current = self
-        try:
-            self.world = self._warm()
-        except BaseException:
-            self.close()
-            raise
-        self._fresh = True
-
-    def depart(self, plan: EgoPlan) -> InProcessTraffic:
-        """Puts the ego on its way; ends the drive before it.
-
-        Raises:
-            ScenarioError: its trip has no route, or its edges are not in the network.
-            TrafficError: it could not be inserted, or the simulation is closed.
-        """
-        if self.world is None:
-            raise TrafficError("the simulation is closed")
-        if not self._fresh:
-            self.world.close()
-            self.world = self._warm()
-        self._fresh = False
-        return InProcessTraffic(self, self.world, self.world.depart(plan), plan)
-
-    def close(self) -> None:
-        """Ends the simulation; harmless when called again."""
-        if self.world is not None:
-            self.world.close()
-            self.world = None
-        if InProcess._current is self:
-            InProcess._current = None
-
-    def _warm(self) -> World:
-        from automotive_cosim.traffic.world import World
-
-        world = World(self.setup)
-        world.warm_up(self._progress)
-        return world
-
-
-class InProcessTraffic:
-    """One drive in this process's simulation, until the next one departs."""
-
-    def __init__(self, owner: InProcess, world: World, drive: EgoDrive, plan: EgoPlan) -> None:
-        self._owner: InProcess | None = owner
-        self._world = world
-        self._drive = drive
-        self._plan = plan
-        self._log: list[Call] = []
-
-    @property
-    def network(self) -> RoadNetwork:
-        """The roads, as a map draws them."""
-        return self._world.network.map
-
-    @property
-    def state(self) -> DrivingState:
-        """The newest state."""
-        return self._drive.state
-
-    def start(self, duration_s: float) -> None:
-        """As ``Traffic.start``: nothing to do."""
-
-    def advance(self, duration_s: float, until: Until | None = None) -> Drive:
-        """As ``Traffic.advance``."""
-        self._check()
-        drive = self._drive.advance(duration_s, until)
-        self._log.append(len(drive.states))
-        return drive
-
-    def bare_step(self) -> None:
-        """One step of SUMO that nobody looks at, for benchmarks; a branch or replay does not know of it."""
-        self._world.bare_step()
-
-    def request(self, request: RoadRequest) -> Answer:
-        """As ``Traffic.request``."""
-        self._check()
-        self._log.append(request)
-        return self._drive.request(request)
-
-    def alternatives(self, age_s: float = 0.0) -> tuple[RouteOption, ...]:
-        """As ``Traffic.alternatives``."""
-        self._check()
-        return self._drive.alternatives(age_s)
-
-    def branch(self) -> Traffic:
-        """A copy in a process of its own, which replays the drive so far."""
-        from automotive_cosim.traffic.fork import replayed
-
-        return replayed(self._check().setup, self._plan, self._log)
-
-    def close(self) -> None:
-        """As ``Traffic.close``."""
-        self._owner = None
-
-    def _check(self) -> InProcess:
-        if self._owner is None or self._owner.world is not self._world:
-            raise TrafficError("this drive is over: it was closed, or another one departed in its process")
-        return self._owner

@@ -1,4 +1,4 @@
-"""A drive as plain tuples: pickling dataclasses costs ten times as much, more than a step of a small network."""
+"""States as plain tuples: pickling dataclasses costs ten times as much, more than a step of a small network."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from operator import attrgetter
 from typing import Any, TypeAlias
 
 from automotive_cosim.contracts import Around, DrivingState, OtherVehicle, RoadAhead, RoadHere, TrafficLight
-from automotive_cosim.traffic.base import Drive, Event
+from automotive_cosim.traffic.base import Advance, Event
 from automotive_cosim.traffic.records import (
     make_ahead,
     make_around,
@@ -57,13 +57,12 @@ def unpack_state(packed: Packed) -> DrivingState:
     return make_state(*row)
 
 
-def pack_drive(drive: Drive) -> Packed:
-    """A drive as nested tuples."""
-    states = tuple(pack_state(state) for state in drive.states)
-    return states, tuple(_EVENT(event) for event in drive.events), drive.until_held
+def pack_advance(advance: Advance) -> Packed:
+    """What an advance saw, as nested tuples."""
+    return tuple(map(pack_state, advance.states)), tuple(map(_EVENT, advance.events))
 
 
-def unpack_drive(packed: Packed) -> Drive:
-    """The drive that was packed."""
-    states, events, until_held = packed
-    return Drive(tuple(map(unpack_state, states)), tuple(Event(*event) for event in events), until_held)
+def unpack_advance(packed: Packed) -> Advance:
+    """The advance that was packed."""
+    states, events = packed
+    return Advance(tuple(map(unpack_state, states)), tuple(Event(*event) for event in events))

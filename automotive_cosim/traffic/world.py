@@ -10,24 +10,24 @@ from itertools import pairwise
 from pathlib import Path
 
 from automotive_cosim.contracts import EgoEnd, RoadIncident, RouteOption
-from automotive_cosim.errors import ScenarioError, TrafficError
+from automotive_cosim.errors import NoRoomError, ScenarioError, TrafficError
 from automotive_cosim.scenarios import Trip
-from automotive_cosim.traffic.base import EgoPlan, Event, Progress
+from automotive_cosim.traffic.base import EgoPlan, Event, WarmUpProgress
 from automotive_cosim.traffic.conflicts import LOOK_S, Conflicts
 from automotive_cosim.traffic.congestion import MEMORY_S, SAMPLE_PERIOD_S, WINDOW_S, Congestion
 from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.ego import FOR_GOOD_S, Driver
-from automotive_cosim.traffic.instant import Instant, Known
+from automotive_cosim.traffic.instant import Instant, KnownInstant
 from automotive_cosim.traffic.network import read_network
 from automotive_cosim.traffic.options import Setup, command_line, read_configuration
-from automotive_cosim.traffic.profiles import Profile, profile
+from automotive_cosim.traffic.profiles import DriverProfile, profile
 from automotive_cosim.traffic.road_weather import G_MPS2, Forecast, Surface
 from automotive_cosim.traffic.router import Router
 from automotive_cosim.traffic.sensing import Sensor
 from automotive_cosim.traffic.situations import Situations
-from automotive_cosim.traffic.stage import TEMPLATE_TYPE, Stage
+from automotive_cosim.traffic.stage import TEMPLATE_TYPE, IncidentStage
 from automotive_cosim.traffic.steering import PARKING, SumoPedals
-from automotive_cosim.traffic.sumo import EGO, EGO_TYPE, Sumo, load_library, start
+from automotive_cosim.traffic.sumo import EGO, EGO_TYPE, LibSumo, load_library, start
 
 INSERTION_LIMIT_S = 300.0
 """Simulated time the ego may wait for a gap to enter the traffic."""
@@ -72,7 +72,7 @@ class World:
         self._forecast = Forecast(scenario.weather[:1], scenario.sumo.warm_up_s)
         self.congestion = Congestion(self.network, self._sumo.on_edges)
         self._router = Router(self._sumo, self.network, self.congestion, EGO_TYPE)
-        self._situations = Situations(Stage(self._sumo, self.network, self._surface, EGO), scenario)
+        self._situations = Situations(IncidentStage(self._sumo, self.network, self._surface, EGO), scenario)
         self._has_incidents = self._situations.are_left
         self._second_steps = max(1, round(1.0 / self.step_s))
         self.happened: tuple[Event, ...] = ()
@@ -81,7 +81,7 @@ class World:
         """Vehicles that left in the last step."""
         self._sample_steps = max(1, round(SAMPLE_PERIOD_S / self.step_s))
 
-    def warm_up(self, progress: Progress | None) -> None:
+    def warm_up(self, progress: WarmUpProgress | None) -> None:
         """Lets the traffic run before the ego departs.
 
         Raises:
@@ -105,7 +105,8 @@ class World:
 
         Raises:
             ScenarioError: its trip has no route, or its edges are not in the network.
-            TrafficError: no gap opened for it, or SUMO failed.
+            NoRoomError: no gap opened for it.
+            TrafficError: SUMO failed.
         """
         driver_profile = profile(plan.driver)
         plan = replace(plan, weather=plan.weather or self._scenario.weather)
@@ -121,7 +122,7 @@ class World:
             if EGO in self._sumo.departed():
                 break
         else:
-            raise TrafficError(
+            raise NoRoomError(
                 f"the ego found no gap on {plan.trip.from_edge!r} in {INSERTION_LIMIT_S:.0f} s of simulated time"
             )
         self._forecast = Forecast(plan.weather, self._sumo.time())
@@ -187,7 +188,7 @@ class World:
         self.happened = ()
         return is_due or has_changed
 
-    def _add_ego(self, edges: tuple[str, ...], driver: Profile, *, parked: bool) -> None:
+    def _add_ego(self, edges: tuple[str, ...], driver: DriverProfile, *, parked: bool) -> None:
         sumo = self._sumo
         sumo.copy_type(TEMPLATE_TYPE, EGO_TYPE)
         kind = sumo.type
@@ -236,7 +237,7 @@ class World:
 class EgoRoad:
     """The road under the ego: steps the world and tells how the ego fares."""
 
-    def __init__(self, world: World, sumo: Sumo, sensor: Sensor, pedals: SumoPedals) -> None:
+    def __init__(self, world: World, sumo: LibSumo, sensor: Sensor, pedals: SumoPedals) -> None:
         """Takes over at the instant the ego is on the road."""
         self._world = world
         self._sumo = sumo
@@ -246,7 +247,7 @@ class EgoRoad:
         self._conflicts = Conflicts(sumo, EGO)
         self._look_steps = max(1, round(LOOK_S / self.step_s))
         self._steps = 0
-        self.now: Instant = Known(sensor.read(hazard_lights=False, vehicle_count=world.vehicle_count).state)
+        self.now: Instant = KnownInstant(sensor.read(hazard_lights=False, vehicle_count=world.vehicle_count).state)
         """The newest instant."""
 
     def step(self, *, hazard_lights: bool) -> tuple[Instant, tuple[Event, ...]]:
@@ -266,7 +267,7 @@ class EgoRoad:
             else:
                 self.now = now
                 return now, events + self._conflicts.look(now) if self._steps % self._look_steps == 0 else events
-        self.now = Known(replace(self.now.state, time_s=self._sumo.time(), end=end))
+        self.now = KnownInstant(replace(self.now.state, time_s=self._sumo.time(), end=end))
         return self.now, events
 
     def alternatives(self, age_s: float) -> tuple[RouteOption, ...]:

@@ -6,13 +6,13 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
-from automotive_cosim.agents import PROFILES, AgentSettings, ModelAgent, Part, StageName, make_agent
+from automotive_cosim.agents import PROFILES, AgentPart, AgentSettings, ModelAgent, StageName, make_agent
 from automotive_cosim.agents.memory import Memory
 from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCode, GoalStatus, Observation
 from automotive_cosim.errors import ActionError, OutOfBudgetError, UnknownNameError
 from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.interface.observe import Channel
-from automotive_cosim.models import Message, Reply
+from automotive_cosim.models import ChatMessage, ModelReply
 
 COUNTRY = "Place: Beauce, France\nSpeed limit here: 80 km/h (posted on D 24)"
 TAP = 'Situation: speeding\nPlan: then warn\nAction: {"action_type": "click", "index": 0}'
@@ -27,13 +27,13 @@ class Scripted:
     sees_pictures: bool = False
     finish: str = "stop"
     tokens: int = 100
-    asked: list[Message] = field(default_factory=list)
+    asked: list[ChatMessage] = field(default_factory=list)
     name: str = "scripted"
 
-    def chat(self, messages: Sequence[Message]) -> Reply:
+    def chat(self, messages: Sequence[ChatMessage]) -> ModelReply:
         self.asked.append(messages[-1])
         text = self.answers[(len(self.asked) - 1) % len(self.answers)]
-        return Reply(text, self.tokens, 10, 0.01, 2.0, self.finish)
+        return ModelReply(text, self.tokens, 10, 0.01, 2.0, self.finish)
 
 
 @pytest.fixture
@@ -111,7 +111,7 @@ def test_a_new_episode_begins_with_nothing(agent, observation):
 
 
 def test_without_reflection_it_is_asked_once_a_turn(agent, observation):
-    made, model = agent(TAP, without=frozenset({Part.REFLECTION}))
+    made, model = agent(TAP, without=frozenset({AgentPart.REFLECTION}))
     for _ in range(3):
         made.act(observation("x"))
     assert len(model.asked) == 3
@@ -162,7 +162,12 @@ def test_m3a_sends_the_screen_and_the_marked_screen_then_before_and_after(agent,
 
 @pytest.mark.parametrize(
     ("profile", "sees", "without"),
-    [("t3a", True, ()), ("m3a", False, ()), ("m3a", True, (Part.SCREEN,)), ("asurada", True, (Part.SCREEN,))],
+    [
+        ("t3a", True, ()),
+        ("m3a", False, ()),
+        ("m3a", True, (AgentPart.SCREEN,)),
+        ("asurada", True, (AgentPart.SCREEN,)),
+    ],
 )
 def test_no_pictures_where_there_are_none_to_be(agent, seen, profile, sees, without):
     made, model = agent(TAP, profile=profile, sees=sees, without=frozenset(without))
@@ -181,9 +186,9 @@ def test_the_rule_models_m3a_does_what_its_t3a_does(seen):
 @pytest.mark.parametrize(
     ("settings", "lost"),
     [
-        ({"without": frozenset({Part.GPS})}, {Channel.GPS}),
-        ({"without": frozenset({Part.CONTEXT})}, {Channel.CONTEXT}),
-        ({"without": frozenset({Part.SCREEN})}, {Channel.SCREENSHOT}),
+        ({"without": frozenset({AgentPart.GPS})}, {Channel.GPS}),
+        ({"without": frozenset({AgentPart.CONTEXT})}, {Channel.CONTEXT}),
+        ({"without": frozenset({AgentPart.SCREEN})}, {Channel.SCREENSHOT}),
         ({"geo": GeoInput.GPS}, {Channel.CONTEXT}),
         ({"geo": GeoInput.CONTEXT}, {Channel.GPS}),
         ({"geo": GeoInput.NONE}, {Channel.GPS, Channel.CONTEXT}),
@@ -202,7 +207,7 @@ def test_memory_is_off_unless_it_is_given_a_file(agent, observation, tmp_path):
     made.act(observation("x"))
     made.learn(True)
     assert "remember" not in [stage.name for stage in made.stages]
-    without, _ = agent(TAP, profile="asurada", memory=tmp_path / "m", without=frozenset({Part.MEMORY}))
+    without, _ = agent(TAP, profile="asurada", memory=tmp_path / "m", without=frozenset({AgentPart.MEMORY}))
     without.act(observation("x"))
     without.learn(True)
     assert not (tmp_path / "m").exists()

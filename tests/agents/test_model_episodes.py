@@ -12,7 +12,7 @@ from automotive_cosim.errors import ModelError
 from automotive_cosim.geo.gps import Gps
 from automotive_cosim.geo.place import METRES_PER_DEGREE
 from automotive_cosim.interface import trace
-from automotive_cosim.models import Reply, make_model
+from automotive_cosim.models import ModelReply, make_model
 from automotive_cosim.run.episode import End, EpisodeSetup, run_episode
 from automotive_cosim.run.estimates import estimates
 from automotive_cosim.run.record import Recorder
@@ -28,10 +28,10 @@ class Says:
     def __init__(self, text: str | Exception) -> None:
         self._text = text
 
-    def chat(self, messages) -> Reply:
+    def chat(self, messages) -> ModelReply:
         if isinstance(self._text, Exception):
             raise self._text
-        return Reply(self._text, 1000, 10, 0.5, 1.5)
+        return ModelReply(self._text, 1000, 10, 0.5, 1.5)
 
 
 def _run(simulations, agent, folder=None):

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from automotive_cosim.agents import PROFILES, AgentSettings, Part
+from automotive_cosim.agents import PROFILES, AgentPart, AgentSettings
 from automotive_cosim.agents.prompt import action_words, look_back, summary, turn
 from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCode, GpsFix
@@ -77,9 +77,9 @@ def test_what_an_agent_is_not_given_does_not_occur(agent, absent, observation):
 @pytest.mark.parametrize(
     ("settings", "gone"),
     [
-        (AgentSettings(without=frozenset({Part.GPS})), {"48.87", "estimate_position"}),
-        (AgentSettings(without=frozenset({Part.CONTEXT})), {"Avenue Foch", '"query"'}),
-        (AgentSettings(without=frozenset({Part.QUERIES})), {'"query"'}),
+        (AgentSettings(without=frozenset({AgentPart.GPS})), {"48.87", "estimate_position"}),
+        (AgentSettings(without=frozenset({AgentPart.CONTEXT})), {"Avenue Foch", '"query"'}),
+        (AgentSettings(without=frozenset({AgentPart.QUERIES})), {'"query"'}),
         (AgentSettings(geo=GeoInput.NONE), {"48.87", "Avenue Foch", '"query"', "estimate_position"}),
         (AgentSettings(geo=GeoInput.GPS), {"Avenue Foch", '"query"'}),
         (AgentSettings(geo=GeoInput.CONTEXT), {"48.87", "estimate_position"}),

@@ -1,7 +1,8 @@
 """The command line in this process: what it prints, and the code it ends with."""
 
+import signal
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import pytest
@@ -17,10 +18,13 @@ class Ran:
 
 
 @pytest.fixture
-def cli(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], tmp_path) -> Callable[..., Ran]:
+def cli(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], tmp_path
+) -> Iterator[Callable[..., Ran]]:
     """Runs ``automotive-cosim`` in an empty folder."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("AUTOMOTIVE_COSIM_DEBUG", raising=False)
+    terminated = signal.getsignal(signal.SIGTERM)
 
     def run(*arguments: object) -> Ran:
         monkeypatch.setattr(sys, "argv", ["automotive-cosim", *map(str, arguments)])
@@ -30,4 +34,5 @@ def cli(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], tmp_
         printed = capfd.readouterr()
         return Ran(int(ended.value.code or 0), printed.out, printed.err)
 
-    return run
+    yield run
+    signal.signal(signal.SIGTERM, terminated)

@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
+pytestmark = pytest.mark.sumo
+
 GRID = ("--task", "hvac_fan_max", "--scenario", "grid")
 KEYS = {
     "task", "scenario", "agent", "model", "seed", "success", "reward", "steps", "sim_seconds", "trace_sha256",
@@ -94,30 +96,41 @@ def test_a_terminal_that_knows_ascii_alone_gets_the_whole_record(tmp_path):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for another process")
-def test_ctrl_c_while_the_command_line_loads_ends_it_in_silence(tmp_path):
+def test_ctrl_c_while_the_command_line_loads_ends_it_in_silence(program, tmp_path):
     (tmp_path / "gymnasium.py").write_text(
         "import os, signal\nos.kill(os.getpid(), signal.SIGINT)\nwhile True: pass\n"
     )
-    program = f"import sys; sys.argv[0] = 'automotive-cosim'; {PROGRAM[-1]}"
-    done = subprocess.run([sys.executable, "-c", program], cwd=tmp_path, capture_output=True, timeout=60)
-    assert done.returncode == -signal.SIGINT
-    assert done.stdout + done.stderr == b""
+    code = "from automotive_cosim_main import main; main()"
+    process = program(sys.executable, "-c", code, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    said, _ = process.communicate(timeout=60)
+    assert (process.returncode, said) == (-signal.SIGINT, "")
+
+
+@pytest.mark.parametrize("handler", ["default_int_handler", "SIG_IGN", "SIG_DFL"])
+def test_the_console_script_leaves_ctrl_c_as_it_was(handler):
+    program = f"""
+import signal, sys
+signal.signal(signal.SIGINT, signal.{handler})
+sys.argv = ["automotive-cosim", "--version"]
+from automotive_cosim_main import main
+try: main()
+finally: assert signal.getsignal(signal.SIGINT) is signal.{handler}, signal.getsignal(signal.SIGINT)
+"""
+    subprocess.run([sys.executable, "-c", program], check=True, capture_output=True)
 
 
 @pytest.fixture
-def long_run(tmp_path, until):
+def long_run(program, tmp_path, until):
     """A run of minutes in a session of its own, far enough to have recorded two steps."""
     wait = json.dumps({"action_type": "wait", "seconds": 10})
     (tmp_path / "a.jsonl").write_text("\n".join([wait] * 30), encoding="utf-8")
-    process = subprocess.Popen(
-        [*PROGRAM, "run", *GRID, "--actions", "a.jsonl", "--out", "out"],
-        cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
+    process = program(
+        *PROGRAM, "run", *GRID, "--actions", "a.jsonl", "--out", "out",
+        cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
     )  # fmt: skip
     steps = tmp_path / "out" / "steps.jsonl"
     until(lambda: steps.is_file() and steps.read_text(encoding="utf-8").count("\n") >= 2)
-    yield process
-    process.kill()
-    process.communicate()
+    return process
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for another process")

@@ -77,7 +77,7 @@ def test_there_is_enough_of_everything_and_no_two_are_alike(network: RoadNetwork
     assert len({(station.title, station.by) for station in stations}) == len(stations) >= 40
     assert len({contact.number for contact in people_known.contacts}) == len(people_known.contacts) >= 60
     assert len({place.name for place in atlas.places}) == len({place.edge_id for place in atlas.places}) >= 80
-    assert {place.kind for place in atlas.places} == set(places.Kind)
+    assert {place.kind for place in atlas.places} == set(places.PlaceKind)
 
 
 @pytest.mark.parametrize("count", [0, 1, 3])
@@ -575,7 +575,7 @@ def test_places_on_the_way_come_before_those_far_beside_it(cockpit: Cockpit, aro
     press(cockpit, "map.route")
     press(cockpit, "route.tab.ways")
     shown_first = [detour(shown(cockpit, f"route.way.{at}")) for at in (1, 2, 3)]
-    assert shown_first == sorted(detour(place.name) for place in atlas.of(places.Kind.CHARGING))[:3]
+    assert shown_first == sorted(detour(place.name) for place in atlas.of(places.PlaceKind.CHARGING))[:3]
 
 
 def test_no_music_from_a_phone_that_is_not_linked(cockpit: Cockpit) -> None:

@@ -11,7 +11,7 @@ import pytest
 from automotive_cosim.cockpit import mapdraw
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.map import EGO_DOWN, Camera, RoadMap
-from automotive_cosim.cockpit.mapdraw import Scene
+from automotive_cosim.cockpit.mapdraw import MapScene
 from automotive_cosim.cockpit.theme import DAY, NIGHT, Colour, Palette
 from automotive_cosim.contracts import LimitSource, Road, RoadNetwork
 
@@ -31,7 +31,7 @@ def draw(
     roads: RoadMap, heading: float = 0.0, route: tuple[str, ...] = (), palette: Palette = DAY, scale: float = 1.0
 ) -> npt.NDArray[np.uint8]:
     side = round(SIZE * scale)
-    scene = Scene(Camera(0.0, 0.0, heading, 0.5), (0.0, 0.0, heading), route)
+    scene = MapScene(Camera(0.0, 0.0, heading, 0.5), (0.0, 0.0, heading), route)
     return np.asarray(mapdraw.draw(roads, scene, side, side, scale, palette is NIGHT))
 
 
@@ -114,7 +114,7 @@ def test_traffic_and_other_ways_have_colours_of_their_own() -> None:
     roads = RoadMap(network(road("n", (0, 30), (0, 100)), road("w", (-90, 60), (-30, 60))))
 
     def scene(**shown: object) -> npt.NDArray[np.uint8]:
-        scene = Scene(Camera(0.0, 0.0, 0.0, 0.5), **shown)  # type: ignore[arg-type]
+        scene = MapScene(Camera(0.0, 0.0, 0.0, 0.5), **shown)  # type: ignore[arg-type]
         return np.asarray(mapdraw.draw(roads, scene, SIZE, SIZE, 1.0, False))
 
     north, west = (EGO[0], EGO[1] - 130), (EGO[0] - 120, EGO[1] - 120)
@@ -130,7 +130,7 @@ def test_a_picture_does_not_depend_on_what_was_drawn_before() -> None:
     spots = rng.uniform(-400, 400, (60, 4)).tolist()
     roads = RoadMap(network(*(road(f"r{i}", (a, b), (c, d)) for i, (a, b, c, d) in enumerate(spots))))
     scenes = [
-        Scene(Camera(x, 2.0 * x, 2.0 * turn, 0.9), (x, 2.0 * x, 2.0 * turn))
+        MapScene(Camera(x, 2.0 * x, 2.0 * turn, 0.9), (x, 2.0 * x, 2.0 * turn))
         for x, turn in zip(np.arange(0.0, 60.0, 7.3).tolist(), (0, 0, 0, 1, 1, 90, 90, 0, 0), strict=True)
     ]
     drawn = [mapdraw.draw(roads, scene, SIZE, 300, 1.0, True).tobytes() for scene in scenes]
@@ -140,7 +140,7 @@ def test_a_picture_does_not_depend_on_what_was_drawn_before() -> None:
 
 
 def test_the_car_is_turned_on_a_map_with_north_up() -> None:
-    scene = Scene(Camera(0.0, 0.0, 0.0, 0.5, 0.5), (0.0, 0.0, 90.0))
+    scene = MapScene(Camera(0.0, 0.0, 0.0, 0.5, 0.5), (0.0, 0.0, 90.0))
     picture = np.asarray(mapdraw.draw(RoadMap(network()), scene, SIZE, SIZE, 1.0, False))
     assert is_at(picture, SIZE // 2 + 10, SIZE // 2, DAY.accent)
     assert is_at(picture, SIZE // 2 - 18, SIZE // 2, DAY.land)

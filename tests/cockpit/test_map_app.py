@@ -12,7 +12,7 @@ import numpy as np
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.map import Camera, View
-from automotive_cosim.cockpit.places import Kind
+from automotive_cosim.cockpit.places import PlaceKind
 from automotive_cosim.cockpit.render import render
 from automotive_cosim.cockpit.screens import APPS
 from automotive_cosim.cockpit.signals import LINK
@@ -207,7 +207,7 @@ def test_every_place_is_reached_while_driving_by_a_short_way(cockpit: Cockpit) -
     cockpit.open_app("map")
     look_through("map.place.")
     press(cockpit, "map.list.explore")
-    kinds = [kind for kind in Kind if kind not in (Kind.HOME, Kind.WORK)]
+    kinds = [kind for kind in PlaceKind if kind not in (PlaceKind.HOME, PlaceKind.WORK)]
     for kind in kinds:
         while all(element.resource_id != f"explore.kind.{kind}" for element in cockpit.elements()):
             assert cockpit.scroll("explore.kinds", Direction.DOWN).code is FeedbackCode.OK

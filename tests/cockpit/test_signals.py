@@ -15,7 +15,7 @@ from automotive_cosim.cockpit.signals import (
     CATALOGUE,
     HVAC,
     LIGHTS,
-    Kind,
+    LeafKind,
     Signal,
     Signals,
     difference,
@@ -98,5 +98,5 @@ def test_copies_are_independent() -> None:
 
 
 def test_what_can_be_commanded_are_the_actuators() -> None:
-    assert set(ACTUATORS) == {path for path, signal in CATALOGUE.items() if signal.kind is Kind.ACTUATOR}
+    assert set(ACTUATORS) == {path for path, signal in CATALOGUE.items() if signal.kind is LeafKind.ACTUATOR}
     assert set(Signals().commanded()) == set(ACTUATORS)

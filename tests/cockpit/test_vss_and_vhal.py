@@ -10,7 +10,7 @@ import pytest
 
 from automotive_cosim.cockpit import vss
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.signals import CATALOGUE, HVAC, LIGHTS, MOTION, TYRE, Kind, Signals, difference
+from automotive_cosim.cockpit.signals import CATALOGUE, HVAC, LIGHTS, MOTION, TYRE, LeafKind, Signals, difference
 from automotive_cosim.cockpit.vehicle import Vehicle
 from automotive_cosim.cockpit.vhal import PROPERTIES, Seat, Wheel, Window, get_property, resolve
 from automotive_cosim.contracts import FeedbackCode, Hazards, Surroundings
@@ -67,7 +67,7 @@ def test_what_is_read_can_be_written_back(name: str) -> None:
     for area, signal in PROPERTIES[name].areas.items():
         signals = Signals()
         value = get_property(signals, name, area)
-        if not PROPERTIES[name].writable or signal.kind is not Kind.ACTUATOR:
+        if not PROPERTIES[name].writable or signal.kind is not LeafKind.ACTUATOR:
             with pytest.raises(SignalError, match="only be read"):
                 resolve(name, value, area)
             continue

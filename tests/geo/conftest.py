@@ -17,7 +17,8 @@ from automotive_cosim.contracts import (
     RoadHere,
     Weather,
 )
-from automotive_cosim.geo.context import Geo, GeoContext
+from automotive_cosim.geo.context import GeoContext
+from automotive_cosim.geo.locate import Geo
 from automotive_cosim.geo.situation import Situation
 
 ROAD = RoadHere(

@@ -68,14 +68,14 @@ def test_times_are_the_places_own(time: str, local: str) -> None:
     [
         (("91", "0"), "latitude 91 is not on earth"),
         (("0", "-181"), "longitude -181 is not on earth"),
-        (("0", "0", "--time", "yesterday"), "no date and time"),
+        (("0", "0", "--time", "yesterday"), "not a date and time"),
         (("0", "0", "--weather", "4"), "weather code 4 is not one of"),
-        (("0", "0", "--visibility", "40"), "goes with a weather code"),
-        (("48.8", "2.3", "--draw", "1", "--weather", "3"), "leave out --draw"),
-        (("48.8", "2.3", "--draw=-1"), "is no seed"),
+        (("0", "0", "--visibility", "40"), "--visibility requires --weather"),
+        (("48.8", "2.3", "--draw", "1", "--weather", "3"), "omit --draw"),
+        (("48.8", "2.3", "--draw=-1"), "is not a seed"),
         (("40", "-30", "--draw", "1"), "no climate is known"),
         (("0", "0", "--rules", "/no/such/folder"), "is no folder"),
-        (("0", "0", "--rules", str(Path(__file__).parent)), "holds no rule file"),
+        (("0", "0", "--rules", str(Path(__file__).parent)), "has no rule files"),
         (("0", "0", "--road", "spaceway"), "no road class named 'spaceway'"),
     ],
 )
@@ -102,7 +102,7 @@ def test_bad_input_is_one_line(arguments: tuple[str, ...], message: str) -> None
 def test_a_number_that_cannot_be_says_what_can(arguments: tuple[str, ...]) -> None:
     result = CliRunner().invoke(APP, ["48.8", "2.3", *arguments])
     assert result.exit_code == 2
-    assert f"{arguments[-1]!r} is no " in result.stderr
+    assert f"{arguments[-1]!r} is not a " in result.stderr
     assert "number from" in result.stderr
 
 

@@ -286,5 +286,5 @@ def test_a_scenario_may_leave_its_weather_to_the_climate(
     with pytest.raises(ScenarioError, match="projection"):
         drawn_weather(drive(lon_deg=None, lat_deg=None), scenario.start, 1)
     (tmp_path / "scenario.toml").write_text(f'weather = "fine"\n{head}', encoding="utf-8")
-    with pytest.raises(ScenarioError, match=r'write \[\[weather\]\] entries, or weather = "climate"'):
+    with pytest.raises(ScenarioError, match=r"it must be a list of \[\[weather\]\] entries or 'climate'"):
         scenarios.load(tmp_path)

@@ -15,7 +15,8 @@ from typer.testing import CliRunner
 from automotive_cosim.cli import context
 from automotive_cosim.contracts import DrivingState, GpsFix
 from automotive_cosim.errors import GeoDataError
-from automotive_cosim.geo.context import Geo, GeoContext
+from automotive_cosim.geo.context import GeoContext
+from automotive_cosim.geo.locate import Geo
 from automotive_cosim.geo.rules import ANSWERS, TOPICS, UNITS, USERS, Status
 from automotive_cosim.geo.situation import CONDITIONS
 

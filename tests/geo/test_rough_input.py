@@ -17,9 +17,11 @@ from hypothesis import strategies as st
 
 from automotive_cosim.contracts import DrivingState, GpsFix, LimitSource, Weather
 from automotive_cosim.errors import GeoDataError, UserError
-from automotive_cosim.geo.context import Geo, GeoContext
+from automotive_cosim.geo.context import GeoContext
+from automotive_cosim.geo.locate import Geo
 from automotive_cosim.geo.place import Atlas
-from automotive_cosim.geo.rules import TOPICS, read_jurisdiction
+from automotive_cosim.geo.rulefile import read_jurisdiction
+from automotive_cosim.geo.rules import TOPICS
 from automotive_cosim.geo.text import BUDGET_TOKENS
 
 ZONES = ("UTC", "Europe/Paris", "America/St_Johns", "Asia/Kathmandu", "Pacific/Apia", "Antarctica/Troll")
@@ -140,8 +142,7 @@ def test_a_damaged_file_is_refused_with_one_line_or_still_well_formed(tmp_path: 
     try:
         read_jurisdiction(path)
     except GeoDataError as error:
-        assert str(path) in str(error)
-        assert "\n" not in str(error)
+        assert all(line.startswith(str(path)) for line in str(error).splitlines())
 
 
 FIELDS = ("id", "topic", "text", "value", "unit", "when", "law", "as_of", "status", "cases", "binds", "caps")
@@ -180,8 +181,8 @@ def test_any_value_in_any_field_of_a_rule_is_read_or_refused(tmp_path: Path, fie
         assert rule_read.text.isprintable()
         assert rule_read.cases
     except GeoDataError as error:
-        assert re.match(rf"{re.escape(str(path))} line 10 \[\[rules\]\]", str(error))
-        assert "\n" not in str(error)
+        line = rf"{re.escape(str(path))} line \d+ \[\[rules\]\]"
+        assert all(re.match(line, problem) for problem in str(error).splitlines())
 
 
 def _inline(value: object) -> str:

@@ -13,10 +13,12 @@ import pytest
 
 from automotive_cosim.contracts import DrivingState, GpsFix, Weather
 from automotive_cosim.errors import GeoDataError
-from automotive_cosim.geo.context import Geo
+from automotive_cosim.formats.checked import checked
+from automotive_cosim.geo.locate import Geo
 from automotive_cosim.geo.place import Atlas
-from automotive_cosim.geo.rules import TOPICS, read_jurisdiction
-from automotive_cosim.geo.situation import CONDITIONS, Situation, all_hold, parse_when
+from automotive_cosim.geo.rulefile import CaseEntry, read_jurisdiction
+from automotive_cosim.geo.rules import TOPICS
+from automotive_cosim.geo.situation import CONDITIONS, Situation, When, all_hold
 
 SHIPPED = sorted(Path(str(files("automotive_cosim.geo.data"))).glob("*.toml"))
 
@@ -58,6 +60,10 @@ def _write(folder: Path, text: str, name: str = "XX.toml") -> Path:
     return path
 
 
+def _conditions(table: dict[str, object]) -> When:
+    return checked(CaseEntry, {"value": "allowed", "when": table}, lambda steps: ("", str(steps))).when or ()
+
+
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
 def test_a_shipped_file_reads(path: Path) -> None:
     entry = read_jurisdiction(path)
@@ -79,50 +85,86 @@ def test_a_well_formed_file_reads(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("wrong", "right", "reason"),
+    ("wrong", "right", "line", "reason"),
     [
-        ('topic = "limit"', 'topic = "limt"', "did you mean 'limit'"),
-        ('id = "XX.limit"', 'id = "YY.limit"', "does not begin with 'XX.'"),
-        ("value = 30", "value = -30", "too small"),
-        ("value = 30", "value = nan", "no number"),
-        ("value = 30", "value = [30]", "wrong type"),
-        ("value = 30", "cases = []", "cases is a list of tables"),
-        ("value = 30", "cases = [30]", "cases is a list of tables"),
-        ('unit = "mph"', "unit = 3", "unit = 3 has the wrong type"),
-        ('unit = "mph"', 'unit = "mph"\nwhen = 3', "when = 3 is no table"),
-        ('unit = "mph"', 'unit = "mph"\nwhen = { visibility_below_m = inf }', "visibility_below_m takes metres"),
-        ('unit = "mph"', 'unit = "mph"\nwhen = { inside = [[0, 0], [1, 1], [200, 0]] }', "inside takes"),
-        ('unit = "mph"', 'unit = "mph"\ncaps = "no"', "caps = 'no'"),
-        ('unit = "mph"', 'unit = "mph"\nbinds = "everyone"', "no road user named 'everyone'"),
-        ('text = "everywhere"', 'text = ""', "no line of text"),
-        ('text = "everywhere"', 'text = "a\\nb"', "no line of text"),
-        ("as_of = 2026-01-01", "as_of = 2026-01-01T10:00:00", "write the date alone"),
-        ("value = 30", 'value = "fast"', "a limit is a number or 'none'"),
-        ('unit = "mph"', 'unit = "mp/h"', "did you mean 'mph'"),
-        ('unit = "mph"', 'unit = "mph"\nwhen = { buildup = true }', "did you mean 'built_up'"),
-        ('unit = "mph"', 'unit = "mph"\nwhen = { built_up = 1 }', "built_up takes true or false, not 1"),
-        ('unit = "mph"', 'unit = "mph"\nwhen = { weather = ["frogs"] }', "weather takes a list of"),
-        ('unit = "mph"', 'unit = "mph"\nwhen = { season = ["13-01", "03-31"] }', "season takes"),
-        ('unit = "mph"', 'unit = "mph"\nwhen = { inside = [[0, 0], [1, 1]] }', "inside takes"),
-        ('unit = "mph"', 'unit = "mph"\ncolour = "red"', "no field named 'colour'"),
-        ('status = "verified"', 'status = "sure"', "sure"),
-        ("as_of = 2026-01-01", 'as_of = "2026"', "as_of"),
-        ('law = "Act 1"\n', "", "lacks 'law'"),
-        ("value = 30\n", "", "either value"),
-        ("value = 30\n", "cases = [{ value = 30 }, { value = 20 }]\n", "each limit is a rule of its own"),
+        ('topic = "limit"', 'topic = "limt"', 13, "no topic named 'limt': did you mean 'limit'"),
+        ('id = "XX.limit"', 'id = "YY.limit"', 12, "id is 'YY.limit'; it must begin with 'XX.'"),
+        ("value = 30", "value = -30", 15, "value is -30; it must be a number of at least 0"),
+        ("value = 30", "value = 0", 11, "a limit is above 0"),
+        ("value = 30", "value = nan", 15, "value is nan; it must be a number"),
+        ("value = 30", "value = [30]", 15, "value is [30]; it must be a number"),
+        ("value = 30", "cases = []", 15, "cases is empty; it must be a list of tables"),
+        ("value = 30", "cases = [30]", 15, "cases[0] is 30; it must be a table"),
+        ("value = 30", "cases = [{ value = -1 }]", 15, "cases[0].value is -1"),
+        ('unit = "mph"', "unit = 3", 16, "unit is 3; it must be one of"),
+        ('unit = "mph"\n', "", 11, "a number requires a unit"),
+        ('unit = "mph"', 'unit = "mph"\nwhen = 3', 17, "when is 3; it must be a table"),
+        ('unit = "mph"', 'unit = "mph"\nwhen = { visibility_below_m = inf }', 17, "must be a number of metres"),
+        (
+            'unit = "mph"',
+            'unit = "mph"\nwhen = { inside = [[0, 0], [1, 1], [200, 0]] }',
+            17,
+            "it must be a longitude",
+        ),
+        ('unit = "mph"', 'unit = "mph"\ncaps = "no"', 17, "caps is 'no'; it must be true"),
+        ('unit = "mph"', 'unit = "mph"\nbinds = "everyone"', 17, "no road user named 'everyone'"),
+        ('text = "everywhere"', 'text = ""', 14, "text is empty: it must be one line of text"),
+        ('text = "everywhere"', 'text = "a\\nb"', 14, "it must be one line of text"),
+        ("as_of = 2026-01-01", "as_of = 2026-01-01T10:00:00", 18, "it must be a date such as 2026-03-31"),
+        ("value = 30", 'value = "fast"', 15, "value is 'fast'; it must be a number"),
+        ("value = 30", 'value = "allowed"', 11, "a limit is a number or 'none'"),
+        ('unit = "mph"', 'unit = "mp/h"', 16, "did you mean 'mph'"),
+        ('unit = "mph"', 'unit = "mph"\nwhen = { buildup = true }', 17, "did you mean 'built_up'"),
+        (
+            'unit = "mph"',
+            'unit = "mph"\nwhen = { built_up = 1 }',
+            17,
+            "when.built_up is 1; it must be true or false",
+        ),
+        ('unit = "mph"', 'unit = "mph"\nwhen = { weather = ["frogs"] }', 17, "no weather named 'frogs'"),
+        (
+            'unit = "mph"',
+            'unit = "mph"\nwhen = { weather = [] }',
+            17,
+            "when.weather is empty; it must be a list of",
+        ),
+        ('unit = "mph"', 'unit = "mph"\nwhen = { season = ["13-01", "03-31"] }', 17, "month must be in 1..12"),
+        ('unit = "mph"', 'unit = "mph"\nwhen = { hours = ["8", "20:00"] }', 17, "it must be of the form 08:00"),
+        ('unit = "mph"', 'unit = "mph"\nwhen = { inside = [[0, 0], [1, 1]] }', 17, "a list of [lon, lat] corners"),
+        ('unit = "mph"', 'unit = "mph"\ncolour = "red"', 17, "no field named 'colour'"),
+        ('status = "verified"', 'status = "sure"', 19, "no status named 'sure'"),
+        ("as_of = 2026-01-01", 'as_of = "2026"', 18, "as_of is '2026'; it must be a date"),
+        ('law = "Act 1"\n', "", 11, "lacks 'law'; give a text"),
+        ("value = 30\n", "", 11, "either value"),
+        ("value = 30\n", "cases = [{ value = 30 }, { value = 20 }]\n", 11, "each limit is a rule of its own"),
     ],
 )
 def test_a_wrong_rule_is_refused_with_file_line_and_reason(
-    tmp_path: Path, wrong: str, right: str, reason: str
+    tmp_path: Path, wrong: str, right: str, line: int, reason: str
 ) -> None:
     assert wrong in RULE
     path = _write(tmp_path, HEAD + RULE.replace(wrong, right))
     with pytest.raises(GeoDataError) as error:
         read_jurisdiction(path)
-    assert str(path) in str(error.value)
-    assert "line 11" in str(error.value)
+    assert f"{path} line {line} [[rules" in str(error.value)
     assert reason in str(error.value)
     assert "\n" not in str(error.value)
+
+
+def test_every_problem_of_a_file_is_told_on_a_line_of_its_own(tmp_path: Path) -> None:
+    text = HEAD.replace('"left"', "1") + RULE.replace('"limit"', '"limt"').replace("30", "-30") + "colour = 3\n"
+    path = _write(tmp_path, text)
+    with pytest.raises(GeoDataError) as error:
+        read_jurisdiction(path)
+    assert [line.split()[2] for line in str(error.value).splitlines()] == ["6", "13", "15", "20"]
+
+
+def test_a_file_is_read_again_once_it_has_changed_and_not_before(tmp_path: Path) -> None:
+    path = _write(tmp_path, HEAD + RULE)
+    first = read_jurisdiction(path)
+    assert read_jurisdiction(path) is first
+    _write(tmp_path, HEAD.replace("Nowhere", "Elsewhere") + RULE)
+    assert read_jurisdiction(path).name == "Elsewhere"
 
 
 @pytest.mark.parametrize(
@@ -130,12 +172,12 @@ def test_a_wrong_rule_is_refused_with_file_line_and_reason(
     [
         ("[jurisdiction]\ncode XX\n", "at line 2"),
         ("", "lacks 'jurisdiction'"),
-        (HEAD.replace('"left"', '"middle"'), "none of left, right"),
-        (HEAD + '[rules]\nid = "XX.limit"\n', "[[rules]]"),
+        (HEAD.replace('"left"', '"middle"'), "no driving_side named 'middle'"),
+        (HEAD + '[rules]\nid = "XX.limit"\n', "it must be a list of [[rules]] entries"),
         (HEAD + RULE + RULE, "stands twice"),
         (TOWN.replace('within = "ZZ"', 'within = "YY"'), "does not begin with within = 'YY'"),
         (TOWN.replace("[1, 0], ", ""), "polygon"),
-        (TOWN.replace("[1, 0], ", "[181, 0], "), "not on earth"),
+        (TOWN.replace("[1, 0], ", "[181, 0], "), "polygon[1][0] is 181; it must be a longitude from -180"),
         (TOWN.replace("[1, 0], ", "[1, 0], [0, 1], "), "edges cross"),
     ],
 )
@@ -206,7 +248,7 @@ def test_every_condition_and_topic_is_used_by_a_shipped_rule() -> None:
 
 
 def test_conditions_are_three_valued(situation: Callable[..., Situation]) -> None:
-    tests = parse_when({"built_up": True, "weather": ["rain"]})
+    tests = _conditions({"built_up": True, "weather": ["rain"]})
     rain = {"phenomena": frozenset({"rain"})}
     assert all_hold(tests, situation(built_up=True, **rain)) is True
     assert all_hold(tests, situation(built_up=None, **rain)) is None
@@ -227,7 +269,7 @@ def test_conditions_are_three_valued(situation: Callable[..., Situation]) -> Non
 def test_times_wrap_and_ends_belong_where_the_words_say(
     situation: Callable[..., Situation], when: dict[str, object], holds: dict[str, int], fails: dict[str, int]
 ) -> None:
-    (test,) = parse_when(when)
+    (test,) = _conditions(when)
     now = situation().local_time
     assert test.holds(replace(situation(), local_time=now.replace(**holds))) is True  # type: ignore[arg-type]
     assert test.holds(replace(situation(), local_time=now.replace(**fails))) is False  # type: ignore[arg-type]

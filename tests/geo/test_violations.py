@@ -18,7 +18,8 @@ from hypothesis import strategies as st
 from automotive_cosim import geo
 from automotive_cosim.contracts import DrivingState, GpsFix, LimitSource, OtherVehicle, Weather
 from automotive_cosim.geo.breaches import Violation
-from automotive_cosim.geo.context import Geo, GeoContext
+from automotive_cosim.geo.context import GeoContext
+from automotive_cosim.geo.locate import Geo
 
 PARIS, BEAUCE, BERLIN, BEIJING, DUBAI, WALES = (
     (48.873, 2.285),
@@ -324,7 +325,7 @@ def _loaded(modules: Sequence[str]) -> str:
 
 
 def test_what_an_agent_can_reach_does_not_even_load_the_checks() -> None:
-    reach = ["automotive_cosim.observe", "automotive_cosim.geo.sensor", "automotive_cosim.agents"]
+    reach = ["automotive_cosim.interface.observe", "automotive_cosim.geo.sensor", "automotive_cosim.agents"]
     assert _loaded(reach) == "False"
     assert _loaded(["automotive_cosim.geo.breaches"]) == "True"
 

@@ -15,7 +15,7 @@ import pytest
 from automotive_cosim.agents import ModelAgent
 from automotive_cosim.agents.settings import T3A
 from automotive_cosim.errors import ModelError, SetupError, UserError
-from automotive_cosim.models import Message, make_model
+from automotive_cosim.models import ChatMessage, make_model
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
 from automotive_cosim.run.record import Recorder
 
@@ -84,7 +84,7 @@ def server(monkeypatch: pytest.MonkeyPatch) -> Iterator[Server]:
     made.close()
 
 
-ASK = [Message("user", "hi")]
+ASK = [ChatMessage("user", "hi")]
 QUICK = "local/m?timeout_s=0.3&retries=2"
 
 
@@ -127,7 +127,7 @@ def test_openai_itself_is_asked_in_its_present_words(server, monkeypatch):
 
 
 def test_pictures_go_along_as_they_are(server):
-    model().chat([Message("user", "look", (b"\x89PNG one", b"\x89PNG two"))])
+    model().chat([ChatMessage("user", "look", (b"\x89PNG one", b"\x89PNG two"))])
     parts = server.asked[0]["messages"][0]["content"]
     assert [part["type"] for part in parts] == ["text", "image_url", "image_url"]
     sent = [base64.b64decode(part["image_url"]["url"].split(",")[1]) for part in parts[1:]]
@@ -323,6 +323,7 @@ def test_without_the_package_it_says_what_to_install(server, monkeypatch):
         make_model("local/m")
 
 
+@pytest.mark.sumo
 def test_no_key_is_in_the_record_of_an_episode(server, tmp_path):
     """The server gives the key away in every answer; the folder must not."""
     text = f'Situation: {KEY}\nPlan: {KEY}\nAction: {{"action_type": "answer", "text": "{KEY}"}}'

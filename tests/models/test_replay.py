@@ -5,18 +5,18 @@ import json
 import pytest
 
 from automotive_cosim.errors import ModelError, UnknownNameError, UserError
-from automotive_cosim.models import Message, Reply, make_model
+from automotive_cosim.models import ChatMessage, ModelReply, make_model
 from automotive_cosim.models.base import digest
 
-ONE, TWO = [Message("user", "one")], [Message("user", "two", (b"png",))]
+ONE, TWO = [ChatMessage("user", "one")], [ChatMessage("user", "two", (b"png",))]
 
 
 @pytest.fixture
 def record(tmp_path):
     stages = [
-        {"reply": Reply("1", 5, 2, 0.1, 0.5).as_json(), "asked": digest(ONE), "pictures": 0},
+        {"reply": ModelReply("1", 5, 2, 0.1, 0.5).as_json(), "asked": digest(ONE), "pictures": 0},
         {"reply": None, "asked": "", "pictures": 0},
-        {"reply": Reply("2", finish="length").as_json(), "asked": digest(TWO), "pictures": 1},
+        {"reply": ModelReply("2", finish="length").as_json(), "asked": digest(TWO), "pictures": 1},
     ]
     lines = [json.dumps({"stages": []}), json.dumps({"stages": stages[:2]}), json.dumps({"stages": stages[2:]})]
     (tmp_path / "steps.jsonl").write_text("\n".join(lines), encoding="utf-8")
@@ -25,13 +25,13 @@ def record(tmp_path):
 
 def test_answers_come_as_they_were(record):
     model = make_model(f"replay/{record}")
-    assert model.chat(ONE) == Reply("1", 5, 2, 0.1, 0.5)
-    assert model.chat(TWO) == Reply("2", finish="length")
+    assert model.chat(ONE) == ModelReply("1", 5, 2, 0.1, 0.5)
+    assert model.chat(TWO) == ModelReply("2", finish="length")
     assert model.sees_pictures
 
 
 @pytest.mark.parametrize(
-    "asked", [[Message("user", "other")], [Message("system", "one")], [Message("user", "one", (b"",))]]
+    "asked", [[ChatMessage("user", "other")], [ChatMessage("system", "one")], [ChatMessage("user", "one", (b"",))]]
 )
 def test_another_question_is_refused(record, asked):
     with pytest.raises(ModelError, match="question 1 differs"):

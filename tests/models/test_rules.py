@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from automotive_cosim.agents.answer import labelled, read
-from automotive_cosim.models import Message, Rules
+from automotive_cosim.models import ChatMessage, Rules
 from automotive_cosim.models.page import Page
-from automotive_cosim.models.skills import SKILLS, Way, call, in_app, opened, say, slide, tap, typed
+from automotive_cosim.models.skills import SKILLS, Course, call, in_app, opened, say, slide, tap, typed
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasks import CATALOGUE
 
@@ -28,7 +28,7 @@ def row(index: int, resource_id: str, **more: object) -> str:
 
 
 def ask(text: str):
-    reply = Rules().chat([Message("user", text)])
+    reply = Rules().chat([ChatMessage("user", text)])
     return read(reply.text), reply
 
 
@@ -96,7 +96,7 @@ def test_every_kind_of_move_is_an_action(monkeypatch):
     screen = "\n".join(
         [row(1, "a"), row(2, "", text="some text"), row(3, "s", bounds=[100, 10, 340, 30]), row(4, "f")]
     )
-    monkeypatch.setattr("automotive_cosim.models.rules.SKILLS", (type(SKILLS[0])((".",), Way("so", moves)),))
+    monkeypatch.setattr("automotive_cosim.models.rules.SKILLS", (type(SKILLS[0])((".",), Course("so", moves)),))
     plan, actions = "", []
     for _ in range(len(moves) + 1):
         answer, _ = ask(prompt("x", screen=screen, plan=plan, result="ok"))
@@ -120,14 +120,16 @@ def test_an_unknown_wish_is_declined():
 
 def test_asked_to_look_back_it_gives_one_line():
     text = prompt("x", before=row(1, "a"), after=f"{row(1, 'a')}\n{row(2, 'b')}", result="ok: done")
-    reply = Rules().chat([Message("user", text)])
+    reply = Rules().chat([ChatMessage("user", text)])
     assert labelled(reply.text, "lesson") == "ok; 0 elements gone, 1 new."
 
 
 def test_pictures_change_nothing():
     text = prompt("fan to max")
     assert not Rules.sees_pictures
-    assert Rules().chat([Message("user", text, (b"png",))]).text == Rules().chat([Message("user", text)]).text
+    assert (
+        Rules().chat([ChatMessage("user", text, (b"png",))]).text == Rules().chat([ChatMessage("user", text)]).text
+    )
 
 
 def test_its_tokens_are_counted_by_length():
@@ -141,7 +143,7 @@ def test_random_prompts_never_break_it():
     alphabet = [*'## \n:{}[]"$ab1', *pieces]
     for _ in range(400):
         Page.read("".join(rng.choice(alphabet, 60)))
-        assert Rules().chat([Message("user", "".join(rng.choice(alphabet, 60)))]).text
+        assert Rules().chat([ChatMessage("user", "".join(rng.choice(alphabet, 60)))]).text
 
 
 def test_no_skill_hides_behind_another():

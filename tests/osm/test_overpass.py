@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 from automotive_cosim.cli.scenarios import app
 from automotive_cosim.errors import ImportMapError
 from automotive_cosim.osm import Area, extract
-from automotive_cosim.osm.overpass import FIRST_PAUSE_S, LONGEST_PAUSE_S, Limits, download
+from automotive_cosim.osm.overpass import FIRST_PAUSE_S, LONGEST_PAUSE_S, DownloadLimits, download
 
 AREA = Area(1.58, 48.29, 1.64, 48.32)
 NOTE = "The data included in this document is from www.openstreetmap.org. The data is made available under ODbL."
@@ -126,7 +126,7 @@ def test_a_busy_server_is_asked_again_after_the_pause_it_names(server: Server, w
         (says("<html><head><title>x</title></head><body>parse <b>error</b></body></html>", 400), "parse error", 1),
         (says("<html><body>Welcome</body></html>"), "with 'Welcome'; is it an Overpass API", 1),
         (says(""), "with 'nothing'", 1),
-        (says(f"{HEAD}<node id='1'/>"), "is cut off after", 1),
+        (says(f"{HEAD}<node id='1'/>"), "is truncated after", 1),
         (
             says(f"{HEAD}<remark> runtime error: Query timed out </remark></osm>"),
             "gave up: runtime error: Query",
@@ -140,7 +140,7 @@ def test_what_is_no_whole_map_is_told_and_leaves_nothing(
     answer: Answer, said: str, asked: int, server: Server, tmp_path: Path
 ) -> None:
     server.answers = [answer]
-    limits = Limits(timeout_s=0.3, tries=2, size_mb=0.1)
+    limits = DownloadLimits(timeout_s=0.3, tries=2, size_mb=0.1)
     with pytest.raises(ImportMapError, match=said) as error:
         download(server.url, AREA, tmp_path / "map.osm", limits, sleep=lambda _s: None)
     assert "\n" not in str(error.value)
@@ -151,19 +151,19 @@ def test_what_is_no_whole_map_is_told_and_leaves_nothing(
 @pytest.mark.parametrize(
     ("endpoint", "bbox", "said"),
     [
-        ("ftp://x/y", "1,48,1.1,48.1", "is no Overpass endpoint"),
-        ("nonsense", "1,48,1.1,48.1", "is no Overpass endpoint"),
+        ("ftp://x/y", "1,48,1.1,48.1", "is not an Overpass endpoint"),
+        ("nonsense", "1,48,1.1,48.1", "is not an Overpass endpoint"),
         ("http://127.0.0.1:9/", "0,40,9,49", "more than the 2500"),
         ("http://127.0.0.1:9/", "1,48,1.1,48.1", "cannot be reached"),
-        ("http://127.0.0.1:9/", "1,48,1,48.1", "is no area on earth"),
-        ("http://127.0.0.1:9/", "1,48,nan,49", "is no area on earth"),
-        ("http://127.0.0.1:9/", "1,48,2", "is no area on earth"),
-        ("http://127.0.0.1:9/", "1,48,2,91", "is no area on earth"),
+        ("http://127.0.0.1:9/", "1,48,1,48.1", "is not an area on earth"),
+        ("http://127.0.0.1:9/", "1,48,nan,49", "is not an area on earth"),
+        ("http://127.0.0.1:9/", "1,48,2", "is not an area on earth"),
+        ("http://127.0.0.1:9/", "1,48,2,91", "is not an area on earth"),
     ],
 )
 def test_what_cannot_be_asked_for(endpoint: str, bbox: str, said: str, tmp_path: Path) -> None:
     with pytest.raises(ImportMapError, match=said):
-        download(endpoint, Area.parse(bbox), tmp_path / "map.osm", Limits(tries=1))
+        download(endpoint, Area.parse(bbox), tmp_path / "map.osm", DownloadLimits(tries=1))
     with pytest.raises(ImportMapError, match="exists"):
         download("http://127.0.0.1:9/", AREA, tmp_path)
 

@@ -22,7 +22,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from automotive_cosim.tasking.checks import SignalIs
 from automotive_cosim.cockpit.signals import HVAC, SEAT
-from automotive_cosim.suite import Module, Open, Start, Tap
+from automotive_cosim.tasking.moves import Open, Tap
+from automotive_cosim.tasking.task import Module, Start
 from automotive_cosim.tasks.forms import asked
 
 class Trouble:
@@ -84,6 +85,7 @@ def told(ran):
     return {name: value for name, value in json.loads(ran.stdout).items() if name != "seconds"}
 
 
+@pytest.mark.sumo
 @pytest.mark.slow
 def test_neither_workers_nor_a_stop_show_and_what_is_proven_is_not_proven_again(validate, tmp_path):
     whole = validate("own_one,own_two", "--seeds", "2", "--json", "--out", "whole")
@@ -108,6 +110,7 @@ def test_neither_workers_nor_a_stop_show_and_what_is_proven_is_not_proven_again(
     assert [line.split()[1] for line in again.stderr.splitlines()] == ["1/4", "2/4", "3/4", "4/4"]
 
 
+@pytest.mark.sumo
 @pytest.mark.slow
 def test_another_plan_or_a_changed_task_wants_another_folder(validate, tmp_path):
     assert validate("own_one", "--seeds", "1", "--out", "f").returncode == 0
@@ -121,13 +124,16 @@ def test_another_plan_or_a_changed_task_wants_another_folder(validate, tmp_path)
     assert len(read_rows(tmp_path / "f", Proof)) == 1
 
 
+@pytest.mark.sumo
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks at /proc")
 @pytest.mark.parametrize("how", ["kill", "ctrl-c"])
-def test_however_it_is_ended_no_worker_is_left_and_the_command_goes_on(command, tmp_path, until, session, how):
+def test_however_it_is_ended_no_worker_is_left_and_the_command_goes_on(
+    command, program, tmp_path, until, session, how
+):
     (tmp_path / "wait").touch()
     words = command("own_one,own_waits", "--seeds", "1", "--workers", "2", "--out", "f", only="oracle,start")
-    process = subprocess.Popen(words, stderr=subprocess.PIPE, text=True, start_new_session=True)
+    process = program(*words, stderr=subprocess.PIPE)
     lines = tmp_path / "f" / "episodes.jsonl"
     try:
         until(lambda: lines.is_file() and lines.read_bytes().endswith(b"\n") and (tmp_path / "reached").exists())
@@ -142,7 +148,7 @@ def test_however_it_is_ended_no_worker_is_left_and_the_command_goes_on(command, 
         _, said = process.communicate()
     if how == "ctrl-c":
         assert process.returncode == 130
-        assert "what has been proven is in f; the same command goes on" in said
+        assert "finished proofs are in f; rerun the command to resume" in said
         assert "Traceback" not in said
     kept = lines.read_bytes()
     again = subprocess.run(words, capture_output=True, text=True, check=False)
@@ -151,17 +157,19 @@ def test_however_it_is_ended_no_worker_is_left_and_the_command_goes_on(command, 
     assert read_rows(tmp_path / "f", Proof).keys() == {"own_one-seed0", "own_waits-seed0"}
 
 
+@pytest.mark.sumo
 def test_a_task_that_breaks_the_proof_costs_that_one_alone_and_is_tried_again(validate, tmp_path):
     ran = validate("own_one,own_raises,own_dies", "--seeds", "1", "--out", "f", only="oracle,start")
     assert ran.returncode == 3
     assert "own_raises, seed 0\n    RuntimeError: no such thing\n" in ran.stderr
     assert "own_dies, seed 0\n    WorkerDied: its process ended with code -9\n" in ran.stderr
-    assert ran.stderr.endswith("error: 2 of 3 proofs ended in an error; nothing is proven by them\n")
-    assert ran.stdout.endswith("3 tasks, 1 seeds: 0 gates failed, 2 errors\n")
+    assert ran.stderr.endswith("error: 2 of 3 proofs ended in an infrastructure error\n")
+    assert ran.stdout.endswith("3 tasks, 1 seed: 0 gates failed, 2 errors\n")
     attempts = {row.task: row.attempts for row in read_rows(tmp_path / "f", Proof).values()}
     assert attempts == {"own_one": 1, "own_raises": 2, "own_dies": 2}
 
 
+@pytest.mark.sumo
 def test_a_gate_that_fails_is_told_beneath_its_task_and_sets_the_exit_code(validate):
     ran = validate("own_twice", "--seeds", "1", "--json")
     assert ran.returncode == 1

@@ -16,7 +16,7 @@ from automotive_cosim.report.failures import FailureClass, failure_class
 from automotive_cosim.run.collect import Collector, Pictures, planned
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
 from automotive_cosim.run.episode_row import PartsHeld
-from automotive_cosim.run.plan import Job, Limits
+from automotive_cosim.run.plan import EpisodeJob, Limits
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
@@ -138,14 +138,7 @@ def classified(task: str, half: str, moves: Sequence[Any], thought: str, simulat
     result = run_episode(setup, Planted(moves, thought), [collector], simulations=simulations)
     assert result.verdict is not None, result.error
     assert result.success is False
-    return failure_class(collector.row(Job(setup, 0, Limits()), result), collector.trace(result))
-
-
-@pytest.fixture(scope="module")
-def simulations():
-    kept = Simulations()
-    yield kept
-    kept.close()
+    return failure_class(collector.row(EpisodeJob(setup, 0, Limits()), result), collector.trace(result))
 
 
 @pytest.mark.slow
@@ -161,6 +154,6 @@ def test_doing_nothing_is_of_no_class():
     step = {"step": 0, "elements": [], "action": None, "feedback": {"code": "none"}, "thought": ""}
     wait = step | {"step": 1, "action": {"action_type": "wait"}, "feedback": {"code": "ok"}}
     parts = PartsHeld(goal=False, clean=True, safe=True, in_time=False, declared=False)
-    row = replace(planned(Job(EpisodeSetup(FAN), 0, Limits())), success=False, parts=parts)
+    row = replace(planned(EpisodeJob(EpisodeSetup(FAN), 0, Limits())), success=False, parts=parts)
     assert failure_class(row, [step, wait, {"result": {}}]) is FailureClass.UNCLASSIFIED
     assert failure_class(replace(row, task="gone"), [step]) is FailureClass.UNCLASSIFIED

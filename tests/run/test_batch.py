@@ -1,7 +1,6 @@
 """Evaluations on the small grid, with agents that die, hang and raise."""
 
 import os
-import subprocess
 import sys
 import time
 from pathlib import Path
@@ -67,6 +66,7 @@ def tries(folder):
     return len((folder / "tries").read_text())
 
 
+@pytest.mark.sumo
 @pytest.mark.slow
 def test_order_and_number_of_workers_do_not_show(tmp_path, monkeypatch):
     tasks = ["hvac_fan_max", "hvac_cold_hands", "hvac_driver_seat_heater"]
@@ -86,6 +86,7 @@ def test_order_and_number_of_workers_do_not_show(tmp_path, monkeypatch):
         )
 
 
+@pytest.mark.sumo
 def test_what_is_done_is_not_run_again(tmp_path):
     first = run_plan(plan("oracle"), tmp_path / "e")
     before = (tmp_path / "e" / "episodes.jsonl").read_bytes()
@@ -94,6 +95,7 @@ def test_what_is_done_is_not_run_again(tmp_path):
     assert (tmp_path / "e" / "episodes.jsonl").read_bytes() == before
 
 
+@pytest.mark.sumo
 def test_a_worker_that_dies_again_and_again_costs_its_episode_alone(trouble):
     end = run_plan(plan("oracle", "trouble:Dies"), trouble / "e", retries=2)
     assert (end.planned, end.judged, end.successes, end.errors) == (2, 1, 1, 1)
@@ -104,6 +106,7 @@ def test_a_worker_that_dies_again_and_again_costs_its_episode_alone(trouble):
     assert (row.attempts, len(row.failed_attempts)) == (3, 3)
 
 
+@pytest.mark.sumo
 def test_an_attempt_that_fails_is_made_again_and_told(trouble):
     end = run_plan(plan("trouble:DiesOnce"), trouble / "e", retries=1)
     assert (end.judged, end.errors) == (1, 0)
@@ -112,6 +115,7 @@ def test_an_attempt_that_fails_is_made_again_and_told(trouble):
     assert "WorkerDied" in row.failed_attempts[0]
 
 
+@pytest.mark.sumo
 def test_an_agent_that_hangs_is_ended_when_its_wall_time_is_over(trouble):
     began_s = time.monotonic()
     run_plan(plan("trouble:Hangs", limits={"wall_s": 12}), trouble / "e", retries=0)
@@ -120,6 +124,7 @@ def test_an_agent_that_hangs_is_ended_when_its_wall_time_is_over(trouble):
     assert (row.error_kind, row.success) == ("WallTime", None)
 
 
+@pytest.mark.sumo
 def test_steps_simulated_time_and_tokens_are_limited_and_judged(trouble):
     run_plan(plan("trouble:Waits", limits={"steps": 3}), trouble / "a")
     run_plan(plan("trouble:Waits", limits={"sim_s": 12}), trouble / "b")
@@ -133,6 +138,7 @@ def test_steps_simulated_time_and_tokens_are_limited_and_judged(trouble):
     assert ends["b"].sim_seconds == 15.0
 
 
+@pytest.mark.sumo
 def test_a_trigger_out_of_reach_is_an_error_that_is_not_tried_again(tmp_path):
     wanted = plan("oracle", tasks=["road_speed_80_in_50"], everywhere=True)
     end = run_plan(wanted, tmp_path / "e", retries=5)
@@ -142,6 +148,7 @@ def test_a_trigger_out_of_reach_is_an_error_that_is_not_tried_again(tmp_path):
     assert run_plan(wanted, tmp_path / "e").ran == 0
 
 
+@pytest.mark.sumo
 @pytest.mark.slow
 def test_a_trigger_out_of_reach_is_sought_once_for_all_contestants(tmp_path):
     there = {"tasks": ["road_speed_80_in_50"], "everywhere": True}
@@ -154,6 +161,7 @@ def test_a_trigger_out_of_reach_is_sought_once_for_all_contestants(tmp_path):
     assert steady(tmp_path / "alone").items() <= steady(tmp_path / "both").items()
 
 
+@pytest.mark.sumo
 def test_pictures_are_kept_by_choice(tmp_path):
     wanted = plan("oracle", "always-alert")
     for choice, count in ((Pictures.NONE, 0), (Pictures.FAILURES, 1), (Pictures.ALL, 2)):
@@ -165,6 +173,7 @@ def test_pictures_are_kept_by_choice(tmp_path):
             assert len(list(folder.glob("step_*.jpg"))) == steps + 1
 
 
+@pytest.mark.sumo
 def test_a_disk_that_is_full_stops_the_run_and_the_command_goes_on(tmp_path, monkeypatch):
     (tmp_path / "e" / "traces").mkdir(parents=True)
     if os.geteuid() == 0:
@@ -173,7 +182,7 @@ def test_a_disk_that_is_full_stops_the_run_and_the_command_goes_on(tmp_path, mon
         (tmp_path / "e" / "traces" / f".{wanted.jobs()[0].id}.jsonl.gz.part").mkdir()
     else:
         (tmp_path / "e" / "traces").chmod(0o500)
-    with pytest.raises(UserError, match=r"cannot write to .* the same command goes on"):
+    with pytest.raises(UserError, match=r"cannot write to .* rerun the command to resume"):
         run_plan(plan("oracle"), tmp_path / "e")
     for left in (tmp_path / "e" / "traces").iterdir():
         left.rmdir()
@@ -181,9 +190,10 @@ def test_a_disk_that_is_full_stops_the_run_and_the_command_goes_on(tmp_path, mon
     assert run_plan(plan("oracle"), tmp_path / "e").successes == 1
 
 
+@pytest.mark.sumo
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks at /proc")
-def test_a_kill_loses_at_most_the_running_episodes(trouble, until, session):
+def test_a_kill_loses_at_most_the_running_episodes(program, trouble, until, session):
     script = (
         "import sys, pathlib; from automotive_cosim.run.batch import run_plan\n"
         "from automotive_cosim.run.plan import make_plan\n"
@@ -193,7 +203,7 @@ def test_a_kill_loses_at_most_the_running_episodes(trouble, until, session):
     )
     lines = trouble / "e" / "episodes.jsonl"
     (trouble / "go.py").write_text(f"if __name__ == '__main__':\n    {script.replace(chr(10), chr(10) + '    ')}\n")
-    process = subprocess.Popen([sys.executable, "go.py"], cwd=trouble, start_new_session=True)
+    process = program(sys.executable, "go.py", cwd=trouble)
     until(lambda: lines.is_file() and lines.read_bytes().count(b"\n") >= 2)
     process.kill()
     process.wait()
@@ -257,12 +267,13 @@ class Poor:
         self.ended += 1
 
 
+@pytest.mark.sumo
 @pytest.mark.parametrize(
-    ("loses", "said", "started"), [(False, "has become ready in 600 s", 2), (True, "its node is gone", 7)]
+    ("loses", "said", "started"), [(False, "became ready in 600 s", 2), (True, "its node is gone", 7)]
 )
 def test_workers_that_never_get_ready_end_the_run_and_the_command_goes_on(tmp_path, loses, said, started):
     poor = Poor(loses=loses)
-    with pytest.raises(InfrastructureError, match=f"{said}.*; the same command goes on"):
+    with pytest.raises(InfrastructureError, match=f"{said}.*; rerun the command to resume"):
         run_plan(plan("oracle"), tmp_path / "e", executor=poor)
     assert (poor.started, poor.ended) == (started, started)
     assert all(300 < each_s <= 600 for each_s in poor.waited_s), "a busy machine takes some of the 600 s"

@@ -12,7 +12,7 @@ from automotive_cosim.contracts import Action, ActionType
 from automotive_cosim.errors import ActionError, TrafficError, UnknownNameError
 from automotive_cosim.interface import trace
 from automotive_cosim.run.episode import End, EpisodeSetup, run_episode
-from automotive_cosim.run.script import Script
+from automotive_cosim.run.script import ScriptedAgent
 
 TASK = "hvac_fan_max"
 
@@ -136,7 +136,7 @@ def test_a_different_action_is_a_different_trace(run):
     waits = [Action(ActionType.WAIT, seconds=1)] * 2
     end = Action(ActionType.STATUS, goal_status="complete")
     hashes = {
-        run(Script([*actions, end]), f"out{number}").result.trace_sha256
+        run(ScriptedAgent([*actions, end]), f"out{number}").result.trace_sha256
         for number, actions in enumerate((waits, [waits[0], Action(ActionType.NAVIGATE_HOME)], waits[:1]))
     }
     assert len(hashes) == 3
@@ -174,7 +174,7 @@ def test_watchers_hear_of_drive_steps_and_aftermath(run):
 
 
 def test_an_unreadable_answer_costs_a_step(run):
-    result = run(Broken(ActionError("the answer holds no action"))).result
+    result = run(Broken(ActionError("the answer has no action"))).result
     assert result.end is End.OUT_OF_STEPS
     assert result.steps == EpisodeSetup().max_steps
 

@@ -24,6 +24,7 @@ on_ray = pytest.importorskip("automotive_cosim.run.on_ray")  # before Ray, whose
 OnRay = on_ray.OnRay
 
 pytestmark = [
+    pytest.mark.sumo,
     pytest.mark.slow,
     pytest.mark.skipif(not Path("/proc").is_dir(), reason="Ray for Linux; looks at /proc"),
 ]
@@ -160,7 +161,7 @@ def test_files_that_cannot_be_written_here_stop_the_run_and_the_command_goes_on(
     blocked = tmp_path / "e" / "traces" / f".{wanted.jobs()[0].id}.jsonl.gz.part"
     blocked.mkdir(parents=True)
     with OnRay(cluster.address) as executor:
-        with pytest.raises(UserError, match=r"cannot write to .* the same command goes on"):
+        with pytest.raises(UserError, match=r"cannot write to .* rerun the command to resume"):
             run_plan(wanted, tmp_path / "e", executor=executor)
         blocked.rmdir()
         assert run_plan(wanted, tmp_path / "e", executor=executor).successes == 1
@@ -188,14 +189,13 @@ def test_a_node_that_is_lost_costs_only_its_running_episodes(cluster, mine):
     assert len({(row.seed, row.trace_sha256) for row in rows}) == 2
 
 
-def test_a_cluster_of_its_own_is_ended_by_ctrl_c_and_the_same_plan_goes_on(mine, ray_folder, monkeypatch):
-    program = "from automotive_cosim.cli.main import main; main()"
+def test_a_cluster_of_its_own_is_ended_by_ctrl_c_and_the_same_plan_goes_on(program, mine, ray_folder):
+    code = "from automotive_cosim.cli.main import main; main()"
     arguments = ("--agents", "mine:Slow", "--scenarios", "grid", "--repeats", "3", "--out", "../e", "--json")
     arguments += ("--tasks", "own_fan", "--tasks-from", "tasks")
     far = ("--executor", "ray", "--workers", "1", "--ray-send", ".")
-    process = subprocess.Popen(
-        [sys.executable, "-c", program, "eval", *arguments, *far],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
+    process = program(
+        sys.executable, "-c", code, "eval", *arguments, *far, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
         env=os.environ | {"RAY_TMPDIR": str(ray_folder), MARK: "own"},
     )  # fmt: skip
     lines = mine.parent / "e" / "episodes.jsonl"
@@ -204,12 +204,12 @@ def test_a_cluster_of_its_own_is_ended_by_ctrl_c_and_the_same_plan_goes_on(mine,
     out, err = process.communicate(timeout=60)
     assert (process.returncode, out) == (130, ""), err
     assert "Traceback" not in err
-    assert "the same command goes on" in err
+    assert "rerun the command to resume" in err
     until(lambda: not marked("own"))
     kept = len(read_rows(mine.parent / "e", EpisodeRow))
     assert 1 <= kept < 3
     again = subprocess.run(
-        [sys.executable, "-c", program, "eval", *arguments], capture_output=True, text=True, check=True
+        [sys.executable, "-c", code, "eval", *arguments], capture_output=True, text=True, check=True
     )
     assert f'"planned": 3, "judged": 3, "successes": 0, "errors": 0, "ran": {3 - kept}' in again.stdout
 

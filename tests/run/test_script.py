@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import Action, ActionType, AlertKind
 from automotive_cosim.errors import ActionError
-from automotive_cosim.run.script import Script, read_script
+from automotive_cosim.run.script import ScriptedAgent, read_script
 
 ALERT = Action(ActionType.SHOW_ALERT, kind=AlertKind.SPEED)
 HOME = Action(ActionType.NAVIGATE_HOME)
@@ -58,10 +58,15 @@ def test_a_file_without_actions_is_refused(tmp_path, content):
         read_script(path)
 
 
-@pytest.mark.parametrize("name", ["missing.jsonl", "."])
+@pytest.mark.parametrize("name", ["missing.jsonl", ".", "/dev/zero"])
 def test_what_cannot_be_read_is_refused(tmp_path, name):
     with pytest.raises(ActionError, match="cannot read"):
         read_script(tmp_path / name)
+
+
+def test_a_file_longer_than_anybody_writes_is_refused(tmp_path):
+    with pytest.raises(ActionError, match="larger than 1 MB"):
+        read_script(_write(tmp_path, "\n" * (2**20 + 1)))
 
 
 @given(st.text(max_size=60))
@@ -69,6 +74,6 @@ def test_any_text_is_either_read_or_refused_in_words(tmp_path_factory, text):
     path = tmp_path_factory.mktemp("script") / "actions.jsonl"
     path.write_text(text, encoding="utf-8", newline="")
     try:
-        assert isinstance(read_script(path), Script)
+        assert isinstance(read_script(path), ScriptedAgent)
     except ActionError as error:
         assert str(error)

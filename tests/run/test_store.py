@@ -43,21 +43,19 @@ def test_a_broken_line_in_the_middle_is_named(tmp_path):
         read_rows(tmp_path / "e", JobRow)
 
 
-def test_two_evaluations_in_one_folder_are_refused(tmp_path):
+def test_two_evaluations_in_one_folder_are_refused(program, tmp_path):
     script = (
         "import sys, pathlib; from automotive_cosim.run.row import JobRow\n"
         "from automotive_cosim.run.store import opened\n"
         f"with opened(pathlib.Path(sys.argv[1]), {PLAN!r}, JobRow): print('in', flush=True); sys.stdin.read()"
     )
-    other = subprocess.Popen(
-        [sys.executable, "-c", script, tmp_path / "e"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
-    )
-    with other:
-        assert other.stdout is not None
-        assert other.stdout.readline() == "in\n"
-        with pytest.raises(UserError, match="another evaluation"), opened(tmp_path / "e", PLAN, JobRow):
-            pass
-        other.kill()
+    other = program(sys.executable, "-c", script, tmp_path / "e", stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    assert other.stdout is not None
+    assert other.stdout.readline() == "in\n"
+    with pytest.raises(UserError, match="another evaluation"), opened(tmp_path / "e", PLAN, JobRow):
+        pass
+    other.kill()
+    other.wait()
     with opened(tmp_path / "e", PLAN, JobRow):
         pass
 
@@ -100,7 +98,7 @@ def test_folders_that_cannot_be_are_told(tmp_path):
         with pytest.raises(UserError) as caught, opened(folder, PLAN, JobRow):
             pass
         assert "\n" not in str(caught.value)
-    with pytest.raises(UserError, match="no evaluation"):
+    with pytest.raises(UserError, match="not an evaluation"):
         read_manifest(tmp_path)
 
 

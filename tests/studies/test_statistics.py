@@ -20,8 +20,8 @@ from automotive_cosim.studies.results import choices, noise
 from automotive_cosim.studies.rows import NOTHING, Branch, Decision, DriveRow, News, OthersTotals
 from automotive_cosim.studies.tables import outcomes
 from automotive_cosim.studies.traffic import gridlock
+from automotive_cosim.traffic.accounts import Account, Pulse, Settled
 from automotive_cosim.traffic.base import EgoPlan
-from automotive_cosim.traffic.ledger import Account, Pulse, Settled
 from automotive_cosim.traffic.scripted import Scripted, Stretch
 
 OTHERS = OthersTotals(count=3, gain_s=4.0, changed=1, unfinished_stay=0, unfinished=0)

@@ -230,7 +230,7 @@ def test_the_command_says_when_nothing_counts(two_ways: Draw, tmp_path: Path) ->
     words = ["reroute", "--scenario", str(two_ways(more=MORE_TRIPS)), "--departures", "8:30", "--seeds", "0"]
     text, error = invoke(*words, "--trips", "stands,free", "--out", str(tmp_path / "out"))
     assert isinstance(error, UserError)
-    assert "no decision counts" in str(error)
+    assert "no decision counted" in str(error)
     assert "start is goal" in text
 
 

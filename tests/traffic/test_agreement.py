@@ -11,10 +11,11 @@ import pytest
 
 from automotive_cosim.contracts import Alert, AlertKind, Cruise, DrivingState, Hazards, Reroute, SlowDown
 from automotive_cosim.scenarios import Scenario, WeatherAt, load
-from automotive_cosim.traffic.base import EgoPlan, Event, Simulation, Traffic, Until
+from automotive_cosim.traffic.base import EgoPlan, Event, Simulation, Traffic
 from automotive_cosim.traffic.fork import Forked
-from automotive_cosim.traffic.predicates import Driven, OverLimit
-from automotive_cosim.traffic.sumo import InProcess
+from automotive_cosim.traffic.in_process import InProcess
+
+pytestmark = pytest.mark.sumo
 
 Edit = Callable[[Path], None]
 
@@ -37,7 +38,7 @@ def eventful(traffic: Traffic) -> Record:
         if request is not None:
             answers.append(traffic.request(request))
         for duration_s in (0.1, 5.0, 2.5):
-            drive = traffic.advance(duration_s, Until(OverLimit(1.3), 0.5))
+            drive = traffic.advance(duration_s)
             states += drive.states
             events += drive.events
     return states, events, answers
@@ -210,32 +211,6 @@ def test_states_are_sumos_own_and_every_branch_writes_its_own(
         (ego,) = (trip for trip in trips if trip.get("id") == "ego")
         assert float(ego.attrib["arrival"]) == pytest.approx(states[-1].time_s - grid.sumo.step_length_s, abs=0.11)
     assert not rows_of(tmp_path / "warm" / "fcd.xml"), "the warm traffic has no ego"
-
-
-def test_until_ends_at_the_very_step(forked: Forked, hurried: EgoPlan) -> None:
-    free, waiting = forked.depart(hurried), forked.depart(hurried)
-    states = free.advance(60.0).states
-    drive = waiting.advance(60.0, Until(Driven(100.0)))
-    first = next(index for index, state in enumerate(states) if state.distance_m >= 100.0)
-    assert drive.until_held
-    assert drive.states == states[: first + 1]
-    free.close()
-    waiting.close()
-
-
-def test_until_waits_for_an_unbroken_while(forked: Forked, hurried: EgoPlan) -> None:
-    traffic = forked.depart(hurried)
-    branch = traffic.branch()
-    states = traffic.advance(200.0).states
-    over = OverLimit(1.3)
-    drive = branch.advance(200.0, Until(over, for_s=2.0))
-    assert drive.until_held
-    assert drive.states == states[: len(drive.states)]
-    held = [over(state) for state in drive.states]
-    assert all(held[-21:])
-    assert not any(all(held[end - 21 : end]) for end in range(21, len(held)))
-    traffic.close()
-    branch.close()
 
 
 def test_a_shipped_scenario_is_found_from_any_folder(

@@ -13,12 +13,13 @@ import pytest
 
 from automotive_cosim.contracts import EgoEnd, Reroute
 from automotive_cosim.scenarios import Scenario
-from automotive_cosim.traffic.base import EgoPlan, Traffic, Until
+from automotive_cosim.traffic.base import EgoPlan, Traffic
 from automotive_cosim.traffic.fork import Forked
+from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.network import read_network
-from automotive_cosim.traffic.predicates import Driven
 from automotive_cosim.traffic.scripted import Scripted, Stretch
-from automotive_cosim.traffic.sumo import InProcess
+
+pytestmark = pytest.mark.sumo
 
 Variant = Callable[[Callable[[Path], None]], Scenario]
 
@@ -139,7 +140,7 @@ def test_there_is_nothing_to_choose_on_a_scripted_road_or_at_the_end(forked: For
         assert traffic.alternatives() == ()
     inside = replace(average, driver="calm")
     with closing(forked.depart(inside)) as traffic:
-        traffic.advance(300.0, Until(Driven(280.0)))
+        traffic.advance(20.0)
         while not traffic.state.road.edge_id.startswith(":"):
             traffic.advance(0.1)
         assert traffic.alternatives() == (), "inside a junction the way is fixed"

@@ -12,12 +12,11 @@ import pytest
 
 from automotive_cosim.contracts import KMH_PER_MPS, MPH_PER_MPS, Alert, AlertKind, DrivingState
 from automotive_cosim.scenarios import Scenario, Trip, load
-from automotive_cosim.traffic.base import Drive, EgoPlan, Traffic, Until
+from automotive_cosim.traffic.base import Advance, EgoPlan, Traffic
 from automotive_cosim.traffic.fork import Forked
-from automotive_cosim.traffic.predicates import Driven
+from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.profiles import PROFILES
 from automotive_cosim.traffic.scripted import Scripted, Stretch
-from automotive_cosim.traffic.sumo import InProcess
 
 Variant = Callable[[Callable[[Path], None]], Scenario]
 
@@ -28,7 +27,7 @@ AMBULANCE = '\n[[incidents]]\nkind = "emergency"\nat_m = 260.0\nbehind_m = 200.0
 
 
 @pytest.fixture(scope="module")
-def quiet(grid: Scenario, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Forked]:
+def quiet(sumo: None, grid: Scenario, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Forked]:
     """The grid with an ambulance behind the ego and nobody else."""
     folder = tmp_path_factory.mktemp("quiet") / "grid"
     shutil.copytree(grid.folder, folder)
@@ -40,15 +39,16 @@ def quiet(grid: Scenario, tmp_path_factory: pytest.TempPathFactory) -> Iterator[
     simulation.close()
 
 
-def warned(simulation: Forked, plan: EgoPlan, kind: AlertKind, after_m: float = 300.0) -> tuple[Traffic, Drive]:
+def warned(simulation: Forked, plan: EgoPlan, kind: AlertKind, after_m: float = 300.0) -> tuple[Traffic, Advance]:
     """Told after some way; drives on for a minute."""
     traffic = simulation.depart(plan)
-    assert traffic.advance(120.0, Until(Driven(after_m))).until_held
+    while traffic.state.distance_m < after_m:
+        assert traffic.advance(0.1).states
     assert traffic.request(Alert(kind)).accepted
     return traffic, traffic.advance(60.0)
 
 
-def kinds(drive: Drive) -> set[str]:
+def kinds(drive: Advance) -> set[str]:
     return {event.kind for event in drive.events}
 
 
@@ -94,6 +94,7 @@ def test_moving_over_leaves_the_kerb_or_slows_down(quiet: Forked, hurried: EgoPl
     traffic.close()
 
 
+@pytest.mark.sumo
 @pytest.mark.parametrize(("lane", "side"), [(0, -1), (1, 1)])
 def test_a_corridor_opens_between_the_lanes(variant: Variant, hurried: EgoPlan, lane: int, side: int) -> None:
     """With sublanes the car goes to the outer edge of its lane, and back to the middle afterwards."""

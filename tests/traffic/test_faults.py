@@ -8,28 +8,24 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from automotive_cosim.contracts import DrivingState
-from automotive_cosim.errors import ScenarioError, SetupError, TrafficError, UnknownNameError
+from automotive_cosim.errors import NoRoomError, ScenarioError, SetupError, TrafficError, UnknownNameError
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic import sumo
-from automotive_cosim.traffic.base import EgoPlan, Until
+from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked, Simulations
-from automotive_cosim.traffic.sumo import InProcess
+from automotive_cosim.traffic.in_process import InProcess
+
+pytestmark = pytest.mark.sumo
 
 Variant = Callable[[Callable[[Path], None]], Scenario]
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="looks at processes through /proc")
-
-
-@dataclass(frozen=True, slots=True)
-class Anywhere:
-    def __call__(self, state: DrivingState) -> bool:
-        return True
 
 
 def is_running(pid: int) -> bool:
@@ -159,35 +155,22 @@ except KeyboardInterrupt:
 
 @linux
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT])
-def test_no_process_outlives_the_program(how: signal.Signals) -> None:
-    """Ctrl-C goes to the whole process group; a killed program can tell nobody."""
-    with subprocess.Popen(
-        [sys.executable, "-c", SCRIPT], stdout=subprocess.PIPE, text=True, start_new_session=True
-    ) as program:
-        assert program.stdout is not None
-        pids = [int(pid) for pid in program.stdout.readline().split()]
-        assert len(pids) == 3
-        time.sleep(0.3)
-        if how is signal.SIGINT:
-            os.killpg(program.pid, how)
-            assert program.stdout.read() == "kept\n"
-        else:
-            program.kill()
-        program.wait()
-    assert gone(pids)
-
-
-def test_a_predicate_from_nowhere_is_refused(
-    forked: Forked, hurried: EgoPlan, monkeypatch: pytest.MonkeyPatch
+def test_no_process_outlives_the_program(
+    program: Callable[..., subprocess.Popen[str]], how: signal.Signals
 ) -> None:
-    """One defined in a notebook or a script cannot be found by the simulation's process."""
-    traffic = forked.depart(hurried)
-    monkeypatch.setitem(sys.modules, "a_notebook", sys.modules[__name__])
-    monkeypatch.setattr(Anywhere, "__module__", "a_notebook")
-    with pytest.raises(TrafficError, match="define it in a module"):
-        traffic.advance(1.0, Until(Anywhere()))
-    assert traffic.advance(1.0).states
-    traffic.close()
+    """Ctrl-C goes to the whole process group; a killed program can tell nobody."""
+    process = program(sys.executable, "-c", SCRIPT, stdout=subprocess.PIPE)
+    assert process.stdout is not None
+    pids = [int(pid) for pid in process.stdout.readline().split()]
+    assert len(pids) == 3
+    time.sleep(0.3)
+    if how is signal.SIGINT:
+        os.killpg(process.pid, how)
+        assert process.communicate(timeout=60)[0] == "kept\n"
+    else:
+        process.kill()
+        process.wait()
+    assert gone(pids)
 
 
 def test_the_pool_keeps_the_latest(grid: Scenario, hurried: EgoPlan) -> None:
@@ -318,6 +301,31 @@ def test_a_trip_that_cannot_be_driven_is_refused(forked: Forked, hurried: EgoPla
     simulation.close()
 
 
+def test_an_ego_that_finds_no_gap_has_an_error_of_its_own(variant: Variant, hurried: EgoPlan) -> None:
+    """The same from this process and from another."""
+
+    def fill(folder: Path) -> None:
+        """A queue that never moves stands on the ego's first edge, end to end."""
+        stop = '<stop lane="cwc0_{lane}" endPos="{end}" duration="100000"/>'
+        cars = "".join(
+            f'<vehicle id="v{lane}.{place}" depart="0" departLane="{lane}" departPos="{place}" departSpeed="0">'
+            f'<route edges="cwc0"/>{stop.format(lane=lane, end=place)}</vehicle>'
+            for lane in (0, 1)
+            for place in range(6, 290, 7)
+        )
+        (folder / "grid.rou.xml").write_text(f"<routes>{cars}</routes>")
+        config = folder / "grid.sumocfg"
+        config.write_text(config.read_text().replace('time-to-teleport value="300"', 'time-to-teleport value="-1"'))
+
+    scenario = variant(fill)
+    texts = []
+    for make in (Forked, InProcess):
+        with closing(make(scenario, seed=1)) as simulation, pytest.raises(NoRoomError) as caught:
+            simulation.depart(hurried)
+        texts.append(str(caught.value))
+    assert texts == ["the ego found no gap on 'cwc0' in 300 s of simulated time"] * 2
+
+
 def test_a_scenario_folder_is_never_written_to(variant: Variant, hurried: EgoPlan) -> None:
     """Neither by options, nor by detectors, nor by what additional files include."""
 
@@ -359,6 +367,14 @@ def test_a_wrong_or_missing_sumo_is_named(monkeypatch: pytest.MonkeyPatch) -> No
         sumo.load_library()
     monkeypatch.setitem(sys.modules, "libsumo", None)
     with pytest.raises(SetupError, match="libsumo"):
+        sumo.load_library()
+
+
+def test_a_function_that_sumo_lost_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    import libsumo
+
+    monkeypatch.delattr(libsumo._libsumo, "vehicle_getSpeed")
+    with pytest.raises(SetupError, match=r"libsumo 1\.28\.\d has no function _libsumo\.vehicle_getSpeed; rein"):
         sumo.load_library()
 
 

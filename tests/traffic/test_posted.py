@@ -14,10 +14,9 @@ import pytest
 from automotive_cosim.contracts import KMH_PER_MPS, LimitSource
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic import sumo_programs
-from automotive_cosim.traffic.base import EgoPlan, Until
+from automotive_cosim.traffic.base import EgoPlan, Traffic
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.posted import in_force, sign_mps, timed_limits
-from automotive_cosim.traffic.predicates import InSchoolZone
 
 Edit = Callable[[Path], None]
 Variant = Callable[[Edit], Scenario]
@@ -134,7 +133,7 @@ def test_of_several_the_last_written_holds() -> None:
 
 
 @pytest.fixture
-def school(variant: Variant) -> Iterator[Forked]:
+def school(sumo: None, variant: Variant) -> Iterator[Forked]:
     """The grid with a school zone on the middle of its avenue."""
 
     def edit(folder: Path) -> None:
@@ -182,16 +181,22 @@ def test_the_posted_limit_follows_the_clock_of_the_drive(school: Forked, grid: S
     }
 
 
+def seconds_to_school(traffic: Traffic) -> float:
+    """Drives to where the zone's limit holds; returns the simulated seconds since the first step."""
+    begun_s = traffic.advance(0.1).states[0].time_s
+    while not traffic.state.road.limit_by_clock:
+        assert traffic.advance(0.1).states
+    return traffic.state.time_s - begun_s
+
+
 def test_a_limit_ends_while_the_car_is_in_it(school: Forked, grid: Scenario) -> None:
     """At 8:31 the sign goes dark: the ego sees it within a second and drives on at 50; a branch sees the same."""
     plan = EgoPlan(grid.trip("avenue"), "average", seed=1)
     with closing(school.depart(plan)) as traffic:
-        way = traffic.advance(200.0, Until(InSchoolZone()))
-        assert way.until_held
-    way_s = way.states[-1].time_s - way.states[0].time_s
+        way_s = seconds_to_school(traffic)
     start = grid.start.replace(hour=8, minute=31) - timedelta(seconds=way_s + 6)
     with closing(school.depart(replace(plan, start=start))) as traffic:
-        assert traffic.advance(200.0, Until(InSchoolZone())).until_held
+        seconds_to_school(traffic)
         with closing(traffic.branch()) as branch:
             states = traffic.advance(60.0).states
             assert branch.advance(60.0).states == states
@@ -199,5 +204,6 @@ def test_a_limit_ends_while_the_car_is_in_it(school: Forked, grid: Scenario) -> 
     by_clock = [state for state in inside if state.road.limit_by_clock]
     assert 0 < len(by_clock) < len(inside)
     assert by_clock[-1].time_s - states[0].time_s == pytest.approx(6.0, abs=1.1)
-    assert not InSchoolZone()(inside[-1])
+    assert inside[-1].road.limit_hours
+    assert not inside[-1].road.limit_by_clock
     assert inside[-1].speed_mps > by_clock[-1].speed_mps

@@ -13,9 +13,9 @@ from automotive_cosim.contracts import KMH_PER_MPS, EgoEnd, Weather
 from automotive_cosim.scenarios import Scenario, Trip, WeatherAt, load
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
-from automotive_cosim.traffic.road_weather import G_MPS2, Condition, condition_of, sight_speed_mps
+from automotive_cosim.traffic.in_process import InProcess
+from automotive_cosim.traffic.road_weather import G_MPS2, RoadCondition, condition_of, sight_speed_mps
 from automotive_cosim.traffic.scripted import Scripted, Stretch
-from automotive_cosim.traffic.sumo import InProcess
 
 Variant = Callable[[Callable[[Path], None]], Scenario]
 
@@ -66,7 +66,7 @@ def test_one_can_stop_within_sight(visibility_m: float, friction: float) -> None
 # --- the ego ----------------------------------------------------------------------------------------------
 
 
-def hits(simulation: InProcess, plan: EgoPlan, condition: Condition, brakes_before_m: float) -> bool:
+def hits(simulation: InProcess, plan: EgoPlan, condition: RoadCondition, brakes_before_m: float) -> bool:
     """Whether the ego, at 50 km/h, hits something that stands ahead and that it sees only so far before."""
     import libsumo
 
@@ -89,14 +89,15 @@ def hits(simulation: InProcess, plan: EgoPlan, condition: Condition, brakes_befo
     return traffic.advance(30.0).states[-1].end is EgoEnd.COLLIDED
 
 
+@pytest.mark.sumo
 @pytest.mark.parametrize("friction", [0.2, 0.5, 1.0])
 def test_stopping_distances_are_those_of_physics(empty: Scenario, friction: float) -> None:
     """Within 15 % of v^2 / (2 mu g): from a little more the ego stops, from a little less it cannot."""
     plan = EgoPlan(empty.trip("avenue"), "average", seed=3)
     with closing(InProcess(empty, seed=1)) as simulation:
         distance_m = (50 / KMH_PER_MPS) ** 2 / (2 * friction * G_MPS2)
-        assert not hits(simulation, plan, Condition(friction), 1.15 * distance_m)
-        assert hits(simulation, plan, Condition(friction), 0.85 * distance_m)
+        assert not hits(simulation, plan, RoadCondition(friction), 1.15 * distance_m)
+        assert hits(simulation, plan, RoadCondition(friction), 0.85 * distance_m)
 
 
 def fastest_kmh(forked: Forked, plan: EgoPlan, weather: Weather) -> float:
@@ -149,6 +150,7 @@ def test_a_scripted_road_is_slippery_too() -> None:
 # --- the others -------------------------------------------------------------------------------------------
 
 
+@pytest.mark.sumo
 def test_the_others_drive_by_the_weather_and_back(variant: Variant, hurried: EgoPlan) -> None:
     import libsumo
 
@@ -191,6 +193,7 @@ def test_in_process_and_forked_alike(grid: Scenario, forked: Forked, hurried: Eg
         assert own.advance(60.0) == expected
 
 
+@pytest.mark.sumo
 def test_a_scenario_brings_its_weather(variant: Variant, hurried: EgoPlan) -> None:
     """Its warm traffic has met it already; a plan's own weather takes its place."""
 

@@ -14,8 +14,8 @@ from shapely import LineString, Point
 from automotive_cosim.scenarios import Scenario, Trip
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
+from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.instant import other_vehicle
-from automotive_cosim.traffic.sumo import InProcess
 
 Variant = Callable[[Callable[[Path], None]], Scenario]
 
@@ -43,6 +43,7 @@ def crossing_traffic(folder: Path) -> None:
         </routes>""")
 
 
+@pytest.mark.sumo
 def test_crossing_times_are_those_of_the_drive(variant: Variant, hurried: EgoPlan) -> None:
     """Each PET that is told equals the one found by looking at SUMO on every step."""
     import libsumo

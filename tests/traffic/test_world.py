@@ -27,10 +27,12 @@ from automotive_cosim.contracts import (
     SlowDown,
 )
 from automotive_cosim.scenarios import Scenario, load
-from automotive_cosim.traffic.base import Drive, EgoPlan, Traffic, Until
+from automotive_cosim.traffic.base import Advance, EgoPlan, Traffic
 from automotive_cosim.traffic.fork import Forked
-from automotive_cosim.traffic.predicates import Driven, InTunnel, OnRoad, SpeedAbove, Standing
-from automotive_cosim.traffic.sumo import InProcess, load_library
+from automotive_cosim.traffic.in_process import InProcess
+from automotive_cosim.traffic.sumo import load_library
+
+pytestmark = pytest.mark.sumo
 
 Variant = Callable[[Callable[[Path], None]], Scenario]
 
@@ -58,13 +60,18 @@ def in_process(grid: Scenario) -> Iterator[InProcess]:
 def at_speed(simulation: Forked, plan: EgoPlan, speed_kmh: float) -> Traffic:
     """On the middle of the avenue, driving steadily."""
     traffic = simulation.depart(plan)
-    drive = traffic.advance(300.0, Until(Driven(500.0)))
-    assert drive.until_held
-    assert traffic.advance(60.0, Until(SpeedAbove(speed_kmh))).until_held
+    while traffic.state.distance_m < 500.0 or traffic.state.speed_mps * KMH_PER_MPS <= speed_kmh:
+        assert traffic.advance(0.1).states
     return traffic
 
 
-def speeds_kmh(drive: Drive) -> list[float]:
+def to_tunnel(traffic: Traffic) -> None:
+    """Into the mouth of the tunnel."""
+    while not traffic.state.road.in_tunnel:
+        assert traffic.advance(0.1).states
+
+
+def speeds_kmh(drive: Advance) -> list[float]:
     return [state.speed_mps * KMH_PER_MPS for state in drive.states]
 
 
@@ -108,8 +115,7 @@ def test_roads_say_what_the_map_says(forked: Forked, hurried: EgoPlan, grid: Sce
     assert not street.road.in_tunnel
     to_tunnel_m = street.ahead.tunnel_distance_m
     assert to_tunnel_m is not None
-    drive = traffic.advance(300.0, Until(InTunnel()))
-    assert drive.until_held
+    to_tunnel(traffic)
     assert traffic.state.distance_m == pytest.approx(to_tunnel_m, abs=2.0)
     assert traffic.state.ahead.tunnel_distance_m == 0.0
     assert traffic.state.lon_deg == pytest.approx(0.1107, abs=0.002)
@@ -195,7 +201,7 @@ def test_arrival(empty: Forked, hurried: EgoPlan) -> None:
     drive = traffic.advance(600.0)
     assert [state.end for state in drive.states[-2:]] == [None, EgoEnd.ARRIVED]
     assert replace(drive.states[-1], end=None, time_s=drive.states[-2].time_s) == drive.states[-2]
-    assert traffic.advance(10.0) == Drive((), (), until_held=False)
+    assert traffic.advance(10.0) == Advance((), ())
     assert traffic.request(SlowDown(30.0)) == Answer(False, "the drive has ended: arrived")
     traffic.close()
 
@@ -325,8 +331,8 @@ def test_requests_hold(empty: Forked, hurried: EgoPlan) -> None:
 def test_pulling_over_stops_beside_the_lane(forked: Forked, hurried: EgoPlan) -> None:
     traffic = at_speed(forked, hurried, 40.0)
     assert traffic.request(PullOver()).accepted
-    drive = traffic.advance(120.0, Until(Standing(20.0)))
-    assert drive.until_held
+    drive = traffic.advance(120.0)
+    assert traffic.state.standing_s > 20.0
     assert "driver_pulls_over" in {event.kind for event in drive.events}
     assert traffic.state.road.lane_index == 0
     assert min(state.acceleration_mps2 for state in drive.states) > -5.0
@@ -338,7 +344,7 @@ def test_pulling_over_stops_beside_the_lane(forked: Forked, hurried: EgoPlan) ->
 
 def test_dangerous_requests_are_refused(empty: Forked, hurried: EgoPlan, grid: Scenario) -> None:
     traffic = empty.depart(replace(hurried, trip=grid.trip("tunnel")))
-    assert traffic.advance(300.0, Until(InTunnel())).until_held
+    to_tunnel(traffic)
     answers = {
         request: traffic.request(request)
         for request in (PullOver(), SlowDown(0.0), SlowDown(math.nan), Cruise(-5.0), Reroute("Rue de Rivoli"))
@@ -358,7 +364,7 @@ def test_a_reroute_changes_the_way(empty: Forked, hurried: EgoPlan) -> None:
     assert traffic.state.ahead.route_edges[-1] == "c4ce", "the state is that before the request"
     traffic.advance(0.1)
     assert traffic.state.ahead.route_edges[-1] != "c4ce"
-    assert traffic.advance(200.0, Until(OnRoad("Rue du Nord"))).until_held
+    assert "Rue du Nord" in {state.road.name for state in traffic.advance(200.0).states}
     traffic.close()
 
 
@@ -384,7 +390,6 @@ def test_a_given_route_is_checked_piece_by_piece(empty: Forked, hurried: EgoPlan
 def test_a_turn_that_is_too_near_is_not_taken(empty: Forked, hurried: EgoPlan) -> None:
     """A few metres before the junction the next edge stays, whatever the new goal."""
     traffic = empty.depart(hurried)
-    traffic.advance(300.0, Until(Driven(100.0)))
     while traffic.state.road.edge_id != "c0c1" or traffic.state.road.lane_position_m < 160.0:
         traffic.advance(0.1)
     assert not traffic.request(Reroute(edges=("c0c1", "c1n1"))).accepted

@@ -9,7 +9,7 @@ from typing import Any
 from automotive_cosim.cockpit.desk import TOOLS
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.language import translated
-from automotive_cosim.cockpit.messages import Back, Decline, Put, Show, TakeCall
+from automotive_cosim.cockpit.messages import Back, DeclineCall, Put, Show, TakeCall
 from automotive_cosim.cockpit.screens.parts import speed, speed_unit, stepper, switch, temperature
 from automotive_cosim.cockpit.signals import ADAS, ENERGY, HMI, HVAC, LIGHTS, LINK, MOTION, OUTSIDE, Signal, Signals
 from automotive_cosim.cockpit.state import Notice, State
@@ -155,7 +155,7 @@ def _incoming(rect: Rect, who: str, state: State) -> tuple[Widget, ...]:
             description="Decline the call",
             icon=Icon.HANG_UP,
             look=Look.CRITICAL,
-            on_tap=Decline(),
+            on_tap=DeclineCall(),
         ),
         Button(
             rect=message,

@@ -8,14 +8,14 @@ from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.messages import (
     BACKSPACE,
     Back,
-    Decline,
+    DeclineCall,
     Dial,
     HangUp,
     Key,
     Pick,
     Put,
     Read,
-    Reply,
+    SendReply,
     Show,
     TakeCall,
 )
@@ -217,7 +217,7 @@ def _ringing(inner: Rect, who: str) -> tuple[Widget, ...]:
             icon_size=32,
             look=Look.CRITICAL,
             stacked=True,
-            on_tap=Decline(),
+            on_tap=DeclineCall(),
         ),
     )
 
@@ -501,7 +501,7 @@ def thread(state: State) -> tuple[Widget, ...]:
                 key=f"thread.answer.{index}",
                 text=TEMPLATES[index],
                 icon=Icon.REPLY,
-                on_tap=Reply(who, TEMPLATES[index]),
+                on_tap=SendReply(who, TEMPLATES[index]),
             ),
             height=56,
         ),

@@ -8,7 +8,7 @@ from automotive_cosim.cockpit.desk import FILM_S, MANUAL, ZONES
 from automotive_cosim.cockpit.errands import odometer, price
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.messages import Message, Pay, Pick, Put, Record, ResetTrip, Show
-from automotive_cosim.cockpit.places import Kind
+from automotive_cosim.cockpit.places import PlaceKind
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.screens.map import destination
 from automotive_cosim.cockpit.screens.media import minutes
@@ -44,7 +44,7 @@ def charging(state: State) -> tuple[Widget, ...]:
     left, right = CONTENT.columns(2, GAP)
     inner = left.inset(28, 20)
     level, cable = signals[ENERGY.LEVEL], "cable in" if signals[ENERGY.CABLE] else "no cable"
-    stations = nearest(state, state.atlas.of(Kind.CHARGING))
+    stations = nearest(state, state.atlas.of(PlaceKind.CHARGING))
     desk = state.desk
     timer = desk.charge_by
     upper = Rect(inner.x, inner.y + 48, inner.width, 44)

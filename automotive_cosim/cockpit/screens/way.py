@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.messages import Back, Guide, Pick, Put, Set, Show, Take
 from automotive_cosim.cockpit.navigation import AVOIDABLE
-from automotive_cosim.cockpit.places import SORTS, Kind, Place
+from automotive_cosim.cockpit.places import SORTS, Destination, PlaceKind
 from automotive_cosim.cockpit.screens.map import PANEL, arrival, away, destination, sight, turns_ahead
 from automotive_cosim.cockpit.screens.parts import choices, distance, heading, note, rows
 from automotive_cosim.cockpit.signals import VOICE
@@ -15,7 +15,7 @@ from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Card, Choice, Glyph, Label, Look, Row, Tile, Widget
 
-_EVERYDAY = tuple(kind for kind in Kind if kind not in (Kind.HOME, Kind.WORK))
+_EVERYDAY = tuple(kind for kind in PlaceKind if kind not in (PlaceKind.HOME, PlaceKind.WORK))
 
 
 def explore(state: State) -> tuple[Widget, ...]:
@@ -23,7 +23,7 @@ def explore(state: State) -> tuple[Widget, ...]:
     chosen = state.picked["explore"]
     if chosen == "all":
         return *_head(state, "Places nearby", Icon.PLACE, "explore"), _kinds(state), sight(state)
-    kind = Kind(chosen)
+    kind = PlaceKind(chosen)
     found = nearest(state, state.atlas.of(kind))
     return (
         *_head(state, SORTS[kind].title, SORTS[kind].icon, "explore"),
@@ -34,7 +34,7 @@ def explore(state: State) -> tuple[Widget, ...]:
     )
 
 
-def nearest(state: State, places: Sequence[Place]) -> tuple[Place, ...]:
+def nearest(state: State, places: Sequence[Destination]) -> tuple[Destination, ...]:
     """Places by distance from the car."""
     if state.outside is None:
         return tuple(places)
@@ -42,7 +42,7 @@ def nearest(state: State, places: Sequence[Place]) -> tuple[Place, ...]:
     return tuple(sorted(places, key=lambda place: (place.away_m(driving.x_m, driving.y_m), place.name)))
 
 
-def along(state: State, places: Sequence[Place]) -> tuple[Place, ...]:
+def along(state: State, places: Sequence[Destination]) -> tuple[Destination, ...]:
     """Places by how far they lie beside the route."""
     route = () if state.outside is None else state.outside.driving.ahead.route_edges
     ways = [road for road in map(state.roads.find, route) if road is not None]
@@ -84,7 +84,7 @@ def _kinds(state: State) -> Widget:
     )
 
 
-def _places(state: State, found: tuple[Place, ...]) -> Widget:
+def _places(state: State, found: tuple[Destination, ...]) -> Widget:
     return rows(
         PANEL.below(72),
         "explore.places",
@@ -119,14 +119,14 @@ def place(state: State) -> tuple[Widget, ...]:
     )
 
 
-def _place_buttons(rect: Rect, name: str, known: Place | None, state: State) -> tuple[Widget, ...]:
+def _place_buttons(rect: Rect, name: str, known: Destination | None, state: State) -> tuple[Widget, ...]:
     navigation = state.navigation
     saved = name in navigation.favourites
     goal = navigation.destination
     cells = tuple(Rect(rect.x, rect.y + at * 64, rect.width, 56) for at in range(4))
     there = "You are already on the way there" if goal == name else ""
     extra: tuple[Widget, ...] = ()
-    if known is not None and known.kind is Kind.PARKING and "parking" in state.desk.installed:
+    if known is not None and known.kind is PlaceKind.PARKING and "parking" in state.desk.installed:
         extra = (
             Button(
                 rect=cells[3], key="place.pay", text="Pay for parking", icon=Icon.TICKET, on_tap=Show("parking")
@@ -218,7 +218,7 @@ def _ways(rect: Rect, state: State) -> tuple[Widget, ...]:
     """The present way, others that the road offers, and places to charge on the way."""
     ahead = None if state.outside is None else state.outside.driving.ahead
     others = () if ahead is None else ahead.alternatives
-    chargers = along(state, state.atlas.of(Kind.CHARGING))
+    chargers = along(state, state.atlas.of(PlaceKind.CHARGING))
     lines: list[tuple[str, str, str, Icon, Take | Guide | Show]] = [
         (
             f"Way {at + 2}",

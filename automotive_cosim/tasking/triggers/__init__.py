@@ -1,17 +1,17 @@
-"""Triggers: which situation on the road a task starts from. Pure questions about one moment, no effects.
+"""Triggers: the situation on the road that starts a task. Pure predicates on one moment, without effects.
 
-Each condition is a frozen dataclass, so that it can be compared and stored; ``str`` says it in words. What a
-condition cannot know (no leader, no limit, no place) does not hold.
+Each condition is a frozen dataclass, so it can be compared and stored; ``str`` describes it in words. A condition
+about something that does not exist (no leader, no limit, no place) does not hold.
 
-base          what a trigger is; all of several, not
+base          what a trigger is; conjunction and negation
 motion        how the car moves
-road          what road it is on, and what comes next on it
-others        who else is on the road
+road          the road that it is on, and what comes next
+others        other vehicles on the road
 surroundings  sky, place, position fix and connection
 car           the car's own signals
 """
 
-from automotive_cosim.tasking.triggers.base import All, Condition, Not, Trigger
+from automotive_cosim.tasking.triggers.base import All, Not, Trigger, TriggerCondition
 from automotive_cosim.tasking.triggers.car import SignalAbove, SignalBelow, SignalHas
 from automotive_cosim.tasking.triggers.motion import Driving, OverPosted, Parked, SpeedAbove, SpeedBetween, Standing
 from automotive_cosim.tasking.triggers.others import (
@@ -61,7 +61,6 @@ __all__ = [
     "BuiltUp",
     "CentreLine",
     "CollisionWithin",
-    "Condition",
     "Dark",
     "DelayAbove",
     "Driving",
@@ -98,6 +97,7 @@ __all__ = [
     "SpeedBetween",
     "Standing",
     "Trigger",
+    "TriggerCondition",
     "TunnelWithin",
     "Unposted",
     "VisibilityBetween",

@@ -1,0 +1,32 @@
+"""``automotive-cosim schema``: the formats of files that users write, for editors."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def schema(
+    name: Annotated[str | None, typer.Argument(help="Of a format; none lists them.", show_default=False)] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="File to write; standard output if not given.", show_default=False)
+    ] = None,
+) -> None:
+    """Print the JSON Schema of a file you write, so that an editor checks and completes it."""
+    from automotive_cosim import schemas
+    from automotive_cosim.errors import UserError
+
+    if name is None:
+        if out is not None:
+            raise UserError(f"--out {out} needs the NAME of a schema; `automotive-cosim schema` lists them")
+        for known in schemas.names():
+            typer.echo(f"{known:<10}{schemas.about(known)}")
+        return
+    text = schemas.text(name)
+    if out is None:
+        typer.echo(text, nl=False)
+    else:
+        out.write_text(text, encoding="utf-8")
+        typer.echo(f"{out} written")

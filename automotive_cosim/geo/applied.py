@@ -1,0 +1,133 @@
+"""Which rules of a place apply to a road at one instant, and their answers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from datetime import datetime
+
+from automotive_cosim.contracts import (
+    KMH_PER_MPS,
+    STANDING_BELOW_MPS,
+    DrivingState,
+    GpsFix,
+    RoadHere,
+    Weather,
+)
+from automotive_cosim.geo.place import Place
+from automotive_cosim.geo.rules import TOPICS, Rule, Value
+from automotive_cosim.geo.situation import Situation, Test
+from automotive_cosim.geo.sun import Sun
+from automotive_cosim.geo.weather import phenomena
+
+MOTORWAYS = ("motorway", "motorway_link")
+STREETS = ("residential", "living_street", "pedestrian")
+"""OSM highway values that imply built-up land if the network does not say."""
+
+MAYBE_DUAL = ("trunk", "trunk_link", "primary", "secondary")
+"""Roads that may have a central reservation if they have two lanes or more in one direction."""
+
+MAYBE_EXPRESSWAY = ("trunk", "trunk_link", "")
+"""Roads that may be closed to slow traffic; the network does not say which."""
+
+
+@dataclass(frozen=True, slots=True)
+class AppliedRule:
+    """A rule that place, road and date do not exclude here."""
+
+    rule: Rule
+    jurisdiction: str
+    """Code of the country, region or city that the rule belongs to."""
+    value: Value | None
+    """Its answer now; None if it does not apply now."""
+    certain: bool
+    """False if the situation does not determine the answer."""
+
+
+def built_up(road: RoadHere, place: Place) -> tuple[bool | None, str]:
+    """Whether the road is in a built-up area, None if unknown, and the source of that (``GeoContext``)."""
+    if road.built_up is not None:
+        return road.built_up, "network"
+    if road.road_class in MOTORWAYS:
+        return False, "road class"
+    if road.road_class in STREETS:
+        return True, "road class"
+    return (True, "place") if place.city else (None, "unknown")
+
+
+def _dual_carriageway(road: RoadHere) -> bool | None:
+    if road.road_class in MOTORWAYS:
+        return True
+    if road.lane_count >= 2 and (road.road_class in MAYBE_DUAL or not road.road_class):
+        return None
+    return False
+
+
+def situation_at(
+    driving: DrivingState,
+    gps: GpsFix | None,
+    weather: Weather | None,
+    local_time: datetime,
+    sun: Sun | None,
+    is_built_up: bool | None,
+) -> Situation:
+    """The input of rules: everything known about an instant."""
+    road, around = driving.road, driving.around
+    return Situation(
+        local_time=local_time,
+        lon_deg=gps.lon_deg if gps else None,
+        lat_deg=gps.lat_deg if gps else None,
+        street=road.name,
+        road_class=road.road_class,
+        motorway=road.road_class in MOTORWAYS if road.road_class else None,
+        dual_carriageway=_dual_carriageway(road),
+        expressway=None if road.road_class in MAYBE_EXPRESSWAY else False,
+        built_up=is_built_up,
+        lit=road.lit,
+        centre_line=road.centre_line,
+        lanes=road.lane_count,
+        tunnel=road.in_tunnel,
+        speed_kmh=driving.speed_mps * KMH_PER_MPS,
+        standing=driving.speed_mps < STANDING_BELOW_MPS,
+        oncoming_m=around.oncoming.gap_m if around.oncoming else None,
+        leader_m=around.leader.gap_m if around.leader else None,
+        phenomena=phenomena(weather) if weather else None,
+        visibility_m=weather.visibility if weather else None,
+        after_sunset=sun.is_set if sun else None,
+    )
+
+
+def _applied(rule: Rule, jurisdiction: str, situation: Situation) -> AppliedRule:
+    return AppliedRule(rule, jurisdiction, *rule.answer(situation))
+
+
+def limits(place: Place, situation: Situation) -> Iterator[AppliedRule]:
+    """The limits that this road may have, without those that an earlier one rules out.
+
+    A limit that lowers signs is ruled out by its own layer only: fog also slows a street with a city's limit.
+    """
+    doubts: list[frozenset[Test]] = []
+    for layer in place.layers:
+        for rule in layer.by_topic.get("limit", ()):
+            if rule.may_apply(situation) is False:
+                continue
+            doubt = frozenset(test for test in rule.tests if test.fixed and test.holds(situation) is None)
+            ruled_out = any(earlier <= doubt for earlier in doubts)
+            if not ruled_out or rule.caps:
+                yield _applied(rule, layer.code, situation)
+            if rule.fixed:
+                doubts.append(doubt)
+                if not doubt:
+                    break
+
+
+def other_rules(place: Place, situation: Situation) -> Iterator[AppliedRule]:
+    """By topic, the rules of the innermost layer that has one for this road."""
+    for topic in TOPICS:
+        if topic == "limit":
+            continue
+        for layer in place.layers:
+            applied = [rule for rule in layer.by_topic.get(topic, ()) if rule.may_apply(situation) is not False]
+            yield from (_applied(rule, layer.code, situation) for rule in applied)
+            if applied:
+                break

@@ -1,0 +1,143 @@
+"""libsumo in this process, one simulation at a time; ``fork.Forked`` keeps each in a process of its own."""
+
+from __future__ import annotations
+
+from automotive_cosim.contracts import Answer, DrivingState, RoadNetwork, RoadRequest, RouteOption
+from automotive_cosim.errors import TrafficError
+from automotive_cosim.scenarios import Scenario
+from automotive_cosim.traffic.base import Advance, EgoPlan, Traffic, WarmUpProgress
+from automotive_cosim.traffic.drive import Call, EgoDrive
+from automotive_cosim.traffic.fork import replayed
+from automotive_cosim.traffic.options import Setup
+from automotive_cosim.traffic.world import World
+
+
+class InProcess:
+    """A simulation in this process: nothing to send, but no second one beside it.
+
+    A second ``depart`` loads and warms up again; ``branch`` replays the drive in a process of its own.
+    """
+
+    _current: InProcess | None = None
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        seed: int = 0,
+        progress: WarmUpProgress | None = None,
+        *,
+        allow_unprojected: bool = False,
+    ) -> None:
+        """Loads the scenario and warms its traffic up.
+
+        Args:
+            scenario: what to run.
+            seed: of SUMO's random numbers.
+            progress: told how far the warm-up is.
+            allow_unprojected: take a network without projection, with lon and lat None.
+
+        Raises:
+            ScenarioError: the scenario cannot be loaded.
+            SetupError: libsumo is missing or unfit.
+            TrafficError: this process holds another simulation.
+        """
+        if InProcess._current is not None:
+            raise TrafficError("this process already holds a simulation; close it first, or use fork.Forked")
+        self.setup = Setup(scenario, seed, allow_unprojected)
+        self.world: World | None = None
+        self._progress = progress
+        InProcess._current = self
+        try:
+            self.world = self._warm()
+        except BaseException:
+            self.close()
+            raise
+        self._fresh = True
+
+    def depart(self, plan: EgoPlan) -> InProcessTraffic:
+        """Puts the ego on its way; ends the drive before it.
+
+        Raises:
+            ScenarioError: its trip has no route, or its edges are not in the network.
+            NoRoomError: no gap opened for it.
+            TrafficError: SUMO failed, or the simulation is closed.
+        """
+        if self.world is None:
+            raise TrafficError("the simulation is closed")
+        if not self._fresh:
+            self.world.close()
+            self.world = self._warm()
+        self._fresh = False
+        return InProcessTraffic(self, self.world, self.world.depart(plan), plan)
+
+    def close(self) -> None:
+        """Ends the simulation; harmless when called again."""
+        if self.world is not None:
+            self.world.close()
+            self.world = None
+        if InProcess._current is self:
+            InProcess._current = None
+
+    def _warm(self) -> World:
+        world = World(self.setup)
+        world.warm_up(self._progress)
+        return world
+
+
+class InProcessTraffic:
+    """One drive in this process's simulation, until the next one departs."""
+
+    def __init__(self, owner: InProcess, world: World, drive: EgoDrive, plan: EgoPlan) -> None:
+        self._owner: InProcess | None = owner
+        self._world = world
+        self._drive = drive
+        self._plan = plan
+        self._log: list[Call] = []
+
+    @property
+    def network(self) -> RoadNetwork:
+        """The roads, as a map draws them."""
+        return self._world.network.map
+
+    @property
+    def state(self) -> DrivingState:
+        """The newest state."""
+        return self._drive.state
+
+    def start(self, duration_s: float) -> None:
+        """As ``Traffic.start``: nothing to do."""
+
+    def advance(self, duration_s: float) -> Advance:
+        """As ``Traffic.advance``."""
+        self._check()
+        advance = self._drive.advance(duration_s)
+        self._log.append(len(advance.states))
+        return advance
+
+    def bare_step(self) -> None:
+        """One step of SUMO that nobody looks at, for benchmarks; a branch or replay does not know of it."""
+        self._world.bare_step()
+
+    def request(self, request: RoadRequest) -> Answer:
+        """As ``Traffic.request``."""
+        self._check()
+        self._log.append(request)
+        return self._drive.request(request)
+
+    def alternatives(self, age_s: float = 0.0) -> tuple[RouteOption, ...]:
+        """As ``Traffic.alternatives``."""
+        self._check()
+        return self._drive.alternatives(age_s)
+
+    def branch(self) -> Traffic:
+        """A copy in a process of its own, which replays the drive so far."""
+        return replayed(self._check().setup, self._plan, self._log)
+
+    def close(self) -> None:
+        """As ``Traffic.close``."""
+        self._owner = None
+
+    def _check(self) -> InProcess:
+        if self._owner is None or self._owner.world is not self._world:
+            raise TrafficError("this drive is over: it was closed, or another one departed in its process")
+        return self._owner

@@ -1,0 +1,190 @@
+"""A copy of a drive that needs no simulation of its own until the two part.
+
+    shared = SharedTraffic(traffic, step_s)
+    shadow = shared.shadow()     # an exact copy from this instant on
+    shared.advance(1.0)          # simulated
+    shadow.advance(1.0)          # told by the other
+    shared.request(alert)        # just before, the shadow gets a simulation of its own, by a branch
+
+The baseline run of an episode is such a copy: most agents ask nothing of the road, or late, and until then a branch
+would only compute the same again. The two are driven side by side; the states are those of a branch.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from weakref import WeakSet
+
+from automotive_cosim.contracts import Answer, DrivingState, RoadNetwork, RoadRequest, RouteOption
+from automotive_cosim.traffic.base import Advance, Event, Traffic
+
+
+class SharedTraffic:
+    """A drive that others may shadow; to everybody else it is the one that it is made of."""
+
+    def __init__(self, traffic: Traffic, step_s: float) -> None:
+        """Takes a drive over.
+
+        Args:
+            traffic: the drive, to be driven and asked through this object only.
+            step_s: length of its steps.
+        """
+        self._traffic = traffic
+        self._step_s = step_s
+        self._shadows: WeakSet[Shadow] = WeakSet()
+
+    @property
+    def network(self) -> RoadNetwork:
+        """As ``Traffic.network``."""
+        return self._traffic.network
+
+    @property
+    def state(self) -> DrivingState:
+        """As ``Traffic.state``."""
+        return self._traffic.state
+
+    def start(self, duration_s: float) -> None:
+        """As ``Traffic.start``."""
+        self._traffic.start(duration_s)
+
+    def advance(self, duration_s: float) -> Advance:
+        """As ``Traffic.advance``."""
+        passed = self._traffic.advance(duration_s)
+        for shadow in self._shadows:
+            shadow.see(passed)
+        return passed
+
+    def request(self, request: RoadRequest) -> Answer:
+        """As ``Traffic.request``; every shadow is on its own from here."""
+        for shadow in tuple(self._shadows):
+            shadow.part()
+        return self._traffic.request(request)
+
+    def alternatives(self, age_s: float = 0.0) -> tuple[RouteOption, ...]:
+        """As ``Traffic.alternatives``."""
+        options = self._traffic.alternatives(age_s)
+        for shadow in self._shadows:
+            shadow.hear(self.state.time_s, age_s, options)
+        return options
+
+    def branch(self) -> SharedTraffic:
+        """As ``Traffic.branch``; it has no shadows."""
+        return SharedTraffic(self._traffic.branch(), self._step_s)
+
+    def shadow(self) -> SharedTraffic:
+        """An exact copy from this instant on, for somebody who asks nothing of the road."""
+        shadow = Shadow(self, self._step_s)
+        self._shadows.add(shadow)
+        return SharedTraffic(shadow, self._step_s)
+
+    def dismiss(self, shadow: Shadow) -> None:
+        """Tells it nothing more."""
+        self._shadows.discard(shadow)
+
+    def close(self) -> None:
+        """As ``Traffic.close``. A shadow that has no simulation of its own cannot go on."""
+        self._traffic.close()
+
+
+class Shadow:
+    """A copy of a drive, told what that one saw for as long as both are the same."""
+
+    def __init__(self, shared: SharedTraffic, step_s: float) -> None:
+        self._shared = shared
+        self._step_s = step_s
+        self._state = shared.state
+        self._own: Traffic | None = None
+        self._ahead: deque[tuple[DrivingState, tuple[Event, ...]]] = deque()
+        """Steps that the other has driven and this one has not."""
+        self._heard: dict[tuple[float, float], tuple[RouteOption, ...]] = {}
+        """Alternatives, by the time at which they were asked for and their age."""
+
+    @property
+    def network(self) -> RoadNetwork:
+        """As ``Traffic.network``."""
+        return self._shared.network
+
+    @property
+    def state(self) -> DrivingState:
+        """As ``Traffic.state``."""
+        return self._state
+
+    def start(self, duration_s: float) -> None:
+        """As ``Traffic.start``; does nothing for as long as it is told."""
+        if self._own is not None and not self._ahead:
+            self._own.start(duration_s)
+
+    def advance(self, duration_s: float) -> Advance:
+        """As ``Traffic.advance``. What the other has not driven yet is driven in a simulation of its own."""
+        steps = round(duration_s / self._step_s)
+        told = [self._ahead.popleft() for _ in range(min(steps, len(self._ahead)))]
+        states = tuple(state for state, _ in told)
+        events = tuple(event for _, passed in told for event in passed)
+        if len(told) < steps and (states or (self._state,))[-1].end is None:
+            rest = self.part().advance((steps - len(told)) * self._step_s)
+            states, events = states + rest.states, events + rest.events
+        if states:
+            self._state = states[-1]
+        return Advance(states, events)
+
+    def request(self, request: RoadRequest) -> Answer:
+        """As ``Traffic.request``.
+
+        Raises:
+            RuntimeError: the other is ahead already; ask before it is driven on.
+        """
+        return self._now().request(request)
+
+    def alternatives(self, age_s: float = 0.0) -> tuple[RouteOption, ...]:
+        """As ``Traffic.alternatives``.
+
+        Raises:
+            RuntimeError: the other is ahead already, and did not ask at this instant.
+        """
+        known = self._heard.get((self._state.time_s, age_s))
+        if known is not None:
+            return known
+        if self._own is None and not self._ahead:
+            return self._shared.alternatives(age_s)
+        return self._now().alternatives(age_s)
+
+    def branch(self) -> Traffic:
+        """As ``Traffic.branch``.
+
+        Raises:
+            RuntimeError: the other is ahead already.
+        """
+        return self._now().branch()
+
+    def close(self) -> None:
+        """As ``Traffic.close``."""
+        self._shared.dismiss(self)
+        if self._own is not None:
+            self._own.close()
+
+    # --- told by the other ----------------------------------------------------------------------------------
+
+    def see(self, passed: Advance) -> None:
+        """Takes note of what it drove."""
+        events = deque(passed.events)
+        for state in passed.states:
+            happened = []
+            while events and events[0].time_s <= state.time_s:
+                happened.append(events.popleft())
+            self._ahead.append((state, tuple(happened)))
+
+    def hear(self, time_s: float, age_s: float, options: tuple[RouteOption, ...]) -> None:
+        """Takes note of the alternatives that it was told of."""
+        self._heard[time_s, age_s] = options
+
+    def part(self) -> Traffic:
+        """The simulation of its own, which begins where the other is now."""
+        if self._own is None:
+            self._own = self._shared.branch()
+            self._shared.dismiss(self)
+        return self._own
+
+    def _now(self) -> Traffic:
+        if self._ahead:
+            raise RuntimeError("a shadow cannot act in the past; drive it on first")
+        return self.part()

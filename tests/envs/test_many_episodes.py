@@ -1,0 +1,57 @@
+"""Two hundred episodes in a row leave nothing behind: no memory, no process, no open file."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+GROWTH_MB = 8.0
+"""Over 160 episodes: far under what one more episode kept alive would add (a simulation has tens of megabytes to
+itself), above the noise of an allocator."""
+
+PROGRAM = """
+import gc, json, os
+from automotive_cosim.envs.cockpit import CockpitEnv
+from automotive_cosim.run import memory
+from automotive_cosim.traffic.fork import Simulations
+
+EPISODES = 200
+SETTLED_AFTER = 40  # caches (fonts, pictures, places, laws) have filled by then
+
+def seen():
+    gc.collect()
+    return memory.rss_mb(), len(memory.tree()), len(os.listdir("/proc/self/fd"))
+
+simulations = Simulations()
+env = CockpitEnv("hvac_fan_max", scenario="grid", render_mode="rgb_array", simulations=simulations)
+env.reset(seed=1)
+figures = []
+for number in range(EPISODES):
+    env.reset()
+    env.step({"action_type": "open_app", "app_name": "climate"})
+    env.render()
+    if number % 2:
+        env.step({"action_type": "status", "goal_status": "complete"})
+    if number >= SETTLED_AFTER and number % SETTLED_AFTER == SETTLED_AFTER - 1:
+        figures.append(seen())
+env.close()
+simulations.close()
+print(json.dumps({"figures": figures, "left": len(memory.tree()) - 1}))
+"""
+"""In a process of its own: what else a test run keeps alive would show in the figures."""
+
+
+@pytest.mark.sumo
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="looks at processes through /proc")
+def test_two_hundred_episodes_leave_nothing() -> None:
+    ran = subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, text=True, check=True)
+    found = json.loads(ran.stdout)
+    megabytes, processes, files = zip(*found["figures"], strict=True)
+    assert len(megabytes) == 4
+    assert len(set(processes)) == len(set(files)) == 1, found
+    assert megabytes[-1] - megabytes[0] < GROWTH_MB, found
+    assert found["left"] == 0

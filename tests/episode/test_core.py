@@ -1,0 +1,173 @@
+"""The episode core: seeds, sessions, branches, the baseline run and the loop."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from automotive_cosim.contracts import Action, ActionType, AlertKind, FeedbackCode, GoalStatus
+from automotive_cosim.cosim.simulation import TICK_S
+from automotive_cosim.episode.episode import Episode
+from automotive_cosim.episode.listener import Listener
+from automotive_cosim.episode.loop import play
+from automotive_cosim.episode.session import Session
+from automotive_cosim.episode.situation import SituationFinder
+from automotive_cosim.episode.specification import Conditions, End, EpisodeSpec, SeedSource, mode_of
+from automotive_cosim.errors import ActionError, OutOfBudgetError, UnknownNameError, UserError
+from automotive_cosim.interface.observe import Channel
+from automotive_cosim.tasking.task import Mode
+
+SPEC = EpisodeSpec("hvac_fan_max", scenario="grid")
+BLIND = Conditions(frozenset({Channel.ELEMENTS}))
+WAIT = Action(ActionType.WAIT, seconds=1)
+WARN = Action(ActionType.SHOW_ALERT, kind=AlertKind.SPEED)
+DONE = Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE)
+
+
+class Acts:
+    """Plays a list of actions; an exception in it is raised."""
+
+    def __init__(self, *actions: Action | Exception):
+        self._left = list(actions)
+
+    def act(self, observation):
+        action = self._left.pop(0)
+        if isinstance(action, Exception):
+            raise action
+        return action
+
+
+@pytest.fixture
+def begin(simulations) -> Iterator[Callable[..., Episode]]:
+    begun: list[Episode] = []
+
+    def begin_(conditions: Conditions = BLIND, listener: Listener | None = None, seed: int = 0) -> Episode:
+        hand_over = SituationFinder(SPEC, simulations, listener=listener).find(SeedSource(seed).next())
+        begun.append(Episode.take_over(hand_over, conditions, listener))
+        return begun[-1]
+
+    yield begin_
+    for episode in begun:
+        episode.close()
+
+
+def test_seeds_follow_from_the_seed_alone():
+    one, other = SeedSource(7), SeedSource(7)
+    assert [one.next() for _ in range(3)] == [other.next() for _ in range(3)]
+    other.traffic = 8
+    assert (one.next(), one.traffic) == (replace(other.next(), traffic=7), 7)
+    assert SeedSource().next() != SeedSource().next()
+    assert SeedSource(2**31 + 5).next().traffic == 5
+    assert len({SeedSource(seed).next().drive for seed in range(20)}) == 20
+
+
+def test_a_mode_that_does_not_exist_is_told():
+    with pytest.raises(UnknownNameError, match="did you mean 'prompted'"):
+        mode_of("promted")
+
+
+def test_a_general_task_is_not_monitored(simulations):
+    with pytest.raises(UserError, match="only safety tasks can be monitored"):
+        SituationFinder(replace(SPEC, mode=Mode.MONITORING), simulations)
+
+
+def test_the_loop_steps_refuses_and_tells_every_observer(begin):
+    seen = []
+    episode = begin()
+    end = play(episode, Acts(WAIT, ActionError("no JSON"), DONE), [lambda session, was: seen.append(was)])
+    assert end is episode.end is End.DECLARED
+    assert [step.feedback.code for step in episode.steps][2] is FeedbackCode.MALFORMED
+    assert len(seen) == len(episode.steps) - 1 == 3
+    assert seen[0] == episode.steps[0].elements
+    assert episode.verdict is not None
+
+
+def test_who_may_think_no_further_is_judged_as_it_stands(begin):
+    episode = begin()
+    assert play(episode, Acts(WAIT, OutOfBudgetError("spent"))) is End.OUT_OF_BUDGET
+    assert episode.verdict is not None
+    assert not episode.verdict.declared.ok
+
+
+@pytest.mark.parametrize(
+    ("conditions", "end", "steps"),
+    [
+        (replace(BLIND, max_steps=2), End.OUT_OF_STEPS, 2),
+        (replace(BLIND, max_sim_s=3.0), End.OUT_OF_TIME, 3),
+        (replace(BLIND, max_sim_s=3.0, action_cost_s=2.0), End.OUT_OF_TIME, 2),
+    ],
+)
+def test_it_is_cut_off_by_its_limits(begin, conditions, end, steps):
+    episode = begin(conditions)
+    assert play(episode, Acts(*[WAIT] * 9)) is end
+    assert end.is_cut_off
+    assert len(episode.steps) == steps + 1
+
+
+def test_nothing_can_be_done_when_it_is_over(begin):
+    episode = begin()
+    play(episode, Acts(DONE))
+    for late in (lambda: episode.step(WAIT), lambda: episode.refuse("why"), episode.branch):
+        with pytest.raises(RuntimeError, match="over"):
+            late()
+
+
+def test_a_branch_goes_its_own_way_from_the_same_instant(begin):
+    episode = begin()
+    episode.step(WAIT)
+    branch, twin = episode.branch(), episode.branch(max_steps=1)
+    assert (branch.observation, branch.trace_sha256) == (episode.observation, episode.trace_sha256)
+    before = episode.trace_sha256
+    play(branch, Acts(WARN, DONE))
+    play(twin, Acts(WAIT))
+    assert twin.end is End.OUT_OF_STEPS
+    assert episode.trace_sha256 == before
+    assert episode.end is None
+    assert len(episode.moments) == 2
+    for each in (branch, twin):
+        each.close()
+    play(episode, Acts(WARN, DONE))
+    assert episode.trace_sha256 == branch.trace_sha256
+    assert episode.verdict == branch.verdict
+
+
+@pytest.mark.parametrize("acts", [(WAIT,) * 4, (WARN,) + (WAIT,) * 3, (WAIT, WAIT, WARN, WAIT)])
+def test_the_baseline_run_is_the_drive_that_nobody_touched(begin, acts):
+    """However the episode goes, and whenever it parts from it."""
+    episode, alone = begin(), begin()
+    undisturbed = alone.branch()
+    for act in acts:
+        episode.step(act)
+    expected = [undisturbed.moments[0], *undisturbed.world.advance(len(acts) * TICK_S)]
+    undisturbed.close()
+    assert [moment.driving for moment in episode.baseline_moments] == [moment.driving for moment in expected]
+    assert [moment.commands for moment in episode.baseline_moments] == [moment.commands for moment in expected]
+
+
+def test_a_listener_hears_of_every_second_in_order(begin):
+    class Times(Listener):
+        def __init__(self):
+            self.times_s: list[float] = []
+
+        def moved(self, moment, cockpit):
+            self.times_s.append(moment.time_s)
+
+    heard = Times()
+    episode = begin(listener=heard)
+    episode.step(replace(WAIT, seconds=5))
+    episode.step(DONE)
+    after = episode.aftermath(2.0)
+    every = [*episode.drive[1:], *episode.moments[1:], *after]
+    assert heard.times_s == [moment.time_s for moment in every]
+    assert np.diff(heard.times_s) == pytest.approx(TICK_S)
+
+
+def test_a_session_needs_no_task(begin):
+    """As in a study: an agent at the cockpit of any drive."""
+    world = begin().world.branch()
+    session = Session.begin(world, "Warm me up.", replace(BLIND, max_steps=3))
+    assert play(session, Acts(*[WAIT] * 9)) is End.OUT_OF_STEPS
+    assert session.observation.goal == "Warm me up."
+    assert session.seconds == pytest.approx(3.0)
+    session.close()

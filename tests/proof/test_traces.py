@@ -1,0 +1,50 @@
+"""The traces of the reference solutions are those on record, so that no change alters an episode unnoticed.
+
+A change that means to alter them (another signal, another text on a screen) renews the record:
+
+    automotive-cosim validate --seeds 3 --gates start --workers 2 --json > tests/proof/traces.json
+
+CI compares one seed of all of them, and the seeds take turns; here are some.
+"""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from automotive_cosim.errors import UserError
+from automotive_cosim.proof.ground import Ground
+from automotive_cosim.proof.prover import changed_traces, read_traces
+from automotive_cosim.tasks import CATALOGUE
+
+RECORD = Path(__file__).with_name("traces.json")
+SEEDS = (0,)
+SAMPLE = sorted(read_traces(RECORD))[::37]
+
+
+def test_the_record_holds_every_half_with_every_seed():
+    wanted = {f"{task.id}/{half}/{seed}" for task in CATALOGUE.values() for half in task.halves for seed in SEEDS}
+    assert set(read_traces(RECORD)) == wanted
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SAMPLE)
+def test_a_reference_solution_gives_the_trace_on_record(simulations, name):
+    task_id, half, seed = name.split("/")
+    ground = Ground.reach(CATALOGUE[task_id], half, int(seed), simulations)
+    assert ground.reference.trace_sha256 == read_traces(RECORD)[name]
+    ground.close()
+
+
+def test_a_changed_and_a_new_trace_are_told_and_a_missing_one_is_not():
+    before = {"a/first/0": "1", "b/first/0": "2", "c/first/0": "3"}
+    now = {"a/first/0": "1", "b/first/0": "9", "d/first/0": "4"}
+    assert [name for name, _ in changed_traces(before, now)] == ["b/first/0", "d/first/0"]
+
+
+@pytest.mark.parametrize("text", ["", "[]", "{}", json.dumps({"traces": {"a": 1}}), json.dumps({"traces": []})])
+def test_a_file_without_traces_is_refused(tmp_path, text):
+    path = tmp_path / "before.json"
+    path.write_text(text)
+    with pytest.raises(UserError, match="validate --json"):
+        read_traces(path)

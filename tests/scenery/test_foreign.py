@@ -1,0 +1,298 @@
+"""Any SUMO scenario and any network run as they are, from folders that nothing is written to."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from contextlib import closing
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from automotive_cosim import scenarios
+from automotive_cosim.contracts import EgoEnd
+from automotive_cosim.envs.cockpit import CockpitEnv
+from automotive_cosim.errors import ScenarioError, UnknownNameError
+from automotive_cosim.scenarios import Scenario
+from automotive_cosim.scenery import open_scenario
+from automotive_cosim.scenery.opening import network_of
+from automotive_cosim.scenery.routes import LONG_M, chosen_trips, edges_at
+from automotive_cosim.traffic.base import EgoPlan
+from automotive_cosim.traffic.fork import Forked
+from automotive_cosim.traffic.georeference import GeoReference
+from automotive_cosim.traffic.ways import way_through
+
+GRID = scenarios.load("grid").folder
+OTHERS = {
+    "ingolstadt1": "ingolstadt/ingolstadt1/ingolstadt1.sumocfg",
+    "ingolstadt7": "ingolstadt/ingolstadt7/ingolstadt7.sumocfg",
+    "bologna": "bologna/acosta/run.sumocfg",
+}
+
+OUTPUTS = '<output><summary-output value="summary.xml"/><fcd-output value="fcd.xml"/></output>'
+DETECTOR = '<e1Detector id="d" lane="c1c2_0" pos="50" period="60" file="detector.xml"/>'
+ROUTE = '<route id="r" edges="cwc0 c0c1 c1c2 c2c3 c3c4 c4ce"/>'
+FLOW = '<flow id="f" route="r" begin="36000" end="90000" period="6"/>'
+
+
+@pytest.fixture
+def foreign(tmp_path: Path) -> Path:
+    """A configuration that begins at ten, writes wherever it can and has a detector."""
+    shutil.copy(GRID / "grid.net.xml", tmp_path / "town.net.xml")
+    (tmp_path / "town.rou.xml").write_text(f"<routes>{ROUTE}{FLOW}</routes>")
+    (tmp_path / "town.add.xml").write_text(f"<additional>{DETECTOR}</additional>")
+    (tmp_path / "town.sumocfg").write_text(
+        '<configuration><input><net-file value="town.net.xml"/><route-files value="town.rou.xml"/>'
+        '<additional-files value="town.add.xml"/></input>'
+        '<time><begin value="36000"/><end value="39600"/><step-length value="0.5"/></time>'
+        f"{OUTPUTS}</configuration>"
+    )
+    return tmp_path / "town.sumocfg"
+
+
+def _listing(folder: Path) -> dict[str, tuple[int, int]]:
+    return {
+        str(path.relative_to(folder)): (path.stat().st_size, path.stat().st_mtime_ns)
+        for path in folder.rglob("*")
+        if path.is_file()
+    }
+
+
+def _drive(scenario: Scenario, trip: int = 0, *, for_s: float = 5.0) -> tuple[float, int, EgoEnd | None]:
+    """Simulation time at departure, vehicles there, and how the drive ended, if it did."""
+    with closing(Forked(scenario, seed=1)) as simulation:
+        plan = EgoPlan(scenario.ego.trips[trip])
+        with closing(simulation.depart(plan)) as traffic:
+            first = traffic.state
+            traffic.advance(for_s)
+            return first.time_s, first.vehicle_count, traffic.state.end
+
+
+def test_a_configuration_is_read_for_what_it_says(foreign: Path) -> None:
+    scenario = open_scenario(foreign)
+    assert (scenario.name, scenario.country, scenario.has_place) == ("town", "FR", True)
+    assert scenario.sumo.step_length_s == scenario.sumo.action_step_length_s == 0.5
+    assert scenario.weather == ()
+    assert str(scenario.start.tzinfo) == "Europe/Paris"
+    after_midnight_s = scenario.start.hour * 3600 + scenario.start.minute * 60 + scenario.start.second
+    assert after_midnight_s == 36_000 + scenario.sumo.warm_up_s
+    assert scenario.notes == ()
+
+
+@pytest.mark.sumo
+def test_it_runs_from_its_own_begin_and_leaves_its_folder_alone(foreign: Path) -> None:
+    before = _listing(foreign.parent)
+    scenario = open_scenario(foreign)
+    departed_s, vehicles, _ = _drive(scenario, for_s=60.0)
+    assert departed_s >= 36_000 + scenario.sumo.warm_up_s
+    assert vehicles > 1
+    assert _listing(foreign.parent) == before
+
+
+def test_a_folder_with_one_configuration_opens_as_that(foreign: Path) -> None:
+    assert open_scenario(foreign.parent) == open_scenario(foreign)
+    shutil.copy(foreign, foreign.with_name("other.sumocfg"))
+    with pytest.raises(ScenarioError, match=r"name one of other\.sumocfg, town\.sumocfg"):
+        open_scenario(foreign.parent)
+
+
+@pytest.mark.sumo
+@pytest.mark.parametrize("name", ["grid", "paris_centre"])
+def test_a_bare_network_runs_with_light_traffic_and_says_so(name: str) -> None:
+    net = next(scenarios.load(name).folder.glob("*.net.xml*"))
+    scenario = open_scenario(net)
+    assert scenario.name == name
+    assert any("no traffic of its own" in note for note in scenario.notes)
+    _, vehicles, end = _drive(scenario)
+    assert vehicles > 3
+    assert end is None
+
+
+def test_light_traffic_is_the_seeds(tmp_path: Path) -> None:
+    from automotive_cosim.traffic.options import Setup, command_line, read_configuration
+
+    scenario = open_scenario(GRID / "grid.net.xml")
+    written = []
+    for number, seed in enumerate((1, 1, 2)):
+        scratch = tmp_path / str(number)
+        scratch.mkdir()
+        command_line(read_configuration(scenario.config), Setup(scenario, seed), scratch)
+        written.append((scratch / "random.add.xml").read_text())
+    assert written[0] == written[1] != written[2]
+    assert written[0].count("<flow ") > 20
+
+
+@pytest.mark.parametrize("name", scenarios.shipped())
+def test_drawn_ways_lead_from_start_to_goal_and_are_long(name: str) -> None:
+    network = network_of(scenarios.load(name))
+    trips = chosen_trips(network, "", "")
+    assert len(trips) > 1
+    longest = 0.0
+    lengths = []
+    for trip in trips:
+        way = way_through(network, (trip.from_edge, trip.to_edge))
+        assert way[0] == trip.from_edge
+        assert way[-1] == trip.to_edge
+        assert all(there in network.crossings[here] for here, there in pairwise(way))
+        lengths.append(sum(network.edges[edge].length_m for edge in way))
+        longest = max(longest, lengths[-1])
+    assert min(lengths) >= 0.4 * min(longest, LONG_M)
+    assert chosen_trips(network, "", "") == trips
+
+
+def test_a_way_between_places_however_they_are_named() -> None:
+    network = network_of(scenarios.load("grid"))
+    edge = network.edges["n1n2"]
+    lon_deg, lat_deg = GeoReference(network.map).lon_lat(*edge.shape_m[0])
+    assert edges_at(network, "n1n2") == ("n1n2",)
+    assert "n1n2" in edges_at(network, edge.name.upper())
+    found = network.edges[edges_at(network, f"{lon_deg}, {lat_deg}")[0]]
+    assert {found.from_node, found.to_node} & {edge.from_node, edge.to_node}
+    (trip,) = chosen_trips(network, "cwc0", edge.name)
+    assert trip.from_edge == "cwc0"
+    assert network.edges[trip.to_edge].name == edge.name
+    drawn = chosen_trips(network, "", "c4ce")
+    assert {trip.to_edge for trip in drawn} == {"c4ce"}
+
+
+@pytest.mark.parametrize(
+    ("places", "said"),
+    [
+        (("Avenue Central", ""), "did you mean 'Avenue Centrale'"),
+        (("c1c22", ""), "did you mean 'c1c2'"),
+        (("zzzzzzzz", ""), "a street's name, an edge's id or LON,LAT"),
+        (("2.35,48.85", ""), "km from the nearest road"),
+        (("c1c2", "c1c2"), "no way for a car leads"),
+    ],
+)
+def test_a_place_that_is_none_is_one_line(places: tuple[str, str], said: str) -> None:
+    with pytest.raises(ScenarioError, match=said) as caught:
+        open_scenario("grid", from_place=places[0], to_place=places[1])
+    assert "\n" not in str(caught.value)
+
+
+def test_the_ego_drives_the_way_that_was_asked_for(simulations) -> None:
+    env = CockpitEnv(
+        "hvac_fan_max", scenario="grid", from_place="Rue du Sud", to_place="n4ne", simulations=simulations
+    )
+    env.reset(seed=2)
+    route = env.episode.moments[0].driving.ahead.route_edges
+    assert route[-1] == "n4ne"
+    assert env.episode.drive[0].driving.road.name == "Rue du Sud"
+    env.close()
+
+
+def test_which_of_the_drawn_ways_is_the_seeds(foreign: Path, simulations) -> None:
+    departures = []
+    for seed in (1, 1, 2, 3, 4):
+        env = CockpitEnv("hvac_fan_max", scenario=str(foreign), simulations=simulations)
+        env.reset(seed=seed)
+        departures.append(env.episode.drive[0].driving.ahead.route_edges)
+        env.close()
+    assert departures[0] == departures[1]
+    assert len(set(departures)) > 1
+
+
+def test_what_is_no_scenario_is_one_line(tmp_path: Path) -> None:
+    (tmp_path / "x.osm.xml").write_text("<osm/>")
+    (tmp_path / "x.rou.xml").write_text("<routes/>")
+    (tmp_path / "x.sumocfg").write_text("<configuration")
+    (tmp_path / "y.sumocfg").write_text("<configuration/>")
+    (tmp_path / "z.net.xml").write_text("<net>")
+    for name, said in (
+        ("x.osm.xml", "scenarios import"),
+        ("x.rou.xml", "its root is <routes>"),
+        ("x.sumocfg", "is no XML"),
+        ("y.sumocfg", "names no net-file"),
+        ("z.net.xml", "not a whole SUMO network"),
+        ("missing.sumocfg", "there is no file"),
+    ):
+        with pytest.raises(ScenarioError, match=said) as caught:
+            open_scenario(tmp_path / name)
+        assert "\n" not in str(caught.value), name
+    with pytest.raises(UnknownNameError, match="did you mean 'grid'"):
+        open_scenario("gird")
+
+
+@pytest.mark.parametrize("text", ["ten", "nan", "1:2"])
+def test_a_begin_that_is_no_time_is_one_line(foreign: Path, text: str) -> None:
+    foreign.write_text(foreign.read_text().replace("36000", text))
+    with pytest.raises(ScenarioError, match=f"begin = '{text}' is no number"):
+        open_scenario(foreign)
+
+
+def test_a_begin_may_be_a_clock_time(foreign: Path) -> None:
+    foreign.write_text(foreign.read_text().replace("36000", "10:00:00"))
+    assert open_scenario(foreign).start.hour == 10
+
+
+# --- without a place --------------------------------------------------------------------------------------
+
+
+def _without_projection(net: Path) -> None:
+    net.write_text(re.sub(r'projParameter="[^"]*"', 'projParameter="!"', net.read_text()))
+
+
+def test_a_network_without_projection_runs_without_gps_and_says_so(foreign: Path, simulations) -> None:
+    _without_projection(foreign.with_name("town.net.xml"))
+    scenario = open_scenario(foreign)
+    assert (scenario.has_place, scenario.country) == (False, "")
+    assert any("has no projection" in note and "without GPS" in note for note in scenario.notes)
+    env = CockpitEnv("hvac_fan_max", scenario=str(foreign), simulations=simulations, render_mode="rgb_array")
+    encoded, _ = env.reset(seed=1)
+    assert encoded["gps"]["available"] == 0
+    assert env.episode.moments[0].gps is None
+    assert env.episode.moments[0].context.country == ""
+    assert "Position: unknown" in (env.episode.observation.context or "")
+    assert env.render() is not None
+    env.close()
+
+
+def test_it_can_be_placed(foreign: Path) -> None:
+    _without_projection(foreign.with_name("town.net.xml"))
+    scenario = open_scenario(foreign, origin=(11.32, 44.4957))
+    assert (scenario.has_place, scenario.country, scenario.notes) == (True, "IT", ())
+
+
+@pytest.mark.sumo
+def test_a_scenarios_folder_without_projection_is_refused_unless_gps_is_asked_to_be_absent(tmp_path: Path) -> None:
+    folder = tmp_path / "flat"
+    shutil.copytree(GRID, folder)
+    _without_projection(folder / "grid.net.xml")
+    with pytest.raises(ScenarioError, match="has no projection") as caught:
+        Forked(open_scenario(folder))
+    assert "\n" not in str(caught.value)
+    assert "--no-gps" in str(caught.value)
+    for env in (
+        CockpitEnv("hvac_fan_max", scenario=str(folder), gps=False),
+        CockpitEnv("hvac_fan_max", scenario="grid", gps=False),
+    ):
+        env.reset(seed=1)
+        assert env.episode.moments[0].gps is None
+        assert env.episode.moments[0].context.country == ""
+        env.close()
+
+
+# --- the networks of others ----------------------------------------------------------------------
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", OTHERS)
+def test_real_scenarios_run_with_their_own_demand(name: str, simulations, data_of_others) -> None:
+    path = data_of_others(OTHERS[name])
+    before = _listing(path.parent)
+    scenario = open_scenario(path)
+    env = CockpitEnv("hvac_fan_max", scenario=str(path), simulations=simulations)
+    env.reset(seed=1)
+    driving = env.episode.moments[0].driving
+    assert driving.vehicle_count > 8
+    assert not any("no traffic of its own" in note for note in scenario.notes)
+    if name == "bologna":
+        assert any("without GPS" in note for note in scenario.notes)
+        assert env.episode.moments[0].gps is None
+    else:
+        assert env.episode.moments[0].context.country == "DE"
+        assert scenario.start.hour == 16
+    env.close()
+    assert _listing(path.parent) == before

@@ -1,0 +1,93 @@
+"""Pictures of scenarios: everything that is declared is drawn, and names and signs lie clear of each other."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+from itertools import combinations
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from automotive_cosim import scenarios
+from automotive_cosim.cockpit.theme import DAY
+from automotive_cosim.errors import ScenarioError, UserError
+from automotive_cosim.scenarios import Ego, Trip
+from automotive_cosim.scenery import open_scenario
+from automotive_cosim.scenery.labels import Labels, place_labels
+from automotive_cosim.scenery.opening import network_of
+from automotive_cosim.scenery.picture import ASPECTS, Viewport, draw_scenario, save_picture, trip_colour
+
+GRID = scenarios.load("grid")
+
+
+def _colours(picture: Image.Image) -> Counter[tuple[int, ...]]:
+    pixels = np.asarray(picture).reshape(-1, 3)
+    values, counts = np.unique(pixels, axis=0, return_counts=True)
+    return Counter({tuple(map(int, value)): int(count) for value, count in zip(values, counts, strict=True)})
+
+
+@pytest.mark.parametrize("name", scenarios.shipped())
+def test_every_shipped_scenario_has_its_picture(name: str) -> None:
+    folder = scenarios.load(name).folder
+    with Image.open(folder / "map.webp") as shipped:
+        assert shipped.format == "WEBP"
+        assert shipped.size == draw_scenario(open_scenario(name)).size, "render it again"
+    assert (folder / "map.webp").stat().st_size < 150_000
+    assert "(map.webp)" in (folder / "README.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", ["grid", "border", "gulf"])
+def test_all_roads_lie_on_the_map(name: str) -> None:
+    network = network_of(scenarios.load(name))
+    frame = Viewport.around(network.edges.values())
+    assert ASPECTS[0] - 0.01 <= frame.width / frame.height <= ASPECTS[1] + 0.01
+    for edge in network.edges.values():
+        pixels = frame.pixels(edge.shape_m)
+        assert pixels.min() >= 0
+        assert np.all(pixels <= (frame.width, frame.height))
+
+
+def test_every_trip_and_road_class_shows() -> None:
+    seen = _colours(draw_scenario(scenarios.load("paris_centre")))
+    for number in range(len(scenarios.load("paris_centre").ego.trips)):
+        assert seen[trip_colour(number)] > 500
+    for colour in (DAY.motorway, DAY.avenue, DAY.street):
+        assert seen[colour] > 1000
+
+
+def test_the_same_scenario_is_drawn_the_same() -> None:
+    assert draw_scenario(GRID).tobytes() == draw_scenario(GRID).tobytes()
+
+
+@pytest.mark.parametrize("name", ["paris_centre", "london"])
+def test_names_and_signs_do_not_cover_each_other(name: str) -> None:
+    network = network_of(scenarios.load(name))
+    frame = Viewport.around(network.edges.values())
+    labels = Labels(Image.new("RGB", (frame.width, frame.height)), frame.pixels)
+    place_labels(labels, network)
+    assert len(labels.taken) > 40
+    assert not any(a.intersects(b) for a, b in combinations(labels.taken, 2))
+
+
+@pytest.mark.parametrize("ends", [("cwc0", "nowhere"), ("nowhere", "cwc0")])
+def test_a_trip_without_a_way_is_named(ends: tuple[str, str]) -> None:
+    lost = replace(GRID, ego=Ego((Trip("lost", *ends),)))
+    with pytest.raises(ScenarioError, match="'lost'"):
+        draw_scenario(lost)
+
+
+@pytest.mark.parametrize("ending", [".png", ".webp"])
+def test_a_picture_is_saved_whole(tmp_path: Path, ending: str) -> None:
+    save_picture(GRID, tmp_path / "new" / f"grid{ending}")
+    with Image.open(tmp_path / "new" / f"grid{ending}") as picture:
+        picture.load()
+    assert [path.name for path in (tmp_path / "new").iterdir()] == [f"grid{ending}"]
+
+
+def test_a_place_that_cannot_be_written_is_one_line(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("mine")
+    with pytest.raises(UserError, match="cannot write"):
+        save_picture(GRID, tmp_path / "file" / "grid.webp")

@@ -1,0 +1,212 @@
+"""Runs of the `sumo` binary on the shipped scenarios, kept for the session."""
+
+from __future__ import annotations
+
+import math
+import xml.etree.ElementTree as ET
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+import sumolib
+
+from automotive_cosim import scenarios
+from automotive_cosim.scenarios import Scenario
+from automotive_cosim.sumo_scenarios import build
+from automotive_cosim.traffic import sumo_programs
+
+WARM_S, END_S = 900, 4500
+"""Stability is asked of the hour after a quarter of an hour."""
+
+
+@dataclass(frozen=True)
+class Hour:
+    """What came of an hour of traffic."""
+
+    running: tuple[int, ...]
+    """Vehicles on the road, one entry a second from ``WARM_S`` on."""
+    halted: tuple[int, ...]
+    teleports: int
+    collisions: int
+    speed_mps: dict[str, float]
+    """Mean speed by edge."""
+
+    @property
+    def worst_halted(self) -> float:
+        return max(h / r for h, r in zip(self.halted, self.running, strict=True))
+
+
+def run_sumo(scenario: Scenario, seed: int, *options: str) -> str:
+    """Runs `sumo` on the scenario's own configuration; returns what it complained of."""
+    done, printed = sumo_programs.run("sumo", ["-c", scenario.config, "--seed", str(seed), *options])
+    assert done, printed
+    return printed
+
+
+@pytest.fixture(scope="session")
+def complaints(sumo: None) -> Callable[..., str]:
+    return run_sumo
+
+
+@pytest.fixture(scope="session")
+def net() -> Callable[[str], Any]:
+    """A scenario's network, as sumolib reads it."""
+
+    @cache
+    def of(name: str) -> Any:
+        scenario = scenarios.load(name)
+        file = ET.parse(scenario.config).getroot().find("input/net-file").get("value")  # type: ignore[union-attr]
+        return sumolib.net.readNet(str(scenario.folder / str(file)))
+
+    return of
+
+
+@pytest.fixture(scope="session")
+def metres() -> Callable[[tuple[float, float], tuple[float, float]], float]:
+    """Distance between two places given as longitude and latitude, degrees."""
+
+    def between(a: tuple[float, float], b: tuple[float, float]) -> float:
+        east = (b[0] - a[0]) * 111_320 * math.cos(math.radians(a[1]))
+        return math.hypot(east, (b[1] - a[1]) * 111_200)
+
+    return between
+
+
+@pytest.fixture(scope="session")
+def lonlat(net: Callable[[str], Any]) -> Callable[[str, str], tuple[float, float]]:
+    """Where a scenario's junction lies: longitude and latitude, degrees."""
+
+    def of(name: str, junction: str) -> tuple[float, float]:
+        x, y = net(name).getNode(junction).getCoord()
+        lon_deg, lat_deg = net(name).convertXY2LonLat(x, y)
+        return float(lon_deg), float(lat_deg)
+
+    return of
+
+
+@pytest.fixture(scope="session")
+def hour(sumo: None, tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Hour]:
+    @cache
+    def of(name: str) -> Hour:
+        folder = tmp_path_factory.mktemp(name)
+        summary, statistic, edges, extra = (
+            folder / f for f in ("summary.xml", "statistic.xml", "edges.xml", "a.xml")
+        )
+        extra.write_text(
+            f'<additional><edgeData id="e" file="{edges}" begin="{WARM_S}" end="{END_S}"/></additional>'
+        )
+        outputs = ["--summary-output", summary, "--statistic-output", statistic, "--additional-files", extra]
+        run_sumo(scenarios.load(name), 11, "--step-length", "1", "--end", str(END_S), *map(str, outputs))
+        return _read(summary, statistic, edges)
+
+    return of
+
+
+def _read(summary: Path, statistic: Path, edges: Path) -> Hour:
+    steps = [s for s in ET.parse(summary).getroot() if float(s.get("time", 0)) >= WARM_S]
+    totals = ET.parse(statistic).getroot()
+    speeds = {e.get("id", ""): e.get("speed") for e in ET.parse(edges).getroot().iter("edge")}
+    return Hour(
+        tuple(int(s.get("running", 0)) for s in steps),
+        tuple(int(s.get("halting", 0)) for s in steps),
+        int(totals.find("teleports").get("total")),  # type: ignore[union-attr,arg-type]
+        int(totals.find("safety").get("collisions")),  # type: ignore[union-attr,arg-type]
+        {edge: float(speed) for edge, speed in speeds.items() if speed},
+    )
+
+
+@pytest.fixture(scope="session")
+def held_s(sumo: None, tmp_path_factory: pytest.TempPathFactory) -> Callable[..., float]:
+    """Longest unbroken time (s) in which a driver of that speed factor, on that trip and in live traffic, is
+    faster than ``speed_kmh`` where ``limit_kmh`` is posted, in the first ``within_s`` of the drive."""
+
+    def measure(
+        name: str, trip: str, *, factor: float, speed_kmh: float, limit_kmh: float, seed: int, within_s: float
+    ) -> float:
+        scenario = scenarios.load(name)
+        way, warm = scenario.trip(trip), scenario.sumo.warm_up_s
+        folder = tmp_path_factory.mktemp(f"{name}-{trip}-{seed}")
+        ego, fcd = folder / "ego.rou.xml", folder / "fcd.xml"
+        ego.write_text(
+            f'<routes><vType id="ego" speedFactor="{factor}" speedDev="0" maxSpeed="60" actionStepLength="0.1"/>'
+            f'<trip id="ego" type="ego" depart="{warm}" from="{way.from_edge}" to="{way.to_edge}" '
+            f'via="{" ".join(way.via)}" departSpeed="0"><param key="has.fcd.device" value="true"/>'
+            '<param key="has.rerouting.device" value="false"/></trip></routes>'
+        )
+        routes = scenario.config.with_name(f"{name}.rou.xml")
+        run_sumo(
+            scenario, seed, "--route-files", f"{routes},{ego}", "--end", str(warm + within_s),
+            "--fcd-output", str(fcd), "--device.fcd.explicit", "ego", "--fcd-output.attributes", "speed,lane",
+        )  # fmt: skip
+        limits = lane_limits_kmh(name)
+        longest = now = 0
+        for row in ET.parse(fcd).getroot().iter("vehicle"):
+            fast = float(row.get("speed", 0)) * 3.6 > speed_kmh
+            here = limits.get(row.get("lane", ""), limit_kmh if row.get("lane", "").startswith(":") else 0.0)
+            now = now + 1 if fast and abs(here - limit_kmh) < 0.1 else 0
+            longest = max(longest, now)
+        return longest * scenario.sumo.step_length_s
+
+    return measure
+
+
+@dataclass(frozen=True)
+class Ride:
+    """One trip of the ego, an entry a second from its departure on."""
+
+    edges: tuple[str, ...]
+    speed_mps: tuple[float, ...]
+    arrived: bool
+
+    def seconds_on(self, *edges: str) -> int:
+        """How long it was on those edges."""
+        return sum(edge in edges for edge in self.edges)
+
+
+RIDE_WITHIN_S = 1500
+
+
+@pytest.fixture(scope="session")
+def rides(sumo: None, tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], dict[str, Ride]]:
+    """Every trip of a scenario by its name, driven in live traffic at the limit or 130 km/h, all in one run."""
+
+    @cache
+    def of(name: str) -> dict[str, Ride]:
+        scenario = scenarios.load(name)
+        warm = scenario.sumo.warm_up_s
+        folder = tmp_path_factory.mktemp(f"{name}-rides")
+        egos, fcd, ends = folder / "egos.rou.xml", folder / "fcd.xml", folder / "tripinfo.xml"
+        trips = "".join(
+            f'<trip id="ego.{trip.name}" type="ego" depart="{warm}" from="{trip.from_edge}" to="{trip.to_edge}"'
+            + (f' via="{" ".join(trip.via)}"' if trip.via else "")
+            + '><param key="has.rerouting.device" value="false"/></trip>'
+            for trip in scenario.ego.trips
+        )
+        egos.write_text(f'<routes><vType id="ego" speedFactor="1" speedDev="0" maxSpeed="36"/>{trips}</routes>')
+        known = ",".join(f"ego.{trip.name}" for trip in scenario.ego.trips)
+        routes = ET.parse(scenario.config).getroot().find("input/route-files").get("value")  # type: ignore[union-attr]
+        run_sumo(
+            scenario, 5, "--route-files", f"{scenario.folder / str(routes)},{egos}", "--step-length", "1",
+            "--end", str(warm + RIDE_WITHIN_S), "--device.fcd.explicit", known, "--fcd-output", str(fcd),
+            "--device.tripinfo.explicit", known, "--tripinfo-output", str(ends),
+        )  # fmt: skip
+        arrived = {row.get("id") for row in ET.parse(ends).getroot().iter("tripinfo")}
+        return {trip.name: _ride(fcd, f"ego.{trip.name}", arrived) for trip in scenario.ego.trips}
+
+    return of
+
+
+def _ride(fcd: Path, ego: str, arrived: set[str | None]) -> Ride:
+    rows = [row for row in ET.parse(fcd).getroot().iter("vehicle") if row.get("id") == ego]
+    edges = tuple(row.get("lane", "").rpartition("_")[0] for row in rows)
+    return Ride(edges, tuple(float(row.get("speed", 0)) for row in rows), ego in arrived)
+
+
+@cache
+def lane_limits_kmh(name: str) -> dict[str, float]:
+    """Limits by lane id, junctions left out."""
+    root = ET.fromstring(build.shipped_net(name))
+    return {lane.get("id", ""): float(lane.get("speed", 0)) * 3.6 for lane in root.iterfind("edge[@from]/lane")}

@@ -1,0 +1,78 @@
+"""Questions about the car in front, the range and the speed that an alert names, on moments made by hand."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from automotive_cosim.cockpit.signals import ENERGY
+from automotive_cosim.contracts import AlertKind, OtherVehicle, PullOver, Reroute, RoadRequest, SlowDown
+from automotive_cosim.tasking.checks import AlertGiven, RoadAsked
+from automotive_cosim.tasking.triggers import OutOfRange, SlowLeaderWithin
+
+
+def moment(leader: OtherVehicle | None = None, range_m: float = 0.0, left_m: float = 0.0) -> Any:
+    driving = SimpleNamespace(around=SimpleNamespace(leader=leader), ahead=SimpleNamespace(route_left_m=left_m))
+    return SimpleNamespace(driving=driving, signals={ENERGY.RANGE.path: range_m})
+
+
+def alerted(*given: dict[str, Any]) -> Any:
+    return SimpleNamespace(commands={"alerts": list(given)})
+
+
+def asked(*requests: RoadRequest) -> Any:
+    return SimpleNamespace(commands={"requests": list(requests)})
+
+
+@pytest.mark.parametrize(
+    ("gap_m", "speed_mps", "holds"),
+    [(100.0, 0.0, True), (100.0, 5.0, True), (100.0, 9.0, False), (201.0, 0.0, False)],
+)
+def test_a_slow_leader_is_near_and_slow(gap_m: float, speed_mps: float, holds: bool):
+    slow = SlowLeaderWithin(25.0, 200.0)
+    assert slow(moment(OtherVehicle("other", gap_m, speed_mps, None))) is holds
+    assert not slow(moment())
+
+
+def test_out_of_range_compares_with_the_way_left():
+    assert OutOfRange()(moment(range_m=9_000.0, left_m=9_001.0))
+    assert not OutOfRange()(moment(range_m=9_000.0, left_m=9_000.0))
+
+
+@pytest.mark.parametrize(
+    ("advised_kmh", "may_be_silent", "must_advise"),
+    [(None, True, False), (32.0, True, True), (32.19, True, True), (40.0, False, False)],
+)
+def test_an_alert_names_the_speed_where_no_sign_does(
+    advised_kmh: float | None, may_be_silent: bool, must_advise: bool
+):
+    start, now = alerted(), alerted({"kind": AlertKind.SPEED, "speed_kmh": advised_kmh})
+    assert AlertGiven(AlertKind.SPEED, 32.2).holds(start, now, [now]) is may_be_silent
+    assert AlertGiven(AlertKind.SPEED, 32.2, must_advise=True).holds(start, now, [now]) is must_advise
+
+
+def test_an_alert_that_asks_for_no_speed_takes_none():
+    start, now = alerted(), alerted({"kind": AlertKind.YIELD, "speed_kmh": 30.0})
+    assert not AlertGiven(AlertKind.YIELD).holds(start, now, [now])
+
+
+@pytest.mark.parametrize(
+    ("requests", "any_reroute", "that_reroute"),
+    [
+        ((), False, False),
+        ((Reroute("A 4"),), True, True),
+        ((Reroute("A 44"),), True, False),
+        ((Reroute(edges=("A 4",)),), True, False),
+        ((PullOver(),), False, False),
+        ((Reroute("A 4"), Reroute("A 4")), False, False),
+    ],
+)
+def test_a_request_counts_by_its_class_or_as_it_is(
+    requests: tuple[RoadRequest, ...], any_reroute: bool, that_reroute: bool
+):
+    before = SlowDown(30.0)
+    start, now = asked(before), asked(before, *requests)
+    assert RoadAsked(Reroute).holds(start, now, [now]) is any_reroute
+    assert RoadAsked(Reroute("A 4")).holds(start, now, [now]) is that_reroute
