@@ -1,10 +1,11 @@
 """Estimates how long the rest of a batch takes, from what its jobs have taken so far.
 
-A worker that changes to another simulation warms it up first: that job is *cold* and takes the warm-up on top of
-its own time. The own time depends on the kind of job (which agent acts) and on the scenario: it is expected to be the
-mean over the warm jobs of that kind in that scenario, drawn towards the mean of the kind while few are known. A
-warm-up takes what the cold jobs took beyond that. A situation that does not arise costs its time once for all jobs
-that wait for it. With these times the rest is played through the way the queue will hand it out.
+A worker that changes to another simulation warms it up first: that job is *cold* and takes the warm-up on top
+of its own time. The own time depends on the kind of job (which agent acts) and on the scenario: it is expected
+to be the mean over the warm jobs of that kind in that scenario, drawn towards the mean of the kind while few
+are known. A warm-up takes what the cold jobs took beyond that. A situation that does not arise costs its time
+once for all jobs that wait for it. With these times the rest is played through the way the queue will hand it
+out.
 """
 
 from __future__ import annotations
