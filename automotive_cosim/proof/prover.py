@@ -77,12 +77,18 @@ class _Findings:
 
 
 class Prover:
-    """Proves one task after the other over warm simulations of its own."""
+    """Proves one task after the other over warm simulations."""
 
-    def __init__(self, chosen: Sequence[str] = GATES) -> None:
-        """Tries these gates."""
+    def __init__(self, chosen: Sequence[str] = GATES, simulations: Simulations | None = None) -> None:
+        """Tries these gates.
+
+        Args:
+            chosen: gates of ``GATES``.
+            simulations: warm ones to take, which stay the caller's to close; by default its own.
+        """
         self._chosen = frozenset(chosen)
-        self._simulations = Simulations(count_limit=SIMULATIONS)
+        self._simulations = simulations or Simulations(count_limit=SIMULATIONS)
+        self._owns_simulations = simulations is None
         self._last: tuple[str, int, str] | None = None
         """Task, seed and hash of the expert's episode that was proven last."""
 
@@ -130,8 +136,9 @@ class Prover:
         )
 
     def close(self) -> None:
-        """Ends its simulations."""
-        self._simulations.close()
+        """Ends its own simulations."""
+        if self._owns_simulations:
+            self._simulations.close()
 
     def _prove_half(self, found: _Findings, half: str, ground: Ground) -> None:
         right = ground.reference
