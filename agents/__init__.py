@@ -1,4 +1,4 @@
-"""Agents: the contestants (T3A, M3A, ASURADA), the yardsticks (oracle, human), and strategies that must fail."""
+"""Agents: the contestants (T3A, M3A, ASURADA), the references (oracle, human) and the negative controls."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ SIMPLE: Mapping[str, Callable[[AgentSettings], Agent]] = {
     "press-everything": lambda settings: PressEverything(),
     "random": lambda settings: Random(settings.seed),
 }
-"""Those without a model."""
+"""Agents without a model."""
 
 AGENTS = tuple(sorted([*SIMPLE, *PROFILES]))
 """Names of all agents; ``package.module:Class`` names one of your own."""
@@ -58,11 +58,11 @@ def make_agent(name: str, model: str = "rules", settings: AgentSettings = AgentS
     Args:
         name: one of ``AGENTS``, or ``package.module:Class``.
         model: a model's name (``models.make_model``), for the agents that have one.
-        settings: how it is to be run.
+        settings: how to run it.
 
     Raises:
         UnknownNameError: no agent or model of that name.
-        UserError: a class of your own that is no agent, or a memory that cannot be used.
+        UserError: a class of your own is not an agent, or a memory cannot be used.
         SetupError: the model's package, key or address is missing.
     """
     if ":" in name:

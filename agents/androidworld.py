@@ -1,7 +1,7 @@
-"""AndroidWorld's agents, unchanged: ``Class(env)``, ``step(goal)``, and an ``env`` they read and act on.
+"""Runs AndroidWorld's agents unchanged: ``Class(env)``, ``step(goal)``, and an ``env`` that they read and act on.
 
 Such an agent calls the environment; here the environment calls the agent. So it runs on a thread of its own, which
-stands still between its actions: ``act`` lets it go on until it executes the next one.
+pauses between its actions: ``act`` resumes it until it executes the next one.
 
     agent thread   step(goal) -> env.get_state() ... env.execute_action(action) | waits
     this thread    act(observation) -------------------------------------------> Action
@@ -28,7 +28,7 @@ SCREEN_PX = (1280, 720)
 
 @dataclass(frozen=True)
 class Bounds:
-    """A box in pixels, with what AndroidWorld's agents ask of one."""
+    """A box in pixels, with the properties that AndroidWorld's agents use."""
 
     x_min: int
     x_max: int
@@ -37,22 +37,22 @@ class Bounds:
 
     @property
     def center(self) -> tuple[float, float]:
-        """Its middle."""
+        """The middle of the box."""
         return (self.x_min + self.x_max) / 2, (self.y_min + self.y_max) / 2
 
     @property
     def width(self) -> int:
-        """In pixels."""
+        """Size in pixels."""
         return self.x_max - self.x_min
 
     @property
     def height(self) -> int:
-        """In pixels."""
+        """Size in pixels."""
         return self.y_max - self.y_min
 
     @property
     def area(self) -> int:
-        """In square pixels."""
+        """Area in square pixels."""
         return self.width * self.height
 
 
@@ -85,7 +85,7 @@ class UIElement:
 
 @dataclass
 class AndroidWorldState:
-    """What ``get_state`` returns."""
+    """The result of ``get_state``."""
 
     pixels: npt.NDArray[np.uint8]
     ui_elements: list[UIElement]
@@ -99,14 +99,14 @@ class _EpisodeOverError(BaseException):
 
 @dataclass(frozen=True)
 class _Over:
-    """The agent came back from ``step`` without an action, or says that it is done."""
+    """The agent returned from ``step`` without an action, or says that it is done."""
 
     declared: bool
     data: Any
 
 
 class _Environment:
-    """What an AndroidWorld agent takes for its environment. All its methods are called on the agent's thread."""
+    """The environment that an AndroidWorld agent gets. All its methods are called on the agent's thread."""
 
     logical_screen_size = SCREEN_PX
     device_screen_size = SCREEN_PX
@@ -128,29 +128,29 @@ class _Environment:
         return AndroidWorldState(np.array(pixels), [_ui_element(element) for element in now.elements or ()])
 
     def reset(self, go_home: bool = False) -> AndroidWorldState:
-        """The screen as it is now: an episode begins where it begins."""
+        """The current screen; nothing is reset."""
         return self.get_state()
 
     def execute_action(self, action: Any) -> None:
-        """Hands the action over and waits until its time has passed."""
+        """Passes the action on and waits until its time has passed."""
         known = translated(action)
         self.acted = True
         self.done.put(known)
         self.wait()
 
     def hide_automation_ui(self) -> None:
-        """There is none."""
+        """Does nothing."""
 
     def display_message(self, message: str, header: str = "") -> None:
-        """There is nobody to read it."""
+        """Does nothing."""
 
     def wait(self) -> None:
-        """Until there is a new observation."""
+        """Waits for a new observation."""
         self._now = None
         self.now()
 
     def now(self) -> Observation:
-        """The present observation; ends the thread when the episode is over."""
+        """The current observation; ends the thread when the episode is over."""
         if self._now is None:
             self._now = self.seen.get()
         if self._now is None:
@@ -159,13 +159,13 @@ class _Environment:
 
 
 class AndroidWorldAgent:
-    """Runs an AndroidWorld agent as one of ours."""
+    """Adapts an AndroidWorld agent to this project's protocol."""
 
     model = "own"
     channels = frozenset({Channel.ELEMENTS, Channel.SCREENSHOT})
 
     def __init__(self, make: Callable[..., Any]) -> None:
-        """Takes what makes the agent.
+        """Takes the agent's class or factory.
 
         Args:
             make: called with an environment, e.g. the agent's class; returns an object with ``step(goal)``.
@@ -175,17 +175,17 @@ class AndroidWorldAgent:
         self._env: _Environment | None = None
 
     def reset(self, goal: str) -> None:
-        """Makes the agent anew; the thread of the episode before comes to its end."""
+        """Makes a new agent; the thread of the previous episode ends."""
         if self._env is not None:
             self._env.seen.put(None)
         self._env = _Environment()
         threading.Thread(target=self._live, args=(self._env, goal), daemon=True).start()
 
     def act(self, observation: Observation) -> Action:
-        """Lets the agent go on until its next action, or the end of a ``step`` without one.
+        """Resumes the agent until its next action, or the end of a ``step`` without one.
 
         Raises:
-            ActionError: it raised, took no action in a step, or one that does not exist here.
+            ActionError: it raised, took no action in a step, or took one that does not exist here.
         """
         assert self._env is not None
         self._env.seen.put(observation)
@@ -211,7 +211,7 @@ class AndroidWorldAgent:
                     agent = agent or self._make(env)
                     result = agent.step(goal)
                     outcome = _Over(bool(getattr(result, "done", False)), getattr(result, "data", None))
-                except (Exception, SystemExit) as error:  # without an answer `act` would wait for ever
+                except (Exception, SystemExit) as error:  # without an answer, `act` would wait forever
                     outcome = error
                 handed_over = isinstance(outcome, _Over) and env.acted and not outcome.declared
                 if not handed_over:
@@ -243,7 +243,7 @@ def translated(action: Any) -> Action:
 
 
 def _declared(data: Any) -> GoalStatus:
-    """The status among a step's data, where AndroidWorld's agents leave it; ``complete`` without one."""
+    """The status in a step's data, where AndroidWorld's agents leave it; ``complete`` without one."""
     values = list(data.values()) if isinstance(data, dict) else []
     for value in values:
         status = getattr(value, "goal_status", None)

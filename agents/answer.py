@@ -1,4 +1,4 @@
-"""A model's answer, read: strictly first, then forgivingly. It is data: nothing in it is ever evaluated.
+"""Parses a model's answer, strictly first, then leniently. It is data: nothing in it is ever evaluated.
 
 Situation: what the driver wants and what matters here
 Plan: what is left to do after this action
@@ -18,28 +18,28 @@ from automotive_cosim.contracts import Action, Json
 from automotive_cosim.errors import ActionError
 
 LONGEST = 20_000
-"""Characters at the end of an answer among which the action is sought."""
+"""Characters at the end of an answer in which to look for the action."""
 MOST_TRIES = 40
-"""Opening braces, from the last, at which an object is sought."""
+"""Opening braces, from the last, at which to look for an object."""
 LABELS = re.compile(r"^[\s*_#>-]*(situation|reason|thought|plan|action|lesson)[*_]*\s*:[*_]*", re.IGNORECASE | re.M)
 
 
 @dataclass(frozen=True, slots=True)
 class ParsedAnswer:
-    """An answer, taken apart."""
+    """A parsed answer."""
 
     situation: str
     plan: str
     action: Action
     strict: bool
-    """Whether it had the form it was asked for."""
+    """Whether it had the requested form."""
 
 
 def read(text: str) -> ParsedAnswer:
     """The answer's parts.
 
     Raises:
-        ActionError: it holds no action, or a malformed one; it says which.
+        ActionError: it has no action, or a malformed one; the message says which.
     """
     strict = re.search(r"^Action: *(\{.*\})\s*\Z", text, re.DOTALL | re.MULTILINE)
     if strict is not None:
@@ -49,12 +49,12 @@ def read(text: str) -> ParsedAnswer:
             pass
     found = next(_objects(text[-LONGEST:]), None)
     if found is None:
-        raise ActionError("the answer holds no JSON object with an action_type; end it with `Action: {...}`")
+        raise ActionError("the answer has no JSON object with an action_type; end it with `Action: {...}`")
     return _answer(text, found, strict=False)
 
 
 def labelled(text: str, *labels: str) -> str:
-    """What stands behind the first of these labels, up to the next one; empty without it."""
+    """The text after the first of these labels, up to the next one; empty without it."""
     marks = list(LABELS.finditer(text))
     for mark, following in zip_longest(marks, marks[1:]):
         if mark[1].lower() in labels:
@@ -69,8 +69,8 @@ def _answer(text: str, action: Json, *, strict: bool) -> ParsedAnswer:
 
 
 def _objects(text: str) -> Iterator[Json]:
-    """Objects with an ``action_type``, from the end: behind the last label first, then anywhere; as they stand,
-    then mended."""
+    """Objects with an ``action_type``, from the end: after the last label first, then anywhere; as written first,
+    then repaired."""
     tail = text[max((mark.end() for mark in LABELS.finditer(text) if mark[1].lower() == "action"), default=0) :]
     for mended in (tail, _mend(tail), text, _mend(text)):
         starts = [match.start() for match in re.finditer(r"\{", mended)][-MOST_TRIES:]
@@ -96,7 +96,7 @@ _WORDS = {"True": "true", "False": "false", "None": "null"}
 
 
 def _mend(text: str) -> str:
-    """Python's way of writing as JSON: single quotes, True, False, None, a comma too many."""
+    """Python's notation as JSON: single quotes, True, False, None, an extra comma."""
 
     def mended(match: re.Match[str]) -> str:
         if match["double"] is not None:

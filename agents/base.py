@@ -1,4 +1,4 @@
-"""What an agent is, and what it may offer besides."""
+"""The protocol of agents, and optional protocols."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ class Agent(Protocol):
 
     @property
     def name(self) -> str:
-        """As it is written into results."""
+        """The name written into results."""
         ...
 
     @property
     def model(self) -> str:
-        """Name of the model behind it; ``"none"`` without one."""
+        """Name of its model; ``"none"`` without one."""
         ...
 
     @property
     def channels(self) -> frozenset[Channel]:
-        """What it is to be given."""
+        """The channels that it gets."""
         ...
 
     def reset(self, goal: str) -> None:
-        """A new episode begins with what the driver said."""
+        """Begins a new episode with the driver's words."""
         ...
 
     def act(self, observation: Observation) -> Action:
@@ -40,7 +40,7 @@ class Agent(Protocol):
 
         Raises:
             ActionError: its model's answer could not be read; the step counts all the same.
-            OutOfBudgetError: it may think no further; the episode ends and is judged as it stands.
+            OutOfBudgetError: its budget is spent; the episode ends and is judged as it is.
             ModelError: its model could not be reached; the episode says nothing about it.
         """
         ...
@@ -50,17 +50,17 @@ class StageName(StrEnum):
     """The stages of an agent's cycle."""
 
     PERCEIVE = "perceive"
-    """What it was given, as its model reads it."""
+    """Its input, as its model reads it."""
     INTERPRET = "interpret"
-    """What it makes of that."""
+    """Its interpretation of the input."""
     PLAN = "plan"
-    """What it means to do after this action."""
+    """What it intends to do after this action."""
     ACT = "act"
     """The action, or what was wrong with the answer."""
     REFLECT = "reflect"
-    """What came of the action before, in its own words."""
+    """The result of the previous action, in its own words."""
     REMEMBER = "remember"
-    """What it keeps in mind from here on."""
+    """What it remembers from here on."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,11 +72,11 @@ class Stage:
     at_s: float
     """Simulated seconds since the hand-over."""
     reply: ModelReply | None = None
-    """The model's answer, at the first of the stages that were read from it; its text is the whole answer."""
+    """The model's whole answer, at the first of the stages that were parsed from it."""
     asked: str = ""
     """Digest of the question it answers."""
     pictures: int = 0
-    """How many pictures went with the question."""
+    """Number of pictures sent with the question."""
 
     def as_json(self) -> Json:
         """The stage as a JSON object."""
@@ -92,26 +92,26 @@ class Stage:
 
 @runtime_checkable
 class Thinker(Protocol):
-    """An agent that tells how it came to its last action."""
+    """An agent that reports the stages that led to its last action."""
 
     @property
     def stages(self) -> Sequence[Stage]:
-        """The stages of the last ``act``, also of one that raised."""
+        """The stages of the last ``act``, even if it raised."""
         ...
 
 
 @runtime_checkable
 class Learner(Protocol):
-    """An agent that keeps something from one episode to the next."""
+    """An agent that remembers something from one episode to the next."""
 
     def learn(self, success: bool) -> None:
-        """The episode is over, and this came of it."""
+        """Takes the result of the episode that has ended."""
         ...
 
 
 @runtime_checkable
 class Privileged(Protocol):
-    """An agent that is told the task itself: a yardstick, never a contestant."""
+    """An agent that is told the task itself: a reference, never a contestant."""
 
     def brief(self, instance: Instance) -> None:
         """Called after ``reset``."""

@@ -1,8 +1,8 @@
 """Agents of your own: a class with ``reset(goal)`` and ``act(observation)``, named ``package.module:Class``.
 
-``name``, ``model`` and ``channels`` may be given as attributes; without them the agent is called by its class and
-gets every channel. What ``act`` returns may be an ``Action``, a JSON object or its text. A class with ``step`` in
-place of ``act`` is taken for an AndroidWorld agent (``androidworld.py``).
+``name``, ``model`` and ``channels`` may be given as attributes; without them the agent has the name of its class
+and gets every channel. ``act`` may return an ``Action``, a JSON object or its text. A class with ``step`` instead
+of ``act`` is treated as an AndroidWorld agent (``androidworld.py``).
 """
 
 from __future__ import annotations
@@ -23,17 +23,17 @@ from automotive_cosim.interface.observe import ALL, Channel
 
 FORM = "package.module:Class"
 FAULTS = (Exception, SystemExit)
-"""What somebody's code may raise; ``sys.exit`` in it, too, must not end this program."""
+"""Exceptions that a guest's code may raise; even its ``sys.exit`` must not end this program."""
 
 
 class Guest:
-    """Somebody's agent behind this project's protocol. An error of its own costs it the step, and is told."""
+    """A guest agent behind this project's protocol. An error of its own costs it the step and is reported."""
 
     def __init__(self, agent: Any) -> None:
         """Takes an object that has ``reset`` and ``act``.
 
         Raises:
-            UserError: its ``channels`` are none.
+            UserError: its ``channels`` are invalid.
         """
         self._agent = agent
         self.name = str(getattr(agent, "name", type(agent).__name__))
@@ -41,10 +41,10 @@ class Guest:
         try:
             self.channels = frozenset(Channel(name) for name in getattr(agent, "channels", ALL))
         except (TypeError, ValueError) as error:
-            raise UserError(f"agent {self.name!r}: {error}; its channels are of {', '.join(Channel)}") from error
+            raise UserError(f"agent {self.name!r}: {error}; channels are {', '.join(Channel)}") from error
 
     def reset(self, goal: str) -> None:
-        """Passes it on.
+        """Passes the goal on.
 
         Raises:
             UserError: the agent raised.
@@ -57,7 +57,7 @@ class Guest:
             raise UserError(f"agent {self.name!r} raised {_told(error)} in reset") from error
 
     def act(self, observation: Observation) -> Action:
-        """Passes it on.
+        """Passes the observation on and returns the agent's action.
 
         Raises:
             ActionError: the agent raised, or returned no action.
@@ -76,14 +76,14 @@ class Guest:
 
 
 def load(spec: str) -> Agent:
-    """The agent of a class named ``package.module:Class``, sought in the working folder too.
+    """An agent of the class ``package.module:Class``, which may be in the working folder.
 
     Raises:
-        UserError: the module or class does not exist or cannot be made, or what it lacks to be an agent.
+        UserError: the module or class does not exist, cannot be instantiated, or lacks something.
     """
     module_name, _, class_name = spec.partition(":")
     if not module_name or not class_name:
-        raise UserError(f"agent {spec!r} has not the form {FORM}")
+        raise UserError(f"agent {spec!r} does not have the form {FORM}")
     made = _found(spec, module_name, class_name)
     if not inspect.isclass(made):
         raise UserError(f"agent {spec!r} is {type(made).__name__}; {FORM} has to name a class")
@@ -124,7 +124,7 @@ def _check_call(spec: str, method: Callable[..., Any], name: str, given: int) ->
     except TypeError as error:
         argument = "goal" if name == "reset" else "observation"
         raise UserError(f"agent {spec!r}: {name} cannot be called as {name}({argument}): {error}") from error
-    except ValueError:  # no signature to be had, e.g. of a class written in C
+    except ValueError:  # no signature is available, e.g. of a class written in C
         return
 
 
@@ -133,7 +133,7 @@ def _made(spec: str, made: type) -> Any:
         return made()
     except FAULTS as error:
         raise UserError(
-            f"agent {spec!r}: {made.__name__}() raised {_told(error)}; it is made without arguments"
+            f"agent {spec!r}: {made.__name__}() raised {_told(error)}; it is called without arguments"
         ) from error
 
 

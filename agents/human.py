@@ -1,4 +1,4 @@
-"""A person at the terminal: numbered elements and a prompt, the same information as T3A has."""
+"""A person at the terminal, with numbered elements and a prompt: the same information as T3A."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ HELP = f"""\
   NUMBER TEXT     type into it               up, down        scroll
   home, back      go there                   wait [SECONDS]  let time pass
   alert KIND      warn the driver, e.g. speed
-  done            it is done                 no [REASON]     nothing is to be done: {", ".join(Reason)}
+  done            it is done                 no [REASON]     nothing has to be done: {", ".join(Reason)}
   cannot [REASON] it must not or cannot be   {{...}}           any action as JSON
 """
 
@@ -41,21 +41,21 @@ class Human:
     channels: frozenset[Channel] = T3A.channels
 
     def __init__(self, ask: Callable[[], str] = input, out: TextIO | None = None) -> None:
-        """Takes its terminal.
+        """Connects to a terminal.
 
         Args:
             ask: reads a line; raises ``EOFError`` at the end of the input.
-            out: where the screen is written; by default to standard error, which no result goes to.
+            out: where to print the screen; by default standard error, which never carries results.
         """
         self._ask = ask
         self._out = out or sys.stderr
 
     def reset(self, goal: str) -> None:
-        """Says what is wanted and how to answer."""
+        """Prints the goal and how to answer."""
         self._say(f"\n  the driver says: “{goal}”\n\n{HELP}")
 
     def act(self, observation: Observation) -> Action:
-        """What the person chooses; the end of the input interrupts the run.
+        """The action that the person enters; the end of the input interrupts the run.
 
         Raises:
             KeyboardInterrupt: there is no more input.
@@ -86,7 +86,7 @@ def understood(line: str) -> Action:
     """The action that a line of input means.
 
     Raises:
-        ActionError: it means none.
+        ActionError: it is not an action.
     """
     line = line.strip()
     if line.startswith("{"):
@@ -119,7 +119,7 @@ def understood(line: str) -> Action:
         },
     }
     if word not in plain:
-        raise ActionError(f"{line[:40]!r} is no action; give a number, or one of {', '.join(plain)}")
+        raise ActionError(f"{line[:40]!r} is not an action; give a number, or one of {', '.join(plain)}")
     return parse(plain[word])
 
 
@@ -127,4 +127,4 @@ def _words(element: Element) -> str:
     parts = [element.text, element.content_description]
     words = ": ".join(part for part in parts if part)
     state = " [on]" if element.is_checked else ""
-    return f"{words}{state}{'' if element.is_clickable else '  (not to be tapped)'}" if words else ""
+    return f"{words}{state}{'' if element.is_clickable else '  (not clickable)'}" if words else ""

@@ -1,4 +1,4 @@
-"""Set-of-mark: the screenshot with every element framed and numbered, by the numbers of the element list."""
+"""Set-of-mark: the screenshot with every element framed and numbered as in the element list."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ class Mark:
     """A number and the element it belongs to."""
 
     index: int
-    """Place in the element list, which is also what an action's ``index`` means."""
+    """Index in the element list, which is also an action's ``index``."""
     box: BoundingBox
     label: BoundingBox
-    """Where the number stands: in the box's upper left corner, inside the picture."""
+    """Position of the number: the box's upper left corner, inside the picture."""
 
 
 def listed(elements: tuple[Element, ...]) -> tuple[tuple[int, Element], ...]:
-    """The elements that a prompt lists and a picture marks, with their indices: those that can be seen."""
+    """The visible elements with their indices: those that a prompt lists and a picture marks."""
     return tuple((index, element) for index, element in enumerate(elements) if element.is_visible)
 
 
 def marks(elements: tuple[Element, ...], width: int, height: int) -> tuple[Mark, ...]:
-    """Where the marks of a picture of that size stand."""
+    """The marks of a picture of that size."""
     found = []
     for index, element in listed(elements):
         tag = label(index)
@@ -47,7 +47,7 @@ def marks(elements: tuple[Element, ...], width: int, height: int) -> tuple[Mark,
 
 
 def marked(screenshot: npt.NDArray[np.uint8], elements: tuple[Element, ...]) -> npt.NDArray[np.uint8]:
-    """A copy of the screenshot, (height, width, 3), with its marks; numbers lie above all frames."""
+    """A copy of the screenshot, (height, width, 3), with its marks; numbers are drawn above all frames."""
     picture = Image.fromarray(screenshot)
     draw = ImageDraw.Draw(picture)
     found = marks(elements, picture.width, picture.height)
@@ -61,7 +61,7 @@ def marked(screenshot: npt.NDArray[np.uint8], elements: tuple[Element, ...]) -> 
 
 
 def label(index: int) -> Image.Image:
-    """A number as it is drawn."""
+    """The picture of a number."""
     letters = _font()
     left, top, right, bottom = letters.getbbox(str(index))
     tag = Image.new("RGB", (round(right - left) + 6, round(bottom - top) + 6), GROUND)

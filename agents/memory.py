@@ -1,4 +1,4 @@
-"""ASURADA's memory: which way worked where, kept from one episode to the next in an SQLite file.
+"""ASURADA's memory: which strategy worked where, stored in an SQLite file across episodes.
 
 It is off by default, because episodes that learn from each other are no longer independent.
 """
@@ -18,7 +18,7 @@ from automotive_cosim.errors import UserError
 MOST_STRATEGIES = 500
 MOST_RECALLED = 3
 LONGEST = 600
-"""Characters of each of a strategy's texts."""
+"""Maximum length of each of a strategy's texts."""
 STOP_WORDS = frozenset(re.findall(r"\w+", "a an and the i is it my me to for of on in at you please can do"))
 
 _TABLE = """
@@ -37,41 +37,41 @@ CREATE TABLE IF NOT EXISTS strategies (
 
 @dataclass(frozen=True, slots=True)
 class Strategy:
-    """What was done, where, and at what."""
+    """A strategy: what was done, where, and for what request."""
 
     place: str
-    """Country and city, or the tenth of a degree where nothing else is known."""
+    """Country and city, or the position to a tenth of a degree if nothing else is known."""
     goal: str
     """What the driver said."""
     trigger: str
-    """How things stood when it began."""
+    """The situation when it began."""
     steps: str
     """The actions, in order."""
     worked: int = 0
-    """In how many episodes."""
+    """Number of episodes in which it worked."""
     failed: int = 0
 
     @property
     def words(self) -> str:
-        """On one line, for a prompt."""
+        """The strategy on one line, for a prompt."""
         return (
             f"At {self.place}, asked {self.goal!r} ({self.trigger}): {self.steps}; worked {self.worked} times, "
             f"failed {self.failed}"
         )
 
     def as_json(self) -> Json:
-        """As a JSON object."""
+        """The strategy as a JSON object."""
         return asdict(self)
 
 
 class Memory:
-    """An SQLite file of strategies, of which the longest unused ones go when there are too many."""
+    """An SQLite file of strategies; when there are too many, those unused for longest are removed."""
 
     def __init__(self, path: Path, most: int = MOST_STRATEGIES) -> None:
-        """Opens or makes the file.
+        """Opens or creates the file.
 
         Raises:
-            UserError: it cannot be made, or is no such file.
+            UserError: it cannot be created, or is not a memory.
         """
         self._path = path
         self._most = most
@@ -79,7 +79,7 @@ class Memory:
             file.execute(_TABLE)
 
     def keep(self, strategy: Strategy, *, worked: bool) -> None:
-        """Notes that a strategy worked, or did not, once more."""
+        """Records that a strategy worked, or did not, one more time."""
         texts = [value[:LONGEST] for value in (strategy.place, strategy.goal, strategy.trigger, strategy.steps)]
         with self._open() as file:
             file.execute(
@@ -96,7 +96,8 @@ class Memory:
             )
 
     def recall(self, place: str, goal: str) -> tuple[Strategy, ...]:
-        """What worked at a place for a wish like this, best first: more words in common, then more successes."""
+        """Strategies that worked at a place for a similar goal, best first: more common words, then more
+        successes."""
         asked = _content(goal)
         known = [
             (len(asked & _content(strategy.goal)), strategy.worked - strategy.failed, strategy)
@@ -107,7 +108,7 @@ class Memory:
         return tuple(strategy for _, _, strategy in best[:MOST_RECALLED])
 
     def all(self) -> tuple[Strategy, ...]:
-        """Everything in it, the latest first."""
+        """All strategies, the latest first."""
         with self._open() as file:
             rows = file.execute(
                 "SELECT place, goal, trigger, steps, worked, failed FROM strategies ORDER BY used DESC"
@@ -124,7 +125,7 @@ class Memory:
 
 
 def where(seen: Observation) -> str:
-    """The place as the memory names it."""
+    """The place by which the memory stores strategies."""
     first = (seen.context or "").partition("\n")[0]
     if first.startswith("Place: "):
         return first.removeprefix("Place: ")
@@ -134,7 +135,7 @@ def where(seen: Observation) -> str:
 
 
 def why(seen: Observation) -> str:
-    """How things stand, in a few words: what may have called for the act."""
+    """The situation in a few words: what may have prompted the action."""
     parts = [] if seen.vehicle is None else [f"{seen.vehicle.speed_kmh:.0f} km/h"]
     for line in (seen.context or "").split("\n"):
         if line.startswith(("Speed limit here: ", "Weather: ")):

@@ -1,4 +1,4 @@
-"""Agents behind which a model thinks: T3A, M3A and ASURADA, one cycle over different inputs.
+"""Agents that use a model: T3A, M3A and ASURADA, one cycle over different inputs.
 
 reflect on the last action -> remember -> perceive -> interpret -> plan -> act
 """
@@ -19,7 +19,7 @@ from automotive_cosim.interface.observe import Channel
 from automotive_cosim.models.base import ChatMessage, ChatModel, ModelReply, digest
 
 LONGEST_LESSON, LONGEST_PLAN = 300, 2000
-"""Characters of its own words that it carries on to the next turn."""
+"""Characters of its own text that it carries over to the next turn."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,9 +33,9 @@ class _Turn:
 
 
 class ModelAgent:
-    """Asks its model twice a turn: what came of the last action, and what to do now.
+    """Asks its model twice per turn: about the result of the last action, and what to do now.
 
-    ``stages`` tells how the last turn went.
+    ``stages`` records the last turn.
     """
 
     def __init__(
@@ -44,12 +44,12 @@ class ModelAgent:
         chat_model: ChatModel,
         settings: AgentSettings = AgentSettings(),  # noqa: B008, frozen
     ) -> None:
-        """Takes its parts.
+        """Puts the agent together.
 
         Args:
-            profile: which agent.
-            chat_model: what thinks for it.
-            settings: what is taken away from the profile, the budget, and the memory's file.
+            profile: which agent it is.
+            chat_model: the model to ask.
+            settings: what to take away from the profile, the budget, and the memory's file.
 
         Raises:
             UserError: the memory's file cannot be used.
@@ -73,11 +73,11 @@ class ModelAgent:
 
     @property
     def channels(self) -> frozenset[Channel]:
-        """The profile's channels, less what the settings take away."""
+        """The profile's channels without those that the settings take away."""
         return self._profile.channels
 
     def reset(self, goal: str) -> None:
-        """Forgets the episode before, but for what the memory keeps."""
+        """Forgets the previous episode, except for what the memory keeps."""
         self.stages.clear()
         self._history: list[str] = []
         self._done: list[str] = []
@@ -91,7 +91,7 @@ class ModelAgent:
         """One turn of the cycle.
 
         Raises:
-            ActionError: the answer holds no action, a malformed one, or one that this agent does not have.
+            ActionError: the answer has no action, a malformed one, or one that this agent does not have.
             OutOfBudgetError: the episode's tokens or seconds are spent.
             ModelError: the model does not answer.
         """
@@ -107,7 +107,7 @@ class ModelAgent:
         return action
 
     def learn(self, success: bool) -> None:
-        """Keeps what was done in this episode and whether it worked, if it has a memory."""
+        """Stores what was done in this episode and whether it worked, if it has a memory."""
         if self._memory is None or self._first is None or self._last is None:
             return
         steps = [*self._done, prompt.action_words(self._last.action, self._last.seen)]

@@ -1,4 +1,4 @@
-"""The oracle: knows the task's expert way and walks it by public actions on what it observes."""
+"""The oracle: plays the task's reference solution by public actions on what it observes."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from automotive_cosim.tasking.instance import Instance
 from automotive_cosim.tasking.moves import Do, Move, Open, Slide, Tap, TapUntil, TypeText, Warn
 
 SLIDER_MARGIN_PX = 20
-"""A slider's range begins so far inside its element."""
+"""How far inside its element a slider's range begins."""
 LIST = "ListView"
 """What scrolls row by row, by class name."""
 
@@ -41,14 +41,14 @@ class Oracle:
         self._list = ""
 
     def reset(self, goal: str) -> None:
-        """Forgets the episode before."""
+        """Forgets the previous episode."""
         self._moves.clear()
         self._pressed = 0
         self._lists_seen.clear()
         self._list = ""
 
     def brief(self, instance: Instance, moves: Sequence[Move] | None = None) -> None:
-        """Takes the expert's way of the instance, or another of its ways, each tap by itself."""
+        """Takes the instance's reference solution, or another of its solutions, one tap per action."""
         self._moves.clear()
         self._from_s = instance.trigger_after_s
         for move in instance.moves if moves is None else moves:
@@ -110,7 +110,7 @@ class Oracle:
         return _click(index)
 
     def _search(self, observation: Observation, wanted: str) -> Action:
-        """Scrolls the lists on the screen down to their ends, one after the other."""
+        """Scrolls the lists on the screen to their ends, one after the other."""
         if self._list and observation.feedback.code is not FeedbackCode.OK:
             self._lists_seen.add(self._list)
             self._list = ""
@@ -118,11 +118,11 @@ class Oracle:
             if element.is_scrollable and element.class_name == LIST and element.resource_id not in self._lists_seen:
                 self._list = element.resource_id
                 return Action(ActionType.SCROLL, direction=Direction.DOWN, index=index)
-        raise ActionError(f"{wanted} is not on the screen, and no list that could be scrolled holds it")
+        raise ActionError(f"{wanted} is not on the screen, and no list that can be scrolled has it")
 
 
 def _is_reached(move: Move, elements: Sequence[Element]) -> bool:
-    """Whether a repeated tap has done its work."""
+    """Whether a repeated tap has reached its result."""
     if not isinstance(move, TapUntil):
         return False
     return any(element.resource_id == move.shown and _reads(element, move.text) for element in elements)

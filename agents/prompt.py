@@ -1,8 +1,8 @@
 """Observations as text: what an agent's model reads.
 
-A prompt is a Markdown file with ``$slots``. A section (``## ...``) with a slot that has no value is left out as a
-whole, heading and all: what an agent is not given does not occur. Whatever comes from outside stands on one line,
-so that no name of a street or a contact can begin a section of its own.
+A prompt is a Markdown file with ``$slots``. A section (``## ...``) with a slot that has no value is omitted,
+including its heading: what an agent is not given does not occur. Any text from outside is put on one line, so no
+name of a street or a contact can begin a section of its own.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from automotive_cosim.interface.observe import Channel
 
 SHOWN_FLAGS = ("is_checked", "is_selected", "is_editable", "is_scrollable")
 SLIDERS = ("SeekBar",)
-"""Elements whose bounds are told, because it matters where they are touched."""
+"""Elements whose bounds are listed, because it matters where they are touched."""
 
 
 def fill(name: str, slots: Mapping[str, str | None]) -> str:
@@ -30,7 +30,7 @@ def fill(name: str, slots: Mapping[str, str | None]) -> str:
 
     Args:
         name: of the file, without its suffix.
-        slots: the value of each slot; None leaves its section out.
+        slots: the value of each slot; None omits its section.
     """
     text = files("automotive_cosim.agents").joinpath("prompts", f"{name}.md").read_text("utf-8")
     sections = re.split(r"^(?=## )", text, flags=re.MULTILINE)
@@ -49,12 +49,12 @@ def turn(
     """The prompt of one turn of an agent.
 
     Args:
-        profile: which agent, with what.
+        profile: which agent it is.
         observation: what it sees.
-        history: a line for each step so far.
-        plan: what it meant to do next when it acted last.
-        recalled: what it remembers of earlier episodes, a line each.
-        pictures: whether the screen and the marked screen go with it.
+        history: one line per step so far.
+        plan: what it intended to do next when it last acted.
+        recalled: what it remembers of earlier episodes, one line each.
+        pictures: whether the screen and the marked screen are sent along.
     """
     given = profile.channels
     feedback = observation.feedback
@@ -87,7 +87,7 @@ BEFORE_AND_AFTER = "Two pictures come with this text: the marked screen before t
 def look_back(
     before: Observation, action: Action | None, after: Observation, plan: str = "", pictures: bool = False
 ) -> str:
-    """The prompt that asks what came of an action; without one, of an answer that could not be read."""
+    """The prompt that asks about the result of an action, or of an answer that could not be read."""
     feedback = after.feedback
     return fill(
         "reflect",
@@ -104,7 +104,7 @@ def look_back(
 
 
 def summary(number: int, action: Action | None, feedback: Feedback, target: str, lesson: str = "") -> str:
-    """One line of history: what was done, what came of it, and what was learnt from that."""
+    """One line of history: the action, its result, and the lesson."""
     done = json.dumps(to_json(action)) if action else "unreadable answer"
     kind = action.action_type if action else "none"
     on = f" on {one_line(target)}" if target else ""
@@ -113,12 +113,12 @@ def summary(number: int, action: Action | None, feedback: Feedback, target: str,
 
 
 def elements(observation: Observation) -> str:
-    """The elements that can be seen, a JSON object a line, by their indices."""
+    """The visible elements with their indices, one JSON object per line."""
     return "\n".join(_element(index, element) for index, element in listed(observation.elements or ()))
 
 
 def one_line(text: str) -> str:
-    """The text without line breaks, of whatever kind, and without a heading's mark at its start."""
+    """The text without line breaks of any kind, and without a heading's mark at its start."""
     return re.sub(r"^(#+ )+", "", " ".join(text.split()))
 
 
@@ -127,7 +127,7 @@ def _slots(section: str) -> set[str]:
 
 
 def _lines(text: str) -> str:
-    """Lines that begin no section."""
+    """Lines, none of which begins a section."""
     return "\n".join(one_line(line) for line in text.split("\n"))
 
 
@@ -175,7 +175,7 @@ def _gps(fix: GpsFix | None) -> str:
 
 
 def target(action: Action | None, seen: Observation) -> str:
-    """The id of the element an action is about; empty if it is about none."""
+    """The id of the element that an action refers to; empty if it refers to none."""
     elements = seen.elements or ()
     if action is None or action.index is None or not 0 <= action.index < len(elements):
         return ""
@@ -183,7 +183,7 @@ def target(action: Action | None, seen: Observation) -> str:
 
 
 def action_words(action: Action | None, seen: Observation) -> str:
-    """An action on one line, with the id of its element in place of the index."""
+    """An action on one line, with the id of its element instead of the index."""
     if action is None:
         return "unreadable answer"
     fields = to_json(action)

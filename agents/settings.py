@@ -1,4 +1,4 @@
-"""What the agents with a model consist of, as data, and the switches that take parts of it away."""
+"""Profiles of the agents that use a model, as data, and switches that take parts of them away."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from automotive_cosim.interface.observe import Channel
 
 
 class AgentPart(StrEnum):
-    """What can be switched off, to see what it is worth."""
+    """Parts that can be switched off, to measure their effect."""
 
     GPS = "gps"
     CONTEXT = "context"
@@ -51,18 +51,18 @@ def geo_input(name: str) -> GeoInput:
 
 @dataclass(frozen=True, slots=True)
 class AgentSettings:
-    """How an agent is to be run. What an agent has no use for it ignores."""
+    """How to run an agent. An agent ignores the settings that it has no use for."""
 
     geo: GeoInput = GeoInput.FULL
     without: frozenset[AgentPart] = frozenset()
     memory: Path | None = None
     """SQLite file with what worked in earlier episodes; None, the default, keeps episodes independent."""
     seed: int = 0
-    """Of an agent that acts at random."""
+    """Seed of an agent that acts randomly."""
     most_tokens: int = 2_000_000
-    """An episode's budget, questions and answers together."""
+    """An episode's budget of tokens, for questions and answers together."""
     most_seconds: float = 1800.0
-    """An episode's budget of waiting for the model."""
+    """An episode's budget of time to wait for the model."""
 
     def __post_init__(self) -> None:
         if self.most_tokens <= 0 or self.most_seconds <= 0:
@@ -76,19 +76,19 @@ SCREEN_ALONE = frozenset(ActionType) - {ActionType.QUERY, ActionType.ESTIMATE_PO
 
 @dataclass(frozen=True, slots=True)
 class AgentProfile:
-    """One way through the common cycle."""
+    """One variant of the common cycle."""
 
     name: str
-    """Of the agent and of its prompt."""
+    """Name of the agent and of its prompt."""
     channels: frozenset[Channel]
     actions: frozenset[ActionType] = SCREEN_ALONE
-    """What its prompt offers; anything else is refused."""
+    """Actions that its prompt offers; anything else is refused."""
     reflects: bool = True
     remembers: bool = False
-    """Whether it can keep what worked from one episode to the next."""
+    """Whether it can remember what worked from one episode to the next."""
 
     def under(self, settings: AgentSettings) -> AgentProfile:
-        """The profile with what the settings take away gone."""
+        """The profile without what the settings take away."""
         without = settings.without
         lost = set(settings.geo.withheld)
         lost |= {channel for part, channel in _CHANNELS.items() if part in without}
@@ -113,7 +113,7 @@ _TEXT = frozenset({Channel.ELEMENTS, Channel.VEHICLE, Channel.CONNECTIVITY})
 T3A = AgentProfile("t3a", _TEXT)
 """Reads the elements (after AndroidWorld's T3A)."""
 M3A = AgentProfile("m3a", _TEXT | {Channel.SCREENSHOT})
-"""Sees the screen too, raw and with numbered marks (after AndroidWorld's M3A)."""
+"""Also sees the screen, raw and with numbered marks (after AndroidWorld's M3A)."""
 ASURADA = AgentProfile("asurada", frozenset(Channel), frozenset(ActionType), remembers=True)
-"""Knows where it is, too, and asks for what holds there (after the paper's ASURADA)."""
+"""Also knows where it is, and can query the rules there (after the paper's ASURADA)."""
 PROFILES = {profile.name: profile for profile in (T3A, M3A, ASURADA)}

@@ -1,4 +1,4 @@
-"""Strategies without a thought, which no task may reward: they show that nothing is free."""
+"""Negative controls: trivial strategies that must not succeed in both halves of a pair."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class NoOp:
     channels: frozenset[Channel] = frozenset()
 
     def reset(self, goal: str) -> None:
-        """Nothing to forget."""
+        """Does nothing."""
 
     def act(self, observation: Observation) -> Action:
         """Waits a second."""
@@ -36,7 +36,7 @@ class NoOp:
 
 
 class AlwaysAlert:
-    """Warns of speed at once, whatever happens, and calls it done."""
+    """Warns of speed at once, whatever happens, and declares ``complete``."""
 
     name = "always-alert"
     model = "none"
@@ -47,7 +47,7 @@ class AlwaysAlert:
         self._warned = False
 
     def reset(self, goal: str) -> None:
-        """Forgets the episode before."""
+        """Forgets the previous episode."""
         self._warned = False
 
     def act(self, observation: Observation) -> Action:
@@ -59,7 +59,7 @@ class AlwaysAlert:
 
 
 class Random:
-    """Any action that is well formed, each type as likely as the next; taps fall on elements that listen."""
+    """Any well-formed action, each type equally likely; taps hit clickable elements."""
 
     name = "random"
     model = "none"
@@ -70,11 +70,11 @@ class Random:
         self._rng = np.random.default_rng(seed)
 
     def reset(self, goal: str) -> None:
-        """Starts over from its seed, so that an episode does not hang on those before."""
+        """Starts over from its seed, so that an episode does not depend on earlier ones."""
         self._rng = np.random.default_rng(self._seed)
 
     def act(self, observation: Observation) -> Action:
-        """The next draw."""
+        """A randomly drawn action."""
         kind = tuple(ActionType)[int(self._rng.integers(len(ActionType)))]
         takes = FIELDS[kind]
         names = takes.required + (("index",) if takes.target else ())
@@ -104,7 +104,7 @@ class Random:
 
 
 class PressEverything:
-    """Each control that comes in sight once, then ``complete``."""
+    """Taps each control that it sees once, then declares ``complete``."""
 
     name = "press-everything"
     model = "none"

@@ -10,5 +10,13 @@ import gymnasium
 
 __version__ = "0.1.0"
 
-gymnasium.register(id="AutomotiveCosim/Cockpit-v0", entry_point="automotive_cosim.envs.cockpit:CockpitEnv")
-gymnasium.register(id="AutomotiveCosim/Flat-v0", entry_point="automotive_cosim.envs.flat:FlatEnv")
+gymnasium.register(
+    id="AutomotiveCosim/Cockpit-v0",
+    entry_point="automotive_cosim.envs.cockpit:CockpitEnv",
+    vector_entry_point="automotive_cosim.envs.vector:cockpits",
+)
+gymnasium.register(
+    id="AutomotiveCosim/Flat-v0",
+    entry_point="automotive_cosim.envs.flat:FlatEnv",
+    vector_entry_point="automotive_cosim.envs.vector:flats",
+)

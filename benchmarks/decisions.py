@@ -145,15 +145,15 @@ def action(env: gym.Env[Any, Any], rng: np.random.Generator) -> Any:
     return {"action_type": "click", "index": int(rng.choice(can))}
 
 
-def vector(count: int, rounds: int, children: Children, *, check: bool) -> dict[str, Any]:
+def vector(mode: str | None, count: int, rounds: int, children: Children, *, check: bool) -> dict[str, Any]:
     """As many environments over one warm simulation, and whether each does what it does alone."""
-    rng = np.random.default_rng(SEED)
+    actions = np.random.default_rng(SEED).integers(100, size=(rounds, count))
     with closing(Simulations()) as pool:
-        options = {"tasks": TASKS, "scenario": SCENARIO, "simulations": pool}
-        envs = gym.make_vec("AutomotiveCosim/Flat-v0", num_envs=count, vectorization_mode="sync", **options)
-        seeds = [SEED] * count
-        actions = rng.integers(envs.single_action_space.n, size=(rounds, count))
-        envs.reset(seed=seeds)
+        options: dict[str, Any] = {"tasks": TASKS, "scenario": SCENARIO, "simulations": pool}
+        envs = gym.make_vec("AutomotiveCosim/Flat-v0", num_envs=count, vectorization_mode=mode, **options)
+        actions %= envs.single_action_space.n
+        shared = {"traffic_seed": SEED}
+        envs.reset(seed=SEED, options=shared)
         ended: list[list[Any]] = [[] for _ in range(count)]
         clock = Clock(children)
         for row in actions:
@@ -163,7 +163,7 @@ def vector(count: int, rounds: int, children: Children, *, check: bool) -> dict[
         ours, sumo, wall = clock.lap()
         envs.close()
         traces = [[episode.trace_sha256 for episode in episodes] for episodes in ended]
-        alone = [_alone(options, actions[:, index], seeds[index]) for index in range(count if check else 0)]
+        alone = [_alone(options, actions[:, i], SEED + i, shared) for i in range(count if check else 0)]
     decisions = count * rounds
     return {
         "envs": count,
@@ -176,10 +176,10 @@ def vector(count: int, rounds: int, children: Children, *, check: bool) -> dict[
     }
 
 
-def _alone(options: dict[str, Any], actions: Any, seed: int) -> list[str]:
+def _alone(options: dict[str, Any], actions: Any, seed: int, shared: dict[str, int]) -> list[str]:
     """The traces of one environment by itself; the step after an episode's end resets, as in a vector."""
     with closing(gym.make("AutomotiveCosim/Flat-v0", **options)) as env:
-        env.reset(seed=seed)
+        env.reset(seed=seed, options=shared)
         traces, over = [], False
         for number in actions:
             if over:
@@ -189,7 +189,7 @@ def _alone(options: dict[str, Any], actions: Any, seed: int) -> list[str]:
             *_, terminated, truncated, _ = env.step(number)
             over = terminated or truncated
             if over:
-                traces.append(env.unwrapped.episode.trace_sha256)
+                traces.append(env.unwrapped.episode.trace_sha256)  # type: ignore[attr-defined]
     return traces
 
 
@@ -244,7 +244,8 @@ def main() -> None:
                     figures[name]["parts"] = shares(profile)
         if chosen.only in (None, "vector"):
             rounds = max(1, chosen.decisions // chosen.envs)
-            figures["vector"] = vector(chosen.envs, rounds, children, check=chosen.check)
+            for name, mode in (("vector", None), ("vector_sync", "sync")):
+                figures[name] = vector(mode, chosen.envs, rounds, children, check=chosen.check)
     print(json.dumps(_rounded(figures), indent=1))
 
 

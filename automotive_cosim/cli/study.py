@@ -70,7 +70,8 @@ def reroute(
     policies: Annotated[
         str,
         typer.Option(
-            help="Policies, separated by commas: never, always, delay:SECONDS, sumo, best, agent:NAME[/MODEL]."
+            help="Policies, separated by commas: never, always, delay:SECONDS, sumo, best, agent:NAME, "
+            "agent:NAME/MODEL."
         ),
     ] = "never,always,delay:60,sumo,best",
     driver: Annotated[str, typer.Option(help="Driver profile of the ego.", show_default="scenario's")] = "",

@@ -104,7 +104,7 @@ def show(
     from automotive_cosim.tasks import CATALOGUE
 
     if picture is not None and picture.suffix not in PICTURES:
-        raise UserError(f"{picture} is not a picture format that can be written; use {', '.join(PICTURES)}")
+        raise UserError(f"{picture} is not a picture format that can be written; name it {', '.join(PICTURES)}")
 
     entry = CATALOGUE[task]
     steps = counted(entry.optimal_steps, "step")

@@ -53,6 +53,10 @@ class Signal(Generic[T]):
     def __str__(self) -> str:
         return self.path
 
+    def __hash__(self) -> int:
+        """By the path, which only one has: widgets and messages that hold signals are hashed on every step."""
+        return hash(self.path)
+
     @property
     def low(self) -> float:
         """The smallest legal number."""
@@ -461,7 +465,8 @@ class Signals:
         return value
 
     def __setitem__(self, signal: Signal[T], value: T) -> None:
-        self._values[signal.path] = signal.check(value)
+        if self._values[signal.path] is not value:
+            self._values[signal.path] = signal.check(value)
 
     def __iter__(self) -> Iterator[Signal[Any]]:
         return iter(CATALOGUE.values())

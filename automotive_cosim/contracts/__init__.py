@@ -1,20 +1,20 @@
-"""The nouns that flow through the co-simulation, once round the loop.
+"""The data types that flow through the co-simulation, once round the loop.
 
     SUMO -> DrivingState -> GpsFix -> GeoContext -> vehicle signals -> Element -> Observation -> Action
       ^                                                                                            |
       +----------------------------------------- RoadRequest <-------------------------------------+
 
-Everything here is frozen data without behaviour of its own. Units stand in the field names: ``_s`` seconds,
+Everything here is frozen data without behaviour of its own. Field names carry the units: ``_s`` seconds,
 ``_m`` metres, ``_mps`` metres per second, ``_mps2`` metres per second squared, ``_deg`` degrees, ``_kmh``
-kilometres per hour, ``_c`` degrees Celsius, ``_pct`` per cent. ``None`` means that there is no such thing
+kilometres per hour, ``_c`` degrees Celsius, ``_pct`` per cent. ``None`` means that there is none
 (no leader, no limit, no projection), never zero.
 
-driving      what the car does on the road, and what is around and ahead of it
+driving      the car's state on the road, and what is around and ahead of it
 roads        the network as a map draws it
 place        weather, position fix, connection, surroundings
 observation  what an agent sees
 action       what an agent does
-requests     what the cockpit asks of the road, and the answer
+requests     the cockpit's requests to the road, and the answers
 plain        factors between units, JSON, numbers in texts, and how progress is told
 """
 

@@ -1,4 +1,4 @@
-"""What an agent does."""
+"""An agent's actions."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class ActionType(StrEnum):
 
 
 class GoalStatus(StrEnum):
-    """What ``status`` declares."""
+    """The statuses that ``status`` declares."""
 
     COMPLETE = "complete"
     INFEASIBLE = "infeasible"
@@ -44,7 +44,7 @@ class GoalStatus(StrEnum):
 
 
 class Reason(StrEnum):
-    """Why a task is declined."""
+    """Reasons for declining a task."""
 
     NONE = "none"
     LAW = "law"
@@ -54,7 +54,7 @@ class Reason(StrEnum):
 
 
 class Direction(StrEnum):
-    """Of ``scroll`` and ``swipe``."""
+    """Directions of ``scroll`` and ``swipe``."""
 
     UP = "up"
     DOWN = "down"
@@ -64,7 +64,7 @@ class Direction(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Action:
-    """One thing an agent does; ``cockpit.actions`` reads it from JSON and says which fields each type takes."""
+    """One action; ``cockpit.actions`` reads it from JSON and defines which fields each type takes."""
 
     action_type: ActionType
     index: int | None = None

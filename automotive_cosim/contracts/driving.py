@@ -1,4 +1,4 @@
-"""What the ego does on the road, and what is around and ahead of it."""
+"""The ego's state on the road, and what is around and ahead of it."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 STANDING_BELOW_MPS = 0.1
-"""Slower than this is standing, as SUMO counts halted vehicles."""
+"""A slower vehicle is stationary, as in SUMO's count of halted vehicles."""
 
 
 class EgoEnd(StrEnum):
     """Why the ego is no longer driving. SUMO removes an arrived, a collided and a removed vehicle alike; a
-    teleported one is taken from its road because it stood too long, which voids the episode."""
+    teleported one is moved because it stood too long, which voids the episode."""
 
     ARRIVED = "arrived"
     COLLIDED = "collided"
@@ -20,12 +20,12 @@ class EgoEnd(StrEnum):
 
 
 class LimitSource(StrEnum):
-    """Where the speed limit of a road in the network comes from."""
+    """Sources of a road's speed limit in the network."""
 
     POSTED = "posted"
     """A sign: the map or the scenario's author states it."""
     ASSUMED = "assumed"
-    """A default taken for the road class when the map was made: advice, never a verdict's basis."""
+    """A default for the road class from when the map was made: advice, never a verdict's basis."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,15 +41,15 @@ class RoadHere:
     lane_position_m: float
     """Distance from the start of the lane."""
     name: str
-    """Street name as signed; empty where it has none."""
+    """Street name as signed; empty without one."""
     road_class: str
     """OSM highway value, e.g. ``"motorway"``, ``"primary"``, ``"residential"``; empty if unknown."""
     posted_limit_mps: float | None
-    """The lane's limit in the network; None where there is none (derestricted)."""
+    """The lane's limit in the network; None if there is none (derestricted)."""
     limit_source: LimitSource
     in_tunnel: bool
     lit: bool | None
-    """Street lighting; None where the map does not say. Likewise the two below."""
+    """Street lighting; None if the map does not say. The same for the two below."""
     built_up: bool | None
     centre_line: bool | None
     friction: float
@@ -57,12 +57,12 @@ class RoadHere:
     school_zone: bool = False
     """In a school zone, whether or not its limit is in force."""
     limit_hours: str = ""
-    """What the signs post for certain hours, in words: ``"40 km/h Mo-Fr 08:00-09:30, 14:30-16:00"``; empty if the
+    """Limits posted for certain hours, in words: ``"40 km/h Mo-Fr 08:00-09:30, 14:30-16:00"``; empty if the
     limit does not depend on the clock."""
     limit_by_clock: bool = False
-    """The posted limit is one of those now."""
+    """Whether the present posted limit is one of those."""
     bus_lane: bool = False
-    """Another lane in this direction is for buses and not for cars."""
+    """Whether another lane in this direction is for buses and not for cars."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,27 +84,27 @@ class OtherVehicle:
     """Bumper to bumper, never negative; for oncoming traffic the straight distance."""
     speed_mps: float
     time_to_collision_s: float | None
-    """Gap over closing speed; None while the gap grows or stays."""
+    """Gap divided by closing speed; None while the gap does not shrink."""
     drac_mps2: float | None = None
     """Deceleration rate to avoid a crash: closing speed squared over twice the gap (Cooper and Ferguson, 1976);
-    None likewise."""
+    also None while the gap does not shrink."""
 
 
 @dataclass(frozen=True, slots=True)
 class RouteOption:
-    """Another way to the ego's goal."""
+    """An alternative route to the ego's destination."""
 
     edges: tuple[str, ...]
-    """From the present edge to the goal."""
+    """Edges from the present one to the destination."""
     length_m: float
     eta_s: float
-    """Seconds from now, at the speeds driven on it now."""
+    """Travel time from now, at present speeds."""
     delay_s: float
     """``eta_s`` above free flow at the posted limits."""
 
 
 class IncidentKind(StrEnum):
-    """What a live-traffic service tells of beside slow traffic; the values are those of ``incidents.KINDS``."""
+    """What a live-traffic service reports besides slow traffic; the values are those of ``incidents.KINDS``."""
 
     BREAKDOWN = "breakdown"
     ROADWORKS = "roadworks"
@@ -115,65 +115,65 @@ class IncidentKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class RoadIncident:
-    """Something on the road that a live-traffic service tells of."""
+    """An incident on the road that a live-traffic service reports."""
 
     kind: IncidentKind
     edge_id: str
     position_m: float
-    """Where one comes upon it, from the start of the edge."""
+    """Where a driver meets it, from the start of the edge."""
 
 
 @dataclass(frozen=True, slots=True)
 class RoadAhead:
-    """The ego's route from here to its goal."""
+    """The ego's route from here to its destination."""
 
     route_left_m: float
     eta_s: float
-    """Travel time to the goal from the speeds driven on it now, seconds from now."""
+    """Travel time to the destination at present speeds."""
     delay_s: float
     """``eta_s`` above free flow at the posted limits."""
     relative_speed: float
-    """Mean speed over posted limit, length-weighted over the route left; 1 is free flow."""
+    """Mean speed divided by posted limit, length-weighted over the remaining route; 1 is free flow."""
     jam_distance_m: float | None
     """Distance to the first edge whose relative speed is under a quarter; None without one."""
     jam_length_m: float
     next_light: TrafficLight | None
     next_limit_mps: float | None
-    """The next different limit on the route, and how far it is; None where it does not change."""
+    """The next different limit on the route, and its distance; None if it does not change."""
     next_limit_distance_m: float | None
     tunnel_distance_m: float | None
     exit_distance_m: float | None
     """Distance to the next place where the route could leave a road without junctions (motorway class)."""
     route_edges: tuple[str, ...] = ()
-    """Edges of the route from the present one to the goal, for the map to draw."""
+    """Edges of the route from the present one to the destination, for the map to draw."""
     alternatives: tuple[RouteOption, ...] = ()
-    """Other ways there, the quickest first."""
+    """Alternative routes, the quickest first."""
     camera_distance_m: float | None = None
-    """Distance to the next speed camera on the route; None where the map knows none."""
+    """Distance to the next speed camera on the route; None if the map has none."""
     slow_edges: tuple[tuple[str, float], ...] = ()
-    """Edges anywhere in the network driven slower than three quarters of their limit, and their mean speed over
-    the limit: what a live-traffic service tells a map."""
+    """Edges anywhere in the network with traffic slower than three quarters of their limit, and their mean speed
+    divided by the limit, as reported by a live-traffic service."""
     incidents: tuple[RoadIncident, ...] = ()
-    """Those anywhere in the network that such a service knows of now."""
+    """Incidents anywhere in the network that such a service reports now."""
 
 
 @dataclass(frozen=True, slots=True)
 class Around:
-    """The vehicles about the ego."""
+    """The vehicles around the ego."""
 
     leader: OtherVehicle | None
     follower: OtherVehicle | None
     oncoming: OtherVehicle | None
     """Nearest oncoming vehicle on the same road within 300 m."""
     emergency_behind: OtherVehicle | None
-    """Nearest vehicle of SUMO's class ``emergency`` with its blue light on, behind, within 300 m."""
+    """Nearest vehicle of SUMO's class ``emergency`` with its blue lights on, behind within 300 m."""
     relative_speed: float
-    """Mean speed over posted limit of the ego's edge now; 1 is free flow."""
+    """Mean speed divided by posted limit on the ego's edge; 1 is free flow."""
 
 
 @dataclass(frozen=True, slots=True)
 class DrivingState:
-    """What the ego does on the road at one instant: everything the cockpit and the geo-context learn of it."""
+    """The ego's state on the road at one instant: all that the cockpit and the geo-context learn about it."""
 
     time_s: float
     """SUMO simulation time."""
@@ -188,14 +188,14 @@ class DrivingState:
     speed_mps: float
     acceleration_mps2: float
     standing_s: float
-    """How long it has been standing (under 0.1 m/s)."""
+    """How long it has been stationary (under 0.1 m/s)."""
     distance_m: float
-    """Driven since departure."""
+    """Distance driven since departure."""
     road: RoadHere
     ahead: RoadAhead
     around: Around
     hazard_lights: bool
     vehicle_count: int
-    """Vehicles in the simulation, the ego included."""
+    """Number of vehicles in the simulation, including the ego."""
     end: EgoEnd | None = None
-    """Set in the ego's last state, which otherwise repeats the one before."""
+    """Why the drive ended; set in the ego's last state, which otherwise repeats the previous one."""

@@ -1,4 +1,4 @@
-"""What an agent sees."""
+"""An agent's observations."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class BoundingBox:
-    """Pixels, the maxima exclusive, as AndroidWorld's ``bbox_pixels``."""
+    """A box in pixels with exclusive maxima, like AndroidWorld's ``bbox_pixels``."""
 
     x_min: int
     y_min: int
@@ -25,7 +25,8 @@ class BoundingBox:
 
 @dataclass(frozen=True, slots=True)
 class Element:
-    """One entry of the accessibility tree, AndroidWorld's ``UIElement``. Its place in the list is its index."""
+    """One entry of the accessibility tree, like AndroidWorld's ``UIElement``. Its position in the list is its
+    index."""
 
     text: str
     content_description: str
@@ -49,7 +50,7 @@ class Element:
 
 @dataclass(frozen=True, slots=True)
 class VehicleState:
-    """What the car's own sensors and switches tell an agent. A field the car does not have is None."""
+    """Readings of the car's own sensors and switches. A field that the car does not have is None."""
 
     speed_kmh: float
     gear: str
@@ -70,31 +71,31 @@ class VehicleState:
     energy_level_pct: float
     range_km: float
     speed_limit_sign_kmh: float | None
-    """Read by the sign camera; None where the car has none or no sign stands."""
+    """Limit read by the sign camera; None without a camera or a sign."""
     leader_gap_m: float | None
     leader_time_to_collision_s: float | None
 
 
 class FeedbackCode(StrEnum):
-    """How an action went. The order is that of the observation space."""
+    """Results of an action, in the order of the observation space."""
 
     NONE = "none"
     """Nothing has been done yet."""
     OK = "ok"
     NO_EFFECT = "no_effect"
-    """Well formed and possible, but nothing changed (e.g. a tap beside every widget)."""
+    """Well formed and possible, but nothing changed (e.g. a tap that hit no widget)."""
     NO_SUCH_ELEMENT = "no_such_element"
     DISABLED = "disabled"
     RESTRICTED = "restricted"
     """Locked while driving."""
     REFUSED = "refused"
-    """The road or the car could not do it; the text says why."""
+    """The car or the driver could not do it; the text says why."""
     MALFORMED = "malformed"
 
 
 @dataclass(frozen=True, slots=True)
 class Feedback:
-    """What came of the last action, in a code and in words."""
+    """The result of the last action, as a code and in words."""
 
     code: FeedbackCode
     text: str
@@ -102,7 +103,7 @@ class Feedback:
 
 @dataclass(frozen=True, slots=True)
 class Observation:
-    """All an agent gets. A channel it is not given is None."""
+    """Everything an agent gets. A channel that it is not given is None."""
 
     goal: str
     time_s: float

@@ -1,4 +1,4 @@
-"""Where the car is: weather, fix, connection, surroundings."""
+"""The car's surroundings: weather, position fix, link."""
 
 from __future__ import annotations
 
@@ -41,13 +41,13 @@ class GpsFix:
     accuracy_m: float
     """One standard deviation of the horizontal error."""
     age_s: float
-    """Since the fix was taken."""
+    """Seconds since the fix was taken."""
     heading_deg: float
 
 
 @dataclass(frozen=True, slots=True)
 class Connectivity:
-    """The car's link to the outside."""
+    """The car's link to the outside world."""
 
     online: bool
     kind: str
@@ -58,14 +58,14 @@ class Connectivity:
 
 @dataclass(frozen=True, slots=True)
 class Surroundings:
-    """Everything outside the cockpit at one instant, as the cockpit's sensors meet it."""
+    """Everything outside the cockpit at one instant, as the input of its sensors."""
 
     driving: DrivingState
     weather: Weather
     local_time: datetime
     """Zone-aware."""
     sun_elevation_deg: float | None
-    """None where the position is not known."""
+    """None if the position is unknown."""
     gps: GpsFix | None
     """None in a network without projection."""
     connectivity: Connectivity

@@ -1,4 +1,4 @@
-"""What the cockpit asks of the road, and the answer."""
+"""The cockpit's requests to the road, and the answers."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from enum import StrEnum
 
 
 class AlertKind(StrEnum):
-    """What an alert to the driver is about. The order is that of the action space."""
+    """Kinds of alerts to the driver, in the order of the action space."""
 
     SPEED = "speed"
     DISTANCE = "distance"
@@ -29,7 +29,7 @@ class AlertKind(StrEnum):
 
 
 class Severity(StrEnum):
-    """How loudly an alert is given."""
+    """Urgency of an alert."""
 
     INFO = "info"
     WARNING = "warning"
@@ -44,7 +44,7 @@ class Alert:
     severity: Severity = Severity.WARNING
     text: str = ""
     speed_kmh: float | None = None
-    """The speed advised; None leaves it to the posted limit."""
+    """The advised speed; None means the posted limit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,14 +56,14 @@ class SlowDown:
 
 @dataclass(frozen=True, slots=True)
 class Cruise:
-    """Cruise control: hold at most this speed; None switches it off."""
+    """Cruise control: keep at most this speed; None switches it off."""
 
     speed_kmh: float | None
 
 
 @dataclass(frozen=True, slots=True)
 class Hazards:
-    """The hazard lights, seen by the others."""
+    """The hazard lights, which other drivers see."""
 
     on: bool
 
@@ -78,9 +78,9 @@ class Reroute:
     """Asks for another route: to a street, edge or lon/lat, or along given edges."""
 
     destination: str = ""
-    """Edge id, street name or ``lon,lat``; empty keeps the goal, and the way where none is quicker now."""
+    """Edge id, street name or ``lon,lat``; empty keeps the destination, and the route if none is quicker now."""
     edges: tuple[str, ...] = ()
-    """The whole route from the current edge on, what lies behind left out; empty lets the router choose."""
+    """The whole route from the current edge; empty lets the router choose."""
 
 
 RoadRequest = Alert | SlowDown | Cruise | Hazards | PullOver | Reroute

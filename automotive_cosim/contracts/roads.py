@@ -1,4 +1,4 @@
-"""The roads as a map draws them."""
+"""The road network for maps."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Road:
 
 @dataclass(frozen=True, slots=True)
 class RoadNetwork:
-    """The drivable network a scenario runs on."""
+    """The drivable network of a scenario."""
 
     roads: tuple[Road, ...]
     bounds_m: tuple[float, float, float, float]

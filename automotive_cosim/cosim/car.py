@@ -1,4 +1,4 @@
-"""The car at one place and time: what its cockpit, its receivers and its navigation make of the road."""
+"""The car at one place and time: its cockpit, receivers and navigation, updated from the road."""
 
 from __future__ import annotations
 
@@ -17,42 +17,42 @@ from automotive_cosim.traffic.base import Event, Traffic
 
 ALTERNATIVES_FROM_S = 10.0
 ALTERNATIVES_EVERY_S = 60.0
-"""So long after departure, and so often while online, the navigation asks for other ways to the goal."""
+"""Delay after departure, and interval while online, at which the navigation looks for alternative routes."""
 
 
 @dataclass(slots=True)
 class Car:
-    """Everything of the ego but its motion. ``departure_s`` is the simulation time at ``departure``."""
+    """Everything about the ego except its motion. ``departure_s`` is the simulation time at ``departure``."""
 
     cockpit: Cockpit
     gps: Gps | None
-    """None if the car has no receiver, so that no place is known."""
+    """The receiver; None if the car has none, so the place is unknown."""
     modem: Modem
     geo: Geo
     weather: tuple[WeatherAt, ...]
-    """In seconds after departure."""
+    """Times in seconds after departure."""
     departure: datetime
     """Local time, zone-aware."""
     departure_s: float
     alternatives: tuple[RouteOption, ...] = ()
     alternatives_asked_s: float | None = None
-    """Simulation time at which the navigation asked for them last."""
+    """Simulation time at which the navigation last looked for them."""
 
     def copy(self) -> Car:
-        """An independent copy that goes on exactly as this one would."""
+        """An independent copy that continues exactly as this one would."""
         gps = None if self.gps is None else self.gps.copy()
         return replace(self, cockpit=self.cockpit.copy(), gps=gps, modem=self.modem.copy())
 
     def sense(
         self, traffic: Traffic, passed: tuple[DrivingState, ...], events: tuple[Event, ...], dt_s: float
     ) -> Moment:
-        """Lets ``dt_s`` seconds pass in the car, and takes down everything there is at their end.
+        """Lets ``dt_s`` seconds pass in the car, and records the moment at their end.
 
         Args:
             traffic: the drive, at its newest state.
-            passed: the states since the moment before.
+            passed: the states since the previous moment.
             events: what happened on the road meanwhile.
-            dt_s: seconds since the moment before; 0 for the first.
+            dt_s: seconds since the previous moment; 0 for the first.
         """
         driving = traffic.state
         elapsed_s = driving.time_s - self.departure_s
@@ -92,7 +92,7 @@ class Car:
         return now_s >= self.alternatives_asked_s + ALTERNATIVES_EVERY_S
 
     def _navigated(self, driving: DrivingState) -> DrivingState:
-        """The state with the other ways to the goal that still begin here."""
+        """The state with the alternative routes that still begin here."""
         if not self.alternatives:
             return driving
         route = driving.ahead.route_edges

@@ -21,9 +21,9 @@ class Moment:
     local_time: datetime
     driving: DrivingState
     passed: tuple[DrivingState, ...]
-    """Every SUMO step since the moment before, ``driving`` the last of them."""
+    """Every SUMO step since the previous moment; the last one is ``driving``."""
     events: tuple[Event, ...]
-    """What happened on the road since the moment before."""
+    """Events on the road since the previous moment."""
     weather: Weather
     gps: GpsFix | None
     connectivity: Connectivity
@@ -31,4 +31,4 @@ class Moment:
     signals: Mapping[str, Any]
     """Every VSS path and its value."""
     commands: Mapping[str, Any]
-    """What can be commanded: actuator signals, app data, what was sent out."""
+    """Everything that can be commanded: actuator signals, app data, sent messages and requests."""

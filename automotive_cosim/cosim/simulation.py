@@ -24,7 +24,7 @@ from automotive_cosim.traffic.base import Traffic
 from automotive_cosim.traffic.shadow import SharedTraffic
 
 TICK_S = 1.0
-"""The cockpit, the receiver and the place are updated this often; the road runs on SUMO's own step."""
+"""Update interval of the cockpit, the receiver and the place; the road runs at SUMO's own step."""
 
 
 @dataclass(slots=True)
@@ -41,17 +41,17 @@ class CoSimulation:
         return self.car.cockpit
 
     def perform(self, action: Action, elements: tuple[Element, ...]) -> Feedback:
-        """Carries out an action now and passes on what it asks of the road; no time passes."""
+        """Performs an action now and passes on its requests to the road; no time passes."""
         feedback = actions.perform(action, self.cockpit, elements)
         for request in self.cockpit.drain_requests():
             self.cockpit.answered(request, self.traffic.request(request))
         return self.cockpit.spoken(feedback)
 
     def advance(self, duration_s: float) -> tuple[Moment, ...]:
-        """Lets time pass, in ticks; shorter than asked if the ego's drive ends.
+        """Lets time pass, in ticks; less than requested if the ego's drive ends.
 
         Raises:
-            TrafficError: the road side failed.
+            TrafficError: the traffic simulation failed.
         """
         moments = []
         left_s = duration_s
@@ -64,18 +64,18 @@ class CoSimulation:
         return tuple(moments)
 
     def branch(self) -> CoSimulation:
-        """An exact copy that goes its own way from this instant."""
+        """An exact copy that is independent from this instant."""
         return CoSimulation(self.traffic.branch(), self.car.copy(), self.moment)
 
     def shadow(self) -> CoSimulation:
-        """An exact copy from this instant on at whose cockpit nobody acts, to be driven beside this one.
+        """An exact copy with nobody at its cockpit, to be driven along with this one.
 
-        It has a simulation of its own only from where something is asked of this road. Close it first.
+        It gets a simulation of its own only when a request is made to this road. Close it first.
         """
         return CoSimulation(self.traffic.shadow(), self.car.copy(), self.moment)
 
     def close(self) -> None:
-        """Ends the drive; harmless when called again."""
+        """Ends the drive; may be called again."""
         self.traffic.close()
 
 
@@ -93,12 +93,12 @@ def couple(
 
     Args:
         traffic: the ego's drive.
-        cockpit: the car's.
-        scenario: whose network it is; without a place on earth the car gets no receiver.
-        gps_rng: draws the receiver's errors.
+        cockpit: the car's cockpit.
+        scenario: the scenario; without a place on earth, the car has no receiver.
+        gps_rng: source of the receiver's errors.
         weather: the timeline, in seconds after departure.
         departure: local time of the traffic's present state, zone-aware.
-        links: the best link to the outside there is, in seconds after departure.
+        links: the best available link over time, in seconds after departure.
     """
     state = traffic.state
     car = Car(

@@ -1,8 +1,8 @@
-"""The environment: a task in a car in traffic, as gymnasium's ``Env``."""
+"""The environment: a task in a car in traffic, as a gymnasium ``Env``."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import gymnasium as gym
@@ -12,10 +12,18 @@ import numpy.typing as npt
 from automotive_cosim.cockpit.actions import check, parse
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import Action
+from automotive_cosim.envs.pool import POOL
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.situation import SituationFinder
-from automotive_cosim.episode.specification import ACTION_COST_S, Conditions, EpisodeSpec, SeedSource, mode_of
+from automotive_cosim.episode.specification import (
+    ACTION_COST_S,
+    SEED_LIMIT,
+    Conditions,
+    EpisodeSpec,
+    SeedSource,
+    mode_of,
+)
 from automotive_cosim.interface import spaces
 from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.interface.observe import ALL, Channel
@@ -28,25 +36,26 @@ StepResult = tuple[dict[str, Any], float, bool, bool, dict[str, Any]]
 
 
 class CockpitEnv(gym.Env[dict[str, Any], Any]):
-    """An agent at the cockpit of a car that drives through live traffic.
+    """An agent at the cockpit of a car in live traffic.
 
-    ``reset`` loads the task's scenario, warms its traffic, puts the ego on the road and drives until the task's
+    ``reset`` loads the task's scenario, warms up its traffic, puts the ego on the road and drives until the task's
     trigger holds: that instant is the hand-over. ``step`` performs one action, which costs simulated time. The
     episode ends when the agent declares a status, when the ego's drive ends, or after ``max_steps`` (truncated).
 
-    The observation and action spaces stand in ``automotive_cosim.interface.spaces``; ``step`` also takes an
+    ``automotive_cosim.interface.spaces`` documents the observation and action spaces; ``step`` also takes an
     ``Action``, a JSON object or its text. ``env.unwrapped.episode`` is the typed episode behind it: its
     ``observation``, ``moments``, ``steps`` and ``verdict``; it can be branched.
 
     The reward is 1 at the end of a successful episode, else 0. ``info`` holds ``step``, ``action_result`` and
     ``events`` of the road; at the end also ``verdict`` and ``trace_sha256``.
 
-    In ``mode="monitoring"`` the hand-over comes 30 to 60 s earlier, the goal is one standing order, the same for
-    every task, and nothing marks the trigger; a message comes in meanwhile that asks for nothing. The episode ends
-    when the task's deadline is over; a status declared before that only ends the agent's own part.
+    In ``mode="monitoring"`` the hand-over is 30 to 60 s earlier, the goal is one standing order, the same for every
+    task, and nothing marks the trigger; meanwhile a message arrives that requires nothing. The episode ends when
+    the task's deadline is over; a status declared before that only ends the agent's own part.
 
-    Seeds: ``reset(seed=s)`` warms the traffic of seed ``s`` and draws everything else from it. ``reset()``
-    keeps that traffic and draws a new instance and drive, which is quick.
+    Seeds: ``reset(seed=s)`` warms up the traffic of seed ``s`` and draws everything else from it. ``reset()`` keeps
+    that traffic and draws a new instance and drive, which is quick. ``options={"traffic_seed": t}`` takes the
+    traffic of seed ``t`` in place of ``s``.
     """
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 1}  # noqa: RUF012, gymnasium's own form
@@ -78,12 +87,12 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
             half, mode, scenario, origin, gps, from_place, to_place, held_out: as in ``EpisodeSpec``.
             channels, geo, max_steps, action_cost_s: as in ``Conditions``.
             render_mode: ``"rgb_array"`` or None.
-            simulations: warm simulations to share with other environments; by default its own.
+            simulations: warm simulations; by default those that the environments of this process share.
             listener: told of progress.
 
         Raises:
             UnknownNameError: no such task, half, mode or scenario.
-            ScenarioError: the scenario cannot be read, or has no such way.
+            ScenarioError: the scenario cannot be read, or has no such route.
             UserError: ``origin`` is no position on earth, or a general task is to be monitored.
         """
         given = None if isinstance(task, str) else task
@@ -92,9 +101,10 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         self._conditions = Conditions(
             frozenset(map(Channel, channels)), GeoInput(geo), max_steps, action_cost_s=action_cost_s
         )
-        self._simulations = simulations or Simulations()
-        self._owns_simulations = simulations is None
-        self._finder = SituationFinder(spec, self._simulations, task=given, listener=listener)
+        self._leave: Callable[[], object] | None = None
+        if simulations is None:
+            simulations, self._leave = POOL.join(self)
+        self._finder = SituationFinder(spec, simulations, task=given, listener=listener)
         self._listener = listener
         self._seeds = SeedSource()
         self._episode: Episode | None = None
@@ -104,7 +114,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
 
     @property
     def episode(self) -> Episode:
-        """The episode that runs, or has just ended.
+        """The episode that is running, or has just ended.
 
         Raises:
             ResetNeeded: there has been none yet.
@@ -115,7 +125,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
 
     @property
     def scenario(self) -> Scenario:
-        """Where it takes place."""
+        """The scenario in which it takes place."""
         return self._finder.scenario
 
     def reset(
@@ -124,13 +134,16 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         """Starts an episode at the instant its trigger holds.
 
         Raises:
-            TriggerNotReachedError: the situation did not come about in its bound.
-            TrafficError: the road side failed.
+            TriggerNotReachedError: the situation did not arise within its time limit.
+            TrafficError: the traffic simulation failed.
         """
         super().reset(seed=seed)
         self._end()
         self._episode = None
-        hand_over = self._finder.find(self._seeds.next(seed))
+        if seed is not None:
+            self._seeds = SeedSource(seed)
+        self._seeds.traffic = traffic_seed(options, self._seeds.traffic)
+        hand_over = self._finder.find(self._seeds.next())
         self._episode = Episode.take_over(hand_over, self._conditions, self._listener)
         return self._encoded(), self._info()
 
@@ -140,7 +153,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         Raises:
             ActionError: the action is malformed; nothing has happened.
             ResetNeeded: the episode is over, or there has been none.
-            TrafficError: the road side failed.
+            TrafficError: the traffic simulation failed.
         """
         if self.episode.end is not None:
             raise gym.error.ResetNeeded("the episode has ended; call reset() to start another")
@@ -152,10 +165,10 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         return self.episode.screenshot() if self.render_mode else None
 
     def close(self) -> None:
-        """Ends the drive and, if they are its own, the warm simulations."""
+        """Ends the drive and, if nobody else shares them, the warm simulations."""
         self._end()
-        if self._owns_simulations:
-            self._simulations.close()
+        if self._leave is not None:
+            self._leave()
 
     def _encoded(self) -> dict[str, Any]:
         return spaces.encode(self.episode.observation, self._conditions.given)
@@ -177,8 +190,13 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
             self._episode.close()
 
 
+def traffic_seed(options: Mapping[str, Any] | None, own: int) -> int:
+    """The traffic that the options of a ``reset`` ask for, or else its own."""
+    return int((options or {}).get("traffic_seed", own)) % SEED_LIMIT
+
+
 def outcome(episode: Episode) -> tuple[float, bool, bool]:
-    """Reward, terminated and truncated, as gymnasium tells them apart."""
+    """Reward, terminated and truncated, as in gymnasium."""
     if episode.end is None or episode.verdict is None:
         return 0.0, False, False
     return float(episode.verdict.success), not episode.end.is_cut_off, episode.end.is_cut_off

@@ -1,25 +1,25 @@
 """A flat view of the environment for reinforcement learning: ``Discrete`` actions, a ``Box`` of numbers.
 
-| action | what |
+| action | meaning |
 |---|---|
 | first ``len(apps)`` | opens an app |
-| then ``len(controls)`` | taps the control with that resource id; a second passes if it is not in sight |
+| then ``len(controls)`` | taps the control with that resource id; a second passes if it is not visible |
 | then 3 | declares ``complete``, ``infeasible`` or ``not_needed`` |
 
-| observation, float32 in [-1, 1] | how many |
+| observation, float32 in [-1, 1] | number |
 |---|---|
 | what the driver said: its words, hashed into slots | ``GOAL_SLOTS`` |
-| per control: in sight, on, usable | 3 ``len(controls)`` |
+| per control: visible, on, usable | 3 ``len(controls)`` |
 | the car's numbers, scaled by ``spaces.BOUNDS`` | ``len(NUMBERS)`` |
-| share of the steps that is spent | 1 |
+| share of the steps already used | 1 |
 
-It holds less than ``CockpitEnv`` does: no picture, no place, and only the controls that it is told of.
+It has less than ``CockpitEnv``: no screenshot, no place, and only the given controls.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from hashlib import blake2b
 from typing import Any
 
@@ -28,7 +28,8 @@ import numpy as np
 import numpy.typing as npt
 
 from automotive_cosim.contracts import Action, ActionType, GoalStatus, Observation
-from automotive_cosim.envs.cockpit import outcome
+from automotive_cosim.envs.cockpit import outcome, traffic_seed
+from automotive_cosim.envs.pool import POOL
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import SEED_LIMIT, Conditions, EpisodeSpec, SeedSource
@@ -69,8 +70,8 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
     """Episodes of several tasks, one drawn at each reset.
 
     The reward is that of ``CockpitEnv``: 1 at the end of a successful episode. ``goal_bonus`` adds a potential for
-    training: as much when the goal comes to hold, and as much less when it ceases to. It sums to zero over an
-    episode that ends as it began, and changes no verdict: ``info["is_success"]`` is the verdict's.
+    training: it is paid when the goal starts to hold and taken back when it no longer does. It sums to zero over an
+    episode that ends as it began, and does not change the verdict: ``info["is_success"]`` is the verdict's.
     """
 
     metadata = {"render_modes": []}  # noqa: RUF012, gymnasium's own form
@@ -89,25 +90,26 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
         """Reads the tasks' scenarios; nothing runs before ``reset``.
 
         Args:
-            tasks: ids, their first halves.
+            tasks: ids of tasks; their first halves are used.
             controls: resource ids that can be tapped.
             apps: names of the apps that can be opened.
-            scenario: runs all in another scenario than the tasks' own.
+            scenario: runs all tasks in this scenario instead of their own.
             max_steps: actions after which an episode is cut off.
             goal_bonus: potential of a state in which the goal holds; 0 except for training.
-            simulations: warm simulations to share; by default its own.
+            simulations: warm simulations; by default those that the environments of this process share.
 
         Raises:
             UnknownNameError: no such task or scenario.
             UserError: no task or no control is given.
         """
         if not tasks or not controls:
-            raise UserError("a flat environment needs at least one task and one control")
-        self._simulations = simulations or Simulations()
-        self._owns_simulations = simulations is None
-        self._finders = [SituationFinder(EpisodeSpec(task, scenario=scenario), self._simulations) for task in tasks]
+            raise UserError("a flat environment requires at least one task and one control")
+        self._leave: Callable[[], object] | None = None
+        if simulations is None:
+            simulations, self._leave = POOL.join(self)
+        self._finders = [SituationFinder(EpisodeSpec(task, scenario=scenario), simulations) for task in tasks]
         self._seeds: list[SeedSource] = []
-        """One a task, so that what is drawn for one does not depend on the others."""
+        """One per task, so that what is drawn for one does not depend on the others."""
         self._conditions = Conditions(frozenset({Channel.ELEMENTS, Channel.VEHICLE}), max_steps=max_steps)
         self._episode: Episode | None = None
         self._controls = tuple(controls)
@@ -120,7 +122,7 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
 
     @property
     def episode(self) -> Episode:
-        """The episode that runs, or has just ended.
+        """The episode that is running, or has just ended.
 
         Raises:
             ResetNeeded: there has been none yet.
@@ -132,18 +134,20 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[npt.NDArray[np.float32], dict[str, Any]]:
-        """Draws a task, a phrasing and a drive; as in ``CockpitEnv`` only a seed warms other traffic.
+        """Draws a task, a phrasing and a drive. Seeds are those of ``CockpitEnv``.
 
         Raises:
-            TriggerNotReachedError: the situation did not come about.
-            TrafficError: the road side failed.
+            TriggerNotReachedError: the situation did not arise.
+            TrafficError: the traffic simulation failed.
         """
         super().reset(seed=seed)
         self._end()
         self._episode = None
         if seed is not None or not self._seeds:
-            traffic_seed = int(self.np_random.integers(SEED_LIMIT)) if seed is None else seed
-            self._seeds = [SeedSource(traffic_seed) for _ in self._finders]
+            own = int(self.np_random.integers(SEED_LIMIT)) if seed is None else seed
+            self._seeds = [SeedSource(own) for _ in self._finders]
+        for source in self._seeds:
+            source.traffic = traffic_seed(options, source.traffic)
         number = int(self.np_random.integers(len(self._finders)))
         hand_over = self._finders[number].find(self._seeds[number].next())
         self._episode = Episode.take_over(hand_over, self._conditions)
@@ -151,11 +155,11 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
         return self._numbers(), {}
 
     def step(self, action: np.int64) -> tuple[npt.NDArray[np.float32], float, bool, bool, dict[str, Any]]:
-        """One action, as the table says; ``info`` is empty but for ``is_success`` at the end.
+        """Performs one action of the table; ``info`` is empty except for ``is_success`` at the end.
 
         Raises:
             ResetNeeded: the episode is over, or there has been none.
-            TrafficError: the road side failed.
+            TrafficError: the traffic simulation failed.
         """
         if self.episode.end is not None:
             raise gym.error.ResetNeeded("the episode has ended; call reset() to start another")
@@ -169,10 +173,10 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
         return self._numbers(), reward, terminated, truncated, info
 
     def close(self) -> None:
-        """Ends the drive and, if they are its own, the warm simulations."""
+        """Ends the drive and, if nobody else shares them, the warm simulations."""
         self._end()
-        if self._owns_simulations:
-            self._simulations.close()
+        if self._leave is not None:
+            self._leave()
 
     def _end(self) -> None:
         if self._episode is not None:

@@ -1,4 +1,4 @@
-"""The baseline run: the same drive from the hand-over on, with nobody at the cockpit."""
+"""The baseline run: the same drive from the hand-over, with nobody at the cockpit."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from automotive_cosim.episode.specification import ROUNDING_S
 
 
 class Baseline:
-    """Driven beside the episode, and only as far as that has come; its branches share it."""
+    """The baseline run, driven along with the episode and only as far; the episode's branches share it."""
 
     def __init__(self, world: CoSimulation) -> None:
         """Takes over a shadow of the hand-over's world."""
@@ -16,15 +16,15 @@ class Baseline:
         self._moments: list[Moment] = [world.moment]
 
     def start(self, time_s: float) -> None:
-        """Lets its road run towards a simulation time while the caller does something else, if it is not there."""
+        """Starts to run its traffic to a simulation time while the caller does something else."""
         if self._is_before(time_s):
             self._world.traffic.start(TICK_S)
 
     def until(self, time_s: float) -> tuple[Moment, ...]:
-        """Its moments from the hand-over to the first whole tick at or after that time, or to its drive's end.
+        """Its moments from the hand-over to the first whole tick at or after that time, or to the end of its drive.
 
         Raises:
-            TrafficError: the road side failed.
+            TrafficError: the traffic simulation failed.
         """
         self.follow(time_s)
         last = next(
@@ -34,16 +34,16 @@ class Baseline:
         return tuple(self._moments[: last + 1])
 
     def follow(self, time_s: float) -> None:
-        """Drives on to that simulation time.
+        """Drives to that simulation time.
 
         Raises:
-            TrafficError: the road side failed.
+            TrafficError: the traffic simulation failed.
         """
         while self._is_before(time_s):
             self._moments += self._world.advance(TICK_S)
 
     def close(self) -> None:
-        """Ends its drive; harmless when called again."""
+        """Ends its drive; may be called again."""
         self._world.close()
 
     def _is_before(self, time_s: float) -> bool:

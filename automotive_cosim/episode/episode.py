@@ -1,4 +1,4 @@
-"""An episode: a session on a task, judged at its end beside the baseline run."""
+"""An episode: a session on a task, judged at its end against the baseline run."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from automotive_cosim.tasking.verdict import Verdict, judge
 
 @dataclass(kw_only=True)
 class Episode(Session):
-    """A turn on a task, from its hand-over. Make one with ``take_over``.
+    """A session on a task, from its hand-over. Make one with ``take_over``.
 
     In ``Mode.MONITORING`` it ends when the task's deadline is over; a status declared before that only ends the
     agent's own part.
@@ -31,16 +31,16 @@ class Episode(Session):
     """Simulation time at which the situation arises."""
     baseline: Baseline
     owns_baseline: bool = True
-    """False of a branch, which shares it."""
+    """Whether it owns the baseline run; false for a branch, which shares it."""
     verdict: Verdict | None = None
-    """None until it is over."""
+    """The verdict; None until the episode is over."""
 
     @classmethod
     def take_over(cls, hand_over: HandOver, conditions: Conditions, listener: Listener | None = None) -> Episode:
-        """The episode that begins at a hand-over, whose drive it takes over.
+        """The episode that begins at a hand-over, and takes over its drive.
 
         Raises:
-            TrafficError: the road side failed.
+            TrafficError: the traffic simulation failed.
         """
         instance, world = hand_over.instance, hand_over.world
         begun: dict[str, Any] = beginning(world, instance.goal, conditions, hand_over.drive, listener)
@@ -53,12 +53,12 @@ class Episode(Session):
         )
 
     def branch(self, max_steps: int | None = None) -> Episode:
-        """An episode of its own from this very instant: what either does then, the other does not feel.
+        """An independent episode from this instant: neither affects the other from here on.
 
-        The baseline run is shared, so close branches before the episode they come from.
+        The baseline run is shared, so close branches before the episode that they come from.
 
         Args:
-            max_steps: of the branch, counted from the hand-over; None keeps them.
+            max_steps: limit of the branch, counted from the hand-over; None keeps the episode's.
         """
         self._check_open()
         conditions = self.conditions if max_steps is None else replace(self.conditions, max_steps=max_steps)
@@ -77,14 +77,14 @@ class Episode(Session):
         return self._heard(self.world.advance(duration_s))
 
     def close(self) -> None:
-        """Ends the drive and, if it is its own, the baseline run; harmless when called again."""
+        """Ends the drive and, if it owns it, the baseline run; may be called again."""
         if self.owns_baseline:
             self.baseline.close()
         self.world.close()
 
     @property
     def watched_from_s(self) -> float | None:
-        """Of a watch: simulation time at which the situation arises; None of a prompted episode."""
+        """In monitoring mode, the simulation time at which the situation arises; else None."""
         return self.trigger_s if self.mode is Mode.MONITORING else None
 
     @property
@@ -93,7 +93,7 @@ class Episode(Session):
         return self.baseline.until(self.moments[-1].time_s)
 
     def _advance(self, duration_s: float) -> None:
-        """Second by second, the baseline run beside it: both roads run at the same time."""
+        """Advances second by second together with the baseline run: both simulations run at the same time."""
         left_s = duration_s
         while left_s > ROUNDING_S and self.world.moment.driving.end is None:
             tick_s = min(TICK_S, left_s)
@@ -104,7 +104,7 @@ class Episode(Session):
 
     @property
     def _window_s(self) -> float:
-        """When a watch is over."""
+        """Simulation time at which a watch is over."""
         return self.trigger_s + self.instance.half.deadline.seconds
 
     def _ended(self) -> End | None:

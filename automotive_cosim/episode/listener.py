@@ -1,4 +1,4 @@
-"""Hears how an episode comes about, for a live view or a record. It sees everything and changes nothing."""
+"""Watches the progress of an episode, for a live view or a record. It sees everything and changes nothing."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from automotive_cosim.scenarios import Scenario
 
 
 class Listener:
-    """Hears nothing; override what is of interest."""
+    """Ignores everything; override the methods of interest."""
 
     def loading(self, scenario: Scenario) -> None:
         """SUMO loads the scenario; its ``notes`` say what was assumed."""
@@ -17,4 +17,4 @@ class Listener:
         """The scenario's traffic is being warmed up, in simulated seconds."""
 
     def moved(self, moment: Moment, cockpit: Cockpit) -> None:
-        """Another simulated second has passed: of the drive up, of a step, or of the aftermath."""
+        """Another simulated second has passed: of the drive to the hand-over, of a step, or of the aftermath."""

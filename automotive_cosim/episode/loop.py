@@ -1,4 +1,4 @@
-"""The loop: plays any actor to the end of a session, before observers."""
+"""The loop: plays any actor to the end of a session, with observers."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Actor(Protocol):
 
         Raises:
             ActionError: its answer could not be read; the step counts all the same.
-            OutOfBudgetError: it may think no further; the session ends as it stands.
+            OutOfBudgetError: its budget is spent; the session ends as it is.
         """
         ...
 
@@ -33,20 +33,20 @@ class StepObserver(Protocol[S]):
     """Called after each step."""
 
     def __call__(self, session: S, seen: Sequence[Element], /) -> None:
-        """The newest of ``session.steps`` has just been made; ``seen`` is the screen the actor acted on."""
+        """The last of ``session.steps`` has just been made; ``seen`` is the screen that the actor acted on."""
         ...
 
 
 def play(session: T, actor: Actor, observers: Sequence[StepObserver[T]] = ()) -> End:
-    """Lets an actor act until the session is over, and says why it is.
+    """Lets an actor act until the session is over, and returns why it is.
 
     Args:
-        session: where; also one that is under way.
-        actor: who; told the goal before.
-        observers: called after each step, the last one too.
+        session: the session, which may be under way.
+        actor: the actor, which has been told the goal.
+        observers: called after each step, including the last.
 
     Raises:
-        TrafficError: the road side failed.
+        TrafficError: the traffic simulation failed.
         ModelError: the actor's model could not be reached.
     """
     while session.end is None:

@@ -1,4 +1,4 @@
-"""A session: somebody at the cockpit of a car that drives through live traffic.
+"""A session: an agent at the cockpit of a car in live traffic.
 
 step:  action -> perform -> advance -> observe
 """
@@ -37,34 +37,35 @@ from automotive_cosim.interface.observe import Channel, observe
 
 @dataclass(kw_only=True)
 class Session:
-    """One turn at the cockpit, from the instant it begins. Make one with ``begin``."""
+    """One session at the cockpit. Make one with ``begin``."""
 
     world: CoSimulation
-    """Owned: closing the session ends its drive."""
+    """The running co-simulation; closing the session ends its drive."""
     goal: str
     """What the driver says."""
     conditions: Conditions
     drive: tuple[Moment, ...]
-    """What the virtual sensor and reports know of the time before: from departure to the beginning, included."""
+    """The drive before the session, for the virtual sensor and reports: from departure to the beginning,
+    included."""
     listener: Listener
     shown: Shown
-    """Turns what the car's receivers say into what the agent is told."""
+    """Turns the receivers' readings into what the agent is told."""
     moments: list[Moment]
-    """From the beginning, one a simulated second."""
+    """Moments since the beginning, one per simulated second."""
     elements: tuple[Element, ...]
-    """What is on the screen: what the next action refers to."""
+    """The elements on the screen, to which the next action refers."""
     observation: Observation
-    """What the agent is given now."""
+    """The agent's present observation."""
     steps: list[trace.Step]
-    """One an action; the first is the beginning."""
+    """One step per action; the first is the beginning."""
     declared: GoalStatus | None = None
     """The status that the agent declared."""
     reason: Reason | None = None
-    """The code it gave with that."""
+    """The reason code of that declaration."""
     end: End | None = None
     """Why it is over; None while it is not."""
     hashed: trace.Hash = field(default_factory=trace.Hash, repr=False)
-    """Of the steps that somebody has asked the hash of."""
+    """Hash of the steps so far, computed when asked for."""
     _roads: Roads | None = field(default=None, repr=False)
 
     @classmethod
@@ -79,11 +80,11 @@ class Session:
         """A session that begins now.
 
         Args:
-            world: the running co-simulation; the session takes it over.
+            world: the running co-simulation, which the session takes over.
             goal: what the driver says.
-            conditions: what the agent is given and may take.
-            drive: from departure to now, if it is known.
-            listener: told of every second that passes.
+            conditions: the agent's input and limits.
+            drive: moments from departure to now, if known.
+            listener: notified of every second that passes.
         """
         return cls(**beginning(world, goal, conditions, drive, listener))
 
@@ -93,7 +94,7 @@ class Session:
         """Performs one action, lets its time pass and observes.
 
         Raises:
-            TrafficError: the road side failed.
+            TrafficError: the traffic simulation failed.
         """
         self._check_open()
         feedback, cost_s = self._answer(action) or (self.world.perform(action, self.elements), 0.0)
@@ -102,17 +103,17 @@ class Session:
         self._proceed(action, feedback, cost_s)
 
     def refuse(self, why: str) -> None:
-        """Spends a step on an answer that could not be read as an action: its time passes, nothing else."""
+        """Spends a step on an answer that could not be read as an action: only its time passes."""
         self._check_open()
         self._proceed(None, Feedback(FeedbackCode.MALFORMED, why))
 
     def cut_off(self, end: End) -> None:
-        """Ends it before its time, e.g. for an agent that has spent its budget."""
+        """Ends it early, e.g. for an agent that has spent its budget."""
         self._check_open()
         self._finish(end)
 
     def close(self) -> None:
-        """Ends the drive; harmless when called again."""
+        """Ends the drive; may be called again."""
         self.world.close()
 
     # --- what there is to see -----------------------------------------------------------------------------
@@ -129,7 +130,7 @@ class Session:
 
     @property
     def trace_sha256(self) -> str:
-        """The hash of what happened so far."""
+        """The hash of the trace so far."""
         for step in self.steps[self.hashed.count :]:
             self.hashed.add(step)
         return self.hashed.hex
@@ -145,7 +146,7 @@ class Session:
             raise RuntimeError(f"the episode is over ({self.end}); begin another one")
 
     def _answer(self, action: Action) -> tuple[Feedback, float] | None:
-        """What the virtual sensor says to a query and the seconds that takes; None for every other action."""
+        """The virtual sensor's answer to a query and its seconds; None for any other action."""
         if action.action_type is not ActionType.QUERY:
             return None
         given = self.conditions.given
@@ -158,7 +159,7 @@ class Session:
         return Feedback(FeedbackCode.OK if reply.ok else FeedbackCode.REFUSED, reply.text), reply.cost_s
 
     def _proceed(self, action: Action | None, feedback: Feedback, cost_s: float = 0.0) -> None:
-        """Lets the action's time pass, and ``cost_s`` beside it."""
+        """Lets the action's time pass, plus ``cost_s``."""
         waited_s = action.seconds if action and action.action_type is ActionType.WAIT else None
         self._advance(self.conditions.action_cost_s * (waited_s or 1) + cost_s)
         self.elements, self.observation = _seen(
@@ -216,7 +217,7 @@ def beginning(
 def _seen(
     world: CoSimulation, goal: str, conditions: Conditions, told: Shown, begun_s: float, feedback: Feedback
 ) -> tuple[tuple[Element, ...], Observation]:
-    """What is on the screen, and what of everything the agent is given."""
+    """The elements on the screen, and the agent's observation."""
     elements = world.cockpit.elements()
     seen = observe(world, goal, begun_s, elements, feedback, conditions.given)
     return elements, told.observation(seen, world.moment)

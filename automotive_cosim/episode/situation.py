@@ -29,30 +29,30 @@ from automotive_cosim.traffic.base import EgoPlan, Simulation, Traffic
 from automotive_cosim.traffic.fork import Simulations
 
 WATCH_S = 30.0
-"""A watch begins at least so long before its trigger, and up to twice that."""
+"""Minimum time from the beginning of a watch to its trigger; at most twice that."""
 WAITS_S = (0.0, 41.0, 113.0)
-"""Departures that may bring a task's situation about, each only where the one before did not; out of step with
-the usual cycles of traffic lights."""
+"""Delays of further departures, tried one by one until the situation arises; out of step with the usual cycles of
+traffic lights."""
 PARKED: Mapping[str, Any] = {MOTION.GEAR.path: "P", DRIVE.PARKING_BRAKE.path: True}
 """Signals of a car that is parked."""
 
 
 @dataclass(frozen=True, slots=True)
 class HandOver:
-    """A situation that has come about: from here on an agent is at work."""
+    """A situation that has arisen: from here on an agent acts."""
 
     instance: Instance
     world: CoSimulation
-    """For the one who takes over, to be closed."""
+    """The running co-simulation; whoever takes it over must close it."""
     drive: tuple[Moment, ...]
-    """From departure to the hand-over, one a simulated second."""
+    """Moments from departure to the hand-over, one per simulated second."""
     mode: Mode
     trigger_s: float
-    """Simulation time at which the trigger holds: that of the hand-over, or of a watch a later one."""
+    """Simulation time at which the trigger holds: the hand-over's, or later in monitoring mode."""
 
 
 class SituationFinder:
-    """Brings one task's situation about, again and again with other seeds."""
+    """Finds one task's situation, repeatedly with different seeds."""
 
     def __init__(
         self,
@@ -65,16 +65,17 @@ class SituationFinder:
         """Reads the scenario; nothing runs before ``find``.
 
         Args:
-            spec: what is to be brought about; ``seed`` and ``conditions`` are not looked at.
+            spec: the situation to find; its ``seed`` and ``conditions`` are ignored.
             simulations: warm traffic, shared with others.
-            task: in place of the catalogue's task of that name.
-            listener: told of progress.
+            task: used instead of the catalogue's task of that name.
+            listener: notified of progress.
 
         Raises:
             UnknownNameError: no such task, half or scenario.
-            ScenarioError: the scenario cannot be read, or has no such way.
-            UserError: ``origin`` is no position on earth, or a general task is to be monitored.
+                    ScenarioError: the scenario cannot be read, or has no such way.
+            UserError: a value is out of its range, or a general task is to be monitored.
         """
+        spec.check()
         self.task = CATALOGUE[spec.task] if task is None else task
         half = self.task.half(spec.half)
         if spec.mode is Mode.MONITORING and not self.task.is_safety:
@@ -93,28 +94,28 @@ class SituationFinder:
         self._listener = listener or Listener()
 
     def find(self, seeds: Seeds) -> HandOver:
-        """Drives until the trigger holds, if need be departing later into the same traffic.
+        """Drives until the trigger holds, if necessary with later departures into the same traffic.
 
-        In a scenario that is not the task's own any of its trips may do.
+        In a scenario that is not the task's own, any of its trips is tried.
 
         Raises:
-            TriggerNotReachedError: the situation did not come about in its bound.
-            TrafficError: the road side failed.
+            TriggerNotReachedError: the situation did not arise within its time limit.
+            TrafficError: the traffic simulation failed.
         """
         half = self._draw(seeds).half
         self._listener.loading(self.scenario)
-        simulation = self._simulations.warm(self.scenario, seeds.traffic, self._warming)
         trips, waits_s = self._trips(half, seeds.drive), WAITS_S[:1] if half.start.parked else WAITS_S
-        for trip, wait_s in product(trips, waits_s):
-            plan, traffic = self._depart(simulation, half, trip, seeds.drive, wait_s)
-            try:
-                drive = self._drive_up(self._couple(traffic, half, plan), half)
-                if drive is not None:
-                    return self._handed_over(seeds, simulation, half, plan, drive)
-            except BaseException:
+        with self._simulations.held(self.scenario, seeds.traffic, self._warming) as simulation:
+            for trip, wait_s in product(trips, waits_s):
+                plan, traffic = self._depart(simulation, half, trip, seeds.drive, wait_s)
+                try:
+                    drive = self._drive_up(self._couple(traffic, half, plan), half)
+                    if drive is not None:
+                        return self._handed_over(seeds, simulation, half, plan, drive)
+                except BaseException:
+                    traffic.close()
+                    raise
                 traffic.close()
-                raise
-            traffic.close()
         trigger = half.trigger
         raise TriggerNotReachedError(
             f"task {self.task.id!r}: {trigger.condition} did not hold for {trigger.for_s:g} s within "
@@ -173,7 +174,7 @@ class SituationFinder:
         )
 
     def _drive_up(self, world: CoSimulation, half: Half) -> _Drive | None:
-        """The drive up to the trigger; None if that does not hold in its bound."""
+        """The drive up to the trigger; None if that does not hold within its time limit."""
         trigger = half.trigger
         moments = [world.moment]
         departed_s, since_s = world.moment.time_s, None
@@ -199,7 +200,8 @@ class SituationFinder:
         return HandOver(instance, drive.world, drive.moments, self._spec.mode, trigger_s)
 
     def _watch(self, simulation: Simulation, half: Half, plan: EgoPlan, whole: _Drive) -> _Drive:
-        """The same drive again, up to 30 to 60 s before its trigger, with a message that comes in on the watch."""
+        """The same drive again, up to 30 to 60 s before its trigger, with a message that arrives during the
+        watch."""
         departed_s, trigger_s = whole.moments[0].time_s, whole.moments[-1].time_s
         rng = np.random.default_rng([plan.seed, 4])
         lead_s, lure_share = WATCH_S * (1 + float(rng.random())), 0.2 + 0.6 * float(rng.random())

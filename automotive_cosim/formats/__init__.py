@@ -1,10 +1,10 @@
-"""What users write: read strictly, refused in one line for each problem, described to editors as JSON Schema.
+"""Files that users write: read strictly, refused with one line per problem, described to editors by JSON Schemas.
 
     TOML, JSON -> checked against the annotations of a dataclass -> its instance, or a UserError
 
-annotations  what an annotation says of a field: names, forms, what is made of it
+annotations  annotations of fields: names, forms, conversions
 checked      values -> an instance, or the problems in words
-toml         a file, and in which line of it things stand
+toml         a file, and the lines of its entries
 words        what came and what was expected, from a JSON Schema
 schema       the JSON Schema of a type
 """

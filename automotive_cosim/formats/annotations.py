@@ -1,4 +1,4 @@
-"""What an annotation says of a field beside its type: which names it takes, what form it has, what is made of it.
+"""Annotations of a field besides its type: the names it takes, its form, its conversion.
 
     best: Annotated[str, OneOf(LINKS)]
     scale: Annotated[float, Gt(0)]
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class OneOf:
-    """A text that is one of some names; where those are an enumeration, its member is made of it."""
+    """A text that is one of some names; for an enumeration, it becomes the member."""
 
     names: Iterable[str]
     what: str = ""
-    """What they name, e.g. ``"road user"``; empty: what the field is called."""
+    """What the names stand for, e.g. ``"road user"``; empty: the field's name."""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         from pydantic_core import core_schema
@@ -51,7 +51,7 @@ class Form:
     """Regular expression without look-around, anchored."""
     example: str
     read: Callable[[str], Any] = str
-    """What is made of it; a ValueError's text is shown to the user."""
+    """Converts the text; the message of a ValueError is shown to the user."""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         from pydantic_core import core_schema
@@ -66,12 +66,12 @@ class Form:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Made:
-    """A value that is written as something else."""
+    """A value that is written as another type."""
 
     of: Any
-    """The type that stands in the file."""
+    """The type in the file."""
     by: Callable[[Any], Any]
-    """What makes the value of it; a ValueError's text is shown to the user."""
+    """Converts it to the value; the message of a ValueError is shown to the user."""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         from pydantic_core import core_schema
@@ -81,7 +81,7 @@ class Made:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Called:
-    """What a value must be, in words of the field's own: "a list of [lon, lat] corners"."""
+    """What a value must be, in the field's own words: "a list of [lon, lat] corners"."""
 
     words: str
 
@@ -91,7 +91,7 @@ class Called:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TaggedBy:
-    """A union whose members tell themselves apart by a field, each with a ``Literal`` of its own."""
+    """A union whose members are distinguished by a field, each with its own ``Literal``."""
 
     field: str
 
@@ -118,7 +118,5 @@ class Chosen:
         return core_schema.tagged_union_schema(members, choose)
 
 
-Longitude = Annotated[float, Ge(-180), Le(180)]
-"""Degrees, east positive."""
-Latitude = Annotated[float, Ge(-90), Le(90)]
-"""Degrees, north positive."""
+Longitude = Annotated[float, Ge(-180), Le(180), Called("a longitude from -180 (west) to 180 (east)")]
+Latitude = Annotated[float, Ge(-90), Le(90), Called("a latitude from -90 (south) to 90 (north)")]

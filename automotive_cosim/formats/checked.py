@@ -1,7 +1,7 @@
-"""Values that a user wrote, made into what a type says, or refused in words of ours.
+"""Turns values that a user wrote into an instance of a type, or refuses them in our own words.
 
-pydantic checks them as JSON, strictly, so that what passes here passes the type's JSON Schema too. That schema also
-has the words: what a refusal expects is what an editor shows.
+pydantic checks them strictly as JSON, so whatever passes here also passes the type's JSON Schema. That schema also
+provides the words: what a refusal expects is what an editor shows.
 """
 
 from __future__ import annotations
@@ -10,6 +10,8 @@ import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from datetime import date, time
 from difflib import get_close_matches
+from numbers import Integral, Real
+from os import PathLike
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from automotive_cosim.contracts import Json
@@ -21,25 +23,27 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 Steps = tuple[str | int, ...]
-"""The way to a value: keys of tables and indices of lists."""
+"""The path to a value: keys of tables and indices of lists."""
 Locator = Callable[[Steps], tuple[str, str]]
-"""Says where a value stands, such as ``"plan.toml line 12 [limits]"``, and what it is called there."""
+"""Gives the place of a value, such as ``"plan.toml line 12 [limits]"``, and its name there."""
 
 MOST_PROBLEMS = 8
 """Told at once."""
+MOST_COMPLAINTS = 200
+"""Looked at; where pydantic has more of them the first are as good."""
 
 
 def checked(kind: type[T], values: object, place: Locator, error: type[UserError] = UserError) -> T:
-    """What the values say, as an instance of a type.
+    """Turns values into an instance of a type.
 
     Args:
-        kind: a dataclass whose annotations state what is legal (``annotations``).
-        values: tables, lists, texts, numbers, dates, as TOML and JSON hold them.
-        place: says where a value stands.
-        error: what is raised, with one line for each problem.
+        kind: a dataclass whose annotations state what is valid (``annotations``).
+        values: tables, lists, texts, numbers, dates, as in TOML and JSON.
+        place: gives the place of a value.
+        error: the class to raise, with one line per problem.
 
     Raises:
-        UserError: of the class asked for.
+        UserError: of the given class.
     """
     from pydantic import ValidationError
 
@@ -47,24 +51,42 @@ def checked(kind: type[T], values: object, place: Locator, error: type[UserError
 
     any_kind: Any = kind  # mypy takes no type for hashable, as a cache wants it
     try:
-        made: T = adapter(any_kind).validate_json(json.dumps(values, default=_plain))
+        made: T = adapter(any_kind).validate_json(as_json(values))
     except ValidationError as refused:
         complaints = refused.errors(include_url=False, include_input=False)
-        raise error(*_told(complaints, json_schema(any_kind), values, place)) from None
+        raise error(*_told(complaints[:MOST_COMPLAINTS], json_schema(any_kind), values, place)) from None
     except (RecursionError, TypeError, ValueError) as broken:
         why = "it is nested too deeply" if isinstance(broken, RecursionError) else str(broken)
         raise error(f"{place(())[0]} cannot be read: {why}") from broken
     return made
 
 
-def _plain(value: object) -> str:
-    if isinstance(value, date | time):
-        return value.isoformat()
+def as_json(values: object) -> str:
+    """The values as a schema sees them: dates and times are texts.
+
+    Raises:
+        TypeError: something in them is nothing that a file can hold.
+        RecursionError: they are nested too deeply.
+    """
+    return json.dumps(values, default=_plain)
+
+
+def _plain(value: object) -> str | int | float:
+    """What JSON has no word for: TOML's dates, and paths and numpy's numbers where a program gives the values."""
+    match value:
+        case date() | time():
+            return value.isoformat()
+        case PathLike():
+            return str(value)
+        case Integral():
+            return int(value)
+        case Real():
+            return float(value)
     raise TypeError(f"{shown(value)} is nothing that a file can hold")
 
 
 class _Problem(NamedTuple):
-    """A complaint: what of, where, and which schemas there are for it."""
+    """A problem: the value, its place, and the schemas that it should fit."""
 
     kind: str
     steps: Steps
@@ -74,12 +96,12 @@ class _Problem(NamedTuple):
 
 
 def _told(found: Sequence[ErrorDetails], root: Json, values: object, place: Locator) -> list[str]:
-    """One line for each problem, in the order of the type's fields."""
+    """One line per problem, in the order of the type's fields."""
     problems: dict[Steps, _Problem] = {}
     for entry in found:
         problem = _problem(entry, values, root)
         problems.setdefault(problem.steps, problem)
-    # Every member of a union complains; the one that got deeper is the one that was meant.
+    # Every member of a union reports problems; the one that got deepest is the one that was meant.
     meant = [one for one in problems.values() if not any(_leads(one.steps, other) for other in problems)]
     told = list(dict.fromkeys(_line(problem, meant, root, place) for problem in meant))
     more = len(told) - MOST_PROBLEMS
@@ -91,8 +113,10 @@ def _leads(steps: Steps, other: Steps) -> bool:
 
 
 def _problem(entry: ErrorDetails, values: object, root: Json) -> _Problem:
-    """A complaint of pydantic's, whose location also names the members of unions that it tried."""
+    """A problem from pydantic, whose location also names the members of unions that it tried."""
     kind, context, location = entry["type"], entry.get("ctx", {}), entry["loc"]
+    if kind == LACKING and isinstance(location[-1], int):  # a list is too short
+        kind, location = "too_short", location[:-1]
     steps: Steps = ()
     value, schemas = values, list(members(root, root))
     for part in location[:-1] if kind in (LACKING, *SURPLUS) else location:
@@ -129,7 +153,7 @@ def _below(schemas: Sequence[Json], part: str | int, root: Json) -> Iterator[Jso
 
 
 def _labels(schema: Json) -> set[object]:
-    """By what pydantic calls a member of a union."""
+    """Pydantic's name for a member of a union."""
     return {schema.get("title"), *(field.get("const") for field in schema.get("properties", {}).values())}
 
 

@@ -1,4 +1,4 @@
-"""JSON Schemas of types: what a file must look like, for editors and for the words of our own refusals.
+"""JSON Schemas of types, for editors and for the words of our own error messages.
 
 The dialect is draft 7, which editors know best. Local times have a pattern, as ``format`` asks for an offset.
 """
@@ -22,22 +22,22 @@ from automotive_cosim.contracts import Json
 
 @cache
 def adapter(kind: type) -> TypeAdapter[Any]:
-    """What reads a type: nothing is coerced, nothing surplus passes, a number is finite."""
+    """The reader of a type: nothing is coerced, extra fields are refused, numbers are finite."""
     return TypeAdapter(with_config({"strict": True, "extra": "forbid", "allow_inf_nan": False})(kind))
 
 
 @cache
 def json_schema(kind: type) -> Json:
-    """The schema of a type's values, for the words of a refusal."""
+    """The schema of a type's values, for the words of an error message."""
     return adapter(kind).json_schema(schema_generator=_Draft7)
 
 
 def documented(kind: type, *, null: bool = False) -> Json:
-    """The schema with what the docstrings of classes and fields say; needs the source code.
+    """The schema with descriptions from the docstrings of classes and fields; requires the source code.
 
     Args:
         kind: a dataclass.
-        null: whether what is absent may also be written as ``null``, which TOML does not have.
+        null: whether an absent value may also be written as ``null``, which TOML does not have.
     """
     made: Json = adapter(kind).json_schema(schema_generator=_Documented if null else _WithoutNull)
     return made
@@ -95,7 +95,7 @@ class _WithoutNull(_Documented):
 
 
 def field_docs(cls: type) -> dict[str, str]:
-    """The docstrings that stand below the fields of a class, on one line each."""
+    """The docstrings below the fields of a class, each on one line."""
     (body,) = ast.parse(dedent(inspect.getsource(cls))).body
     assert isinstance(body, ast.ClassDef)
     docs = {}

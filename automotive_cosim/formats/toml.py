@@ -1,4 +1,4 @@
-"""TOML files that users write: read whole, and refused by line, table and field."""
+"""Reads TOML files that users write; errors name line, table and field."""
 
 from __future__ import annotations
 
@@ -12,24 +12,25 @@ from typing import Any, TypeVar
 
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.checked import Steps, checked
+from automotive_cosim.formats.files import read_text
 
 T = TypeVar("T")
 
-MOST_BYTES = 4 * 2**20
-"""Nobody writes more by hand, and a wrong path may be a device that never ends."""
+_DEEP = re.compile(r"""(?<![\w.-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){100}""")
+"""A key of more parts than anybody writes: ``tomllib`` takes the square of their number in memory."""
 
 LABELS = {"id": " {}", "kind": " of kind '{}'", "name": " '{}'"}
-"""What tells one entry of a list of tables from another, and how a refusal names it."""
+"""Keys that identify an entry of a list of tables, and how an error names it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Document:
-    """A TOML file and where in it things stand."""
+    """A TOML file with the lines of its entries."""
 
     path: Path
     table: dict[str, Any]
     error: type[UserError]
-    """What a refusal raises."""
+    """The class of errors."""
     text: str = field(repr=False)
 
     def read(self, kind: type[T]) -> T:
@@ -41,12 +42,12 @@ class Document:
         return checked(kind, self.table, self.place, self.error)
 
     def refused(self, steps: Steps, why: str) -> UserError:
-        """The error to raise because of what stands there."""
+        """The error to raise about a value."""
         where, name = self.place(steps)
         return self.error(f"{where}: {name} {why}" if name else f"{where}: {why}")
 
     def place(self, steps: Steps) -> tuple[str, str]:
-        """File, line and table of a value, and what it is called in that table."""
+        """File, line and table of a value, and its name in that table."""
         lines, tables = _lines(self.text)
         line = next((lines[steps[:end]] for end in range(len(steps), 0, -1) if steps[:end] in lines), None)
         table = next(steps[:end] for end in range(len(steps), -1, -1) if steps[:end] in tables)
@@ -54,7 +55,7 @@ class Document:
         return where + self._header(table), dotted(steps[len(table) :])
 
     def _header(self, table: Steps) -> str:
-        """How the file writes a table's name, with what tells it from others of that name."""
+        """A table's name as written in the file, with what identifies it among others of that name."""
         if not table:
             return ""
         name = ".".join(str(step) for step in table if isinstance(step, str))
@@ -71,31 +72,33 @@ def read_toml(path: Path, error: type[UserError] = UserError) -> Document:
     """Reads a file.
 
     Raises:
-        UserError: of that class: it is missing, too large, or no TOML.
+        UserError: of that class: it cannot be read, or is no TOML.
+    """
+    return parse(read_text(path, error), path, error)
+
+
+def parse(text: str, path: Path, error: type[UserError] = UserError) -> Document:
+    """A document from the text of a file.
+
+    Raises:
+        UserError: of that class: it is no TOML.
     """
     try:
-        with path.open("rb") as file:
-            data = file.read(MOST_BYTES + 1)
-        if len(data) > MOST_BYTES:
-            raise error(f"{path} is larger than {MOST_BYTES // 2**20} MB; give a TOML file written by hand")
-        text = data.decode("utf-8-sig").replace("\r\n", "\n")
+        if _DEEP.search(text):
+            raise RecursionError
         return Document(path, tomllib.loads(text), error, text)
-    except OSError as broken:
-        raise error(f"cannot read {path}: {broken.strerror or broken}") from broken
-    except UnicodeDecodeError as broken:
-        raise error(f"{path} is not TOML: it is no UTF-8 text; save it as UTF-8") from broken
     except (ValueError, RecursionError) as broken:
         why = "it is nested too deeply" if isinstance(broken, RecursionError) else str(broken)
         raise error(f"{path} is not TOML: {why}") from broken
 
 
-# --- where things stand -------------------------------------------------------------------------------------
+# --- the lines of entries -------------------------------------------------------------------------------------
 
 _OPAQUE = re.compile(
     r'#[^\n]*|"""(?:\\.|[^\\])*?"""(?:"{0,2})|\'\'\'.*?\'\'\'(?:\'{0,2})|"(?:\\.|[^"\\\n])*"|\'[^\'\n]*\'',
     re.DOTALL,
 )
-"""Comments and texts of a well-formed file: what may hold brackets, equal signs and line ends that mean nothing."""
+"""Comments and texts of a well-formed file, in which brackets, equal signs and line ends mean nothing."""
 
 
 def dotted(steps: Steps) -> str:
@@ -122,12 +125,15 @@ def _lines(text: str) -> tuple[Mapping[Steps, int], frozenset[Steps]]:
         if depth == 0 and header is not None:
             table = _entry(_keys(text[begin + header.start(2) : begin + header.end(2)]), header[1] == "[[", last)
             tables.add(table)
-            lines.setdefault(table, number)
+            found = table
         elif depth == 0 and equals:
-            lines.setdefault((*table, *_keys(text[begin : begin + len(key)])), number)
+            found = (*table, *_keys(text[begin : begin + len(key)]))
             depth = _depth(rest)
         else:
+            found = ()
             depth += _depth(line)
+        for end in range(1, len(found) + 1):  # a key such as a.b makes the table a
+            lines.setdefault(found[:end], number)
         number += 1 + text.count("\n", begin, begin + len(line))
         begin += len(line) + 1
     return lines, frozenset(tables)
@@ -141,7 +147,7 @@ def _depth(line: str) -> int:
 
 
 def _keys(written: str) -> tuple[str, ...]:
-    """The keys of ``a."b c".d``, by the same reader as the file's."""
+    """The keys of ``a."b c".d``, parsed like the file."""
     inner: Any = tomllib.loads(f"{written} = 0")
     keys = []
     while isinstance(inner, dict):

@@ -1,4 +1,4 @@
-"""Words for a refusal: what came, and what a JSON Schema expects in its place."""
+"""Words of an error message: what came, and what a JSON Schema expects instead."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ def shown(value: object) -> str:
             return value.isoformat()
     try:
         return _SHORT.repr(value)
-    except ValueError:  # Python prints no whole number of more than 4300 digits
+    except ValueError:  # Python does not print integers of more than 4300 digits
         return "a number too long to print"
 
 
 def members(schema: Json, root: Json) -> Iterator[Json]:
-    """The schemas that a value may fit, references and unions resolved; ``null`` is left out."""
+    """The schemas that a value may fit, with references and unions resolved and without ``null``."""
     if "$ref" in schema:
         yield from members(root["$defs"][schema["$ref"].rpartition("/")[2]], root)
     elif "properties" not in schema and (union := schema.get("anyOf") or schema.get("oneOf")):
@@ -45,7 +45,7 @@ def members(schema: Json, root: Json) -> Iterator[Json]:
 
 
 def choices(schema: Json) -> list[Any]:
-    """The only legal values, where they are listed."""
+    """The only valid values, if they are listed."""
     return [schema["const"]] if "const" in schema else list(schema.get("enum", ()))
 
 
@@ -53,8 +53,8 @@ def expected(schemas: Sequence[Json], root: Json) -> str:
     """What a value must be, such as ``"a number from 0 to 1"`` or ``"a list of texts, at least 1"``.
 
     Args:
-        schemas: the ``members`` it may fit.
-        root: where references are resolved.
+        schemas: the ``members`` that it may fit.
+        root: the schema in which references are resolved.
     """
     return " or ".join(dict.fromkeys(_one(schema, root) for schema in schemas))
 

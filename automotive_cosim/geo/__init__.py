@@ -1,7 +1,7 @@
 """Where the car is: place, law, sky, weather, and the context an agent reads.
 
-``geo.violations(states)`` tells judges and reports what was broken on a drive. It is looked up when first asked
-for, so that nothing an agent can reach loads it.
+``geo.violations(states)`` lists the violations of a drive, for judges and reports. It is loaded on first use, so
+nothing that an agent can reach loads it.
 """
 
 from __future__ import annotations

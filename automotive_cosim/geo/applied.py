@@ -1,4 +1,4 @@
-"""Which rules of a place apply to a road at one instant, and what they answer."""
+"""Which rules of a place apply to a road at one instant, and their answers."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from automotive_cosim.geo.weather import phenomena
 
 MOTORWAYS = ("motorway", "motorway_link")
 STREETS = ("residential", "living_street", "pedestrian")
-"""OSM highway values that stand for built-up land where the network says nothing of it."""
+"""OSM highway values that imply built-up land if the network does not say."""
 
 MAYBE_DUAL = ("trunk", "trunk_link", "primary", "secondary")
 """Roads that may have a central reservation if they have two lanes or more in one direction."""
@@ -33,19 +33,19 @@ MAYBE_EXPRESSWAY = ("trunk", "trunk_link", "")
 
 @dataclass(frozen=True, slots=True)
 class AppliedRule:
-    """A rule that place, road and date leave open here."""
+    """A rule that place, road and date do not exclude here."""
 
     rule: Rule
     jurisdiction: str
-    """Code of the country, region or city whose rule it is."""
+    """Code of the country, region or city that the rule belongs to."""
     value: Value | None
-    """Its answer now: None if it does not apply now."""
+    """Its answer now; None if it does not apply now."""
     certain: bool
-    """False where the situation does not tell whether it is this answer."""
+    """False if the situation does not determine the answer."""
 
 
 def built_up(road: RoadHere, place: Place) -> tuple[bool | None, str]:
-    """Whether the road is in a built-up area, None if nothing tells, and what tells it (``GeoContext``)."""
+    """Whether the road is in a built-up area, None if unknown, and the source of that (``GeoContext``)."""
     if road.built_up is not None:
         return road.built_up, "network"
     if road.road_class in MOTORWAYS:
@@ -71,7 +71,7 @@ def situation_at(
     sun: Sun | None,
     is_built_up: bool | None,
 ) -> Situation:
-    """What rules are asked of: everything that is known of an instant."""
+    """The input of rules: everything known about an instant."""
     road, around = driving.road, driving.around
     return Situation(
         local_time=local_time,
@@ -102,9 +102,9 @@ def _applied(rule: Rule, jurisdiction: str, situation: Situation) -> AppliedRule
 
 
 def limits(place: Place, situation: Situation) -> Iterator[AppliedRule]:
-    """The limits that may be this road's, without those that an earlier one rules out.
+    """The limits that this road may have, without those that an earlier one rules out.
 
-    A limit that lowers signs is ruled out by its own layer only: fog slows a street of a city's limit too.
+    A limit that lowers signs is ruled out by its own layer only: fog also slows a street with a city's limit.
     """
     doubts: list[frozenset[Test]] = []
     for layer in place.layers:
@@ -122,7 +122,7 @@ def limits(place: Place, situation: Situation) -> Iterator[AppliedRule]:
 
 
 def other_rules(place: Place, situation: Situation) -> Iterator[AppliedRule]:
-    """Per topic the rules of the innermost layer that has one for this road."""
+    """By topic, the rules of the innermost layer that has one for this road."""
     for topic in TOPICS:
         if topic == "limit":
             continue

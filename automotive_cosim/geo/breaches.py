@@ -1,13 +1,13 @@
-"""Traffic law broken on a drive, as intervals: for judges and reports, never for an agent.
+"""Violations of traffic law on a drive, as intervals: for judges and reports, never for an agent.
 
     from automotive_cosim import geo
 
     for found in geo.violations(env.unwrapped.episode.moments):
         print(found.from_s, found.to_s, found.rule, found.law, found.margin, found.unit)
 
-Only what the context is certain of is checked: a limit that the network leaves open, or a lamp whose signal the car
-lacks, breaks nothing. What a car does by itself is not asked for: daytime running lamps light up without a switch
-(UN R48, 6.19). A rule's ``status`` stands in each entry, so that a judge can keep to the verified ones.
+Only what the context is certain of is checked: a limit that the network does not determine, or a lamp whose signal
+the car lacks, is no violation. What a car does by itself is not checked: daytime running lamps need no switch (UN
+R48, 6.19). Each entry has its rule's ``status``, so a judge can select the verified ones.
 """
 
 from __future__ import annotations
@@ -24,22 +24,23 @@ from automotive_cosim.geo.rules import Rule, Status
 from automotive_cosim.geo.text import KM_PER_MILE
 
 EQUAL_UP_TO_KMH = 1.0
-"""So much above the limit still counts as equal (Regulation (EU) 2021/1958, annex I)."""
+"""Tolerance above the limit (Regulation (EU) 2021/1958, annex I)."""
 
 ISA_FROM_KMH = 20.0
-"""Slower than this, intelligent speed assistance need not act (same annex) and no following distance is asked."""
+"""Below this speed, intelligent speed assistance need not act (same annex) and no following distance is
+required."""
 
 ISA_CASCADE = ((1.0, 6.0), (1.1, 5.0), (1.2, 4.0), (1.3, 3.0))
-"""(speed over limit, seconds): the tone sounds once that ratio has been held so long (same annex)."""
+"""(ratio of speed to limit, seconds): the tone sounds once that ratio has lasted that long (same annex)."""
 
 LAMP_TIME_S = 2.0
-"""An automatic switch may take so long to light the dipped beam (UN R48, 6.2.7)."""
+"""How long an automatic switch may take to light the dipped beam (UN R48, 6.2.7)."""
 
 GAP_TIME_S = 3.0
-"""Somebody who cuts in leaves a gap that takes a while to open; our choice."""
+"""Time to reopen a gap after another vehicle cuts in; our choice."""
 
 DANGER_BELOW_S = 2.7
-"""Time to collision under which a horn warns of danger, as every law allows; our choice."""
+"""Time to collision below which the horn warns of danger, which every law allows; our choice."""
 
 LOW_BEAM = "Vehicle.Body.Lights.Beam.Low.IsOn"
 HIGH_BEAM = "Vehicle.Body.Lights.Beam.High.IsOn"
@@ -52,14 +53,14 @@ MEDIA_SOURCE = "Vehicle.Cabin.Infotainment.Media.Played.Source"
 """Paths of the Vehicle Signal Specification 6.0; a car may lack some."""
 
 MOVING_PICTURES = ("TV", "DVD")
-"""Media sources that show pictures, in VSS's words."""
+"""Media sources that show moving pictures, as VSS values."""
 
 SIGN = "posted"
-"""Stands for the rule where a sign sets the limit."""
+"""Id of the rule if a sign sets the limit."""
 
 
 class ViolationKind(StrEnum):
-    """What was done."""
+    """Kinds of violations."""
 
     SPEED = "speed"
     LAMPS = "lamps"
@@ -78,7 +79,7 @@ class Observed(Protocol):
 
     @property
     def driving(self) -> DrivingState:
-        """On the road."""
+        """State of the drive."""
         ...
 
     @property
@@ -88,13 +89,13 @@ class Observed(Protocol):
 
     @property
     def signals(self) -> Mapping[str, Any]:
-        """VSS path to value; what the car lacks is missing."""
+        """VSS path to value, without signals that the car lacks."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class Violation:
-    """A rule broken without a break from one instant to another."""
+    """A rule broken continuously from one instant to another."""
 
     kind: ViolationKind
     rule: str
@@ -103,14 +104,14 @@ class Violation:
     """The rule in words."""
     law: str
     status: Status
-    """A sign counts as verified: it stands there."""
+    """Status of the rule; a sign counts as verified."""
     from_s: float
     to_s: float
     """The first and the last instant at which it was broken, simulation time."""
     margin: float
-    """The worst distance from what is lawful; 1 where there is nothing to measure."""
+    """The largest deviation from what is lawful; 1 if there is nothing to measure."""
     unit: str
-    """Of the margin: ``km/h``, ``m``, ``s``, or empty."""
+    """Unit of the margin: ``km/h``, ``m``, ``s``, or empty."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,7 +126,7 @@ class _Breach:
     margin: float = 1.0
     unit: str = ""
     ratio: float = 1.0
-    """Speed over limit."""
+    """Ratio of speed to limit."""
 
     @property
     def key(self) -> tuple[ViolationKind, str, str]:
@@ -133,10 +134,10 @@ class _Breach:
 
 
 def violations(states: Iterable[Observed]) -> tuple[Violation, ...]:
-    """What was broken, in the order of its beginning.
+    """The violations, ordered by their beginning.
 
     Args:
-        states: a drive in the order of time, e.g. the moments of an episode.
+        states: a drive in chronological order, e.g. the moments of an episode.
     """
     open_runs: dict[tuple[ViolationKind, str, str], list[tuple[float, _Breach]]] = {}
     closed: list[list[tuple[float, _Breach]]] = []
@@ -166,7 +167,7 @@ def _interval(run: Sequence[tuple[float, _Breach]]) -> Violation:
 
 
 def _lasted(run: Sequence[tuple[float, _Breach]]) -> bool:
-    """Whether it went on for longer than a lawful driver may need."""
+    """Whether it lasted longer than a lawful driver may need."""
     match run[0][1].kind:
         case ViolationKind.SPEED:
             return any(_held_s(run, ratio) >= seconds for ratio, seconds in ISA_CASCADE)
@@ -179,7 +180,7 @@ def _lasted(run: Sequence[tuple[float, _Breach]]) -> bool:
 
 
 def _held_s(run: Sequence[tuple[float, _Breach]], ratio: float = 1.0) -> float:
-    """The longest time without a break at that ratio of speed to limit or more."""
+    """The longest continuous time at that ratio of speed to limit or more."""
     longest_s, since_s = 0.0, None
     for time_s, breach in run:
         if breach.ratio < ratio:
@@ -202,7 +203,7 @@ def _breaches(state: Observed) -> Iterator[_Breach]:
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """The limit that binds at one instant."""
+    """The limit that applies at one instant."""
 
     kmh: float
     rule: str
@@ -212,10 +213,9 @@ class Limit:
 
 
 def binding_limit(context: GeoContext) -> Limit | None:
-    """The lowest limit that is certain to hold: the sign's, else the law's; lowered by weather, light or hour.
+    """The lowest limit that certainly applies: the sign's, else the law's; lowered by weather, light or hour.
 
-    A sign is lowered only by those rules that lower signs too (``caps``). None where no limit is known or there is
-    none.
+    A sign is lowered only by rules that also lower signs (``caps``). None if no limit is known or there is none.
     """
     signed = context.road.limit_source is LimitSource.POSTED
     found: list[Limit] = []
@@ -256,7 +256,7 @@ _LAMPS = {
     "rear_fog": (REAR_FOG,),
     "hazard_lights": (HAZARD,),
 }
-"""Topic -> lamps, one of which does what the topic asks for."""
+"""Topic -> lamps, one of which satisfies the topic."""
 
 
 def _lamps(state: Observed) -> Iterator[_Breach]:

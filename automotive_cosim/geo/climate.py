@@ -1,4 +1,4 @@
-"""What weather is usual where the car is: monthly normals of the nearest station."""
+"""The usual weather at a place: monthly normals of the nearest station."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ EARTH_RADIUS_KM = 6371.0
 
 @dataclass(frozen=True, slots=True)
 class ClimateNorm:
-    """Normals of one month at one station, 1991-2020, from general knowledge: good to about 1 degree Celsius, 15 %
-    of the rain and 5 points of humidity, the daily range to about 2 degrees."""
+    """Normals of one month at one station, 1991-2020, from general knowledge: accurate to about 1 degree Celsius,
+    15 % of the rain and 5 points of humidity, the daily range to about 2 degrees."""
 
     station: str
     month: int
     temperature_c: float
-    """Mean of day and night."""
+    """Mean temperature of day and night."""
     usual_low_c: float
-    """Mean of the daily minima, as far below the mean as ``usual_high_c``, that of the maxima, is above."""
+    """Mean of the daily minima, as far below the mean as that of the maxima, ``usual_high_c``, is above."""
     usual_high_c: float
     precipitation_mm: float
-    """Of the whole month."""
+    """Total of the month."""
     humidity_pct: float
     status: str
 

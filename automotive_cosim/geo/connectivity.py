@@ -1,4 +1,4 @@
-"""The car's link to the outside, from where it drives and from what the network offers at the time."""
+"""The car's link, from where it drives and from what the network offers at the time."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ IN_TOWN = Connectivity(online=True, kind="5g", signal_bars=4)
 ELSEWHERE = Connectivity(online=True, kind="4g", signal_bars=3)
 
 ATTACH_S = 3.0
-"""A modem needs this long to find its network again; our choice."""
+"""Time for a modem to find its network again; our choice."""
 
 
 class Modem:
     """One modem on one drive: offline in tunnels, back a few seconds after; 5G where the network says built-up.
 
     Args:
-        timeline: the best link there is, by the seconds since departure.
+        timeline: the best available link, by seconds since departure.
     """
 
     def __init__(self, timeline: tuple[LinkAt, ...] = ()) -> None:
@@ -31,8 +31,8 @@ class Modem:
 
         Args:
             driving: where the car is.
-            dt_s: seconds since the read before.
-            since_departure_s: when it is, on the timeline.
+            dt_s: seconds since the previous reading.
+            since_departure_s: the present time on the timeline.
         """
         best = link_at(self._timeline, since_departure_s)
         self._reachable_s = 0.0 if driving.road.in_tunnel or best == LINKS[0] else self._reachable_s + dt_s
@@ -41,5 +41,5 @@ class Modem:
         return IN_TOWN if driving.road.built_up and best == IN_TOWN.kind else ELSEWHERE
 
     def copy(self) -> Modem:
-        """A modem that goes on exactly as this one would."""
+        """A modem that continues exactly as this one would."""
         return copy(self)

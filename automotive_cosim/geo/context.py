@@ -1,8 +1,8 @@
-"""The geo-context: what holds where the car is, as data and as the text an agent reads.
+"""The geo-context: what applies where the car is, as data and as the text an agent reads.
 
-The text has one fact a line, in a fixed order, each with what it rests on. Rules are stated with their conditions,
-whether or not these hold now, so that nothing in the text tells when something is due. The line of the limit is
-made for simple readers too: ``Speed limit here: 50 km/h (posted on Avenue Foch)``.
+The text has one fact per line, in a fixed order, each with its source. Rules are stated with their conditions,
+whether or not these hold now, so nothing in the text reveals when something is due. The line of the limit also
+suits simple readers: ``Speed limit here: 50 km/h (posted on Avenue Foch)``.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ from automotive_cosim.geo.weather import words as weather_words
 class GeoContext:
     """Place, road, law, sky and weather at one instant. States facts and rules; judges nothing.
 
-    It holds what it is made of; what follows from that is found when first asked for, since most instants are asked
-    for little or nothing.
+    It holds its inputs; what follows from them is computed on first use, since most instants need little or
+    nothing.
     """
 
     driving: DrivingState
-    """Of which road, traffic and motion count, not the position."""
+    """Source of road, traffic and motion; its position is not used."""
     gps: GpsFix | None
-    """Gives the place, by its last fix; None leaves that unknown."""
+    """Source of the place, by its last fix; None leaves it unknown."""
     weather: Weather | None
     local_time: datetime
     """Zone-aware."""
@@ -48,36 +48,36 @@ class GeoContext:
 
     @property
     def speed_kmh(self) -> float:
-        """Of the car."""
+        """Speed of the car."""
         return self.driving.speed_mps * KMH_PER_MPS
 
     @property
     def heading_deg(self) -> float:
-        """Clockwise from north."""
+        """Heading, clockwise from north."""
         return self.driving.heading_deg
 
     @cached_property
     def place(self) -> Place:
-        """Country, region, city and whose rules hold.
+        """Country, region, city, and whose rules apply.
 
         Raises:
-            GeoDataError: a rule file of the country is broken.
+            GeoDataError: a rule file of the country is invalid.
         """
         return NOWHERE if self.gps is None else self.atlas.place(self.gps.lon_deg, self.gps.lat_deg)
 
     @cached_property
     def sun(self) -> Sun | None:
-        """None where the position is not known, as with ``climate``."""
+        """The sun; None if the position is unknown, as for ``climate``."""
         return None if self.gps is None else sun_at(self.gps.lon_deg, self.gps.lat_deg, self.local_time)
 
     @cached_property
     def climate(self) -> ClimateNorm | None:
-        """The month's normals of the nearest station; None too where that is far."""
+        """The month's normals of the nearest station; None also if that is far."""
         return None if self.gps is None else climate_norm(self.gps.lon_deg, self.gps.lat_deg, self.local_time.month)
 
     @property
     def built_up(self) -> bool | None:
-        """Whether the road is in a built-up area; None if nothing tells."""
+        """Whether the road is in a built-up area; None if unknown."""
         return self._built_up[0]
 
     @property
@@ -87,13 +87,13 @@ class GeoContext:
 
     @property
     def posted_limit_kmh(self) -> float | None:
-        """None where no sign is known, or the sign lifts every limit."""
+        """The posted limit; None if no sign is known, or the sign lifts every limit."""
         posted = self.road.posted_limit_mps if self.road.limit_source is LimitSource.POSTED else None
         return None if posted is None else posted * KMH_PER_MPS
 
     @property
     def default_limits(self) -> tuple[AppliedRule, ...]:
-        """The law's limit for this road. Several where the network does not tell which; none where no law is
+        """The legal limits for this road: several if the network does not determine which, none if no law is
         known."""
         return tuple(found for found in self._limits if found.rule.fixed)
 
@@ -109,17 +109,17 @@ class GeoContext:
 
     @property
     def country(self) -> str:
-        """ISO 3166-1 code; empty where it is not known."""
+        """ISO 3166-1 code; empty if unknown."""
         return self.place.country
 
     @property
     def default_limit(self) -> AppliedRule | None:
-        """The law's limit for this road if there is no doubt which."""
+        """The legal limit for this road if it is certain."""
         return self.default_limits[0] if len(self.default_limits) == 1 and self.default_limits[0].certain else None
 
     @property
     def speed_unit(self) -> str:
-        """The country's: ``"km/h"`` or ``"mph"``; km/h where the country is not known."""
+        """The country's unit of speed: ``"km/h"`` or ``"mph"``; km/h if the country is unknown."""
         return self.place.law.speed_unit if self.place.law else "km/h"
 
     def rule(self, topic: str) -> AppliedRule | None:
@@ -128,11 +128,11 @@ class GeoContext:
 
     @property
     def lines(self) -> tuple[Line, ...]:
-        """Every line of the text with what it rests on, the most important first."""
+        """Every line of the text with its source, the most important first."""
         return tuple(_lines(self))
 
     def text(self, budget_tokens: int = BUDGET_TOKENS) -> str:
-        """What holds here, one fact a line: as many lines, from the first, as the budget takes."""
+        """The context as text, one fact per line: as many lines, from the first, as the budget allows."""
         return within_budget(self.lines, budget_tokens)
 
     @cached_property

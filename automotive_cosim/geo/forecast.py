@@ -1,7 +1,7 @@
-"""Where weather comes from when a scenario does not state it: drawn from the climate, or asked of Open-Meteo.
+"""Sources of weather that a scenario does not state: drawn from the climate, or from Open-Meteo.
 
     Climate(seed).report(lon, lat, time)                 # offline: the month's normals and a seed
-    OpenMeteo(Climate(seed)).report(lon, lat, time)      # online; where that fails, the other one, and it says so
+    OpenMeteo(Climate(seed)).report(lon, lat, time)      # online; if that fails, the climate, and it says so
 
 Nothing here goes online unless an ``OpenMeteo`` is made. Its data are Open-Meteo's (CC BY 4.0; free for
 non-commercial use, https://open-meteo.com/en/terms).
@@ -35,22 +35,22 @@ ANSWER_LIMIT_BYTES = 1_000_000
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """The weather and where it is from."""
+    """The weather and its source."""
 
     weather: Weather
     source: str
     note: str = ""
-    """Why it is not from where it was asked for; empty if it is."""
+    """Why it does not come from the requested source; empty if it does."""
 
 
 class WeatherSource(Protocol):
-    """Tells the weather at a place and time."""
+    """Gives the weather at a place and time."""
 
     def report(self, lon_deg: float, lat_deg: float, local_time: datetime) -> Report:
         """The weather there and then; ``local_time`` is zone-aware.
 
         Raises:
-            UserError: nothing is known of the place.
+            UserError: nothing is known about the place.
         """
         ...
 
@@ -58,11 +58,11 @@ class WeatherSource(Protocol):
 # --- drawn from the climate -------------------------------------------------------------------------------
 
 DAY_TO_DAY_SIGMA_C = 3.0
-"""How far a day's temperature is from the month's mean; a usual figure of the temperate zone."""
+"""Deviation of a day's temperature from the month's mean; a usual figure of the temperate zone."""
 RAIN_RATE_MM_PER_H = ((10.0, 0.8), (25.0, 2.5))
 """Mean rate of rain while it falls, from steady rain in the cold to showers in the heat; our choice."""
 WET_AT_MOST = 0.5
-"""Share of the hours in which something falls, at most."""
+"""Maximum share of hours with precipitation."""
 RATE_STEPS = ((0.5, 51), (1.0, 53), (1.3, 55), (2.5, 61), (HEAVY_RAIN_FROM_MM_PER_H, 63), (math.inf, 65))
 """(mm/h below, code), as Open-Meteo derives codes from rates."""
 SNOW_STEPS = ((0.2, 71), (0.8, 73), (math.inf, 75))
@@ -77,9 +77,9 @@ FOG_FROM_PCT, FOG_WIND_BELOW_KMH = 93.0, 8.0
 
 
 class Climate:
-    """Draws weather from the month's normals of the nearest station. One seed has one weather an hour.
+    """Draws weather from the month's normals of the nearest station. Each seed has one weather per hour.
 
-    Over many seeds temperature, rain and humidity come out at the normals.
+    Over many seeds, temperature, rain and humidity average to the normals.
     """
 
     def __init__(self, seed: int, within_km: float = NEAR_KM) -> None:
@@ -88,7 +88,7 @@ class Climate:
         self._within_km = within_km
 
     def report(self, lon_deg: float, lat_deg: float, local_time: datetime) -> Report:
-        """As ``WeatherSource.report``."""
+        """See ``WeatherSource.report``."""
         hour = local_time.astimezone(UTC).replace(minute=0, second=0, microsecond=0)
         solar_time = hour + timedelta(hours=lon_deg / 15)
         norm = climate_norm(lon_deg, lat_deg, solar_time.month, self._within_km)
@@ -104,18 +104,18 @@ class Climate:
 def drawn_weather(driving: DrivingState, departure: datetime, seed: int) -> tuple[WeatherAt, ...]:
     """A timeline for a scenario that leaves its weather to the climate: one weather for the whole drive.
 
-    Anywhere on earth has some: that of the nearest station, however far, stands in for a climate nobody listed.
+    Every place on earth has one: the nearest station, however far, is used for an unlisted climate.
 
     Args:
         driving: where the drive begins.
-        departure: when, zone-aware.
-        seed: of the draw.
+        departure: when it begins, zone-aware.
+        seed: seed of the draw.
 
     Raises:
         ScenarioError: the network has no projection.
     """
     if driving.lon_deg is None or driving.lat_deg is None:
-        raise ScenarioError('weather = "climate" needs a network with projection; state [[weather]] instead')
+        raise ScenarioError('weather = "climate" requires a network with a projection; state [[weather]] instead')
     return (WeatherAt(0.0, Climate(seed, math.inf).report(driving.lon_deg, driving.lat_deg, departure).weather),)
 
 
@@ -192,7 +192,7 @@ class OpenMeteo:
         self._timeout_s = timeout_s
 
     def report(self, lon_deg: float, lat_deg: float, local_time: datetime) -> Report:
-        """As ``WeatherSource.report``."""
+        """See ``WeatherSource.report``."""
         hour = local_time.astimezone(UTC).replace(minute=0, second=0, microsecond=0, tzinfo=None)
         try:
             return Report(_weather(self._fetch(lon_deg, lat_deg, hour), hour), "Open-Meteo")

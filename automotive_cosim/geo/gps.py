@@ -1,4 +1,4 @@
-"""A GPS receiver: a few metres off, and blind in tunnels."""
+"""A GPS receiver: accurate to a few metres, and without a fix in tunnels."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from automotive_cosim.contracts import DrivingState, GpsFix
 from automotive_cosim.geo.place import METRES_PER_DEGREE, metres_per_degree_east
 
 OPEN_SKY_SIGMA_M = 2.0
-"""Per axis: 95 % of positions within 4.9 m, the radius GPS.gov gives for phones under open sky (van Diggelen and
-Enge, ION GNSS+ 2015)."""
+"""Error per axis: 95 % of positions within 4.9 m, the radius GPS.gov gives for phones under open sky (van Diggelen
+and Enge, ION GNSS+ 2015)."""
 BUILT_UP_SIGMA_M = 4.0
-"""Between buildings, where reflected signals about double it; our choice."""
+"""Error between buildings, where reflected signals about double it; our choice."""
 CANYON_SIGMA_M = 8.0
-"""In built-up streets of one lane a direction, where houses stand near and hide most of the sky; our choice, at the
+"""Error in built-up streets with one lane per direction, where houses hide most of the sky; our choice, at the
 lower end of what is reported from narrow streets (Groves, "Shadow Matching", Journal of Navigation 64, 2011)."""
 CORRELATION_S = 30.0
 """Time constant of the error, a first-order Gauss-Markov process; our choice, the order of multipath."""
 REACQUIRE_S = 2.0
 """Sky needed after a tunnel before there is a fix again (receivers' data sheets give 1 to 2 s)."""
 CROSS_SPEED_SIGMA_MPS = 0.05
-"""Error of the Doppler velocity across the way, which makes that of the heading (receivers' data sheets)."""
+"""Lateral error of the Doppler velocity, which causes that of the heading (receivers' data sheets)."""
 HEADING_FROM_MPS = 1.0
 """Slower than this the receiver keeps its last heading."""
 UNDERGROUND_SIGMA_M = 50.0
@@ -32,10 +32,10 @@ UNDERGROUND_SIGMA_M = 50.0
 
 
 class Gps:
-    """One receiver on one drive. Reads in the order of time; the same generator state gives the same fixes.
+    """One receiver on one drive, read in chronological order; the same generator state gives the same fixes.
 
     Args:
-        rng: all its noise; three normal draws a read, fix or not.
+        rng: source of its noise; three normal draws per reading, with or without a fix.
     """
 
     def __init__(self, rng: np.random.Generator) -> None:
@@ -48,8 +48,8 @@ class Gps:
         """The position as the receiver reports it.
 
         Args:
-            driving: where the car really is.
-            dt_s: seconds since the read before.
+            driving: the true position of the car.
+            dt_s: seconds since the previous reading.
 
         Returns:
             None in a network without projection. Without a fix the last position, ``dt_s`` older.
@@ -69,11 +69,11 @@ class Gps:
         return self._last
 
     def copy(self) -> Gps:
-        """A receiver that goes on exactly as this one would."""
+        """A receiver that continues exactly as this one would."""
         return deepcopy(self)
 
     def _wander(self, dt_s: float) -> float:
-        """Lets the unit-variance error walk on, and returns a fresh unit draw for the heading."""
+        """Advances the unit-variance error, and returns a new unit draw for the heading."""
         kept = math.exp(-dt_s / CORRELATION_S)
         fresh = math.sqrt(1.0 - kept * kept)
         east, north, heading = (float(draw) for draw in self._rng.standard_normal(3))

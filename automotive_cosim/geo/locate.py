@@ -1,4 +1,4 @@
-"""Finds what holds where the car is: drive, last fix, weather and clock -> ``GeoContext``."""
+"""Makes the geo-context: drive, last fix, weather and clock -> ``GeoContext``."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from automotive_cosim.geo.place import Atlas, check_position, shipped
 
 
 class Geo:
-    """Makes contexts. Holds nothing of a drive, so that branches share it.
+    """Makes contexts. It has no state of a drive, so branches share it.
 
     Args:
-        folders: the user's own rule files, which stand before the shipped ones.
+        folders: folders of the user's own rule files, which override the shipped ones.
     """
 
     def __init__(self, folders: Sequence[Path] = ()) -> None:
@@ -24,16 +24,16 @@ class Geo:
     def locate(
         self, driving: DrivingState, gps: GpsFix | None, weather: Weather | None, local_time: datetime
     ) -> GeoContext:
-        """What holds here and now.
+        """The geo-context here and now.
 
         Args:
-            driving: gives the road, the traffic and the motion; its position is not read.
-            gps: gives the place, by its last fix; None leaves the place unknown.
+            driving: source of road, traffic and motion; its position is not used.
+            gps: source of the place, by its last fix; None leaves the place unknown.
             weather: None leaves it unknown.
             local_time: zone-aware.
 
         Raises:
-            UserError: no position on earth.
+            UserError: not a position on earth.
         """
         if gps is not None:
             check_position(gps.lon_deg, gps.lat_deg)

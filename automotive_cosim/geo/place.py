@@ -1,4 +1,4 @@
-"""Which country, region, city and time zone a position lies in, and what those say of the road there."""
+"""The country, region, city and time zone of a position, and their rules."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from automotive_cosim.geo.rulefile import read_jurisdiction
 from automotive_cosim.geo.rules import Jurisdiction
 
 NEAR_BORDER_M = 2000.0
-"""So near to another country or region, position and coarse polygons may be on the wrong side; our choice."""
+"""Within this distance of another country or region, position or coarse polygons may be wrong; our choice."""
 
 METRES_PER_DEGREE = 111_320.0
-"""Of latitude, and of longitude at the equator."""
+"""Metres per degree of latitude, and of longitude at the equator."""
 
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """What lies at a position. An empty text means none is known."""
+    """The place of a position. An empty text means unknown."""
 
     country: str = ""
     """ISO 3166-1 code; empty at sea."""
@@ -38,24 +38,24 @@ class Place:
     near_border_to: tuple[str, ...] = ()
     """Codes of other countries and regions within two kilometres."""
     layers: tuple[Jurisdiction, ...] = ()
-    """Whose rules hold, city before region before country; empty where no rules are known."""
+    """Whose rules apply, city before region before country; empty if no rules are known."""
 
     @property
     def law(self) -> Jurisdiction | None:
-        """The country's own entry, None where no rules are known."""
+        """The country's own entry; None if no rules are known."""
         return self.layers[-1] if self.layers else None
 
 
 NOWHERE = Place()
-"""Where no position is known."""
+"""The place of an unknown position."""
 
 
 class Atlas:
     """Places and their rules, read country by country when first needed.
 
     Args:
-        folders: the user's own folders of rule files, the most important first; a file there stands before the
-            shipped one of the same code.
+        folders: the user's own folders of rule files, the most important first; a file there replaces the
+            shipped one with the same code.
     """
 
     def __init__(self, folders: Sequence[Path] = ()) -> None:
@@ -63,13 +63,13 @@ class Atlas:
         self._files: dict[str, Path] = {}
         for folder in (*folders, Path(str(files("automotive_cosim.geo.data")))):
             if not folder.is_dir():
-                raise GeoDataError(f"{folder} is no folder; give one that holds rule files such as FR.toml")
+                raise GeoDataError(f"{folder} is not a folder; give one with rule files such as FR.toml")
             for name in sorted(path.name for path in folder.iterdir() if path.suffix == ".toml"):
                 self._files.setdefault(name.removesuffix(".toml"), folder / name)
         self._countries: dict[str, tuple[Jurisdiction, ...]] = {}
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickled by its folders alone: the files are there for whoever unpickles it."""
+        """Pickled by its folders only: whoever unpickles it reads the files again."""
         return (Atlas, (self._folders,)) if self._folders else (shipped, ())
 
     def codes(self) -> tuple[str, ...]:
@@ -77,11 +77,11 @@ class Atlas:
         return tuple(sorted(self._files))
 
     def place(self, lon_deg: float, lat_deg: float) -> Place:
-        """What lies at a position.
+        """The place of a position.
 
         Raises:
-            UserError: no position on earth.
-            GeoDataError: a rule file of the country is broken.
+            UserError: not a position on earth.
+            GeoDataError: a rule file of the country is invalid.
         """
         check_position(lon_deg, lat_deg)
         lon_deg = (lon_deg + 180.0) % 360.0 - 180.0
@@ -100,10 +100,10 @@ class Atlas:
         )
 
     def country(self, code: str) -> tuple[Jurisdiction, ...]:
-        """A country's file with those of its cities and regions, cities first and itself last; none if it has none.
+        """A country's file with those of its cities and regions, cities first and itself last; empty without files.
 
         Raises:
-            GeoDataError: one of the files is broken, or a region's country has none.
+            GeoDataError: one of the files is invalid, or a region's country has none.
         """
         if code not in self._countries:
             codes = [name for name in self._files if name == code or name.startswith(f"{code}-")]
@@ -141,15 +141,15 @@ class Atlas:
 
 @cache
 def shipped() -> Atlas:
-    """The atlas of the shipped rules alone, one in a process."""
+    """The atlas of the shipped rules only, one per process."""
     return Atlas()
 
 
 def check_position(lon_deg: float, lat_deg: float) -> None:
-    """Refuses what is no position on earth.
+    """Refuses what is not a position on earth.
 
     Raises:
-        UserError: latitude beyond 90 or longitude beyond 180 degrees, or no number.
+        UserError: latitude beyond 90 or longitude beyond 180 degrees, or not a number.
     """
     if not -90.0 <= lat_deg <= 90.0:
         raise UserError(f"latitude {lat_deg:g} is not on earth; give -90 (south) to 90 (north)")
@@ -158,12 +158,12 @@ def check_position(lon_deg: float, lat_deg: float) -> None:
 
 
 def metres_per_degree_east(lat_deg: float) -> float:
-    """Of longitude at a latitude; never quite nothing, so that one may divide by it at the poles."""
+    """Metres per degree of longitude at a latitude; never quite zero, so division works at the poles."""
     return METRES_PER_DEGREE * max(math.cos(math.radians(lat_deg)), 1e-3)
 
 
 def _ring(lon_deg: float, lat_deg: float) -> Iterator[tuple[float, float]]:
-    """Eight points two kilometres around, on earth."""
+    """Eight points on a circle of two kilometres around a position."""
     north = NEAR_BORDER_M / METRES_PER_DEGREE
     east = NEAR_BORDER_M / metres_per_degree_east(lat_deg)
     for index in range(8):

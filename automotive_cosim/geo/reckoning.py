@@ -1,4 +1,4 @@
-"""Dead reckoning: where the car must be while GPS is out, from its last fix, speed, compass and the map's roads."""
+"""Dead reckoning: the position while GPS is out, from the last fix, speed, compass and the map's roads."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from automotive_cosim.contracts import DrivingState, GpsFix, RoadNetwork
 from automotive_cosim.geo.place import METRES_PER_DEGREE, metres_per_degree_east
 
 DRIFT = 0.05
-"""Without a map it goes astray by this share of the way driven; our choice."""
+"""Error without a map, as a share of the distance driven; our choice."""
 
 DRIFT_ON_ROADS = 0.02
-"""With one, what is left is the error along the road, the odometer's."""
+"""With a map, the odometer's error along the road remains."""
 
 SEARCH_M = 40.0
-"""Roads are looked for this far from the reckoned place."""
+"""How far from the computed position to look for roads."""
 
 TURNED_DEG = 40.0
-"""A road that points further off the compass is another one."""
+"""A road that deviates more from the compass is not the car's."""
 
 
 class Reckonable(Protocol):
@@ -37,12 +37,12 @@ class Reckonable(Protocol):
 
     @property
     def driving(self) -> DrivingState:
-        """Of which compass and speedometer are read, and whether it is dark overhead as in a tunnel."""
+        """Source of compass and speedometer, and of whether the car is in a tunnel."""
         ...
 
     @property
     def gps(self) -> GpsFix | None:
-        """The receiver's last word."""
+        """The receiver's last report."""
         ...
 
 
@@ -54,12 +54,12 @@ class Estimate:
     lat_deg: float
     accuracy_m: float
     driven_m: float
-    """Since the last fix."""
+    """Seconds since the last fix."""
     age_s: float
 
 
 class Roads:
-    """The map's roads, to which a reckoned place is moved."""
+    """The map's roads, to which a computed position is moved."""
 
     def __init__(self, network: RoadNetwork) -> None:
         """Takes a network that has a projection."""
@@ -75,7 +75,7 @@ class Roads:
     def nearest(
         self, lon_deg: float, lat_deg: float, heading_deg: float, *, in_tunnel: bool
     ) -> tuple[float, float]:
-        """The place moved sideways onto the nearest road that points the car's way, if there is one."""
+        """The position moved sideways onto the nearest road in the car's direction, if there is one."""
         x, y = self._onto_map.transform(lon_deg, lat_deg)
         here = Point(x + self._offset_m[0], y + self._offset_m[1])
         found: tuple[float, Point] | None = None
@@ -98,14 +98,14 @@ class Roads:
 
 
 def reckon(drive: Sequence[Reckonable], roads: Roads | None = None) -> Estimate | None:
-    """Where the car must be: from the last fix along its compass at its speed. None if it has no receiver.
+    """The position computed from the last fix, compass and speed. None without a receiver.
 
-    A drive without any fix starts from what the receiver remembers at its first instant. With a fix the place is
-    the fix: the error that has grown is gone at once.
+    A drive without any fix starts from the position that the receiver remembers at its first instant. With a fix,
+    the position is the fix, and the accumulated error is gone at once.
 
     Args:
-        drive: in the order of time, back to the last fix; at least one instant.
-        roads: the map; with it the place is kept on roads that point the car's way.
+        drive: the drive in chronological order, back to the last fix; at least one instant.
+        roads: the map; with it, the position is kept on roads in the car's direction.
     """
     if drive[-1].gps is None:
         return None
@@ -132,7 +132,7 @@ def reckon(drive: Sequence[Reckonable], roads: Roads | None = None) -> Estimate 
 
 
 def _heading_deg(line: LineString, along_m: float) -> float:
-    """Of a line at a distance from its start, clockwise from north."""
+    """Direction of a line at a distance from its start, clockwise from north."""
     before, after = line.interpolate(max(0.0, along_m - 1.0)), line.interpolate(min(line.length, along_m + 1.0))
     return float(np.degrees(np.arctan2(after.x - before.x, after.y - before.y)))
 

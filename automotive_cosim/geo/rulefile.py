@@ -10,15 +10,15 @@
     topic = "rear_fog"               # a word of TOPICS
     text = "in fog or snow only"     # the rule in words, as the context prints it
     law = "Code de la route R416-7"
-    as_of = 2026-03-31               # the text of this day was looked at
+    as_of = 2026-03-31               # the version of this day was read
     status = "verified"              # or secondary (press, trade), knowledge (not looked up), uncertain (open)
     cases = [                        # the first case whose conditions hold is the rule's answer
         { value = "allowed", when = { weather = ["fog", "snow"] } },
         { value = "forbidden" },
     ]
 
-A rule with a single case writes ``value`` and ``when`` straight into its table. Within a topic the rules stand from
-the exception to the general, and city goes before region before country.
+A rule with a single case writes ``value`` and ``when`` straight into its table. Within a topic, exceptions come
+before the general rule, and city before region before country.
 """
 
 from __future__ import annotations
@@ -35,7 +35,8 @@ from annotated_types import Ge, MinLen
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import GeoDataError
 from automotive_cosim.formats.annotations import Called, Chosen, Form, Made, OneOf
-from automotive_cosim.formats.toml import read_toml
+from automotive_cosim.formats.files import read_text
+from automotive_cosim.formats.toml import parse
 from automotive_cosim.geo.rules import ANSWERS, TOPICS, UNITS, USERS, Case, Jurisdiction, Rule, Status, Value
 from automotive_cosim.geo.situation import AreaPolygon, Test, When
 
@@ -59,9 +60,9 @@ class CaseEntry:
     """One of a rule's ``cases``: its answer while all conditions hold."""
 
     value: Amount
-    """A number in the rule's unit, or what the law says."""
+    """A number in the rule's unit, or an answer such as ``allowed``."""
     when: When | None = None
-    """Conditions that must all hold; without it always."""
+    """Conditions that must all hold; without it, the case always applies."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,46 +72,47 @@ class RuleEntry:
     id: str
     """Begins with the file's code and a dot: ``"FR.rear_fog"``."""
     topic: Annotated[str, OneOf(TOPICS)]
-    """What it is about."""
+    """The topic of the rule."""
     text: TextLine
     """The rule in words, as the context prints it."""
     law: TextLine
-    """Act and section; ``"custom"`` for what people do."""
+    """Act and section; ``"custom"`` for a custom."""
     as_of: date
-    """The text of this day was looked at."""
+    """Date of the version that was read."""
     status: Annotated[Status, OneOf(Status)]
-    """How far it is to be trusted."""
+    """How well the rule is supported."""
     value: Amount | None = None
-    """The only case's answer: a number in ``unit``, or what the law says; a limit may be ``"none"``."""
+    """The only case's answer: a number in ``unit``, or an answer such as ``allowed``; a limit may be ``"none"``."""
     when: When | None = None
     """The only case's conditions, which must all hold."""
     cases: Annotated[tuple[CaseEntry, ...], MinLen(1)] | None = None
-    """The first whose conditions hold is the answer."""
+    """The cases; the first whose conditions hold gives the answer."""
     unit: Annotated[str, OneOf(sorted(UNITS))] | None = None
-    """Of a number."""
+    """Unit of a number."""
     binds: Annotated[str, OneOf(sorted(USERS), "road user")] = "car"
-    """Whom it is for."""
+    """The road user that the rule binds."""
     caps: Literal[True] | None = None
-    """Of a limit: it also lowers a higher limit that a sign states. Left out where it does not."""
+    """For a limit: it also lowers a higher limit posted by a sign. Omitted if it does not."""
 
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> Json:
         made = handler.resolve_ref_schema(handler(schema))
-        made["oneOf"] = [{"required": ["value"]}, {"required": ["cases"], "not": {"required": ["when"]}}]
+        value, when, cases = ({"required": [name]} for name in ("value", "when", "cases"))
+        made["oneOf"] = [value | {"not": cases}, cases | {"not": {"anyOf": [value, when]}}]
         return made
 
     def __post_init__(self) -> None:
         if (self.value is None) == (self.cases is None):
-            raise ValueError("it needs either value (with when) or cases")
+            raise ValueError("it requires either value (with when) or cases")
         if self.cases is not None and self.when is not None:
-            raise ValueError("when stands inside each case")
+            raise ValueError("when belongs inside each case")
         if self.topic == "limit" and self.cases is not None and len(self.cases) != 1:
             raise ValueError("each limit is a rule of its own, with value and when")
         for value, _ in self.answers:
             if isinstance(value, str) and (value == "none") != (self.topic == "limit"):
                 raise ValueError(f"value is {value!r}; a limit is a number or 'none', and no other rule is 'none'")
             if not isinstance(value, str) and self.unit is None:
-                raise ValueError(f"value is {value:g}; a number needs a unit, one of {', '.join(sorted(UNITS))}")
+                raise ValueError(f"value is {value:g}; a number requires a unit, one of {', '.join(sorted(UNITS))}")
             if value == 0 and self.topic == "limit":
                 raise ValueError("value is 0; a limit is above 0")
 
@@ -124,7 +126,7 @@ class RuleEntry:
 
     @property
     def rule(self) -> Rule:
-        """The entry as the program holds it."""
+        """The rule for the program."""
         return Rule(
             id=self.id,
             topic=self.topic,
@@ -146,8 +148,9 @@ class CountryEntry:
     code: Annotated[str, Form(r"^[A-Z]{2}$", "FR")]
     """ISO 3166-1, the name of the file."""
     name: TextLine
+    """In English, as the context prints it."""
     status: Annotated[Status, OneOf(Status)]
-    """Of the fields here that are not rules."""
+    """Status of the fields here that are not rules."""
     driving_side: Literal["left", "right"]
     speed_unit: Literal["km/h", "mph"]
     temperature_unit: Literal["C", "F"]
@@ -162,13 +165,14 @@ class RegionEntry:
     code: Annotated[str, Form(r"^[A-Z]{2}-\w+$", "FR-paris")]
     """The country's code, a hyphen and a word; the name of the file."""
     name: TextLine
+    """In English, as the context prints it."""
     status: Annotated[Status, OneOf(Status)]
-    """Of the fields here that are not rules."""
+    """Status of the fields here that are not rules."""
     within: Annotated[str, Form(r"^[A-Z]{2}$", "FR")]
     """The country's code."""
     kind: Literal["region", "city"]
     polygon: AreaPolygon
-    """Where it is, as at least three [lon, lat] corners in degrees."""
+    """Its outline, as at least three [lon, lat] corners in degrees."""
 
     def __post_init__(self) -> None:
         if not self.code.startswith(f"{self.within}-"):
@@ -184,27 +188,24 @@ class RuleFile:
     """Traffic rules of one country, region or city."""
 
     jurisdiction: Annotated[CountryEntry | RegionEntry, Chosen(_kind_of)]
-    """Whose rules they are."""
+    """The place whose rules they are."""
     rules: Annotated[tuple[RuleEntry, ...], Called("a list of [[rules]] entries")] = ()
-    """Within a topic from the exception to the general."""
+    """The rules; within a topic, exceptions come before the general rule."""
 
 
 def read_jurisdiction(path: Path) -> Jurisdiction:
-    """Reads and checks one file, or remembers it as long as it has not changed.
+    """Reads and checks one file; the result is cached until the file changes.
 
     Raises:
         GeoDataError: with file, line of the entry, and reason.
     """
-    try:
-        state = path.stat()
-    except OSError as error:
-        raise GeoDataError(f"cannot read {path}: {error.strerror or error}") from error
-    return _read(path, state.st_mtime_ns, state.st_size)
+    return _read(read_text(path, GeoDataError), path)
 
 
-@lru_cache(maxsize=512)
-def _read(path: Path, _mtime_ns: int, _size: int) -> Jurisdiction:
-    document = read_toml(path, GeoDataError)
+@lru_cache(maxsize=256)
+def _read(text: str, path: Path) -> Jurisdiction:
+    """Of a file's text, which is parsed once in a process: that takes longer than a second of simulation."""
+    document = parse(text, path, GeoDataError)
     file = document.read(RuleFile)
     head = file.jurisdiction
     ids: set[str] = set()
@@ -212,7 +213,7 @@ def _read(path: Path, _mtime_ns: int, _size: int) -> Jurisdiction:
         if not entry.id.startswith(f"{head.code}."):
             raise document.refused(("rules", index, "id"), f"is {entry.id!r}; it must begin with '{head.code}.'")
         if entry.id in ids:
-            raise document.refused(("rules", index, "id"), "stands twice in the file")
+            raise document.refused(("rules", index, "id"), "occurs twice in the file")
         ids.add(entry.id)
     rules = tuple(entry.rule for entry in file.rules)
     by_topic: dict[str, tuple[Rule, ...]] = {}

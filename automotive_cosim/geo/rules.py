@@ -15,16 +15,16 @@ Value = float | str
 
 
 class Status(StrEnum):
-    """How far a rule is to be trusted."""
+    """How well a rule is supported."""
 
     VERIFIED = "verified"
     """The law's own text was read."""
     SECONDARY = "secondary"
-    """Press, trade or authority's summary."""
+    """A summary by press, trade or an authority."""
     KNOWLEDGE = "knowledge"
     """General knowledge, not looked up."""
     UNCERTAIN = "uncertain"
-    """Known to be open: pending, annulled, contradictory."""
+    """Known to be unsettled: pending, annulled or contradictory."""
 
 
 TOPICS = {
@@ -57,16 +57,16 @@ TOPICS = {
     "heat": "Custom when hot",
     "cold": "Custom when cold",
 }
-"""Every topic a rule may have, and how the context prints it. The order is the context's. ``heat`` and ``cold``
-hold what people do in their cars there, with ``law = "custom"``."""
+"""Every topic of rules, and how the context prints it, in the context's order. ``heat`` and ``cold`` are customs of
+drivers there, with ``law = "custom"``."""
 
 ANSWERS = frozenset(("required", "allowed", "forbidden", "not_required", "advised", "applies"))
-"""What a rule's value may be beside a number with a unit; a limit may be ``none`` as well."""
+"""Values of a rule other than a number with a unit; a limit may also be ``none``."""
 
 UNITS = frozenset(("km/h", "mph", "s", "m", "g/L", "min"))
 
 USERS = frozenset(("car", "novice", "professional", "truck", "motorcycle"))
-"""Whom a rule binds. The context states those for the ordinary driver of a car."""
+"""Road users that a rule may bind. The context states the rules for ordinary car drivers."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +91,7 @@ class Rule:
     unit: str = ""
     binds: str = "car"
     caps: bool = False
-    """Of a limit: it also lowers a higher limit that a sign states."""
+    """For a limit: whether it also lowers a higher limit posted by a sign."""
 
     @property
     def country(self) -> str:
@@ -109,11 +109,11 @@ class Rule:
         return (test for case in self.cases for test in case.when)
 
     def answer(self, situation: Situation) -> tuple[Value | None, bool]:
-        """What the rule says here and now.
+        """The rule's answer here and now.
 
         Returns:
-            (value, certain). (None, True): it does not apply. With certain False the situation does not tell
-            which case it is, and the value is the first possible one.
+            (value, certain). (None, True): it does not apply. If not certain, the situation does not determine the
+            case, and the value is the first possible one.
         """
         for case in self.cases:
             holds = all_hold(case.when, situation)
@@ -122,7 +122,7 @@ class Rule:
         return None, True
 
     def may_apply(self, situation: Situation) -> bool | None:
-        """Whether place, road and date leave a case open: True, False, or None where they do not tell."""
+        """Whether place, road and date allow a case: True, False, or None if they do not determine it."""
         found: bool | None = False
         for case in self.cases:
             holds = all_hold(tuple(test for test in case.when if test.fixed), situation)
@@ -139,7 +139,7 @@ class Jurisdiction:
     code: str
     name: str
     status: Status
-    """Of the fields here that are not rules."""
+    """Status of the fields here that are not rules."""
     within: str = ""
     """The country's code; empty for a country."""
     kind: str = "country"

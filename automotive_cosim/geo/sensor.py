@@ -1,10 +1,10 @@
-"""The virtual sensor: facts that an agent may ask for, by words.
+"""The virtual sensor: answers an agent's questions with facts.
 
     reply = ask("rear fog lamp rules?", moments)     # Reply(ok=True, text="Rear fog lamp: ...", cost_s=1.0)
 
-What it knows are the lines of the geo-context, the road ahead, and where the car must be while GPS is out. It
-states facts; it tells neither whether a rule is broken nor what to do. Law, customs and position are on board;
-weather, traffic and hazards come over the air and need the link.
+It knows the lines of the geo-context, the road ahead, and the position by dead reckoning while GPS is out. It
+states facts; it never says whether a rule is broken nor what to do. Law, customs and position are on board;
+weather, traffic and hazards come over the air and require the link.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ from automotive_cosim.geo.text import amount_of_speed, position
 from automotive_cosim.geo.weather import visibility_class
 
 ON_BOARD_S = 1.0
-"""What an answer from the car's own data costs; our choice, as the next two."""
+"""Cost of an answer from the car's own data; our choice, as are the next two."""
 OVER_THE_AIR_S = {"5g": 2.0, "4g": 3.0}
-"""By the kind of link."""
+"""Cost by kind of link."""
 NO_LINK_S = 1.0
-"""Until the car gives up without a link."""
+"""Time until the car stops trying without a link."""
 
 ANSWER_BYTES = 1000
-"""The longest answer; the observation space holds a little more."""
+"""Length limit of an answer; the observation space allows a little more."""
 
 CUSTOMS = ("heat", "cold")
 
@@ -44,17 +44,17 @@ class Known(Protocol):
 
     @property
     def driving(self) -> DrivingState:
-        """Of which the compass, the speedometer and the road ahead are read."""
+        """Source of compass, speedometer and the road ahead."""
         ...
 
     @property
     def gps(self) -> GpsFix | None:
-        """The receiver's last word."""
+        """The receiver's last report."""
         ...
 
     @property
     def connectivity(self) -> Connectivity:
-        """The link."""
+        """The car's link."""
         ...
 
     @property
@@ -65,23 +65,23 @@ class Known(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class QueryReply:
-    """What came of a query."""
+    """The result of a query."""
 
     ok: bool
-    """False if nothing of it could be answered."""
+    """False if no part of it could be answered."""
     text: str
     cost_s: float
-    """Simulated seconds it took, on top of those of the action."""
+    """Simulated seconds that it took, on top of those of the action."""
 
 
 def ask(text: str, drive: Sequence[Known], *, with_position: bool = True, roads: Roads | None = None) -> QueryReply:
     """Answers a query at the last instant of ``drive``.
 
     Args:
-        text: what is asked, in any words.
-        drive: the drive so far in the order of time, back to the last fix; at least one instant.
+        text: the question, in any words.
+        drive: the drive so far in chronological order, back to the last fix; at least one instant.
         with_position: whether it may say where the car is.
-        roads: the map that dead reckoning keeps to, if the car has one.
+        roads: the map for dead reckoning, if the car has one.
     """
     asked = frozenset(re.findall(r"[a-z]+", text.casefold()))
     topics = _topics(asked)
@@ -108,7 +108,7 @@ def ask(text: str, drive: Sequence[Known], *, with_position: bool = True, roads:
 
 
 def _within(lines: Sequence[str]) -> str:
-    """Whole lines, as many as an answer holds, and how many are left."""
+    """Whole lines, as many as an answer allows, and how many are left."""
     kept: list[str] = []
     left = ANSWER_BYTES - 60
     for line in lines:
@@ -132,7 +132,7 @@ class _Subject:
     answer: Answering
     on_board: bool
     by_topic: bool = False
-    """Asked for by the word of a rule's topic too."""
+    """Also matched by the word of a rule's topic."""
 
 
 def _weather(drive: Sequence[Known], topics: frozenset[str]) -> Iterator[str]:
@@ -140,7 +140,7 @@ def _weather(drive: Sequence[Known], topics: frozenset[str]) -> Iterator[str]:
 
 
 def _rules(drive: Sequence[Known], topics: frozenset[str]) -> Iterator[str]:
-    """Those of the topics asked for; all, if none is named."""
+    """The rules of the topics asked for; all if none is named."""
     context = drive[-1].context
     if not context.place.law:
         yield "Rules: none known here"
@@ -284,7 +284,7 @@ _TOPIC_WORDS = {
     "idling": _set("idle idling engine"),
     "alcohol": _set("alcohol drink drinking"),
 }
-"""The words by which a rule's topic is asked for; those of ``_LAMPS`` count beside a word for a lamp only."""
+"""The words that match a rule's topic; those of ``_LAMPS`` count only together with a word for a lamp."""
 
 
 def _topics(asked: frozenset[str]) -> frozenset[str]:

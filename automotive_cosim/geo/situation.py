@@ -1,8 +1,8 @@
-"""The conditions a rule may name, and the situation they are asked of.
+"""The conditions that a rule may have, and the situation on which they are evaluated.
 
-A condition is one entry of a rule's ``when`` table. It holds, does not hold, or cannot be told because the
-situation does not say; several in one table must all hold. Those marked *fixed* depend on place, road and date
-alone; the others change while one stands still (weather, light, traffic, the clock).
+A condition is one entry of a rule's ``when`` table. It holds, does not hold, or is unknown because the situation
+does not say; several in one table must all hold. Those marked *fixed* depend only on place, road and date; the
+others change even while the car is stationary (weather, light, traffic, the clock).
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Situation:
-    """Place, road, sky, traffic and motion at one instant; None where nothing tells."""
+    """Place, road, sky, traffic and motion at one instant; None if unknown."""
 
     local_time: datetime
     lon_deg: float | None
@@ -37,19 +37,19 @@ class Situation:
     motorway: bool | None
     dual_carriageway: bool | None
     expressway: bool | None
-    """For motor vehicles only, but no motorway."""
+    """For motor vehicles only, but not a motorway."""
     built_up: bool | None
     lit: bool | None
     centre_line: bool | None
     lanes: int
-    """In the direction of travel."""
+    """Number of lanes in the direction of travel."""
     tunnel: bool
     speed_kmh: float
     standing: bool
     oncoming_m: float | None
-    """None: nobody within sight."""
+    """Distance of oncoming traffic; None if none is in sight."""
     leader_m: float | None
-    """None: nobody ahead."""
+    """Distance of the vehicle ahead; None without one."""
     phenomena: frozenset[str] | None
     visibility_m: float | None
     after_sunset: bool | None
@@ -59,8 +59,8 @@ class Situation:
 class Condition:
     """One word of the ``when`` language.
 
-    ``takes`` is the type of what stands beside the word and becomes the argument of ``holds``, ``expects`` says it
-    in words.
+    ``takes`` is the type of the word's value, which becomes the argument of ``holds``; ``expects`` describes it in
+    words.
     """
 
     expects: str
@@ -78,16 +78,16 @@ class Test:
 
     @property
     def fixed(self) -> bool:
-        """Whether it depends on place, road and date alone."""
+        """Whether it depends only on place, road and date."""
         return CONDITIONS[self.word].fixed
 
     def holds(self, situation: Situation) -> bool | None:
-        """True, False, or None where the situation does not tell."""
+        """True, False, or None if the situation does not determine it."""
         return CONDITIONS[self.word].holds(situation, self.argument)
 
 
 def all_hold(tests: tuple[Test, ...], situation: Situation) -> bool | None:
-    """False if one fails, else None if one cannot be told, else True."""
+    """False if one fails, else None if one is unknown, else True."""
     unknown = False
     for test in tests:
         holds = test.holds(situation)
@@ -98,7 +98,7 @@ def all_hold(tests: tuple[Test, ...], situation: Situation) -> bool | None:
 
 
 class _When:
-    """A table of conditions, each word with what it takes."""
+    """A table of conditions, each word with its value."""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         from pydantic_core import core_schema
@@ -117,7 +117,7 @@ When = Annotated[tuple[Test, ...], _When()]
 
 
 def folded(name: str) -> str:
-    """A street name for comparing: no accents, case, hyphens, apostrophes or double spaces."""
+    """A street name for comparison, without accents, case, hyphens, apostrophes or double spaces."""
     plain = unicodedata.normalize("NFKD", name)
     plain = "".join(" " if char in "-'’" else char for char in plain if not unicodedata.combining(char))
     return " ".join(plain.casefold().split())
@@ -141,7 +141,7 @@ AreaPolygon = Annotated[shapely.Polygon, Made(Annotated[tuple[Corner, ...], MinL
 """Written as a list of corners."""
 
 
-# --- what stands beside the words ---------------------------------------------------------------------------
+# --- the values of the words ---------------------------------------------------------------------------
 
 
 def _month_day(text: str) -> tuple[int, int]:
@@ -238,4 +238,4 @@ CONDITIONS: dict[str, Condition] = {
     "oncoming_within_m": Condition("a number of metres", float, lambda now, m: _within(now.oncoming_m, m)),
     "leader_within_m": Condition("a number of metres", float, lambda now, m: _within(now.leader_m, m)),
 }
-"""Every word a ``when`` table may hold."""
+"""Every word that a ``when`` table may have."""

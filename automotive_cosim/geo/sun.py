@@ -1,4 +1,4 @@
-"""Where the sun stands, how dark it is, and whether it shines into the driver's eyes."""
+"""The position of the sun, how dark it is, and whether it dazzles the driver."""
 
 from __future__ import annotations
 
@@ -14,12 +14,13 @@ SUNSET_DEG = -0.833
 
 LOW_SUN_BELOW_DEG = 20.0
 AHEAD_WITHIN_DEG = 30.0
-"""The sun dazzles when it stands lower than the one and within the other of the way ahead: our choice, roughly the
-field between sun visor and dashboard."""
+"""The sun dazzles below the first elevation and within the second angle of the direction of travel: our choice,
+roughly the field between sun visor and dashboard."""
 
 
 class Darkness(StrEnum):
-    """By the elevation of the sun's centre; the twilights end at 6, 12 and 18 degrees below the horizon."""
+    """Darkness by the elevation of the sun's centre; the twilights end at 6, 12 and 18 degrees below the
+    horizon."""
 
     DAY = "day"
     CIVIL_TWILIGHT = "civil twilight"
@@ -41,9 +42,9 @@ class Sun:
     """The sun over one place at one instant."""
 
     elevation_deg: float
-    """Of its centre above the horizon, without refraction."""
+    """Elevation of its centre above the horizon, without refraction."""
     azimuth_deg: float
-    """Clockwise from north."""
+    """Azimuth, clockwise from north."""
 
     @property
     def darkness(self) -> Darkness:
@@ -55,15 +56,15 @@ class Sun:
 
     @property
     def is_set(self) -> bool:
-        """Between sunset and sunrise."""
+        """Whether it is between sunset and sunrise."""
         return self.elevation_deg < SUNSET_DEG
 
     def off_heading_deg(self, heading_deg: float) -> float:
-        """Angle from the way ahead to the sun, -180 to 180, positive to the right."""
+        """Angle from the direction of travel to the sun, -180 to 180, positive to the right."""
         return (self.azimuth_deg - heading_deg + 180.0) % 360.0 - 180.0
 
     def glares(self, heading_deg: float) -> bool:
-        """Whether it stands low and ahead; clouds are not asked."""
+        """Whether it is low and ahead; clouds are ignored."""
         low = not self.is_set and self.elevation_deg < LOW_SUN_BELOW_DEG
         return low and abs(self.off_heading_deg(heading_deg)) <= AHEAD_WITHIN_DEG
 

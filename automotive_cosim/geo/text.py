@@ -1,4 +1,4 @@
-"""Lines of text for an agent: what each rests on, how many fit, and amounts in words."""
+"""Lines of text for an agent: their sources, how many fit, and amounts in words."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ class Line:
 
 
 def within_budget(all_lines: Iterable[Line], budget_tokens: int) -> str:
-    """The first lines that together take no more than ``budget_tokens``, at four characters a token. A name on
-    the map that holds a line break makes no second line."""
+    """The first lines that together take at most ``budget_tokens``, at four characters per token. A line break in a
+    name of the map does not make a second line."""
     kept: list[str] = []
     tokens = 0
     for line in all_lines:

@@ -1,4 +1,4 @@
-"""Weather on the road: a scenario's timeline, and what weather codes mean in words that traffic law uses."""
+"""Weather on the road: a scenario's timeline, and weather codes in the words of traffic law."""
 
 from __future__ import annotations
 
@@ -40,13 +40,13 @@ WMO_WORDS = {
     96: "thunderstorm with hail",
     99: "thunderstorm with heavy hail",
 }
-"""The subset of WMO code table 4677 that Open-Meteo reports, and dust, which it leaves out."""
+"""The subset of WMO code table 4677 that Open-Meteo reports, and dust, which it does not."""
 
 FOG_BELOW_M = 1000.0
 """WMO: fog is visibility under one kilometre."""
 
 HEAVY_RAIN_FROM_MM_PER_H = 7.6
-"""American Meteorological Society, Glossary of Meteorology, "rain": heavy above 0.30 inch an hour."""
+"""American Meteorological Society, Glossary of Meteorology, "rain": heavy above 0.30 inch per hour."""
 
 PHENOMENA = frozenset(
     (
@@ -63,7 +63,8 @@ PHENOMENA = frozenset(
         "thunderstorm",
     )
 )
-"""The words a rule may use for weather; ``rain`` includes ``heavy_rain``, ``precipitation`` all that falls."""
+"""The words a rule may use for weather; ``rain`` includes ``heavy_rain``, ``precipitation`` everything that
+falls."""
 
 _PHENOMENA_OF_CODE: dict[frozenset[int], tuple[str, ...]] = {
     frozenset((7, 31)): ("dust",),
@@ -80,7 +81,7 @@ _PHENOMENA_OF_CODE: dict[frozenset[int], tuple[str, ...]] = {
 
 
 class VisibilityClass(StrEnum):
-    """How far one sees. The steps at 200, 100 and 50 m are those that traffic laws name."""
+    """Classes of visibility. The boundaries at 200, 100 and 50 m are those in traffic laws."""
 
     GOOD = "good"
     REDUCED = "reduced"
@@ -104,7 +105,7 @@ _CLASSES = (
 
 
 def visibility_class(visibility_m: float) -> VisibilityClass:
-    """The class of a visibility in metres; a step belongs to the class above it."""
+    """The class of a visibility in metres; a boundary belongs to the class above it."""
     return _CLASSES[bisect_right(_CLASS_STEPS_M, visibility_m)]
 
 
@@ -135,7 +136,7 @@ _TYPICAL_CLOUD_PCT = {0: 0.0, 1: 20.0, 2: 50.0}
 
 
 def typical_weather(code: int, temperature_c: float = 15.0, humidity_pct: float = 70.0) -> Weather:
-    """Weather that a code may stand for where nothing else is known: middling values of its class, our choice.
+    """Typical weather of a code if nothing else is known: medium values of its class, our choice.
 
     Raises:
         UserError: a code outside the table.
@@ -160,10 +161,10 @@ def words(code: int) -> str:
 
 
 def phenomena(weather: Weather) -> frozenset[str]:
-    """What the weather is in the words of ``PHENOMENA``.
+    """The weather in the words of ``PHENOMENA``.
 
-    A code and the measured values may each name a phenomenon: visibility under one kilometre with nothing falling
-    and no dust in the air is fog, and 7.6 mm of rain an hour is heavy rain, whatever the code says.
+    A code and the measured values may each imply a phenomenon: visibility under one kilometre without precipitation
+    or dust is fog, and 7.6 mm of rain per hour is heavy rain, whatever the code says.
     """
     found = {word for codes, names in _PHENOMENA_OF_CODE.items() if weather.weather_code in codes for word in names}
     if weather.visibility < FOG_BELOW_M and found.isdisjoint(("precipitation", "dust")):

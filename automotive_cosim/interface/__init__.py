@@ -1,7 +1,7 @@
 """What an agent sees and does.
 
-observe   what of a moment an agent is given, by channel
-controls  the same instance with another input of place
-spaces    observations and actions in gymnasium's terms
-trace     what an episode was, step by step, and its hash
+observe   the part of a moment that an agent is given, by channel
+controls  geo controls: the same instance with other information about place
+spaces    observations and actions as gymnasium spaces
+trace     the trace of an episode, step by step, and its hash
 """

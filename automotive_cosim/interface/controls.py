@@ -1,15 +1,15 @@
-"""Geo controls: the same instance with another input of place, to tell what place is worth.
+"""Geo controls: the same instance with other information about place, to measure what place is worth.
 
 | ``--geo`` | GPS | context and queries |
 |---|---|---|
 | ``full`` | the car's | the car's |
 | ``gps`` | the car's | withheld |
-| ``context`` | withheld, its line in the context too | the car's |
-| ``wrong`` | another country's | that of the other country, alike in both halves of a pair |
-| ``irrelevant`` | withheld | a text about bees, as long as the context would be; nothing to ask |
+| ``context`` | withheld, also its line in the context | the car's |
+| ``wrong`` | another country's | the other country's, the same in both halves of a pair |
+| ``irrelevant`` | withheld | a text about bees, as long as the context would be; no queries |
 | ``none`` | withheld | withheld |
 
-An agent never gets more than the channels it wants; road, cockpit and verdict are the same under all of them.
+An agent never gets more than the channels it wants; road, cockpit and judgement are the same under all of them.
 """
 
 from __future__ import annotations
@@ -66,19 +66,19 @@ class GeoInput(StrEnum):
 
 
 class Shown(Protocol):
-    """Turns what the car's receivers say into what the agent gets."""
+    """Turns the receivers' readings into the agent's observation."""
 
     def observation(self, observation: Observation, moment: Moment) -> Observation:
         """The observation of that moment with its place replaced."""
         ...
 
     def moments(self, moments: Sequence[Moment]) -> Sequence[Moment]:
-        """The drive as the virtual sensor is to know it."""
+        """The drive as the virtual sensor sees it."""
         ...
 
 
 def shown(control: GeoInput, geo: Geo, first: Moment) -> Shown:
-    """What a control does to the observations of a drive.
+    """The effect of a control on the observations of a drive.
 
     Args:
         control: which one.
@@ -141,12 +141,12 @@ SPOTS = (
     _Spot("ZA", "Africa/Johannesburg", 22.30, -32.10, _highway("N1", 120.0), CLEAR),
     _Spot("ES", "Europe/Madrid", -2.86, 39.16, _highway("N-301", 90.0), CLEAR),
 )
-"""Plain open roads; the first whose country is not the car's own stands for another place. No scenario lies in the
-first one's country, so that both halves of a pair are sent to the same place."""
+"""Plain open roads; the first one outside the car's own country is used. No scenario lies in the first one's
+country, so both halves of a pair get the same place."""
 
 
 class _Elsewhere:
-    """The drive as if it went on at another place: moved there as a whole, with road and sky as they are there."""
+    """The drive moved as a whole to another place, with road and sky as they are there."""
 
     def __init__(self, geo: Geo, first: Moment) -> None:
         self._geo = geo

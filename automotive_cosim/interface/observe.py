@@ -1,4 +1,4 @@
-"""Observations: what of a moment an agent is given. A channel it is not given is absent, not empty."""
+"""Observations: the part of a moment that an agent is given. A channel it is not given is absent, not empty."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from automotive_cosim.geo.text import BUDGET_TOKENS, within_budget
 
 
 class Channel(StrEnum):
-    """What can be withheld from an agent; goal, time and feedback never are."""
+    """Channels that can be withheld from an agent; goal, time and feedback never are."""
 
     SCREENSHOT = "screenshot"
     ELEMENTS = "elements"
@@ -32,15 +32,15 @@ def observe(
     feedback: Feedback,
     channels: frozenset[Channel] = ALL,
 ) -> Observation:
-    """What an agent gets to see of the world now.
+    """An agent's observation of the present moment.
 
     Args:
         world: the co-simulation.
         goal: what the driver said.
         hand_over_s: simulation time at which the agent took over.
-        elements: the accessibility list of the present screen.
-        feedback: what came of the last action.
-        channels: what the agent is given.
+        elements: the accessibility elements of the present screen.
+        feedback: the result of the last action.
+        channels: the channels that the agent is given.
     """
     moment = world.moment
     return Observation(
@@ -59,7 +59,7 @@ def observe(
 
 
 def context_text(context: GeoContext, *, with_position: bool) -> str:
-    """What holds here as text; an agent without GPS gets no line that states the position either."""
+    """The geo-context as text; an agent without GPS gets no line that states the position either."""
     if with_position:
         return context.text()
     return within_budget((line for line in context.lines if line.source != "gps"), BUDGET_TOKENS)

@@ -1,4 +1,4 @@
-"""Gymnasium spaces of observations and actions, and the way to and from the typed ones.
+"""Gymnasium spaces of observations and actions, and conversions to and from the typed ones.
 
 Observation (``Dict``; a withheld channel has no key):
 
@@ -6,10 +6,10 @@ Observation (``Dict``; a withheld channel has no key):
 |---|---|---|
 | ``goal`` | uint8 (512,) | what the driver said, UTF-8, zero-padded |
 | ``time_s`` | float64 () | simulated seconds since the hand-over |
-| ``feedback`` | ``code`` Discrete, ``text`` uint8 (1024,) | what came of the last action |
+| ``feedback`` | ``code`` Discrete, ``text`` uint8 (1024,) | result of the last action |
 | ``screenshot`` | uint8 (height, width, 3) | RGB |
 | ``elements`` | ``count``, ``bbox``, ``kind``, ``flags``, ``text``, ``description``, ``resource_id`` | 128 |
-| ``vehicle`` | one float32 or Discrete per field of ``VehicleState``, ``*_valid`` where it can be absent | |
+| ``vehicle`` | one float32 or Discrete per field of ``VehicleState``, ``*_valid`` if it can be absent | |
 | ``gps`` | ``available``, ``fix``, ``lon_lat``, ``accuracy_m``, ``age_s``, ``heading_deg`` | |
 | ``connectivity`` | ``online``, ``kind``, ``signal`` | |
 | ``context`` | uint8 (8192,) | the geo-context as text |
@@ -92,7 +92,7 @@ BOUNDS: Mapping[str, tuple[float, float]] = {
     "leader_gap_m": (0, 10_000),
     "leader_time_to_collision_s": (0, 10_000),
 }
-"""Of the numeric fields of ``VehicleState``; values beyond are clipped."""
+"""Bounds of the numeric fields of ``VehicleState``; values beyond are clipped."""
 OPTIONAL = ("speed_limit_sign_kmh", "leader_gap_m", "leader_time_to_collision_s")
 
 
@@ -105,7 +105,7 @@ class AnyText(spaces.Text):
 
 
 def observation_space(channels: frozenset[Channel], width: int, height: int) -> spaces.Dict:
-    """The space of what an agent with these channels gets; see the module's table."""
+    """The observation space of an agent with these channels; see the module's table."""
     known: dict[Channel, spaces.Space[Any]] = {
         Channel.SCREENSHOT: _bytes_space(height, width, 3),
         Channel.ELEMENTS: _elements_space(),
@@ -133,8 +133,8 @@ def observation_space(channels: frozenset[Channel], width: int, height: int) -> 
 
 
 def action_space(width: int, height: int) -> spaces.Dict:
-    """The space of actions. ``target`` says whether ``index`` or ``x``, ``y`` count; an action type ignores the
-    fields that it does not take, so that every sample is well formed."""
+    """The action space. ``target`` says whether ``index`` or ``x``, ``y`` is used; an action type ignores fields
+    that it does not take, so every sample is well formed."""
     return spaces.Dict(
         {
             "action_type": spaces.Discrete(len(ActionType)),
@@ -219,7 +219,7 @@ def encode(observation: Observation, channels: frozenset[Channel]) -> dict[str, 
 
 
 def decode(encoded: Mapping[str, Any]) -> Observation:
-    """The typed observation behind a sample of the space, so far as the space holds it."""
+    """The typed observation behind a sample of the space, as far as the space contains it."""
     feedback = encoded["feedback"]
     return Observation(
         goal=_text(encoded["goal"]),
@@ -401,7 +401,7 @@ def _bytes_space(*shape: int) -> spaces.Box:
 
 @cache
 def _first_bytes(shape: tuple[int, ...]) -> spaces.Box:
-    """Nobody samples from this one, so that copies have random generators of their own."""
+    """Nobody samples from this one, so copies have random generators of their own."""
     return spaces.Box(0, 255, shape, np.uint8)
 
 

@@ -1,4 +1,4 @@
-"""The trace: what an episode was, step by step, in canonical bytes.
+"""The trace of an episode, step by step, in canonical bytes.
 
 A line of ``steps.jsonl`` is one step. The hash covers each step's traffic, signals, elements and action, and
 nothing that differs between machines, folders or runs: no wall time, no path, no version.
@@ -51,7 +51,7 @@ class Step:
 
 
 class Hash:
-    """The trace's hash, taken on step by step, so that the end of a long episode need not wait for it."""
+    """The trace's hash, updated step by step, so the end of a long episode need not wait for it."""
 
     def __init__(self, steps: Iterable[Step] = ()) -> None:
         """Of these steps."""
@@ -62,7 +62,7 @@ class Hash:
             self.add(step)
 
     def add(self, step: Step) -> None:
-        """Takes the next step in."""
+        """Adds the next step."""
         texts = {
             "traffic": _text(plain(step.moment.driving)),
             "signals": _text(dict(step.moment.signals)),
@@ -79,7 +79,7 @@ class Hash:
         return self._digest.hexdigest()
 
     def copy(self) -> Hash:
-        """One that goes its own way from here."""
+        """An independent copy."""
         twin = Hash()
         twin._digest, twin.count = self._digest.copy(), self.count
         return twin
@@ -89,7 +89,7 @@ _LEAVES = frozenset((str, int, float, bool, type(None)))
 
 
 def plain(value: Any) -> Any:
-    """Frozen data as JSON has it. As ``dataclasses.asdict``, which is ten times slower because it copies leaves."""
+    """Frozen data as JSON. Like ``dataclasses.asdict``, which is ten times slower because it copies leaves."""
     kind: type = type(value)
     if kind in _LEAVES:
         return value
@@ -116,17 +116,17 @@ def _text(value: Any) -> str:
 
 @lru_cache(maxsize=4096)
 def _element(element: Element) -> str:
-    """Most of a screen is the same from step to step, and from episode to episode."""
+    """An element as JSON, cached: most of a screen is the same from step to step and episode to episode."""
     return _text(plain(element))
 
 
 def canonical(value: Any) -> bytes:
-    """JSON with sorted keys, no blanks, UTF-8; NaN and infinity are refused."""
+    """JSON with sorted keys, without spaces, in UTF-8; NaN and infinity are refused."""
     return _text(value).encode()
 
 
 def sha256(steps: list[Json]) -> str:
-    """The trace's hash over what ``HASHED`` names of every step, as a hexadecimal string."""
+    """The trace's hash over the parts in ``HASHED`` of every step, as a hexadecimal string."""
     digest = hashlib.sha256()
     for step in steps:
         digest.update(canonical({name: step[name] for name in HASHED}))

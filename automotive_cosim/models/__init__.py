@@ -1,8 +1,8 @@
-"""Models behind the agents: one chat protocol, several back ends.
+"""Models for the agents: one chat protocol, several back ends.
 
 ``rules``               a deterministic stand-in that reads the prompt by keywords; runs anywhere
 ``replay/FOLDER``       the answers recorded in an episode's folder, for an exact re-run
-``openai/NAME``         OpenAI, or what ``OPENAI_BASE_URL`` names
+``openai/NAME``         OpenAI, or the server that ``OPENAI_BASE_URL`` names
 ``PROVIDER/NAME``       any OpenAI-compatible endpoint: ``PROVIDER_API_KEY`` and ``PROVIDER_BASE_URL``
 
 The last two take settings: ``openai/NAME?seed=3&timeout_s=30``; see ``remote.Settings``.

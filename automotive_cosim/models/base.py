@@ -1,4 +1,4 @@
-"""What every model offers: messages in, text out, with what it took."""
+"""The protocol of models: messages in; text, tokens, time and cost out."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ class ChatMessage:
     """``"system"``, ``"user"`` or ``"assistant"``."""
     text: str
     pictures: tuple[bytes, ...] = ()
-    """PNG files, in the order the text speaks of them."""
+    """PNG files, in the order in which the text mentions them."""
 
 
 @dataclass(frozen=True, slots=True)
 class ModelReply:
-    """What a model answered, and what that took."""
+    """A model's answer, with its tokens, time and cost."""
 
     text: str
     tokens_in: int = 0
     tokens_out: int = 0
     cost_usd: float = 0.0
     seconds: float = 0.0
-    """From the question to the whole answer, attempts that failed included; 0 for models that run here."""
+    """From the question to the whole answer, including failed attempts; 0 for models in this process."""
     finish: str = "stop"
     """Why it ended: ``"stop"``, ``"length"`` if it was cut off at its limit, or the provider's own word."""
 
@@ -49,25 +49,25 @@ class ChatModel(Protocol):
 
     @property
     def name(self) -> str:
-        """As it is written into results."""
+        """The name written into results."""
         ...
 
     @property
     def sees_pictures(self) -> bool:
-        """Whether it is to be sent pictures."""
+        """Whether to send it pictures."""
         ...
 
     def chat(self, messages: Sequence[ChatMessage]) -> ModelReply:
         """Answers the last message.
 
         Raises:
-            ModelError: it cannot be reached or does not answer; the episode says nothing about the agent then.
+            ModelError: it cannot be reached or does not answer; the episode then says nothing about the agent.
         """
         ...
 
 
 def digest(messages: Sequence[ChatMessage]) -> str:
-    """SHA-256 over a conversation, pictures included, as a hexadecimal string."""
+    """SHA-256 of a conversation, including pictures, as a hexadecimal string."""
     told = [
         [message.role, message.text, [hashlib.sha256(picture).hexdigest() for picture in message.pictures]]
         for message in messages
@@ -76,5 +76,5 @@ def digest(messages: Sequence[ChatMessage]) -> str:
 
 
 def estimated_tokens(*texts: str) -> int:
-    """About how many tokens the texts are, at four characters each."""
+    """Estimated tokens of the texts, at four characters each."""
     return ceil(sum(map(len, texts)) / CHARACTERS_PER_TOKEN)

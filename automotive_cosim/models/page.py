@@ -10,7 +10,7 @@ from math import inf
 
 KM_PER_MILE = 1.609344
 HEAVY_RAIN_MMH = 7.6
-"""Heavy rain by the AMS Glossary of Meteorology (over 0.30 inch an hour)."""
+"""Heavy rain by the AMS Glossary of Meteorology (over 0.30 inch per hour)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,14 +30,14 @@ class ListedElement:
 
 @dataclass(frozen=True, slots=True)
 class Page:
-    """What a prompt says, section by section; a section that is not there is empty."""
+    """The content of a prompt by section; a missing section is empty."""
 
     goal: str
     screen: tuple[ListedElement, ...]
     car: Mapping[str, str]
-    """Name to value, as they are written."""
+    """The car's readings, from name to value, as texts."""
     context: tuple[str, ...]
-    """What holds here, line by line."""
+    """The geo-context, line by line."""
     done: tuple[str, ...]
     plan: str
     result: str
@@ -46,11 +46,11 @@ class Page:
     memory: tuple[str, ...]
     before: tuple[str, ...]
     after: tuple[str, ...]
-    """The screen's lines before and after the last action, where the prompt asks to look back."""
+    """The screen's lines before and after the last action, if the prompt asks to look back."""
 
     @classmethod
     def read(cls, prompt: str) -> Page:
-        """Takes a prompt apart."""
+        """Parses a prompt."""
         parts = re.split(r"^## (.+)$", prompt, flags=re.MULTILINE)
         sections = {title.strip(): body.strip() for title, body in zip(parts[1::2], parts[2::2], strict=True)}
 
@@ -73,7 +73,7 @@ class Page:
 
     @property
     def looks_back(self) -> bool:
-        """Whether it asks what came of the last action."""
+        """Whether it asks about the result of the last action."""
         return bool(self.before or self.after)
 
     def find(self, resource_id: str) -> ListedElement | None:
@@ -93,12 +93,12 @@ class Page:
         return self.car.get(name) == "True"
 
     def says(self, pattern: str) -> re.Match[str] | None:
-        """The first line of what holds here that matches from its start."""
+        """The first line of the geo-context that matches from its start."""
         return next((found for line in self.context if (found := re.match(pattern, line))), None)
 
     def limit_kmh(self) -> float | None:
-        """The speed limit that holds by what the context states: the posted one, else the first by default, less
-        what this weather takes away. None without one."""
+        """The speed limit that applies by the context: the posted one, else the first default, reduced if this
+        weather requires it. None without one."""
         amount = r"(\d+(?:\.\d+)?) (km/h|mph)\b(.*)"
         first = self.says(f"Speed limit here: {amount}") or self.says(f"Default limit: (?:none\\b|{amount})")
         stated = [first] if first and first[1] else []
@@ -109,12 +109,12 @@ class Page:
         )
 
     def visibility_m(self) -> float:
-        """How far one sees, as the weather's line says; far without one."""
+        """The visibility in the weather line; far without one."""
         found = self.says(r"Weather: .*visibility (\d+) m")
         return float(found[1]) if found else inf
 
     def sky(self) -> frozenset[str]:
-        """What falls or hangs in the air, in the words that rules use."""
+        """Precipitation or fog, in the words that rules use."""
         found = self.says(r"Weather: ([^,]+)(?:.* (\d+\.\d) mm/h)?")
         if found is None:
             return frozenset()
@@ -128,15 +128,15 @@ class Page:
         return frozenset(kinds)
 
     def allows_now(self, lamps: str) -> bool | None:
-        """Whether the rule of that name, e.g. ``Rear fog lamp``, allows or wants them in this weather; None if none
-        is stated."""
+        """Whether the rule of that name, e.g. ``Rear fog lamp``, allows or requires it in this weather; None if
+        there is no such rule."""
         rule = self.says(f"{lamps}: ([^;(]*)")
         if rule is None:
             return None
         return self._weather_is(re.split(r", (?:not|instead)\b", rule[1])[0], unless_named=True)
 
     def forbids_high_beam(self) -> bool:
-        """Whether what is said of high beam rules it out on this road under this sky; False if nothing is said."""
+        """Whether the high-beam rule forbids it on this road under this sky; False without such a rule."""
         rule = self.says(r"High beam: ([^(]*)")
         road = self.says(r"Road: (.*)")
         if rule is None or road is None:
@@ -147,7 +147,7 @@ class Page:
         return is_lit or is_town or any(kind in rule[1] for kind in self.sky() & {"fog", "snow", "heavy rain"})
 
     def _weather_is(self, rule: str, *, unless_named: bool) -> bool:
-        """Whether the weather is such as a rule names; ``unless_named`` for one that names none."""
+        """Whether the weather is one that a rule names; ``unless_named`` if it names none."""
         named = re.search(r"(?:visibility|generally) under (\d+) m", rule)
         if named and self.visibility_m() >= float(named[1]):
             return False

@@ -1,7 +1,7 @@
 """Any OpenAI-compatible endpoint, through the ``openai`` package.
 
-Key and address come from ``<PROVIDER>_API_KEY`` and ``<PROVIDER>_BASE_URL``. The key is in no message, log or
-record: whatever is said about an endpoint passes ``_Endpoint.clean``.
+Key and address come from ``<PROVIDER>_API_KEY`` and ``<PROVIDER>_BASE_URL``. The key never gets into a message,
+log or record: every text about an endpoint passes ``_Endpoint.clean``.
 """
 
 from __future__ import annotations
@@ -24,27 +24,27 @@ if TYPE_CHECKING:
     import openai
 
 BODY_LIMIT_BYTES = 4_000_000
-"""Longest body that is read; an answer of a few thousand tokens has some tens of kilobytes."""
+"""Longest body to read; an answer of a few thousand tokens has some tens of kilobytes."""
 LONGEST_PAUSE_S = 60.0
 FIRST_PAUSE_S = 0.5
 SHORTEST_KEY = 12
-"""What is shorter is no secret but a word for a local server, and may occur in any answer."""
+"""A shorter key is no secret but a dummy for a local server, and may occur in any answer."""
 
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """What can stand behind the ``?`` of a model's name. ``none`` leaves a value to the provider."""
+    """The settings after the ``?`` of a model's name. ``none`` leaves a value to the provider."""
 
     seed: int | None = 0
     temperature: float | None = 0.0
     max_tokens: int | None = 1024
-    """Longest answer."""
+    """Longest answer, in tokens."""
     timeout_s: float = 60.0
-    """For one attempt, from the question to the answer's last byte."""
+    """Time limit of one attempt, from the question to the answer's last byte."""
     retries: int = 4
-    """Further attempts after one that failed for a passing reason."""
+    """Further attempts after a transient failure."""
     per_minute: float | None = None
-    """At most so many questions a minute."""
+    """Maximum number of questions per minute."""
     usd_per_million_in: float = 0.0
     usd_per_million_out: float = 0.0
 
@@ -53,7 +53,7 @@ class Settings:
         """Settings from ``name=value&name=value``.
 
         Raises:
-            UserError: an unknown name, or a value that is no number or out of range.
+            UserError: an unknown name, or a value that is not a number or out of range.
         """
         known = {name: get_args(kind) or (kind,) for name, kind in get_type_hints(cls).items()}
         chosen: dict[str, Any] = {}
@@ -91,9 +91,11 @@ def make_remote(spec: str) -> Remote:
     prefix = re.sub(r"\W", "_", provider).upper()
     key, base_url = os.environ.get(f"{prefix}_API_KEY", ""), os.environ.get(f"{prefix}_BASE_URL", "")
     if not key:
-        raise SetupError(f"model {whole!r} needs the key in {prefix}_API_KEY; a local server takes any word")
+        raise SetupError(
+            f"model {whole!r} requires a key in {prefix}_API_KEY; for a local server, any word will do"
+        )
     if not base_url and provider != "openai":
-        raise SetupError(f"model {whole!r} needs its address in {prefix}_BASE_URL, e.g. http://127.0.0.1:8000/v1")
+        raise SetupError(f"model {whole!r} requires an address in {prefix}_BASE_URL, e.g. http://127.0.0.1:8000/v1")
     return Remote(spec, model, settings, _Endpoint(provider, base_url or None, key))
 
 
@@ -104,7 +106,7 @@ class _Endpoint:
     key: str = field(repr=False)
 
     def clean(self, text: str) -> str:
-        """The text without the key, whoever put it there."""
+        """The text without the key, wherever it came from."""
         return text.replace(self.key, "***") if len(self.key) >= SHORTEST_KEY else text
 
     def client(self, timeout_s: float) -> openai.OpenAI:
@@ -118,7 +120,7 @@ class _Endpoint:
 
 
 class _PassingError(Exception):
-    """Worth another attempt."""
+    """A failure worth another attempt."""
 
     def __init__(self, why: str, pause_s: float | None = None) -> None:
         super().__init__(why)
@@ -138,14 +140,14 @@ class Remote:
         endpoint: _Endpoint,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
-        """Connects to nothing yet.
+        """Makes the model without connecting to it.
 
         Args:
-            name: as it is written into results.
+            name: the name written into results.
             model: the provider's name of it.
-            settings: how it is asked.
-            endpoint: where.
-            sleep: waits so many seconds, between attempts and for the rate limit.
+            settings: how to ask it.
+            endpoint: where to ask it.
+            sleep: waits for a number of seconds, between attempts and for the rate limit.
 
         Raises:
             SetupError: the ``openai`` package is missing.
@@ -159,7 +161,7 @@ class Remote:
         self._next_s = 0.0
 
     def chat(self, messages: Sequence[ChatMessage]) -> ModelReply:
-        """Asks, and asks again after a failure that may pass, each time after a longer pause.
+        """Asks, and repeats the question after a transient failure, each time after a longer pause.
 
         Raises:
             ModelError: refused, or every attempt failed.
@@ -206,8 +208,7 @@ class Remote:
         return self._read(body)
 
     def _post(self, messages: Sequence[ChatMessage]) -> bytes:
-        """The body of the answer. It is read piece by piece, so that the time limit holds for a server that
-        trickles, too."""
+        """The body of the answer. It is read in pieces, so that the time limit applies to a slow server too."""
         settings = self._settings
         longest = "max_completion_tokens" if self._endpoint.provider == "openai" else "max_tokens"
         wanted: dict[str, Any] = {
@@ -241,16 +242,16 @@ class Remote:
             finish = str(choice.get("finish_reason") or "stop")
         except (ValueError, LookupError, TypeError, AttributeError, RecursionError):
             shown = body[:80].decode(errors="replace")
-            raise _PassingError(f"the answer is no chat completion: {shown!r}") from None
+            raise _PassingError(f"the answer is not a chat completion: {shown!r}") from None
         settings = self._settings
         cost_usd = (tokens_in * settings.usd_per_million_in + tokens_out * settings.usd_per_million_out) / 1e6
-        # Half a surrogate pair is valid JSON and no text: it could not be written into a record.
+        # Half a surrogate pair is valid JSON but not valid text: it could not be written into a record.
         text = self._endpoint.clean(_text(content)).encode("utf-8", "replace").decode()
         return ModelReply(text, tokens_in, tokens_out, cost_usd, finish=finish)
 
 
 def _pause(header: str | None) -> float | None:
-    """The server's own wish, in seconds; None without one, or with a date."""
+    """The pause that the server requests, in seconds; None without one, or with a date."""
     try:
         return max(0.0, float(header)) if header else None
     except ValueError:

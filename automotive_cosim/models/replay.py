@@ -13,12 +13,12 @@ from automotive_cosim.models.base import ChatMessage, ModelReply, digest
 
 
 class Replay:
-    """Gives the recorded answers in their order, each to the question it was the answer to."""
+    """Gives the recorded answers in order, each to the question that it answered."""
 
     name = "replay"
 
     def __init__(self, answers: Sequence[tuple[str, ModelReply]], sees_pictures: bool) -> None:
-        """Takes what is to be played.
+        """Takes the answers to play.
 
         Args:
             answers: the digest of each question with its answer.
@@ -33,7 +33,7 @@ class Replay:
         """The answers recorded in an episode's folder.
 
         Raises:
-            UserError: there is no readable record, or no model's answer in it.
+            UserError: there is no readable record, or it has no answers of a model.
         """
         path = folder / "steps.jsonl"
         try:
@@ -45,7 +45,7 @@ class Replay:
                 f"cannot read a model's answers in {path}: {error}; give an episode's folder"
             ) from error
         if not answers:
-            raise UserError(f"{path} holds no model's answer; record an episode of an agent that has a model")
+            raise UserError(f"{path} has no answers of a model; record an episode of an agent that uses a model")
         return cls(answers, sees_pictures)
 
     def chat(self, messages: Sequence[ChatMessage]) -> ModelReply:
@@ -56,7 +56,7 @@ class Replay:
         """
         number = self._count - len(self._left) + 1
         if not self._left:
-            raise ModelError(f"the recording holds {self._count} answers and question {number} was asked")
+            raise ModelError(f"the recording has {self._count} answers, but question {number} was asked")
         asked, reply = self._left.popleft()
         if asked != digest(messages):
             raise ModelError(

@@ -1,12 +1,12 @@
 """``rules``: a deterministic stand-in for a language model.
 
-It gets the text a language model would get and nothing else, and reads it by headings and keywords. It is no
-language model and its success rates say nothing about one: it shows that the pipeline carries the information
-an agent needs, and what becomes of the same rules when they are given less. It sees no pixels, so that an agent
-with screenshots does exactly what the same agent does without them.
+It gets the text that a language model would get and nothing else, and reads it by headings and keywords. It is not
+a language model, and its success rates say nothing about one: it shows that the pipeline carries the information
+that an agent needs, and how the same rules fare when they are given less. It sees no pixels, so an agent with
+screenshots does exactly what the same agent does without them.
 
-What it knows stands in ``skills.py``; this module reads the prompt and follows a plan. A plan is carried from
-turn to turn by the prompt itself, in the section "Your plan".
+Its knowledge is in ``skills.py``; this module reads the prompt and follows a plan. The prompt itself carries the
+plan from turn to turn, in the section "Your plan".
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ from automotive_cosim.models.page import ListedElement, Page
 from automotive_cosim.models.skills import SKILLS, Course, Decline, SkillMove, Wait
 
 MOST_SCROLLS = 6
-"""So often it scrolls for one element before it gives up."""
+"""How often it scrolls for one element before it stops looking."""
 STOPPED = {
     "restricted": "safety",
     "disabled": "not_possible",
     "refused": "not_possible",
     "no_such_element": "not_possible",
 }
-"""Results after which a plan cannot go on, and the reason to decline with."""
+"""Results after which a plan cannot continue, and the reason to decline with."""
 
 
 class Rules:
-    """See the module; ``chat`` is a pure function of the messages. Its token counts are estimates."""
+    """The stand-in; ``chat`` is a pure function of the messages. Its token counts are estimates."""
 
     name = "rules"
     sees_pictures = False
@@ -80,7 +80,7 @@ def _go_on(page: Page, because: str, moves: Sequence[SkillMove], scrolls: int) -
 
 
 def _action(page: Page, move: SkillMove) -> dict[str, object] | None:
-    """The action of one move; None if what it is about is not on the screen."""
+    """The action of one move; None if its element is not on the screen."""
     kind, about = move[0], move[1]
     if kind == "open":
         return {"action_type": "open_app", "app_name": about}
@@ -102,7 +102,7 @@ def _action(page: Page, move: SkillMove) -> dict[str, object] | None:
 
 
 TRACK_INSET_PX = 20
-"""A slider's track begins and ends so far inside its bounds, as its picture shows."""
+"""How far inside its bounds a slider's track begins and ends, as in its picture."""
 
 
 def _on_track(line: ListedElement, share: float) -> dict[str, object]:
@@ -121,7 +121,7 @@ def _say(because: str, action: Mapping[str, object], rest: Sequence[SkillMove] =
 
 
 def _plan(text: str) -> tuple[tuple[SkillMove, ...], int]:
-    """The moves left of a plan and how often it has scrolled for the first; nothing if it is none of ours."""
+    """The remaining moves of a plan and how often it has scrolled for the first; empty if it is not ours."""
     try:
         plan = json.loads(text)
         return tuple(tuple(map(str, move)) for move in plan["moves"]), int(plan["scrolls"])

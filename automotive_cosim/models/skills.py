@@ -1,9 +1,9 @@
-"""What the rule model knows, as a table: words of a wish, and how it is fulfilled in this cockpit.
+"""The rule model's knowledge as a table: the words of a request, and how to fulfil it in this cockpit.
 
-To add one, write a ``Skill`` into ``SKILLS``, above those whose words are more general: the first whose words are
-found in the goal decides. ``do`` is a ``Course``, a ``Decline``, a ``Wait``, or a function that reads the ``Page``
-and returns one of them. The words are made from a task's first phrasings; its last ones are held out
-(``tasking.instance.Instance.held_out``) and must not be looked at here.
+To add one, write a ``Skill`` into ``SKILLS``, above those whose words are more general: the first whose words occur
+in the goal decides. ``do`` is a ``Course``, a ``Decline``, a ``Wait``, or a function that reads the ``Page`` and
+returns one of them. The words are taken from a task's first phrasings; its last ones are held out
+(``tasking.instance.Instance.held_out``) and must not be used here.
 """
 
 from __future__ import annotations
@@ -15,18 +15,18 @@ from dataclasses import dataclass
 from automotive_cosim.models.page import Page
 
 SPEEDING_MARGIN_KMH = 3.0
-"""Above the limit by more than this counts as too fast: 1 km/h of rounding and 3 % of tolerance at 50 km/h, as
-Regulation (EU) 2021/1958 grants a speed assistant."""
+"""A speed further above the limit is too fast: 1 km/h of rounding and the 3 % of tolerance at 50 km/h that
+Regulation (EU) 2021/1958 grants to a speed assistant."""
 RAIN_PCT = 20.0
-"""Rain intensity from which drops, not fog, are what lies on the glass."""
+"""Rain intensity from which the glass is covered by drops, not fog."""
 
 SkillMove = tuple[str, ...]
-"""One step of a way; the functions below make them."""
+"""One step of a ``Course``; the functions below make them."""
 
 
 @dataclass(frozen=True, slots=True)
 class Course:
-    """Moves to carry out one after another, and why."""
+    """Moves to carry out in order, and why."""
 
     because: str
     moves: tuple[SkillMove, ...]
@@ -34,7 +34,7 @@ class Course:
 
 @dataclass(frozen=True, slots=True)
 class Decline:
-    """Nothing is to be done: ``infeasible`` or ``not_needed``, with a reason code."""
+    """Nothing has to be done: ``infeasible`` or ``not_needed``, with a reason code."""
 
     status: str
     reason: str
@@ -43,7 +43,7 @@ class Decline:
 
 @dataclass(frozen=True, slots=True)
 class Wait:
-    """Nothing is to be done yet."""
+    """Nothing has to be done yet."""
 
     because: str
     seconds: int = 1
@@ -54,10 +54,10 @@ SkillDecision = Course | Decline | Wait
 
 @dataclass(frozen=True, slots=True)
 class Skill:
-    """A wish and what to do about it."""
+    """A request and what to do about it."""
 
     words: tuple[str, ...]
-    """Regular expressions on the goal in lower case, of which any must be found."""
+    """Regular expressions on the goal in lower case, of which one must match."""
     do: SkillDecision | Callable[[Page], SkillDecision]
 
 
@@ -67,12 +67,12 @@ def opened(app: str) -> SkillMove:
 
 
 def tap(resource_id: str) -> SkillMove:
-    """Taps the element with this id, or with this text after ``=``; scrolls for it if need be."""
+    """Taps the element with this id, or with this text after ``=``; scrolls to it if necessary."""
     return ("tap", resource_id)
 
 
 def slide(resource_id: str, share: float) -> SkillMove:
-    """Sets a slider to that share of its range, 0 to 1."""
+    """Sets a slider to a share of its range, 0 to 1."""
     return ("slide", resource_id, f"{share:.3f}")
 
 
@@ -82,7 +82,7 @@ def typed(resource_id: str, text: str) -> SkillMove:
 
 
 def say(text: str) -> SkillMove:
-    """Tells the driver."""
+    """Says something to the driver."""
     return ("say", text)
 
 

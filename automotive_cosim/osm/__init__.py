@@ -3,22 +3,22 @@
     overpass    fetches a map from a server, if asked to
     extract     reads any format, keeps the roads that cars use
     country     its side of the road and general limits
-    limits      what mappers write about speed; what the country says where they write nothing
-    network     netconvert, and what came of it
+    limits      the mapped speed limits; the country's where none is mapped
+    network     netconvert, and its result
     demand      random traffic
-    trips       ways for the ego
+    trips       routes for the ego
     folder      scenario.toml, .sumocfg, README
     report      the figures
     importer    all of it in order, atomically
 
 An imported scenario -> one with a day of traffic:
 
-    counts      what one road carries in each hour
-    fit         trips, simulated until the road carries that
+    counts      the hourly counts of one road
+    fit         trips, simulated until the road matches its counts
     day         the folder and its figures, atomically
 
-The network's edges keep the OSM tags that geo and tasks ask for as parameters. An edge without ``maxspeed`` among
-them has a limit that was assumed, not posted.
+The network's edges keep the OSM tags that geo and tasks use as parameters. An edge without a ``maxspeed`` parameter
+has a limit that was assumed, not posted.
 """
 
 from automotive_cosim.osm.area import Area

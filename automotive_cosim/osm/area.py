@@ -1,4 +1,4 @@
-"""A piece of the earth between two meridians and two parallels."""
+"""An area between two meridians and two parallels."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import NamedTuple
 from automotive_cosim.errors import ImportMapError
 
 KM_PER_DEG = 111.2
-"""Of latitude, on a sphere as large as the earth."""
+"""Metres per degree of latitude, on a sphere as large as the earth."""
 
 
 class Area(NamedTuple):
@@ -24,7 +24,7 @@ class Area(NamedTuple):
         """Reads ``WEST,SOUTH,EAST,NORTH``.
 
         Raises:
-            ImportMapError: it is no such thing, or nothing lies within.
+            ImportMapError: it is not such an area, or is empty.
         """
         try:
             west_deg, south_deg, east_deg, north_deg = (float(part) for part in text.split(","))
@@ -32,17 +32,17 @@ class Area(NamedTuple):
             west_deg = south_deg = east_deg = north_deg = math.nan
         if not (-180 <= west_deg < east_deg <= 180 and -90 <= south_deg < north_deg <= 90):
             raise ImportMapError(
-                f"--bbox {text!r} is no area on earth; give WEST,SOUTH,EAST,NORTH in degrees, such as "
+                f"--bbox {text!r} is not an area on earth; give WEST,SOUTH,EAST,NORTH in degrees, such as "
                 "2.28,48.86,2.31,48.88"
             )
         return Area(west_deg, south_deg, east_deg, north_deg)
 
     def holds(self, lon_deg: float, lat_deg: float) -> bool:
-        """Whether a place lies within."""
+        """Whether a position lies within."""
         return self.west_deg <= lon_deg <= self.east_deg and self.south_deg <= lat_deg <= self.north_deg
 
     @property
     def size_km2(self) -> float:
-        """Its surface, near enough."""
+        """Its approximate surface."""
         wide = math.cos(math.radians((self.south_deg + self.north_deg) / 2))
         return (self.north_deg - self.south_deg) * (self.east_deg - self.west_deg) * wide * KM_PER_DEG * KM_PER_DEG

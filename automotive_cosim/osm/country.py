@@ -1,4 +1,4 @@
-"""What a map leaves unsaid and its country decides: the side of the road, and the limit where none is mapped.
+"""A country's defaults for what a map does not say: the driving side, and the limit where none is mapped.
 
 The limits are those of the country's traffic code for a car in the dry, as collected on the OpenStreetMap wiki's
 page "Default speed limits" and corrected where the code itself says otherwise (FR: code de la route R413-2 and -3;
@@ -23,7 +23,7 @@ LEFT_HAND = frozenset((
     "WS", "ZA", "ZM", "ZW",
 ))
 # fmt: on
-"""ISO 3166-1 codes of where people drive on the left."""
+"""ISO 3166-1 codes of the countries that drive on the left."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,9 +31,9 @@ class CountryLimits:
     """General limits of a country, km/h."""
 
     street: float
-    """Built-up, a residential street."""
+    """In built-up areas, on a residential street."""
     town: float
-    """Built-up, any larger road."""
+    """In built-up areas, on any larger road."""
     rural: float
     dual: float
     """Rural, separate carriageways (expressway, motor road)."""
@@ -88,10 +88,10 @@ LIMITS: Mapping[str, CountryLimits] = {
     "ZA": CountryLimits(60, 60, 100, 100, 120),
 }
 WORLD = CountryLimits(50, 50, 80, 100, 120)
-"""For a country without a row above: the commonest values among those that have one."""
+"""For a country without a row above: the most common values among those that have one."""
 
 LIVING_STREET_KMH = 20.0
-"""Mapped living streets without a limit; the codes say 20 km/h (FR R110-2, BE, CH) or walking pace (DE)."""
+"""Limit of mapped living streets without one; the codes say 20 km/h (FR R110-2, BE, CH) or walking pace (DE)."""
 
 
 def country_codes() -> frozenset[str]:
@@ -106,13 +106,13 @@ def limits_of(country: str) -> CountryLimits:
 
 
 def assumed_limit_kmh(country: str, road_class: str, *, built_up: bool, dual: bool) -> float:
-    """The limit a road most likely has where the map states none.
+    """The most likely limit of a road for which the map states none.
 
     Args:
         country: ISO 3166-1 code.
         road_class: OSM highway value.
-        built_up: the road lies in a town or village.
-        dual: it is one carriageway of two.
+        built_up: whether the road lies in a town or village.
+        dual: whether it is one carriageway of two.
     """
     limits = limits_of(country)
     if road_class == "motorway":

@@ -1,12 +1,12 @@
-"""What a counted road carries in each hour of a working day, from a file of counts.
+"""Reads the hourly counts of a road on a working day.
 
 Two kinds of files are read, each also gzipped:
 
 * Open Data Paris, "Comptage routier - Données trafic issues des capteurs permanents", as it is downloaded:
-  semicolons, a row for each hour of each detector, ``Date et heure de comptage`` with its offset from UTC, ``Débit
-  horaire`` in vehicles per hour, ``Taux d'occupation`` in per cent, ``Identifiant arc``. The median over Mondays to
-  Fridays is taken for each hour of the road's own clock. Rows without a figure are left out; holidays are not, the
-  median bears them.
+  semicolons, one row per hour and detector, ``Date et heure de comptage`` with its offset from UTC, ``Débit
+  horaire`` in vehicles per hour, ``Taux d'occupation`` in per cent, ``Identifiant arc``. For each hour of local
+  time, the median over Mondays to Fridays is used. Rows without a figure are skipped; holidays are included, since
+  the median tolerates them.
 * Plain CSV: ``hour,vehicles_per_hour`` and, if known, ``occupancy`` (per cent); ``hour`` is local, 0 to 23.
 """
 
@@ -34,29 +34,29 @@ TIME, FLOW, OCCUPANCY, ARC = "Date et heure de comptage", "Débit horaire", "Tau
 """Columns of Open Data Paris."""
 
 GOOD_GEH = 5.0
-"""Below it an hour's flow counts as met, as in the British guidance that GEH is from (DMRB 12.2.1)."""
+"""An hour with a smaller GEH counts as met, as in the British guidance that GEH comes from (DMRB 12.2.1)."""
 
 
 def geh(modelled: float, counted: float) -> float:
-    """Geoffrey E. Havers' distance of two hourly flows, both in vehicles per hour; 0 if both are none."""
+    """Geoffrey E. Havers' distance of two flows in vehicles per hour; 0 if both are zero."""
     total = modelled + counted
     return math.sqrt(2 * (modelled - counted) ** 2 / total) if total else 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class Counts:
-    """A day on one road, by local hour from 0 to 23."""
+    """The counts of one road on a day, by local hour from 0 to 23."""
 
     flow_per_h: tuple[float, ...]
     """Vehicles per hour, 24 of them; at least one is above zero."""
     occupancy: tuple[float, ...] | None
-    """Share of the time that a vehicle stands on the detector, 0 to 1; None if the file does not tell."""
+    """Share of the time that a vehicle covers the detector, 0 to 1; None if the file does not say."""
     about: str
-    """Where they are from, in words."""
+    """A description of their source."""
 
 
 class _Row(NamedTuple):
-    """One line of a file: an hour's figures."""
+    """One line of a file: the figures of one hour."""
 
     hour: int
     flow_per_h: float | None
@@ -68,18 +68,21 @@ def read_counts(path: Path, zone: ZoneInfo, arc: str = "") -> Counts:
 
     Args:
         path: of either kind, also gzipped.
-        zone: the clock of the counted road.
-        arc: which detector of a file of several is meant.
+        zone: time zone of the counted road.
+        arc: which detector to use, in a file of several.
 
     Raises:
-        CountsError: it cannot be read, lacks a column or an hour, has an impossible figure, nothing but zeros, or
-            several detectors of which none is named.
+        CountsError: it cannot be read, lacks a column or an hour, has an impossible figure, only zeros, or several
+            detectors of which none is named.
     """
     lines = _text(path).splitlines()
     delimiter = ";" if lines and ";" in lines[0] else ","
     reader = csv.DictReader(lines, delimiter=delimiter, restval="")
-    columns = tuple(reader.fieldnames or ())
-    rows = list(reader)
+    try:
+        columns = tuple(reader.fieldnames or ())
+        rows = list(reader)
+    except csv.Error as error:
+        raise CountsError(f"{path} line {reader.line_num}: {error}; give a CSV file of counts") from error
     if TIME in columns or delimiter == ";":
         _need(path, columns, (TIME, FLOW, OCCUPANCY, ARC))
         chosen, arc = _of_arc(path, rows, arc)
@@ -88,7 +91,7 @@ def read_counts(path: Path, zone: ZoneInfo, arc: str = "") -> Counts:
     else:
         _need(path, columns, ("hour", "vehicles_per_hour"))
         if arc:
-            raise CountsError(f"{path} has no detectors to choose {arc!r} from; leave --arc out")
+            raise CountsError(f"{path} has no detectors to choose {arc!r} from; omit --arc")
         found = [_plain_row(path, number, each) for number, each in enumerate(rows, start=2)]
         about = path.name
     return _by_hour(path, found, about)
@@ -99,7 +102,7 @@ def _text(path: Path) -> str:
         data = path.read_bytes()
         return (gzip.decompress(data) if data.startswith(b"\x1f\x8b") else data).decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise CountsError(f"{path} is no UTF-8 text; give a CSV file of counts") from error
+        raise CountsError(f"{path} is not UTF-8 text; give a CSV file of counts") from error
     except (OSError, EOFError, zlib.error) as error:
         reason = getattr(error, "strerror", None) or error
         raise CountsError(f"{path} cannot be read ({reason}); give a CSV file of counts") from error
@@ -115,7 +118,7 @@ def _need(path: Path, columns: Sequence[str], wanted: Sequence[str]) -> None:
 
 
 Numbered = list[tuple[int, Mapping[str, str]]]
-"""Rows of a file, each with its line."""
+"""The rows of a file with their line numbers."""
 
 
 def _of_arc(path: Path, rows: Sequence[Mapping[str, str]], arc: str) -> tuple[Numbered, str]:
@@ -136,9 +139,9 @@ def _paris_row(path: Path, number: int, row: Mapping[str, str], zone: ZoneInfo) 
     """None at weekends."""
     try:
         stamp = datetime.fromisoformat(row[TIME])
-    except ValueError as error:
-        raise CountsError(f"{path} line {number}: {row[TIME]!r} is no date and time") from error
-    local = (stamp if stamp.tzinfo else stamp.replace(tzinfo=UTC)).astimezone(zone)
+        local = (stamp if stamp.tzinfo else stamp.replace(tzinfo=UTC)).astimezone(zone)
+    except (ValueError, OverflowError) as error:
+        raise CountsError(f"{path} line {number}: {row[TIME]!r} is not a date and time") from error
     if local.weekday() >= SATURDAY:
         return None
     flow, occupancy = (_figure(path, number, name, row[name]) for name in (FLOW, OCCUPANCY))
@@ -148,7 +151,7 @@ def _paris_row(path: Path, number: int, row: Mapping[str, str], zone: ZoneInfo) 
 def _plain_row(path: Path, number: int, row: Mapping[str, str]) -> _Row:
     text = row["hour"].strip()
     if text not in map(str, range(HOURS)):
-        raise CountsError(f"{path} line {number}: hour {text!r} is no whole number from 0 to 23")
+        raise CountsError(f"{path} line {number}: hour {text!r} is not a whole number from 0 to 23")
     flow = _figure(path, number, "vehicles_per_hour", row["vehicles_per_hour"])
     return _Row(int(text), flow, _figure(path, number, "occupancy", row.get("occupancy", "")))
 
@@ -162,7 +165,7 @@ def _figure(path: Path, number: int, name: str, text: str) -> float | None:
     except ValueError:
         value = math.nan
     if not 0 <= value < math.inf:
-        raise CountsError(f"{path} line {number}: {name} is {text!r}; it must be a number from 0 on")
+        raise CountsError(f"{path} line {number}: {name} is {text!r}; it must be a number from 0")
     return value
 
 
@@ -176,9 +179,11 @@ def _by_hour(path: Path, rows: Sequence[_Row], about: str) -> Counts:
             occupancies[row.hour].append(row.occupancy_percent / 100)
     missing = [str(hour) for hour in range(HOURS) if not flows[hour]]
     if missing:
-        raise CountsError(f"{path} has no count for hour {', '.join(missing)} of a working day; all 24 are needed")
+        raise CountsError(
+            f"{path} has no count for hour {', '.join(missing)} of a working day; all 24 are required"
+        )
     counted = tuple(median(flows[hour]) for hour in range(HOURS))
     if not any(counted):
-        raise CountsError(f"{path} counts nothing but zeros; choose a detector that works")
+        raise CountsError(f"{path} has only zeros; choose a detector that works")
     is_known = all(occupancies[hour] for hour in range(HOURS))
     return Counts(counted, tuple(median(occupancies[hour]) for hour in range(HOURS)) if is_known else None, about)

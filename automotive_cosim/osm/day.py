@@ -1,6 +1,6 @@
-"""An imported scenario with a day of traffic, scaled by the hour until one counted road carries what was counted.
+"""An imported scenario with a day of traffic, scaled by the hour until one road matches its counts.
 
-This is no calibration: one road is met and nothing is known of all others. How it is met stands in ``fit``.
+This is no calibration: it matches one road, and nothing is known of all others. ``fit`` explains how.
 """
 
 from __future__ import annotations
@@ -11,11 +11,12 @@ import shutil
 import xml.etree.ElementTree as ET
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
 from zoneinfo import ZoneInfo
 
 from automotive_cosim.contracts import Tell
 from automotive_cosim.errors import CountsError, ScenarioError, UnknownNameError
+from automotive_cosim.formats.checked import checked
+from automotive_cosim.formats.toml import dotted
 from automotive_cosim.osm import folder
 from automotive_cosim.osm.counts import read_counts
 from automotive_cosim.osm.demand import fastest_ways, write
@@ -25,70 +26,70 @@ from automotive_cosim.traffic.network import Edge, Network, read_network
 from automotive_cosim.traffic.options import Configuration, read_configuration
 
 STEP_S = 1.0
-"""Of the day's simulation, and of the scenario that comes of it: its figures hold for no other."""
+"""Step length of the day's simulation and of the resulting scenario: its figures hold for no other."""
 
 DAY_FILE, TRIPS = "day.json", "day.trips.xml.gz"
 
 NO_CALIBRATION = (
-    "The demand is scaled to the counts of one road. That is no calibration: what other roads carry, and where"
-    " anybody comes from or goes to, is as random as before."
+    "The demand is scaled to the counts of one road. This is no calibration: the flows on other roads, and where"
+    " vehicles come from and go to, are as random as before."
 )
 
 
 @dataclass(frozen=True, slots=True)
 class DayOptions:
-    """What the user may choose."""
+    """The user's options."""
 
     edge: str
-    """The counted road: an edge, or the number of the OpenStreetMap way that all its edges are of."""
+    """The counted road: an edge, or the number of the OpenStreetMap way of all its edges."""
     arc: str = ""
-    """Which detector of the counts' file; needed if it has several."""
+    """Which detector of the counts' file; required if it has several."""
     at_hour: int = 8
     """When the ego departs, 1 to 23, local time."""
     background: float | None = None
-    """Traffic that does not pass the counted road, in the busiest hour, as a share of the import's; None takes what
-    the traffic past the road leaves of the import's."""
+    """Traffic that does not pass the counted road, in the busiest hour, as a share of the import's; None takes the
+    rest beside the counted traffic."""
     days: int = 4
-    """Simulated at most."""
+    """Maximum number of days to simulate."""
     minutes: float = 60.0
-    """Simulated of each hour, 5 to 60: fewer are faster, and their figures noisier."""
+    """Minutes of each hour to simulate, 5 to 60: fewer are faster and noisier."""
     seed: int = 0
-    """Of departures, and of SUMO."""
+    """Seed of departures and of SUMO."""
     replace: bool = False
-    """An existing scenario folder may be replaced."""
+    """Whether to replace an existing scenario folder."""
 
 
 @dataclass(frozen=True, slots=True)
 class Day:
-    """What came of it; ``day.json`` in the scenario's folder."""
+    """The result; ``day.json`` in the scenario's folder."""
 
     scenario: str
     source: str
     """Name of the scenario that was scaled."""
     counts: str
-    """Where the counts are from, in words."""
+    """A description of the source of the counts."""
     edges: tuple[str, ...]
-    """The counted ones."""
+    """The counted edges."""
     road: str
-    """Their name."""
+    """Name of the road."""
     routes: int
-    """Different trips of the import that pass there, which the day repeats."""
+    """Number of different trips of the import that pass there, which the day repeats."""
     background: float
     """Other traffic in the busiest hour, as a share of the import's."""
     minutes: float
-    """Simulated of each hour."""
+    """Minutes simulated of each hour."""
     seed: int
     met: tuple[int, ...]
-    """Hours with a GEH below 5, in each simulated day; the best of them is the scenario."""
+    """Hours with a GEH below 5 in each simulated day; the best day is the scenario."""
     hours: tuple[Hour, ...]
 
     @property
     def hours_met(self) -> int:
-        """Hours with a GEH below 5."""
+        """Number of hours with a GEH below 5."""
         return sum(each.is_met for each in self.hours)
 
     def write(self, target: Path) -> None:
-        """Writes it as JSON."""
+        """Writes the result as JSON."""
         target.write_text(json.dumps(asdict(self), indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
 
 
@@ -96,34 +97,32 @@ def read_day(scenario_folder: Path) -> Day:
     """Reads a scenario folder's ``day.json``.
 
     Raises:
-        ScenarioError: there is none, or it is broken.
+        ScenarioError: there is none, or it is invalid.
     """
     path = scenario_folder / DAY_FILE
     try:
-        table: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-        edges, met = tuple(table.pop("edges")), tuple(table.pop("met"))
-        hours = tuple(Hour(**each) for each in table.pop("hours"))
-        return Day(edges=edges, met=met, hours=hours, **table)
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        table = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError) as error:
         raise ScenarioError(f"{path} is not what `automotive-cosim scenarios day` writes: {error}") from error
+    return checked(Day, table, lambda steps: (f"{path} of `scenarios day`", dotted(steps)), ScenarioError)
 
 
 def make_day(
     source: Path, counts_file: Path, out: Path, options: DayOptions, on_progress: Tell | None = None
 ) -> Day:
-    """Makes a scenario of a day from an imported one.
+    """Makes a scenario with a day of traffic from an imported one.
 
     Args:
-        source: folder that ``import_map`` made; only read.
+        source: a folder made by ``import_map``; it is only read.
         counts_file: hourly counts, see ``counts``.
-        out: the folder to be made; appears whole or not at all.
-        options: what the user chose.
-        on_progress: told what is being done.
+        out: the folder to create, completely or not at all.
+        options: the user's options.
+        on_progress: called with the current activity.
 
     Raises:
         CountsError: the counts cannot be used, or no trip passes the counted road.
         UnknownNameError: the network has no such edge.
-        ScenarioError: ``source`` is no imported scenario.
+        ScenarioError: ``source`` is not an imported scenario.
         ImportMapError: ``out`` cannot be written.
         SetupError: eclipse-sumo is not installed.
     """
@@ -136,7 +135,7 @@ def make_day(
     network = read_network(configuration.net)
     counted = _counted(network, options.edge)
     with folder.appearing(out, replaces=options.replace) as building:
-        tell("finding the trips' ways", None)
+        tell("routing the trips", None)
         trips = _read_trips(configuration, network)
         ends = [(start, goal) for _, start, goal in trips]
         ways = [way for way in fastest_ways(ends, network, configuration.net, building.parent) if way]
@@ -144,7 +143,7 @@ def make_day(
         demand = make_demand(ways, per_h, counted, counts, background=options.background, seed=options.seed)
         if not demand.passing:
             raise CountsError(
-                f"none of the {len(ways)} trips of {source} passes {options.edge} on its fastest way, so that none"
+                f"none of the {len(ways)} trips of {source} passes {options.edge} on its fastest route, so none"
                 " can be repeated; count another road, or import with a higher --density"
             )
         made = _write(building, scenario, configuration.net, options)
@@ -208,7 +207,7 @@ def _read_trips(configuration: Configuration, network: Network) -> list[tuple[fl
 
 
 def _write(building: Path, source: Scenario, net: Path, options: DayOptions) -> Scenario:
-    """Writes the scenario's own files, all but its trips."""
+    """Writes the scenario's own files except its trips."""
     name = f"{source.name}_day"
     sumo = Sumo(
         config=f"{name}.sumocfg",
@@ -239,13 +238,13 @@ def _write_readme(target: Path, day: Day, title: str) -> None:
         "",
         f"{folder.ATTRIBUTION}: <{folder.COPYRIGHT_PAGE}>.",
         "The network in this folder is derived from it and stays under that licence. The demand is derived from",
-        f"traffic counts ({day.counts}), whose licence holds for it.",
+        f"traffic counts ({day.counts}), whose licence applies to it.",
         "",
         f"Made from `{day.source}` by `automotive-cosim scenarios day`; `{DAY_FILE}` has the figures.",
         NO_CALIBRATION,
         "",
         "Seconds of the simulation are seconds after local midnight. To depart at another hour, change `start` in",
-        "`scenario.toml`, and `begin` in the `.sumocfg` to that hour less the warm-up.",
+        "`scenario.toml`, and `begin` in the `.sumocfg` to that hour minus the warm-up.",
         "",
     ]
     target.write_text("\n".join(text), encoding="utf-8")

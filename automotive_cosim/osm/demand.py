@@ -1,7 +1,7 @@
-"""Traffic for a network nobody has counted: random trips, weighted by what the roads can carry.
+"""Traffic for a network without counts: random trips, weighted by the capacity of the roads.
 
-SUMO's randomTrips does the like; this one draws from a numpy generator, lets half of the traffic come from outside
-the map, as it does on a crop of a city, and knows the limits that were only assumed.
+SUMO's randomTrips is similar; this one draws from a numpy generator, lets half of the traffic come from outside the
+map, as on a crop of a city, and knows which limits were only assumed.
 """
 
 from __future__ import annotations
@@ -23,20 +23,20 @@ from automotive_cosim.traffic.network import Edge, Network
 from automotive_cosim.traffic.sumo_programs import first_error, run
 
 OUTSIDE_SHARE = 0.5
-"""Share of trips that come from, and as many that go to, beyond the map's edge."""
+"""Share of trips that begin beyond the map's edge, and share of those that end there."""
 
 MIN_TRIP_M = 500.0
-"""Straight distance a trip should cover; a fifth of the diagonal on a small map."""
+"""Straight distance that a trip should cover; a fifth of the diagonal on a small map."""
 
 CAR = '<vType id="car" vClass="passenger" lcStrategic="50"/>'
-"""The vehicles. They choose their lane far earlier than SUMO's default, or the short lanes of large roundabouts
-fill up with cars side by side of which each needs the other's lane."""
+"""The vehicles. They choose their lane far earlier than SUMO's default; otherwise the short lanes of large
+roundabouts fill up with cars side by side that each need the other's lane."""
 
 ROUNDS = 20
-"""How often trips that are too short are drawn again."""
+"""How often to redraw trips that are too short."""
 
 SAMPLES = 500
-"""Trips from which the mean travel time, and the share that has a way, are known well enough."""
+"""Number of trips that suffices to estimate the mean travel time and the share with a route."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,13 +45,13 @@ class Journey:
 
     depart_s: float
     way: tuple[Edge, ...]
-    """The fastest on empty roads."""
+    """The fastest route on empty roads."""
     via: str = ""
-    """An edge that it drives over however it reroutes."""
+    """An edge that it passes however it reroutes."""
 
     @property
     def length_m(self) -> float:
-        """Of the way."""
+        """Length of the route."""
         return sum(edge.length_m for edge in self.way)
 
 
@@ -64,19 +64,19 @@ def draw(
     duration_s: float,
     rng: np.random.Generator,
 ) -> tuple[Journey, ...]:
-    """Draws trips and keeps those that duarouter finds a way for, in order of departure.
+    """Draws trips and keeps those for which duarouter finds a route, in order of departure.
 
     Args:
         built: the imported network.
-        net_file: the same, as SUMO reads it.
+        net_file: its file.
         scratch: a folder for intermediate files.
-        density_per_km: vehicles at a time per kilometre of lane, if nobody held them up. This, and not how many
-            set out, tells how full a network is, whatever its size.
+        density_per_km: vehicles per kilometre of lane at a time if all drove freely. Unlike the number of
+            departures, this measures how full a network is, whatever its size.
         duration_s: departures are spread evenly over this.
-        rng: where all chance comes from.
+        rng: source of all randomness.
 
     Raises:
-        ImportMapError: so little traffic is asked for that there is none, or no trip can be driven.
+        ImportMapError: the requested traffic is less than one vehicle, or no trip can be driven.
     """
     samples = _routed(_pairs(built, SAMPLES, rng), built, net_file, scratch)
     if not samples:
@@ -85,7 +85,9 @@ def draw(
     lane_km = sum(edge.length_m * len(edge.lane_ids) for edge in built.edges) / 1000
     count = round(density_per_km * lane_km * duration_s / travel_time_s)
     if not count:
-        raise ImportMapError(f"{density_per_km:g} vehicles per km on {lane_km:.1f} km are none; raise --density")
+        raise ImportMapError(
+            f"{density_per_km:g} vehicles per km on {lane_km:.1f} km make less than one; raise --density"
+        )
     ways = _routed(_pairs(built, math.ceil(count * SAMPLES / len(samples)), rng), built, net_file, scratch)
     departs = np.sort(rng.uniform(0.0, duration_s, min(count, len(ways))))
     return tuple(Journey(float(depart_s), way) for depart_s, way in zip(departs, ways, strict=False))
@@ -130,8 +132,8 @@ def _pairs(built: Built, count: int, rng: np.random.Generator) -> npt.NDArray[np
 
 
 def _weights(edges: Sequence[Edge], fringe: frozenset[str]) -> npt.NDArray[np.float64]:
-    """Probability of each edge as one end of a trip: inside by length and lanes, at the map's edge by what a road
-    carries, taken as lanes times the square of the speed."""
+    """Probability of each edge to be one end of a trip: inside the map by length and lanes, at its edge by the
+    capacity of the road, taken as lanes times the square of the speed."""
     inside = np.array([edge.length_m * len(edge.lane_ids) for edge in edges])
     outside = np.array([len(edge.lane_ids) * edge.speed_mps**2 * (edge.edge_id in fringe) for edge in edges])
     weights = inside / inside.sum()
@@ -148,12 +150,12 @@ def _routed(pairs: npt.NDArray[np.int64], built: Built, net_file: Path, scratch:
 def fastest_ways(
     ends: Sequence[tuple[Edge, Edge]], network: Network, net_file: Path, scratch: Path
 ) -> list[tuple[Edge, ...]]:
-    """The fastest way on empty roads for each start and goal, by SUMO's duarouter; empty where there is none.
+    """The fastest route on empty roads for each start and end, by SUMO's duarouter; empty if there is none.
 
     Args:
-        ends: first and last edge of each way.
-        network: theirs.
-        net_file: the same, as SUMO reads it.
+        ends: first and last edge of each route.
+        network: the network.
+        net_file: its file.
         scratch: a folder for intermediate files.
 
     Raises:

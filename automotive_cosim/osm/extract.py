@@ -1,7 +1,7 @@
-"""Reading an OSM extract, whatever its format, and reducing it to the roads that cars use.
+"""Reads an OSM extract of any format and reduces it to the roads that cars use.
 
-libosmium reads every format and finds every cut; what is written for netconvert is always plain OSM XML. Other
-ways (paths, buildings, railways) go, because each path that meets a road would split it in two.
+libosmium reads every format and detects truncated files; the output for netconvert is always plain OSM XML. Other
+ways (paths, buildings, railways) are removed, because each path that meets a road would split it in two.
 """
 
 from __future__ import annotations
@@ -20,27 +20,27 @@ from automotive_cosim.osm.limits import complete, zone_of
 from automotive_cosim.traffic.sumo_programs import INSTALL
 
 LINKED = ("motorway", "trunk", "primary", "secondary", "tertiary")
-"""Classes whose ramps and slip roads are a class of their own, ``…_link``."""
+"""Classes whose ramps and slip roads have a class of their own, ``…_link``."""
 
 ROAD_CLASSES = frozenset(
     (*LINKED, *(f"{road}_link" for road in LINKED), "unclassified", "residential", "living_street")
 )
-"""OSM highway values kept. Service roads are left out: SUMO's type map opens them to deliveries only."""
+"""OSM highway values to keep. Service roads are left out: SUMO's type map opens them to deliveries only."""
 
 ACCESS_KEYS = ("motorcar", "motor_vehicle", "vehicle", "access")
-"""Who may drive there, the key nearest to cars first (OSM wiki, "Key:access"). netconvert looks at none of them."""
+"""Access keys, the most specific to cars first (OSM wiki, "Key:access"); netconvert ignores them."""
 
 BARRED = frozenset(("no", "private", "agricultural", "forestry", "military", "emergency", "psv", "bus", "delivery"))
-"""Values that keep an ordinary car out."""
+"""Values that exclude an ordinary car."""
 
 DROPPED_TAGS = ("railway", "cycleway", "sidewalk", "public_transport", "route")
-"""Keys, with what follows a colon, that make netconvert give a road a compound type instead of its class."""
+"""Keys, with any suffix after a colon, that make netconvert give a road a compound type instead of its class."""
 
 CELL_DEG = 0.0025
-"""Side of the cells in which town streets are counted, degrees of latitude (about 280 m)."""
+"""Side of the cells in which town streets are counted, in degrees of latitude (about 280 m)."""
 
 TOWN_NODES = 12
-"""Nodes of town streets in a cell and its eight neighbours from which on a road there counts as built-up."""
+"""Minimum number of nodes of town streets in a cell and its eight neighbours for a built-up area."""
 
 TOWN_STREETS = frozenset(("residential", "living_street"))
 
@@ -68,7 +68,7 @@ class OsmWay:
 
 @dataclass(frozen=True, slots=True)
 class Node:
-    """One point of a road, with what stands there (signals, crossings)."""
+    """One point of a road, with the objects there (signals, crossings)."""
 
     position: Position
     tags: Mapping[str, str]
@@ -91,20 +91,20 @@ class Extract:
     nodes: Mapping[int, Node]
     restrictions: tuple[TurnRestriction, ...]
     cameras: tuple[Position, ...] = ()
-    """Where speed cameras stand, on a road or beside it."""
+    """Positions of speed cameras, on a road or beside it."""
 
     def crop(self, area: Area) -> Extract:
-        """What of it lies within an area; of a road that leaves and comes back, the longest stretch.
+        """The part within an area; of a road that leaves and comes back, the longest stretch.
 
         Raises:
-            ImportMapError: no road does.
+            ImportMapError: it contains no road.
         """
         nodes = {ref: node for ref, node in self.nodes.items() if area.holds(*node.position)}
         ways = tuple(piece for way in self.ways for piece in _known_pieces(way, nodes))
         if not ways:
             west, south, east, north = self.bounds
             raise ImportMapError(
-                f"no road lies in the --bbox; the map reaches from {west:.4f},{south:.4f} to {east:.4f},{north:.4f}"
+                f"no road in the --bbox; the map reaches from {west:.4f},{south:.4f} to {east:.4f},{north:.4f}"
             )
         kept = {way.way_id for way in ways}
         turns = tuple(
@@ -120,24 +120,24 @@ class Extract:
 
     @property
     def bounds(self) -> Area:
-        """The smallest area that holds every road."""
+        """The smallest area that contains every road."""
         lons = [node.position.lon_deg for node in self.nodes.values()]
         lats = [node.position.lat_deg for node in self.nodes.values()]
         return Area(min(lons), min(lats), max(lons), max(lats))
 
     @property
     def centre(self) -> Position:
-        """The median node: a position on the mapped roads even where a far-off way stretches the box."""
+        """The median node: a position on the mapped roads even if a distant way stretches the box."""
         lons = sorted(node.position.lon_deg for node in self.nodes.values())
         lats = sorted(node.position.lat_deg for node in self.nodes.values())
         return Position(lons[len(lons) // 2], lats[len(lats) // 2])
 
 
 def read(source: Path) -> Extract:
-    """Reads the roads of an extract: OSM XML, plain, gzip or bzip2, or PBF, known by content and not by name.
+    """Reads the roads of an extract: OSM XML, plain, gzip or bzip2, or PBF, detected by content, not by name.
 
     Raises:
-        ImportMapError: the file is missing, empty, cut off, no OSM data, or without roads.
+        ImportMapError: the file is missing, empty, truncated, not OSM data, or without roads.
         SetupError: the osmium package is not installed.
     """
     file = _open(source)
@@ -160,7 +160,7 @@ def _osmium() -> Any:
     try:
         return import_module("osmium")
     except ImportError as error:
-        raise SetupError(f"importing maps needs the osmium package: {INSTALL}") from error
+        raise SetupError(f"importing maps requires the osmium package: {INSTALL}") from error
 
 
 def _open(source: Path) -> Any:
@@ -191,9 +191,9 @@ def _explain(source: Path, error: str) -> str:
     if "top-level element" in error:
         return f"{source} is XML but not OSM ({error}); give an extract whose root is <osm>"
     if "gzip error" in error or "bzip2 error" in error or "EOF" in error or "truncated" in error:
-        return f"{source} is cut off or damaged ({error}); download it again"
+        return f"{source} is truncated or damaged ({error}); download it again"
     if "XML parsing error" in error:
-        return f"{source} is cut off or not OSM XML ({error}); download it again"
+        return f"{source} is truncated or not OSM XML ({error}); download it again"
     return f"{source} cannot be read as OSM data ({error}); give OSM XML (plain, .gz or .bz2) or .osm.pbf"
 
 
@@ -236,7 +236,7 @@ def _read_cameras(file: Any) -> tuple[Position, ...]:
 
 
 def _known_pieces(way: OsmWay, nodes: Mapping[int, Node]) -> Iterator[OsmWay]:
-    """The way where its nodes are in the extract: the longest stretch, if clipping left holes."""
+    """The part of a way whose nodes are in the extract: the longest stretch, if clipping left gaps."""
     stretches: list[list[int]] = [[]]
     for ref in way.nodes:
         if ref in nodes:
@@ -251,7 +251,7 @@ def _known_pieces(way: OsmWay, nodes: Mapping[int, Node]) -> Iterator[OsmWay]:
 def write(extract: Extract, target: Path, country: str) -> None:
     """Writes the roads as OSM XML for netconvert, each with a limit (``limits.complete``) and a name.
 
-    A road without a name is called by its number (``"A 5"``), as signposts do.
+    A road without a name gets its number (``"A 5"``), as on signposts.
     """
     osmium = _osmium()
     mutable = osmium.osm.mutable
@@ -275,7 +275,7 @@ def _cell(position: Position) -> tuple[int, int]:
 
 
 def town_cells(extract: Extract) -> frozenset[tuple[int, int]]:
-    """The cells about which town streets lie close together, as columns and rows of a grid."""
+    """The cells around which town streets are dense, as columns and rows of a grid."""
     streets = Counter(
         _cell(extract.nodes[ref].position)
         for way in extract.ways
@@ -290,7 +290,7 @@ def town_cells(extract: Extract) -> frozenset[tuple[int, int]]:
 
 
 def is_built_up(way: OsmWay, nodes: Mapping[int, Node], towns: frozenset[tuple[int, int]]) -> bool:
-    """Whether a road lies in a town or village: as its tags say, else by the streets about it."""
+    """Whether a road lies in a town or village: by its tags, else by the streets around it."""
     zone = zone_of(way.tags)
     if zone in ("urban", "rural", "motorway", "trunk"):
         return zone == "urban"

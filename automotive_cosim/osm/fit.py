@@ -1,10 +1,10 @@
-"""A day of traffic past one counted road, simulated and corrected until the road carries what was counted.
+"""A day of traffic past one counted road, simulated and corrected until the road matches its counts.
 
-To scale all traffic until the one road is met would lock up the network, as hardly any random trip passes there. So
-only the trips that pass the counted road are repeated, as often in each hour as its count asks for, and never leave
-that road out when they reroute. All others follow the counted road's profile, so that both together are in the
-busiest hour what the import found to flow. A day is simulated, what was short or over is made up in proportion, and
-the next is simulated.
+Scaling all traffic until the one road is met would lock up the network, since hardly any random trip passes there.
+So only the trips that pass the counted road are repeated, as often in each hour as its count requires, and they
+never avoid that road when they reroute. All others follow the counted road's profile, so that in the busiest hour
+both together equal the traffic that the import found to flow. A day is simulated, the trips are corrected in
+proportion, and the next day is simulated.
 """
 
 from __future__ import annotations
@@ -35,14 +35,14 @@ WARM_UP_S = 900.0
 """Traffic before the ego departs."""
 
 ENOUGH_GEH = 2.0
-"""No further day is simulated once every hour is this near; other seeds will do a little worse."""
+"""No further day is simulated once every GEH is this small; other seeds will do a little worse."""
 
 CHANGE_MAX = 2.0
-"""An hour's trips are at most doubled or halved from one day to the next, and never more than twice what was
-counted: a road that carries no more when more is sent there is full, and what is sent stands on other roads."""
+"""An hour's trips are at most doubled or halved from one day to the next, and never more than twice the count: a
+road that does not carry more when more is sent is full, and the surplus stands on other roads."""
 
 LOOK_EVERY_S = 1.0
-"""How often it is looked how many vehicles stand; SUMO's lines are its signs of life too, and come in bunches."""
+"""How often to sample how many vehicles are halted; SUMO's lines are also its signs of life, and come in bursts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,32 +52,32 @@ class Hour:
     hour: int
     counted_per_h: float
     simulated_per_h: float
-    """Distance driven on the counted edges over their length: vehicles per hour, also on several edges."""
+    """Distance driven on the counted edges divided by their length: vehicles per hour, also on several edges."""
     geh: float
     counted_occupancy: float | None
-    """Share of time with a vehicle over the detector; None if the counts do not tell."""
+    """Share of time with a vehicle over the detector; None if the counts do not say."""
     simulated_occupancy: float
-    """Share of the counted edges' lanes that is under vehicles, mean of the hour. The detector's share of time is
-    somewhat higher, as a vehicle leaves it only with its tail."""
+    """Share of the counted edges' lanes that vehicles cover, mean of the hour. The detector's share of time is
+    somewhat higher, because a vehicle leaves it only with its tail."""
     passing: int
-    """Trips made to pass the counted road."""
+    """Number of trips sent past the counted road."""
     background: int
-    """Other trips."""
+    """Number of other trips."""
     running: float
     """Vehicles in the network, mean."""
     halted_share: float
-    """Of those."""
+    """Share of them that are halted."""
     teleports: int
-    """Vehicles that SUMO moved on after standing for 300 s, or that were stuck otherwise."""
+    """Vehicles that SUMO teleported after standing for 300 s, or that were stuck otherwise."""
 
     @property
     def is_met(self) -> bool:
-        """The flow is within a GEH of 5."""
+        """Whether the GEH of the flow is below 5."""
         return self.geh < GOOD_GEH
 
 
 class Span(NamedTuple):
-    """A time with the traffic of an hour."""
+    """A span of time with the traffic of one hour."""
 
     hour: int
     start_s: float
@@ -88,7 +88,7 @@ WHOLE_DAY = tuple(Span(hour, hour * HOUR_S, HOUR_S) for hour in range(HOURS))
 
 
 def _tried(minutes: float) -> tuple[Span, ...]:
-    """So many minutes of each hour in a row, after a warm-up with the traffic before midnight."""
+    """A number of minutes of each hour in a row, after a warm-up with the traffic before midnight."""
     length_s = minutes * 60
     hours = (Span(hour, WARM_UP_S + hour * length_s, length_s) for hour in range(HOURS))
     return (Span(HOURS - 1, 0.0, WARM_UP_S), *hours)
@@ -96,15 +96,15 @@ def _tried(minutes: float) -> tuple[Span, ...]:
 
 @dataclass(frozen=True, slots=True)
 class Demand:
-    """Trips that can be repeated, and how many of them an hour has."""
+    """Trips that can be repeated, and their numbers per hour."""
 
     passing: tuple[Journey, ...]
-    """Those over the counted road; ``depart_s`` is how long before passing it they set out, as a number below 0."""
+    """Trips over the counted road; ``depart_s`` is the departure relative to passing it, below 0."""
     others: tuple[Journey, ...]
     counted: tuple[Edge, ...]
     counts: Counts
     background: float
-    """The others of the busiest hour, as a share of the import's."""
+    """Other trips of the busiest hour, as a share of the import's."""
     others_per_h: tuple[int, ...]
     seed: int
 
@@ -112,8 +112,8 @@ class Demand:
         """Traffic in order of departure.
 
         Args:
-            sent: trips over the counted road in each hour.
-            spans: what of the hours is wanted, and when.
+            sent: number of trips over the counted road in each hour.
+            spans: the parts of the hours to simulate, and when.
         """
         made: list[Journey] = []
         for kind, (choice, counts) in enumerate(((self.passing, sent), (self.others, self.others_per_h))):
@@ -138,16 +138,16 @@ def make_demand(
     background: float | None,
     seed: int,
 ) -> Demand:
-    """Parts an import's trips by whether they pass the counted road.
+    """Divides an import's trips by whether they pass the counted road.
 
     Args:
-        ways: the trips' fastest.
-        per_h: trips that the import lets set out in an hour.
+        ways: the fastest route of each trip.
+        per_h: departures per hour in the import.
         counted: edges of the counted road.
-        counts: what it carries.
-        background: other traffic in the busiest hour, as a share of the import's; None takes what the traffic past
-            the road leaves of the import's.
-        seed: of departures, and of SUMO.
+        counts: its counts.
+        background: other traffic in the busiest hour, as a share of the import's; None takes the rest beside
+            the counted traffic.
+        seed: seed of departures and of SUMO.
     """
     ids = {edge.edge_id for edge in counted}
     passing: list[Journey] = []
@@ -158,7 +158,7 @@ def make_demand(
             others.append(Journey(0.0, way))
         else:
             lead_s = sum(edge.length_m / edge.speed_mps for edge in way[:first])
-            # SUMO strikes a via off when it is driven onto, which one that departs there never does.
+            # SUMO removes a via when the vehicle enters it, which one that departs there never does.
             passing.append(Journey(-lead_s, way, via=way[first].edge_id if first else ""))
     busiest = max(counts.flow_per_h)
     others_per_h = per_h * len(others) / len(ways)
@@ -183,7 +183,7 @@ class Fitted:
     """Trips over the counted road in each hour."""
     hours: tuple[Hour, ...]
     met: tuple[int, ...]
-    """Hours with a GEH below 5, in each simulated day."""
+    """Hours with a GEH below 5 in each simulated day."""
 
 
 def fit(
@@ -199,13 +199,13 @@ def fit(
     """Simulates days until the counts are met.
 
     Args:
-        scenario: where they are simulated.
+        scenario: the scenario to simulate.
         trips_file: the scenario's trips; each day writes its own there.
-        demand: what is sent.
-        days: simulated at most.
-        minutes: simulated of each hour.
+        demand: the trips to send.
+        days: maximum number of days to simulate.
+        minutes: minutes of each hour to simulate.
         scratch: a folder for intermediate files.
-        tell: told what is being done.
+        tell: called with the current activity.
 
     Raises:
         ScenarioError: SUMO refuses the scenario.
@@ -226,7 +226,7 @@ def fit(
 
 
 def _next(sent: float, hour: Hour) -> float:
-    """How many trips to send in an hour, after one in which ``sent`` were."""
+    """The number of trips to send in an hour, given that ``sent`` were sent before."""
     if not hour.simulated_per_h:
         return min(sent * CHANGE_MAX, hour.counted_per_h * CHANGE_MAX)
     change = hour.counted_per_h / hour.simulated_per_h
@@ -246,7 +246,7 @@ def _drive(
     scratch: Path,
     tell: Callable[[float], None],
 ) -> tuple[Hour, ...]:
-    """Simulates a day, or so many minutes of each hour, and looks at the counted road."""
+    """Simulates a day, or part of each hour, and measures the counted road."""
     spans = _tried(minutes)
     length_s, end_s = spans[-1].length_s, spans[-1].start_s + spans[-1].length_s
     write(demand.journeys(sent, spans), trips_file)
@@ -301,7 +301,7 @@ class _Look:
     running: float = 0.0
     halting: float = 0.0
     teleports: int = 0
-    """Since the day began."""
+    """Seconds since the day began."""
 
     def add(self, step: StepFigures) -> None:
         self.count += 1
@@ -313,7 +313,7 @@ class _Look:
 def _read_measured(file: Path, counted: Sequence[Edge], length_s: float) -> list[tuple[float, float]]:
     """Flow (vehicles per hour) and occupancy (0 to 1) of the counted road in each interval of ``length_s``.
 
-    The flow is Edie's: distance driven over the length of road and of time, which holds for several edges in a row.
+    The flow is Edie's: distance driven divided by the length of road and of time, also valid for several edges.
     """
     length_m = {edge.edge_id: edge.length_m for edge in counted}
     lane_m = {edge.edge_id: edge.length_m * len(edge.lane_ids) for edge in counted}

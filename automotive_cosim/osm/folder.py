@@ -1,4 +1,4 @@
-"""An imported scenario's folder, which appears whole or not at all, and its text files."""
+"""An imported scenario's folder, created completely or not at all, and its text files."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ ATTRIBUTION = "Map data © OpenStreetMap contributors, Open Database License (OD
 COPYRIGHT_PAGE = "https://www.openstreetmap.org/copyright"
 
 START = datetime(2026, 6, 16, 10, 0)
-"""A Tuesday by daylight, dry: a stand-in until the scenario's owner sets another."""
+"""A dry Tuesday by daylight: a placeholder until the scenario's owner sets another date."""
 
 WEATHER = Weather(
     temperature_2m=20.0,
@@ -34,10 +34,10 @@ WEATHER = Weather(
 
 @contextmanager
 def appearing(out: Path, *, replaces: bool) -> Iterator[Path]:
-    """An empty folder that becomes ``out`` if the block ends well; whatever happens, nothing else is left.
+    """An empty folder that becomes ``out`` if the block succeeds; otherwise nothing is left.
 
     Raises:
-        ImportMapError: ``out`` exists and is not to be replaced, is no scenario's folder, or cannot be written.
+        ImportMapError: ``out`` exists and must not be replaced, is not a scenario's folder, or cannot be written.
     """
     if out.exists() and not replaces:
         raise ImportMapError(f"{out} exists; choose another --out, or --force to replace the scenario in it")
@@ -46,7 +46,7 @@ def appearing(out: Path, *, replaces: bool) -> Iterator[Path]:
     try:
         scratch = Path(tempfile.mkdtemp(prefix=f".{out.name}-", dir=out.absolute().parent))
     except OSError as error:
-        raise ImportMapError(f"{out} cannot be made ({error.strerror}); choose another --out") from error
+        raise ImportMapError(f"{out} cannot be created ({error.strerror}); choose another --out") from error
     try:
         building = scratch / "scenario"
         building.mkdir()
@@ -71,9 +71,9 @@ def _put_in_place(building: Path, out: Path, replaced: Path) -> None:
 
 
 def write_config(target: Path, net: str, routes: str, sumo: Sumo, begin_s: float = 0.0) -> None:
-    """Writes the ``.sumocfg``: it runs in sumo-gui as the scenario runs here.
+    """Writes the ``.sumocfg``, which runs in sumo-gui as the scenario runs here.
 
-    Others reroute, and push through a junction blocked for 20 s, because random traffic otherwise locks up.
+    Other vehicles reroute, and push through a junction blocked for 20 s, because random traffic otherwise locks up.
     """
     sections: dict[str, dict[str, object]] = {
         "input": {"net-file": net, "route-files": routes},
@@ -139,7 +139,7 @@ def _toml(value: object) -> str:
 
 
 def write_readme(target: Path, *, title: str, source: str, lines: Sequence[str]) -> None:
-    """Writes the folder's README: whose map it is, what was made of it."""
+    """Writes the folder's README: the source of the map and how the folder was made."""
     text = [
         f"# {title}",
         "",
@@ -151,7 +151,7 @@ def write_readme(target: Path, *, title: str, source: str, lines: Sequence[str])
         *(f"- {line}" for line in lines),
         "",
         "Drive it with `automotive-cosim run --scenario .`, look at it with `sumo-gui -c *.sumocfg`. Date, weather",
-        "and ego trips stand in `scenario.toml` and are there to be changed.",
+        "and ego trips are in `scenario.toml`; change them as you like.",
         "",
     ]
     target.write_text("\n".join(text), encoding="utf-8")

@@ -1,4 +1,4 @@
-"""From a file with a map to a folder with a scenario, or to an error and nothing."""
+"""Turns a map file into a scenario's folder; after an error, nothing is left."""
 
 from __future__ import annotations
 
@@ -22,44 +22,44 @@ from automotive_cosim.scenarios import Scenario, Sumo, Trip, load
 from automotive_cosim.traffic.stability import HALTED_SHARE_LIMIT, Stability, measure
 
 DEMAND_S = 7200.0
-"""Traffic sets out for two hours: the warm-up, an hour, and time to spare."""
+"""Traffic departs for two hours: the warm-up, an hour, and a margin."""
 
 HALTED_SHARE_AIM = 0.8 * HALTED_SHARE_LIMIT
-"""The search asks for more than the law, as other seeds and step lengths may do a little worse."""
+"""The search is stricter than the check, because other seeds and step lengths may do a little worse."""
 
 SCALE_STEP = 0.8
 SCALE_MIN = 0.05
-"""The demand is lowered to four fifths until it flows, at most to a twentieth."""
+"""The demand is repeatedly lowered to four fifths until it flows, at most to a twentieth."""
 
 QUICK_STEP_S = 1.0
 """The search starts with steps this long: five times as fast as 0.1 s, and nearly as strict."""
 
 FULL_PER_KM = 1000 / 7.5
-"""Cars that stand on a kilometre of lane: SUMO's default length of 5 m and gap of 2.5 m."""
+"""Cars that fit on a kilometre of lane: SUMO's default length of 5 m and gap of 2.5 m."""
 
 
 @dataclass(frozen=True, slots=True)
 class ImportOptions:
-    """What the user may choose."""
+    """The user's options."""
 
     name: str = ""
-    """Of the scenario; empty takes the file's."""
+    """Name of the scenario; empty takes the file's."""
     country: str = ""
-    """ISO 3166-1 code; empty finds it from the map's position."""
+    """ISO 3166-1 code; empty takes it from the map's position."""
     area: Area | None = None
-    """What of the map is taken; None takes all of it."""
+    """The part of the map to use; None for all of it."""
     density_per_km: float = 1.0
-    """Vehicles at a time per kilometre of lane, if nobody held them up, before scaling down."""
+    """Vehicles per kilometre of lane at a time if all drove freely, before scaling down."""
     seed: int = 0
-    """Of the traffic and the ego trips."""
+    """Seed of the traffic and the ego trips."""
     stable_for_s: float = 3600.0
     """Traffic must flow this long after the warm-up."""
     replace: bool = False
-    """An existing scenario folder may be replaced."""
+    """Whether to replace an existing scenario folder."""
 
 
 def scenario_name(source: Path) -> str:
-    """The name a scenario gets from its extract's file name: lower case, without the endings."""
+    """A scenario's name from its extract's file name: lower case, without suffixes."""
     return trips.slug(re.sub(r"(\.(osm|pbf|xml|gz|bz2))+$", "", source.name)).replace("-", "_") or "map"
 
 
@@ -72,9 +72,9 @@ def import_map(
 
     Args:
         source: ``.osm``, ``.osm.gz``, ``.osm.bz2`` or ``.osm.pbf``, whatever it is called.
-        out: the folder to be made; appears whole or not at all.
-        options: what the user chose.
-        on_progress: told what is being done.
+        out: the folder to create, completely or not at all.
+        options: the user's options.
+        on_progress: called with the current activity.
 
     Raises:
         ImportMapError: the extract or an option cannot be used, or ``out`` cannot be written.
@@ -127,9 +127,9 @@ def import_map(
 
 def _check(options: ImportOptions) -> None:
     if not re.fullmatch(r"\w[\w.-]*", options.name):
-        raise ImportMapError(f"{options.name!r} is no name for a scenario; use letters, digits, - and _")
+        raise ImportMapError(f"{options.name!r} is not a valid scenario name; use letters, digits, - and _")
     if options.country and options.country not in country_codes():
-        raise ImportMapError(f"country {options.country!r} is no ISO 3166-1 code; give two letters such as FR")
+        raise ImportMapError(f"country {options.country!r} is not an ISO 3166-1 code; give two letters such as FR")
     for what, value in (("density", options.density_per_km), ("duration", options.stable_for_s)):
         if not 0 < value < math.inf:
             raise ImportMapError(f"a {what} of {value:g} is impossible; give a number above zero")
@@ -139,7 +139,7 @@ def _check(options: ImportOptions) -> None:
             f"bumper they are {FULL_PER_KM:.0f}; give a number such as 1"
         )
     if options.seed < 0:
-        raise ImportMapError(f"seed {options.seed} is below zero; give a whole number from 0 on")
+        raise ImportMapError(f"seed {options.seed} is below zero; give a whole number from 0")
 
 
 def _title(options: ImportOptions) -> str:
@@ -164,7 +164,7 @@ def _write(building: Path, options: ImportOptions, place: Place, ways: Sequence[
 
 
 def _find_scale(scenario: Scenario, options: ImportOptions, tell: Tell) -> Stability:
-    """Scales the traffic down until it flows, first in long steps, then as the scenario will really be driven."""
+    """Scales the traffic down until it flows, first with long steps, then with the scenario's own."""
     quick = _lower_until_it_flows(scenario, 1.0, QUICK_STEP_S, options, tell)
     return _lower_until_it_flows(scenario, quick.scale, scenario.sumo.step_length_s, options, tell)
 

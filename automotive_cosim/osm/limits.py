@@ -1,4 +1,4 @@
-"""Speed limits as OSM mappers write them, made into what netconvert understands.
+"""Turns speed limits as written in OSM into what netconvert understands.
 
 Values follow the OSM wiki's pages "Key:maxspeed" and "Key:source:maxspeed": a number (km/h), ``30 mph``, ``none``,
 ``walk``, or the zone that implies the limit (``FR:urban``, ``DE:zone:30``, ``GB:nsl_single``).
@@ -12,10 +12,10 @@ from collections.abc import Mapping
 from automotive_cosim.osm.country import LIVING_STREET_KMH, assumed_limit_kmh, limits_of
 
 WALK_KMH = 7.0
-"""``maxspeed=walk``: what German courts read into walking pace (StVO sign 325)."""
+"""``maxspeed=walk``: walking pace as interpreted by German courts (StVO sign 325)."""
 
 MPH_COUNTRIES = frozenset(("GB", "US", "IM", "GG", "JE"))
-"""Where a bare number in a zone's name (``GB:20``) means miles per hour."""
+"""Countries where a bare number in a zone's name (``GB:20``) means miles per hour."""
 
 LIMIT_KEYS = ("maxspeed", "maxspeed:forward", "maxspeed:backward")
 
@@ -30,10 +30,10 @@ _ZONE_NUMBER = re.compile(r"(?:zone:?)?(\d+)")
 def complete(tags: Mapping[str, str], country: str, *, built_up: bool) -> dict[str, str]:
     """Tags in which netconvert finds the way's limit.
 
-    A limit the map states ends up in ``maxspeed``. One it doesn't goes into ``maxspeed:forward``, which netconvert
-    obeys, for both directions, without keeping it as a parameter of the edge: that is how the network tells a
-    posted limit from an assumed one. ``maxspeed:backward`` is kept only where there is a way back, as netconvert
-    takes it for one.
+    A limit that the map states goes into ``maxspeed``. An assumed one goes into ``maxspeed:forward``, which
+    netconvert obeys for both directions without keeping it as a parameter of the edge: this is how the network
+    distinguishes posted from assumed limits. ``maxspeed:backward`` is kept only if there is an opposite direction,
+    because netconvert would otherwise add one.
     """
     done = {key: value for key, value in tags.items() if key not in LIMIT_KEYS}
     stated = stated_limit(tags)
@@ -58,7 +58,7 @@ def stated_limit(tags: Mapping[str, str]) -> str | None:
 
 
 def zone_of(tags: Mapping[str, str]) -> str:
-    """The kind of zone a road's tags put it in (``"urban"``, ``"rural"``, ``"30"``, …), "" where they don't."""
+    """The zone that a road's tags put it in (``"urban"``, ``"rural"``, ``"30"``, …), "" without one."""
     for key in ("zone:traffic", "maxspeed", *ZONE_KEYS):
         zone = _ZONE.fullmatch(tags.get(key, ""))
         if zone:

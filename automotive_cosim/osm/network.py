@@ -1,4 +1,4 @@
-"""From cleaned OSM XML to a SUMO network, and what that network consists of."""
+"""Builds a SUMO network from cleaned OSM XML, and describes it."""
 
 from __future__ import annotations
 
@@ -52,9 +52,9 @@ GEOMETRY = (
     "--ramps.guess",
     "--no-turnarounds.except-deadend",
 )
-"""What is left and how it hangs together. Nodes between two edges stay (no ``--geometry.remove``): merging edges
-also merges their parameters, which doubles the length of the tunnels of western Paris. Junctions are joined over
-20 m, because cars side by side on a shorter piece between two of them block each other's lanes for good."""
+"""Options for what to keep and how to connect it. Nodes between two edges stay (no ``--geometry.remove``): merging
+edges also merges their parameters, which doubles the length of the tunnels of western Paris. Junctions are joined
+over 20 m, because cars side by side on a shorter piece between two of them block each other's lanes for good."""
 
 SIGNALS = (
     "--tls.guess-signals",
@@ -62,16 +62,16 @@ SIGNALS = (
     "--tls.default-type=actuated",
     "--tls.layout=opposites",
 )
-"""OSM maps signals at the stop lines: SUMO guesses the junction they belong to, and their phases."""
+"""OSM has signals at the stop lines: SUMO guesses which junction they belong to, and their phases."""
 
 
 CAMERA_WITHIN_M = 30.0
-"""A camera farther from every road stands at one that was not imported."""
+"""A camera farther from every road is at one that was not imported."""
 
 
 @dataclass(frozen=True, slots=True)
 class Built:
-    """What came of a map."""
+    """The network built from a map."""
 
     network: Network
     signals: int
@@ -79,11 +79,11 @@ class Built:
 
     @property
     def edges(self) -> tuple[Edge, ...]:
-        """The roads, those inside junctions not counted."""
+        """The edges, without those inside junctions."""
         return tuple(self.network.edges.values())
 
     def entries(self) -> frozenset[str]:
-        """Edges that bring traffic in from outside the map: only their own other direction leads to them."""
+        """Edges by which traffic enters the map: only their own opposite direction leads to them."""
         from_where = _neighbours((edge.to_node, edge.from_node) for edge in self.edges)
         return frozenset(e.edge_id for e in self.edges if from_where.get(e.from_node, set()) <= {e.to_node})
 
@@ -107,11 +107,11 @@ def _neighbours(pairs: Iterable[tuple[str, str]]) -> dict[str, set[str]]:
 def convert(osm: Path, target: Path, country: str, cameras: Sequence[Position] = ()) -> Built:
     """Builds ``target`` (a ``.net.xml.gz``) with netconvert and reads it back.
 
-    The same input gives the same bytes: netconvert's header with its date and paths is taken out. Speed cameras
-    become parameters of the edges that they stand at.
+    The same input gives the same bytes: netconvert's header with its date and paths is removed. Speed cameras
+    become parameters of their edges.
 
     Raises:
-        ImportMapError: netconvert refuses the map, or nothing drivable is left of it.
+        ImportMapError: netconvert refuses the map, or nothing drivable remains.
         SetupError: netconvert is not installed.
     """
     raw = osm.with_suffix(".net.xml")
@@ -134,7 +134,7 @@ def convert(osm: Path, target: Path, country: str, cameras: Sequence[Position] =
     text = raw.read_text(encoding="utf-8") if ok else ""
     if "<lane " not in text:
         raise ImportMapError(
-            "no drivable road is left of this map after cropping it to cars and to its largest connected part;"
+            "no drivable road remains of this map after reducing it to cars and to its largest connected part;"
             " give a larger extract"
         )
     text = re.sub(r"<!-- generated on .*?-->\s*", "", text, count=1, flags=re.DOTALL)
@@ -154,7 +154,7 @@ def _write(text: str, target: Path) -> None:
 
 
 def _watched(network: Network, cameras: Sequence[Position]) -> dict[str, list[float]]:
-    """Edges with the cameras at them, metres from their start. The map does not say which way a camera looks, so it
+    """Edges with their cameras, in metres from the start. The map does not say which way a camera faces, so it
     counts for both directions."""
     if not cameras or network.map.projection is None:
         return {}

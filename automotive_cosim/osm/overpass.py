@@ -2,9 +2,9 @@
 
     download("https://.../api/interpreter", Area.parse("2.28,48.86,2.31,48.88"), Path("etoile.osm"))
 
-The query and the answers follow the OSM wiki's "Overpass API/Overpass QL": a server that is busy says 429 or 504,
-one that gave up half-way says so in a ``<remark>`` at the end of an answer that is otherwise well. The file keeps
-the server's ``<note>`` with the licence; it appears whole or not at all.
+The query and the answers follow the OSM wiki's "Overpass API/Overpass QL": a busy server answers 429 or 504, and
+one that stopped halfway says so in a ``<remark>`` at the end of an otherwise valid answer. The file keeps the
+server's ``<note>`` with the licence; it is written completely or not at all.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ from automotive_cosim.errors import ImportMapError
 from automotive_cosim.osm.area import Area
 
 LARGEST_KM2 = 2500.0
-"""A large city. Of more than that, extracts in PBF are offered for download."""
+"""A large city. Larger areas are available as PBF extracts."""
 
 BUSY = (429, 502, 503, 504)
-"""Answers after which it is worth trying again."""
+"""Status codes after which a retry makes sense."""
 
 FIRST_PAUSE_S = 2.0
 LONGEST_PAUSE_S = 120.0
-"""Before the second try; doubled each time, unless the server says how long."""
+"""Pause before the second attempt; doubled each time, unless the server says how long."""
 
 PIECE_BYTES = 1 << 16
 
@@ -45,25 +45,25 @@ class DownloadLimits:
     """How patient the download is."""
 
     timeout_s: float = 180.0
-    """For the server's work, and wall time without a byte from it."""
+    """Limit of the server's work, and of wall time without a byte from it."""
     tries: int = 4
     size_mb: float = 500.0
-    """A larger answer is given up."""
+    """A larger answer is refused."""
 
 
 @dataclass(frozen=True, slots=True)
 class Download:
-    """What came."""
+    """The result of a download."""
 
     size_mb: float
     note: str
-    """What the server says of the licence; empty if it says nothing."""
+    """The server's licence note; empty without one."""
     map_date: str
-    """Up to when the map's changes are in it, ISO 8601; empty if the server does not say."""
+    """Date of the map data, ISO 8601; empty if the server does not say."""
 
 
 class _BusyError(Exception):
-    """Worth another try, after so many seconds if the server says so."""
+    """A failure worth a retry, after a pause if the server requests one."""
 
     def __init__(self, why: str, pause_s: float | None = None) -> None:
         super().__init__(why)
@@ -94,14 +94,14 @@ def download(
 
     Args:
         endpoint: URL of an Overpass API's ``interpreter``.
-        area: what is fetched.
-        target: must not exist.
-        limits: of time, tries and size.
-        tell: told what is being done.
-        sleep: how pauses are made.
+        area: the area to fetch.
+        target: the file to create; it must not exist.
+        limits: limits of time, attempts and size.
+        tell: called with the current activity.
+        sleep: called to pause.
 
     Raises:
-        ImportMapError: the endpoint, the area or the target cannot be used, or the server gives no map.
+        ImportMapError: the endpoint, the area or the target cannot be used, or the server returns no map.
     """
     limits = limits or DownloadLimits()
     _check(endpoint, area, target)
@@ -128,7 +128,7 @@ def _check(endpoint: str, area: Area, target: Path) -> None:
     parts = urllib.parse.urlsplit(endpoint)
     if parts.scheme not in ("http", "https") or not parts.netloc:
         raise ImportMapError(
-            f"{endpoint!r} is no Overpass endpoint; give a URL that ends in /api/interpreter with --endpoint"
+            f"{endpoint!r} is not an Overpass endpoint; give a URL that ends in /api/interpreter with --endpoint"
         )
     if area.size_km2 > LARGEST_KM2:
         raise ImportMapError(
@@ -154,7 +154,7 @@ def _fetch_patiently(
             if not left:
                 times = "once" if limits.tries == 1 else f"{limits.tries} times"
                 raise ImportMapError(
-                    f"{request.full_url} gave no map, asked {times}: {error}; try later, or another --endpoint"
+                    f"{request.full_url} returned no map, asked {times}: {error}; try later, or another --endpoint"
                 ) from error
             wait_s = min(LONGEST_PAUSE_S, error.pause_s or pause_s)
             tell(f"{error}; trying again in {wait_s:.0f} s", None)
@@ -203,10 +203,10 @@ def _copy(answer: http.client.HTTPResponse, file: IO[bytes], limits: DownloadLim
 
 
 def _judge(file: Path, endpoint: str) -> Download:
-    """Tells a whole map from half of one, and from a page that is none.
+    """Checks that an answer is a complete map.
 
     Raises:
-        ImportMapError: it is not a whole map.
+        ImportMapError: it is not.
     """
     size = file.stat().st_size
     with file.open("rb") as stream:
@@ -220,10 +220,10 @@ def _judge(file: Path, endpoint: str) -> Download:
     remark = re.search(r"<remark>(.*?)</remark>", tail, re.DOTALL)
     if remark:
         raise ImportMapError(
-            f"the server gave up: {_words(remark[1])}; give a smaller --bbox or a longer --timeout"
+            f"the server stopped: {_words(remark[1])}; give a smaller --bbox or a longer --timeout"
         )
     if not tail.rstrip().endswith("</osm>"):
-        raise ImportMapError(f"the answer of {endpoint} is cut off after {size / 1e6:.1f} MB; try again")
+        raise ImportMapError(f"the answer of {endpoint} is truncated after {size / 1e6:.1f} MB; try again")
     note = re.search(r"<note>(.*?)</note>", head, re.DOTALL)
     date = re.search(r'<meta [^>]*osm_base="([^"]*)"', head)
     return Download(size / 1e6, _words(note[1]) if note else "", date[1] if date else "")

@@ -30,41 +30,41 @@ class ImportReport:
     country: str
     """ISO 3166-1 code."""
     bbox: tuple[float, float, float, float] | None
-    """West, south, east, north, degrees: what was cropped to."""
+    """The crop: west, south, east, north in degrees."""
     left_hand: bool
     ways: int
-    """Of the extract, open to cars."""
+    """Ways of the extract that are open to cars."""
     edges: int
-    """Of the network, inside junctions not counted."""
+    """Edges of the network, without those inside junctions."""
     road_km: float
-    """Each direction counts."""
+    """Length of the roads, each direction counted."""
     posted_share: float
-    """Of the road length, where the map states the limit (or that there is none)."""
+    """Share of the road length where the map states the limit (or that there is none)."""
     derestricted_km: float
-    """Where it states that there is none."""
+    """Length of road where the map states that there is no limit."""
     signals: int
     roundabouts: int
     tunnels: int
     """Edges in tunnels."""
     tunnel_km: float
     lit_known_share: float
-    """Of the road length, where the map says whether there are lamps; likewise the next."""
+    """Share of the road length where the map says whether there are street lamps."""
     built_up_known_share: float
     school_zone_km: float
     timed_limit_km: float
-    """Where other limits are posted for certain hours."""
+    """Length of road with other limits at certain hours."""
     bus_lane_km: float
     speed_cameras: int
-    """At imported roads; one that watches both directions counts once."""
+    """Speed cameras at imported roads; one for both directions counts once."""
     density_per_km: float
-    """Asked for; ``vehicles_per_hour`` is what is left after scaling."""
+    """Requested density; ``vehicles_per_hour`` is the demand after scaling."""
     vehicles_per_hour: float
     seed: int
     scale: float
     stability: Stability
-    """At that scale and the scenario's own step length."""
+    """Measured at that scale and the scenario's own step length."""
     guessed: tuple[str, ...]
-    """In words."""
+    """What was guessed or left out, in words."""
 
     def write(self, target: Path) -> None:
         """Writes the report as JSON."""
@@ -83,7 +83,7 @@ def make_report(
     seed: int,
     demand_per_hour: float,
 ) -> ImportReport:
-    """Counts what came of a map. ``demand_per_hour`` is the traffic before scaling."""
+    """Counts what an import found. ``demand_per_hour`` is the traffic before scaling."""
     edges = built.edges
     length_m = sum(edge.length_m for edge in edges)
     posted_m = sum(edge.length_m for edge in edges if edge.limit_source is LimitSource.POSTED)
@@ -129,7 +129,7 @@ def _share(whole_m: float, edges: Iterable[Edge]) -> float:
 
 
 def _cameras(built: Built) -> int:
-    """Those of one direction, where both have them."""
+    """The tags of one direction, where both have them."""
     seen: set[str] = set()
     count = 0
     for edge in built.edges:
@@ -150,7 +150,7 @@ def _guesses(extract: Extract, built: Built, country: str, assumed_km: float) ->
         yield f"right of way in {built.roundabouts} roundabouts"
     unread = {part for way in extract.ways for part in timed_limits(way.tags.get("maxspeed:conditional", ""))[1]}
     if unread:
-        yield f"limits under conditions that are not of the clock, left out: {', '.join(sorted(unread))}"
-    yield "lanes and right of way where the map is silent: by the class of the road"
+        yield f"limits under conditions other than times, left out: {', '.join(sorted(unread))}"
+    yield "lanes and right of way that the map does not state: by road class"
     yield "traffic: random trips, half of them across the map's edge"
     yield "date, weather and ego trips: to be changed in scenario.toml"

@@ -13,14 +13,14 @@ from automotive_cosim.scenarios import Trip
 
 TRIPS = 4
 LONG_SHARE = 0.2
-"""Trips come from this share of the journeys, the longest."""
+"""Trips are picked from this share of the journeys, the longest ones."""
 
 MIN_END_M = 20.0
-"""Length of a trip's first and last edge, where there is a choice: room to start and to stop."""
+"""Preferred minimum length of a trip's first and last edge: room to start and to stop."""
 
 
 def pick(journeys: Sequence[Journey], rng: np.random.Generator) -> tuple[Trip, ...]:
-    """Up to four long journeys that share as few roads as can be; one through a tunnel if any is."""
+    """Up to four long journeys that share as few roads as possible, one of them through a tunnel if possible."""
     roomy = [journey for journey in journeys if min(journey.way[end].length_m for end in (0, -1)) >= MIN_END_M]
     by_length = sorted(roomy or journeys, key=lambda journey: -journey.length_m)
     long = by_length[: max(TRIPS, round(LONG_SHARE * len(by_length)))]
@@ -42,7 +42,7 @@ def _shared(journey: Journey, used: set[str]) -> float:
 
 
 def slug(text: str) -> str:
-    """Lower case, ASCII, words joined by hyphens; "" where nothing of a Latin alphabet is left."""
+    """Lower case, ASCII, words joined by hyphens; "" if no Latin letters remain."""
     plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode().lower()
     return re.sub(r"[^a-z0-9]+", "-", plain).strip("-")
 

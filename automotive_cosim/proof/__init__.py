@@ -1,1 +1,1 @@
-"""The proof that tasks are what they claim: solvable, not free, clean, repeatable."""
+"""Proves tasks: solvable by public actions, not by trivial strategies, clean, repeatable."""

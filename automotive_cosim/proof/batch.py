@@ -1,4 +1,4 @@
-"""The proofs of many tasks with many seeds, in parallel and resumed."""
+"""Proves many tasks with many seeds, in parallel and resumable."""
 
 from __future__ import annotations
 
@@ -21,22 +21,23 @@ from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.tasks.folder import digest
 
 PIECE = 12
-"""Tasks of one simulation that a worker takes together; each is tried for what it leaves of the one before it."""
+"""Number of tasks of one simulation that a worker takes together; each is also tried for residue of the
+previous."""
 WALL_LIMIT_S = 3_600.0
 """Wall time that the proof of one task with one seed may take; a slow one takes a minute."""
 
 
 @dataclass(frozen=True, slots=True)
 class ProofPlan:
-    """What is proven: every task with every seed."""
+    """The plan of a proof: every task with every seed."""
 
     tasks: tuple[str, ...]
-    """Ids, patterns, tags and so on, as ``run.plan.choose`` takes them."""
+    """Ids, patterns, tags and so on, as for ``run.plan.choose``."""
     seeds: tuple[int, ...]
     gates: tuple[str, ...] = GATES
 
     def as_json(self) -> Json:
-        """The plan as a JSON object, for the manifest; what was proven of other files says nothing of these."""
+        """The plan as a JSON object, for the manifest; proofs of other files say nothing about these."""
         return {
             "tasks": list(self.tasks),
             "seeds": list(self.seeds),
@@ -45,7 +46,7 @@ class ProofPlan:
         }
 
     def check(self) -> None:
-        """Tries every name before anything runs.
+        """Checks every name before anything runs.
 
         Raises:
             UnknownNameError: no such gate, or no such task.
@@ -56,7 +57,7 @@ class ProofPlan:
         choose(self.tasks)
 
     def jobs(self) -> tuple[ProofJob, ...]:
-        """Every task with every seed, those of one simulation together."""
+        """Every task with every seed, grouped by simulation."""
         by_traffic: dict[tuple[str, int], list[str]] = {}
         for seed in self.seeds:
             for task_id in choose(self.tasks):
@@ -75,29 +76,29 @@ class ProofJob:
     task: str
     seed: int
     simulation: tuple[str, int]
-    """Scenario, which piece of its tasks, and seed."""
+    """Scenario, group of its tasks, and seed."""
     after: str
-    """As ``Prover.prove`` takes it. It goes by the plan and not by what a worker has just done, so that who proves
-    what does not show."""
+    """See ``Prover.prove``. It follows from the plan and not from what a worker has just done, so the distribution
+    of jobs does not affect the result."""
 
     @property
     def kind(self) -> str:
-        """A proof takes as long as its task, of which nothing is known before."""
+        """A proof takes as long as its task, which is unknown before."""
         return ""
 
     @property
     def situation(self) -> str:
-        """Nothing is known of a task before it is tried."""
+        """Nothing is known about a task before it is tried."""
         return self.id
 
     @property
     def wall_s(self) -> float:
-        """Wall time that it may take."""
+        """Limit of its wall time."""
         return WALL_LIMIT_S
 
     @property
     def id(self) -> str:
-        """Its name."""
+        """Its id."""
         return proof_id(self.task, self.seed)
 
 
@@ -110,24 +111,23 @@ def prove(
     out: Path | None = None,
     tell: Callable[[Proof, int, int], None] = lambda proof, done, planned: None,
 ) -> list[Proof]:
-    """Proves every task with every seed; what ended in an error is tried once more.
+    """Proves every task with every seed; a proof that ends in an error is retried once.
 
     Args:
-        tasks: ids of the catalogue, or what else ``run.plan.choose`` takes.
-        seeds: each is a traffic, a drive and a drawing of words and parameters.
+        tasks: ids of the catalogue, or anything else that ``run.plan.choose`` accepts.
+        seeds: each determines traffic, drive, phrasing and parameters.
         chosen: gates to try.
-        workers: processes; the result does not depend on their number.
-        out: folder of the proofs, where the same call goes on; None keeps nothing.
-        tell: hears each proof as it comes, those that were there before first, how many are done and how many
-            there are.
+        workers: number of processes, which does not affect the result.
+        out: folder of the proofs, from which the same call resumes; None keeps nothing.
+        tell: called with each proof as it ends, existing ones first, with the number done and the total.
 
     Returns:
         Sorted by task, in the catalogue's order, then seed.
 
     Raises:
         UserError: there is no such gate or task, or the folder cannot take the proofs.
-        InfrastructureError: there is no worker to be had.
-        KeyboardInterrupt: passed on; the running proofs are lost, and no other.
+        InfrastructureError: no worker becomes available.
+        KeyboardInterrupt: passed on; only the running proofs are lost.
     """
     plan = ProofPlan(tuple(tasks), tuple(seeds), tuple(chosen))
     plan.check()
@@ -153,9 +153,9 @@ def prove(
 
 @contextmanager
 def proofs(chosen: Sequence[str]) -> Iterator[Runner[ProofJob, Proof]]:
-    """What proves tasks in a worker."""
+    """Makes the runner of proofs in a worker."""
     with closing(Prover(chosen)) as prover:
-        # Nothing but the row is kept of a proof.
+        # Only the row of a proof is kept.
         yield lambda job, folder: prover.prove(job.task, job.seed, job.after)
 
 

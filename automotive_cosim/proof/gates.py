@@ -1,22 +1,22 @@
-"""The gates a task must pass, each a function from its hand-over to what is wrong with it.
+"""The gates that a task must pass, each a function from its hand-over to the task's faults.
 
-| gate | what must be so |
+| gate | what must be true |
 |---|---|
-| oracle | every way of the expert succeeds by public actions, within the budget and 70 % of the deadline |
+| oracle | every reference solution succeeds by public actions, within the budget and 70 % of the deadline |
 | start | the goal does not hold at the hand-over |
-| prefix | ``complete`` after any earlier step of the expert's way scores 0 |
-| late | the expert's way after the deadline fails |
-| undone | the goal's own writes put back fail |
-| near | other zone, value or direction fails |
-| collateral | one unrelated change more fails |
-| trivial | no strategy without a thought wins: both halves of a pair, or the one there is |
+| prefix | ``complete`` after any earlier step of the reference solution scores 0 |
+| late | the reference solution after the deadline fails |
+| undone | with the goal's own writes reverted, it fails |
+| near | another zone, value or direction fails |
+| collateral | one additional unrelated change fails |
+| trivial | no negative control wins both halves of a pair, or the only half |
 | random | random actions win at most one of twenty |
-| leak | without goal, ways and what is right every observation is the same, byte for byte |
-| road | with the car parked the trigger is not reached |
+| leak | without goal and solutions, every observation is the same, byte for byte |
+| road | a parked car does not reach the trigger |
 | law | what is right in one half fails in the other |
-| repeat | the same seed gives the same words and trace; other seeds others |
-| residue | after another task's episode a task gives its own trace |
-| reach | the trigger comes in time in every scenario the task names, and the expert succeeds there |
+| repeat | the same seed gives the same words and trace; other seeds give others |
+| residue | after another task's episode, a task still gives its own trace |
+| reach | in every scenario that the task names, the trigger comes in time and the reference solution succeeds |
 """
 
 from __future__ import annotations
@@ -43,13 +43,13 @@ from automotive_cosim.tasking.verdict import judge
 from automotive_cosim.traffic.fork import Simulations
 
 PACE = 0.7
-"""Of the deadline: what an expert may take, so that others have a chance."""
+"""Share of the deadline that a reference solution may take, so that agents have a chance."""
 RANDOM_RUNS = 20
 RANDOM_WINS = 1
 PRESSES = 60
 """Steps for pressing everything: more controls than the fullest screen has."""
 PATIENCE = 200
-"""Steps where waiting counts, not the budget."""
+"""Steps for waiting, independent of the budget."""
 BY_NUMBER = re.compile(r"\b(element|index|widget)\s*(number\s*)?\d", re.IGNORECASE)
 
 Wrong = Iterator[str]
@@ -60,26 +60,26 @@ GateStrategy = Callable[[Ground], Played]
 
 
 def oracle(ground: Ground) -> Wrong:
-    """Every way of the expert."""
+    """Plays every reference solution."""
     others = (ground.play(ground.oracle(way)) for way in ground.half.ways)
     for number, played in enumerate((ground.reference, *others)):
         if not played.success:
-            yield f"way {number}: {played.why}"
+            yield f"solution {number}: {played.why}"
         elif played.seconds > PACE * ground.half.deadline.seconds:
-            yield f"way {number} takes {played.seconds:.0f} s of {ground.half.deadline.seconds:g} s"
+            yield f"solution {number} takes {played.seconds:.0f} s of {ground.half.deadline.seconds:g} s"
 
 
 def start(ground: Ground) -> Wrong:
-    """The goal at the hand-over, and its words."""
+    """Checks the goal and its words at the hand-over."""
     moment = ground.episode.moments[0]
     if ground.half.declares is GoalStatus.COMPLETE and ground.half.goal.holds(moment, moment, [moment]):
-        yield f"already so: {ground.half.goal}"
+        yield f"holds already: {ground.half.goal}"
     if BY_NUMBER.search(ground.instance.goal):
         yield f"names a widget by its number: {ground.instance.goal!r}"
 
 
 def prefix(ground: Ground) -> Wrong:
-    """``complete`` before the expert's last move; where nothing is to be done, at once."""
+    """Declares ``complete`` before the reference solution's last move; at once if nothing has to be done."""
     expert = ground.oracle()
     walk = ground.episode.branch()
     while walk.verdict is None:
@@ -96,7 +96,7 @@ def prefix(ground: Ground) -> Wrong:
 
 
 def late(ground: Ground) -> Wrong:
-    """The expert's way begun when the deadline is over."""
+    """Plays the reference solution after the deadline."""
     expert = ground.oracle()
     wait_s = ground.half.deadline.seconds
 
@@ -114,22 +114,22 @@ def late(ground: Ground) -> Wrong:
 
 
 def undone(ground: Ground, right: Played) -> Wrong:
-    """The expert's end state taken back."""
+    """Judges the reference solution's end state with the goal's writes reverted."""
     if ground.half.goal.writes:
         moments = mutations.undone(right.moments[0], right.moments, ground.half)
         if _wins(ground, right, moments):
-            yield "succeeds with everything put back"
+            yield "succeeds with everything reverted"
 
 
 def near(ground: Ground, right: Played) -> Wrong:
-    """The expert's end state somewhere else or the wrong way."""
+    """Judges the reference solution's end state in another zone or direction, or with another value."""
     for what, moments in mutations.near_misses(right.moments[0], right.moments, ground.half):
         if _wins(ground, right, moments):
             yield f"succeeds with {what}"
 
 
 def collateral(ground: Ground, right: Played) -> Wrong:
-    """The expert's end state and something else."""
+    """Judges the reference solution's end state with an additional change."""
     rng = np.random.default_rng([ground.seed, 7])
     for what, moments in mutations.collaterals(right.moments[0], right.moments, ground.half, rng):
         if _wins(ground, right, moments):
@@ -137,10 +137,10 @@ def collateral(ground: Ground, right: Played) -> Wrong:
 
 
 def random(ground: Ground) -> Wrong:
-    """Random actions."""
+    """Plays random actions."""
     wins = 0
     for number in range(RANDOM_RUNS):
-        wins += ground.play(ground.agent(Random(number)), give_up=True).success
+        wins += ground.play(ground.agent(Random(number)), stop_when_lost=True).success
         if wins > RANDOM_WINS:
             yield f"random actions win {wins} of {number + 1}"
             return
@@ -157,10 +157,13 @@ def _wins(ground: Ground, right: Played, moments: tuple[object, ...]) -> bool:
 
 
 def _strategies(grounds: dict[str, Ground]) -> Iterator[tuple[str, GateStrategy]]:
-    yield "no-op", lambda ground: ground.play(ground.agent(NoOp()), give_up=True)
+    yield "no-op", lambda ground: ground.play(ground.agent(NoOp()), stop_when_lost=True)
     for status in GoalStatus:
         yield str(status), partial(Ground.declares, status=status)
-    yield "press-everything", lambda ground: ground.play(ground.agent(PressEverything()), PRESSES, give_up=True)
+    yield (
+        "press-everything",
+        lambda ground: ground.play(ground.agent(PressEverything()), PRESSES, stop_when_lost=True),
+    )
     for kind in AlertKind:
         yield f"always {kind}", partial(_alerts, kind=kind)
     if len(grounds) > 1:
@@ -169,11 +172,11 @@ def _strategies(grounds: dict[str, Ground]) -> Iterator[tuple[str, GateStrategy]
 
 
 def _alerts(ground: Ground, kind: AlertKind) -> Played:
-    return ground.play(ground.agent(AlwaysAlert(kind)), give_up=True)
+    return ground.play(ground.agent(AlwaysAlert(kind)), stop_when_lost=True)
 
 
 def _reads_context(ground: Ground, acting: Ground) -> Played:
-    """Does what is right in ``acting`` if a rule on its topic stands in the context, else declines."""
+    """Does what is right in ``acting`` if the context has a rule on its topic, else declines."""
     topics = {topic.strip() for topic in acting.half.rule.split(",")}
     known = {
         name
@@ -190,14 +193,14 @@ def _topics(ground: Ground, ids: set[str]) -> set[str]:
 
 
 def trivial(grounds: dict[str, Ground]) -> Wrong:
-    """Strategies without a thought, over every half."""
+    """Plays the negative controls in every half."""
     for name, strategy in _strategies(grounds):
         if all(strategy(ground).success for ground in grounds.values()):
             yield f"{name} wins" + (" both halves" if len(grounds) > 1 else "")
 
 
 def law(grounds: dict[str, Ground]) -> Wrong:
-    """What is right in one half, done in the other."""
+    """Does in one half what is right in the other."""
     if len(grounds) < 2:
         return
     for name, other in (("first", "second"), ("second", "first")):
@@ -209,17 +212,17 @@ def law(grounds: dict[str, Ground]) -> Wrong:
 
 
 def leak(ground: Ground, simulations: Simulations) -> Wrong:
-    """The same hand-over of a task that has no goal."""
+    """Compares with the same hand-over of a task without a goal."""
     task = ground.task
     bare = {name: _bare(task.half(name)) for name in task.halves}
-    twin = Ground.reach(
+    again = Ground.reach(
         replace(task, first=bare["first"], second=bare.get("second")), ground.half_name, ground.seed, simulations
     )
     steps = [Action(ActionType.NAVIGATE_HOME), Action(ActionType.WAIT, seconds=2)]
-    seen = [_observed(side.episode, steps) for side in (ground, twin)]
-    twin.close()
+    seen = [_observed(side.episode, steps) for side in (ground, again)]
+    again.close()
     if seen[0] != seen[1]:
-        yield "an observation differs without goal, ways and declaration"
+        yield "an observation differs without goal, solutions and declaration"
 
 
 def _bare(half: Half) -> Half:
@@ -247,7 +250,7 @@ def _observed(episode: Episode, actions: list[Action]) -> list[str]:
 
 
 def road(ground: Ground, simulations: Simulations) -> Wrong:
-    """The same task with the car parked; one that asks for standing is left out."""
+    """Parks the car; a task that requires a stationary car is skipped."""
     half = ground.task.half(ground.half_name)
     if half.start.parked or _stands(half.trigger.condition):
         return
@@ -261,29 +264,29 @@ def road(ground: Ground, simulations: Simulations) -> Wrong:
 
 
 def _stands(condition: TriggerCondition) -> bool:
-    """Whether it holds of a standing car alone."""
+    """Whether it holds only for a stationary car."""
     if isinstance(condition, All):
         return any(map(_stands, condition.conditions))
     return isinstance(condition, Parked | Standing)
 
 
 def repeat(ground: Ground, simulations: Simulations) -> Wrong:
-    """The same seed once more."""
-    twin = Ground.reach(ground.task, ground.half_name, ground.seed, simulations)
-    if (twin.instance.goal, twin.instance.parameters) != (ground.instance.goal, ground.instance.parameters):
-        yield f"the same seed says {twin.instance.goal!r} after {ground.instance.goal!r}"
-    if twin.episode.trace_sha256 != ground.episode.trace_sha256 or hash_of_oracle(twin) != hash_of_oracle(ground):
+    """Repeats the same seed."""
+    again = Ground.reach(ground.task, ground.half_name, ground.seed, simulations)
+    if (again.instance.goal, again.instance.parameters) != (ground.instance.goal, ground.instance.parameters):
+        yield f"the same seed says {again.instance.goal!r} after {ground.instance.goal!r}"
+    if again.episode.trace_sha256 != ground.episode.trace_sha256 or hash_of_oracle(again) != hash_of_oracle(ground):
         yield "the same seed gives another trace"
-    twin.close()
+    again.close()
 
 
 def hash_of_oracle(ground: Ground) -> str:
-    """The hash of the expert's episode."""
+    """The trace hash of the reference solution."""
     return ground.reference.trace_sha256
 
 
 def reach(task: Task, seed: int, simulations: Simulations) -> Wrong:
-    """Every further scenario, in each half."""
+    """Plays the task in every further scenario, in each half."""
     for scenario, half in product(task.scenarios, task.halves):
         try:
             ground = Ground.reach(task, half, seed, simulations, scenario)

@@ -24,7 +24,7 @@ from automotive_cosim.tasking.verdict import Verdict
 from automotive_cosim.traffic.fork import Simulations
 
 CONDITIONS = Conditions(ALL - {Channel.SCREENSHOT})
-"""Everything but the picture, which shows what the elements list."""
+"""Every channel except the screenshot, which shows what the elements list."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,22 +40,22 @@ class Played:
 
     @property
     def actions(self) -> tuple[Action | None, ...]:
-        """What was done, in order."""
+        """The actions, in order."""
         return tuple(step.action for step in self.steps[1:])
 
     @property
     def codes(self) -> tuple[FeedbackCode, ...]:
-        """What the cockpit answered to each."""
+        """The cockpit's feedback to each."""
         return tuple(step.feedback.code for step in self.steps[1:])
 
     @property
     def trace_sha256(self) -> str:
-        """The hash of what happened."""
+        """The hash of the trace."""
         return Hash(self.steps).hex
 
     @property
     def success(self) -> bool:
-        """Whether it counts."""
+        """Whether it succeeded."""
         return self.verdict.success
 
     @property
@@ -66,7 +66,7 @@ class Played:
 
     @property
     def why(self) -> str:
-        """What spoilt it, in words."""
+        """Why it did not succeed, in words."""
         parts = {name: getattr(self.verdict, name) for name in ("goal", "clean", "safe", "in_time", "declared")}
         spoilt = [f"{name}: {part.why}" for name, part in parts.items() if not part.ok]
         return self.stuck or "; ".join(spoilt) or "success"
@@ -74,13 +74,13 @@ class Played:
 
 @dataclass(slots=True)
 class Script:
-    """Carries out given actions, one after the other; the last again and again."""
+    """Plays given actions in order and repeats the last one."""
 
     actions: Sequence[Action]
     _next: int = 0
 
     def act(self, observation: Observation) -> Action:
-        """The next of them."""
+        """The next action."""
         action = self.actions[min(self._next, len(self.actions) - 1)]
         self._next += 1
         return action
@@ -102,7 +102,7 @@ class Ground:
         """Drives up to the hand-over, in the task's own scenario or another.
 
         Raises:
-            TriggerNotReachedError, TrafficError: as ``SituationFinder.find``.
+            TriggerNotReachedError, TrafficError: see ``SituationFinder.find``.
         """
         spec = EpisodeSpec(task.id, half_name, scenario, seed=seed)
         hand_over = SituationFinder(spec, simulations, task=task).find(SeedSource(seed).next())
@@ -110,17 +110,17 @@ class Ground:
 
     @property
     def instance(self) -> Instance:
-        """The task as it was drawn."""
+        """The instance that was drawn."""
         return self.episode.instance
 
     @property
     def half(self) -> Half:
-        """The half with its parameters filled in."""
+        """The half, with the parameters filled in."""
         return self.episode.instance.half
 
-    def play(self, actor: Actor, max_steps: int = MAX_STEPS, *, give_up: bool = False) -> Played:
-        """An episode from the hand-over; with ``give_up`` it ends as soon as it can no longer succeed."""
-        return finish(self.episode.branch(max_steps), actor, give_up=give_up)
+    def play(self, actor: Actor, max_steps: int = MAX_STEPS, *, stop_when_lost: bool = False) -> Played:
+        """An episode from the hand-over; with ``stop_when_lost`` it ends as soon as it can no longer succeed."""
+        return finish(self.episode.branch(max_steps), actor, stop_when_lost=stop_when_lost)
 
     @cached_property
     def reference(self) -> Played:
@@ -128,14 +128,14 @@ class Ground:
         return self.play(self.oracle())
 
     def oracle(self, moves: Sequence[Move] | None = None) -> Oracle:
-        """An oracle that knows this instance."""
+        """An oracle for this instance."""
         oracle = Oracle()
         oracle.reset(self.instance.goal)
         oracle.brief(self.instance, moves)
         return oracle
 
     def agent(self, agent: Agent) -> Agent:
-        """The agent, told the goal."""
+        """The agent, after being told the goal."""
         agent.reset(self.instance.goal)
         if isinstance(agent, Privileged):
             agent.brief(self.instance)
@@ -151,11 +151,11 @@ class Ground:
 
 
 SENT = frozenset({"alerts", "requests", "horn", "washer"})
-"""Of a cockpit's commands what nobody can take back."""
+"""The commands of a cockpit that cannot be undone."""
 
 
 def is_lost(episode: Episode) -> bool:
-    """Whether an episode can no longer succeed, whatever comes: by side effects that stay, or by its deadline."""
+    """Whether an episode can no longer succeed, because of lasting side effects or its deadline."""
     half = episode.instance.half
     start, now = episode.moments[0], episode.moments[-1]
     if any(now.commands[key] != start.commands[key] for key in SENT - half.goal.writes - half.may_write):
@@ -167,15 +167,15 @@ def is_lost(episode: Episode) -> bool:
 
 @dataclass(slots=True)
 class _Stopping:
-    """An actor that gives up where it is stuck and, if it is told to, where the episode is lost."""
+    """An actor that stops when it is stuck and, if requested, when the episode is lost."""
 
     episode: Episode
     actor: Actor
-    gives_up: bool
+    stops_when_lost: bool
     stuck: str = ""
 
     def act(self, observation: Observation) -> Action:
-        if self.gives_up and is_lost(self.episode):
+        if self.stops_when_lost and is_lost(self.episode):
             raise OutOfBudgetError("the episode can no longer succeed")
         try:
             return self.actor.act(observation)
@@ -184,9 +184,9 @@ class _Stopping:
             raise OutOfBudgetError(self.stuck) from error
 
 
-def finish(episode: Episode, actor: Actor, *, give_up: bool = False) -> Played:
-    """Plays an episode to its end, with ``give_up`` until it is lost, and closes it."""
-    stopping = _Stopping(episode, actor, give_up)
+def finish(episode: Episode, actor: Actor, *, stop_when_lost: bool = False) -> Played:
+    """Plays an episode to its end, or with ``stop_when_lost`` until it is lost, and closes it."""
+    stopping = _Stopping(episode, actor, stop_when_lost)
     play(episode, stopping)
     assert episode.verdict is not None
     played = Played(

@@ -1,4 +1,4 @@
-"""Wrong end states made from a right one by code: what a judge must not take for success."""
+"""Wrong end states derived from a right one, which a judge must not accept."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.tasking.task import Half
 
 SIBLINGS = (("Driver", "Passenger"), ("Front", "Rear"), ("Left", "Right"), ("Row1", "Row2"), ("Low", "High"))
-"""Words of signal paths that change places: the other seat, window, side, row or beam."""
+"""Words of signal paths that are swapped: the other seat, window, side, row or beam."""
 COLLATERALS = 3
-"""So many unrelated switches are tried, drawn by the seed."""
+"""Number of unrelated switches to try, drawn by seed."""
 
 
 def undone(start: Moment, moments: Sequence[Moment], half: Half) -> tuple[Moment, ...]:
-    """The goal's own writes back where they were."""
+    """The end state with the goal's own writes reverted."""
     values = {key: start.commands[key] for key in half.goal.writes if key in start.commands}
     return put(moments, values)
 
 
 def near_misses(start: Moment, moments: Sequence[Moment], half: Half) -> Iterator[tuple[str, tuple[Moment, ...]]]:
-    """What was changed for the goal, changed somewhere else, the wrong way, or to something else."""
+    """End states with the goal's change in another place, in the wrong direction, or with another value."""
     end = moments[-1]
     writes = half.goal.writes
     for key in sorted(writes):
@@ -44,7 +44,7 @@ def near_misses(start: Moment, moments: Sequence[Moment], half: Half) -> Iterato
         elif isinstance(after, str) and after:
             yield f"{key} something else", put(moments, {key: f"another {after}"})
         elif isinstance(after, list) and after and not (key == "requests" and "alerts" in writes):
-            # An alert's request goes with it: what counts is the alert.
+            # An alert's request comes with it: only the alert counts.
             other = _another(after[-1])
             wrong = [*after, after[-1]] if other is None else [*after[:-1], other]
             yield f"{key} something else", put(moments, {key: wrong})
@@ -53,7 +53,7 @@ def near_misses(start: Moment, moments: Sequence[Moment], half: Half) -> Iterato
 def collaterals(
     start: Moment, moments: Sequence[Moment], half: Half, rng: np.random.Generator
 ) -> Iterator[tuple[str, tuple[Moment, ...]]]:
-    """The right end state, and one switch more that has nothing to do with it."""
+    """The right end state with one additional, unrelated switch."""
     allowed = half.goal.writes | half.may_write
     allowed |= frozenset().union(*(COUPLED.get(path, frozenset()) for path in allowed))
     free = [path for path in ACTUATORS if path not in allowed]
@@ -63,7 +63,7 @@ def collaterals(
 
 
 def put(moments: Sequence[Moment], values: Mapping[str, Any]) -> tuple[Moment, ...]:
-    """The moments, the last of them with other values."""
+    """The moments, with other values in the last one."""
     end = moments[-1]
     signals = {path: value for path, value in values.items() if path in end.signals}
     last = replace(end, commands={**end.commands, **values}, signals={**end.signals, **signals})
@@ -71,7 +71,7 @@ def put(moments: Sequence[Moment], values: Mapping[str, Any]) -> tuple[Moment, .
 
 
 def _another(entry: Any) -> Any:
-    """Something else than an entry of a list; None where nothing else is known."""
+    """A different entry of a list; None if none is known."""
     if isinstance(entry, str):
         return f"another {entry}"
     if isinstance(entry, RoadRequest):
@@ -97,7 +97,7 @@ def _same_kind(one: Signal[Any], other: Signal[Any]) -> bool:
 
 
 def _wrong_way(signal: Signal[Any], before: Any, after: Any) -> Any:
-    """A number moved in the other direction; None where there is no other direction."""
+    """A number moved in the other direction; None if there is none."""
     if isinstance(before, bool) or not isinstance(before, float):
         return None
     moved = before - signal.step if after > before else before + signal.step

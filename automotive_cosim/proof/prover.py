@@ -1,4 +1,4 @@
-"""Runs the gates over one task after the other."""
+"""Runs the gates over tasks one by one."""
 
 from __future__ import annotations
 
@@ -34,21 +34,21 @@ GATES = (
     "residue",
     "reach",
 )
-"""In the order of the table in ``gates``."""
+"""The gates, in the order of the table in ``gates``."""
 SIMULATIONS = 16
-"""Warm ones that a worker keeps: the shipped networks and some of them elsewhere on earth."""
+"""Warm simulations that a worker keeps: the shipped networks, some of them also elsewhere on earth."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Proof(JobRow):
-    """What the gates say of one task with one seed; with an error nothing is proven either way."""
+    """The result of the gates for one task with one seed; after an error, nothing is proven either way."""
 
     task: str
     seed: int
     wrong: dict[str, list[str]] = field(default_factory=dict)
-    """By gate that was tried; an empty list is a pass."""
+    """Faults by gate that was tried; an empty list is a pass."""
     oracle_steps: dict[str, int] = field(default_factory=dict)
-    """Actions of the reference solution by half, the declaration included."""
+    """Number of actions of the reference solution by half, including the declaration."""
     traces: dict[str, str] = field(default_factory=dict)
     """SHA-256 of the reference solution's trace by half."""
     gate_seconds: Volatile[dict[str, float]] = field(default_factory=dict)
@@ -56,13 +56,13 @@ class Proof(JobRow):
 
 
 def proof_id(task_id: str, seed: int) -> str:
-    """Of the proof of a task with a seed."""
+    """Id of the proof of a task with a seed."""
     return f"{task_id}-seed{seed}"
 
 
 @dataclass(slots=True)
 class _Findings:
-    """Of one proof, as they are made."""
+    """The hand-overs of one proof, made when needed."""
 
     wrong: dict[str, list[str]] = field(default_factory=dict)
     oracle_steps: dict[str, int] = field(default_factory=dict)
@@ -70,35 +70,35 @@ class _Findings:
     seconds: dict[str, float] = field(default_factory=dict)
 
     def take(self, gate: str, wrong: Iterator[str], half: str = "") -> None:
-        """Collects what a gate finds."""
+        """Collects the faults that a gate finds."""
         began = time.perf_counter()
         self.wrong.setdefault(gate, []).extend(f"{half}: {text}" if half else text for text in wrong)
         self.seconds[gate] = self.seconds.get(gate, 0.0) + time.perf_counter() - began
 
 
 class Prover:
-    """Proves one task after the other over warm simulations."""
+    """Proves tasks one by one in warm simulations."""
 
     def __init__(self, chosen: Sequence[str] = GATES, simulations: Simulations | None = None) -> None:
-        """Tries these gates.
+        """Takes what it proves with.
 
         Args:
-            chosen: gates of ``GATES``.
-            simulations: warm ones to take, which stay the caller's to close; by default its own.
+            chosen: the gates to try.
+            simulations: warm ones, which the caller closes; by default its own.
         """
         self._chosen = frozenset(chosen)
         self._simulations = simulations or Simulations(count_limit=SIMULATIONS)
         self._owns_simulations = simulations is None
         self._last: tuple[str, int, str] | None = None
-        """Task, seed and hash of the expert's episode that was proven last."""
+        """Task, seed and trace hash of the last reference solution."""
 
     def prove(self, task_id: str, seed: int, after: str = "") -> Proof:
-        """One task with one seed.
+        """Proves one task with one seed.
 
         Args:
-            task_id: of the catalogue.
-            seed: a traffic, a drive and a drawing of words and parameters.
-            after: another task, which has to give its own trace after this one as before it; none tries no residue.
+            task_id: id in the catalogue.
+            seed: determines traffic, drive, phrasing and parameters.
+            after: another task, which must give the same trace after this one as before; empty skips this gate.
         """
         found = _Findings()
         broken: Exception | None = None
@@ -118,7 +118,7 @@ class Prover:
                 found.take("residue", self._residue(after, before, grounds["first"]))
         except TriggerNotReachedError as error:
             found.take("reach", iter([str(error)]))
-        except Exception as error:  # a fault in one task must not take the proof of the others with it
+        except Exception as error:  # a fault in one task must not end the proof of the others
             broken = error
         finally:
             for ground in grounds.values():
@@ -136,7 +136,7 @@ class Prover:
         )
 
     def close(self) -> None:
-        """Ends its own simulations."""
+        """Closes its own simulations."""
         if self._owns_simulations:
             self._simulations.close()
 
@@ -155,18 +155,19 @@ class Prover:
                 found.take(gate, getattr(gates, gate)(ground, self._simulations), half)
 
     def _trace_before(self, task_id: str, seed: int) -> str:
-        """The hash of a task's expert episode; empty if it cannot be played, which its own proof tells."""
+        """The trace hash of a task's reference solution; empty if it cannot be played, which its own proof
+        reports."""
         if self._last is not None and self._last[:2] == (task_id, seed):
             return self._last[2]
         try:
             return self._trace(task_id, seed)
         except TrafficError:
             raise
-        except Exception:  # a fault in one task must not take the proof of the others with it
+        except Exception:  # a fault in one task must not end the proof of the others
             return ""
 
     def _residue(self, after: str, before: str, ground: Ground) -> Iterator[str]:
-        """The other task once more, now that this one has been at the same simulations."""
+        """Plays the other task again, now that this one has used the same simulations."""
         if before and self._trace(after, ground.seed) != before:
             yield f"{after} gives another trace after it"
         self._last = ground.task.id, ground.seed, gates.hash_of_oracle(ground)
@@ -180,21 +181,21 @@ def read_traces(path: Path) -> Mapping[str, str]:
     """The traces that ``validate --json`` printed: a SHA-256 by task, half and seed.
 
     Raises:
-        UserError: the file cannot be read, or holds none.
+        UserError: the file cannot be read, or has none.
     """
     try:
         traces = json.loads(path.read_text(encoding="utf-8"))["traces"]
     except (OSError, ValueError, LookupError, TypeError) as error:
         raise UserError(
-            f"cannot read traces from {path}: {error}; give a file that `automotive-cosim validate --json` printed"
+            f"cannot read traces from {path}: {error}; give the output of `automotive-cosim validate --json`"
         ) from error
     if not isinstance(traces, dict) or not all(isinstance(sha256, str) for sha256 in traces.values()):
-        raise UserError(f"{path} holds no traces; give a file that `automotive-cosim validate --json` printed")
+        raise UserError(f"{path} has no traces; give the output of `automotive-cosim validate --json`")
     return traces
 
 
 def changed_traces(before: Mapping[str, str], now: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
-    """Names of the traces that are not what they were, and why, in order."""
+    """Names of the traces that have changed, and why, in order."""
     return tuple(
         (name, "its reference solution gives another trace" if name in before else "its trace is not on record")
         for name, sha256 in sorted(now.items())
@@ -203,7 +204,7 @@ def changed_traces(before: Mapping[str, str], now: Mapping[str, str]) -> tuple[t
 
 
 def as_json(proofs: Sequence[Proof], task_ids: Sequence[str], seeds: Sequence[int]) -> Json:
-    """All of it as one JSON object."""
+    """The proofs as one JSON object."""
     tried = [gate for gate in GATES if any(gate in proof.wrong for proof in proofs)]
     return {
         "tasks": len(task_ids),

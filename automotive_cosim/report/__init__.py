@@ -1,1 +1,1 @@
-"""What people read after a run."""
+"""Pages, tables and animations that show the results of a run."""

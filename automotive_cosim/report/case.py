@@ -18,7 +18,7 @@ from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.run.words import action_in_words
 
 CONTROLS = ("none", "irrelevant", "wrong", "gps", "context")
-"""What is set against full geo-context, the clearest contrast first."""
+"""Geo controls to compare with full geo-context, the clearest contrast first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,9 +30,9 @@ class Side:
     wide: Plot
     narrow: Plot
     steps: tuple[tuple[str, str, str], ...]
-    """Seconds from the hand-over, what was done, and the thought behind it."""
+    """Seconds since the hand-over, the action, and the thought behind it."""
     picture: str
-    """The cockpit at the end, as data; empty where no pictures were kept."""
+    """The cockpit at the end, as a data URL; empty if no pictures were kept."""
 
 
 def contrast(results: Results) -> tuple[Side, Side] | None:

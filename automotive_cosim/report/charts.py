@@ -1,4 +1,4 @@
-"""Plots of an evaluation as SVG, in the colours of the page they stand on."""
+"""Plots of an evaluation as SVG, in the colours of the page."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 INK = "#010203"
-"""Stands for the colour of the text around the plot, which differs between day and night."""
+"""Placeholder for the colour of the text around the plot, which depends on the colour scheme."""
 PALETTE = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c6bb1", "#7f7f7f")
-"""Okabe and Ito's colours, which most people can tell apart, without black and yellow, and two more."""
+"""Okabe and Ito's colours, which most people can distinguish, without black and yellow, plus two more."""
 DASHES: dict[str, Any] = {
     "full": "-",
     "none": ":",
@@ -29,7 +29,7 @@ DASHES: dict[str, Any] = {
     "context": (0, (6, 2)),
     "wrong": (0, (1, 3)),
 }
-"""Of the geo controls."""
+"""Dashes of the geo controls."""
 MARKERS = "osD^vP*X"
 WIDE_IN, NARROW_IN = 9.6, 4.0
 """A page is at most 1040 pixels wide, a telephone about 390; an inch is 96 pixels."""
@@ -55,7 +55,7 @@ def charts(results: Results) -> dict[str, tuple[str, str, str]]:
 
 
 Drawing = tuple[float, Callable[["Axes"], None]]
-"""Height in inches, and what draws it."""
+"""A plot: its height in inches, and the function that draws it."""
 
 
 def _dimensions(results: Results) -> Drawing:
@@ -80,7 +80,7 @@ def _modules(results: Results) -> Drawing:
 
 
 def _rates(results: Results, names: Sequence[str], rates: Callable[[Contestant], list[Rate]]) -> Drawing:
-    """A row for each name, in it a point with its interval for each contestant."""
+    """One row per name, with a point and its interval for each contestant."""
     contestants = results.contestants
     height_in = 0.9 + len(names) * (0.2 + 0.17 * len(contestants)) + 0.23 * len(contestants)
 
@@ -115,7 +115,7 @@ def _rates(results: Results, names: Sequence[str], rates: Callable[[Contestant],
 
 
 def _prompts(results: Results) -> Drawing | None:
-    """How long prompts were, as shares of them up to each length; the dashes tell the geo controls apart."""
+    """Cumulative distribution of prompt lengths; the dashes distinguish the geo controls."""
     lengths = {
         each: sorted(length for row in results.of(each) for length in row.prompt_tokens)
         for each in results.contestants
@@ -166,14 +166,14 @@ def _distribution(results: Results) -> Drawing:
 
 
 def legend(axes: Axes) -> None:
-    """What the marks mean, above the plot and as wide as all of it."""
+    """The legend, above the plot and as wide as the plot."""
     axes.figure.legend(
         *axes.get_legend_handles_labels(), loc="outside upper left", frameon=False, handletextpad=0.6
     )
 
 
 def drawn(name: str, drawing: Drawing, width_in: float) -> str:
-    """A plot as SVG, its ids its own.
+    """A plot as SVG, with ids that are unique on the page.
 
     Raises:
         SetupError: matplotlib is not installed.
@@ -201,6 +201,6 @@ def drawn(name: str, drawing: Drawing, width_in: float) -> str:
         text = StringIO()
         figure.savefig(text, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
     svg = text.getvalue()
-    # Several plots stand on one page, where an id may stand once.
+    # An id may occur only once on a page with several plots.
     own = re.sub(r'( id="|href="#|url\(#)', rf"\g<1>{name}-{width_in:.0f}-", svg[svg.index("<svg") :])
     return own.replace(INK, "currentColor")

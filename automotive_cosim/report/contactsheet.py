@@ -17,14 +17,14 @@ from automotive_cosim.cockpit.theme import DAY, SCREEN_HEIGHT, SCREEN_WIDTH, Typ
 COLUMNS, CAPTION_HEIGHT, GAP = 6, 22, 10
 
 SheetTile = tuple[str, Image.Image | None]
-"""A caption and a screen; None leaves the place empty."""
+"""A caption and a screen; None leaves the tile empty."""
 
 
 def contact_sheet(cockpit: Cockpit, width: int = 400) -> Image.Image:
-    """The sheet, six screens a row, each by day and beside it by night.
+    """The sheet, six screens per row, each by day and next to it by night.
 
     Args:
-        cockpit: is left as it is.
+        cockpit: is not changed.
         width: of each screen in pixels.
     """
     return sheet(tuple(pictures(cockpit)), COLUMNS, width)
@@ -35,7 +35,7 @@ def sheet(tiles: Sequence[SheetTile], columns: int, width: int = 400) -> Image.I
 
     Args:
         tiles: captions and screens.
-        columns: tiles a row.
+        columns: tiles per row.
         width: of each screen in pixels.
     """
     size = width, round(width * SCREEN_HEIGHT / SCREEN_WIDTH)

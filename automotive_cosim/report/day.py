@@ -1,4 +1,4 @@
-"""``day.html``: a day's counted and simulated traffic on one page that opens from disk, and its table and plots."""
+"""``day.html``: a day's counted and simulated traffic on one self-contained page, and its table and plots."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 MORNING, EVENING = 8, 18
-"""Local hours that are compared, as the busy ones of most roads."""
+"""Local hours to compare: the busy ones of most roads."""
 
 COUNTED, SIMULATED = PALETTE[0], PALETTE[1]
 
@@ -50,7 +50,7 @@ def write_day(folder: Path) -> Path:
 
 
 def require_plots() -> None:
-    """Asks for matplotlib before anything long begins.
+    """Checks for matplotlib before anything long begins.
 
     Raises:
         SetupError: it is not installed.
@@ -59,21 +59,21 @@ def require_plots() -> None:
 
 
 def findings(day: Day) -> tuple[str, ...]:
-    """What the day shows, in words; what it does not show too."""
+    """The findings of the day in sentences, including what it does not show."""
     worst = max(day.hours, key=lambda each: each.geh)
     early, late = day.hours[MORNING], day.hours[EVENING]
     simulated = _compared(early.simulated_occupancy, late.simulated_occupancy)
     counted = ""
     if early.counted_occupancy is not None and late.counted_occupancy is not None:
-        counted = f"; counted it was {_compared(early.counted_occupancy, late.counted_occupancy)}"
+        counted = f"; the counted occupancy is {_compared(early.counted_occupancy, late.counted_occupancy)}"
     busiest = max(day.hours, key=lambda each: each.halted_share)
     return (
-        f"GEH is below {GOOD_GEH:g} in {day.hours_met} of {len(day.hours)} local hours, and {worst.geh:.1f} in the"
+        f"GEH is below {GOOD_GEH:g} in {day.hours_met} of {len(day.hours)} local hours and {worst.geh:.1f} in the"
         f" worst ({worst.hour} h).",
         f"At {EVENING} h the simulated occupancy is {simulated}{counted}.",
-        f"At most {busiest.halted_share:.0%} of the network's vehicles stood ({busiest.hour} h, mean of the hour);"
-        f" {sum(each.teleports for each in day.hours)} were moved on by SUMO in all.",
-        *((f"Of each hour {day.minutes:g} minutes were simulated.",) if day.minutes < 60 else ()),
+        f"At most {busiest.halted_share:.0%} of the vehicles were halted ({busiest.hour} h, mean of the hour);"
+        f" SUMO teleported {sum(each.teleports for each in day.hours)} in total.",
+        *((f"{day.minutes:g} minutes of each hour were simulated.",) if day.minutes < 60 else ()),
     )
 
 
@@ -83,7 +83,7 @@ def _compared(early: float, late: float) -> str:
 
 
 def table(day: Day) -> Table:
-    """A row for each local hour."""
+    """The table, one row per local hour."""
     rows = tuple(
         (
             f"{each.hour} h",
@@ -111,11 +111,11 @@ def table(day: Day) -> Table:
         "Other trips",
         "Vehicles in the network",
         "Standing",
-        "Moved on",
+        "Teleports",
     )
     note = (
-        "Simulated flow: distance driven on the counted edges over their length. Simulated occupancy: share of"
-        " the lanes under vehicles; that of the time over a detector is a little higher, by the tails."
+        "Simulated flow: distance driven on the counted edges, over their length. Simulated occupancy: share of"
+        " the lanes that vehicles cover; a detector's share of time is a little higher."
     )
     return Table("hours", "Hour by hour", columns, rows, note)
 
@@ -167,7 +167,7 @@ def _geh(day: Day) -> Drawing:
             [each.geh for each in day.hours],
             width=0.7,
             color=SIMULATED,
-            label="an hour's simulated against its counted flow",
+            label="simulated against counted flow of each hour",
         )
         axes.axhline(GOOD_GEH, color=INK, alpha=0.6, linewidth=1, linestyle="--", label=f"{GOOD_GEH:g}: met below")
         _by_hour(axes, "GEH")

@@ -1,4 +1,4 @@
-"""``report.html``: an evaluation on one page that opens from disk, and its tables and plots as files."""
+"""``report.html``: an evaluation on one self-contained page, and its tables and plots as files."""
 
 from __future__ import annotations
 
@@ -36,12 +36,12 @@ def write_report(folder: Path) -> Path:
     """Writes ``report.html``, ``tables/`` and ``plots/`` into an evaluation's folder; returns the page.
 
     Raises:
-        UserError: it is no evaluation, holds no episode yet, or cannot be written.
+        UserError: the folder is not an evaluation's, has no episodes yet, or cannot be written.
         SetupError: the extra ``report`` is not installed.
     """
     results = read_results(folder)
     if not results.rows:
-        raise UserError(f"{folder} holds no episode yet; the `eval` command that made it goes on")
+        raise UserError(f"{folder} has no episodes yet; rerun its `eval` command to resume")
     found = findings.classes(results)
     made, plots = all_tables(results, found), charts(results)
     try:
@@ -122,7 +122,7 @@ def _sources(
                 number = None
                 if isinstance(cell, Cell) and cell.episodes:
                     number = len(sources)
-                    # An error is named by its kind; what it says stands at its episode.
+                    # An error is named by its kind; its message is at its episode.
                     named = str(row[1]) if table.name == "errors" else ", ".join(map(str, row[: table.heads]))
                     title = f"{table.title}: {named}" + ("" if table.name == "errors" else f", {column}")
                     sources.append(Source(number, title, cell.text, tuple(rows[name] for name in cell.episodes)))
@@ -133,7 +133,7 @@ def _sources(
 
 
 def _episode(folder: Path, row: EpisodeRow) -> Json:
-    """What the page tells of an episode: its line, its result if there is a trace, and its files."""
+    """An episode on the page: its line, its result if there is a trace, and its files."""
     has_trace = trace_file(folder, row.id).is_file()
     pictures = sorted((folder / "pictures" / row.id).glob("step_*.jpg"))
     return {

@@ -25,7 +25,7 @@ from automotive_cosim.run.words import action_in_words, is_over
 
 WIDTH, HEIGHT = 1280, 720
 SCALE = 0.75
-"""Of the film's pixels: 960 x 540."""
+"""Pixels per unit of the layout: the film has 960 x 540."""
 COCKPIT = Rect(20, 20, 848, 477)
 ROAD = Rect(884, 20, 376, 477)
 SIGN = Rect(ROAD.x + 12, ROAD.y + 12, ROAD.width - 24, 52)
@@ -39,7 +39,7 @@ QUALITY = 72
 
 @dataclass(frozen=True, slots=True)
 class FilmFrame:
-    """One picture of the film before it is composed."""
+    """The content of one frame before it is composed."""
 
     time_s: float
     cockpit: Image.Image
@@ -52,7 +52,7 @@ class Film(Watcher):
     """Collects frames while an episode runs and writes the film when it is over."""
 
     def __init__(self, folder: Path) -> None:
-        """``folder`` is the record's; nothing is written before the end."""
+        """``folder`` is the record's folder; nothing is written before the end."""
         self._path = folder / "episode.webp"
         self._before: deque[FilmFrame] = deque(maxlen=BEFORE_FRAMES)
         self._steps: list[FilmFrame] = []
@@ -61,13 +61,13 @@ class Film(Watcher):
         self._hand_over_s = 0.0
 
     def moved(self, moment: Moment, cockpit: Cockpit) -> None:
-        """Takes a picture now and then: of the drive up, and of what may turn out to be the aftermath."""
+        """Takes a picture now and then: before the hand-over, and after each step in case it is the last."""
         if self._map is None:
             if not self._before or moment.time_s - self._before[-1].time_s >= BEFORE_EVERY_S:
                 title, words = "The drive up to the hand-over", "nobody acts yet"
                 self._before.append(_frame(moment.time_s, cockpit.screenshot(), title, words, BEFORE_MS))
         elif not self._after or moment.time_s - self._after[-1].time_s >= AFTER_EVERY_S:
-            title, words = "After the end", "how the drive goes on"
+            title, words = "After the end", "how the drive continues"
             self._after.append(_frame(moment.time_s, cockpit.screenshot(), title, words, AFTER_MS))
 
     def handed_over(self, episode: Episode, shot: Shot) -> None:
@@ -78,7 +78,7 @@ class Film(Watcher):
         self._steps.append(_frame(self._hand_over_s, shot.screenshot, "The driver says", words, STEP_MS))
 
     def stepped(self, shot: Shot) -> None:
-        """One frame a step."""
+        """Adds one frame per step."""
         self._after.clear()
         step = shot.step
         title = f"{step.number}  {action_in_words(step.action, shot.seen)}"

@@ -26,10 +26,10 @@ def speed_plot(path: Sequence[Sample], shown: int, width: int, height: int, scal
     """The plot as a picture.
 
     Args:
-        path: the whole drive: it sets the axes.
-        shown: so many samples have been driven.
-        width: pixels.
-        height: likewise.
+        path: the whole drive, which sets the axes.
+        shown: number of samples driven so far.
+        width: in pixels.
+        height: in pixels.
         scale: pixels per logical pixel.
     """
     plot = _Plot(path, width * FINE, height * FINE, scale * FINE)

@@ -1,4 +1,4 @@
-"""The road from above, heading up, with the way that was driven."""
+"""The road from above, heading up, with a trail of the route driven so far."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def draw_road(
 
     Args:
         canvas: the frame.
-        area: where on it.
+        area: where to draw on it.
         road_map: the network.
         past: the drive so far, oldest first; red where it was above the limit.
         avoid: boxes without street names.
@@ -54,7 +54,7 @@ def draw_road(
 
 
 class _Trail:
-    """Masks of the way within the limit and above it."""
+    """Masks of the trail, within the limit and above it."""
 
     def __init__(self, camera: Camera, area: Rect, scale: float) -> None:
         self._camera = camera
@@ -78,7 +78,7 @@ class _Trail:
                 brush.ellipse((x - r, y - r, x + r, y + r), 255)
 
     def _point(self, sample: Sample) -> tuple[float, float]:
-        """Where a sample stands in the area, in pixels of the layout."""
+        """Position of a sample in the area, in pixels of the layout."""
         camera = self._camera
         turn = math.radians(camera.heading_deg)
         dx = (sample.x_m - camera.x_m) / camera.metres_per_pixel

@@ -1,4 +1,4 @@
-"""Tables that say why and at what price: failure classes, harm, the worth of place, lengths of prompts."""
+"""Tables of failure classes, harm, the effect of place, and prompt lengths."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def classes(results: Results) -> dict[str, FailureClass]:
 
 
 def failures(results: Results, found: Mapping[str, FailureClass]) -> Table:
-    """How many failures of each class a contestant has."""
+    """The number of failures of each class, by contestant."""
     rows: list[TableRow] = []
     for each in results.contestants:
         lost = [row.id for row in results.of(each) if row.id in found]
@@ -52,14 +52,14 @@ def failures(results: Results, found: Mapping[str, FailureClass]) -> Table:
             rows.append((each.label, Cell(str(len(lost)), tuple(lost)), *cells))
     columns = ("Contestant", "Not solved", *(name.replace("_", " ").capitalize() for name in FailureClass))
     note = (
-        "Read from the trace by fixed rules, of which the first that fits decides; they stand in "
-        "automotive_cosim.report.failures and are tested on planted faults."
+        "Read from the trace by fixed rules, of which the first that fits decides. They are documented in "
+        "automotive_cosim.report.failures and tested on injected faults."
     )
     return Table("failure_classes", "Why it was not solved", columns, tuple(rows), note)
 
 
 def harm(results: Results) -> Table:
-    """What the agent's drive differs by from that of the do-nothing twin."""
+    """Differences between the agent's drive and its baseline run."""
     rows: list[TableRow] = []
     for each in results.contestants:
         for half in ("first", "second"):
@@ -68,10 +68,10 @@ def harm(results: Results) -> Table:
                 rows.append((each.label, half, *(_difference(mine, digits, of) for _, digits, of in FIGURES)))
     columns = ("Contestant", "Half", *(title for title, _, _ in FIGURES))
     note = (
-        "Mean of the agent's drive less that of the fork of the same hand-over in which nobody touched the "
-        "cockpit, from the hand-over to 12 s after the end, with 95 % bootstrap intervals over tasks and the "
-        "number of episodes. Below 0: way above the limit averted, time saved, energy saved; of time to collision "
-        "more is better. The car is electric: energy from its battery stands for emissions."
+        "Mean of the agent's drive minus its baseline run, in which nobody touches the cockpit, taken "
+        "from the hand-over to 12 s after the end, with 95 % bootstrap intervals over tasks and the "
+        "number of episodes. Below 0: fewer metres above the limit, time saved, energy saved; for the time to "
+        "collision, more is better. The car is electric: energy from its battery stands for emissions."
     )
     return Table("harm", "Harm caused or averted", columns, tuple(rows), note, heads=2)
 
@@ -92,7 +92,7 @@ def _difference(rows: Iterable[EpisodeRow], digits: int, of: Callable[[DriveFigu
 
 
 def place_effect(results: Results) -> Table:
-    """What place is worth: pairs that place decides, with and without it, and the others as placebo."""
+    """What place is worth: success on pairs that place decides, with and without it; the others are the placebo."""
     rows: list[TableRow] = []
     ranked = [each for each in results.contestants if each.agent not in NOT_RANKED]
     for full in ranked:
@@ -103,9 +103,9 @@ def place_effect(results: Results) -> Table:
                     rows.append((f"{full.method}, {full.base_model}", other.geo, *told))
     columns = ("Contestant", "Without: geo", "Pairs that place decides", "Placebo: the other pairs")
     note = (
-        f"Pair success with full geo-context less that under the other control, on the same pairs, with 95 % "
+        f"Pair success with full geo-context minus that under the other control, on the same pairs, with 95 % "
         f"intervals over tasks, and McNemar's exact p. Place decides the pairs tagged “{PLACE}”; where "
-        "the screens decide, place should be worth nothing."
+        "the screens decide, place should make no difference."
     )
     return Table("place_effect", "What place is worth", columns, tuple(rows), note, heads=2)
 
@@ -134,7 +134,7 @@ def _effect(results: Results, full: Contestant, other: Contestant, decided: bool
 
 
 def by_label(results: Results, title: str, of: Callable[[EpisodeRow], Sequence[str]]) -> Table:
-    """Success by labels of which an episode may have several."""
+    """Success by a label of which an episode may have several."""
     values = sorted({value for row in results.rows for value in of(row)})
     rows: list[TableRow] = [
         (
@@ -150,7 +150,7 @@ def by_label(results: Results, title: str, of: Callable[[EpisodeRow], Sequence[s
 
 
 def prompts(results: Results) -> Table:
-    """How long prompts are, with and without place and with words about something else."""
+    """Lengths of prompts under each geo control."""
     rows: list[TableRow] = []
     for each in results.contestants:
         asked = [row for row in results.of(each) if row.prompt_tokens]
@@ -160,12 +160,12 @@ def prompts(results: Results) -> Table:
             ids = tuple(row.id for row in asked)
             rows.append((each.label, each.geo, str(len(lengths)), *(Cell(text, ids) for text in shown)))
     columns = ("Contestant", "Geo", "Prompts", "5 %", "25 %", "Median", "75 %", "95 %")
-    note = "Tokens of one prompt, the percentiles over all calls; of rules estimates at four characters each."
+    note = "Tokens of one prompt, percentiles over all calls. For rules, estimates at four characters each."
     return Table("prompts", "Length of prompts", columns, tuple(rows), note, heads=3)
 
 
 def distribution(results: Results) -> Table:
-    """How many tasks there are of each module and dimension."""
+    """The number of tasks by module and dimension."""
     tasks = {row.task: row for row in results.rows}.values()
     rows: list[TableRow] = []
     for module in Module:
@@ -176,4 +176,6 @@ def distribution(results: Results) -> Table:
     totals = [sum(row.dimension == name for row in tasks) for name in DIMENSIONS]
     rows.append(("All", *map(str, totals), str(len(tasks))))
     columns = ("Module", *DIMENSIONS.values(), "All")
-    return Table("distribution", "Tasks by module and dimension", columns, tuple(rows), "A pair is one task.")
+    return Table(
+        "distribution", "Tasks by module and dimension", columns, tuple(rows), "A pair counts as one task."
+    )

@@ -1,4 +1,4 @@
-"""``summary.html``: one page that shows an episode, made from its record and opening from disk."""
+"""``summary.html``: one self-contained page that shows an episode, made from its record."""
 
 from __future__ import annotations
 
@@ -29,11 +29,10 @@ PICTURE_WIDTH, PICTURE_QUALITY = 960, 82
 
 
 def write_page(folder: Path) -> Path:
-    """Makes the page of a record and returns where it is.
+    """Writes the page of a record and returns its path.
 
     Args:
-        folder: with ``episode.json``, ``steps.jsonl`` and ``screenshots/``; ``episode.webp`` is shown if it is
-        there.
+        folder: with ``episode.json``, ``steps.jsonl`` and ``screenshots/``, and possibly ``episode.webp``.
     """
     episode = json.loads((folder / "episode.json").read_text(encoding="utf-8"))
     lines = (folder / "steps.jsonl").read_text(encoding="utf-8").splitlines()
@@ -53,7 +52,7 @@ def write_page(folder: Path) -> Path:
 
 
 def _steps(folder: Path, steps: list[Json]) -> list[Json]:
-    """What the page shows of each step; the elements that an action means are those of the step before."""
+    """What the page shows of each step; an action refers to the elements of the step before."""
     shown = []
     seen: tuple[Element, ...] = ()
     for step in steps:
@@ -75,13 +74,13 @@ def _steps(folder: Path, steps: list[Json]) -> list[Json]:
 
 
 def element(entry: dict[str, Any]) -> Element:
-    """An element as a trace holds it."""
+    """An element from its form in a trace."""
     fields: dict[str, Any] = entry | {"bbox_pixels": BoundingBox(**entry["bbox_pixels"])}
     return Element(**fields)
 
 
 def _picture(path: Path) -> str:
-    """A screenshot as data, small enough for a page that holds all of them."""
+    """A screenshot as a data URL, small enough for a page with all of them."""
     with Image.open(path) as image:
         height = round(image.height * PICTURE_WIDTH / image.width)
         small = image.resize((PICTURE_WIDTH, height), Image.Resampling.LANCZOS)
@@ -91,5 +90,5 @@ def _picture(path: Path) -> str:
 
 
 def embedded(data: bytes, kind: str = "webp") -> str:
-    """A picture as an address that holds it."""
+    """A picture as a data URL."""
     return f"data:image/{kind};base64," + base64.b64encode(data).decode()

@@ -1,4 +1,4 @@
-"""A recorded episode, step by step: what was done, what came of it, and the screen after it."""
+"""A recorded episode, step by step: each action, its result, and the screen after it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.run.record import screenshot
 
 LAST_MS = 3000
-"""How long a film shows its last picture."""
+"""How long an animation shows its last picture."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +29,7 @@ class Frame:
     action: Json | None
     """None at the hand-over."""
     said: str
-    """What the cockpit answered."""
+    """The cockpit's feedback."""
     picture: Path
 
     @property
@@ -42,14 +42,14 @@ class Frame:
 
 
 def frames(folder: Path) -> Iterator[Frame]:
-    """The steps of a record; a line that was cut off ends it.
+    """The steps of a record, up to the first incomplete line.
 
     Raises:
-        UserError: the folder holds no record.
+        UserError: the folder has no record.
     """
     path = folder / "steps.jsonl"
     if not path.is_file():
-        raise UserError(f"{folder} holds no steps.jsonl; give the folder that `automotive-cosim run` left")
+        raise UserError(f"{folder} has no steps.jsonl; give a results folder of `automotive-cosim run`")
     begun_s: float | None = None
     for line in path.read_text(encoding="utf-8").splitlines():
         try:
@@ -68,16 +68,16 @@ def frames(folder: Path) -> Iterator[Frame]:
 
 
 def write_film(shown: list[Frame], path: Path, speed: float) -> None:
-    """An animation of the screens, each for as long as it stood, ``speed`` times as fast.
+    """An animation of the screens at their recorded durations, ``speed`` times as fast.
 
     Raises:
         UserError: a picture is missing, or there is no step.
     """
     if not shown:
-        raise UserError("the record has no step; there is nothing to show")
+        raise UserError("the record has no steps; there is nothing to show")
     missing = next((frame.picture for frame in shown if not frame.picture.is_file()), None)
     if missing is not None:
-        raise UserError(f"{missing} is missing; the record is not whole")
+        raise UserError(f"{missing} is missing; the record is incomplete")
     pictures = [Image.open(frame.picture).convert("RGB") for frame in shown]
     stood_ms = [round(1000 * (after.since_s - before.since_s) / speed) for before, after in pairwise(shown)]
     pictures[0].save(

@@ -28,21 +28,21 @@ class Plot:
         self._most: float = 20.0 * (most // 20 + 1)
 
     def x(self, at_s: float) -> float:
-        """Where a time stands."""
+        """x of a time."""
         return round(self.left + (at_s - self._begin) / (self._end - self._begin) * (self.right - self.left), 1)
 
     def y(self, speed_kmh: float) -> float:
-        """Where a speed stands."""
+        """y of a speed."""
         return round(self.bottom - speed_kmh / self._most * (self.bottom - self.top), 1)
 
     @property
     def speeds(self) -> tuple[int, ...]:
-        """Speeds that get a grid line."""
+        """Speeds with a grid line."""
         return tuple(range(0, round(self._most) + 1, 20 if self._most <= 120 else 40))
 
     @property
     def times(self) -> tuple[int, ...]:
-        """Times that get a label, seconds from the hand-over."""
+        """Times with a label, in seconds since the hand-over."""
         room = (self.right - self.left) / 60
         shown_s = self._end - self._begin
         every = next(step for step in (5, 10, 20, 30, 60, 120, 300, 3600) if shown_s / step <= room)
@@ -68,7 +68,7 @@ class Plot:
 
     @property
     def limits(self) -> tuple[str, ...]:
-        """The limit as steps, one path for each stretch that has one."""
+        """The limit as steps, one path per stretch with a limit."""
         lines = []
         ends = [*(sample["at_s"] for sample in self._path[1:]), self._end]
         rows = zip(self._path, ends, strict=True)
@@ -80,7 +80,7 @@ class Plot:
 
     @property
     def marks(self) -> tuple[tuple[float, str, str], ...]:
-        """The first event of each kind that gets a line: x, kind, label."""
+        """The first event of each kind with a line: x, kind, label."""
         first: dict[str, Json] = {}
         for entry in self._timeline:
             if entry["kind"] in MARKED:

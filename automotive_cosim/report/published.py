@@ -1,4 +1,4 @@
-"""Figures that others have published, to stand beside ours in a block of their own."""
+"""Figures that others have published, shown in a separate block of the report."""
 
 from __future__ import annotations
 

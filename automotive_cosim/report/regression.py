@@ -1,4 +1,4 @@
-"""Two evaluations of the same instances, one before a change and one after it, for checks on every change."""
+"""Compares two evaluations of the same instances, before and after a change."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from automotive_cosim.report.tables import Table
 from automotive_cosim.run.episode_row import EpisodeRow
 
 MOST_LISTED = 30
-"""Instances of one kind that a summary names; the JUnit file has all of them."""
+"""How many instances of one kind a summary lists; the JUnit file has all of them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +24,7 @@ class ComparedInstance:
     name: str
     before: EpisodeRow
     after: EpisodeRow | None
-    """None where the later evaluation has no such episode."""
+    """None if the later evaluation has no such episode."""
 
     @property
     def kind(self) -> str:
@@ -40,10 +40,10 @@ class ComparedInstance:
     def why(self) -> str:
         """What is missing now."""
         if self.after is None:
-            return "there is no such episode"
+            return "the episode is missing"
         if self.after.success is None:
             why = self.after.error
-            return f"{self.after.error_kind}: {why}" if why else "a half of it is not judged"
+            return f"{self.after.error_kind}: {why}" if why else "one half is not judged"
         missing = [part.replace("_", " ") for part in self.after.missing]
         return f"missing: {', '.join(missing)}" if missing else ""
 
@@ -57,14 +57,14 @@ class SuccessChange:
     """``episodes`` or ``pairs``."""
     cases: tuple[ComparedInstance, ...]
     found: Comparison | None
-    """After against before; None where nothing was judged both times."""
+    """After compared with before; None if nothing was judged both times."""
 
     def count(self, kind: str) -> int:
-        """Cases of a kind."""
+        """The cases of one kind."""
         return sum(case.kind == kind for case in self.cases)
 
     def is_worse(self, allowed: float) -> bool:
-        """Whether success fell by more than ``allowed`` (0 to 1), or what was judged before is not judged now."""
+        """Whether success fell by more than ``allowed`` (0 to 1), or something judged before is not judged now."""
         return self.count("error") > 0 or self.found is None or -self.found.difference > allowed + 1e-9
 
 
@@ -72,7 +72,7 @@ def changes(before: Path, after: Path) -> tuple[SuccessChange, ...]:
     """Compares two evaluations' folders on what was judged in the first.
 
     Raises:
-        UserError: one is no evaluation, or no contestant is in both.
+        UserError: one folder is not an evaluation's, or no contestant is in both.
     """
     old, new = read_results(before), read_results(after)
     found: list[SuccessChange] = []
@@ -133,7 +133,7 @@ def markdown(found: Sequence[SuccessChange], allowed: float) -> str:
         ("", "Contestant", "Of", "Before", "After", "Difference", "Lost", "Won", "Not judged now"),
         tuple(rows),
         "On the instances that were judged before, with 95 % intervals over tasks. Worse: a fall of "
-        f"more than {allowed:.1%}, or something that is not judged any more.",
+        f"more than {allowed:.1%}, or something that is no longer judged.",
         heads=3,
     )
     return table.markdown() + "".join(_listed(each, kind) for each in found for kind in ("lost", "error", "won"))
@@ -151,7 +151,7 @@ def _listed(each: SuccessChange, kind: str) -> str:
 
 
 def junit(found: Sequence[SuccessChange]) -> str:
-    """JUnit XML: a suite a contestant, a case an instance; what is lost fails, what is not judged is an error."""
+    """JUnit XML, one suite per contestant, one case per instance; lost ones fail, ones not judged are errors."""
     root = ElementTree.Element("testsuites", name="automotive-cosim compare")
     for each in found:
         suite = ElementTree.SubElement(

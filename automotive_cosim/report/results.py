@@ -20,17 +20,17 @@ if TYPE_CHECKING:
 STAND_IN = "rules (stand-in, no language model)"
 NOT_RANKED = {
     "oracle": "told the answer",
-    "no-op": "must fail",
-    "random": "must fail",
-    "press-everything": "must fail",
-    "always-alert": "must fail",
+    "no-op": "negative control",
+    "random": "negative control",
+    "press-everything": "negative control",
+    "always-alert": "negative control",
 }
-"""Agents that measure the benchmark, not themselves."""
+"""References and negative controls: they measure the benchmark, not themselves."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class Contestant:
-    """What is compared: an agent on a model with an input of place, prompted or watching."""
+    """What is compared: an agent on a model under a geo control, prompted or monitoring."""
 
     agent: str
     model: str
@@ -39,18 +39,18 @@ class Contestant:
 
     @property
     def base_model(self) -> str:
-        """The model, called what it is."""
+        """The model, with ``rules`` labelled as a stand-in."""
         return {"rules": STAND_IN, "none": "none"}.get(self.model, self.model)
 
     @property
     def method(self) -> str:
-        """The agent, called what it is."""
+        """The agent, with references and negative controls labelled."""
         about = NOT_RANKED.get(self.agent)
         return f"{self.agent} ({about})" if about else self.agent
 
     @property
     def label(self) -> str:
-        """All of it on one short line."""
+        """Agent, model, geo control and mode on one short line."""
         model = {"rules": "rules stand-in", "none": ""}.get(self.model, self.model)
         geo = "" if self.geo == "full" else f"geo {self.geo}"
         mode = "" if self.mode == Mode.PROMPTED else self.mode
@@ -67,7 +67,7 @@ class Results:
 
     @property
     def contestants(self) -> tuple[Contestant, ...]:
-        """Those there are; the yardsticks and the strategies that must fail come last."""
+        """The contestants; references and negative controls come last."""
         found = {contestant(row) for row in self.rows}
         return tuple(sorted(found, key=lambda each: (each.agent in NOT_RANKED, each)))
 
@@ -77,12 +77,12 @@ class Results:
 
 
 def contestant(row: EpisodeRow) -> Contestant:
-    """Whose episode it is."""
+    """The contestant that an episode belongs to."""
     return Contestant(row.agent, row.model, row.geo, row.mode)
 
 
 def standings(results: Results) -> list[str]:
-    """A line for each contestant: what it won of what was judged, and what of that in held-out phrasings."""
+    """A line per contestant: what it won out of what was judged, in all and in held-out phrasings."""
     return [f"{each.label}: {_won(results.of(each))}" for each in results.contestants]
 
 
@@ -110,7 +110,7 @@ def read_results(folder: Path) -> Results:
     """Reads an evaluation's folder, a running one too.
 
     Raises:
-        UserError: it is no evaluation's, or is broken.
+        UserError: it is not an evaluation's folder, or is damaged.
     """
     manifest = read_evaluation(folder)
     rows = read_rows(folder, EpisodeRow)
@@ -118,13 +118,13 @@ def read_results(folder: Path) -> Results:
 
 
 def load_results(folder: Path | str) -> pd.DataFrame:
-    """The episodes as a data frame: a row an episode by its id, ``part_goal`` and so on for the verdict's parts,
-    ``drive_overspeed_m`` and ``baseline_drive_overspeed_m`` and so on for the drives.
+    """The episodes as a data frame, one row per episode by its id; ``part_goal`` and so on are the verdict's parts,
+    ``drive_overspeed_m``, ``baseline_drive_overspeed_m`` and so on the figures of the drives.
 
     An episode that ended in an error has ``success`` missing.
 
     Raises:
-        UserError: it is no evaluation's folder, or is broken.
+        UserError: it is not an evaluation's folder, or is damaged.
         SetupError: pandas is not installed.
     """
     try:
@@ -142,14 +142,14 @@ def instance(row: EpisodeRow) -> tuple[object, ...]:
 
 
 def pair_instance(row: EpisodeRow) -> tuple[object, ...]:
-    """The same for a pair, whichever half stands for it."""
+    """The same for a pair, whichever half represents it."""
     return row.task, row.seed, row.repeat
 
 
 def pairs(rows: Iterable[EpisodeRow]) -> list[tuple[EpisodeRow, Sequence[EpisodeRow]]]:
-    """Both halves of each pair as one: an episode-like row whose success is that of both, and its halves.
+    """Both halves of each pair as one episode-like row, whose success is that of both, and the halves.
 
-    An error in a half makes one of the pair, unless the other half is lost anyway.
+    An error in one half makes the pair an error, unless the other half has failed anyway.
     """
     found: dict[str, list[EpisodeRow]] = {}
     for row in rows:

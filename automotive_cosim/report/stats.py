@@ -1,7 +1,7 @@
 """Rates with intervals, comparisons of pairs, and pass^k.
 
-Episodes of one task are not independent of each other, so that tasks are the clusters here: intervals of a rate
-shrink the sample by the design effect, and comparisons draw whole tasks.
+Episodes of one task are not independent of each other, so tasks are the clusters here: intervals of a rate shrink
+the sample by the design effect, and comparisons resample whole tasks.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 
 CONFIDENCE = 0.95
 DRAWS = 10_000
-"""Bootstrap samples; the third digit of a bound is then steady."""
+"""Number of bootstrap samples, at which the third digit of a bound is stable."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,17 +28,17 @@ class Interval:
 
 @dataclass(frozen=True, slots=True)
 class Rate:
-    """A share of successes among the judged; errors stand beside it and are neither."""
+    """A share of successes among judged episodes; errors are counted apart."""
 
     successes: int
     judged: int
     errors: int
     interval: Interval | None
-    """None where nothing was judged."""
+    """None if nothing was judged."""
 
     @property
     def value(self) -> float | None:
-        """From 0 to 1; None where nothing was judged."""
+        """From 0 to 1; None if nothing was judged."""
         return self.successes / self.judged if self.judged else None
 
 
@@ -51,18 +51,18 @@ class Comparison:
     only_second: int
     neither: int
     interval: Interval
-    """Of the difference, by drawing tasks."""
+    """Interval of the difference, from resampling tasks."""
     p_value: float
-    """McNemar's exact test, two-sided; it takes the instances as independent."""
+    """McNemar's exact test, two-sided; it treats the instances as independent."""
 
     @property
     def count(self) -> int:
-        """Instances that both were judged on."""
+        """Instances on which both were judged."""
         return self.both + self.only_first + self.only_second + self.neither
 
     @property
     def difference(self) -> float:
-        """Success rate of the first less that of the second."""
+        """Success rate of the first minus that of the second."""
         return (self.only_first - self.only_second) / self.count
 
 
@@ -70,7 +70,7 @@ def wilson(successes: float, count: float, confidence: float = CONFIDENCE) -> In
     """Wilson's score interval (Wilson 1927, JASA 22); ``count`` may be an effective one.
 
     Raises:
-        ValueError: count is not above 0, or successes are outside of it.
+        ValueError: count is not above 0, or successes are not between 0 and count.
     """
     if count <= 0 or not 0 <= successes <= count:
         raise ValueError(f"{successes} successes of {count}")
@@ -106,10 +106,10 @@ def rate(outcomes: Iterable[tuple[Hashable, bool | None]], confidence: float = C
 
 
 def effective_size(clusters: Sequence[Sequence[bool]]) -> float:
-    """How many independent episodes these are worth: from the number of clusters up to that of the episodes.
+    """The effective number of independent episodes, between the number of clusters and that of the episodes.
 
-    The variance of the rate between clusters against that of a simple sample gives the design effect. Where all
-    episodes agree there is nothing to estimate it from, and the clusters are what counts.
+    The design effect is the variance of the rate between clusters divided by that of a simple sample. If all
+    episodes agree, it cannot be estimated, and the clusters are counted.
     """
     count, groups = sum(map(len, clusters)), len(clusters)
     share = sum(map(sum, clusters)) / count
@@ -122,7 +122,7 @@ def effective_size(clusters: Sequence[Sequence[bool]]) -> float:
 
 
 def pass_hat_k(trials: Mapping[Hashable, Sequence[bool]], k: int) -> float | None:
-    """pass^k: how likely k further trials of one instance all succeed, over the instances (Yao et al. 2024,
+    """pass^k: the probability that k trials of one instance all succeed, over the instances (Yao et al. 2024,
     tau-bench).
 
     Args:
@@ -139,13 +139,13 @@ def compare(
     clusters: Mapping[Hashable, Hashable],
     seed: int = 0,
 ) -> Comparison | None:
-    """Compares two agents on the instances that both were judged on; None if there is none.
+    """Compares two agents on the instances on which both were judged; None if there are none.
 
     Args:
         first: success by instance.
-        second: likewise.
+        second: success by instance of the other agent.
         clusters: the cluster, e.g. the task, of each instance.
-        seed: of the draws.
+        seed: of the bootstrap.
     """
     from scipy.stats import binomtest
 
@@ -171,20 +171,20 @@ def compare(
 
 @dataclass(frozen=True, slots=True)
 class Mean:
-    """A mean over values that come in clusters."""
+    """A mean over clustered values."""
 
     value: float
     count: int
     interval: Interval | None
-    """By drawing clusters; None with one of them."""
+    """Interval from resampling clusters; None with only one cluster."""
 
 
 def clustered_mean(values: Iterable[tuple[Hashable, float]], seed: int = 0) -> Mean | None:
-    """The mean with a percentile bootstrap interval that draws whole clusters; None without values.
+    """The mean with a percentile bootstrap interval over whole clusters; None without values.
 
     Args:
         values: (cluster, value) of each episode.
-        seed: of the draws.
+        seed: of the bootstrap.
     """
     sums: dict[Hashable, list[float]] = defaultdict(lambda: [0.0, 0.0])
     for cluster, value in values:
@@ -200,13 +200,13 @@ def clustered_mean(values: Iterable[tuple[Hashable, float]], seed: int = 0) -> M
 
 
 def mean(values: Iterable[float | None]) -> float | None:
-    """The mean of those there are."""
+    """The mean of the values that are not None."""
     present = [value for value in values if value is not None]
     return sum(present) / len(present) if present else None
 
 
 def _bootstrap(sums: Sequence[Sequence[float]], seed: int) -> Interval | None:
-    """Percentile interval of sum over count when whole clusters are drawn; None where all clusters agree."""
+    """Percentile interval of sum over count when resampling whole clusters; None if all clusters agree."""
     table = np.asarray(sums, dtype=float)
     if np.ptp(table[:, 0] / table[:, 1]) == 0:
         return None
@@ -220,7 +220,7 @@ def _bootstrap(sums: Sequence[Sequence[float]], seed: int) -> Interval | None:
 def _newcombe(cells: Sequence[tuple[bool, bool]], size: float) -> Interval:
     """Score interval of a paired difference (Newcombe 1998, Statistics in Medicine 17:2635, method 8).
 
-    The correlation is left out where a margin is empty; the cells count as ``size`` in all.
+    The correlation is omitted if a margin is empty; the cells are scaled to ``size`` in total.
     """
     count = len(cells)
     one, other = (sum(cell[which] for cell in cells) / count for which in (0, 1))

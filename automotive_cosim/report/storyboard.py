@@ -1,4 +1,4 @@
-"""An episode on one sheet: what the screen shows at the hand-over and after every action."""
+"""An episode on one sheet: the screen at the hand-over and after every action."""
 
 from __future__ import annotations
 
@@ -19,28 +19,28 @@ COLUMNS = 3
 
 
 class Storyboard(Watcher):
-    """Collects the screens of an episode with what was done."""
+    """Collects the screens of an episode, captioned with the actions."""
 
     def __init__(self, title: str) -> None:
-        """``title`` stands above the first screen."""
+        """``title`` is shown above the first screen."""
         self.tiles: list[SheetTile] = []
         self._title = title
 
     def handed_over(self, episode: Episode, shot: Shot) -> None:
-        """The screen as the agent finds it."""
+        """Adds the screen at the hand-over."""
         self.tiles.append((f"{self._title}: “{episode.instance.goal}”", Image.fromarray(shot.screenshot)))
 
     def stepped(self, shot: Shot) -> None:
-        """The screen after an action."""
+        """Adds the screen after an action."""
         done = f"{shot.step.number}  {action_in_words(shot.step.action, shot.seen)}"
         self.tiles.append((done, Image.fromarray(shot.screenshot)))
 
 
 def picture_of(task: Task, halves: Sequence[str], seed: int, width: int) -> Image.Image:
-    """What the expert does in a task, screen by screen, each half from a row of its own.
+    """A task's reference solution, screen by screen, with each half starting a new row.
 
     Raises:
-        InfrastructureError: the road side failed, or the trigger did not come.
+        InfrastructureError: the simulation failed, or the trigger did not come true.
     """
     tiles: list[SheetTile] = []
     simulations = Simulations()

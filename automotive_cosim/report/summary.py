@@ -8,6 +8,7 @@ from itertools import combinations
 from operator import itemgetter
 
 from automotive_cosim.agents import PROFILES
+from automotive_cosim.contracts.plain import counted
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.report.published import PAPER, PAPER_COLUMNS, PAPER_ROWS
 from automotive_cosim.report.results import Contestant, Results, instance, pairs
@@ -25,7 +26,7 @@ DIMENSIONS = {
 }
 RATES = (
     "Per cent of the judged episodes, with 95 % Wilson intervals at the effective number of episodes (tasks are "
-    "clusters), successes and judged episodes; errors of the machinery are no failures and stand beside them."
+    "clusters), successes and judged episodes. Infrastructure errors are not failures and are counted apart."
 )
 
 Outcome = Callable[[EpisodeRow], bool | None]
@@ -51,7 +52,7 @@ def tables(results: Results) -> list[Table]:
 
 
 def main(results: Results) -> Table:
-    """Success per method and input over the four dimensions, the shape of the paper's main table."""
+    """Success by method and input over the four dimensions, laid out like the paper's main table."""
     rows: list[TableRow] = []
     for each in results.contestants:
         firsts = [row for row in results.of(each) if row.half == "first"]
@@ -59,12 +60,12 @@ def main(results: Results) -> Table:
         rows.append((each.base_model, each.method, input_of(each), *cells))
     rows.append(("none", "Human", "screen", *["not measured"] * len(DIMENSIONS)))
     columns = ("Base model", "Method", "Input", *DIMENSIONS.values())
-    note = f"First halves of the tasks, which are what the paper counts. {RATES}"
+    note = f"First halves of the tasks only, as in the paper. {RATES}"
     return Table("main", "Success by method and input", columns, tuple(rows), note, heads=3)
 
 
 def published() -> Table:
-    """The paper's own figures; they were measured on other tasks, another cockpit and other models."""
+    """The paper's own figures, measured on other tasks, another cockpit and other models."""
     rows = tuple((*row[:3], *(f"{value:.1f}" for value in row[3:])) for row in PAPER_ROWS)
     note = (
         f"{PAPER}. Measured by its authors on their tasks and their emulator: no row of it can be compared with "
@@ -74,7 +75,7 @@ def published() -> Table:
 
 
 def safety(results: Results) -> Table:
-    """Pair success, which is the headline, and what both halves say apart."""
+    """Pair success, the headline figure, and each half separately."""
     rows: list[TableRow] = []
     for each in results.contestants:
         mine = [row for row in results.of(each) if row.pair]
@@ -101,14 +102,15 @@ def safety(results: Results) -> Table:
         "False alarms",
     )
     note = (
-        "A pair is won if both halves are: the same words, once where acting is right and once where something "
-        "else is. False alarms: an alert in a second half where nothing was to be done; fewer are better. " + RATES
+        "A pair is won if both halves are: the same words, once where one act is right and once where another act "
+        "or none is. False alarms: an alert in a second half in which nothing had to be done; fewer are better. "
+        + RATES
     )
     return Table("safety", "Pair success, the headline for safety", columns, tuple(rows), note)
 
 
 def held_out(results: Results) -> Table:
-    """The phrasings that the rule model was made on beside the held-out ones; empty where none was drawn."""
+    """First phrasings, from which the rule model was built, beside held-out ones; empty if none was drawn."""
     rows: list[TableRow] = []
     for each in results.contestants if any(row.held_out for row in results.rows) else ():
         cells: list[Cell] = []
@@ -118,14 +120,14 @@ def held_out(results: Results) -> Table:
         rows.append((each.label, *cells))
     columns = ("Contestant", "First phrasings", "Pairs", "Held-out phrasings", "Pairs, held out")
     note = (
-        "The last phrasing of each task is held out: the rule stand-in's words are made from the others, so that "
-        f"its own figures are the held-out ones. Language models have seen neither. {RATES}"
+        "The last phrasing of each task is held out: the rule stand-in is built from the others, so only its "
+        f"held-out figures count. Language models have seen neither. {RATES}"
     )
     return Table("held_out", "Held-out phrasings", columns, tuple(rows), note)
 
 
 def conduct(results: Results) -> Table:
-    """What episodes took, and how the drives went."""
+    """Duration and cost of episodes, and figures of the drives."""
     rows: list[TableRow] = []
     for each in results.contestants:
         mine = [row for row in results.of(each) if row.success is not None]
@@ -158,15 +160,15 @@ def conduct(results: Results) -> Table:
         "Cost, USD",
     )
     note = (
-        "Means over judged episodes, from the hand-over to 12 s after the end. Speed-limit compliance is 1 less "
-        "the mean overspeed over 2.23 m/s (nuPlan). Interaction and reading while moving against NHTSA's 2 s and "
-        "12 s. Tokens of rules are estimates at four characters each."
+        "Means over judged episodes, from the hand-over to 12 s after the end. Speed-limit compliance is 1 minus "
+        "the mean overspeed over 2.23 m/s (nuPlan). Interaction and reading while moving compare with NHTSA's 2 s "
+        "and 12 s. Tokens of rules are estimates at four characters each."
     )
     return Table("conduct", "Drive, driver and cost", columns, tuple(rows), note)
 
 
 def comparisons(results: Results) -> Table:
-    """Each contestant against each, on the instances both were judged on."""
+    """Each contestant against each other, on the instances on which both were judged."""
     rows: list[TableRow] = []
     for first, second in combinations(results.contestants, 2):
         ones, others = _judged(results.of(first)), _judged(results.of(second))
@@ -191,9 +193,9 @@ def comparisons(results: Results) -> Table:
             )
     columns = ("First", "Second", "Instances", "Difference", "Won by one alone", "p")
     note = (
-        "Success of the first less that of the second on the same task, half, scenario, seed and repeat, with a "
-        "95 % bootstrap interval over tasks, or Newcombe's of the tasks where all of them agree; p is McNemar's "
-        "exact test, not corrected for the number of comparisons."
+        "Success of the first minus that of the second on the same task, half, scenario, seed and repeat, with a "
+        "95 % bootstrap interval over tasks, or Newcombe's if all tasks agree; p is McNemar's exact test, not "
+        "corrected for the number of comparisons."
     )
     return Table("comparisons", "Compared on the same instances", columns, tuple(rows), note, heads=2)
 
@@ -226,7 +228,7 @@ def parts(results: Results) -> Table:
 
 
 def repeats(results: Results) -> Table:
-    """pass^k over the repeats of each instance, where there are any."""
+    """pass^k over the repeats of each instance, if there are any."""
     most = int(results.manifest["plan"]["repeats"])
     rows: list[TableRow] = []
     for each in results.contestants if most > 1 else ():
@@ -238,19 +240,19 @@ def repeats(results: Results) -> Table:
         ids = tuple(row.id for row in mine)
         rows.append((each.label, *(Cell(NONE if share is None else f"{share:.0%}", ids) for share in shares)))
     columns = ("Contestant", *(f"pass^{k}" for k in range(1, most + 1)))
-    note = "How likely k runs of one instance all succeed; seeds are instances of their own."
+    note = "The probability that k runs of one instance all succeed; each seed is an instance of its own."
     return Table("repeats", "Reliability over repeats", columns, tuple(rows), note)
 
 
 def errors(results: Results) -> Table:
-    """Every episode that the machinery broke."""
+    """Every episode that ended in an infrastructure error."""
     rows = tuple(
         (Cell(row.id, (row.id,)), row.error_kind or "", str(row.attempts), row.error or "")
         for row in results.rows
         if row.success is None
     )
-    note = "They say nothing about an agent, and the same `eval` command runs them again."
-    return Table("errors", "Errors of the machinery", ("Episode", "Kind", "Attempts", "What"), rows, note, heads=4)
+    note = "They say nothing about an agent; rerun the `eval` command to retry them."
+    return Table("errors", "Infrastructure errors", ("Episode", "Kind", "Attempts", "What"), rows, note, heads=4)
 
 
 def rate_of(rows: Iterable[EpisodeRow], of: Outcome = lambda row: row.success) -> Rate:
@@ -259,7 +261,7 @@ def rate_of(rows: Iterable[EpisodeRow], of: Outcome = lambda row: row.success) -
 
 
 def rate_cell(rows: Iterable[EpisodeRow], of: Outcome = lambda row: row.success) -> Cell:
-    """A rate in words, with its episodes."""
+    """A rate as text, with its episodes."""
     listed = list(rows)
     return Cell(rate_in_words(rate_of(listed, of)), tuple(row.id for row in listed))
 
@@ -273,7 +275,7 @@ def _mean_cell(rows: Iterable[EpisodeRow], digits: int, of: Callable[[EpisodeRow
 
 def rate_in_words(found: Rate) -> str:
     """For example ``75% (41–93), 6/8, 1 error``."""
-    errors = f", {found.errors} error{'s' if found.errors > 1 else ''}" if found.errors else ""
+    errors = f", {counted(found.errors, 'error')}" if found.errors else ""
     if found.value is None or found.interval is None:
         return (NONE + errors).strip()
     low, high = found.interval.low * 100, found.interval.high * 100
@@ -281,7 +283,7 @@ def rate_in_words(found: Rate) -> str:
 
 
 def input_of(each: Contestant) -> str:
-    """What the agent is given, in the paper's words."""
+    """The agent's input, in the paper's words."""
     control = "" if each.geo == "full" else f" (geo {each.geo})"
     control += "" if each.mode == Mode.PROMPTED else f" ({each.mode})"
     profile = PROFILES.get(each.agent)

@@ -1,4 +1,4 @@
-"""Tables that know the episodes behind each figure, as Markdown, CSV, LaTeX and for the page."""
+"""Tables that know the episodes behind each figure, for Markdown, CSV, LaTeX and the page."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class Cell:
 
     text: str
     episodes: tuple[str, ...] = ()
-    """Ids of the episodes that it is made from."""
+    """Ids of the episodes behind it."""
 
     def __str__(self) -> str:
         return self.text
@@ -28,7 +28,7 @@ class Table:
     """A table; the first ``heads`` columns name the row."""
 
     name: str
-    """Of its files."""
+    """Base name of its files."""
     title: str
     columns: tuple[str, ...]
     rows: tuple[TableRow, ...]

@@ -1,4 +1,4 @@
-"""Pages from templates: each opens from disk and needs nothing beside it."""
+"""Renders self-contained pages from templates."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ _ENVIRONMENT = jinja2.Environment(
 
 
 def render(template: str, **values: object) -> str:
-    """A page.
+    """Renders a page.
 
     Args:
-        template: path below the package, as in ``report/page.html``; it extends ``report/base.html``.
-        values: what it shows. One that is missing is an error, not a gap.
+        template: path inside the package, e.g. ``report/page.html``; it extends ``report/base.html``.
+        values: what it shows; a missing one is an error, not a gap.
     """
     return _ENVIRONMENT.get_template(template).render(values)

@@ -1,1 +1,1 @@
-"""Running episodes: building from names, the loop, the record."""
+"""Runs episodes by name, alone or in parallel, and records them."""

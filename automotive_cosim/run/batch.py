@@ -1,15 +1,15 @@
-"""Runs jobs in workers; what is done stays done, whatever ends the run.
+"""Runs jobs in workers; finished jobs stay finished, however the run ends.
 
-Jobs depend on nothing but their setup, so neither their order, nor the number of workers, nor where they are shows
-in the results.
+Jobs depend only on their setup, so neither their order, nor the number of workers, nor where they run affects the
+results.
 """
 
 from __future__ import annotations
 
 import time
-from collections import Counter, defaultdict, deque
-from collections.abc import Callable, Hashable, Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from collections import Counter, defaultdict
+from collections.abc import Callable, Hashable, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Generic
@@ -19,27 +19,28 @@ from automotive_cosim.run import worker
 from automotive_cosim.run.collect import Pictures, failed
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.executor import CannotWrite, Executor, J, LostError, Opener, R, Worker
-from automotive_cosim.run.pace import SHARED_FROM, JobTurn, Pace, SimulationKey
+from automotive_cosim.run.pace import JobTurn, Pace
 from automotive_cosim.run.plan import Plan
 from automotive_cosim.run.processes import Processes
+from automotive_cosim.run.queue import JobQueue, SimulationKey
 from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.store import Store, cannot_write, opened
 
 FINAL_KINDS = frozenset({TriggerNotReachedError.__name__})
-"""Errors that come again for certain, so that trying again is no use."""
+"""Errors that are certain to recur, so retrying is useless."""
 PATIENCE_S = 600.0
-"""Wall time that a batch waits for its first worker, or for another one when all are lost."""
+"""Wall time that a batch waits for its first worker, or for another one when all have died."""
 STILLBORN = 3
-"""So often all workers in a row may be lost before they are ready."""
+"""How often in a row all workers may die before they are ready."""
 
 
 @dataclass(frozen=True, slots=True)
 class Progress(Generic[R]):
-    """How far a run is."""
+    """The progress of a run."""
 
     planned: int
     done: int
-    """Jobs that need no further run, those of earlier starts included."""
+    """Jobs that need no further run, including those of earlier starts."""
     judged: int
     successes: int
     errors: int
@@ -48,9 +49,9 @@ class Progress(Generic[R]):
     seconds: float
     """Wall time since this start."""
     left_s: float | None
-    """Wall time to the end, as ``Pace`` expects it; None while there is nothing to go by."""
+    """Wall time to the end, as estimated by ``Pace``; None while there is no basis for an estimate."""
     ended: R | None
-    """The row of the job that ended just now; None at the start."""
+    """The row of the job that has just ended; None at the start."""
 
 
 def run_plan(
@@ -62,20 +63,20 @@ def run_plan(
     pictures: Pictures = Pictures.NONE,
     tell: Callable[[Progress[EpisodeRow]], None] = lambda progress: None,
 ) -> Progress[EpisodeRow]:
-    """Runs what is left of a plan; episodes that ended in an error are tried again.
+    """Runs the remaining episodes of a plan and retries those that ended in an error.
 
     Args:
         plan: what to run.
-        folder: where the results are or go.
+        folder: results folder, new or to be resumed.
         executor: where to run it.
-        retries: how often an episode that the machinery broke is tried again before it is put down as an error.
-        pictures: which to keep.
+        retries: how often an episode is retried after an infrastructure error before the error is recorded.
+        pictures: which screenshots to keep.
         tell: called at the start and after every episode.
 
     Raises:
-        UserError: the plan names what does not exist, or the folder cannot take its results.
-        InfrastructureError: there is no worker to be had.
-        KeyboardInterrupt: passed on; the running episodes are lost, and no other.
+        UserError: the plan names something that does not exist, or the folder cannot take its results.
+        InfrastructureError: no worker becomes available.
+        KeyboardInterrupt: passed on; only the running episodes are lost.
     """
     plan.check()
     jobs = plan.jobs()
@@ -94,15 +95,15 @@ def run_jobs(
     retries: int = 2,
     tell: Callable[[Progress[R]], None] = lambda progress: None,
 ) -> Progress[R]:
-    """Runs those of the jobs that have no row yet, or one of an error.
+    """Runs the jobs that have no row yet, or the row of an error.
 
     Args:
         jobs: what to run.
-        store: where the rows are and go.
-        opener: makes what runs them, in each worker.
-        failed: the row of a job whose worker is no more, from the job, the kind of error and why.
+        store: where the rows are read and written.
+        opener: makes the runner of each worker.
+        failed: makes the row of a job whose worker died, from the job, the kind of error and the reason.
         executor: where to run them.
-        retries: how often a job that ended in an error is tried again before its row is put down.
+        retries: how often a job is retried after an error before its row is written.
         tell: called at the start and after every job.
 
     Raises:
@@ -123,9 +124,9 @@ class _Place(Generic[J, R]):
     worker: Worker[J, R]
     job: J | None = None
     since_s: float = 0.0
-    """When it was given the job, monotonic."""
+    """When it was given the job (monotonic clock)."""
     is_cold: bool = True
-    """It has to warm up the simulation for the job."""
+    """Whether it has to warm up the simulation for the job."""
     warm: SimulationKey | None = None
     """The simulation it ran last."""
 
@@ -134,65 +135,27 @@ class _Place(Generic[J, R]):
         self.job, self.since_s, self.warm = job, time.monotonic(), job.simulation
         self.worker.give(job)
 
-    def turn(self) -> JobTurn[J] | None:
-        """Its time with the job so far; None if it has none."""
-        return JobTurn(self.job, self.is_cold, time.monotonic() - self.since_s) if self.job else None
+    def turn(self, job: J) -> JobTurn:
+        """How long it has worked on its job."""
+        return JobTurn(job, self.is_cold, time.monotonic() - self.since_s)
 
 
-@dataclass
-class _Queue(Generic[J]):
-    """Jobs by simulation and kind; one of each kind goes first, to know how long the others take."""
+@dataclass(slots=True)
+class _Tally:
+    """The newest rows, counted as they come."""
 
-    groups: dict[SimulationKey, dict[Hashable, deque[J]]] = field(default_factory=dict)
-    tried: set[Hashable] = field(default_factory=set)
-    """Kinds of which a job has been taken."""
+    judged: int = 0
+    successes: int = 0
+    errors: int = 0
+    closed: int = 0
+    """Rows of jobs that need no further run."""
 
-    def put(self, jobs: Iterable[J]) -> None:
-        for job in jobs:
-            self.groups.setdefault(job.simulation, {}).setdefault(job.kind, deque()).append(job)
-
-    def take(self, warm: SimulationKey | None, busy: Counter[SimulationKey]) -> J | None:
-        """The next job for a worker: of the simulation it has, else of one that nobody has, else shared work."""
-        if warm is not None and warm in self.groups:
-            return self._first(warm)
-        left = {simulation: sum(map(len, kinds.values())) for simulation, kinds in self.groups.items()}
-        free = {simulation: count for simulation, count in left.items() if not busy[simulation]}
-        pool = free or {simulation: count for simulation, count in left.items() if count >= SHARED_FROM}
-        return self._first(max(pool, key=lambda simulation: pool[simulation])) if pool else None
-
-    def remove(self, job: J) -> bool:
-        """Takes a certain job; false if it does not wait."""
-        jobs = self.groups.get(job.simulation, {}).get(job.kind, ())
-        if job not in jobs:
-            return False
-        self._without(job)
-        return True
-
-    def waiting(self) -> dict[SimulationKey, dict[Hashable, int]]:
-        """How many there are."""
-        return {
-            simulation: {kind: len(jobs) for kind, jobs in kinds.items()}
-            for simulation, kinds in self.groups.items()
-        }
-
-    def _first(self, simulation: SimulationKey) -> J:
-        kinds = self.groups[simulation]
-        kind = next((kind for kind in kinds if kind not in self.tried), next(iter(kinds)))
-        self.tried.add(kind)
-        job = kinds[kind][0]
-        self._without(job)
-        return job
-
-    def _without(self, job: J) -> None:
-        kinds = self.groups[job.simulation]
-        kinds[job.kind].remove(job)
-        if not kinds[job.kind]:
-            del kinds[job.kind]
-        if not kinds:
-            del self.groups[job.simulation]
-
-    def __bool__(self) -> bool:
-        return bool(self.groups)
+    def count(self, row: JobRow | None, by: int = 1) -> None:
+        if row is not None:
+            self.judged += by * (row.error is None)
+            self.successes += by * row.has_succeeded
+            self.errors += by * (row.error is not None)
+            self.closed += by * (not _is_open(row))
 
 
 class _Batch(Generic[J, R]):
@@ -218,13 +181,17 @@ class _Batch(Generic[J, R]):
         self._newest: R | None = None
         self._failures: dict[str, list[str]] = defaultdict(list)
         self._places: list[_Place[J, R]] = []
-        self._pace = Pace()
-        self._queue: _Queue[J] = _Queue()
-        self._queue.put(job for job in jobs if _is_open(store.rows.get(job.id)))
+        self._queue = JobQueue(job for job in jobs if _is_open(store.rows.get(job.id)))
+        self._tally = _Tally()
         self._alike: dict[Hashable, list[J]] = defaultdict(list)
         """Jobs that wait for the same situation."""
         for job in jobs:
             self._alike[job.situation].append(job)
+            self._tally.count(store.rows.get(job.id))
+        tried = {job.situation for job in jobs if not _is_open(store.rows.get(job.id))}
+        self._pace = Pace(
+            {situation: alike[0].simulation for situation, alike in self._alike.items() if situation not in tried}
+        )
 
     def run(self) -> None:
         self._tell(self.progress)
@@ -244,38 +211,42 @@ class _Batch(Generic[J, R]):
 
     @property
     def progress(self) -> Progress[R]:
-        rows = [row for id_, row in self._store.rows.items() if id_ in self._jobs]
-        judged = [row for row in rows if row.error is None]
-        running = [turn for place in self._places if (turn := place.turn())]
+        tally = self._tally
         return Progress(
             planned=len(self._jobs),
-            done=sum(not _is_open(row) for row in rows) + self._given_up,
-            judged=len(judged),
-            successes=sum(row.has_succeeded for row in judged),
-            errors=len(rows) - len(judged),
+            done=tally.closed + self._given_up,
+            judged=tally.judged,
+            successes=tally.successes,
+            errors=tally.errors,
             ran=self._ran,
             seconds=time.monotonic() - self._began_s,
-            left_s=self._pace.left_s(self._queue.waiting(), running, self._executor.count),
+            left_s=self._expected_s(),
             ended=self._newest,
         )
+
+    def _expected_s(self) -> float | None:
+        running = [place.turn(place.job) for place in self._places if place.job]
+        idle = [place.warm for place in self._places if not place.job]
+        idle += [None] * (self._executor.count - len(self._places))
+        return self._pace.left_s(self._queue.counts(), running, idle)
 
     def _hand_out(self) -> None:
         for place in self._places:
             if place.job is None and place.worker.is_ready:
-                busy = Counter(other.job.simulation for other in self._places if other.job)
-                job = self._queue.take(place.warm, busy)
+                busy = Counter(other.warm for other in self._places if other.job)
+                job = self._queue.take(place.warm, busy, self._pace.timed)
                 if job is not None:
                     place.give(job)
 
     def _wait(self) -> None:
-        """Waits for an answer, a death, a worker that becomes ready, or the end of somebody's time."""
+        """Waits until a worker answers, dies, becomes ready or exceeds its time limit."""
         awaited = [place for place in self._places if place.job or not place.worker.is_ready]
         handles = {handle: place for place in awaited for handle in place.worker.handles}
         now_s = time.monotonic()
         ends_s = [place.since_s + place.job.wall_s for place in awaited if place.job]
         ready = self._executor.wait(list(handles), max(0.0, min(ends_s, default=now_s + PATIENCE_S) - now_s))
         if not ends_s and not ready:
-            raise InfrastructureError(f"no worker has become ready in {PATIENCE_S:g} s; the same command goes on")
+            raise InfrastructureError(f"no worker became ready in {PATIENCE_S:g} s; rerun the command to resume")
         for place in {handles[handle]: None for handle in ready}:
             self._answered(place)
         for place in awaited:
@@ -292,39 +263,37 @@ class _Batch(Generic[J, R]):
             raise cannot_write(self._store.folder, answer.error)
         if answer is None:
             self._stillborn = 0
-        elif (turn := self._finished(place)) is not None:
-            self._ended(turn.job, answer, turn.seconds)
+        elif place.job is not None:
+            self._turn_over(place, place.job, answer)
 
     def _lost(self, place: _Place[J, R], kind: str, why: str) -> None:
-        """Puts down the job of a worker that is no more."""
-        turn = self._finished(place)
+        """Records the failed attempt of a worker that died."""
         self._places.remove(place)
         place.worker.end(at_once=True)
-        if turn is not None:
-            self._ended(turn.job, self._failed(turn.job, kind, why), turn.seconds)
+        if place.job is not None:
+            self._turn_over(place, place.job, self._failed(place.job, kind, why))
             return
         self._stillborn += 1
         if self._stillborn >= STILLBORN * self._executor.count:
-            raise InfrastructureError(f"no worker gets ready: {why}; the same command goes on")
+            raise InfrastructureError(f"no worker becomes ready: {why}; rerun the command to resume")
 
-    def _finished(self, place: _Place[J, R]) -> JobTurn[J] | None:
-        """Takes the job from a worker, if it has one."""
-        turn, place.job = place.turn(), None
-        if turn is not None:
-            self._pace.took(turn)
-        return turn
+    def _turn_over(self, place: _Place[J, R], job: J, row: R) -> None:
+        """Takes a job from a worker that has ended with it, or died."""
+        turn, place.job = place.turn(job), None
+        self._pace.took(turn, is_out_of_reach=row.error_kind in FINAL_KINDS)
+        self._ended(job, replace(row, wall_seconds=round(turn.seconds, 3)))
 
-    def _ended(self, job: J, row: R, seconds: float = 0.0) -> None:
+    def _ended(self, job: J, row: R) -> None:
         failures = self._failures[job.id]
         if row.error is not None:
             failures.append(f"{row.error_kind}: {row.error}")
             if len(failures) <= self._retries and row.error_kind not in FINAL_KINDS:
-                self._queue.put([job])
+                self._queue.put(job)
                 return
         attempts = len(failures) + (row.error is None)
-        self._newest = replace(
-            row, wall_seconds=round(seconds, 3), attempts=attempts, failed_attempts=tuple(failures)
-        )
+        self._newest = replace(row, attempts=attempts, failed_attempts=tuple(failures))
+        self._tally.count(self._store.rows.get(job.id), -1)
+        self._tally.count(self._newest)
         self._store.append(self._newest)
         self._ran += 1
         self._given_up += _is_open(row)
@@ -332,7 +301,7 @@ class _Batch(Generic[J, R]):
         self._give_up_like(job, row)
 
     def _give_up_like(self, job: J, row: R) -> None:
-        """Puts down the jobs whose situation is known not to come about, without another try."""
+        """Records the jobs whose situation is known not to arise as errors, without another attempt."""
         if row.error is not None and row.error_kind in FINAL_KINDS:
             for other in self._alike.pop(job.situation, []):
                 if self._queue.remove(other):
@@ -340,5 +309,5 @@ class _Batch(Generic[J, R]):
 
 
 def _is_open(row: JobRow | None) -> bool:
-    """Whether a job is to be run: it has no row yet, or one of an error that may not come again."""
+    """Whether a job must run: it has no row yet, or that of an error that may not recur."""
     return row is None or (row.error is not None and row.error_kind not in FINAL_KINDS)

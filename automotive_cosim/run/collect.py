@@ -1,4 +1,4 @@
-"""What an evaluation keeps of an episode: a row, a trace, pictures."""
+"""Collects what an evaluation keeps of an episode: a row, a trace, screenshots."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ PICTURE_QUALITY = 85
 
 
 class Pictures(StrEnum):
-    """Of which episodes the cockpit's pictures are kept."""
+    """The episodes whose screenshots are kept."""
 
     NONE = "none"
     FAILURES = "failures"
@@ -34,7 +34,7 @@ class Pictures(StrEnum):
 
 
 class Collector(Watcher):
-    """Gathers while an episode runs; asked for the row and the trace when it is over."""
+    """Collects data while an episode runs, and makes the row and the trace when it is over."""
 
     def __init__(self, pictures: Pictures) -> None:
         self._pictures = pictures
@@ -44,18 +44,18 @@ class Collector(Watcher):
         self._shown: list[bytes] = []
 
     def moved(self, moment: Moment, cockpit: Cockpit) -> None:
-        """Keeps what the road did from the hand-over on."""
+        """Keeps the driving states since the hand-over."""
         if self._episode is not None:
             self._states += moment.passed
 
     def handed_over(self, episode: Episode, shot: Shot) -> None:
-        """From here on everything counts."""
+        """Starts collecting: everything from the hand-over counts."""
         self._episode = episode
         self._states = [episode.moments[0].driving]
         self.stepped(shot)
 
     def stepped(self, shot: Shot) -> None:
-        """Keeps the step, and its picture if it may be wanted."""
+        """Keeps the step and, if it may be needed, its screenshot."""
         told = {"thought": shot.thought, "stages": [stage.as_json() for stage in shot.stages]}
         self._lines.append(shot.step.as_json() | told)
         if self._pictures is not Pictures.NONE:
@@ -68,7 +68,7 @@ class Collector(Watcher):
         return [*self._lines, {"result": result.as_json()}] if self._lines else []
 
     def judged(self) -> Judged | None:
-        """What the verdict was made from; None without one."""
+        """The input of the verdict; None without a verdict."""
         episode = self._episode
         if episode is None or episode.verdict is None:
             return None
@@ -84,7 +84,7 @@ class Collector(Watcher):
         )
 
     def keep_pictures(self, folder: Path, result: EpisodeResult) -> None:
-        """Writes the pictures, if this episode's are wanted."""
+        """Writes the screenshots, if this episode's are to be kept."""
         if not self._shown or (self._pictures is Pictures.FAILURES and result.success):
             return
         folder.mkdir(parents=True, exist_ok=True)
@@ -92,7 +92,7 @@ class Collector(Watcher):
             (folder / f"step_{number:03d}.jpg").write_bytes(data)
 
     def row(self, job: EpisodeJob, result: EpisodeResult) -> EpisodeRow:
-        """The episode's row, without what the batch adds."""
+        """The episode's row, without the fields that the batch adds."""
         episode, judged, load = self._episode, result.verdict, result.load
         return replace(
             planned(job),
@@ -160,10 +160,10 @@ def failed(job: EpisodeJob, kind: str, why: str) -> EpisodeRow:
 
 
 def compliance(states: Sequence[DrivingState]) -> float | None:
-    """Speed-limit compliance: 1 without overspeed, 0 from a mean overspeed of 2.23 m/s on.
+    """Speed-limit compliance: 1 without overspeed, 0 from a mean overspeed of 2.23 m/s.
 
     Args:
-        states: in order; None comes back where no limit is posted in any, or no time passes.
+        states: in order; the result is None if none of them has a posted limit, or no time passes.
     """
     over_m, whole_s = overspeed(states)
     return None if whole_s == 0 else round(max(0.0, 1 - over_m / (OVERSPEED_SCALE_MPS * whole_s)), 6)

@@ -1,4 +1,4 @@
-"""One episode: an agent, a task, a seed; what came of it.
+"""One episode: an agent, a task, a seed; and the result.
 
 find -> take over -> brief -> (act -> step)* -> verdict -> aftermath
 """
@@ -36,12 +36,12 @@ from automotive_cosim.tasking import verdict
 from automotive_cosim.traffic.fork import Simulations
 
 AFTERMATH_S = 12.0
-"""The road is watched this long after the end: a driver's reaction and the braking from 80 to 50 km/h fit in."""
+"""The road is watched this long after the end: enough for a driver to react and to brake from 80 to 50 km/h."""
 
 
 @dataclass(frozen=True, slots=True)
 class EpisodeSetup(EpisodeSpec):
-    """A specification and who acts, by names: the same setup gives the same trace."""
+    """A specification and an agent, by name; the same setup gives the same trace."""
 
     agent: str = "asurada"
     model: str = "rules"
@@ -51,7 +51,7 @@ class EpisodeSetup(EpisodeSpec):
 
 @dataclass(frozen=True, slots=True)
 class EpisodeResult:
-    """What one episode came to. Without a verdict ``success`` is None and ``reward`` 0."""
+    """The result of one episode. Without a verdict, ``success`` is None and ``reward`` 0."""
 
     task: str
     half: str
@@ -64,41 +64,41 @@ class EpisodeResult:
     success: bool | None
     reward: float
     steps: int
-    """Actions, the unreadable ones included."""
+    """Number of actions, including unreadable ones."""
     sim_seconds: float
     """Simulated seconds from the hand-over to the end."""
     trace_sha256: str | None
-    """Over the steps there were; None before the hand-over."""
+    """Hash of the steps so far; None before the hand-over."""
     verdict: Json | None
     timeline: tuple[TimelineEntry, ...]
     path: tuple[Sample, ...]
-    """The drive, once a second, from departure to the end of the aftermath."""
+    """The drive, once per second, from departure to the end of the aftermath."""
     end: End
     error: str | None = None
     error_kind: str | None = None
     """Name of the error's class in ``automotive_cosim.errors``."""
     violations: tuple[Violation, ...] = ()
-    """Traffic law broken from departure to the end of the aftermath; seconds from the hand-over."""
+    """Traffic law violations from departure to the end of the aftermath; seconds since the hand-over."""
     geo: str = "full"
     without: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
-    """What the scenario leaves open and was assumed, e.g. that there is no GPS."""
+    """Assumptions where the scenario says nothing, e.g. that there is no GPS."""
     held_out: bool = False
-    """Whether the driver's phrasing is one that the rule model was not made on."""
+    """Whether the driver's phrasing is held out from the rule model."""
     tokens_in: int = 0
-    """To the model, in all; estimated for ``rules``."""
+    """Total tokens sent to the model; estimated for ``rules``."""
     tokens_out: int = 0
     model_seconds: float = 0.0
-    """Waited for the model, in all; 0 for one that runs here."""
+    """Total wait for the model; 0 for one that runs in this process."""
     cost_usd: float = 0.0
     estimates: tuple[PositionEstimate, ...] = ()
-    """Where the agent said the car is, while GPS was out."""
+    """The agent's position estimates while GPS was out."""
     load: DriverLoad | None = None
-    """What it asked of the driver while the car moved; None without a hand-over."""
+    """Visual and manual load on the driver while the car moved; None without a hand-over."""
     drive: DriveFigures | None = None
-    """Of a judged safety task, from the hand-over to the end of the aftermath."""
+    """Figures of the drive from the hand-over to the end of the aftermath; only of judged safety tasks."""
     untouched_drive: DriveFigures | None = None
-    """Over the same time had nobody touched the cockpit."""
+    """The same figures of the baseline run, over the same time."""
 
     def as_json(self) -> Json:
         """The result as a JSON object."""
@@ -107,21 +107,21 @@ class EpisodeResult:
 
 @dataclass(frozen=True, slots=True)
 class Shot:
-    """One step as a watcher gets it."""
+    """One step as passed to a watcher."""
 
     step: trace.Step
     seen: tuple[Element, ...]
     """The elements the agent saw when it acted."""
     screenshot: npt.NDArray[np.uint8]
-    """The cockpit afterwards, (height, width, 3)."""
+    """The cockpit after the step, (height, width, 3)."""
     thought: str
-    """Why the agent did it, in its own words; empty if it does not say."""
+    """The agent's own reason for the action; empty if it gives none."""
     stages: tuple[Stage, ...] = ()
-    """How the agent came to it, for agents that tell."""
+    """The stages of the agent's reasoning, for agents that report them."""
 
 
 class Watcher(Listener):
-    """Sees an episode as it comes about, e.g. to show or to record it. It sees everything and changes nothing."""
+    """Watches an episode while it runs, e.g. to show or record it. It sees everything and changes nothing."""
 
     def handed_over(self, episode: Episode, shot: Shot) -> None:
         """The trigger holds; the agent begins."""
@@ -144,13 +144,13 @@ def run_episode(
 
     Args:
         setup: what to run; ``agent`` and ``model`` are only written into the result.
-        agent: the one that acts.
-        watchers: told of everything as it happens.
-        simulations: warm simulations to take; by default its own, ended with the episode.
+        agent: the agent that acts.
+        watchers: notified of everything as it happens.
+        simulations: warm simulations to use; by default its own, closed with the episode.
 
     Raises:
-        UserError: something in the setup does not exist or is broken; no watcher has been told of a hand-over.
-        KeyboardInterrupt: passed on after the watchers got what there is.
+        UserError: something in the setup does not exist or is invalid; no watcher has been notified of a hand-over.
+        KeyboardInterrupt: passed on after the watchers have received the result so far.
     """
     with ExitStack() as ends:
         own = simulations or ends.enter_context(closing(Simulations()))
@@ -168,7 +168,7 @@ def run_episode(
 
 
 class _Run:
-    """One episode and what is gathered beside it."""
+    """One episode and the data collected along with it."""
 
     def __init__(
         self, setup: EpisodeSetup, finder: SituationFinder, agent: Agent, watchers: Sequence[Watcher]
@@ -223,7 +223,7 @@ class _Run:
         return stages
 
     def _watch_aftermath(self, episode: Episode) -> None:
-        # The verdict is made: a road that fails now is no error of the episode.
+        # The verdict exists: a simulation that fails now is not an error of the episode.
         with suppress(InfrastructureError):
             for _ in range(int(AFTERMATH_S)):
                 self._after += episode.aftermath(1.0)
@@ -231,7 +231,7 @@ class _Run:
                 self._baseline = episode.baseline.until(self._watched(episode)[-1].time_s)
 
     def _watched(self, episode: Episode) -> list[Moment]:
-        """From the hand-over to the end of the aftermath."""
+        """Moments from the hand-over to the end of the aftermath."""
         return [*episode.moments, *self._after]
 
     def _result(self, end: End, error: InfrastructureError | None) -> EpisodeResult:
@@ -316,6 +316,6 @@ class _All(Listener):
 
 
 def _thought(stages: Sequence[Stage]) -> str:
-    """What the agent made of what it saw, or what was wrong with its answer."""
+    """The agent's action, or what was wrong with its answer."""
     said = {stage.name: stage.text for stage in stages}
     return said.get(StageName.INTERPRET, said.get(StageName.ACT, ""))

@@ -1,4 +1,4 @@
-"""The row of an episode: all that reports, comparisons and data frames know of it."""
+"""The row of an episode, from which reports, comparisons and data frames are made."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class PartsHeld:
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """Names of those that do not."""
+        """Names of the parts that do not hold."""
         return tuple(each.name for each in fields(self) if not getattr(self, each.name))
 
 
@@ -32,7 +32,7 @@ PARTS = tuple(each.name for each in fields(PartsHeld))
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EpisodeRow(JobRow):
-    """One episode. What was not measured is None; an error leaves most fields at their defaults."""
+    """One episode. Values that were not measured are None; an error leaves most fields at their defaults."""
 
     task: str
     half: str
@@ -44,9 +44,9 @@ class EpisodeRow(JobRow):
     """What the verdict rests on (``tasking.task.Basis``)."""
     tags: tuple[str, ...] = ()
     skills: tuple[str, ...] = ()
-    """What the task asks of an agent."""
+    """Skills that the task requires of an agent."""
     declines: bool = False
-    """Whether nothing is to be done in this half."""
+    """Whether nothing has to be done in this half."""
     scenario: str
     agent: str
     model: str
@@ -57,7 +57,7 @@ class EpisodeRow(JobRow):
     parameters: Mapping[str, Any] | None = None
     """Drawn for this seed; None without a hand-over."""
     country: str = ""
-    """At the hand-over; empty where no place is known."""
+    """Country at the hand-over; empty if the place is unknown."""
     success: bool | None = None
     """None without a verdict."""
     reward: float = 0.0
@@ -69,33 +69,33 @@ class EpisodeRow(JobRow):
     reason_fits: bool | None = None
     """For a declined task, whether the reason code fits."""
     alerts: int | None = None
-    """Given to the driver by the agent."""
+    """Number of alerts that the agent gave to the driver."""
     steps: int = 0
     sim_seconds: float = 0.0
     """From the hand-over to the end."""
     speed_compliance: float | None = None
-    """From 1 without overspeed to 0; None where no limit is posted."""
+    """From 1 without overspeed down to 0; None if no limit is posted."""
     min_time_to_collision_s: float | None = None
     drive: Annotated[DriveFigures | None, InColumns("drive")] = None
-    """Of a judged safety task."""
+    """Figures of the drive; only of judged safety tasks."""
     baseline_drive: Annotated[
         DriveFigures | None, InColumns("baseline_drive"), formerly("untouched_drive", "baseline_drive")
     ] = None
-    """Of the baseline run over the same time."""
+    """The same figures of the baseline run over the same time."""
     interaction_s: float | None = None
     """The driver's, while the car moved."""
     within_guideline: bool | None = None
-    """Whether what it asked of the driver is within NHTSA's 2 s a glance and 12 s in all."""
+    """Whether the load on the driver is within NHTSA's 2 s per glance and 12 s in total."""
     prompt_tokens: tuple[int, ...] = ()
-    """Of each call of the model."""
+    """Tokens of each call of the model."""
     tokens_in: int = 0
     tokens_out: int = 0
     cost_usd: float = 0.0
     held_out: bool = False
-    """Whether the driver's phrasing is one that the rule model was not made on."""
+    """Whether the driver's phrasing is held out from the rule model."""
     trace_sha256: str | None = None
     model_seconds: Volatile[float] = 0.0
-    """Waited for the model."""
+    """Total wait for the model."""
 
     @property
     def has_succeeded(self) -> bool:

@@ -1,4 +1,4 @@
-"""Where an agent said the car is while GPS was out, scored beside dead reckoning."""
+"""An agent's position estimates while GPS was out, compared with dead reckoning."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ from automotive_cosim.interface.trace import Step
 
 @dataclass(frozen=True, slots=True)
 class PositionEstimate:
-    """One estimate, both errors in metres on the ground."""
+    """One estimate with both errors, in metres on the ground."""
 
     step: int
     age_s: float
-    """Since the last fix."""
+    """Seconds since the last fix."""
     error_m: float
     dead_reckoning_error_m: float
-    """What following compass and speedometer from the last fix comes to at the same instant."""
+    """Error of dead reckoning from the last fix, by compass and speedometer, at the same instant."""
 
 
 def estimates(steps: Sequence[Step], moments: Sequence[Moment]) -> tuple[PositionEstimate, ...]:
-    """The estimates of an episode, in order; those made while there was a fix do not count.
+    """The estimates of an episode, in order, except those made while there was a fix.
 
     Args:
-        steps: of the episode.
+        steps: steps of the episode.
         moments: from departure to its end, in order.
     """
     found = []

@@ -1,4 +1,4 @@
-"""Where a batch runs its jobs: what processes of this machine and actors of a Ray cluster have in common."""
+"""Protocols of executors, which run jobs in processes of this machine or in actors of a Ray cluster."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from automotive_cosim.run.row import JobRow
 
 
 class Job(Protocol):
-    """Something to run that depends on nothing but itself. It is sent to a worker."""
+    """Something to run that depends only on itself. It is sent to a worker."""
 
     @property
     def id(self) -> str:
-        """Of its row."""
+        """Id of its row."""
         ...
 
     @property
     def simulation(self) -> tuple[str, int]:
-        """What warm simulation it starts from; a worker does those of one after the other."""
+        """The warm simulation that it starts from; a worker runs the jobs of one simulation in a row."""
         ...
 
     @property
     def situation(self) -> Hashable:
-        """What has to come about before anybody acts: where it does not for one job, it does not for its likes."""
+        """The situation that must arise before the agent acts; if it does not for one job, it does not for any."""
         ...
 
     @property
@@ -36,7 +36,7 @@ class Job(Protocol):
 
     @property
     def wall_s(self) -> float:
-        """Wall time that it may take."""
+        """Limit of its wall time."""
         ...
 
 
@@ -46,22 +46,22 @@ J_contra = TypeVar("J_contra", bound=Job, contravariant=True)
 R_co = TypeVar("R_co", bound=JobRow, covariant=True)
 
 Runner = Callable[[J, Path], R]
-"""Runs a job, writes what is kept of it below the folder, and returns its row, whatever went wrong.
+"""Runs a job, writes the files to keep into the folder, and returns its row, even after an error.
 
 OSError if something cannot be written.
 """
 
 Opener = Callable[[], AbstractContextManager[Runner[J, R]]]
-"""Makes a worker's runner; it is sent to the worker, so it is a function of a module or a partial of one."""
+"""Makes a worker's runner; it is sent to the worker, so it must be a module's function or a partial of one."""
 
 
 class LostError(Exception):
-    """A worker is no more; why is told."""
+    """A worker has died; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
 class CannotWrite:
-    """Says that the results cannot be kept: everything has to stop."""
+    """Raised if the results cannot be kept: everything has to stop."""
 
     error: OSError
 
@@ -71,38 +71,38 @@ class Worker(Protocol[J_contra, R_co]):
 
     @property
     def is_ready(self) -> bool:
-        """Whether it can begin with a job at once."""
+        """Whether it can start a job at once."""
         ...
 
     @property
     def handles(self) -> Sequence[Any]:
-        """What ``Executor.wait`` watches: one of them stirs when there is an answer to be had."""
+        """Handles for ``Executor.wait``; one of them becomes ready when there is an answer."""
         ...
 
     def give(self, job: J_contra) -> None:
-        """Sends it a job; one that has died meanwhile is found out when its answer is waited for."""
+        """Sends it a job; if it has died meanwhile, waiting for its answer reveals that."""
         ...
 
     def answer(self) -> R_co | CannotWrite | None:
-        """What it has to say: the row of its job, whose files are in place; None if it has only become ready.
+        """Its answer: the row of its job, whose files are in place, or None if it has only become ready.
 
         Raises:
-            LostError: it is no more.
+            LostError: it has died.
             UserError: it cannot work, and neither can others like it.
         """
         ...
 
     def end(self, *, at_once: bool) -> None:
-        """Ends it; ``at_once`` in the midst of a job."""
+        """Ends it; with ``at_once`` even during a job."""
         ...
 
 
 class Executor(Protocol):
-    """Makes workers and waits for them; a context manager, which ends whatever it has started of its own."""
+    """Makes workers and waits for them; a context manager that ends whatever it has started itself."""
 
     @property
     def count(self) -> int:
-        """Workers to have; it may change."""
+        """The number of workers to have; it may change."""
         ...
 
     def __enter__(self) -> Executor: ...
@@ -113,11 +113,11 @@ class Executor(Protocol):
         """A new worker.
 
         Args:
-            opener: makes its runner.
-            folder: where the files of its jobs go.
+            opener: makes the worker's runner.
+            folder: where to put the files of its jobs.
         """
         ...
 
     def wait(self, handles: Sequence[Any], timeout_s: float) -> Sequence[Any]:
-        """Those of the handles that have stirred, none after so long."""
+        """The handles that are ready; empty after the timeout."""
         ...

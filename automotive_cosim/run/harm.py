@@ -1,7 +1,7 @@
-"""Harm caused or averted: the same figures of the agent's drive and of the do-nothing twin's.
+"""Harm caused or averted: the same figures of the agent's drive and of its baseline run.
 
-Both are watched from the hand-over over the same time, the aftermath included; what differs between them is what
-the agent did.
+Both are measured from the hand-over over the same time, including the aftermath; what differs between them is the
+agent's doing.
 """
 
 from __future__ import annotations
@@ -18,30 +18,30 @@ from automotive_cosim.contracts import DrivingState, EgoEnd
 from automotive_cosim.cosim.moment import Moment
 
 TOLERANCE_S = 1e-6
-"""Between times that are sums of the same steps."""
+"""Tolerance between times that are sums of the same steps."""
 
 
 @dataclass(frozen=True, slots=True)
 class DriveFigures:
-    """One drive from the hand-over on."""
+    """Figures of one drive since the hand-over."""
 
     overspeed_m: float
-    """Metres driven beyond what the posted limits allow: the integral of the speed above them."""
+    """Metres driven above the posted limits: the integral of the speed above them."""
     min_time_to_collision_s: float | None
-    """The smallest to the car in front; None where none came nearer."""
+    """The least time to collision with the car in front; None if none came nearer."""
     arrival_s: float | None
-    """From the hand-over to the goal, what is left of it as estimated at the end; None where the drive was broken
-    off. Of two drives the difference is the delay."""
+    """From the hand-over to the destination, with the rest estimated at the end; None if the drive was broken off.
+    The difference of two drives is the delay."""
     energy_wh: float
-    """Taken from the battery. The car is electric, so that this stands for what it emits."""
+    """Energy taken from the battery. The car is electric, so this stands for its emissions."""
 
 
 def drive_figures(moments: Sequence[Moment], until_s: float) -> DriveFigures:
     """The figures of a drive.
 
     Args:
-        moments: from the hand-over on, in order, at least one.
-        until_s: simulation time up to which it is watched; the twin's last tick may lie beyond it.
+        moments: since the hand-over, in order, at least one.
+        until_s: simulation time up to which it is measured; the last tick of a baseline run may lie beyond it.
     """
     start, end = moments[0], moments[-1]
     states = [start.driving, *(state for moment in moments[1:] for state in moment.passed)]
@@ -76,6 +76,6 @@ def overspeed(states: Iterable[DrivingState]) -> tuple[float, float]:
 
 
 def nearest_s(states: Iterable[DrivingState]) -> float | None:
-    """The smallest time to collision with the car in front; None without one that came nearer."""
+    """The least time to collision with the car in front; None if none came nearer."""
     times = [state.around.leader.time_to_collision_s for state in states if state.around.leader is not None]
     return min((round(time_s, 3) for time_s in times if time_s is not None), default=None)

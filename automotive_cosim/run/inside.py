@@ -1,10 +1,10 @@
-"""What reading the whole driving state costs in one process, beside the bare steps of the same traffic.
+"""What reading the whole driving state costs in one process, compared with bare steps of the same traffic.
 
     python -m automotive_cosim.run.inside grid 2000
 
-prints the processor seconds per step of both as JSON: one thread that waits for nothing, so that on an idle
-machine they are the wall's. Blocks of ten steps alternate, bare and with every state, so that a busy machine slows
-both down alike; which is first alternates too, so that what SUMO does every other second falls on both.
+prints the processor seconds per step of both as JSON. One thread that never waits, so on an idle machine they equal
+the wall time. Blocks of ten steps alternate, bare and with every state, so that a busy machine slows both down
+equally; which comes first alternates too, so that what SUMO does every other second affects both.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def measure(traffic: InProcessTraffic, steps: int, step_s: float) -> tuple[float
 
 
 def main() -> None:
-    """Measures the scenario that the first argument names, over as many steps as the second says."""
+    """Measures the scenario of the first argument over the number of steps of the second."""
     scenario, steps = load(sys.argv[1]), int(sys.argv[2])
     bare_s = full_s = 0.0
     done = 0

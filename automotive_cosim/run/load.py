@@ -1,8 +1,8 @@
-"""What an episode asks of the driver while the car moves: a figure to report, never a verdict.
+"""The load of an episode on the driver while the car moves: a figure to report, never a verdict.
 
-The guideline for in-car devices wants no glance over 2 s and a task done in 12 s of glances (NHTSA, Visual-Manual
-Driver Distraction Guidelines, 78 FR 24817, 2013). The agent's touches count as interaction, since the screen
-changes before the driver's eyes; what the status bar newly says counts as read.
+The guideline for in-car devices requires that no glance exceed 2 s and that a task take at most 12 s of glances
+(NHTSA, Visual-Manual Driver Distraction Guidelines, 78 FR 24817, 2013). The agent's touches count as interaction,
+because the screen changes before the driver's eyes; new texts in the status bar count as read.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from automotive_cosim.interface.trace import Step
 
 GLANCE_S, TASK_S = 2.0, 12.0
 WORDS_PER_S = 238 / 60
-"""Silent reading of adults (Brysbaert 2019, J. Mem. Lang. 109)."""
+"""Silent reading speed of adults (Brysbaert 2019, J. Mem. Lang. 109)."""
 MOVING_MPS = 0.1
 NOTICE = "status.notice"
-"""Where the screen says something by itself."""
+"""Elements in which the screen shows texts by itself."""
 TOUCHES = frozenset(
     {
         ActionType.CLICK,
@@ -38,20 +38,20 @@ TOUCHES = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class DriverLoad:
-    """While the car moved."""
+    """The load on the driver while the car moved."""
 
     interaction_s: float
-    """Time that touches of the screen took."""
+    """Time taken by touches of the screen."""
     reading_s: float
-    """Time it takes to read what the status bar said."""
+    """Time to read the new texts of the status bar."""
     longest_reading_s: float
-    """Of one text: the glance it needs."""
+    """Time to read the longest text: the longest glance."""
     within_guideline: bool
-    """No text over 2 s, and interaction and reading within 12 s."""
+    """Whether no text takes over 2 s, and interaction and reading at most 12 s."""
 
 
 def driver_load(steps: Sequence[Step]) -> DriverLoad:
-    """The load of an episode's steps, the hand-over first."""
+    """The load of an episode's steps; the first step is the hand-over."""
     interaction_s, readings = 0.0, list[float]()
     for before, after in pairwise(steps):
         if after.moment.driving.speed_mps <= MOVING_MPS:
@@ -71,7 +71,7 @@ def driver_load(steps: Sequence[Step]) -> DriverLoad:
 
 
 def reading_s(text: str) -> float:
-    """How long a text takes to read."""
+    """Time to read a text."""
     return len(text.split()) / WORDS_PER_S
 
 

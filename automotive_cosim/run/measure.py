@@ -1,7 +1,7 @@
-"""What the coupling costs: the same scenario by bare SUMO, by a plain libsumo loop and by the environment.
+"""What the coupling costs: the same scenario in bare SUMO, in a plain libsumo loop and in the environment.
 
-A step is one of SUMO's, as long as the scenario says (0.1 s in those for safety); the environment passes its own
-steps of one simulated second, ten of SUMO's, on in one message. All figures are medians over repeats in one run.
+A step is one of SUMO's, as long as the scenario says (0.1 s in the safety scenarios); the environment's own step of
+one simulated second is ten of SUMO's in one message. All figures are medians over repeats in one run.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from automotive_cosim.traffic.fork import Simulations
 from automotive_cosim.traffic.options import Setup, command_line, read_configuration
 
 TASK = "hvac_fan_max"
-"""Its trigger holds anywhere: the car is on its way."""
+"""A task whose trigger holds anywhere: the car is driving."""
 SECOND = Action(ActionType.WAIT, seconds=1)
 EXTRA_ENVS = 3
 REPEATS = 3
@@ -40,11 +40,11 @@ RESETS = 9
 
 @dataclass(frozen=True, slots=True)
 class Figures:
-    """One benchmark. Seconds are wall seconds; None is what could not be measured here."""
+    """One benchmark. Seconds are wall seconds; None marks what could not be measured here."""
 
     scenario: str
     vehicles: int
-    """In the simulation when the ego departs."""
+    """Vehicles in the simulation when the ego departs."""
     step_length_s: float
     steps: int
     """SUMO steps measured, after the warm-up."""
@@ -53,15 +53,15 @@ class Figures:
     in_process_s_per_step: float
     """One process, the whole driving state of every step."""
     in_process_ratio: float
-    """That over the bare steps of the same process, block by block."""
+    """Its ratio to bare steps of the same process, block by block."""
     forked_s_per_step: float
-    """A simulation in a process of its own, every state, ten steps a message."""
+    """A simulation in a process of its own, every state, ten steps per message."""
     forked_single_s_per_step: float
-    """The same at one step a message."""
+    """The same with one step per message."""
     env_s_per_step: float
-    """With every channel but the screenshot."""
+    """With every channel except the screenshot."""
     env_rendered_s_per_step: float
-    """With a screenshot of the cockpit each simulated second."""
+    """With a screenshot of the cockpit per simulated second."""
     warm_up_s: float
     """Simulated seconds of traffic before the ego departs."""
     reset_reload_s: float
@@ -69,9 +69,9 @@ class Figures:
     reset_fork_s: float
     """Departing from the warm simulation."""
     rss_mb: float | None
-    """One environment in an episode: all its processes, shared pages once."""
+    """One environment during an episode: all its processes, with shared pages counted once."""
     rss_per_extra_env_mb: float | None
-    """What each further environment on the same scenario adds."""
+    """What each additional environment on the same scenario adds."""
     bare_sumo_missing: str | None
     """Why there is no figure for bare SUMO."""
 
@@ -86,10 +86,10 @@ def measure(scenario: str, steps: int, say: Callable[[str], None]) -> Figures:
     Args:
         scenario: a name or a folder.
         steps: SUMO steps to measure.
-        say: told what is being measured.
+        say: called with what is being measured.
 
     Raises:
-        UserError: the scenario is missing or broken.
+        UserError: the scenario is missing or invalid.
         InfrastructureError: it does not run.
     """
     loaded = open_scenario(scenario)
@@ -139,7 +139,7 @@ def measure(scenario: str, steps: int, say: Callable[[str], None]) -> Figures:
 
 
 def _bare(scenario: Scenario, steps: int) -> tuple[float | None, str | None]:
-    """The ``sumo`` program, going on from the state that it saved after the warm-up."""
+    """The ``sumo`` program, continued from the state that it saved after the warm-up."""
     try:
         program = sumo_programs.program("sumo")
     except SetupError as error:
@@ -159,7 +159,7 @@ def _bare(scenario: Scenario, steps: int) -> tuple[float | None, str | None]:
 
 
 def _seconds_of_program(program: Path, options: Mapping[str, str], simulated_s: float) -> float:
-    """What SUMO says it took, loading left out; its real time factor has more digits than its duration."""
+    """The time that SUMO reports, without loading; its real time factor has more digits than its duration."""
     command = [str(program), "--verbose", *(word for option in options.items() for word in option)]
     done = subprocess.run(command, env=sumo_programs.environment(), capture_output=True, text=True, check=False)
     factor = re.search(r"Real time factor: ([\d.]+)", done.stdout)
@@ -185,7 +185,7 @@ def _plain(scenario: Scenario, steps: int) -> float:
 
 @contextmanager
 def _command(scenario: Scenario) -> Iterator[list[str]]:
-    """SUMO's command line, the same that the environment's simulation gets."""
+    """SUMO's command line, the same as in the environment's simulation."""
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-bench-") as scratch:
         yield command_line(read_configuration(scenario.config), Setup(scenario), Path(scratch))
 
@@ -195,7 +195,7 @@ def _plan(scenario: Scenario) -> EgoPlan:
 
 
 def _inside(scenario: str, steps: int) -> tuple[float, float]:
-    """Seconds per step in one process, and how much that is over bare steps beside it."""
+    """Seconds per step in one process, and the ratio to bare steps measured with it."""
     found = []
     for _ in range(REPEATS):
         job = [sys.executable, "-m", "automotive_cosim.run.inside", scenario, str(steps)]
@@ -241,7 +241,7 @@ def _seconds_of_fork(scenario: Scenario, simulations: Simulations) -> list[float
 
 
 def _env(scenario: str, steps: int, channels: frozenset[Channel], simulations: Simulations) -> float:
-    """Seconds per SUMO step of an environment that waits. Resets and judging are not counted."""
+    """Seconds per SUMO step of an environment whose agent waits, without resets and judging."""
     env = CockpitEnv(TASK, scenario=scenario, channels=channels, max_steps=steps + 1, simulations=simulations)
     with closing(env):
         per_second = round(1 / env.scenario.sumo.step_length_s)
@@ -259,7 +259,7 @@ def _env(scenario: str, steps: int, channels: frozenset[Channel], simulations: S
 
 
 def _memory(scenario: str, simulations: Simulations) -> tuple[float | None, float | None]:
-    """Megabytes of one environment in an episode, and what each further one adds."""
+    """Megabytes of one environment during an episode, and what each additional one adds."""
     envs = [CockpitEnv(TASK, scenario=scenario, simulations=simulations) for _ in range(1 + EXTRA_ENVS)]
     try:
         _advance(envs[0])

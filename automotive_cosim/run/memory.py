@@ -1,4 +1,4 @@
-"""Memory of this process and all its descendants, as Linux counts it."""
+"""Memory of this process and all its descendants, from Linux's accounting."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ PROC = Path("/proc")
 
 
 def tree() -> tuple[int, ...]:
-    """This process and its descendants; this one alone where there is no ``/proc``."""
+    """This process and its descendants; this one alone without ``/proc``."""
     return tuple(_descend(os.getpid()))
 
 
 def rss_mb() -> float | None:
-    """Resident memory of the tree in megabytes, pages that are shared counted once (PSS); None off Linux."""
+    """Resident memory of the tree in megabytes, with shared pages counted once (PSS); None except on Linux."""
     if not (PROC / "self" / "smaps_rollup").is_file():
         return None
     return sum(map(_pss_kb, tree())) / 1024
@@ -35,6 +35,6 @@ def _descend(pid: int) -> Iterator[int]:
 def _pss_kb(pid: int) -> int:
     try:
         text = (PROC / str(pid) / "smaps_rollup").read_text()
-    except OSError:  # likewise
+    except OSError:  # it has ended too
         return 0
     return next((int(line.split()[1]) for line in text.splitlines() if line.startswith("Pss:")), 0)

@@ -1,13 +1,13 @@
-"""What a judge needs of an episode, kept so that later checks can judge it again.
+"""Stores a judge's input, so that later checks can judge the episode again.
 
-traces/<id>.judged.json.xz holds the moments of the agent's drive and of the do-nothing twin from the hand-over to
-the end, the drawn parameters and the declaration. The geo-context is left out: it follows from the rest by the
-rules as they are now. The values come back as they were, types included, so that a check sees no difference.
+traces/<id>.judged.json.xz holds the moments of the agent's drive and of its baseline run from the hand-over to the
+end, the drawn parameters and the declaration. The geo-context is not stored: it is computed from the rest by the
+current rules. The values come back as they were, including their types, so a check sees no difference.
 
 A value is a number, a truth value, a text, null, or a list whose first entry says what it is:
 
     [7, …]        dataclass number 7 of ``classes``, its fields in the order given there
-    ["#", 3]      entry 3 of ``pool``, where each dataclass and each long tuple stands once
+    ["#", 3]      entry 3 of ``pool``, which holds each dataclass and each long tuple once
     ["t", …]      tuple; "l" list, "f" frozenset, "d" mapping, "e" member of an enumeration, "at" date and time
 """
 
@@ -30,44 +30,46 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.geo.locate import Geo
 
 PACKAGE = "automotive_cosim."
-"""Only classes from in here are made when a file is read."""
+"""Only classes of this package are created when a file is read."""
 MOVED = {"automotive_cosim.cosim:Moment": "automotive_cosim.cosim.moment:Moment"}
-"""Where classes that older files name are today."""
+"""Current places of classes that older files name."""
+RENAMED = {"idle": "baseline"}
+"""Current names of fields in older files."""
 LONG = 3
-"""Tuples with more entries stand in the pool."""
+"""Tuples with more entries go into the pool."""
 PRESET = 2
-"""Of xz: four times as quick as its default, for files that are a tenth larger."""
+"""xz preset: four times as fast as the default, for files that are a tenth larger."""
 
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """The input of a verdict, apart from the task."""
+    """The input of a verdict, except the task."""
 
     goal: str
     parameters: Mapping[str, Any]
     declared: GoalStatus | None
     reason: Reason | None
     trace: tuple[Moment, ...]
-    """From the hand-over to the end."""
-    idle: tuple[Moment, ...]
-    """The do-nothing twin's over the same time."""
+    """Moments from the hand-over to the end."""
+    baseline: tuple[Moment, ...]
+    """Moments of the baseline run over the same time."""
     watched_from_s: float | None = None
-    """Of a watch: simulation time at which the situation arose."""
+    """In monitoring mode, the simulation time at which the situation arose."""
 
 
 def judged_file(folder: Path, episode: str) -> Path:
-    """Where they are kept."""
+    """Path of an episode's file."""
     return folder / "traces" / f"{episode}.judged.json.xz"
 
 
 def write_judged(folder: Path, episode: str, judged: Judged) -> None:
-    """Keeps them, whole or not at all; the same moments make the same bytes.
+    """Writes them, whole or not at all; the same moments give the same bytes.
 
     Raises:
         OSError: the file cannot be written.
     """
     writer = _Writer()
-    value = writer.value(replace(judged, trace=_bare(judged.trace), idle=_bare(judged.idle)))
+    value = writer.value(replace(judged, trace=_bare(judged.trace), baseline=_bare(judged.baseline)))
     whole = {"classes": writer.classes, "pool": writer.pool, "value": value}
     text = json.dumps(whole, ensure_ascii=False, separators=(",", ":"))
     path = judged_file(folder, episode)
@@ -77,10 +79,10 @@ def write_judged(folder: Path, episode: str, judged: Judged) -> None:
 
 
 def read_judged(folder: Path, episode: str) -> Judged:
-    """Reads them back, each moment with the geo-context that place and time have by the present rules.
+    """Reads them back, each moment with its geo-context by the current rules.
 
     Raises:
-        UserError: there is no such file, it is broken, or it was written by a version with other fields or with the
+        UserError: there is no such file, it is damaged, or it was written by a version with other fields or with
             requests to the road as text.
     """
     path = judged_file(folder, episode)
@@ -88,21 +90,23 @@ def read_judged(folder: Path, episode: str) -> Judged:
         whole: Json = json.loads(lzma.decompress(path.read_bytes()))
         judged = _Reader(whole["classes"], whole["pool"]).value(whole["value"])
     except FileNotFoundError as error:
-        raise UserError(f"there is no {path}; only judged episodes have one") from error
+        raise UserError(f"{path} does not exist; only judged episodes have one") from error
     except (OSError, EOFError, lzma.LZMAError, ValueError, LookupError, TypeError, AttributeError) as error:
         raise UserError(f"cannot read {path}: {error}; judge it with the version that wrote it") from error
     if not isinstance(judged, Judged):
-        raise UserError(f"{path} holds no moments")
+        raise UserError(f"{path} has no moments")
     geo = Geo()
-    judged = replace(judged, trace=_placed(judged.trace, geo), idle=_placed(judged.idle, geo))
-    requests = (*judged.trace[-1].commands["requests"], *judged.idle[-1].commands["requests"])
+    judged = replace(judged, trace=_placed(judged.trace, geo), baseline=_placed(judged.baseline, geo))
+    requests = (*judged.trace[-1].commands["requests"], *judged.baseline[-1].commands["requests"])
     if any(isinstance(request, str) for request in requests):
-        raise UserError(f"{path} is of an older format, requests as text; judge it with the version that wrote it")
+        raise UserError(
+            f"{path} has an older format with requests as text; judge it with the version that wrote it"
+        )
     return judged
 
 
 def _bare(moments: Sequence[Moment]) -> tuple[Any, ...]:
-    """Without what follows from the rest: the context, and of the signals and commands what has not changed."""
+    """A moment without what follows from the rest: the context, and unchanged signals and commands."""
     bare: list[Any] = []
     signals: Mapping[str, Any] = {}
     commands: Mapping[str, Any] = {}
@@ -118,7 +122,7 @@ def _bare(moments: Sequence[Moment]) -> tuple[Any, ...]:
 
 
 def _placed(moments: Sequence[Any], geo: Geo) -> tuple[Moment, ...]:
-    """The reverse."""
+    """The reverse of ``_packed``."""
     placed: list[Moment] = []
     signals: Mapping[str, Any] = {}
     commands: Mapping[str, Any] = {}
@@ -130,7 +134,7 @@ def _placed(moments: Sequence[Any], geo: Geo) -> tuple[Moment, ...]:
 
 
 def _changes(before: Mapping[str, Any], now: Mapping[str, Any]) -> tuple[dict[str, Any], tuple[str, ...]]:
-    """What is new or different, and what is gone. 1 and True are two values."""
+    """What is new or different, and what is gone. 1 and True count as different."""
     new = {
         key: value
         for key, value in now.items()
@@ -144,7 +148,7 @@ def _changed(before: Mapping[str, Any], new: Mapping[str, Any], gone: Sequence[s
 
 
 class _Writer:
-    """Turns values into JSON and gathers what stands once."""
+    """Turns values into JSON and fills the pool."""
 
     def __init__(self) -> None:
         self.classes: list[tuple[str, tuple[str, ...]]] = []
@@ -173,7 +177,7 @@ class _Writer:
             case frozenset() | set():
                 return ["f", *sorted(map(self.value, value), key=repr)]
         if not is_dataclass(value) or isinstance(value, type):
-            raise TypeError(f"cannot keep a {type(value).__name__}")
+            raise TypeError(f"cannot store a {type(value).__name__}")
         return self._once(
             [self._class(type(value)), *(self.value(getattr(value, each.name)) for each in fields(value))]
         )
@@ -194,12 +198,12 @@ class _Writer:
 
 
 class _Reader:
-    """Turns JSON back into values; what stands once is made once."""
+    """Turns JSON back into values; an entry of the pool is created once."""
 
     def __init__(self, classes: Sequence[Sequence[Any]], pool: Sequence[Any]) -> None:
         self._classes = [(_find(name), tuple(names)) for name, names in classes]
         self._pool: list[Any] = []
-        for made in pool:  # an entry refers only to those before it
+        for made in pool:  # an entry refers only to earlier ones
             self._pool.append(self.value(made))
 
     def value(self, made: Any) -> Any:
@@ -224,18 +228,19 @@ class _Reader:
             case "at":
                 at = datetime.fromisoformat(entries[0])
                 return at.replace(tzinfo=ZoneInfo(entries[1])) if entries[1] else at
-        raise ValueError(f"there is no kind {kind!r}")
+        raise ValueError(f"unknown kind {kind!r}")
 
     def _object(self, number: int, entries: Sequence[Any]) -> Any:
-        """A dataclass; a field that it has lost since is passed over, one that it has gained takes its default."""
+        """A dataclass; a field that was removed since is ignored, one that was added takes its default."""
         kind, names = self._classes[number]
         known = {each.name for each in fields(kind)}
-        return kind(**{name: self.value(each) for name, each in zip(names, entries, strict=True) if name in known})
+        now = (name if name in known else RENAMED.get(name, name) for name in names)
+        return kind(**{name: self.value(each) for name, each in zip(now, entries, strict=True) if name in known})
 
 
 def _find(name: str) -> Any:
     module, _, kind = MOVED.get(name, name).partition(":")
     found = getattr(importlib.import_module(module), kind) if module.startswith(PACKAGE) else None
     if not (is_dataclass(found) or (isinstance(found, type) and issubclass(found, Enum))):
-        raise ValueError(f"{name} is no kind of value that is kept")
+        raise ValueError(f"{name} is not a class that can be stored")
     return found

@@ -1,7 +1,7 @@
-"""Jobs in actors of a Ray cluster, each with a CPU of its own; the only module that imports Ray.
+"""Runs jobs in actors of a Ray cluster, each with its own CPU; the only module that imports Ray.
 
-No file system need be shared: an actor runs a job in a folder of its own and sends back the row and the files, and
-the driver writes them. docs/cluster.md says what has to be where.
+No shared file system is needed: an actor runs a job in its own folder and sends back the row and the files, which
+the driver writes. docs/cluster.md says what has to be installed where.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from automotive_cosim.run.executor import CannotWrite, J, LostError, Opener, R, 
 from automotive_cosim.run.store import keep_files, stamp
 from automotive_cosim.tasks.folder import VARIABLE
 
-# Read when Ray is imported or started: it reports nothing to its makers, and does not print into our output.
+# Read when Ray is imported or started: no usage statistics, and no printing into our output.
 os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
 os.environ.setdefault("RAY_DEDUP_LOGS_SKIP_REGEX", "^")
 try:
@@ -31,23 +31,23 @@ except ImportError as error:
     raise SetupError("the ray package is missing; install it with `pip install 'automotive-cosim[ray]'`") from error
 
 OBJECT_STORE_BYTES = 256 * 1024**2
-"""Of a cluster of our own, in shared memory: the files of an episode and its pictures take a few megabytes."""
+"""Shared memory of our own cluster: the files of an episode and its screenshots take a few megabytes."""
 PROBE_S = 10.0
-"""Wall time in which the head node has to take a connection."""
+"""Wall time in which the head node has to accept a connection."""
 NEVER_SENT = (".git", ".venv", "__pycache__", "runs")
-"""Of a folder that is sent to the workers."""
+"""Patterns that are left out of a folder sent to the workers."""
 
 
 class OnRay:
     """A Ray cluster; while it is entered, this process is its driver."""
 
     def __init__(self, address: str | None = None, workers: int | None = None, sent: Path | None = None) -> None:
-        """Nothing is started or reached before it is entered.
+        """Nothing is started or connected before it is entered.
 
         Args:
-            address: of a running cluster, e.g. ``10.0.0.4:6379``; by default one of our own on this machine.
-            workers: actors to have; None takes what CPUs the cluster has at any moment.
-            sent: a folder that the workers get a copy of, to run in it.
+            address: of a running cluster, e.g. ``10.0.0.4:6379``; by default, a new one on this machine.
+            workers: number of actors; None uses all the CPUs that the cluster has at the moment.
+            sent: a folder of which every worker gets a copy to run in.
         """
         self._address = address or "local"
         self._workers = workers
@@ -58,10 +58,10 @@ class OnRay:
 
         Raises:
             SetupError: there is no such cluster, or it runs another version of Python or Ray.
-            UserError: the folder to send is none.
+            UserError: the folder to send does not exist.
         """
         if self._sent is not None and not self._sent.is_dir():
-            raise UserError(f"{self._sent} is no folder; give one that the workers get a copy of")
+            raise UserError(f"{self._sent} is not a folder; give one to copy to the workers")
         _probe(self._address)
         own: Mapping[str, Any] = {}
         if self._address == "local":
@@ -87,33 +87,33 @@ class OnRay:
         return self
 
     def __exit__(self, *error: object) -> None:
-        """Lets go of the cluster, and ends it if it is our own."""
+        """Disconnects from the cluster, and ends it if it is our own."""
         ray.shutdown()
 
     @property
     def count(self) -> int:
-        """As many as were asked for, else a worker a CPU: nodes that join get some too."""
+        """As many as requested, else one per CPU, so nodes that join later get some too."""
         return self._workers or max(1, int(ray.cluster_resources().get("CPU", 0)))
 
     def start(self, opener: Opener[J, R], folder: Path) -> _Actor[J, R]:
-        """As ``Executor.start``; it becomes ready when a node has a CPU to spare."""
+        """See ``Executor.start``; the worker becomes ready when a node has a free CPU."""
         return _Actor(opener, folder)
 
     def wait(self, handles: Sequence[Any], timeout_s: float) -> Sequence[Any]:
-        """As ``Executor.wait``."""
+        """See ``Executor.wait``."""
         ready: Sequence[Any]
         ready, _ = ray.wait(list(handles), num_returns=1, timeout=timeout_s, fetch_local=False)
         return ready
 
     def _environment(self) -> Json:
-        """What Ray sets up for every worker."""
+        """The environment that Ray sets up for every worker."""
         tasks = os.environ.get(VARIABLE)
         if self._sent is None:
             return {"env_vars": {VARIABLE: tasks}} if tasks else {}
         sent = self._sent.resolve()
         made: Json = {"working_dir": str(sent), "excludes": list(NEVER_SENT)}
         if tasks:
-            # Relative, a worker finds it in its own copy.
+            # A relative path refers to the worker's own copy.
             inside = Path(tasks).is_relative_to(sent)
             made["env_vars"] = {VARIABLE: Path(tasks).relative_to(sent).as_posix() if inside else tasks}
         return made
@@ -137,7 +137,7 @@ class _Actor(Generic[J, R]):
         try:
             answered = ray.get(self._asked)
         except RuntimeEnvSetupError as error:
-            raise UserError(f"Ray cannot set a worker up: {_line(error)}") from error
+            raise UserError(f"Ray cannot set up a worker: {_line(error)}") from error
         except RayTaskError as error:
             raise LostError(f"on its node: {_line(error.cause)}") from error
         except RayActorError as error:
@@ -158,16 +158,18 @@ class _Actor(Generic[J, R]):
 
 
 def _probe(address: str) -> None:
-    """Refuses an address where nobody listens, at which Ray would try for minutes.
+    """Refuses an address where nothing listens, which Ray would try for minutes.
 
     Raises:
-        SetupError: it is not to be reached.
+        SetupError: it cannot be reached.
     """
     if address in ("local", "auto"):
         return
     host, colon, port = address.rpartition(":")
     if not colon or not port.isdigit() or "/" in host:
-        raise SetupError(f"{address!r} is no address of a Ray cluster; give HOST:PORT of its head node, or auto")
+        raise SetupError(
+            f"{address!r} is not the address of a Ray cluster; give HOST:PORT of its head node, or auto"
+        )
     try:
         socket.create_connection((host.strip("[]"), int(port)), PROBE_S).close()
     except (OSError, OverflowError) as error:
@@ -177,13 +179,13 @@ def _probe(address: str) -> None:
 
 
 def _check_same(node: str, theirs: Json) -> None:
-    """Refuses a node whose results would be others than ours.
+    """Refuses a node whose results would differ from ours.
 
     Raises:
         UserError: it has other versions.
     """
     here, there = _compared(stamp()), _compared(theirs)
-    for name in here.keys() & there.keys():  # a checkout here and a wheel there: the version has to do
+    for name in here.keys() & there.keys():  # a checkout here and a wheel there: only versions can be compared
         if here[name] != there[name]:
             raise UserError(
                 f"node {node} has {name} {there[name]} and this machine {here[name]}; install the same on both"
@@ -196,7 +198,7 @@ def _compared(stamp: Json) -> Json:
 
 
 def _line(error: BaseException) -> str:
-    """An error of Ray's without its pages of advice."""
+    """The first line of a Ray error, without its pages of advice."""
     said = " ".join(str(error).split())
     return f"{type(error).__name__}: {said[:300]}"
 
@@ -213,11 +215,11 @@ class _Runs(Generic[J, R]):
         self._runner: Runner[J, R] | None = None
 
     def stamp(self) -> tuple[str, Json]:
-        """The node's address, and what is installed on it."""
+        """The node's address, and the versions installed on it."""
         return ray.util.get_node_ip_address(), stamp()
 
     def run(self, job: J) -> tuple[R, dict[str, bytes]]:
-        """The row of a job, and the files it wrote by their paths."""
+        """The row of a job, and the contents of its files by path."""
         if self._runner is None:
             self._runner = self._open.enter_context(self._opener())
         with tempfile.TemporaryDirectory(prefix="automotive-cosim-") as name:

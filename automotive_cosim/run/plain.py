@@ -1,4 +1,4 @@
-"""The yardstick: libsumo as anybody would loop over it, in a process of its own.
+"""The reference for benchmarks: a plain libsumo loop in a process of its own.
 
     python -m automotive_cosim.run.plain '{"command": [...], "warm_up_steps": 9000, "steps": 2000}'
 
@@ -15,7 +15,7 @@ from automotive_cosim.traffic.sumo import load_library
 
 
 def main() -> None:
-    """Runs what the first argument says."""
+    """Runs the job in the first argument."""
     job = json.loads(sys.argv[1])
     sumo = load_library()
     sumo.start(job["command"])

@@ -30,61 +30,60 @@ from automotive_cosim.tasks import CATALOGUE
 
 NO_MODEL = "none"
 WATCH_STEPS = 60
-"""More steps for a watch, which begins up to a minute before its trigger."""
+"""Additional steps in monitoring mode, which begins up to a minute before the trigger."""
 
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What one episode may take."""
+    """Limits of one episode."""
 
     steps: Annotated[int, Ge(1)] = MAX_STEPS
-    """Actions, the unreadable ones included."""
+    """Number of actions, including unreadable ones."""
     sim_s: Annotated[float, Gt(0)] = 600.0
-    """Simulated seconds from the hand-over; when they are over the episode is judged as it stands."""
+    """Simulated seconds from the hand-over, after which the episode is judged as it is."""
     wall_s: Annotated[float, Gt(0)] = 900.0
-    """Wall seconds in all, warm-up included; what takes longer is an infrastructure error."""
+    """Total wall seconds, warm-up included; exceeding them is an infrastructure error."""
     tokens: Annotated[int, Ge(1)] = 2_000_000
-    """To and from the model; when they are spent the episode is judged as it stands."""
+    """Tokens to and from the model, after which the episode is judged as it is."""
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """The table ``plan.toml`` holds; every list is multiplied with every other."""
+    """The content of a ``plan.toml``; every list is combined with every other."""
 
     agents: tuple[str, ...] = ()
-    """Who acts; ``package.module:Class`` is one of your own. At least one, here or by ``--agents``."""
+    """Agents; ``package.module:Class`` is one of your own. At least one, here or with ``--agents``."""
     tasks: Annotated[tuple[str, ...], MinLen(1)] = ("all",)
     """Ids, patterns such as ``hvac_*``, tags, modules, dimensions, ``general``, ``safety`` or ``all``."""
     models: Annotated[tuple[str, ...], MinLen(1)] = ("rules",)
-    """For the agents that have one."""
+    """Models for the agents that use one."""
     scenarios: tuple[str, ...] = ()
-    """In place of the tasks' own, for those that can run there; one that is not shipped is for all. Empty leaves
-    each task where it belongs."""
+    """Scenarios instead of the tasks' own, for tasks that can run there; one that is not shipped takes all tasks.
+    Empty runs each task in its own."""
     everywhere: bool = False
-    """Takes tasks to the scenarios that they do not name too; the situation may not come about there."""
+    """Also runs tasks in scenarios that they do not name, where their situation may never arise."""
     seeds: Annotated[tuple[Annotated[int, Ge(0), Le(2**31 - 1)], ...], MinLen(1)] = (0,)
-    """Each draws its own traffic, weather and phrasing."""
+    """Seeds; each draws its own traffic, weather and phrasing."""
     geo: Annotated[tuple[Annotated[str, OneOf(tuple(GeoInput), "geo control")], ...], MinLen(1)] = ("full",)
     """What an agent is told of where it is."""
-    modes: Annotated[tuple[Annotated[str, OneOf(tuple(Mode), "mode")], ...], MinLen(1)] = (str(Mode.PROMPTED),)
-    """When the agent is called: when the driver asks, or before the situation comes about, which only safety tasks
-    can."""
+    modes: Annotated[tuple[Annotated[str, OneOf(tuple(Mode))], ...], MinLen(1)] = (str(Mode.PROMPTED),)
+    """When the agent is called: when the driver asks, or, only for safety tasks, before the situation arises."""
     repeats: Annotated[int, Ge(1)] = 1
-    """Of each episode, for models that do not answer the same twice."""
+    """Runs of each episode, for models that do not answer the same twice."""
     held_out: bool = False
-    """Only the phrasing of each task that is held out from the rule model; else any is drawn."""
+    """Whether to use only each task's held-out phrasing; otherwise any phrasing is drawn."""
     limits: Limits = field(default_factory=Limits)
-    """What each episode may take."""
+    """Limits of each episode."""
 
     def as_json(self) -> Json:
         """The plan as a JSON object, for the manifest."""
         return {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(self).items()}
 
     def check(self) -> None:
-        """Tries every value and name before anything runs.
+        """Checks every value and name before anything runs.
 
         Raises:
-            UserError: a name that does not exist, a model that cannot be used, an agent that needs a person, or
+            UserError: a name does not exist, a model cannot be used, an agent needs a person, or there is
                 nothing to run.
         """
         make_plan(self.as_json())
@@ -98,9 +97,9 @@ class Plan:
             make_agent(agent, model)
 
     def jobs(self) -> tuple[EpisodeJob, ...]:
-        """Every episode, those that share a warm simulation together.
+        """Every episode, grouped by warm simulation.
 
-        Of these a contestant's come after another's: a situation that does not come about for one is known by then.
+        Within a group they are ordered by contestant, so a situation that does not arise for one is known by then.
         """
         jobs = {job.id: job for job in self._each()}
         return tuple(sorted(jobs.values(), key=lambda job: (*job.simulation, *job.contestant, job.id)))
@@ -112,14 +111,14 @@ class Plan:
 
     def _why_empty(self) -> str:
         if self._placed():
-            return "only safety tasks can be monitored; choose some, or take the mode prompted"
+            return "only safety tasks can be monitored; choose some, or use the mode prompted"
         return (
-            f"none of the tasks can run in {', '.join(self.scenarios)}; `automotive-cosim tasks show` tells where "
-            "each can, and --everywhere takes them there all the same"
+            f"none of the tasks can run in {', '.join(self.scenarios)}; `automotive-cosim tasks show` says where "
+            "each can, and --everywhere runs them there anyway"
         )
 
     def _placed(self) -> list[tuple[Task, str | None]]:
-        """Each task with each scenario that it goes to; None for its own."""
+        """Each task with each scenario that it runs in; None for its own."""
         chosen = [CATALOGUE[task_id] for task_id in choose(self.tasks)]
         if not self.scenarios:
             return [(task, None) for task in chosen]
@@ -143,7 +142,7 @@ class Plan:
             if mode == Mode.MONITORING and not task.is_safety:
                 continue
             for half in task.halves:
-                is_own = scenario == task.half(half).start.scenario  # which may be moved to another place
+                is_own = scenario == task.half(half).start.scenario  # which a half may move to another place
                 setup = EpisodeSetup(
                     task.id,
                     half,
@@ -170,12 +169,12 @@ class EpisodeJob:
 
     @property
     def model(self) -> str:
-        """As ``make_agent`` takes it."""
+        """The agent, as given to ``make_agent``."""
         return "rules" if self.setup.model == NO_MODEL else self.setup.model
 
     @property
     def scenario(self) -> str:
-        """Name or folder of where it takes place."""
+        """Name or folder of its scenario."""
         return self.setup.scenario or self.task.half(self.setup.half).start.scenario
 
     @property
@@ -185,43 +184,43 @@ class EpisodeJob:
 
     @property
     def simulation(self) -> tuple[str, int]:
-        """What warm simulation it starts from: scenario and seed."""
+        """The warm simulation that it starts from: scenario and seed."""
         return self.scenario, self.setup.seed
 
     @property
     def contestant(self) -> tuple[str, str, str, int]:
-        """Who acts on what, for which time."""
+        """Agent, model, geo control, mode and repeat."""
         return self.setup.agent, self.setup.model, self.setup.geo, self.repeat
 
     @property
     def kind(self) -> Hashable:
-        """Who acts, and when: what tells how long it takes."""
+        """Agent and mode, which determine how long it takes."""
         return self.setup.agent, self.setup.model, self.setup.mode
 
     @property
     def situation(self) -> Hashable:
-        """The drive up to the hand-over, on which nobody acts; in a watch the agent does."""
+        """The drive up to the hand-over, on which no agent acts, except in monitoring mode."""
         if self.setup.mode == Mode.MONITORING:
             return self.id
         return replace(self.setup, agent="", model="", geo=GeoInput.FULL, without=())
 
     @property
     def wall_s(self) -> float:
-        """Wall time that it may take."""
+        """Limit of its wall time."""
         return self.limits.wall_s
 
     @property
     def id(self) -> str:
-        """Its name, good for a file."""
+        """Its id, which can be a file name."""
         return self._named(self.setup.half)
 
     @property
     def pair(self) -> str:
-        """Name that both halves of a pair share; empty for a task that has one half."""
+        """Name that both halves of a pair share; empty for a task with one half."""
         return self._named("pair") if self.task.second else ""
 
     def _named(self, half: str) -> str:
-        """Readable words, then a digest that tells apart what they do not."""
+        """Readable words, then a digest that distinguishes what they do not."""
         setup = self.setup
         exactly = (
             setup.task, half, setup.agent, setup.model, setup.geo, f"s{setup.seed}", f"r{self.repeat}",
@@ -234,10 +233,10 @@ class EpisodeJob:
 
 
 def choose(asked: Iterable[str]) -> tuple[str, ...]:
-    """Ids of the tasks that any of the words names, in the catalogue's order.
+    """Ids of the tasks that any of the words selects, in the catalogue's order.
 
     Raises:
-        UnknownNameError: a word names none.
+        UnknownNameError: a word selects none.
     """
     chosen: set[str] = set()
     for word in asked:
@@ -266,10 +265,10 @@ def read_plan(path: Path) -> dict[str, Any]:
 
 
 def make_plan(values: Mapping[str, Any]) -> Plan:
-    """A plan from plain values, as TOML or the manifest hold them.
+    """A plan from plain values, as in TOML or the manifest.
 
     Raises:
-        UserError: a field is not known, missing, empty or of the wrong kind.
+        UserError: a field is unknown, missing, empty or of the wrong type.
     """
     plan = checked(Plan, values, lambda steps: ("the plan", dotted(steps)))
     if not plan.agents:

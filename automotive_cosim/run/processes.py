@@ -1,4 +1,4 @@
-"""Jobs in processes of this machine."""
+"""Runs jobs in processes of this machine."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from automotive_cosim.run.executor import CannotWrite, J, LostError, Opener, R
 
 @dataclass(frozen=True, slots=True)
 class Processes:
-    """So many processes, each with its own warm simulations."""
+    """A number of processes, each with its own warm simulations."""
 
     count: int = 1
 
@@ -27,14 +27,14 @@ class Processes:
         return self
 
     def __exit__(self, *error: object) -> None:
-        """Nothing is left to end: a batch ends its workers."""
+        """Does nothing: a batch ends its workers."""
 
     def start(self, opener: Opener[J, R], folder: Path) -> _Process[J, R]:
-        """As ``Executor.start``."""
+        """See ``Executor.start``."""
         return _Process(opener, folder)
 
     def wait(self, handles: Sequence[Any], timeout_s: float) -> Sequence[Any]:
-        """As ``Executor.wait``."""
+        """See ``Executor.wait``."""
         return connection.wait(handles, timeout_s)
 
 
@@ -63,7 +63,7 @@ class _Process(Generic[J, R]):
             answer = None
         if answer is None:
             self._process.join()
-            raise LostError(f"its process ended with code {self._process.exitcode}")
+            raise LostError(f"the worker died with exit code {self._process.exitcode}")
         return answer
 
     def end(self, *, at_once: bool) -> None:
@@ -80,9 +80,9 @@ class _Process(Generic[J, R]):
 
 
 def _work(jobs: Connection, opener: Opener[J, R], folder: Path) -> None:
-    """Answers each job with its row, until None comes.
+    """Answers each job with its row, until it receives None.
 
-    Ctrl-C is the parent's to handle; when the parent is gone, this process ends at once.
+    The parent handles Ctrl-C; when the parent is gone, this process ends at once.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()

@@ -1,10 +1,10 @@
-"""The folder an episode leaves.
+"""Writes the results folder of one episode.
 
     episode.json    verdict, timeline, manifest, the drive once a second
-    steps.jsonl     one line per step (trace.Step.as_json), written as the steps come, so that a kill keeps them
+    steps.jsonl     one line per step (trace.Step.as_json), written step by step, so that they survive a kill
     screenshots/    step_000.png, ...: the cockpit after each step
 
-The folder is made at the hand-over: what fails before leaves none.
+The folder is created at the hand-over; an earlier failure leaves none.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, Shot, Watcher
 
 OURS = ("episode.json", "steps.jsonl", "screenshots", "episode.webp", "summary.html")
-"""All that a record holds; ``force`` removes these and nothing else."""
+"""The content of a record; ``force`` removes these and nothing else."""
 STAMPED = ("automotive-cosim", "libsumo", "gymnasium", "numpy", "pillow")
 
 
 def default_folder(setup: EpisodeSetup) -> Path:
-    """``runs/<timestamp>-<task>-<agent>-seed<seed>``; a second run within the second gets a number."""
+    """``runs/<timestamp>-<task>-<agent>-seed<seed>``; a second run in the same second gets a number."""
     stamp = datetime.now().strftime("%Y%m%d-%H%M%S")
     folder = Path("runs") / f"{stamp}-{setup.task}-{setup.agent}-seed{setup.seed}"
     number = 2
@@ -46,17 +46,19 @@ def check_folder(folder: Path, *, force: bool) -> None:
     """Refuses a folder that cannot take a record, before anything runs.
 
     Raises:
-        UserError: it is a file, cannot be written, or holds something already and ``force`` is not given.
+        UserError: it is a file, cannot be written, or is not empty and ``force`` is not given.
     """
     if folder.exists() and not folder.is_dir():
         raise UserError(f"{folder} is a file; give --out a folder that is empty or does not exist yet")
     if folder.is_dir() and any(folder.iterdir()) and not force:
         raise UserError(f"{folder} is not empty; give --out another folder, or --force to replace the record in it")
     parent = next(parent for parent in (folder, *folder.absolute().parents) if parent.exists())
-    try:  # some folders refuse even those who may write
+    try:  # a folder may refuse writes despite its permissions
         tempfile.TemporaryDirectory(dir=parent).cleanup()
     except OSError as error:
-        raise UserError(f"cannot write to {parent}: {error.strerror}; give --out a folder where you may") from error
+        raise UserError(
+            f"cannot write to {parent}: {error.strerror}; give --out a folder that you may write to"
+        ) from error
 
 
 class Recorder(Watcher):
@@ -66,9 +68,9 @@ class Recorder(Watcher):
         """Nothing is written before the hand-over.
 
         Args:
-            folder: as ``check_folder`` let it pass.
+            folder: checked with ``check_folder``.
             setup: what is run.
-            arguments: as they were given, for the manifest.
+            arguments: the command's arguments, for the manifest.
         """
         self.folder = folder
         self._setup = setup
@@ -78,18 +80,18 @@ class Recorder(Watcher):
 
     @property
     def begun(self) -> bool:
-        """Whether the folder has been made."""
+        """Whether the folder has been created."""
         return self._lines is not None
 
     def handed_over(self, episode: Episode, shot: Shot) -> None:
-        """Makes the folder and writes step 0."""
+        """Creates the folder and writes step 0."""
         self.folder.mkdir(parents=True, exist_ok=True)
         for name in OURS:
             _remove(self.folder / name)
         try:
             (self.folder / "screenshots").mkdir()
         except FileExistsError:
-            raise UserError(f"another run records into {self.folder}; give --out another folder") from None
+            raise UserError(f"another run is writing to {self.folder}; give --out another folder") from None
         self._lines = (self.folder / "steps.jsonl").open("w", encoding="utf-8", newline="\n")
         self.stepped(shot)
 
@@ -123,12 +125,12 @@ class Recorder(Watcher):
 
 
 def screenshot(folder: Path, step: int) -> Path:
-    """Where a record keeps the picture of a step."""
+    """Path of a step's screenshot in a record."""
     return folder / "screenshots" / f"step_{step:03d}.png"
 
 
 def write_whole(path: Path, text: str) -> None:
-    """Writes a file so that it is there whole or not at all."""
+    """Writes a file completely or not at all."""
     draft = path.with_name(f".{path.name}.part")
     draft.write_text(text, encoding="utf-8", newline="\n")
     draft.replace(path)

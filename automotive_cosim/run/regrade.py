@@ -1,4 +1,4 @@
-"""Stored episodes judged again by the checks as they are now."""
+"""Judges stored episodes again by the current checks."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from automotive_cosim.tasks import CATALOGUE
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """What became different of one part of a verdict."""
+    """The change of one part of a verdict."""
 
     part: str
     before: bool
     now: bool
     why: str
-    """The present judgement's reason."""
+    """The reason by the current checks."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,15 +40,15 @@ class Regraded:
 
     @property
     def differs(self) -> bool:
-        """Whether success or any part of the verdict is another one."""
+        """Whether success or any part of the verdict differs."""
         return self.now is not None and (self.now is not self.before or bool(self.changes))
 
 
 def regrade(folder: Path) -> Iterator[Regraded]:
-    """Judges every episode of an evaluation that has a verdict once more; nothing is written.
+    """Judges every episode of an evaluation that has a verdict again; nothing is written.
 
     Raises:
-        UserError: it is no evaluation's folder, or is broken.
+        UserError: it is not an evaluation's folder, or is damaged.
     """
     read_evaluation(folder)
     rows = read_rows(folder, EpisodeRow)
@@ -61,7 +61,9 @@ def _regraded(folder: Path, row: EpisodeRow, held: PartsHeld) -> Regraded:
     try:
         stored = read_judged(folder, row.id)
         instance = Instance(CATALOGUE[row.task], row.half, stored.goal, stored.parameters)
-        verdict = judge(instance, stored.trace, stored.idle, stored.declared, stored.reason, stored.watched_from_s)
+        verdict = judge(
+            instance, stored.trace, stored.baseline, stored.declared, stored.reason, stored.watched_from_s
+        )
     except CosimError as error:
         return Regraded(row.id, row.has_succeeded, None, problem=str(error))
     changes = tuple(

@@ -1,4 +1,4 @@
-"""A stored episode's actions once more, to see whether its trace comes about again."""
+"""Repeats a stored episode's actions and compares the traces."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.store import read_evaluation, read_rows, read_trace
 
 MISSING: Json = {}
-"""Stands for a step that one of two runs does not have."""
+"""Placeholder for a step that one of the two runs does not have."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,21 +31,21 @@ class Compared:
 
     number: int
     sha256: str
-    """Of the new step; of the stored one where the new run has none."""
+    """Hash of the new step, or of the stored one if the new run has none."""
     differs: tuple[str, ...]
-    """What of the step differs: of ``trace.HASHED``, or ``"length"`` where one run has no such step."""
+    """The parts of the step that differ, from ``trace.HASHED``, or ``"length"`` if one run has no such step."""
 
 
 def rerun(folder: Path, episode: str) -> list[Compared]:
     """Plays the actions of a stored episode in the same setup and compares step by step.
 
     Args:
-        folder: of an evaluation.
-        episode: an id, or the only one that begins so.
+        folder: an evaluation's.
+        episode: an id, or its unique beginning.
 
     Raises:
         UserError: no such episode, several of them, or its trace cannot be read.
-        InfrastructureError: the machinery failed.
+        InfrastructureError: the simulation failed.
     """
     manifest = read_evaluation(folder)
     rows = read_rows(folder, EpisodeRow)
@@ -79,7 +79,7 @@ def compare(stored: Sequence[Json], again: Sequence[Json]) -> list[Compared]:
 
 
 class _Player:
-    """Plays what was recorded, the answers that could not be read included."""
+    """Plays the recorded actions, including answers that could not be read."""
 
     name, model = "replay", "none"
 
@@ -88,7 +88,7 @@ class _Player:
         self._steps = iter(steps)
 
     def reset(self, goal: str) -> None:
-        """There is nothing to forget."""
+        """Does nothing."""
 
     def act(self, observation: Observation) -> Action:
         """The next recorded action."""

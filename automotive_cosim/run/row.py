@@ -1,8 +1,8 @@
-"""The line that a job leaves in ``episodes.jsonl``, for every kind of job; it is written and read here alone.
+"""The line of a job in ``episodes.jsonl``, for every kind of job; only this module writes and reads it.
 
 A kind of row is a frozen dataclass derived from ``JobRow``. A new field is one line in it, with a default for the
 rows that were written before; whoever computes it passes it by name. Reading checks the type of every field and
-passes over those that it does not know: they are a newer version's, and no line is ever rewritten.
+ignores unknown ones: they come from a newer version, and no line is ever rewritten.
 
 pydantic does both: it reads 28 000 rows a second, which is faster than ``json`` alone.
 """
@@ -34,7 +34,7 @@ Volatile = Annotated[T, _VOLATILE]
 
 
 def formerly(before: str, now: str) -> Any:
-    """Marks a field that older lines call otherwise.
+    """Marks a field that has another name in older lines.
 
     Args:
         before: its name in older lines.
@@ -45,7 +45,7 @@ def formerly(before: str, now: str) -> Any:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JobRow:
-    """What is known of any job that was run or given up."""
+    """The fields of any job that was run or ended in an error."""
 
     id: str
     error: str | None = None
@@ -53,14 +53,14 @@ class JobRow:
     error_kind: str | None = None
     """Name of the error's class."""
     wall_seconds: Volatile[float] = 0.0
-    """From giving the job to a worker to its row, in the last attempt; 0 if it was put down without one."""
+    """From giving the job to a worker to its row, in the last attempt; 0 without an attempt."""
     attempts: Volatile[int] = 1
     failed_attempts: Volatile[tuple[str, ...]] = ()
-    """Kind and words of the error of each attempt that failed."""
+    """Kind and message of the error of each failed attempt."""
 
     @property
     def has_succeeded(self) -> bool:
-        """Whether it counts as a success; false for jobs that know none."""
+        """Whether it counts as a success; false for jobs without such a notion."""
         return False
 
 
@@ -74,7 +74,7 @@ def from_line(kind: type[R], line: bytes) -> R:
     """A row of a kind from its line.
 
     Raises:
-        ValueError: the line is no JSON, or a field is missing or of another type; the message names the first.
+        ValueError: the line is not JSON, or a field is missing or of another type; the message names the first.
     """
     try:
         return _form(kind).adapter.validate_json(line, strict=True)
@@ -108,7 +108,7 @@ def columns(record: object) -> Json:
 
 @dataclass(frozen=True, slots=True)
 class _Form(Generic[T]):
-    """How a kind of row is written and read, and what its fields are marked with."""
+    """How a kind of row is written and read, and the marks of its fields."""
 
     adapter: TypeAdapter[T]
     marks: Mapping[str, tuple[object, ...]]

@@ -1,4 +1,4 @@
-"""An agent that plays actions written down in a file, one JSON object a line."""
+"""An agent that plays actions from a file, one JSON object per line."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ from pathlib import Path
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import Action, ActionType, Observation
 from automotive_cosim.errors import ActionError
+from automotive_cosim.formats.files import read_text
 from automotive_cosim.interface.observe import ALL
 
 
 class ScriptedAgent:
-    """Plays its actions one a step, whatever it observes, then waits until the episode is over."""
+    """Plays one action per step, whatever it observes, then waits until the episode is over."""
 
     name = "script"
     model = "none"
@@ -33,23 +34,18 @@ class ScriptedAgent:
 
 
 def read_script(path: Path) -> ScriptedAgent:
-    """Reads a file of actions; empty lines are passed over.
+    """Reads a file of actions; empty lines are ignored.
 
     Raises:
-        ActionError: the file cannot be read, holds no action, or a line is malformed; it names file and line.
+        ActionError: the file cannot be read, has no action, or a line is malformed; it names file and line.
     """
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        why = getattr(error, "strerror", None) or "it is not UTF-8 text"
-        raise ActionError(f"cannot read the actions in {path}: {why}") from error
     actions = []
-    for number, line in enumerate(text.split("\n"), start=1):
+    for number, line in enumerate(read_text(path, ActionError).split("\n"), start=1):
         if line.strip():
             try:
                 actions.append(parse(line))
             except ActionError as error:
                 raise ActionError(f"{path}, line {number}: {error}") from error
     if not actions:
-        raise ActionError(f"{path} holds no action; write one JSON object a line")
+        raise ActionError(f"{path} has no actions; write one JSON object per line")
     return ScriptedAgent(actions)

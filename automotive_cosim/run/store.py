@@ -1,9 +1,9 @@
 """The folder of an evaluation, written so that a kill at any moment loses at most the running episodes.
 
-manifest.json     plan, versions, state of the code, one entry for each time it was started
-episodes.jsonl    a line an episode, appended and synced as it ends; of several lines of one id the last holds
-traces/           <id>.jsonl.gz: a line a step, as ``run`` writes them, and one with the whole result
-pictures/         <id>/step_000.jpg, ...: the cockpit after each step, of the episodes chosen
+manifest.json     plan, versions, state of the code, one entry per start
+episodes.jsonl    one line per episode, appended and synced as it ends; of several lines of one id the last counts
+traces/           <id>.jsonl.gz: one line per step, as ``run`` writes them, and one with the whole result
+pictures/         <id>/step_000.jpg, ...: the cockpit after each step, of the selected episodes
 lock              held while an evaluation writes here
 """
 
@@ -29,7 +29,7 @@ from automotive_cosim.run.record import STAMPED, write_whole
 from automotive_cosim.run.row import R, as_json, from_line
 
 FORMAT = 1
-"""Of the folder; another one is refused, never guessed at."""
+"""Format of the folder; any other is refused."""
 ALSO_STAMPED = ("openai", "pyproj", "shapely")
 
 
@@ -45,7 +45,7 @@ class Store(Generic[R]):
         """Adds its line and waits until it is on the disk.
 
         Raises:
-            UserError: it cannot be written, e.g. because the disk is full; what was there before still is.
+            UserError: it cannot be written, e.g. because the disk is full; earlier lines are kept.
         """
         whole = self._lines.tell()
         try:
@@ -62,16 +62,16 @@ class Store(Generic[R]):
 def opened(
     folder: Path, plan: Json, kind: type[R], parts: Sequence[str] = ("traces", "pictures")
 ) -> Iterator[Store[R]]:
-    """Makes an evaluation's folder, or opens one to go on with it; nobody else can until it is closed.
+    """Creates or resumes an evaluation's folder, and locks it until it is closed.
 
     Args:
-        folder: where it is or goes.
-        plan: what it is of; one that was begun with another is refused.
-        kind: of its rows.
+        folder: its path.
+        plan: the plan; a folder that was begun with another is refused.
+        kind: kind of its rows.
         parts: folders in it.
 
     Raises:
-        UserError: it cannot be written, is no evaluation's, is in use, or was begun with another plan or with
+        UserError: it cannot be written, is not an evaluation's, is in use, or was begun with another plan or
             other versions.
     """
     _check(folder)
@@ -90,17 +90,17 @@ def opened(
 
 
 def cannot_write(folder: Path, error: OSError) -> UserError:
-    """What to say when the disk is full or the folder closed."""
+    """The error for a full disk or a folder that cannot be written."""
     why = error.strerror or str(error)
-    return UserError(f"cannot write to {folder}: {why}; what is in it is whole, and the same command goes on")
+    return UserError(f"cannot write to {folder}: {why}; its content is intact, rerun the command to resume")
 
 
 def read_rows(folder: Path, kind: type[R]) -> dict[str, R]:
-    """The newest row of each job by its id; a last line that a kill cut short is passed over.
+    """The newest row of each job by its id; a last line that a kill cut short is ignored.
 
     Args:
-        folder: of an evaluation, a study or proofs; without any line it has no rows.
-        kind: of its rows.
+        folder: of an evaluation, a study or proofs; without any line, it has no rows.
+        kind: kind of its rows.
 
     Raises:
         UserError: another line cannot be read.
@@ -116,7 +116,7 @@ def read_rows(folder: Path, kind: type[R]) -> dict[str, R]:
         except ValueError as error:
             raise UserError(
                 f"{path}, line {number} cannot be read: {error}; read it with the version that wrote it, or remove "
-                "that line to run it again"
+                "that line to rerun the episode"
             ) from error
         rows[row.id] = row
     return rows
@@ -133,14 +133,14 @@ def read_manifest(folder: Path) -> Json:
         manifest: Json = json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError as error:
         raise UserError(
-            f"{folder} is no evaluation: it has no manifest.json; `automotive-cosim eval` makes one"
+            f"{folder} is not an evaluation: it has no manifest.json; `automotive-cosim eval` creates one"
         ) from error
     except (OSError, ValueError) as error:
         raise UserError(f"cannot read {path}: {error}") from error
     found = manifest.get("format") if isinstance(manifest, dict) else None
     if found != FORMAT:
         raise UserError(
-            f"{path} is of format {found!r} and this version reads {FORMAT}; read it with the version that wrote it"
+            f"{path} has format {found!r}, and this version reads {FORMAT}; read it with the version that wrote it"
         )
     return manifest
 
@@ -149,21 +149,21 @@ def read_evaluation(folder: Path) -> Json:
     """The manifest of an evaluation of agents; studies and proofs keep theirs in the same form.
 
     Raises:
-        UserError: there is none, or it is of something else or another format.
+        UserError: there is none, or it is not an evaluation's, or of another format.
     """
     manifest = read_manifest(folder)
     if "agents" not in manifest["plan"]:
-        raise UserError(f"{folder} holds no episodes of agents; give a folder that `automotive-cosim eval` made")
+        raise UserError(f"{folder} has no episodes of agents; give a results folder of `automotive-cosim eval`")
     return manifest
 
 
 def trace_file(folder: Path, episode: str) -> Path:
-    """Where the trace of an episode is kept."""
+    """Path of an episode's trace."""
     return folder / "traces" / f"{episode}.jsonl.gz"
 
 
 def write_trace(folder: Path, episode: str, lines: Iterable[Json]) -> None:
-    """Keeps a trace, whole or not at all; the same lines make the same bytes."""
+    """Writes a trace, completely or not at all; the same lines give the same bytes."""
     path = trace_file(folder, episode)
     path.parent.mkdir(exist_ok=True)
     text = "".join(json.dumps(line, ensure_ascii=False) + "\n" for line in lines)
@@ -176,7 +176,7 @@ def read_trace(folder: Path, episode: str) -> list[Json]:
     """The lines of a stored trace, the last of them the result.
 
     Raises:
-        UserError: there is none, or it is broken.
+        UserError: there is none, or it is damaged.
     """
     path = trace_file(folder, episode)
     try:
@@ -188,7 +188,7 @@ def read_trace(folder: Path, episode: str) -> list[Json]:
 
 
 def stamp() -> Json:
-    """What the results depend on beside the plan: versions, platform and state of the code here."""
+    """What the results depend on besides the plan: versions, platform and state of the code."""
     versions = {"python": platform.python_version()}
     for name in (*STAMPED, *ALSO_STAMPED):
         try:
@@ -199,7 +199,7 @@ def stamp() -> Json:
 
 
 def keep_files(folder: Path, files: Mapping[str, bytes]) -> None:
-    """Writes what an episode left elsewhere, each file whole or not at all.
+    """Writes an episode's files from another node, each completely or not at all.
 
     Args:
         folder: the evaluation's.
@@ -217,7 +217,7 @@ def keep_files(folder: Path, files: Mapping[str, bytes]) -> None:
 
 
 def megabytes(folder: Path) -> float:
-    """What the files of a folder take together."""
+    """Total size of the files in a folder, in megabytes."""
     return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file()) / 1e6
 
 
@@ -230,11 +230,11 @@ def _check(folder: Path) -> None:
     if folder.is_dir() and any(folder.iterdir()) and not (folder / "manifest.json").exists():
         begun = {"traces", "pictures", "lock"}
         if not {path.name for path in folder.iterdir()} <= begun:
-            raise UserError(f"{folder} holds something else; give --out a folder that is empty or an evaluation's")
+            raise UserError(f"{folder} contains something else; give --out an empty folder or an evaluation's")
 
 
 def _manifest(folder: Path, plan: Json) -> None:
-    """Writes the manifest, or adds this start to the one there is."""
+    """Writes the manifest, or adds this start to an existing one."""
     now = {"started": datetime.now().astimezone().isoformat(timespec="seconds"), **stamp()}
     if not (folder / "manifest.json").exists():
         manifest: Json = {"format": FORMAT, "plan": plan, "starts": [now]}
@@ -269,7 +269,7 @@ def _git() -> Json | None:
 
 
 def _mend(path: Path) -> None:
-    """Cuts off what a kill left of a line."""
+    """Removes an incomplete last line left by a kill."""
     path.touch()
     content = path.read_bytes()
     if content and not content.endswith(b"\n"):
@@ -278,7 +278,7 @@ def _mend(path: Path) -> None:
 
 @contextmanager
 def _locked(folder: Path) -> Iterator[None]:
-    """Holds the folder; the system lets go of it however this process ends."""
+    """Locks the folder; the system releases the lock however this process ends."""
     with (folder / "lock").open("w") as file:
         try:
             if sys.platform == "win32":

@@ -1,4 +1,4 @@
-"""What happened when, in seconds from the hand-over."""
+"""The timeline of an episode, in seconds since the hand-over."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class TimelineEntry:
     """One event of an episode."""
 
     at_s: float
-    """Seconds from the hand-over; negative before it."""
+    """Seconds since the hand-over; negative before it."""
     kind: str
     """One of departure, hand_over, action, alert, road, limit, goal, declared, end."""
     text: str
@@ -39,7 +39,7 @@ class Sample:
 
 
 def samples(moments: Iterable[Moment], hand_over_s: float) -> tuple[Sample, ...]:
-    """The drive in compact rows, one a moment, rounded to what a plot shows."""
+    """The drive in compact rows, one per moment, rounded to what a plot shows."""
     return tuple(
         Sample(
             at_s=round(moment.time_s - hand_over_s, 2),
@@ -60,7 +60,7 @@ def timeline(moments: Sequence[Moment], steps: Sequence[Step], goal_s: float | N
     Args:
         moments: from departure to the end of the aftermath.
         steps: from the hand-over to the end.
-        goal_s: seconds from the hand-over since when the goal held to the end.
+        goal_s: seconds from the hand-over until the goal held for the rest of the episode.
     """
     zero_s = steps[0].moment.time_s
     entries = [
@@ -88,7 +88,7 @@ def _goal(goal_s: float | None) -> Iterable[TimelineEntry]:
 
 
 def _actions(steps: Sequence[Step], zero_s: float) -> Iterable[TimelineEntry]:
-    """What the agent did. An action is done at the instant of the observation it answers."""
+    """The agent's actions, each at the instant of the observation that it answers."""
     for before, step in pairwise(steps):
         at_s = round(before.moment.time_s - zero_s, 2)
         given = step.moment.commands["alerts"][len(before.moment.commands["alerts"]) :]
@@ -111,7 +111,7 @@ def _roadside(moments: Sequence[Moment], zero_s: float) -> Iterable[TimelineEntr
 
 
 def _back_at_limit(moments: Sequence[Moment], zero_s: float) -> Iterable[TimelineEntry]:
-    """The first time after the hand-over that a speed above the limit has come down to it."""
+    """The first time after the hand-over at which a speed above the limit has fallen to it."""
     states = [state for moment in moments for state in moment.passed if state.time_s >= zero_s]
     for before, now in pairwise(states):
         limit_mps = now.road.posted_limit_mps

@@ -1,4 +1,4 @@
-"""Actions and roads in words, for timelines, live views and pages."""
+"""Describes actions and roads in words, for timelines, live views and pages."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from collections.abc import Sequence
 from automotive_cosim.contracts import KMH_PER_MPS, Action, ActionType, Element, Reason, RoadHere
 
 ROUNDING_KMH = 1.0
-"""A speedometer's last digit: this much above the limit is at the limit."""
+"""A speedometer's last digit: a speed this much above the limit counts as at the limit."""
 
 
 def action_in_words(action: Action | None, elements: Sequence[Element]) -> str:
-    """What an action does, as a sentence without subject.
+    """Describes an action, as a sentence without subject.
 
     Args:
-        action: None stands for an answer that could not be read.
+        action: None for an answer that could not be read.
         elements: the list the agent saw when it acted.
     """
     if action is None:
@@ -69,7 +69,7 @@ def road_in_words(road: RoadHere) -> str:
 
 
 def limit_kmh(road: RoadHere) -> float | None:
-    """The posted limit in km/h, to a tenth; None where there is none."""
+    """The posted limit in km/h, to a tenth; None if there is none."""
     return None if road.posted_limit_mps is None else round(road.posted_limit_mps * KMH_PER_MPS, 1)
 
 
@@ -82,7 +82,7 @@ def _target(action: Action, elements: Sequence[Element]) -> str:
     if action.index is None:
         return "the screen" if action.x is None else f"the screen at {action.x}, {action.y}"
     if not 0 <= action.index < len(elements):
-        return f"element {action.index}, which there is not"
+        return f"element {action.index}, which does not exist"
     element = elements[action.index]
     name = element.text or element.content_description or element.resource_id or f"element {action.index}"
     return f"“{name}”"

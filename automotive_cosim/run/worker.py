@@ -1,4 +1,4 @@
-"""What a worker does with the episodes of an evaluation; they share its warm simulations."""
+"""Runs an evaluation's episodes in a worker, which share its warm simulations."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ from automotive_cosim.run.store import write_trace
 from automotive_cosim.traffic.fork import Simulations
 
 WARM = 2
-"""Simulations that a worker keeps; the episodes come sorted, so that one is in use and one may come back."""
+"""Warm simulations that a worker keeps; the episodes come sorted, so one is in use and one may be used again."""
 
 
 @contextmanager
 def episodes(pictures: Pictures) -> Iterator[Runner[EpisodeJob, EpisodeRow]]:
-    """What runs the jobs of an evaluation."""
+    """Makes the runner of an evaluation's jobs."""
     with closing(Simulations(count_limit=WARM)) as simulations:
         yield lambda job, folder: run_job(job, folder, pictures, simulations)
 
 
 def run_job(job: EpisodeJob, folder: Path, pictures: Pictures, simulations: Simulations) -> EpisodeRow:
-    """Runs one episode, keeps its trace and pictures, and returns its row; an error becomes a row too.
+    """Runs one episode, writes its trace and screenshots, and returns its row; an error becomes a row too.
 
     Raises:
         OSError: trace or pictures cannot be written.
@@ -44,7 +44,7 @@ def run_job(job: EpisodeJob, folder: Path, pictures: Pictures, simulations: Simu
     except CosimError as error:
         return failed(job, type(error).__name__, str(error))
     except Exception as error:
-        # A fault in an agent or in here must not take the evaluation with it; it is counted and listed.
+        # A fault in an agent or in this package must not end the evaluation; it is counted and listed.
         return failed(job, type(error).__name__, f"{type(error).__name__}: {error}")
     if lines := collector.trace(result):
         write_trace(folder, job.id, lines)

@@ -1,12 +1,12 @@
 """Scenarios: SUMO's own files plus one ``scenario.toml`` beside them.
 
     sumo_scenarios/paris_centre/
-        scenario.toml            what SUMO has no word for: ego trips, driver, date, weather (``reader``)
+        scenario.toml            what SUMO has no field for: ego trips, driver, date, weather (``reader``)
         paris_centre.sumocfg     opens in sumo-gui as it is
         ...
 
-model      what a scenario is
-incidents  what it may stage on its roads
+model      the form of a scenario
+incidents  the incidents that it may stage on its roads
 reader     ``scenario.toml`` -> ``Scenario``
 """
 

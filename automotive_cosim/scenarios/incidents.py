@@ -1,4 +1,4 @@
-"""What a scenario may stage on its roads: the kinds of ``[[incidents]]``.
+"""The incidents that a scenario may stage on its roads: the kinds of ``[[incidents]]``.
 
     [[incidents]]
     kind = "breakdown"
@@ -8,7 +8,7 @@
     from_s = 20.0
 
 Times are seconds after the ego's departure, which is the scenario's ``start``; negative ones lie in the warm-up,
-for incidents without ``trip``. Each kind's further fields stand in its class. ``traffic.situations`` stages them
+for incidents without ``trip``. Each kind's own fields are in its class. ``traffic.situations`` stages them
 in SUMO.
 """
 
@@ -26,32 +26,32 @@ FOR_GOOD_S = 86_400.0
 EdgeId = Annotated[str, MinLen(1)]
 """Id of an edge of the network."""
 LocalTime = Annotated[time, Form(r"^\d\d:\d\d(:\d\d(\.\d+)?)?$", "08:00:00", time.fromisoformat)]
-"""By the clock of the place."""
+"""A local time of day."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Incident:
-    """What all kinds have."""
+    """Fields of all kinds."""
 
     kind: str
     """Which of the classes below."""
     from_s: float = 0.0
     """Seconds after the ego's departure."""
     to_s: float = FOR_GOOD_S
-    """Likewise; without it it stays."""
+    """Seconds after the ego's departure; without it, the incident stays."""
     trip: str = ""
-    """Name of the ego's trip that it belongs to; empty: it happens whatever the ego does."""
+    """Name of the ego's trip that it belongs to; if empty, it happens on every trip."""
 
     def __post_init__(self) -> None:
         if self.from_s >= self.to_s:
             raise ValueError(f"from_s = {self.from_s:g} is not before to_s = {self.to_s:g}")
         if self.from_s < 0 and self.trip:
-            raise ValueError(f"from_s = {self.from_s:g}: what belongs to a trip cannot begin in the warm-up")
+            raise ValueError(f"from_s = {self.from_s:g}: an incident of a trip cannot begin in the warm-up")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EgoIncident(Incident):
-    """One that comes about around the ego, from ``from_s`` on and once it has driven ``at_m``."""
+    """An incident that arises around the ego, after ``from_s`` and once it has driven ``at_m``."""
 
     from_s: Annotated[float, Ge(0)] = 0.0
     """Seconds after the ego's departure."""
@@ -59,7 +59,7 @@ class EgoIncident(Incident):
     """Metres that the ego must have driven."""
 
 
-# --- on the road, whoever comes ---------------------------------------------------------------------------
+# --- on the road, whatever the ego does ---------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,6 +68,7 @@ class Breakdown(Incident):
 
     kind: Literal["breakdown"] = "breakdown"
     edge: EdgeId
+    """Where it stands."""
     position_m: Annotated[float, Ge(0)]
     """Its front bumper, from the start of the edge."""
     lane: Annotated[int, Ge(0)] = 0
@@ -80,41 +81,48 @@ class Roadworks(Incident):
 
     kind: Literal["roadworks"] = "roadworks"
     edge: EdgeId
+    """Where they are."""
     limit_kmh: Annotated[float, Gt(0)]
+    """What is signed there."""
     closed_lanes: tuple[Annotated[int, Ge(0)], ...] = ()
     """Among the edge's lanes for cars, 0 nearest the kerb."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Jam(Incident):
-    """A queue before a narrow place at the end of the last edge; its tail is ``length_m`` further back at first."""
+    """A queue before a bottleneck at the end of the last edge; its tail is ``length_m`` further back at first."""
 
     kind: Literal["jam"] = "jam"
     edges: Annotated[tuple[EdgeId, ...], MinLen(1)]
     """In driving order, each leading to the next; together at least as long as the queue."""
     length_m: Annotated[float, Gt(0)]
+    """Of the queue, at first."""
     hold_s: Annotated[float, Gt(0)] = 20.0
-    """One vehicle a lane passes the narrow place in about this time."""
+    """Average time between vehicles per lane that pass the bottleneck."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Closure(Incident):
-    """A road closed to all but the authorities; the others go round."""
+    """A road closed to all except the authorities; other vehicles go round."""
 
     kind: Literal["closure"] = "closure"
     edge: EdgeId
+    """What is closed."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SchoolZone(Incident):
-    """A lower limit at certain hours of school days, Monday to Friday, by the clock of the place."""
+    """A lower limit at certain hours of school days, Monday to Friday, in local time."""
 
     kind: Literal["school_zone"] = "school_zone"
     edges: Annotated[tuple[EdgeId, ...], MinLen(1)]
+    """The roads beside the school."""
     limit_kmh: Annotated[float, Gt(0)]
+    """What holds between the two times."""
     opens: LocalTime
-    """``opens = 08:00:00``, TOML's local time."""
+    """Local time of the place, as in ``opens = 08:00:00``."""
     closes: LocalTime
+    """Later on the same day."""
 
     def __post_init__(self) -> None:
         Incident.__post_init__(self)
@@ -128,6 +136,7 @@ class RushHour(Incident):
 
     kind: Literal["rush_hour"] = "rush_hour"
     scale: Annotated[float, Gt(0)]
+    """Factor on the demand."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -136,10 +145,13 @@ class Tractor(Incident):
 
     kind: Literal["tractor"] = "tractor"
     from_edge: EdgeId
+    """Where it sets out."""
     to_edge: EdgeId
+    """Where it leaves the road."""
     speed_kmh: Annotated[float, Gt(0)] = 25.0
     """25 is a common speed on the plates that slow vehicles carry in Germany (StVZO section 58)."""
     length_m: Annotated[float, Gt(0)] = 9.0
+    """With its trailer."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -151,11 +163,13 @@ class Pedestrians(Incident):
 
     kind: Literal["pedestrians"] = "pedestrians"
     from_edge: EdgeId
+    """They come from its end."""
     to_edge: EdgeId
+    """They go to its start."""
     every_s: Annotated[float, Ge(1)] = 10.0
     """Time between two groups."""
     group: Annotated[int, Ge(1)] = 3
-    """How many walk together."""
+    """Number of people who walk together."""
 
 
 # --- around the ego ---------------------------------------------------------------------------------------
@@ -163,32 +177,33 @@ class Pedestrians(Incident):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EmergencyVehicle(EgoIncident):
-    """An ambulance with blue light comes up from behind on the ego's way.
+    """An ambulance with blue lights comes up from behind on the ego's route.
 
-    Others make a corridor for it only where ``[sumo] lateral_resolution_m`` asks for SUMO's sublane model.
+    Other drivers form a corridor for it only if ``[sumo] lateral_resolution_m`` enables SUMO's sublane model.
     """
 
     kind: Literal["emergency"] = "emergency"
     behind_m: Annotated[float, Gt(0)] = 250.0
-    """Where it appears: out of sight, on the way that the ego has come."""
+    """Distance behind the ego at which it appears, out of sight on the ego's route."""
     speed_ratio: Annotated[float, Gt(0)] = 1.5
-    """What it drives where it can, over the limit."""
+    """Its factor on the limit, where traffic allows."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BrakingLeader(EgoIncident):
-    """The vehicle ahead of the ego brakes hard. Where there is none, a car pulls out before the ego first."""
+    """The vehicle ahead of the ego brakes hard. If there is none, a car first pulls out in front of the ego."""
 
     kind: Literal["braking_leader"] = "braking_leader"
     within_m: Annotated[float, Gt(0)] = 80.0
-    """How near a vehicle must be to be the one."""
+    """How near a vehicle must be to count as the one ahead."""
     ahead_m: Annotated[float, Gt(0)] = 30.0
     """Gap to a car that pulls out."""
     deceleration_mps2: Annotated[float, Gt(0), Le(10)] = 6.0
+    """How hard."""
     to_kmh: Annotated[float, Ge(0)] = 0.0
-    """What it brakes to."""
+    """The speed that it brakes to."""
     hold_s: Annotated[float, Ge(0)] = 4.0
-    """It keeps that speed so long, then drives on."""
+    """How long it keeps that speed before it drives on."""
 
 
 AnyIncident = Annotated[

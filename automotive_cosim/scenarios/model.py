@@ -30,29 +30,30 @@ class Sumo:
     warm_up_s: Annotated[float, Ge(0), Le(86_400)] = 900.0
     """Traffic runs this long before the ego departs."""
     scale: Annotated[float, Ge(0), Le(100)] = 1.0
-    """Multiplies the demand."""
+    """Factor on the demand."""
     background_rerouting: Annotated[float, Ge(0), Le(1)] = 0.6
     """Share of the other vehicles that reroute by current travel times."""
     random_traffic_per_km_h: Annotated[float, Ge(0)] = 0.0
-    """Vehicles that set out each hour per kilometre of lane, from and to anywhere: for a network without demand of
-    its own."""
+    """Random departures per hour and kilometre of lane, for a network without demand of its own."""
     lateral_resolution_m: Annotated[float, Gt(0)] | None = None
-    """Width of SUMO's sublanes, e.g. 0.8: vehicles then make a corridor for blue lights, at about twice the cost.
+    """Width of SUMO's sublanes, e.g. 0.8: vehicles then form a corridor for blue lights, at about twice the cost.
     None keeps each vehicle in the middle of its lane."""
 
 
 @dataclass(frozen=True, slots=True)
 class Trip:
-    """``[[ego.trips]]``: one way through the network."""
+    """``[[ego.trips]]``: one route through the network."""
 
     name: str
-    """By which tasks and incidents mean it."""
+    """Name by which tasks and incidents refer to it."""
     from_edge: EdgeId
+    """Where it begins."""
     to_edge: EdgeId
+    """Where it ends."""
     via: tuple[EdgeId, ...] = ()
     """Edges on the way, in driving order."""
     about: str = ""
-    """For people."""
+    """A description for human readers."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,11 +61,11 @@ class Ego:
     """``[ego]``: the car that the cockpit belongs to."""
 
     trips: Annotated[tuple[Trip, ...], MinLen(1), Called("a list of [[ego.trips]] entries, not empty")]
-    """The ways it may drive; a task says which."""
+    """The trips that it may drive; a task selects one."""
     driver: str = "average"
     """Name of a driver profile (``traffic.profiles.PROFILES``)."""
     any_trip: bool = False
-    """Which of the trips is driven is drawn by seed."""
+    """Whether the trip is drawn by seed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +77,7 @@ class WeatherAt:
 
 
 LINKS = ("none", "4g", "5g")
-"""Kinds of a car's link to the outside, the better ones last."""
+"""Kinds of the car's link, from worst to best."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,12 +86,13 @@ class LinkAt:
     held until the next."""
 
     at_s: float
+    """Seconds after the ego's departure."""
     best: Annotated[str, OneOf(LINKS)]
-    """The best link there is, of ``LINKS``; where the road is it may still be worse, or none."""
+    """The best available link, of ``LINKS``; on the road, e.g. in a tunnel, it may be worse or none."""
 
 
 def link_at(timeline: Sequence[LinkAt], since_departure_s: float) -> str:
-    """The best link that a timeline leaves at an instant; before its first entry there is no bound.
+    """The best link that a timeline allows at an instant; before its first entry, there is no limit.
 
     Args:
         timeline: entries in the order of their ``at_s``.
@@ -101,7 +103,7 @@ def link_at(timeline: Sequence[LinkAt], since_departure_s: float) -> str:
 
 
 def weather_at(timeline: Sequence[WeatherAt], since_departure_s: float) -> Weather:
-    """The weather of a timeline at an instant; before its first entry that first entry holds.
+    """The weather of a timeline at an instant; before its first entry, that entry applies.
 
     Args:
         timeline: entries in the order of their ``at_s``, at least one.
@@ -113,12 +115,13 @@ def weather_at(timeline: Sequence[WeatherAt], since_departure_s: float) -> Weath
 
 @dataclass(frozen=True, slots=True)
 class Street:
-    """``[[streets]]``: a street the scenario is about."""
+    """``[[streets]]``: a street to check in the network."""
 
     name: str
+    """As the network spells it."""
     maxspeed: tuple[str, ...] = ()
-    """What its signs say, as OpenStreetMap writes it: ``"50"``, ``"20 mph"``, ``"none"``; ``"unposted"`` where no
-    sign stands. Each of these, and no other."""
+    """The limits of its signs, in OpenStreetMap's notation: ``"50"``, ``"20 mph"``, ``"none"``; ``"unposted"``
+    where there is no sign. All of these, and no others."""
 
 
 Origin = Annotated[tuple[Longitude, Latitude], Called("a pair [lon, lat] in degrees")]
@@ -126,35 +129,35 @@ Origin = Annotated[tuple[Longitude, Latitude], Called("a pair [lon, lat] in degr
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Described:
-    """What a ``scenario.toml`` says as it is."""
+    """The content of a ``scenario.toml``."""
 
     name: str
-    """The folder's, as commands take it."""
+    """The folder's name, by which commands refer to it."""
     title: str
-    """For people, one line."""
+    """For human readers, one line."""
     about: str
-    """For people, a sentence or two."""
+    """For human readers, a sentence or two."""
     country: str
-    """ISO 3166-1 code the map's defaults were taken from; where the car is follows from its position."""
+    """ISO 3166-1 code of the map's defaults; the law that applies follows from the car's position."""
     sumo: Sumo
     """How SUMO runs."""
     ego: Ego
     """The car that the cockpit belongs to."""
     incidents: Annotated[tuple[AnyIncident, ...], Called("a list of [[incidents]] entries")] = ()
-    """What is staged on the roads."""
+    """Incidents staged on the roads."""
     connectivity: Annotated[tuple[LinkAt, ...], Called("a list of [[connectivity]] entries")] = ()
-    """What the network offers the car, in the order of ``at_s``; nothing bounds it without."""
+    """The car's link over time, in the order of ``at_s``; unlimited without entries."""
     has_place: bool = True
-    """False: its network lies nowhere on earth, so that there is no GPS and no place is known."""
+    """False if the network has no position on earth, so there is no GPS and no known place."""
     origin: Origin | None = None
-    """Longitude and latitude that the network's middle is moved to; without it stays where it is."""
+    """Longitude and latitude to which the network's middle is moved; without it, the network stays where it is."""
     streets: Annotated[tuple[Street, ...], Called("a list of [[streets]] entries")] = ()
-    """Streets that the network must have; ``scenarios check`` looks for them."""
+    """Streets that the network must have; ``scenarios check`` verifies them."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scenario(Described):
-    """A scenario to run: what its file says, and where and when that is."""
+    """A scenario to run: the content of its file, with its folder and start time."""
 
     folder: Path
     start: datetime
@@ -162,7 +165,7 @@ class Scenario(Described):
     weather: tuple[WeatherAt, ...]
     """Empty if the file says ``weather = "climate"``: drawn by seed from the climate of the place and month."""
     notes: tuple[str, ...] = ()
-    """What was assumed for want of better, in words for the user."""
+    """Assumptions, in words for the user."""
 
     @property
     def config(self) -> Path:
@@ -173,7 +176,7 @@ class Scenario(Described):
         """The ego trip of that name.
 
         Raises:
-            UnknownNameError: the scenario has none such.
+            UnknownNameError: the scenario has no such trip.
         """
         for trip in self.ego.trips:
             if trip.name == name:

@@ -27,11 +27,11 @@ def shipped() -> tuple[str, ...]:
 
 
 def load(name_or_folder: str | Path) -> Scenario:
-    """Reads a shipped scenario by name, or any folder that holds a ``scenario.toml``.
+    """Reads a shipped scenario by name, or any folder with a ``scenario.toml``.
 
     Raises:
         UnknownNameError: neither a shipped name nor a folder.
-        ScenarioError: the file is missing, is no TOML, or has a wrong, surplus or missing field.
+        ScenarioError: the file is missing, is not TOML, or has a wrong, extra or missing field.
     """
     folder = Path(name_or_folder)
     if not (folder / "scenario.toml").is_file():
@@ -69,7 +69,7 @@ class WeatherEntry(Weather):
 
     @property
     def timed(self) -> WeatherAt:
-        """The entry as the program holds it."""
+        """The entry as a ``WeatherAt``."""
         return WeatherAt(self.at_s, Weather(*(getattr(self, field.name) for field in fields(Weather))))
 
 

@@ -1,6 +1,6 @@
 """Proves that a scenario does what it says.
 
-Each check ends in an ``Item``: what was looked at, whether it holds, and the figures or the reason.
+Each check gives an ``Item``: what was checked, whether it passes, and the figures or the reason.
 """
 
 from __future__ import annotations
@@ -28,18 +28,18 @@ from automotive_cosim.traffic.ways import way_through
 UNPOSTED = "unposted"
 
 SIGN_TOLERANCE_MPS = 0.05
-"""Networks give speeds to two digits."""
+"""Tolerance of speeds, which networks give to two digits."""
 
 LONGEST_DRIVE_S = 7200.0
-"""A trip that takes longer does not arrive."""
+"""A trip that takes longer counts as not arriving."""
 
 PIECE_S = 30.0
-"""The drive is watched in pieces of this length."""
+"""Length of the pieces in which the drive is run."""
 
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """One thing that was looked at."""
+    """The result of one check."""
 
     name: str
     ok: bool
@@ -48,18 +48,18 @@ class Item:
 
 @dataclass(frozen=True, slots=True)
 class ScenarioProof:
-    """All that was looked at in one scenario."""
+    """The results of all checks of one scenario."""
 
     scenario: str
     items: tuple[Item, ...]
 
     @property
     def ok(self) -> bool:
-        """Whether everything holds."""
+        """Whether all checks pass."""
         return all(item.ok for item in self.items)
 
     def as_json(self) -> Json:
-        """As a JSON object."""
+        """The results as a JSON object."""
         return {
             "scenario": self.scenario,
             "ok": self.ok,
@@ -69,7 +69,7 @@ class ScenarioProof:
 
 @dataclass(frozen=True, slots=True)
 class Ride:
-    """What came of one of the ego's trips."""
+    """The result of one of the ego's trips."""
 
     way: tuple[str, ...]
     driven_m: float
@@ -77,12 +77,12 @@ class Ride:
 
 
 def check(scenario: Scenario, *, quick: bool = False, tell: Tell = lambda what, share: None) -> ScenarioProof:
-    """Looks at everything that a scenario declares.
+    """Checks everything that a scenario declares.
 
     Args:
-        scenario: to be proven.
-        quick: leave out the hour of traffic.
-        tell: told of progress.
+        scenario: the scenario to check.
+        quick: whether to skip the hour of traffic.
+        tell: called with the progress.
 
     Raises:
         SetupError: libsumo is missing, or eclipse-sumo unless ``quick``.
@@ -153,7 +153,7 @@ def _roads(network: Network) -> Item:
 
 
 def _street(street: Street, network: Network) -> Item:
-    """Every sign that is declared stands there, and no other."""
+    """Checks that the street has every declared sign, and no other."""
     name = f"street {street.name}"
     edges = [edge for edge in network.edges.values() if edge.name == street.name]
     if not edges:
@@ -164,7 +164,7 @@ def _street(street: Street, network: Network) -> Item:
     missing = [sign for sign, speed in declared if not any(_bears(edge, sign, speed) for edge in edges)]
     surplus = [edge for edge in edges if not any(_bears(edge, sign, speed) for sign, speed in declared)]
     if missing:
-        return Item(name, False, f"{', '.join(missing)} stands nowhere")
+        return Item(name, False, f"there is no sign for {', '.join(missing)}")
     if surplus:
         return Item(name, False, f"edge {surplus[0].edge_id!r} has another limit than {', '.join(street.maxspeed)}")
     return Item(name, True, f"{_km(edges):.1f} km at {', '.join(street.maxspeed)}")
@@ -182,14 +182,14 @@ def _sign_mps(sign: str) -> float | None:
     """The speed of a sign; None for ``none`` and ``unposted``.
 
     Raises:
-        ScenarioError: it is no ``maxspeed``.
+        ScenarioError: it is not a ``maxspeed``.
     """
     if sign == UNPOSTED:
         return None
     try:
         return sign_mps(sign)
     except ValueError as error:
-        raise ScenarioError(f'[[streets]]: {error}, or "{UNPOSTED}" where no sign stands') from None
+        raise ScenarioError(f'[[streets]]: {error}, or "{UNPOSTED}" where there is no sign') from None
 
 
 def _ride(scenario: Scenario, simulation: Forked, trip: Trip, rides: dict[str, Ride]) -> Item:
@@ -212,7 +212,7 @@ def _ride(scenario: Scenario, simulation: Forked, trip: Trip, rides: dict[str, R
 
 
 def _situation(incident: Incident, network: Network, rides: dict[str, Ride]) -> Item:
-    """Whether the ego comes by while it lasts: loading has proven already that it can be staged."""
+    """Checks that the ego passes while the incident lasts; loading has already proven that it can be staged."""
     name = f"situation {incident.kind}"
     driven = [ride for trip, ride in rides.items() if incident.trip in ("", trip)]
     driven = [ride for ride in driven if ride.took_s > incident.from_s]
@@ -223,12 +223,12 @@ def _situation(incident: Incident, network: Network, rides: dict[str, Ride]) -> 
         met = [ride for ride in driven if not edges or edges & frozenset(ride.way)]
     if not met:
         trips = f"on the trip {incident.trip}" if incident.trip else "on any trip"
-        return Item(name, False, f"the ego does not come by {trips}")
+        return Item(name, False, f"the ego does not pass it {trips}")
     return Item(name, True, f"met on {len(met)} of {len(rides)} trips")
 
 
 def _edges_of(incident: Incident, network: Network) -> frozenset[str]:
-    """Where it happens; empty if everywhere."""
+    """Edges where it happens; empty if everywhere."""
     match incident:
         case incidents.Breakdown() | incidents.Roadworks() | incidents.Closure():
             return frozenset((incident.edge,))

@@ -1,6 +1,6 @@
-"""Any SUMO scenario, run as it is: what ``scenario.toml`` would say is taken from its own files.
+"""Any SUMO scenario, run as it is: the settings of a ``scenario.toml`` are taken from its own files.
 
-Its folder is only read. What its files leave open is assumed, and said in ``Scenario.notes``.
+Its folder is only read. What its files do not say is assumed and stated in ``Scenario.notes``.
 """
 
 from __future__ import annotations
@@ -23,21 +23,21 @@ from automotive_cosim.traffic.options import Configuration, read_configuration
 from automotive_cosim.traffic.random_traffic import vehicles_per_hour
 
 DAY = datetime(2026, 6, 16)
-"""A Tuesday in June; SUMO's files name no date."""
+"""A Tuesday in June; SUMO's files have no date."""
 
 DEPARTURE = timedelta(hours=10)
-"""Time of day where the simulation begins at 0, which is no time of day."""
+"""Time of day if the simulation begins at 0, which is not meant as a time of day."""
 
 WARM_UP_S = 600.0
 
 STEP_S, LONGEST_STEP_S = 0.1, 1.0
-"""Step length where the files state none, and the longest that is kept: the cockpit is updated once a second."""
+"""Default step length, and the longest that is kept: the cockpit is updated once per second."""
 
 RANDOM_PER_KM_H = 15.0
-"""Light traffic: at 40 km/h a vehicle on every 2 to 3 km of lane for each kilometre that its way is long."""
+"""Light traffic: at 40 km/h, one vehicle per 2 to 3 km of lane for each kilometre of its route."""
 
 FAIR = Weather(20.0, 55.0, 0.0, 1, 25.0, 20_000.0, 10.0)
-"""The weather where no place, and so no climate, is known."""
+"""The weather if the place, and so the climate, is unknown."""
 
 TRAVELLERS = frozenset(["vehicle", "trip", "flow"])
 """Elements of an additional file that are traffic."""
@@ -46,15 +46,15 @@ TRAVELLERS = frozenset(["vehicle", "trip", "flow"])
 def foreign_scenario(path: Path, *, to_be_moved: bool = False) -> Scenario:
     """A ``.sumocfg`` or a network as a scenario.
 
-    Time of day, step length, scale and rerouting are the files' own, the country is found from the network's
-    position, and the ego's ways are drawn.
+    Time of day, step length, scale and rerouting come from the files, the country from the network's position, and
+    the ego's routes are drawn.
 
     Args:
         path: the file.
-        to_be_moved: the network is put at another place afterwards, so it need not have one.
+        to_be_moved: whether the network is moved to another place afterwards, so it need not have one.
 
     Raises:
-        ScenarioError: the files are missing or broken, or no two roads are connected.
+        ScenarioError: the files are missing or invalid, or no two roads are connected.
     """
     configuration = read_configuration(path)
     network = read_network(configuration.net)
@@ -63,13 +63,13 @@ def foreign_scenario(path: Path, *, to_be_moved: bool = False) -> Scenario:
     if network.unplaced and not to_be_moved:
         notes.append(
             f"{configuration.net.name} {network.unplaced}: it runs without GPS, place and law, in fair weather; "
-            "--origin LON,LAT puts it somewhere"
+            "--origin LON,LAT gives it a place"
         )
     random_per_km_h = 0.0
     if not _has_demand(configuration):
         random_per_km_h = RANDOM_PER_KM_H
         count = vehicles_per_hour(network, random_per_km_h)
-        notes.append(f"{path.name} has no traffic of its own: {count:.0f} vehicles an hour are drawn")
+        notes.append(f"{path.name} has no traffic of its own: {count:.0f} vehicles per hour are drawn")
     sumo = _sumo(configuration, random_per_km_h)
     name = re.sub(r"\.(net\.xml|sumocfg|xml)$", "", path.name.removesuffix(".gz"))
     return Scenario(
@@ -92,8 +92,8 @@ def _sumo(configuration: Configuration, random_per_km_h: float) -> Sumo:
     if step_s <= 0:
         raise ScenarioError(f"{configuration.path}: a step-length of {step_s:g} s is impossible")
     step_s = min(step_s, LONGEST_STEP_S)
-    # As SUMO has it, the others act every step, unless the step is our own choice: SUMO 1.28 has been seen to crash
-    # where vehicles reroute and act on every other step of 0.5 s.
+    # As in SUMO, other vehicles act every step, unless we chose the step: SUMO 1.28 has been seen to crash
+    # when vehicles reroute and act on every other step of 0.5 s.
     action_s = step_s if "step-length" in configuration.options else LONGEST_STEP_S
     return Sumo(
         config=configuration.path.name,
@@ -107,7 +107,7 @@ def _sumo(configuration: Configuration, random_per_km_h: float) -> Sumo:
 
 
 def _start(configuration: Configuration, sumo: Sumo, place: Place) -> datetime:
-    """The hour of the ego's departure: SUMO's seconds count from midnight unless they begin at 0."""
+    """Time of the ego's departure: SUMO's seconds count from midnight unless they begin at 0."""
     zone = zone_of(place)
     begin_s = configuration.begin_s
     since_midnight = timedelta(seconds=begin_s % 86_400 + sumo.warm_up_s) if begin_s else DEPARTURE

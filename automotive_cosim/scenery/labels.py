@@ -1,4 +1,4 @@
-"""Street names along their streets and limit signs beside them, none over another."""
+"""Street names along their streets and limit signs beside them, without overlaps."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ GREY: Colour = (140, 150, 162)
 NAMES_AT_MOST, SIGNS_AT_MOST = 90, 60
 SIGNS_PER_STREET = 2
 SHAPE_STEP = 6.0
-"""Pixels between the places that are tried along a street."""
+"""Pixels between the positions that are tried along a street."""
 SHORTEST, STRAIGHT = 0.75, 0.97
-"""A name is written on a street at least this share of its length, where the chord is this share of the way."""
+"""A name fits on a stretch of this share of the name's length whose chord is this share of the stretch."""
 
 Points = npt.NDArray[np.float64]
 
 
 @dataclass(slots=True)
 class Labels:
-    """What has been written on a map so far."""
+    """The labels placed on a map so far."""
 
     picture: Image.Image
     pixels: Callable[[Sequence[tuple[float, float]]], Points]
@@ -41,13 +41,13 @@ class Labels:
     taken: list[Polygon] = field(default_factory=list)
 
     def is_free(self, outline: Polygon) -> bool:
-        """Whether it lies within the picture and over nothing written before."""
+        """Whether it lies within the picture and overlaps no earlier label."""
         inside = box(4, 4, self.picture.width - 4, self.picture.height - 4).contains(outline)
         return bool(inside) and not any(outline.intersects(other) for other in self.taken)
 
 
 def place_labels(labels: Labels, network: Network) -> None:
-    """Writes limits and names, the greatest and longest streets first."""
+    """Draws limits and names, the most important and longest streets first."""
     streets: dict[str, list[Edge]] = {}
     for edge in network.edges.values():
         streets.setdefault(edge.name, []).append(edge)
@@ -63,12 +63,12 @@ def place_labels(labels: Labels, network: Network) -> None:
 
 
 def _weight(edges: Sequence[Edge]) -> float:
-    """Length, counted more on fast roads."""
+    """Length weighted by speed."""
     return sum(edge.length_m * edge.speed_mps * math.sqrt(len(edge.lane_ids)) for edge in edges)
 
 
 def _by_limit(edges: Sequence[Edge]) -> list[list[Edge]]:
-    """A street's edges by their limit, the longest stretch first, not more limits than are drawn."""
+    """A street's edges by limit, the longest stretch first, at most as many limits as are drawn."""
     groups: dict[tuple[float | None, LimitSource], list[Edge]] = {}
     for edge in edges:
         groups.setdefault((edge.limit_mps, edge.limit_source), []).append(edge)
@@ -91,7 +91,7 @@ def _write_name(labels: Labels, name: str, edges: Sequence[Edge]) -> None:
 
 
 def _places(labels: Labels, edges: Sequence[Edge], width: float) -> Iterator[tuple[float, float, float]]:
-    """Middles of stretches that are straight for long enough, and their angle on the picture, radians."""
+    """Middles of stretches that are straight for long enough, and their angles on the picture, in radians."""
     lines = [np.concatenate([labels.pixels(edge.shape_m) for edge in run]) for run in _runs(edges)]
     for line, along in sorted(((line, _along(line)) for line in lines), key=lambda pair: -pair[1][-1]):
         if along[-1] < SHORTEST * width:
@@ -109,7 +109,7 @@ def _places(labels: Labels, edges: Sequence[Edge], width: float) -> Iterator[tup
 
 
 def _runs(edges: Sequence[Edge]) -> list[list[Edge]]:
-    """A street's edges, one behind the other as far as they lead."""
+    """A street's edges, chained as far as they connect."""
     left = {edge.edge_id: edge for edge in sorted(edges, key=lambda edge: -edge.length_m)}
     runs: list[list[Edge]] = []
     while left:
@@ -156,7 +156,7 @@ def _turned(x: float, y: float, width: float, height: float, angle: float) -> Po
 
 
 def _units(network: Network) -> Callable[[Edge], str]:
-    """What the signs on an edge count in; km/h where no place is known."""
+    """The unit of an edge's signs; km/h if the place is unknown."""
     if network.map.projection is None:
         return lambda edge: "km/h"
     atlas, reference = Atlas(), GeoReference(network.map)
@@ -169,7 +169,7 @@ def _units(network: Network) -> Callable[[Edge], str]:
 
 
 def _put_sign(labels: Labels, edges: Sequence[Edge], unit_of: Callable[[Edge], str]) -> bool:
-    """A sign on the street or beside it, where there is room."""
+    """Draws a sign on the street or beside it, where there is room."""
     for edge in sorted(edges, key=lambda edge: -edge.length_m)[:6]:
         line = labels.pixels(edge.shape_m)
         along = _along(line)
@@ -186,7 +186,7 @@ def _put_sign(labels: Labels, edges: Sequence[Edge], unit_of: Callable[[Edge], s
 
 
 def _draw_sign(picture: Image.Image, x: float, y: float, edge: Edge, unit: str) -> None:
-    """A ring in red where the limit is posted, in grey where it was assumed; struck through without a limit."""
+    """A red ring for a posted limit, a grey one for an assumed limit; struck through without a limit."""
     fine = 4
     size = round(2 * (SIGN_RADIUS + 1) * fine)
     sign = Image.new("RGBA", (size, size))

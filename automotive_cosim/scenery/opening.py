@@ -1,4 +1,4 @@
-"""A name, a folder, a ``.sumocfg`` or a network -> a scenario as the user wants it."""
+"""Opens a scenario from a name, a folder, a ``.sumocfg`` or a network, with the user's changes."""
 
 from __future__ import annotations
 
@@ -29,16 +29,17 @@ def open_scenario(
     """Opens a scenario.
 
     Args:
-        name: of a shipped scenario, or the path of a scenario's folder, a ``.sumocfg`` or a ``.net.xml`` (``.gz``).
-        origin: longitude and latitude, degrees, where the network's middle is put instead of where it lies.
-        gps: False runs without GPS, so that no place is known; a network without projection then runs too.
-        from_place: where the ego's way begins: an edge, a street or ``LON,LAT``. Empty: where the scenario says.
-        to_place: where it ends. If only one of the two is given the other is drawn.
+        name: name of a shipped scenario, or path of a scenario's folder, a ``.sumocfg`` or a ``.net.xml``
+            (``.gz``).
+        origin: longitude and latitude, in degrees, to which the network's middle is moved.
+        gps: False runs without GPS, so the place is unknown; a network without projection then runs too.
+        from_place: where the ego's route begins: an edge, a street or ``LON,LAT``. Empty: the scenario's own.
+        to_place: where it ends. If only one of the two is given, the other is drawn.
 
     Raises:
         UnknownNameError: no such scenario.
-        ScenarioError: its files are broken, or no way leads from the one place to the other.
-        UserError: ``origin`` is no position on earth.
+        ScenarioError: its files are invalid, or no route leads from the one place to the other.
+        UserError: ``origin`` is not a position on earth.
     """
     scenario = _opened(name, to_be_moved=origin is not None)
     if origin is not None:
@@ -52,7 +53,7 @@ def open_scenario(
 
 
 def network_of(scenario: Scenario) -> Network:
-    """The scenario's network, where the scenario puts it.
+    """The scenario's network, at the scenario's place.
 
     Raises:
         ScenarioError: it cannot be read.

@@ -1,4 +1,4 @@
-"""Draws a scenario: its roads by class, tunnels, names, limits and the ways of the ego, north up."""
+"""Draws a scenario, north up: roads by class, tunnels, names, limits and the ego's trips."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ FINE = 2
 """Oversampling of the roads."""
 
 MAP_PIXELS = 1_100_000
-"""Of the map, whatever its shape."""
+"""Pixels of the map, whatever its shape."""
 
 ASPECTS = (0.62, 1.9)
-"""Width over height of the map, at least and at most."""
+"""Minimum and maximum ratio of the map's width to its height."""
 
 MARGIN, HEAD, ROW = 36, 84, 30
 """Around the map's roads, the height of the title and that of a line of the legend, pixels."""
@@ -46,20 +46,20 @@ TRIP_COLOURS: tuple[Colour, ...] = (
 TRIP_WIDTH = 4.0
 TUNNEL: Colour = (128, 140, 156)
 DASH = 8.0
-"""Of tunnels, at least."""
+"""Minimum length of a tunnel's dashes."""
 ATTRIBUTED = "OpenStreetMap"
 """Scenarios made from its data say so in ``about``; so must their pictures."""
 CLASSES = (("motorway, trunk", "motorway"), ("primary, secondary", "primary"), ("other streets", "residential"))
-"""For the legend: words and a road class that is drawn so."""
+"""The legend: texts, each with a road class drawn that way."""
 
 ENDINGS = (".webp", ".png")
 QUALITY = 75
-"""Of WebP, which is lossy."""
+"""Quality of WebP, which is lossy."""
 
 
 @dataclass(frozen=True, slots=True)
 class Viewport:
-    """Where the network's metres lie on the picture."""
+    """Maps the network's metres to the picture's pixels."""
 
     left_m: float
     top_m: float
@@ -69,7 +69,7 @@ class Viewport:
 
     @classmethod
     def around(cls, edges: Iterable[Edge]) -> Viewport:
-        """A frame of the usual size that holds all roads."""
+        """A frame of the usual size that contains all roads."""
         points = np.array([point for edge in edges for point in edge.shape_m])
         (x_min, y_min), (x_max, y_max) = points.min(axis=0), points.max(axis=0)
         wide_m, high_m = max(x_max - x_min, 1.0), max(y_max - y_min, 1.0)
@@ -91,7 +91,7 @@ def draw_scenario(scenario: Scenario) -> Image.Image:
     """The scenario's picture, RGB.
 
     Raises:
-        ScenarioError: its network cannot be read, or a trip has no way through it.
+        ScenarioError: its network cannot be read, or a trip has no route through it.
     """
     network = network_of(scenario)
     edges = tuple(network.edges.values())
@@ -107,10 +107,10 @@ def draw_scenario(scenario: Scenario) -> Image.Image:
 
 
 def save_picture(scenario: Scenario, path: Path) -> None:
-    """Draws the scenario into a file whose ending is one of ``ENDINGS``; it is there whole or not at all.
+    """Draws the scenario into a file whose suffix is one of ``ENDINGS``, completely or not at all.
 
     Raises:
-        ScenarioError: as ``draw_scenario``.
+        ScenarioError: see ``draw_scenario``.
         UserError: the file cannot be written.
     """
     picture = draw_scenario(scenario)
@@ -120,7 +120,9 @@ def save_picture(scenario: Scenario, path: Path) -> None:
         picture.save(draft, path.suffix[1:].upper(), quality=QUALITY, method=6)
         draft.replace(path)
     except OSError as error:
-        raise UserError(f"cannot write {path} ({error.strerror}); give --out a place where you may") from error
+        raise UserError(
+            f"cannot write {path} ({error.strerror}); give --out a folder that you may write to"
+        ) from error
 
 
 def _roads(frame: Viewport, edges: Sequence[Edge]) -> Image.Image:
@@ -139,20 +141,22 @@ def _roads(frame: Viewport, edges: Sequence[Edge]) -> Image.Image:
 
 
 def _trips(picture: Image.Image, frame: Viewport, network: Network, scenario: Scenario) -> None:
-    """The ways side by side where they share a road."""
+    """Draws the trips side by side where they share a road."""
     brush = ImageDraw.Draw(picture)
     count = len(scenario.ego.trips)
     for number, trip in enumerate(scenario.ego.trips):
         way = way_through(network, (trip.from_edge, *trip.via, trip.to_edge))
         if not way:
-            raise ScenarioError(f"trip {trip.name!r} of scenario {scenario.name!r} has no way through the network")
+            raise ScenarioError(
+                f"trip {trip.name!r} of scenario {scenario.name!r} has no route through the network"
+            )
         line = np.concatenate([frame.pixels(network.edges[edge].shape_m) for edge in way])
         aside = (number - (count - 1) / 2) * (TRIP_WIDTH + 0.5)
         _stroke(brush, _shifted(line, aside) * FINE, TRIP_WIDTH * FINE, trip_colour(number))
 
 
 def _ends(picture: Image.Image, frame: Viewport, network: Network, scenario: Scenario) -> list[Polygon]:
-    """A disc with the trip's number where it begins, a ring where it ends; returns what they cover."""
+    """Draws a disc with the trip's number where it begins and a ring where it ends; returns what they cover."""
     brush = ImageDraw.Draw(picture)
     face = font(Weight.BOLD, 15)
     taken: list[tuple[float, float]] = []
@@ -185,7 +189,7 @@ def _scale_bar(picture: Image.Image, frame: Viewport, edges: Iterable[Edge]) -> 
 
 
 def _emptiest(frame: Viewport, width: float, height: float, edges: Iterable[Edge]) -> Polygon:
-    """The corner of the map with the fewest roads, the lower right one if it is a draw."""
+    """The corner of the map with the fewest roads, the lower right one in a tie."""
     roads = [LineString(frame.pixels(edge.shape_m)) for edge in edges]
     right, bottom = frame.width - 12 - width, frame.height - 12 - height
     corners = ((right, bottom), (12, bottom), (right, 12), (12, 12))
@@ -194,7 +198,7 @@ def _emptiest(frame: Viewport, width: float, height: float, edges: Iterable[Edge
 
 
 def _where(scenario: Scenario, network: Network) -> str:
-    """The countries that the trips begin and end in."""
+    """The countries in which the trips begin and end."""
     if network.map.projection is None:
         return "no place on earth"
     atlas, reference = Atlas(), GeoReference(network.map)
@@ -253,12 +257,12 @@ def cut(text: str, weight: Weight, size: int, width: float) -> str:
 
 
 def trip_colour(number: int) -> Colour:
-    """Of the n-th trip, from 0."""
+    """Colour of the n-th trip, from 0."""
     return TRIP_COLOURS[number % len(TRIP_COLOURS)]
 
 
 def rank(road_class: str) -> int:
-    """The greater the road, the further up it is drawn."""
+    """Drawing order: larger roads above smaller ones."""
     if road_class in MOTORWAYS:
         return 3
     return 2 if road_class in AVENUES else 0 if road_class in QUIET else 1
@@ -291,7 +295,7 @@ def _dashed(brush: ImageDraw.ImageDraw, line: Points, width: float, colour: Colo
 
 
 def _shifted(line: Points, aside: float) -> Points:
-    """The line, so many pixels further to its right."""
+    """The line, moved to its right by a number of pixels."""
     kept = np.concatenate(([True], np.any(np.diff(line, axis=0) != 0, axis=1)))
     line = line[kept]
     if len(line) < 2:

@@ -14,11 +14,11 @@ from automotive_cosim.traffic.options import read_configuration
 def relocated(scenario: Scenario, origin: tuple[float, float]) -> Scenario:
     """The scenario with the middle of its network at ``origin`` (longitude, latitude, degrees).
 
-    The clock shows the same time, in the zone of that place. The weather is drawn from its climate. Roads, signs
-    and the side that people drive on stay the network's; ``notes`` say so where that is not the country's.
+    The local time stays the same, in the zone of that place. The weather is drawn from its climate. Roads, signs
+    and the driving side stay the network's; ``notes`` say so if the country drives on the other side.
 
     Raises:
-        UserError: no position on earth.
+        UserError: ``origin`` is not a position on earth.
         ScenarioError: the network cannot be read.
     """
     place = Atlas().place(*origin)
@@ -44,5 +44,5 @@ def relocated(scenario: Scenario, origin: tuple[float, float]) -> Scenario:
 
 
 def zone_of(place: Place) -> ZoneInfo:
-    """The time zone of a place, UTC where none is known."""
+    """The time zone of a place, UTC if unknown."""
     return ZoneInfo(place.time_zone or "UTC")

@@ -1,4 +1,4 @@
-"""The ego's way: between places that the user names, or drawn by seed."""
+"""The ego's route: between places that the user names, or drawn by seed."""
 
 from __future__ import annotations
 
@@ -17,34 +17,34 @@ from automotive_cosim.traffic.network import Network
 from automotive_cosim.traffic.ways import ways_from
 
 TRIPS = 6
-"""So many are drawn, for a task's situation to arise on one of them."""
+"""How many routes are drawn, so that a task's situation arises on one of them."""
 
 STARTS = 16
-"""Edges that the ways to draw from begin on."""
+"""How many start edges to draw routes from."""
 
 LONG_M = 3000.0
-"""A drawn way is at least this long, or at least half as long as the longest of those found."""
+"""A drawn route is at least this long, or at least half as long as the longest one found."""
 
 ROOM_M = 20.0
-"""Length of a way's first and last edge, where there is a choice: room to start and to stop."""
+"""Preferred minimum length of a route's first and last edge: room to start and to stop."""
 
 NEAR_M = 300.0
-"""A position farther than this from every road means none of them."""
+"""A position farther than this from every road is refused."""
 
 STREET_EDGES = 12
-"""Edges of a street that are tried; long streets have hundreds."""
+"""How many edges of a street to try; long streets have hundreds."""
 
 
 def chosen_trips(network: Network, from_place: str, to_place: str) -> tuple[Trip, ...]:
-    """The way between two places; several, drawn, if only one is given.
+    """The route between two places; several drawn ones if only one place is given.
 
     Args:
         network: the roads.
-        from_place: an edge, a street or ``LON,LAT``; empty leaves it open.
-        to_place: likewise.
+        from_place: an edge, a street or ``LON,LAT``; empty for any.
+        to_place: an edge, a street or ``LON,LAT``; empty for any.
 
     Raises:
-        ScenarioError: a place is not on this network, or no way leads from the one to the other.
+        ScenarioError: a place is not on this network, or no route leads from the one to the other.
     """
     starts = edges_at(network, from_place) if from_place else ()
     goals = edges_at(network, to_place) if to_place else ()
@@ -56,7 +56,7 @@ def chosen_trips(network: Network, from_place: str, to_place: str) -> tuple[Trip
     ]
     if not ways:
         raise ScenarioError(
-            f"no way for a car leads from {from_place!r} to {to_place!r}; name other streets or edges"
+            f"no route for a car leads from {from_place!r} to {to_place!r}; name other streets or edges"
         )
     return (_trip(network, "chosen", *min(ways)),)
 
@@ -64,13 +64,13 @@ def chosen_trips(network: Network, from_place: str, to_place: str) -> tuple[Trip
 def drawn_trips(
     network: Network, starts: Sequence[str] = (), goals: Sequence[str] = (), seed: int = 0
 ) -> tuple[Trip, ...]:
-    """Ways that can be driven and are long for this network, from different edges to different edges.
+    """Routes that are long for this network, from different edges to different edges.
 
     Args:
         network: the roads.
         starts: edges to begin on; any if empty.
-        goals: edges to end on; likewise.
-        seed: of the choice.
+        goals: edges to end on; any if empty.
+        seed: seed of the choice.
 
     Raises:
         ScenarioError: no two edges are connected.
@@ -89,14 +89,14 @@ def drawn_trips(
         long = [way for way in ways if way[0] >= min(LONG_M, 0.5 * ways[-1][0])]
         found += [long[int(index)] for index in rng.permutation(len(long))[:TRIPS]]
     if not found:
-        raise ScenarioError("no way for a car leads from one road of this network to another; name other roads")
+        raise ScenarioError("no route for a car leads from one road of this network to another; name other roads")
     least_m = min(LONG_M, 0.5 * max(found)[0])
     order = [found[int(index)] for index in rng.permutation(len(found)) if found[int(index)][0] >= least_m]
     return tuple(_trip(network, f"drawn-{number}", *way) for number, way in enumerate(_spread(order), 1))
 
 
 def _spread(ways: Sequence[tuple[float, str, str]]) -> list[tuple[float, str, str]]:
-    """The first of them, those with a start of their own before the others."""
+    """The first routes, preferring those with different starts."""
     first = {way[1]: way for way in reversed(ways)}
     return sorted(ways, key=lambda way: first[way[1]] is not way)[:TRIPS]
 
@@ -110,7 +110,7 @@ def edges_at(network: Network, place: str) -> tuple[str, ...]:
     """The edges that a text may mean: an edge's id, a street's name, or ``LON,LAT``.
 
     Raises:
-        ScenarioError: none of them, or a position in a network that has no place on earth.
+        ScenarioError: it is none of them, or a position in a network without a place on earth.
     """
     if place in network.edges:
         return (place,)
@@ -132,7 +132,7 @@ def position_in(text: str) -> tuple[float, float] | None:
 def _nearest(network: Network, position: tuple[float, float]) -> str:
     if network.map.projection is None:
         raise ScenarioError(
-            f"this network {network.unplaced}, so {position[0]:g},{position[1]:g} is nowhere in it; "
+            f"this network {network.unplaced}, so {position[0]:g},{position[1]:g} has no place in it; "
             "name an edge or a street"
         )
     here = GeoReference(network.map).x_y(*position)
@@ -159,8 +159,8 @@ def _unknown(network: Network, place: str) -> str:
     known = {edge.name.casefold(): edge.name for edge in network.edges.values() if edge.name}
     known |= {edge_id.casefold(): edge_id for edge_id in network.edges}
     close = get_close_matches(place.casefold(), known, n=1, cutoff=0.5)
-    mend = f"did you mean {known[close[0]]!r}?" if close else "give a street's name, an edge's id or LON,LAT"
-    return f"this network has no street or edge {place!r} that cars may use: {mend}"
+    fix = f"did you mean {known[close[0]]!r}?" if close else "give a street's name, an edge's id or LON,LAT"
+    return f"this network has no street or edge {place!r} that cars may use: {fix}"
 
 
 def _named(network: Network, edge_id: str) -> str:

@@ -1,13 +1,13 @@
-"""Studies: what rerouting gains, from futures that leave the very same traffic.
+"""Studies: how much rerouting gains, from futures forked from identical traffic.
 
-plan       what is studied: scenario, departures, seeds, shares, news, policies
-drive      one drive with its decision points, and the branches that leave it there
-compare    two futures of one instant against each other
-traffic    whether the traffic still flows, or is kept apart as gridlocked
-driver     an agent at the cockpit decides
-policies   who decides, and what came of it
+plan       what a study runs: scenario, departures, seeds, shares, news, policies
+drive      one drive with its decision points, and the branches forked there
+compare    compares two futures of one instant
+traffic    whether the traffic still flows, or is excluded as gridlocked
+driver     lets an agent at the cockpit decide
+policies   who decides, and the result
 batch      drives in parallel, resumed, until the interval is narrow enough
-results    what is stored, read back, as data frames
+results    reads stored results, as data frames
 intervals  means with bootstrap intervals over seeds
 tables, charts, page    the report
 """

@@ -1,4 +1,4 @@
-"""The drives of a study, in parallel and resumed, until all have been driven or enough is known."""
+"""Runs the drives of a study, in parallel and resumable, until all are done or enough is known."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from automotive_cosim.traffic.accounts import Pulse
 from automotive_cosim.traffic.fork import Forked
 
 STRIDE = 5
-"""Seeds that are added at a time once there are the fewest that an interval takes."""
+"""Seeds added at a time once there are enough for an interval."""
 
 
 def run_study(
@@ -34,18 +34,18 @@ def run_study(
     retries: int = 1,
     tell: Callable[[Progress[DriveRow]], None] = lambda progress: None,
 ) -> Progress[DriveRow]:
-    """Runs what is left of a study; drives that ended in an error are tried again.
+    """Runs the remaining drives of a study and retries those that ended in an error.
 
     Args:
         plan: what to run.
-        folder: where the results are or go.
+        folder: results folder, new or to be resumed.
         executor: where to run it; the results do not depend on it.
-        retries: how often a drive that the machinery broke is tried again.
+        retries: how often to retry a drive after an infrastructure error.
         tell: called at the start and after every drive.
 
     Raises:
-        UserError: the plan names what does not exist, or the folder cannot take its results.
-        KeyboardInterrupt: passed on; the running drives are lost, and no other.
+        UserError: the plan names something that does not exist, or the folder cannot take its results.
+        KeyboardInterrupt: passed on; only the running drives are lost.
     """
     plan.check()
     first, *more = _stages(plan)
@@ -64,13 +64,13 @@ def run_study(
 
 
 def _stages(plan: StudyPlan) -> list[tuple[int, ...]]:
-    """The seeds to have run before the interval is looked at again: all at once without a stopping rule."""
+    """Seeds to run before the interval is checked again; all at once without a stopping rule."""
     counts = [] if plan.half_width_s is None else range(LEAST_SEEDS, len(plan.seeds), STRIDE)
     return [*(plan.seeds[:count] for count in counts), plan.seeds]
 
 
 def _is_narrow(plan: StudyPlan, rows: Sequence[DriveRow]) -> bool:
-    """Whether the mean gain of rerouting always is known closely enough."""
+    """Whether the mean gain of ``always`` is known precisely enough."""
     found = [each for each in choices(rows, (PolicyRule.ALWAYS,)) if each.age_s == plan.ages_s[0]]
     mean = seed_mean((each.seed, each.gain.time_s) for each in found)
     if plan.half_width_s is None or mean is None or mean.interval is None:
@@ -80,10 +80,10 @@ def _is_narrow(plan: StudyPlan, rows: Sequence[DriveRow]) -> bool:
 
 @contextmanager
 def drives() -> Iterator[Runner[DriveJob, DriveRow]]:
-    """What runs the drives in a worker."""
+    """Makes the runner of the drives in a worker."""
     warm = _Warm()
     try:
-        yield lambda job, folder: warm.run(job)  # nothing but the row is kept of a drive
+        yield lambda job, folder: warm.run(job)  # only the row of a drive is kept
     finally:
         warm.close()
 
@@ -94,7 +94,7 @@ def failed(job: DriveJob, kind: str, why: str) -> DriveRow:
 
 
 class _Warm:
-    """The traffic of one seed and share, which runs on from departure to departure."""
+    """The traffic of one seed and share, which continues from departure to departure."""
 
     def __init__(self) -> None:
         self._simulation: Forked | None = None
@@ -107,10 +107,10 @@ class _Warm:
         try:
             return run_drive(job, *self._at(job))
         except CosimError as error:
-            self.close()  # whatever it was, the next drive begins with traffic that is known to be right
+            self.close()  # whatever the error was, the next drive begins with fresh traffic
             return failed(job, type(error).__name__, str(error))
         except Exception as error:
-            # A fault in an agent or in here must not take the study with it; it is counted and listed.
+            # A fault in an agent or in this package must not end the study; it is counted and listed.
             self.close()
             return failed(job, type(error).__name__, f"{type(error).__name__}: {error}")
 
@@ -121,7 +121,7 @@ class _Warm:
         self._simulation = self._key = None
 
     def _at(self, job: DriveJob) -> tuple[Forked, Sequence[Pulse]]:
-        """The traffic at the departure, and how it has been doing up to it."""
+        """The traffic at the departure, and its measurements so far."""
         if self._simulation is None or self._key != job.simulation or job.departure_s < self._now_s:
             self.close()
             scene = job.plan.scene(job.share)

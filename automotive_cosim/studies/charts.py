@@ -1,4 +1,4 @@
-"""Plots of a study as SVG, in the colours of the page they stand on."""
+"""Plots of a study as SVG, in the colours of the page."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def charts(study: Study) -> dict[str, tuple[str, str, str]]:
     """
     made = {
         "policies": ("Time saved by each policy", _policies(study)),
-        "promised": ("Promised and saved", _promised(study)),
+        "promised": ("Predicted and actual savings", _promised(study)),
         "congestion": ("Time saved by congestion at the decision", _congestion(study)),
         "ages": ("Time saved by the age of the news", _ages(study)),
         "shares": ("Time saved by the share of cars that reroute", _shares(study)),
@@ -104,7 +104,7 @@ def _shares(study: Study) -> Drawing | None:
 
 
 def _promised(study: Study) -> Drawing | None:
-    """What the news promised of each other way that was driven, and what it saved."""
+    """The predicted and the actual saving of each alternative route that was driven."""
     points = [
         (news.promised_s, point.decision.gains(news.branch).time_s)
         for point in study.decisions
@@ -117,12 +117,12 @@ def _promised(study: Study) -> Drawing | None:
     def draw(axes: Axes) -> None:
         promised, saved = zip(*points, strict=True)
         ends = [min(*promised, *saved), max(*promised, *saved)]
-        axes.plot(ends, ends, color=INK, alpha=0.4, linewidth=1, label="as promised")
+        axes.plot(ends, ends, color=INK, alpha=0.4, linewidth=1, label="as predicted")
         floor_s = study.noise().time_s
         axes.axhspan(-floor_s, floor_s, color=INK, alpha=0.12, linewidth=0, label="noise floor")
         axes.scatter(promised, saved, s=22, alpha=0.6, color=PALETTE[0], linewidths=0, label="a decision")
         axes.grid(axis="y", color=INK, alpha=0.15, linewidth=0.8)
-        axes.set_xlabel("seconds that the news promised")
+        axes.set_xlabel("predicted saving, s")
         axes.set_ylabel("seconds saved")
         legend(axes)
 
@@ -130,7 +130,7 @@ def _promised(study: Study) -> Drawing | None:
 
 
 def _points(study: Study, names: Sequence[str], series: Series) -> Drawing | None:
-    """A row for each name, in it a mean with its interval for each series; the noise floor behind them."""
+    """One row per name, with a mean and its interval for each series, and the noise floor behind them."""
     if not names or not series:
         return None
     height_in = 1.0 + len(names) * (0.2 + 0.17 * len(series)) + 0.23 * len(series)

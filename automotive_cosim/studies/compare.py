@@ -1,4 +1,4 @@
-"""Two futures of one instant against each other. A gain is what the second saves: positive is better."""
+"""Compares two futures of one instant. A gain is what the second one saves: positive is better."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from automotive_cosim.traffic.accounts import Settled
 
 @dataclass(frozen=True, slots=True)
 class Future:
-    """One way on from an instant, driven to its end."""
+    """One future of an instant, driven to its end."""
 
     last: DrivingState
-    """Of the ego."""
+    """Figures of the ego."""
     settled: Settled
 
     @property
     def has_arrived(self) -> bool:
-        """Whether the ego reached its goal in time."""
+        """Whether the ego reached its destination in time."""
         return self.last.end is EgoEnd.ARRIVED
 
     def totals(self) -> Totals:
-        """What the ego's drive came to; the rest of the way that the last step covered counts as driven."""
+        """Figures of the ego's drive; the rest of the route that the last step covered counts as driven."""
         ego = self.settled.ego
         return Totals(
             time_s=round(self.last.time_s - ego.departed_s, 3),
@@ -37,21 +37,21 @@ class Future:
 
 
 def gains(stay: Future, other: Future) -> Totals:
-    """What the ego saves in the other future."""
+    """The ego's savings in the other future."""
     before, after = stay.totals(), other.totals()
     names = (each.name for each in fields(Totals))
     return Totals(**{name: round(getattr(before, name) - getattr(after, name), 3) for name in names})
 
 
 def others(stay: Future, other: Future, group: Sequence[str]) -> OthersTotals:
-    """What everybody else saves: the sum over all who were there at the fork, of their time from then on.
+    """The savings of all other vehicles that were there at the fork, in total time since then.
 
-    Both futures are looked at up to the same instant, the earlier of their ends. Who has not arrived by then counts
-    up to it and as unfinished, so that nobody drops out of the sum, whoever is late in only one of the two.
+    Both futures are compared up to the same instant, the earlier of their ends. A vehicle that has not arrived by
+    then counts up to it and as unfinished, so none drops out of the sum, even if it is late in only one of the two.
 
     Args:
-        stay: the future in which the ego stays.
-        other: the one in which it does not.
+        stay: the future in which the ego keeps its route.
+        other: the future in which it does not.
         group: the vehicles that were on the road, or due and waiting to enter it.
     """
     until_s = min(stay.settled.time_s, other.settled.time_s)

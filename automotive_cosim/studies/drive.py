@@ -1,6 +1,6 @@
-"""One drive of a study: the way it stays on, and at each decision point the branches that leave it.
+"""One drive of a study, and the branches forked from it at each decision point.
 
-The drive itself is the future in which the ego stays; all its decisions share it, so that a drive with five
+The drive itself is the future in which the ego keeps its route. All its decisions share it, so a drive with five
 decisions takes one future and five branches, not ten futures. A branch is a fork of the running simulation: the
 same traffic to the bit, and the same random numbers from there on.
 """
@@ -28,7 +28,7 @@ from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked, RemoteTraffic
 
 LOOK_S = 10.0
-"""Time between two looks whether a decision is due; the traffic's speeds are sampled as often."""
+"""Time between two checks whether a decision is due; the traffic's speeds are sampled as often."""
 
 SAME_PLACE = "start is goal"
 NO_ROOM = "no room to enter"
@@ -37,15 +37,15 @@ NO_ALTERNATIVE = "no alternative"
 GRIDLOCK = "gridlock"
 NOT_ARRIVED = "ego did not arrive"
 NOT_CLEARED = "traffic did not clear"
-"""Why a drive or a decision is kept out of the averages."""
+"""Reasons to exclude a drive or a decision from the averages."""
 
 
 @dataclass(slots=True)
 class _Point:
-    """A decision point, its branches driven."""
+    """A decision point with its branches."""
 
     decision: Decision
-    """Without what its branches came to."""
+    """The decision without the results of its branches."""
     group: tuple[str, ...]
     pulse: Pulse
     branches: list[Future]
@@ -65,12 +65,12 @@ def planned(job: DriveJob) -> DriveRow:
 
 
 def run_drive(job: DriveJob, simulation: Forked, history: Sequence[Pulse]) -> DriveRow:
-    """Drives it, branches at every decision point, and compares the futures.
+    """Runs a drive, branches at every decision point, and compares the futures.
 
     Args:
-        job: what to drive.
-        simulation: its traffic at the instant the ego is to set out, watched.
-        history: how the traffic has been doing, ``traffic.PULSE_S`` apart.
+        job: the drive to run.
+        simulation: its traffic at the ego's departure, watched.
+        history: measurements of the traffic so far, ``traffic.PULSE_S`` apart.
 
     Raises:
         TrafficError: the simulation failed.
@@ -99,7 +99,7 @@ def run_drive(job: DriveJob, simulation: Forked, history: Sequence[Pulse]) -> Dr
 
 
 def depart(job: DriveJob, simulation: Forked) -> RemoteTraffic:
-    """Puts the ego on its way under the scenario's weather, or the one drawn for its place and month."""
+    """Starts the ego in the scenario's weather, or the one drawn for its place and month."""
     scenario = job.plan.scene(job.share)
     seed = int(np.random.default_rng([*job.entropy, 0]).integers(2**31))
     plan = EgoPlan(job.trip, job.plan.driver or scenario.ego.driver, seed, scenario.weather, scenario.start)
@@ -112,14 +112,14 @@ def depart(job: DriveJob, simulation: Forked) -> RemoteTraffic:
 
 
 class _Drive:
-    """The drive that stays, up to its last decision."""
+    """The drive on its own route, up to its last decision."""
 
     def __init__(self, job: DriveJob, traffic: RemoteTraffic) -> None:
         self.job = job
         self.traffic = traffic
         self.points: list[_Point] = []
         self.looks = 0
-        """Instants at which congestion lay ahead but no other way was there."""
+        """Number of instants with congestion ahead but no alternative route."""
         self._draws = np.random.default_rng([*job.entropy, 1])
         self._rules = {parse_policy(text).rule for text in job.plan.policies}
         self._begun_s = traffic.state.time_s
@@ -139,14 +139,14 @@ class _Drive:
             traffic.advance(LOOK_S)
 
     def why_not(self) -> tuple[str, str]:
-        """The reason for which there was no decision at all, and its figures."""
+        """The reason why there was no decision at all, with its figures."""
         if self.looks:
             return NO_ALTERNATIVE, f"at {self.looks} instants with congestion ahead"
         least_s, most_s = self.job.plan.least_delay_s, self._most_delay_s
-        return NO_CONGESTION, f"at most {most_s:.0f} s of delay ahead, {least_s:g} s are wanted"
+        return NO_CONGESTION, f"at most {most_s:.0f} s of delay ahead; {least_s:g} s are required"
 
     def _decide(self, now: DrivingState) -> bool:
-        """Drives the branches of a decision; false if there is none here."""
+        """Runs the branches of a decision; false if there is no decision here."""
         plan, traffic = self.job.plan, self.traffic
         if now.road.edge_id.startswith(":"):
             return False
@@ -194,7 +194,7 @@ class _Drive:
         return True
 
     def _told(self, age_s: float, options: Sequence[RouteOption], numbers: dict[tuple[str, ...], int]) -> News:
-        """What news of that age says: of the present way, and of the quickest other one."""
+        """What news of that age says about the present route and the quickest other one."""
         offered = options[1] if len(options) > 1 else None
         return News(
             age_s=age_s,
@@ -205,12 +205,12 @@ class _Drive:
         )
 
     def _rerouted(self, edges: tuple[str, ...], group: Sequence[str]) -> Future | None:
-        """The future on another way; None if it is too late to turn into it."""
+        """The future on another route; None if it is too late to take it."""
         with closing(self.traffic.branch()) as branch:
             return self._left(branch, group) if branch.request(Reroute(edges=edges)).accepted else None
 
     def _agents(self, agent: str, group: Sequence[str]) -> tuple[Future, tuple[str, ...]]:
-        """The future in which an agent does what it likes, and the way ahead once it has."""
+        """The future in which an agent acts freely, and the route after its actions."""
         with closing(self.traffic.branch()) as branch:
             decided(agent, self.job, branch)
             edges = branch.state.ahead.route_edges
@@ -222,7 +222,7 @@ class _Drive:
         return Future(branch.state, settled)
 
     def _has_placebo(self) -> bool:
-        """By lot, so that it does not depend on what other drives come to."""
+        """Drawn randomly, so that it does not depend on the results of other drives."""
         every = self.job.plan.placebo_every
         return every > 0 and self._draws.random() < 1 / every
 
@@ -236,13 +236,13 @@ class _Drive:
 def _ways(
     now: DrivingState, news: dict[float, tuple[RouteOption, ...]], own: tuple[str, ...]
 ) -> list[tuple[str, ...]]:
-    """Every other way that somebody may choose, once."""
+    """Every other route that some policy may choose, once."""
     offered = [options[1].edges for options in news.values() if len(options) > 1]
     return [edges for edges in dict.fromkeys([*offered, own]) if edges and edges != now.ahead.route_edges]
 
 
 def _compared(point: _Point, stay: Future, pulses: Sequence[Pulse]) -> Decision:
-    """A decision with what each branch gained."""
+    """A decision with the gains of its branches."""
     futures = [stay, *point.branches, *([point.placebo] if point.placebo else [])]
     jam = gridlock(pulses)
     excluded, why = "", ""
@@ -252,7 +252,7 @@ def _compared(point: _Point, stay: Future, pulses: Sequence[Pulse]) -> Decision:
     elif jam:
         excluded, why = GRIDLOCK, jam
     elif not all(future.settled.is_complete for future in futures):
-        excluded, why = NOT_CLEARED, "too few of those who were there had arrived in time"
+        excluded, why = NOT_CLEARED, "too few of the vehicles that were there had arrived in time"
     return replace(
         point.decision,
         excluded=excluded,

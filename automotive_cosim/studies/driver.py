@@ -1,4 +1,4 @@
-"""An agent decides: it gets the cockpit of a car in a branch, hears what the driver wants, and taps."""
+"""Lets an agent decide: it gets the cockpit of a car in a branch, hears the driver's request, and acts."""
 
 from __future__ import annotations
 
@@ -24,12 +24,11 @@ GOAL = "There's a lot of traffic ahead. Can we get there faster?"
 def decided(agent: str, job: DriveJob, traffic: Traffic) -> None:
     """Lets an agent act in a branch until it declares an end, has no actions left, or the ego arrives.
 
-    The map needs some seconds to know other ways; the ego drives on meanwhile and while the agent acts, as it does
-    when a person thinks.
+    The map takes some seconds to find other routes; the ego keeps driving meanwhile and while the agent acts.
 
     Args:
-        agent: as ``make_agent`` names it, ``NAME`` or ``NAME/MODEL``.
-        job: whose drive it is.
+        agent: the agent for ``make_agent``, as ``NAME`` or ``NAME/MODEL``.
+        job: the drive.
         traffic: the branch; it is not closed.
 
     Raises:

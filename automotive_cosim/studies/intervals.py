@@ -1,4 +1,4 @@
-"""Means with intervals that take the seeds, not the decisions, as what is independent."""
+"""Means with intervals that treat seeds, not decisions, as independent."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ import numpy as np
 from automotive_cosim.report.stats import CONFIDENCE, DRAWS, Interval
 
 LEAST_SEEDS = 10
-"""With fewer there is no interval."""
+"""Minimum number of seeds for an interval."""
 
 PUBLISHED_SEEDS = 30
-"""With fewer the report says that it is none to publish."""
+"""Minimum number of seeds for publication; with fewer, the report warns."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,18 +23,18 @@ class SeedMean:
 
     value: float
     interval: Interval | None
-    """By drawing whole seeds; None with fewer than ``LEAST_SEEDS``."""
+    """Interval from resampling whole seeds; None with fewer than ``LEAST_SEEDS``."""
     count: int
-    """Of decisions."""
+    """Number of decisions."""
     seeds: int
 
 
 def seed_mean(values: Iterable[tuple[int, float]], seed: int = 0) -> SeedMean | None:
-    """The mean over all decisions; None if there is none.
+    """The mean over all decisions; None if there are none.
 
     Args:
         values: (seed of the traffic, value) of each decision.
-        seed: of the draws.
+        seed: seed of the bootstrap.
     """
     by_seed: dict[int, list[float]] = defaultdict(list)
     for cluster, value in values:
@@ -49,7 +49,7 @@ def seed_mean(values: Iterable[tuple[int, float]], seed: int = 0) -> SeedMean | 
 
 
 def _bootstrap(groups: Sequence[Sequence[float]], seed: int) -> Interval:
-    """Percentile interval of the mean over decisions when whole seeds are drawn."""
+    """Percentile interval of the mean over decisions when resampling whole seeds."""
     sums = np.array([[sum(group), len(group)] for group in groups], dtype=float)
     picked = np.random.default_rng(seed).integers(len(groups), size=(DRAWS, len(groups)))
     drawn = sums[picked].sum(axis=1)

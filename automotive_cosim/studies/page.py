@@ -1,4 +1,4 @@
-"""``report.html``: a study on one page that opens from disk, and its tables, plots and data as files."""
+"""``report.html``: a study on one self-contained page, and its tables, plots and data as files."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ def write_study(folder: Path) -> Path:
     """Writes ``report.html``, ``choices.csv``, ``tables/`` and ``plots/`` into a study's folder; returns the page.
 
     Raises:
-        UserError: it is no study's, holds no decision that counts, or cannot be written.
+        UserError: the folder is not a study's, has no decision that counts, or cannot be written.
         SetupError: the extra ``report`` is not installed.
     """
     study = read_study(folder)
     if not study.rows:
-        raise UserError(f"{folder} holds no drive yet; the `study` command that made it goes on")
+        raise UserError(f"{folder} has no drives yet; rerun its `study` command to resume")
     made, plots = tables(study), charts(study) if study.choices else {}
     try:
         for name in ("tables", "plots"):
@@ -62,12 +62,12 @@ def write_study(folder: Path) -> Path:
 
 
 def warnings(study: Study) -> list[str]:
-    """What has to be known before a figure of the study is used."""
+    """Warnings to read before using the study's figures."""
     found = []
     seeds = {point.drive.seed for point in study.decisions}
     if not study.decisions:
         told = "; ".join(f"{count} × {reason}" for (_, reason), count in sorted(study.excluded.items()))
-        found.append(f"No decision counts, so that there is nothing to average: {told or 'every drive failed'}.")
+        found.append(f"No decision counted, so there is nothing to average: {told or 'every drive failed'}.")
     elif len(seeds) < LEAST_SEEDS:
         found.append(
             f"{len(seeds)} seeds with a decision: means have no interval below {LEAST_SEEDS} seeds, since "
@@ -76,22 +76,22 @@ def warnings(study: Study) -> list[str]:
     elif len(seeds) < PUBLISHED_SEEDS:
         found.append(f"{len(seeds)} seeds with a decision: run {PUBLISHED_SEEDS} before publishing.")
     if study.decisions and not study.noise().placebos:
-        found.append("There is no placebo, so that no noise floor is known: any difference counts.")
+        found.append("There is no placebo, so the noise floor is unknown: any difference counts.")
     if any(name in PROFILES and model == "rules" for name, model in map(named, study.plan.agents)):
         found.append(
-            "“rules” is a deterministic stand-in: its rows say nothing about how well a language model does."
+            "“rules” is a deterministic stand-in: its rows say nothing about how well a language model performs."
         )
     return found
 
 
 def cost_s(study: Study) -> float | None:
-    """Wall seconds of one worker for a decision, drive up and all its futures included."""
+    """Wall seconds of one worker per decision, including the drive up to it and all its futures."""
     decisions = sum(len(row.decisions) for row in study.rows)
     return sum(row.wall_seconds for row in study.rows) / decisions if decisions else None
 
 
 def as_csv(choices: Sequence[PolicyChoice]) -> str:
-    """A line a choice, the columns' names first; they are those of ``load_study``."""
+    """The choices as CSV, one per line, with the columns of ``load_study``."""
     text = StringIO()
     rows = [columns(choice) for choice in choices]
     if rows:

@@ -23,7 +23,7 @@ from automotive_cosim.traffic.congestion import OLDEST_NEWS_S
 from automotive_cosim.traffic.profiles import profile
 
 KIND = "reroute"
-"""Stands in the manifest, so that a report knows what it reads."""
+"""Kind of study in the manifest, so that a report knows what it reads."""
 
 EQUILIBRIUM_GAP = 0.01
 """Relative gap under which a dynamic user assignment counts as converged."""
@@ -36,46 +36,46 @@ class StudyPlan:
     scenario: Annotated[str, MinLen(1)]
     """Name or folder, a ``.sumocfg`` or a network."""
     departures_s: Annotated[tuple[Annotated[float, Ge(0), Le(86_400)], ...], MinLen(1)] = (0.0, 300.0, 600.0, 900.0)
-    """When the ego sets out, after the warm-up; each in its own copy of the traffic."""
+    """Departures of the ego, after the warm-up; each in its own copy of the traffic."""
     trips: tuple[str, ...] = ()
-    """Names of the scenario's trips; none takes all."""
+    """Names of the scenario's trips; empty for all."""
     from_place: str = ""
-    """Where the ego's way begins in place of the trips: an edge, a street or ``LON,LAT``."""
+    """Where the ego's route begins, instead of a trip: an edge, a street or ``LON,LAT``."""
     to_place: str = ""
-    """Where it ends; if only one of the two is given the other is drawn, several times."""
+    """Where it ends; if only one of the two is given, the other is drawn, several times."""
     seeds: Annotated[tuple[Annotated[int, Ge(0)], ...], MinLen(1)] = tuple(range(10))
-    """Of the traffic; decisions of one seed are not independent of each other."""
+    """Seeds of the traffic; decisions of one seed are not independent of each other."""
     shares: tuple[Annotated[float, Ge(0), Le(1)], ...] = ()
-    """Of the other cars, that reroute; each is warmed up on its own. None takes the scenario's."""
+    """Shares of the other cars that reroute; each is warmed up separately. None takes the scenario's."""
     ages_s: Annotated[tuple[Annotated[float, Ge(0), Le(OLDEST_NEWS_S)], ...], MinLen(1)] = (0.0,)
-    """How old the traffic news is that the offered way is chosen by."""
+    """Ages of the traffic news by which the alternative route is selected."""
     driver: str = ""
     """Name of a driver profile; empty takes the scenario's."""
     compliance: Annotated[float, Ge(0), Le(1)] = 1.0
-    """Probability that the driver does as told."""
+    """Probability that the driver follows the advice."""
     policies: Annotated[tuple[str, ...], MinLen(1)] = ("never", "always", "delay:60", "sumo", "best")
     least_delay_s: Annotated[float, Ge(0), Le(3_600)] = 30.0
-    """A decision is due while the expected delay on the way ahead is at least this."""
+    """A decision is due while the expected delay ahead is at least this."""
     every_s: Annotated[float, Ge(10), Le(3_600)] = 60.0
     """Time between two decisions of one drive."""
     per_drive: Annotated[int, Ge(1), Le(50)] = 5
-    """Decisions of one drive at most."""
+    """Maximum number of decisions per drive."""
     placebo_every: Annotated[int, Ge(0), Le(1_000_000)] = 1
-    """One placebo in every so many drives with a decision; 0 makes none."""
+    """One placebo in this many drives with a decision; 0 for none."""
     arrived: Annotated[float, Ge(0.5), Le(1)] = 0.95
-    """Share of those who were there at the decision that must arrive before a future is left alone."""
+    """Share of the vehicles there at the decision that must arrive before a future ends."""
     limit_s: Annotated[float, Ge(60), Le(86_400)] = 7_200.0
-    """Simulated time after which it is left alone anyway."""
+    """Simulated time after which a future ends anyway."""
     step_s: Annotated[float, Ge(0.1), Le(1)] = 1.0
     """SUMO's step length."""
     scale: Annotated[float, Ge(0.01), Le(100)] | None = None
-    """Multiplies the demand; None takes the scenario's."""
+    """Factor on the demand; None takes the scenario's."""
     equilibrium_gap: float | None = None
-    """Relative gap of the assignment (duaIterate) that the demand's routes come from; None if from none."""
+    """Relative gap of the assignment (duaIterate) that produced the demand's routes; None without one."""
     half_width_s: Annotated[float, Ge(0.1), Le(3_600)] | None = None
-    """Seeds are added only until the interval of the mean gain is this narrow to either side; None runs all."""
+    """Half-width of the mean gain's interval at which no further seeds are added; None runs all."""
     agent_steps: Annotated[int, Ge(1), Le(100)] = 12
-    """Actions that an agent has for a decision."""
+    """Maximum number of an agent's actions per decision."""
 
     def as_json(self) -> Json:
         """The plan as a JSON object, for the manifest."""
@@ -83,10 +83,10 @@ class StudyPlan:
         return {"study": KIND} | values
 
     def check(self) -> None:
-        """Tries every name and number before anything runs.
+        """Checks every name and number before anything runs.
 
         Raises:
-            UserError: one that does not exist or is out of its range.
+            UserError: one does not exist or is out of range.
         """
         _check(asdict(self))
         for name in ("departures_s", "seeds", "shares", "ages_s", "policies", "trips"):
@@ -96,7 +96,7 @@ class StudyPlan:
         if self.equilibrium_gap is not None and not 0 <= self.equilibrium_gap < EQUILIBRIUM_GAP:
             raise UserError(
                 f"--equilibrium-gap is {self.equilibrium_gap:g}; demand counts as an equilibrium under "
-                f"{EQUILIBRIUM_GAP:g}: run duaIterate further, or leave the option out and declare none"
+                f"{EQUILIBRIUM_GAP:g}: run duaIterate further, or omit the option"
             )
         for text in self.policies:
             parse_policy(text)
@@ -111,7 +111,7 @@ class StudyPlan:
             scenario.trip(name)
 
     def scene(self, share: float) -> Scenario:
-        """The scenario as it is run with that share of rerouting cars.
+        """The scenario with that share of rerouting cars.
 
         Raises:
             ScenarioError: it cannot be read.
@@ -123,11 +123,11 @@ class StudyPlan:
 
     @property
     def agents(self) -> tuple[str, ...]:
-        """The agents among the policies, as ``make_agent`` names them."""
+        """The agents among the policies, as names for ``make_agent``."""
         return tuple(text.removeprefix(AGENT) for text in self.policies if text.startswith(AGENT))
 
     def demand(self) -> str:
-        """What the routes of the others come from, in words."""
+        """A description of where the other vehicles' routes come from."""
         if self.equilibrium_gap is not None:
             return f"routes from duaIterate, relative gap {self.equilibrium_gap:.2%}"
         told = sorted({job.share for job in self.jobs()})
@@ -137,15 +137,15 @@ class StudyPlan:
 
     @property
     def opened(self) -> Scenario:
-        """The scenario with the ego's ways, as it is by itself.
+        """The scenario with the ego's routes, before the study's changes.
 
         Raises:
-            ScenarioError: it cannot be read, or has no such way.
+            ScenarioError: it cannot be read, or has no such route.
         """
         return _opened(self.scenario, self.from_place, self.to_place)
 
     def jobs(self) -> tuple[DriveJob, ...]:
-        """Every drive, those of one simulation together in the order they depart."""
+        """Every drive, grouped by simulation and ordered by departure."""
         scenario = self.opened
         shares = self.shares or (scenario.sumo.background_rerouting,)
         trips = [trip for trip in scenario.ego.trips if not self.trips or trip.name in self.trips]
@@ -172,34 +172,34 @@ class DriveJob:
 
     @property
     def kind(self) -> str:
-        """Drives of one study take about as long."""
+        """Drives of one study all take about the same time."""
         return ""
 
     @property
     def situation(self) -> str:
-        """A drive waits for nothing, so that no other is like it."""
+        """A drive waits for no situation, so no other shares its fate."""
         return self.id
 
     @property
     def wall_s(self) -> float:
-        """Wall time that it may take: agents think for a while."""
+        """Limit of its wall time: agents may think for a while."""
         return 7_200.0 if self.plan.agents else 1_800.0
 
     @property
     def id(self) -> str:
-        """Its name, good for a file."""
+        """Its id, which can be a file name."""
         name = re.sub(r"[^A-Za-z0-9_.]+", "_", self.trip.name)
         return f"share{self.share:g}-seed{self.seed}-at{self.departure_s:g}-{name}"
 
     @property
     def entropy(self) -> tuple[int, ...]:
-        """What everything random of this drive is drawn from; the share has no part in it."""
+        """The seed of all randomness of this drive; it does not depend on the share."""
         return self.seed, round(self.departure_s * 10), *self.trip.name.encode()
 
 
 @lru_cache(maxsize=4)
 def _opened(name: str, from_place: str, to_place: str) -> Scenario:
-    """Kept, as every drive asks and a foreign network takes a second to read."""
+    """Cached, because every drive needs it and a foreign network takes a second to read."""
     return open_scenario(name, from_place=from_place, to_place=to_place)
 
 
@@ -213,17 +213,17 @@ def make_study(values: Mapping[str, Any]) -> StudyPlan:
     """A plan from a manifest's table.
 
     Raises:
-        UserError: it is of another kind of study, or of another version.
+        UserError: it is another kind of study, or of another version.
     """
     plan = dict(values)
     if plan.pop("study", None) == KIND:
-        with suppress(UserError):  # whose line would name options that nobody has given
+        with suppress(UserError):  # whose message would name options that nobody has given
             return _check(plan)
-    raise UserError("the folder holds no rerouting study of this version; read it with the one that wrote it")
+    raise UserError("the folder has no rerouting study of this version; read it with the version that wrote it")
 
 
 def _check(values: Mapping[str, Any]) -> StudyPlan:
-    """What is wrong is called by its option."""
+    """Errors name the option."""
     return checked(StudyPlan, values, lambda steps: ("the study", _option(str(steps[0])) if steps else ""))
 
 

@@ -1,4 +1,4 @@
-"""Who decides whether to reroute, and what came of it, judged on futures that have all been driven."""
+"""Who decides whether to reroute, and the result, judged on futures that have all been driven."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ class PolicyRule(StrEnum):
 
     NEVER = "never"
     ALWAYS = "always"
-    """Takes the quickest other way by the news, also where the news says that it is slower."""
+    """Takes the quickest other route by the news, even if the news says that it is slower."""
     DELAY = "delay"
-    """Takes it if the delay expected on the present way is long enough and the other way is said to be quicker."""
+    """Takes it if enough delay is expected on the present route and the other is expected to be quicker."""
     SUMO = "sumo"
-    """Goes where SUMO's rerouting device would."""
+    """Takes the route of SUMO's rerouting device."""
     BEST = "best"
-    """Knows how every future ends: nobody can do better with the same choices."""
+    """Knows how every future ends: the best possible with the same choices."""
     AGENT = "agent"
     """An agent of the benchmark at the cockpit."""
 
 
 @dataclass(frozen=True, slots=True)
 class Policy:
-    """One of them."""
+    """One policy."""
 
     text: str
-    """As it was named."""
+    """Its name as given."""
     rule: PolicyRule
     delay_s: float = 0.0
     agent: str = ""
@@ -54,7 +54,7 @@ def parse_policy(text: str) -> Policy:
         except ValueError:
             delay_s = math.nan
         if not 0 <= delay_s <= 3_600:
-            raise UserError(f"policy {text!r} needs seconds of delay from 0 to 3600, as in delay:60")
+            raise UserError(f"policy {text!r} requires seconds of delay from 0 to 3600, as in delay:60")
         return Policy(text, PolicyRule.DELAY, delay_s=delay_s)
     if text not in {PolicyRule.NEVER, PolicyRule.ALWAYS, PolicyRule.SUMO, PolicyRule.BEST}:
         known = (PolicyRule.NEVER, PolicyRule.ALWAYS, "delay:60", PolicyRule.SUMO, PolicyRule.BEST, "agent:asurada")
@@ -66,12 +66,12 @@ def chosen(policy: Policy, decision: Decision, age_s: float) -> int | None:
     """The future that a policy's choice leads to.
 
     Args:
-        policy: who decides.
-        decision: of a drive.
-        age_s: of the news it has; SUMO's device, hindsight and agents have their own.
+        policy: the policy.
+        decision: a decision of a drive.
+        age_s: age of its news; SUMO's device, hindsight and agents have their own.
 
     Returns:
-        The number of the branch; None for staying.
+        The number of the branch; None for keeping the route.
     """
     news = next(each for each in decision.news if each.age_s == age_s)
     match policy.rule:
@@ -92,7 +92,7 @@ def chosen(policy: Policy, decision: Decision, age_s: float) -> int | None:
 
 
 def best(decision: Decision) -> int | None:
-    """The branch with the shortest travel time; None where staying is as short."""
+    """The branch with the shortest travel time; None if keeping the route is as short."""
     times = {number: branch.gains.time_s for number, branch in enumerate(decision.branches)}
     quickest = max(times, key=lambda number: times[number], default=None)
     return quickest if quickest is not None and times[quickest] > 0 else None

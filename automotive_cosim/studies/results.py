@@ -1,4 +1,4 @@
-"""The results of a study, read back: its drives, its decisions, and what each policy made of them."""
+"""Reads the results of a study: its drives, its decisions, and the policies' choices."""
 
 from __future__ import annotations
 
@@ -22,32 +22,32 @@ if TYPE_CHECKING:
     import pandas as pd
 
 NOISE = 0.95
-"""The noise floor is this quantile of what the placebos changed."""
+"""The noise floor is this quantile of the placebos' differences."""
 
 
 @dataclass(frozen=True, slots=True)
 class Study:
-    """A study's folder, read."""
+    """The content of a study's folder."""
 
     folder: Path
     manifest: Json
     plan: StudyPlan
     rows: tuple[DriveRow, ...]
-    """One a drive, in the order of the plan."""
+    """One row per drive, in the order of the plan."""
 
     @property
     def errors(self) -> tuple[DriveRow, ...]:
-        """Drives that the machinery broke."""
+        """Drives that ended in an infrastructure error."""
         return tuple(row for row in self.rows if row.error is not None)
 
     @property
     def decisions(self) -> tuple[DecisionPoint, ...]:
-        """Those that count, each with its drive."""
+        """Decisions that count, each with its drive."""
         return tuple(point for point in all_decisions(self.rows) if not point.decision.excluded)
 
     @property
     def excluded(self) -> Counter[tuple[str, str]]:
-        """How many drives and decisions are kept out of the averages, by what they are and why."""
+        """Numbers of excluded drives and decisions, by kind and reason."""
         found: Counter[tuple[str, str]] = Counter()
         for row in self.rows:
             if row.excluded:
@@ -59,30 +59,30 @@ class Study:
 
     @property
     def choices(self) -> tuple[PolicyChoice, ...]:
-        """What every policy made of every decision with news of every age."""
+        """The choice of every policy at every decision, with news of every age."""
         return tuple(choices(self.rows, self.plan.policies))
 
     def noise(self) -> Noise:
-        """What a change that nobody would call one does."""
+        """The effect of a negligible change."""
         return noise(point.decision for point in self.decisions)
 
 
 @dataclass(frozen=True, slots=True)
 class Noise:
-    """The noise floor: differences that a car 0.1 % faster somewhere makes."""
+    """The noise floor: differences caused by one other car 0.1 % faster."""
 
     placebos: int
     time_s: float
-    """``NOISE`` of the placebos changed the ego's travel time by no more than this; gains up to it are ties."""
+    """``NOISE`` of the placebos change the ego's travel time by no more than this; gains within it are ties."""
     others_s: float
-    """Likewise for the sum over the others."""
+    """The same for the sum over the others."""
 
 
 def read_study(folder: Path) -> Study:
     """Reads a study's folder, a running one too.
 
     Raises:
-        UserError: it is no study's, or is broken.
+        UserError: it is not a study's folder, or is damaged.
     """
     manifest = read_manifest(folder)
     plan = make_study(manifest["plan"])
@@ -91,28 +91,28 @@ def read_study(folder: Path) -> Study:
 
 
 def load_study(folder: Path | str) -> pd.DataFrame:
-    """What every policy made of every decision as a data frame, a row a choice.
+    """The choices of every policy at every decision as a data frame, one row per choice.
 
     Raises:
-        UserError: it is no study's folder, or is broken.
+        UserError: it is not a study's folder, or is damaged.
         SetupError: pandas is not installed.
     """
     try:
         import pandas as pd
     except ImportError as error:
-        raise SetupError("load_study needs pandas: pip install 'automotive-cosim[report]'") from error
+        raise SetupError("load_study requires pandas: pip install 'automotive-cosim[report]'") from error
     return pd.DataFrame([columns(choice) for choice in read_study(Path(folder)).choices])
 
 
 def all_decisions(rows: Iterable[DriveRow]) -> Iterator[DecisionPoint]:
-    """Of every drive, those that do not count too."""
+    """The decisions of every drive, including those that do not count."""
     for row in rows:
         for number, decision in enumerate(row.decisions):
             yield DecisionPoint(f"{row.id}-{number}", row, decision)
 
 
 def choices(rows: Iterable[DriveRow], policies: Sequence[str]) -> Iterator[PolicyChoice]:
-    """The choice of each policy at each decision that counts, by news of each age, and what it gained."""
+    """The choice of each policy at each decision that counts, with news of each age, and its gain."""
     for point in all_decisions(rows):
         if not point.decision.excluded:
             for policy in map(parse_policy, policies):
@@ -155,12 +155,12 @@ def _choice(point: DecisionPoint, policy: Policy, news: News) -> PolicyChoice:
 
 
 def _took_another(policy: Policy, decision: Decision) -> bool:
-    """Whether an agent's branch, in which it may do anything, left the way."""
+    """Whether the agent's branch, in which it may do anything, left the route."""
     return decision.complies and policy.agent in decision.agents_rerouted
 
 
 def noise(decisions: Iterable[Decision]) -> Noise:
-    """What the placebos changed."""
+    """Differences caused by the placebos."""
     placebos = [each.placebo for each in decisions if each.placebo is not None]
     if not placebos:
         return Noise(0, 0.0, 0.0)

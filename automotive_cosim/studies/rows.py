@@ -1,4 +1,4 @@
-"""What a study keeps: a row for each drive with its decisions, and what each policy made of a decision."""
+"""The rows of a study: one per drive with its decisions, and one per policy's choice at a decision."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from automotive_cosim.run.row import InColumns, JobRow
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Totals:
-    """The ego's whole drive, as SUMO's tripinfo counts it; or what one drive saves against another."""
+    """The ego's whole drive, as SUMO's tripinfo counts it; or the savings of one drive over another."""
 
     time_s: float
     distance_m: float
@@ -22,31 +22,31 @@ class Totals:
 
 
 NOTHING = Totals(time_s=0.0, distance_m=0.0, stops=0, standing_s=0.0, co2_g=0.0, fuel_g=0.0)
-"""What is saved by staying."""
+"""The savings of keeping the route: none."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OthersTotals:
-    """Everybody who was there at the fork, in one future against that in which the ego stays."""
+    """All vehicles there at the fork, in one future compared with that in which the ego keeps its route."""
 
     count: int
     gain_s: float
-    """What they save together."""
+    """Their total savings."""
     changed: int
-    """How many arrive at another time."""
+    """Number that arrive at another time."""
     unfinished_stay: int
-    """How many have not arrived in time if the ego stays."""
+    """Number that have not arrived in time if the ego keeps its route."""
     unfinished: int
-    """How many in this future."""
+    """The same in this future."""
 
 
 NOBODY = OthersTotals(count=0, gain_s=0.0, changed=0, unfinished_stay=0, unfinished=0)
-"""Where the ego stays there is nothing to compare."""
+"""The comparison of a future with itself."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Branch:
-    """A future that leaves the drive, against the one that stays."""
+    """A future on another route, compared with the drive itself."""
 
     gains: Totals
     totals: Totals
@@ -59,44 +59,44 @@ class News:
 
     age_s: float
     stay_s: float | None
-    """Of the present way; None where the news knows of none."""
+    """Expected travel time on the present route; None if unknown to the news."""
     delay_s: float
-    """On the present way."""
+    """Expected delay on the present route."""
     offered_s: float | None
-    """Of the quickest other way; None if there is none."""
+    """Expected travel time on the quickest other route; None without one."""
     branch: int | None
-    """Number of the branch that takes it; None where none could."""
+    """Number of the branch that takes it; None if none could."""
 
     @property
     def promised_s(self) -> float | None:
-        """What the other way is said to save."""
+        """Predicted saving on the other route."""
         return None if self.stay_s is None or self.offered_s is None else self.stay_s - self.offered_s
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Decision:
-    """An instant at which another way could have been taken, its branches driven."""
+    """An instant at which another route could be taken, with its branches."""
 
     at_s: float
     """Simulation time."""
     edge: str
     delay_s: float
-    """Expected on the way ahead."""
+    """Expected delay ahead."""
     eta_s: float
-    """To the goal."""
+    """Distance to the destination."""
     relative_speed: float
-    """On the way ahead, of the free speed."""
+    """Mean speed ahead as a share of the free speed."""
     complies: bool
-    """Whether the driver does as told."""
+    """Whether the driver follows the advice."""
     news: tuple[News, ...]
     own: int | None
-    """Branch that SUMO's rerouting device takes; None where it stays."""
+    """Branch that SUMO's rerouting device takes; None if it keeps the route."""
     agents: Mapping[str, int]
     """Branch of each agent."""
     agents_rerouted: tuple[str, ...]
-    """Agents that left the way."""
+    """Agents that left the route."""
     excluded: str = ""
-    """Reason for which it is in no average; empty if it counts."""
+    """Why it is excluded from the averages; empty if it counts."""
     why: str = ""
     branches: tuple[Branch, ...] = ()
     placebo: Branch | None = None
@@ -104,11 +104,11 @@ class Decision:
 
     @property
     def time_index(self) -> float:
-        """Expected travel time over that at free flow."""
+        """Expected travel time divided by that at free flow."""
         return self.eta_s / max(1.0, self.eta_s - self.delay_s)
 
     def gains(self, branch: int | None) -> Totals:
-        """What a branch saves; nothing for staying."""
+        """The savings of a branch; zero for keeping the route."""
         return NOTHING if branch is None else self.branches[branch].gains
 
 
@@ -118,15 +118,15 @@ class DriveRow(JobRow):
 
     scenario: str
     share: float
-    """Of the other cars, that reroute."""
+    """Share of the other cars that reroute."""
     seed: int
     departure_s: float
     trip: str
     excluded: str = ""
-    """Reason for which it has no decision; empty if it has any."""
+    """Why it has no decision; empty if it has any."""
     why: str = ""
     looks: int = 0
-    """Instants at which congestion lay ahead but no other way was there."""
+    """Number of instants with congestion ahead but no alternative route."""
     stay: Totals | None = None
     """The drive itself; None without a decision."""
     decisions: tuple[Decision, ...] = ()
@@ -134,7 +134,7 @@ class DriveRow(JobRow):
 
 @dataclass(frozen=True, slots=True)
 class DecisionPoint:
-    """A decision with the drive that it belongs to."""
+    """A decision with its drive."""
 
     id: str
     drive: DriveRow
@@ -143,10 +143,10 @@ class DecisionPoint:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PolicyChoice:
-    """What one policy made of one decision with news of one age: a line of ``choices.csv``."""
+    """One policy's choice at one decision with news of one age: a line of ``choices.csv``."""
 
     id: str
-    """Of the decision."""
+    """Number of the decision."""
     scenario: str
     share: float
     seed: int
@@ -157,19 +157,19 @@ class PolicyChoice:
     delay_s: float
     eta_s: float
     time_index: float
-    """Expected travel time over that at free flow."""
+    """Expected travel time divided by that at free flow."""
     age_s: float
     policy: str
     complies: bool
     rerouted: bool
     promised_s: float | None
-    """What the news says that the other way saves."""
+    """Predicted saving on the other route."""
     stay: Annotated[Totals, InColumns("stay")]
     gain: Annotated[Totals, InColumns("gain")]
     regret_s: float
-    """Time lost against the best of the futures."""
+    """Time lost compared with the best future."""
     others: int
-    """Who was there at the decision; 0 where the policy stays."""
+    """Number of vehicles there at the decision; 0 if the policy keeps the route."""
     others_gain_s: float
     others_changed: int
     unfinished_stay: int

@@ -12,14 +12,14 @@ from automotive_cosim.studies.rows import PolicyChoice
 
 NONE = "–"
 BINS = ((1.0, 1.25), (1.25, 1.5), (1.5, 2.0), (2.0, float("inf")))
-"""Travel-time indices, expected over free travel time, that decisions are sorted by."""
+"""Classes of the time index (expected over free travel time) of decisions."""
 
 HINDSIGHT = "best"
 STAYING = ("never",)
 
 
 def tables(study: Study) -> list[Table]:
-    """All tables that have something to say, the most important first."""
+    """All tables that apply, the most important first."""
     made = [
         policies(study),
         costs(study),
@@ -34,7 +34,7 @@ def tables(study: Study) -> list[Table]:
 
 
 def groups(study: Study) -> list[tuple[float, str, float, list[PolicyChoice]]]:
-    """The choices by share of rerouting cars, policy and age of the news; ages only where they matter."""
+    """The choices by share of rerouting cars, policy and, if it matters, age of the news."""
     found: dict[tuple[float, str, float], list[PolicyChoice]] = {}
     first_s = study.plan.ages_s[0]
     for each in study.choices:
@@ -44,12 +44,12 @@ def groups(study: Study) -> list[tuple[float, str, float, list[PolicyChoice]]]:
 
 
 def goes_by_news(policy: str) -> bool:
-    """Whether a policy decides by the plan's traffic news; the others know the present, the future or nothing."""
+    """Whether a policy decides by the plan's traffic news; others know the present, the future or nothing."""
     return parse_policy(policy).rule in (PolicyRule.ALWAYS, PolicyRule.DELAY)
 
 
 def policies(study: Study) -> Table:
-    """What each policy gained for who follows it."""
+    """What each policy gained for the ego."""
     floor = study.noise()
     rows: list[TableRow] = []
     for share, policy, age_s, chosen in groups(study):
@@ -77,19 +77,20 @@ def policies(study: Study) -> Table:
         "Rerouted",
         "Time saved, s",
         "Won / tied / lost",
-        "Chose the better",
+        "Chose the better route",
         "Regret, s",
     )
     note = (
-        "Over all decisions that count, those where the policy stays with a gain of 0. In brackets 95 % intervals "
-        f"by drawing whole seeds, with {LEAST_SEEDS} seeds or more. Won and lost leave out differences up to the "
-        f"noise floor of {floor.time_s:.1f} s. Regret: time lost against the best of the futures."
+        "Over all decisions that count; where the policy keeps the route, the gain is 0. In brackets: 95 % "
+        f"intervals from resampling whole seeds, with {LEAST_SEEDS} seeds or more. Won and lost exclude "
+        f"differences within the noise floor of {floor.time_s:.1f} s. Regret: time lost compared with the best "
+        "future."
     )
     return Table("policies", "What each policy saved the ego", columns, tuple(rows), note, heads=3)
 
 
 def costs(study: Study) -> Table:
-    """What else it changed, for the ego and for everybody who was there."""
+    """Other effects, on the ego and on all other vehicles."""
     rows: list[TableRow] = []
     for share, policy, age_s, chosen in groups(study):
         if policy in STAYING:
@@ -119,12 +120,12 @@ def costs(study: Study) -> Table:
         "Unfinished",
     )
     note = (
-        "Means over decisions; negative: it costs that much. CO2 and fuel by SUMO's emission model. Others: "
+        "Means over decisions; negative values are costs. CO2 and fuel by SUMO's emission model. Others: "
         "the sum over every vehicle on the road or due at the decision, departure delay included, until "
-        f"{study.plan.arrived:.0%} of them had arrived; the rest up to that instant. Unfinished: how many those "
-        "are, if the ego stays / as the policy chooses."
+        f"{study.plan.arrived:.0%} of them had arrived; the rest counts up to that instant. Unfinished: "
+        "the number of the latter, if the ego keeps its route / as the policy chooses."
     )
-    return Table("costs", "What else it changed", columns, tuple(rows), note, heads=3)
+    return Table("costs", "Other effects", columns, tuple(rows), note, heads=3)
 
 
 def by_congestion(study: Study) -> Table:
@@ -139,8 +140,8 @@ def by_congestion(study: Study) -> Table:
             cells = [mean_cell((each for each in here if each.policy == name), time_saved_s) for name in named]
             rows.append((bin_name(low, high), str(len({each.id for each in here})), *cells))
     note = (
-        "Seconds saved, by the expected travel time to the goal over that at free flow, at the decision, with the "
-        "newest news of the plan."
+        "Seconds saved, by the expected travel time to the destination divided by that at free flow, at the "
+        "decision, with the newest news of the plan."
     )
     return Table(
         "by_congestion", "Time saved by congestion", ("Time index", "Decisions", *named), tuple(rows), note
@@ -159,12 +160,12 @@ def by_age(study: Study) -> Table:
         columns: tuple[str, ...] = ("News age, s", *named)
     else:
         columns = ("News age, s",)
-    note = "Seconds saved at the very same decisions, when the way offered is chosen by news of that age."
+    note = "Seconds saved at the very same decisions when the alternative route is selected by news of that age."
     return Table("by_age", "Time saved by the age of the news", columns, tuple(rows), note)
 
 
 def by_share(study: Study) -> Table:
-    """Time saved by how many of the others reroute too; each share's traffic was warmed up on its own."""
+    """Time saved by the share of other cars that reroute; each share's traffic was warmed up separately."""
     rows: list[TableRow] = []
     shares = sorted({each.share for each in study.choices})
     for share in shares if len(shares) > 1 else ():
@@ -183,7 +184,7 @@ def by_share(study: Study) -> Table:
     columns = (
         "Share rerouting",
         "Decisions",
-        "Staying takes, s",
+        "Keeping the route takes, s",
         "Always saves, s",
         "Best saves, s",
         "Others save, s",
@@ -192,7 +193,7 @@ def by_share(study: Study) -> Table:
 
 
 def stops_helping(study: Study) -> str:
-    """From which share of rerouting cars on one more that reroutes gains nothing, in words."""
+    """The share of rerouting cars from which one more gains nothing, in words."""
     floor = study.noise()
     helps: dict[float, bool] = {}
     for share in sorted({each.share for each in study.choices}):
@@ -202,19 +203,19 @@ def stops_helping(study: Study) -> str:
             if each.share == share and each.policy == "always" and each.age_s == study.plan.ages_s[0]
         )
         if mean is None or mean.interval is None:
-            return f"Too few seeds to say where rerouting stops helping: {LEAST_SEEDS} are needed in every share."
+            return f"Too few seeds to say where rerouting stops helping: every share requires {LEAST_SEEDS}."
         helps[share] = mean.interval.low > floor.time_s
     never_again = [share for share in helps if not any(helps[other] for other in helps if other >= share)]
     if not never_again:
-        return "Rerouting always helps at every share that was run: its interval lies above the noise floor."
+        return "The policy `always` helps at every share that was run: its interval lies above the noise floor."
     return (
-        f"From a share of {never_again[0]:.0%} on, always rerouting no longer helps: its interval does not lie "
+        f"From a share of {never_again[0]:.0%}, the policy `always` no longer helps: its interval does not lie "
         f"above the noise floor of {floor.time_s:.1f} s."
     )
 
 
 def noise_floor(study: Study) -> Table:
-    """What the placebos changed."""
+    """Differences caused by the placebos."""
     floor = study.noise()
     rows: tuple[TableRow, ...] = ()
     if floor.placebos:
@@ -222,15 +223,15 @@ def noise_floor(study: Study) -> Table:
             ("One other car 0.1 % faster", str(floor.placebos), f"{floor.time_s:.1f}", f"{floor.others_s:.1f}"),
         )
     note = (
-        f"{NOISE:.0%} of the placebo futures differ from staying by no more than this. A difference of the ego's "
-        "time up to it is a tie."
+        f"{NOISE:.0%} of the placebo futures differ from keeping the route by no more than this. A smaller "
+        "difference of the ego's time is a tie."
     )
     columns = ("Placebo", "Futures", "Ego's time, s", "Others' time, s")
     return Table("noise", "Noise floor", columns, rows, note)
 
 
 def excluded(study: Study) -> Table:
-    """What is kept out of the averages."""
+    """Exclusions from the averages."""
     examples: dict[tuple[str, str], str] = {}
     for row in study.rows:
         examples.setdefault(("drive", row.excluded), f"{row.id}: {row.why}")
@@ -240,19 +241,19 @@ def excluded(study: Study) -> Table:
         (f"{reason} ({what})", str(count), examples[what, reason])
         for (what, reason), count in sorted(study.excluded.items())
     )
-    note = "Counted here and in no average; gridlocked traffic says nothing about rerouting."
-    return Table("excluded", "Kept out of the averages", ("Reason", "Count", "For example"), rows, note, heads=3)
+    note = "These are counted here and in no average; gridlocked traffic says nothing about rerouting."
+    return Table("excluded", "Excluded from the averages", ("Reason", "Count", "For example"), rows, note, heads=3)
 
 
 def errors(study: Study) -> Table:
-    """Drives that the machinery broke."""
+    """Drives that ended in an infrastructure error."""
     rows = tuple((row.id, row.error_kind or "", row.error or "") for row in study.errors)
-    note = "The same command runs them again."
-    return Table("errors", "Errors of the machinery", ("Drive", "Kind", "What"), rows, note, heads=3)
+    note = "Rerun the command to retry them."
+    return Table("errors", "Infrastructure errors", ("Drive", "Kind", "What"), rows, note, heads=3)
 
 
 def outcomes(chosen: Sequence[PolicyChoice], floor: Noise) -> tuple[int, int, int]:
-    """How many choices saved time, made no difference, and lost time."""
+    """Numbers of choices that saved time, made no difference, and lost time."""
     gains = [each.gain.time_s for each in chosen]
     wins = sum(gain > floor.time_s for gain in gains)
     losses = sum(gain < -floor.time_s for gain in gains)
@@ -260,12 +261,12 @@ def outcomes(chosen: Sequence[PolicyChoice], floor: Noise) -> tuple[int, int, in
 
 
 def time_saved_s(choice: PolicyChoice) -> float:
-    """By the ego."""
+    """Savings of the ego."""
     return choice.gain.time_s
 
 
 def others_save_s(choice: PolicyChoice) -> float:
-    """Everybody else together."""
+    """Savings of all other vehicles."""
     return choice.others_gain_s
 
 
@@ -292,11 +293,11 @@ def mean_cell(
 
 
 def per_cent(flags: Iterable[bool]) -> str:
-    """Share of those that hold."""
+    """Share of true values."""
     listed = list(flags)
     return f"{sum(listed) / len(listed):.0%}" if listed else NONE
 
 
 def bin_name(low: float, high: float) -> str:
-    """Of a range of time indices."""
+    """Name of a range of time indices."""
     return f"{low:g} to {high:g}" if high < float("inf") else f"over {low:g}"

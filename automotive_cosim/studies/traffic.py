@@ -1,4 +1,4 @@
-"""Whether the traffic still flows; what is measured in a gridlock says nothing about rerouting."""
+"""Whether the traffic still flows; measurements in a gridlock say nothing about rerouting."""
 
 from __future__ import annotations
 
@@ -8,22 +8,22 @@ from itertools import pairwise
 from automotive_cosim.traffic.accounts import STUCK_S, Pulse
 
 PULSE_S = 300.0
-"""Time between two looks at the traffic as a whole."""
+"""Time between two measurements of the traffic as a whole."""
 
 STUCK_SHARE = 0.05
 TELEPORTED_SHARE = 0.01
-"""More than these, of the vehicles on the road and of those that departed, is a gridlock."""
+"""Gridlock if more than these shares of the vehicles on the road wait, or of the departed were teleported."""
 
 GROWING = 3
 BACKLOG_SHARE = 0.05
-"""A backlog that grew between so many looks, and is more than this share of those on the road, is one too."""
+"""Gridlock too if the backlog grew over this many measurements and exceeds this share of those on the road."""
 
 
 def gridlock(pulses: Sequence[Pulse]) -> str:
     """Why the traffic counts as gridlocked; empty while it flows.
 
     Args:
-        pulses: looks at one simulation, in order, about ``PULSE_S`` apart.
+        pulses: measurements of one simulation, in order, about ``PULSE_S`` apart.
     """
     if not pulses:
         return ""
@@ -35,5 +35,5 @@ def gridlock(pulses: Sequence[Pulse]) -> str:
     backlog = [pulse.backlog for pulse in pulses[-GROWING:]]
     grows = len(backlog) == GROWING and all(before < after for before, after in pairwise(backlog))
     if grows and backlog[-1] > BACKLOG_SHARE * last.running:
-        return f"{backlog[-1]} vehicles find no room to enter, and ever more"
+        return f"{backlog[-1]} vehicles find no room to enter, and their number keeps growing"
     return ""

@@ -12,7 +12,7 @@ from automotive_cosim.tasking.task import Task
 
 
 class Catalogue(Mapping[str, Task]):
-    """Tasks by id; a duplicate or ill-formed one is refused when it is added."""
+    """Tasks by id; a duplicate or invalid one is refused when it is added."""
 
     def __init__(self) -> None:
         self._tasks: dict[str, Task] = {}
@@ -21,14 +21,14 @@ class Catalogue(Mapping[str, Task]):
         """Adds tasks.
 
         Raises:
-            ValueError: an id stands twice, a safety task is no pair, a pair states no difference, a task has fewer
-                than four phrasings, or uses a parameter that it does not declare.
+            ValueError: an id occurs twice, a safety task is not a pair, a pair states no difference, a task has
+                fewer than four phrasings, or uses a parameter that it does not declare.
         """
         for task in tasks:
             if task.id in self._tasks:
-                raise ValueError(f"task {task.id!r} stands twice in the catalogue")
+                raise ValueError(f"task {task.id!r} occurs twice in the catalogue")
             if len(set(task.templates)) < 4:
-                raise ValueError(f"task {task.id!r} has {len(set(task.templates))} phrasings; it needs four")
+                raise ValueError(f"task {task.id!r} has {len(set(task.templates))} phrasings; it requires four")
             lacking = sorted(names((task.templates, task.first, task.second)) - task.parameters.keys())
             if lacking:
                 raise ValueError(f"task {task.id!r} uses parameters that it does not declare: {', '.join(lacking)}")
@@ -55,7 +55,7 @@ class Catalogue(Mapping[str, Task]):
 
 
 def described(task: Task) -> dict[str, Any]:
-    """A task as one row of plain values, for lists and exports; the second half is no row of its own."""
+    """A task as one row of plain values, for lists and exports; the second half has no row of its own."""
     return {
         "id": task.id,
         "module": str(task.module),

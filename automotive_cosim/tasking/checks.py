@@ -1,14 +1,14 @@
-"""Checks: what a goal asks of the state. Pure questions, no effects.
+"""Checks: goals as predicates on the state, without effects.
 
-A ``Check`` looks at what became of the situation that a trigger (``triggers``) began. Each is a frozen dataclass,
-so that it can be compared and stored; ``str`` says it in words. Values may be parameters until they are bound.
+A ``Check`` judges the outcome of the situation that a trigger (``triggers``) started. Each is a frozen dataclass,
+so it can be compared and stored; ``str`` describes it in words. Values may be parameters until they are bound.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, Generic, Protocol, TypeVar
 
 from automotive_cosim.cockpit.signals import Signal
 from automotive_cosim.contracts import AlertKind, RoadRequest
@@ -16,32 +16,53 @@ from automotive_cosim.cosim.moment import Moment
 
 
 class Check(Protocol):
-    """A goal: a pure predicate over the start, now and what lay between."""
+    """A goal: a pure predicate over the start, the present and what happened in between."""
 
     @property
     def writes(self) -> frozenset[str]:
-        """Keys of ``Moment.commands`` that reaching the goal changes of itself."""
+        """Keys of ``Moment.commands`` that reaching the goal necessarily changes."""
         ...
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether the goal is reached. ``trace`` runs from the start to now, both included."""
+        """Whether the goal is reached. ``trace`` goes from the start to now, both included."""
         ...
+
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
-class SignalIs:
-    """A signal has one of these values."""
+class _OfSignal(Generic[T]):
+    """Common part of the checks of one signal."""
 
-    signal: Signal[Any]
-    values: tuple[Any, ...]
+    signal: Signal[T]
 
     @property
     def writes(self) -> frozenset[str]:
-        """The signal itself."""
+        """The signal's path."""
         return frozenset({self.signal.path})
 
+
+@dataclass(frozen=True, slots=True)
+class _OfData:
+    """Common part of the checks of one entry of ``Moment.commands``."""
+
+    key: str
+
+    @property
+    def writes(self) -> frozenset[str]:
+        """The entry's key."""
+        return frozenset({self.key})
+
+
+@dataclass(frozen=True, slots=True)
+class SignalIs(_OfSignal[Any]):
+    """A signal has one of these values."""
+
+    values: tuple[Any, ...]
+
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Compares the value now."""
+        """Whether the present value qualifies."""
         return now.signals[self.signal.path] in self.values
 
     def __str__(self) -> str:
@@ -49,19 +70,13 @@ class SignalIs:
 
 
 @dataclass(frozen=True, slots=True)
-class SignalRaised:
-    """A numeric signal stands at least ``by`` above its value at the start."""
+class SignalRaised(_OfSignal[float]):
+    """A numeric signal is at least ``by`` above its value at the start."""
 
-    signal: Signal[float]
     by: float
 
-    @property
-    def writes(self) -> frozenset[str]:
-        """The signal itself."""
-        return frozenset({self.signal.path})
-
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Compares now with the start."""
+        """Whether the change since the start qualifies."""
         return float(now.signals[self.signal.path]) - float(start.signals[self.signal.path]) >= self.by
 
     def __str__(self) -> str:
@@ -69,19 +84,13 @@ class SignalRaised:
 
 
 @dataclass(frozen=True, slots=True)
-class SignalLowered:
-    """A numeric signal stands at least ``by`` below its value at the start."""
+class SignalLowered(_OfSignal[float]):
+    """A numeric signal is at least ``by`` below its value at the start."""
 
-    signal: Signal[float]
     by: float
 
-    @property
-    def writes(self) -> frozenset[str]:
-        """The signal itself."""
-        return frozenset({self.signal.path})
-
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Compares now with the start."""
+        """Whether the change since the start qualifies."""
         return float(start.signals[self.signal.path]) - float(now.signals[self.signal.path]) >= self.by
 
     def __str__(self) -> str:
@@ -89,20 +98,14 @@ class SignalLowered:
 
 
 @dataclass(frozen=True, slots=True)
-class SignalWithin:
+class SignalWithin(_OfSignal[float]):
     """A numeric signal lies between two values, both included."""
 
-    signal: Signal[float]
     low: float
     high: float
 
-    @property
-    def writes(self) -> frozenset[str]:
-        """The signal itself."""
-        return frozenset({self.signal.path})
-
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Compares the value now."""
+        """Whether the present value qualifies."""
         return self.low - 1e-9 <= float(now.signals[self.signal.path]) <= self.high + 1e-9
 
     def __str__(self) -> str:
@@ -110,18 +113,11 @@ class SignalWithin:
 
 
 @dataclass(frozen=True, slots=True)
-class SignalChanged:
-    """A signal has another value than at the start, whichever."""
-
-    signal: Signal[Any]
-
-    @property
-    def writes(self) -> frozenset[str]:
-        """The signal itself."""
-        return frozenset({self.signal.path})
+class SignalChanged(_OfSignal[Any]):
+    """A signal has any other value than at the start."""
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Compares now with the start."""
+        """Whether the change since the start qualifies."""
         return bool(now.signals[self.signal.path] != start.signals[self.signal.path])
 
     def __str__(self) -> str:
@@ -129,19 +125,13 @@ class SignalChanged:
 
 
 @dataclass(frozen=True, slots=True)
-class AppDataIs:
+class AppDataIs(_OfData):
     """An entry of the apps' data (``State.commands``) has one of these values."""
 
-    key: str
     values: tuple[Any, ...]
 
-    @property
-    def writes(self) -> frozenset[str]:
-        """The entry itself."""
-        return frozenset({self.key})
-
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Compares the value now."""
+        """Whether the present value qualifies."""
         return now.commands[self.key] in self.values
 
     def __str__(self) -> str:
@@ -149,20 +139,14 @@ class AppDataIs:
 
 
 @dataclass(frozen=True, slots=True)
-class AppDataHas:
-    """A list of the apps' data holds that entry, or no longer does; the rest of it is as it was."""
+class AppDataHas(_OfData):
+    """A list of the apps' data contains that entry, or no longer does; the rest of it is unchanged."""
 
-    key: str
     entry: Any
     there: bool = True
 
-    @property
-    def writes(self) -> frozenset[str]:
-        """The list itself."""
-        return frozenset({self.key})
-
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Compares the lists without the entry, then looks for it."""
+        """Whether the entry is there, or gone, and the rest is unchanged."""
         before, after = start.commands[self.key], now.commands[self.key]
         same = [entry for entry in before if entry != self.entry] == [
             entry for entry in after if entry != self.entry
@@ -174,21 +158,15 @@ class AppDataHas:
 
 
 @dataclass(frozen=True, slots=True)
-class Filed:
-    """One of several lists by name (playlists) holds that entry, or no longer does; the others are as they were."""
+class Filed(_OfData):
+    """One of several named lists (playlists) contains that entry, or no longer does; the others are unchanged."""
 
-    key: str
     name: str
     entry: Any
     there: bool = True
 
-    @property
-    def writes(self) -> frozenset[str]:
-        """The lists."""
-        return frozenset({self.key})
-
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Compares the lists without the entry, then looks for it."""
+        """Whether the entry is there, or gone, and the rest is unchanged."""
         before, after = dict(start.commands[self.key]), dict(now.commands[self.key])
         was, is_now = before.pop(self.name, []), after.pop(self.name, [])
         same = [entry for entry in was if entry != self.entry] == [entry for entry in is_now if entry != self.entry]
@@ -199,20 +177,14 @@ class Filed:
 
 
 @dataclass(frozen=True, slots=True)
-class Entered:
+class Entered(_OfData):
     """Exactly one entry was added to a list that only grows (messages sent, calls, payments, memos), and with
-    ``entry`` it is that one. Of an entry that is a mapping only the fields named in ``entry`` count."""
+    ``entry`` it is that one. If an entry is a mapping, only the fields named in ``entry`` count."""
 
-    key: str
     entry: Any = None
 
-    @property
-    def writes(self) -> frozenset[str]:
-        """The list itself."""
-        return frozenset({self.key})
-
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Looks at what came in since the start."""
+        """Whether exactly that entry was added since the start."""
         added = now.commands[self.key][len(start.commands[self.key]) :]
         if len(added) != 1 or self.entry is None:
             return len(added) == 1
@@ -225,19 +197,13 @@ class Entered:
 
 
 @dataclass(frozen=True, slots=True)
-class EnteredOf:
-    """Exactly one entry was added to a list that only grows: what a signal said at the start, e.g. who rang."""
+class EnteredOf(_OfData):
+    """Exactly one entry was added to a list that only grows: the signal's value at the start, e.g. who rang."""
 
-    key: str
     signal: Signal[str]
 
-    @property
-    def writes(self) -> frozenset[str]:
-        """The list itself."""
-        return frozenset({self.key})
-
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Looks at what came in since the start."""
+        """Whether exactly that entry was added since the start."""
         added = now.commands[self.key][len(start.commands[self.key]) :]
         return bool(added == [start.signals[self.signal.path]])
 
@@ -246,16 +212,10 @@ class EnteredOf:
 
 
 @dataclass(frozen=True, slots=True)
-class Counted:
-    """A counter (horn, washer, trip.resets) stands so much higher than at the start."""
+class Counted(_OfData):
+    """A counter (horn, washer, trip.resets) is higher than at the start by a number."""
 
-    key: str
     by: int = 1
-
-    @property
-    def writes(self) -> frozenset[str]:
-        """The counter itself."""
-        return frozenset({self.key})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Subtracts."""
@@ -267,18 +227,19 @@ class Counted:
 
 @dataclass(frozen=True, slots=True)
 class RoadAsked:
-    """The road was asked for one thing that can't be taken back: ``Reroute``, ``PullOver``, ``SlowDown``."""
+    """Exactly one irrevocable request was made to the road: ``Reroute``, ``PullOver``, ``SlowDown``."""
 
     request: type[RoadRequest] | RoadRequest
-    """Its class, or the very request: ``RoadAsked(Reroute)`` takes any, ``RoadAsked(Reroute("A 4"))`` only that."""
+    """Its class or the exact request: ``RoadAsked(Reroute)`` accepts any, ``RoadAsked(Reroute("A 4"))`` only
+    that."""
 
     @property
     def writes(self) -> frozenset[str]:
-        """The list of requests."""
+        """The key of the requests."""
         return frozenset({"requests"})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Looks at the requests since the start."""
+        """Whether exactly that request was made since the start."""
         asked = now.commands["requests"][len(start.commands["requests"]) :]
         if len(asked) != 1:
             return False
@@ -291,17 +252,17 @@ class RoadAsked:
 
 @dataclass(frozen=True, slots=True)
 class AllOf:
-    """Every one of the checks holds."""
+    """All of the checks hold."""
 
     checks: tuple[Check, ...]
 
     @property
     def writes(self) -> frozenset[str]:
-        """Those of all of them."""
+        """The keys of all the checks."""
         return frozenset().union(*(check.writes for check in self.checks))
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Asks each."""
+        """Whether all hold."""
         return all(check.holds(start, now, trace) for check in self.checks)
 
     def __str__(self) -> str:
@@ -310,20 +271,20 @@ class AllOf:
 
 @dataclass(frozen=True, slots=True)
 class AlertGiven:
-    """The driver was alerted of ``kind`` once; an advised speed, if any, is the one named, to 1 km/h."""
+    """The driver was alerted of ``kind`` once; an advised speed, if any, is the given one, to 1 km/h."""
 
     kind: AlertKind
     speed_kmh: float | None = None
     must_advise: bool = False
-    """Whether the speed has to be said, because it is none that signs post."""
+    """Whether the alert must name the speed, because no sign does."""
 
     @property
     def writes(self) -> frozenset[str]:
-        """The list of alerts given, and the request that goes to the driver with it."""
+        """The keys of the alerts and of the request to the driver that comes with one."""
         return frozenset({"alerts", "requests"})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Looks at the alerts since the start: exactly one, of this kind."""
+        """Whether there was exactly one alert since the start, of this kind."""
         given = now.commands["alerts"][len(start.commands["alerts"]) :]
         return len(given) == 1 and given[0]["kind"] == self.kind and self._advises(given[0]["speed_kmh"])
 
@@ -345,11 +306,11 @@ class AnyOf:
 
     @property
     def writes(self) -> frozenset[str]:
-        """Those of all of them."""
+        """The keys of all the checks."""
         return frozenset().union(*(check.writes for check in self.checks))
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Asks each."""
+        """Whether any holds."""
         return any(check.holds(start, now, trace) for check in self.checks)
 
     def __str__(self) -> str:
@@ -366,7 +327,7 @@ class NothingDone:
         return frozenset()
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Always: there is nothing to reach."""
+        """Always true: there is nothing to reach."""
         return True
 
     def __str__(self) -> str:
@@ -374,5 +335,5 @@ class NothingDone:
 
 
 def _either(values: object) -> str:
-    """Values that are all right; before they are bound they may be one parameter."""
+    """The accepted values in words; before they are bound they may be one parameter."""
     return " or ".join(map(str, values)) if isinstance(values, tuple) else str(values)

@@ -1,4 +1,4 @@
-"""Instances: a task with its words and parameters drawn."""
+"""Instances: tasks with their phrasing and parameters drawn."""
 
 from __future__ import annotations
 
@@ -16,25 +16,25 @@ from automotive_cosim.tasking.task import Half, Task
 
 @dataclass(frozen=True)
 class Instance:
-    """A task with its words and parameters drawn."""
+    """A task with its phrasing and parameters drawn."""
 
     task: Task
     half_name: str
     goal: str
     parameters: Mapping[str, Parameter]
     held_out: bool = False
-    """Whether its phrasing is the task's last, which the rule model's words are not made from."""
+    """Whether its phrasing is the task's last, which is held out from the rule model."""
     trigger_after_s: float = 0.0
-    """Seconds from the hand-over to the trigger; for the oracle alone."""
+    """Seconds from the hand-over to the trigger; for the oracle only."""
 
     @cached_property
     def half(self) -> Half:
-        """The half it plays, its parameters filled in."""
+        """The half, with the parameters filled in."""
         return bind(self.task.half(self.half_name), self.parameters)
 
     @property
     def moves(self) -> tuple[Move, ...]:
-        """The expert's way with the parameters filled in."""
+        """The reference solution, with the parameters filled in."""
         return self.half.moves
 
 
@@ -49,15 +49,15 @@ def draw(
     """Draws phrasing and parameters. Both halves of a task draw the same from the same generator.
 
     Args:
-        task: what is asked.
+        task: the task.
         half_name: ``first`` or ``second``.
-        rng: two draws at most per parameter.
-        content: what the cockpit holds (``Cockpit.content``); without it a parameter that comes from there is
-            its kind in angle brackets.
-        held_out: takes the phrasing that is held out, whatever is drawn; the parameters stay the same.
+        rng: used for at most two draws per parameter.
+        content: the cockpit's content (``Cockpit.content``); without it, a parameter that comes from there is its
+            kind in angle brackets.
+        held_out: whether to use the held-out phrasing, whatever is drawn; the parameters stay the same.
 
     Raises:
-        UnknownNameError: the task has no such half, or the cockpit holds nothing of that kind.
+        UnknownNameError: the task has no such half, or the cockpit has nothing of that kind.
     """
     task.half(half_name)
     last = len(task.templates) - 1
@@ -92,11 +92,11 @@ HELD = {
     "fm": 20,
     "dab": 20,
 }
-"""How many of each kind a cockpit holds at least (``Cockpit.content``)."""
+"""Minimum number of each kind in a cockpit (``Cockpit.content``)."""
 
 
 def instances(task: Task) -> int:
-    """Distinct phrasings, parameters and scenarios; what seeds vary beside them is not counted."""
+    """Number of distinct phrasings, parameters and scenarios; other variation by seed is not counted."""
     ways = 1
     for choices in task.parameters.values():
         ways *= HELD.get(choices.kind, 1) if isinstance(choices, FromCockpit) else len(choices)

@@ -16,29 +16,29 @@ class Open:
 
 @dataclass(frozen=True, slots=True)
 class Tap:
-    """Taps an element, scrolling to it if need be: the one with this resource id, the first clickable one that
-    reads so, or the one with both."""
+    """Taps an element, scrolling to it if necessary: the one with this resource id, the first clickable one with
+    this text, or the one with both."""
 
     resource_id: str = ""
     times: int = 1
     text: str = ""
-    """What stands on it, its first line or its description."""
+    """Its text, the first line of it, or its description."""
 
 
 @dataclass(frozen=True, slots=True)
 class TapUntil:
-    """Taps an element until another one reads so, as one presses plus until the number is right."""
+    """Taps an element until another one has this text, as one presses plus until the number is right."""
 
     resource_id: str
     shown: str
-    """Resource id of what shows the value."""
+    """Resource id of the element that shows the value."""
     text: str
     at_most: int = 40
 
 
 @dataclass(frozen=True, slots=True)
 class Slide:
-    """Taps a slider where a value lies."""
+    """Taps a slider at the position of a value."""
 
     resource_id: str
     value: float
@@ -53,7 +53,7 @@ class TypeText:
     resource_id: str
     text: str
     enter: bool = False
-    """Presses enter afterwards."""
+    """Whether to press enter afterwards."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +67,7 @@ class Warn:
 
 @dataclass(frozen=True, slots=True)
 class Do:
-    """Any action that needs no element: back, wait, a safety call."""
+    """Any action without an element: back, wait, a safety call."""
 
     action: Action
 

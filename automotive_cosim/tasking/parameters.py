@@ -1,4 +1,4 @@
-"""Parameters of a task: what is drawn for an instance, and where it stands until then.
+"""Parameters of a task: values drawn for an instance, and their placeholders until then.
 
 A task is written once with ``param("degrees")`` wherever the drawn value belongs, and ``"{degrees}"`` inside texts;
 ``bind`` fills both in. What a driver says may differ from what a signal takes: ``param("seat", {"my": 0, "her":
@@ -18,13 +18,13 @@ Parameter = str | int | float
 
 @dataclass(frozen=True, slots=True)
 class Param:
-    """Stands for a drawn value; with ``means`` for what that value means."""
+    """Placeholder for a drawn value, or with ``means`` for what that value means."""
 
     name: str
     means: Mapping[Any, Any] | None = None
 
     def value(self, parameters: Mapping[str, Parameter]) -> Any:
-        """What it is in an instance."""
+        """Its value in an instance."""
         drawn = parameters[self.name]
         return drawn if self.means is None else self.means[drawn]
 
@@ -39,17 +39,17 @@ class Param:
 
 @dataclass(frozen=True, slots=True)
 class FromCockpit:
-    """A parameter drawn from what this car's cockpit holds: see ``Cockpit.content``."""
+    """A parameter drawn from this cockpit's content: see ``Cockpit.content``."""
 
     kind: str
-    """E.g. ``contacts``, ``stations``, ``places``."""
+    """Kind of content, e.g. ``contacts``, ``stations``, ``places``."""
 
 
 Choices = tuple[Parameter, ...] | FromCockpit
 
 
 def param(name: str, means: Mapping[Any, Any] | None = None) -> Any:
-    """A place for the parameter, wherever a value is expected; ``Any`` because ``bind`` replaces it."""
+    """A placeholder for the parameter, wherever a value is expected; ``Any`` because ``bind`` replaces it."""
     return Param(name, means)
 
 
@@ -57,14 +57,14 @@ def bind(value: T, parameters: Mapping[str, Parameter]) -> T:
     """The value with every parameter in it filled in: in dataclasses, tuples, sets, mappings and texts.
 
     Raises:
-        KeyError: it names a parameter that is not there.
+        KeyError: it names a parameter that does not exist.
     """
     bound: Any = _bound(value, parameters)
     return bound  # type: ignore[no-any-return]
 
 
 def names(value: object) -> frozenset[str]:
-    """The parameters a value asks for."""
+    """The names of the parameters in a value."""
 
     class Asked(dict[str, Any]):
         def __missing__(self, name: str) -> Param:

@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import os
 import sys
+import threading
 from collections import OrderedDict
-from collections.abc import Sequence
-from contextlib import closing
+from collections.abc import Iterator, Sequence
+from contextlib import closing, contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -223,6 +224,8 @@ class _Source:
         self._setup = setup
         self._timeout_s = timeout_s
         self._drives = 0
+        self._lock = threading.Lock()
+        """Held while the warm process is asked for a copy: threads may depart at the same time."""
         self._warm: RemoteProcess | None
         self._warm, self.network = RemoteProcess.start(
             self._writing("drive-1" if by_replay else "warm"), progress, timeout_s
@@ -230,7 +233,8 @@ class _Source:
 
     def departed(self, plan: EgoPlan, calls: Sequence[Call] = ()) -> RemoteTraffic:
         """A drive in a process of its own, after the calls."""
-        process = self._taken() if self.by_replay else self._ready().fork(self._next_outputs())
+        with self._lock:
+            process = self._taken() if self.by_replay else self._ready().fork(self._next_outputs())
         try:
             state = process.call("depart", plan)
             if calls:
@@ -307,6 +311,9 @@ class Simulations:
         self._count_limit = count_limit
         self._memory_limit_bytes = memory_limit_bytes
         self._kept: OrderedDict[Setup, Forked] = OrderedDict()
+        self._held: list[Forked] = []
+        """Once for each thread that is about to depart from it."""
+        self._lock = threading.Lock()
 
     def warm(
         self,
@@ -328,14 +335,32 @@ class Simulations:
         self._kept.move_to_end(setup)
         return self._kept[setup]
 
+    @contextmanager
+    def held(self, scenario: Scenario, seed: int, progress: WarmUpProgress | None = None) -> Iterator[Forked]:
+        """As ``warm``, for threads: while one makes a simulation the others wait, and none is ended while held.
+
+        Raises:
+            as ``Forked``.
+        """
+        with self._lock:
+            simulation = self.warm(scenario, seed, progress)
+            self._held.append(simulation)
+        try:
+            yield simulation
+        finally:
+            with self._lock:
+                self._held.remove(simulation)
+                self._make_room()
+
     def close(self) -> None:
         """Ends them all; harmless when called again."""
         while self._kept:
             self._kept.popitem()[1].close()
 
     def _make_room(self) -> None:
-        while len(self._kept) > 1 and (
-            len(self._kept) > self._count_limit
-            or sum(simulation.memory_bytes for simulation in self._kept.values()) > self._memory_limit_bytes
-        ):
-            self._kept.popitem(last=False)[1].close()
+        for setup in list(self._kept)[:-1]:
+            memory_bytes = sum(simulation.memory_bytes for simulation in self._kept.values())
+            if len(self._kept) <= self._count_limit and memory_bytes <= self._memory_limit_bytes:
+                break
+            if self._kept[setup] not in self._held:
+                self._kept.pop(setup).close()

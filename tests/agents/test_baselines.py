@@ -78,7 +78,7 @@ def test_a_person_sees_numbers_and_is_asked_again(observation):
     told = out.getvalue()
     assert "My hands are cold" in told
     assert "  1  Warn driver" in told
-    assert "'what?' is no action" in told
+    assert "'what?' is not an action" in told
 
 
 def test_the_end_of_the_input_interrupts(observation):

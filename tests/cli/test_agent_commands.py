@@ -101,7 +101,7 @@ def test_a_person_plays_at_the_terminal(cli, monkeypatch):
     ran = cli("run", "--json", *GRID, "--agent", "human")
     told = json.loads(ran.out)
     assert (told["agent"], told["steps"], told["success"]) == ("human", 2, False)
-    assert "'nonsense' is no action" in ran.err
+    assert "'nonsense' is not an action" in ran.err
 
 
 @pytest.mark.usefixtures("warm")

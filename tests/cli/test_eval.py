@@ -62,8 +62,8 @@ def test_errors_are_listed_and_set_the_exit_code(cli, tmp_path):
         (("--agents", "t3a", "--pictures", "some"), "no choice of pictures"),
         (("--agents", "t3a", "--workers", "0"), "whole number"),
         (("--agents", "t3a", "--executor", "rya"), "did you mean 'ray'?"),
-        (("--agents", "t3a", "--ray-address", "10.0.0.4:6379"), "--ray-address is for --executor ray"),
-        (("--agents", "t3a", "--ray-send", "."), "--ray-send is for --executor ray"),
+        (("--agents", "t3a", "--ray-address", "10.0.0.4:6379"), "--ray-address requires --executor ray"),
+        (("--agents", "t3a", "--ray-send", "."), "--ray-send requires --executor ray"),
         (("--agents", "t3a", "--scenarios", ""), "--scenarios is empty"),
         (("--plan", "none.toml"), "none.toml"),
     ],
@@ -150,7 +150,7 @@ def test_a_stored_episode_is_run_again_and_compared_step_by_step(cli, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("plan", "said"), [(None, "is no evaluation"), ({"tasks": ["all"]}, "no episodes of agents")]
+    ("plan", "said"), [(None, "is not an evaluation"), ({"tasks": ["all"]}, "no episodes of agents")]
 )
 def test_a_folder_that_is_no_evaluation_is_told(cli, tmp_path, plan, said):
     if plan is not None:

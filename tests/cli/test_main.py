@@ -11,7 +11,7 @@ from automotive_cosim.cli.main import app
 from automotive_cosim.errors import TriggerNotReachedError
 from automotive_cosim.tasks import CATALOGUE
 
-HEAVY = ("libsumo", "shapely", "pyproj", "PIL", "openai", "matplotlib", "jinja2", "scipy", "pandas")
+HEAVY = ("libsumo", "pydantic", "shapely", "pyproj", "PIL", "openai", "matplotlib", "jinja2", "scipy", "pandas")
 COMMANDS = (
     "run",
     "eval",
@@ -24,6 +24,7 @@ COMMANDS = (
     "scenarios",
     "tasks",
     "agents",
+    "schema",
 )
 
 

@@ -77,7 +77,7 @@ def test_origin_and_places(cli):
     [
         (("--origin", "9"), ("--origin '9'", "9.19,45.46")),
         (("--origin", "a,b"), ("--origin 'a,b'",)),
-        (("--origin", "9,91"), ("latitude 91 is not on earth",)),
+        (("--origin", "9,91"), ("origin[1] is 91", "from -90 (south) to 90 (north)")),
         (("--from", "Avenue Central"), ("did you mean 'Avenue Centrale'",)),
         (("--to", "2.35,48.86"), ("km from the nearest road",)),
         (("--scenario", "nowhere.sumocfg"), ("there is no file nowhere.sumocfg",)),

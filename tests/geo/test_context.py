@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import itertools
+import pickle
+import random
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from datetime import UTC, datetime
+from types import SimpleNamespace
 from zoneinfo import ZoneInfo
 
 import numpy as np
@@ -194,8 +198,42 @@ def test_the_default_budget_takes_every_line_there_is(locate: Locate) -> None:
 def test_same_input_same_text(geo: Geo, locate: Locate) -> None:
     first = locate(*PARIS, **POSTED)
     locate(*NEW_YORK)
-    assert locate(*PARIS, **POSTED) == first
-    assert locate(*PARIS, **POSTED).text() == first.text()
+    again = locate(*PARIS, **POSTED)
+    assert again == first
+    assert _parts(again) == _parts(first)
+
+
+def _parts(context: GeoContext, order: Sequence[str] = ()) -> dict[str, object]:
+    """All that a context says, asked for in an order."""
+    names = sorted(name for name in dir(GeoContext) if not name.startswith("_") and name not in ("rule", "text"))
+    return {name: getattr(context, name) for name in (*order, *names)} | {"text": context.text()}
+
+
+def test_a_context_says_the_same_in_whatever_order_it_is_asked_and_after_a_copy(locate: Locate) -> None:
+    draw = random.Random(3)
+    for place, road in itertools.product((PARIS, CARDIFF, NEW_YORK), _roads()):
+        whole = _parts(locate(*place, **road))
+        order = draw.sample(sorted(whole.keys() - {"text"}), 6)
+        asked = locate(*place, **road)
+        assert _parts(asked, order) == whole
+        assert _parts(pickle.loads(pickle.dumps(asked))) == whole
+        assert _parts(replace(asked)) == whole
+
+
+def test_a_context_that_nobody_asks_looks_nothing_up(
+    drive: Callable[..., DrivingState], weather: Callable[..., Weather], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object) -> None:
+        raise AssertionError("nobody asked for that")
+
+    geo, noon = Geo(), datetime(2026, 5, 5, 12, tzinfo=UTC)
+    for name in ("automotive_cosim.geo.context.sun_at", "automotive_cosim.geo.context.climate_norm"):
+        monkeypatch.setattr(name, refuse)
+    monkeypatch.setattr(geo, "atlas", SimpleNamespace(place=refuse))
+    context = geo.locate(drive(**POSTED), GpsFix(True, 2.3, 48.9, 3.0, 0.0, 90.0), weather(), noon)
+    assert context.posted_limit_kmh == pytest.approx(50.0)
+    with pytest.raises(AssertionError, match="nobody asked"):
+        context.text()
 
 
 def test_answers_follow_weather_and_traffic(locate: Locate, weather: Callable[..., Weather]) -> None:

@@ -82,14 +82,19 @@ def test_plain_csv_is_read_also_gzipped_and_without_occupancy(tmp_path: Path) ->
         (["hour,flow", "0,1"], "lacks the column 'vehicles_per_hour'"),
         ([HEADER.replace(FLOW, "Debit")], f"lacks the column '{FLOW}'"),
         ([HEADER], "no counts of detector ''; it has none at all"),
-        ([HEADER, "yesterday;1;Avenue;1;1"], "line 2: 'yesterday' is no date and time"),
+        ([HEADER, "yesterday;1;Avenue;1;1"], "line 2: 'yesterday' is not a date and time"),
         ([HEADER, "2023-11-06 00:00:00+00:00;1;Avenue;many;1"], "line 2: Débit horaire is 'many'"),
         (_plain(range(2, 24)), "no count for hour 0, 1 of a working day"),
-        ([*_plain(), "24,9"], "line 26: hour '24' is no whole number from 0 to 23"),
+        (
+            [HEADER, "0001-01-01 00:00:00+23:59;1;Avenue;1;1"],
+            "line 2: '0001-01-01 00:00:00+23:59' is not a date",
+        ),
+        ([*_plain(), f'3,"{"9" * 200_000}'], "field larger than field limit"),
+        ([*_plain(), "24,9"], "line 26: hour '24' is not a whole number from 0 to 23"),
         ([*_plain(), "3,-1"], "line 26: vehicles_per_hour is '-1'"),
         ([*_plain(), "3,nan"], "line 26: vehicles_per_hour is 'nan'"),
         ([*_plain(), "3"], None),
-        (["hour,vehicles_per_hour", *(f"{hour},0" for hour in range(24))], "nothing but zeros"),
+        (["hour,vehicles_per_hour", *(f"{hour},0" for hour in range(24))], "only zeros"),
     ],
 )
 def test_what_cannot_be_used_is_said_in_one_line(tmp_path: Path, lines: list[str], words: str | None) -> None:
@@ -112,7 +117,7 @@ def test_no_file_a_picture_and_a_cut_off_archive_are_refused(tmp_path: Path) -> 
 
 
 def test_plain_csv_has_no_detectors(tmp_path: Path) -> None:
-    with pytest.raises(CountsError, match="leave --arc out"):
+    with pytest.raises(CountsError, match="omit --arc"):
         read_counts(_file(tmp_path, _plain()), PARIS, "4264")
 
 

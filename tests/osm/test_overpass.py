@@ -126,7 +126,7 @@ def test_a_busy_server_is_asked_again_after_the_pause_it_names(server: Server, w
         (says("<html><head><title>x</title></head><body>parse <b>error</b></body></html>", 400), "parse error", 1),
         (says("<html><body>Welcome</body></html>"), "with 'Welcome'; is it an Overpass API", 1),
         (says(""), "with 'nothing'", 1),
-        (says(f"{HEAD}<node id='1'/>"), "is cut off after", 1),
+        (says(f"{HEAD}<node id='1'/>"), "is truncated after", 1),
         (
             says(f"{HEAD}<remark> runtime error: Query timed out </remark></osm>"),
             "gave up: runtime error: Query",
@@ -151,14 +151,14 @@ def test_what_is_no_whole_map_is_told_and_leaves_nothing(
 @pytest.mark.parametrize(
     ("endpoint", "bbox", "said"),
     [
-        ("ftp://x/y", "1,48,1.1,48.1", "is no Overpass endpoint"),
-        ("nonsense", "1,48,1.1,48.1", "is no Overpass endpoint"),
+        ("ftp://x/y", "1,48,1.1,48.1", "is not an Overpass endpoint"),
+        ("nonsense", "1,48,1.1,48.1", "is not an Overpass endpoint"),
         ("http://127.0.0.1:9/", "0,40,9,49", "more than the 2500"),
         ("http://127.0.0.1:9/", "1,48,1.1,48.1", "cannot be reached"),
-        ("http://127.0.0.1:9/", "1,48,1,48.1", "is no area on earth"),
-        ("http://127.0.0.1:9/", "1,48,nan,49", "is no area on earth"),
-        ("http://127.0.0.1:9/", "1,48,2", "is no area on earth"),
-        ("http://127.0.0.1:9/", "1,48,2,91", "is no area on earth"),
+        ("http://127.0.0.1:9/", "1,48,1,48.1", "is not an area on earth"),
+        ("http://127.0.0.1:9/", "1,48,nan,49", "is not an area on earth"),
+        ("http://127.0.0.1:9/", "1,48,2", "is not an area on earth"),
+        ("http://127.0.0.1:9/", "1,48,2,91", "is not an area on earth"),
     ],
 )
 def test_what_cannot_be_asked_for(endpoint: str, bbox: str, said: str, tmp_path: Path) -> None:

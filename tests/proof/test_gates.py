@@ -7,15 +7,26 @@ import pytest
 
 from automotive_cosim.agents.trivial import Random
 from automotive_cosim.cockpit.signals import HVAC, SEAT
-from automotive_cosim.contracts import Action, ActionType, AlertKind, GoalStatus, Reason
+from automotive_cosim.contracts import Action, ActionType, AlertKind, GoalStatus, PullOver, Reason
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.proof import gates
 from automotive_cosim.proof.ground import Ground, Script
 from automotive_cosim.tasking import verdict
-from automotive_cosim.tasking.checks import AnyOf, NothingDone, SignalIs
+from automotive_cosim.tasking.checks import AnyOf, NothingDone, RoadAsked, SignalIs
 from automotive_cosim.tasking.moves import Open, Tap
 from automotive_cosim.tasking.task import Basis, Module, Start, Task
-from automotive_cosim.tasking.triggers import InTunnel, SignalAbove, Trigger
+from automotive_cosim.tasking.triggers import (
+    All,
+    Dark,
+    Driving,
+    InTunnel,
+    Lit,
+    Not,
+    Parked,
+    SignalAbove,
+    Standing,
+    Trigger,
+)
 from automotive_cosim.tasks.forms import COMFORT, ON_THE_WAY, asked, decline
 
 SAYS = ("Warm my seat.", "Seat heating on.", "My seat, please.", "Heat this seat.")
@@ -52,6 +63,16 @@ class AnySeat:
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         return any(now.signals[seat.path] > 0 for seat in (SEAT.DRIVER_HEATING, SEAT.PASSENGER_HEATING))
+
+
+@dataclass(frozen=True)
+class AnyRequest:
+    """Does not care what the road is asked for."""
+
+    writes = frozenset({"requests"})
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        return len(now.commands["requests"]) == len(start.commands["requests"]) + 1
 
 
 @pytest.fixture
@@ -113,7 +134,7 @@ def test_an_expert_too_slow_is_seen(ground):
 
 def test_a_goal_that_holds_at_the_start_is_seen(ground):
     (wrong,) = gates.start(ground(changed(goal=SignalIs(SEAT.DRIVER_HEATING, (0.0,)))))
-    assert wrong.startswith("already so")
+    assert wrong.startswith("holds already")
 
 
 def test_a_widget_named_by_its_number_is_seen(ground):
@@ -135,12 +156,32 @@ def test_a_deadline_that_does_not_count_is_seen(ground, monkeypatch):
 
 def test_a_goal_that_survives_being_undone_is_seen(ground):
     stand = ground(changed(goal=EverHeated()))
-    assert list(gates.undone(stand, stand.reference)) == ["succeeds with everything put back"]
+    assert list(gates.undone(stand, stand.reference)) == ["succeeds with everything reverted"]
 
 
 def test_a_goal_that_takes_the_wrong_seat_is_seen(ground):
     stand = ground(changed(goal=AnySeat(), may_write=frozenset({SEAT.PASSENGER_HEATING.path})))
     assert any("PassengerSide" in wrong for wrong in gates.near(stand, stand.reference))
+
+
+@pytest.mark.parametrize(("goal", "wrong"), [(AnyRequest(), 1), (RoadAsked(PullOver), 0)], ids=["any", "that one"])
+def test_a_goal_that_takes_another_request_is_seen(ground, goal, wrong):
+    stand = ground(changed(goal=goal, moves=(Open("safety"), Tap("safety.pull_over"))))
+    assert list(gates.near(stand, stand.reference)) == ["succeeds with requests something else"] * wrong
+
+
+@pytest.mark.parametrize(
+    ("condition", "stands"),
+    [
+        (Parked(), True),
+        (All((Dark(), All((Standing(), Lit())))), True),
+        (Not(Parked()), False),
+        (All((Dark(), Driving())), False),
+    ],
+    ids=str,
+)
+def test_a_trigger_that_asks_for_a_standing_car_is_known_by_its_structure(condition, stands):
+    assert gates._stands(condition) is stands
 
 
 def test_a_verdict_blind_to_side_effects_is_seen(ground, monkeypatch):
@@ -167,16 +208,16 @@ def test_only_what_is_lost_is_given_up(ground):
     easy = ground(replace(SOUND, first=replace(SOUND.first, goal=AnyOf((SOUND.first.goal, NothingDone())))))
     for at in (easy, ground(SOUND)):
         for number in range(8):
-            whole, short = (at.play(at.agent(Random(number)), give_up=give_up) for give_up in (False, True))
+            whole, short = (at.play(at.agent(Random(number)), stop_when_lost=stop) for stop in (False, True))
             assert whole.success == short.success
             assert len(short.actions) <= len(whole.actions)
-    assert easy.play(easy.oracle(), give_up=True).success
+    assert easy.play(easy.oracle(), stop_when_lost=True).success
 
 
 def test_a_side_effect_that_stays_ends_a_hopeless_run(ground):
     at = ground(SOUND)
     alerts = Script((Action(ActionType.SHOW_ALERT, kind=AlertKind.SPEED), Action(ActionType.WAIT, seconds=1)))
-    assert len(at.play(alerts, give_up=True).actions) == 1
+    assert len(at.play(alerts, stop_when_lost=True).actions) == 1
     assert len(at.play(alerts).actions) > 1
 
 

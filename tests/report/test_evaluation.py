@@ -125,7 +125,7 @@ def test_the_main_table_has_the_papers_shape_and_says_what_rules_is(folder):
     assert table.columns[3:] == ("Explicit control", "Implicit intent", "Driving alignment", "Environment alerts")
     rows = {str(row[1]): row for row in table.rows}
     assert "no language model" in str(rows["asurada"][0])
-    assert "must fail" in next(name for name in rows if name.startswith("always-alert"))
+    assert "negative control" in next(name for name in rows if name.startswith("always-alert"))
     assert set(map(str, rows["Human"][3:])) == {"not measured"}
     # Two tasks of explicit control, two seeds, two repeats; one task's second seed is an error.
     assert str(rows["t3a"][3]).endswith("6/6, 2 errors")
@@ -211,11 +211,11 @@ def test_the_report_is_the_same_each_time(folder):
 
 
 def test_a_folder_without_episodes_is_told(tmp_path):
-    with pytest.raises(UserError, match="no evaluation"):
+    with pytest.raises(UserError, match="not an evaluation"):
         write_report(tmp_path)
     with opened(tmp_path / "e", PLAN.as_json(), EpisodeRow):
         pass
-    with pytest.raises(UserError, match="no episode yet"):
+    with pytest.raises(UserError, match="no episodes yet"):
         commands.report(tmp_path / "e")
 
 

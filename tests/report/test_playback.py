@@ -54,7 +54,7 @@ def test_the_film_has_a_picture_a_step_for_as_long_as_it_stood(record_of_three: 
 
 
 def test_what_is_no_record_is_refused(tmp_path: Path, record_of_three: Path) -> None:
-    with pytest.raises(UserError, match="holds no steps"):
+    with pytest.raises(UserError, match="has no steps"):
         list(frames(tmp_path / "nowhere"))
     (record_of_three / "screenshots" / "step_001.png").unlink()
     with pytest.raises(UserError, match="is missing"):

@@ -21,7 +21,7 @@ def write(folder, lost=(), errors=(), agent="asurada"):
     with opened(folder, PLAN.as_json(), EpisodeRow) as store:
         for number, job in enumerate(PLAN.jobs()):
             if number in errors:
-                row = failed(job, "WorkerDied", "its process ended")
+                row = failed(job, "WorkerDied", "the worker died")
             else:
                 won = number not in lost
                 row = replace(planned(job), success=won, parts=PartsHeld(won, True, True, True, True))

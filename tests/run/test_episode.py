@@ -174,7 +174,7 @@ def test_watchers_hear_of_drive_steps_and_aftermath(run):
 
 
 def test_an_unreadable_answer_costs_a_step(run):
-    result = run(Broken(ActionError("the answer holds no action"))).result
+    result = run(Broken(ActionError("the answer has no action"))).result
     assert result.end is End.OUT_OF_STEPS
     assert result.steps == EpisodeSetup().max_steps
 

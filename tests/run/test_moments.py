@@ -8,13 +8,13 @@ from types import SimpleNamespace
 import pytest
 
 from automotive_cosim.agents import make_agent
-from automotive_cosim.contracts import GoalStatus
+from automotive_cosim.contracts import GoalStatus, PullOver, Reroute, SlowDown
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.batch import run_plan
 from automotive_cosim.run.collect import Collector, Pictures
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
 from automotive_cosim.run.harm import drive_figures, nearest_s, overspeed
-from automotive_cosim.run.moments import judged_file, read_judged, write_judged
+from automotive_cosim.run.moments import MOVED, judged_file, read_judged, write_judged
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.regrade import regrade
 from automotive_cosim.tasking.instance import Instance
@@ -46,19 +46,29 @@ def test_moments_come_back_as_they_were(kept):
     again = read_judged(folder, "a")
     assert again == judged
     assert repr(again) == repr(replace(judged, parameters=dict(judged.parameters)))
-    assert len(again.trace) == len(again.idle) > 1
+    assert len(again.trace) == len(again.baseline) > 1
     write_judged(folder, "a", again)
     assert judged_file(folder, "a").read_bytes() == first
-    assert len(first) < 5000 * (len(again.trace) + len(again.idle))
+    assert len(first) < 5000 * (len(again.trace) + len(again.baseline))
 
 
 def test_judging_the_stored_moments_gives_the_same_verdict(kept, collected):
     judged = read_judged(kept[0], "a")
     task = CATALOGUE["phenomenon_front_window_fogged"]
     instance = Instance(task, "first", judged.goal, judged.parameters)
-    again = judge(instance, judged.trace, judged.idle, judged.declared, judged.reason)
+    again = judge(instance, judged.trace, judged.baseline, judged.declared, judged.reason)
     assert as_json(again) == collected[1].verdict
     assert judged.declared is GoalStatus.COMPLETE
+
+
+def test_a_file_with_the_old_name_of_the_baseline_run_is_read(kept):
+    folder, judged = kept
+    path = judged_file(folder, "a")
+    whole = json.loads(lzma.decompress(path.read_bytes()))
+    names = next(names for kind, names in whole["classes"] if kind.endswith(":Judged"))
+    names[names.index("baseline")] = "idle"
+    path.write_bytes(lzma.compress(json.dumps(whole).encode()))
+    assert read_judged(folder, "a") == judged
 
 
 def test_fields_that_come_and_go_are_borne_and_other_classes_refused(kept):
@@ -89,8 +99,32 @@ def test_fields_that_come_and_go_are_borne_and_other_classes_refused(kept):
     path.write_bytes(b"nothing")
     with pytest.raises(UserError, match="cannot read"):
         read_judged(folder, "a")
-    with pytest.raises(UserError, match="there is no"):
+    with pytest.raises(UserError, match="does not exist"):
         read_judged(folder, "b")
+
+
+def test_requests_to_the_road_come_back_and_those_of_an_older_format_are_refused(kept):
+    folder, judged = kept
+    *before, last = judged.trace
+    requests = [Reroute("A 4"), SlowDown(30.0), PullOver()]
+    asked = replace(judged, trace=(*before, replace(last, commands={**last.commands, "requests": requests})))
+    write_judged(folder, "a", asked)
+    assert read_judged(folder, "a").trace[-1].commands["requests"] == requests
+    texts = {**last.commands, "requests": [repr(request) for request in requests]}
+    write_judged(folder, "a", replace(judged, trace=(*before, replace(last, commands=texts))))
+    with pytest.raises(UserError, match="older format"):
+        read_judged(folder, "a")
+
+
+def test_classes_that_have_moved_since_are_found(kept):
+    folder, judged = kept
+    path = judged_file(folder, "a")
+    text = lzma.decompress(path.read_bytes()).decode()
+    for old, new in MOVED.items():
+        assert new in text
+        text = text.replace(new, old)
+    path.write_bytes(lzma.compress(text.encode()))
+    assert read_judged(folder, "a") == judged
 
 
 def driving(time_s, speed_mps, limit_mps, closing_s=None):
@@ -120,7 +154,7 @@ def test_an_untouched_drive_differs_in_nothing_and_a_touched_one_in_what_was_don
     assert result.drive is not None
     judged = kept[1]
     end_s = judged.trace[-1].time_s
-    assert drive_figures(judged.idle, end_s) == drive_figures(judged.idle[:], end_s + 5)
+    assert drive_figures(judged.baseline, end_s) == drive_figures(judged.baseline[:], end_s + 5)
     assert drive_figures(judged.trace, end_s).energy_wh > 0
     whole = drive_figures(judged.trace, end_s)
     part = drive_figures(judged.trace, (judged.trace[0].time_s + end_s) / 2)

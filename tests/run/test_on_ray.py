@@ -161,7 +161,7 @@ def test_files_that_cannot_be_written_here_stop_the_run_and_the_command_goes_on(
     blocked = tmp_path / "e" / "traces" / f".{wanted.jobs()[0].id}.jsonl.gz.part"
     blocked.mkdir(parents=True)
     with OnRay(cluster.address) as executor:
-        with pytest.raises(UserError, match=r"cannot write to .* the same command goes on"):
+        with pytest.raises(UserError, match=r"cannot write to .* rerun the command to resume"):
             run_plan(wanted, tmp_path / "e", executor=executor)
         blocked.rmdir()
         assert run_plan(wanted, tmp_path / "e", executor=executor).successes == 1

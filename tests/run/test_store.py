@@ -98,7 +98,7 @@ def test_folders_that_cannot_be_are_told(tmp_path):
         with pytest.raises(UserError) as caught, opened(folder, PLAN, JobRow):
             pass
         assert "\n" not in str(caught.value)
-    with pytest.raises(UserError, match="no evaluation"):
+    with pytest.raises(UserError, match="not an evaluation"):
         read_manifest(tmp_path)
 
 

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from automotive_cosim.cockpit.signals import ENERGY
-from automotive_cosim.contracts import AlertKind, OtherVehicle
-from automotive_cosim.tasking.checks import AlertGiven
+from automotive_cosim.contracts import AlertKind, OtherVehicle, PullOver, Reroute, RoadRequest, SlowDown
+from automotive_cosim.tasking.checks import AlertGiven, RoadAsked
 from automotive_cosim.tasking.triggers import OutOfRange, SlowLeaderWithin
 
 
@@ -20,6 +20,10 @@ def moment(leader: OtherVehicle | None = None, range_m: float = 0.0, left_m: flo
 
 def alerted(*given: dict[str, Any]) -> Any:
     return SimpleNamespace(commands={"alerts": list(given)})
+
+
+def asked(*requests: RoadRequest) -> Any:
+    return SimpleNamespace(commands={"requests": list(requests)})
 
 
 @pytest.mark.parametrize(
@@ -52,3 +56,23 @@ def test_an_alert_names_the_speed_where_no_sign_does(
 def test_an_alert_that_asks_for_no_speed_takes_none():
     start, now = alerted(), alerted({"kind": AlertKind.YIELD, "speed_kmh": 30.0})
     assert not AlertGiven(AlertKind.YIELD).holds(start, now, [now])
+
+
+@pytest.mark.parametrize(
+    ("requests", "any_reroute", "that_reroute"),
+    [
+        ((), False, False),
+        ((Reroute("A 4"),), True, True),
+        ((Reroute("A 44"),), True, False),
+        ((Reroute(edges=("A 4",)),), True, False),
+        ((PullOver(),), False, False),
+        ((Reroute("A 4"), Reroute("A 4")), False, False),
+    ],
+)
+def test_a_request_counts_by_its_class_or_as_it_is(
+    requests: tuple[RoadRequest, ...], any_reroute: bool, that_reroute: bool
+):
+    before = SlowDown(30.0)
+    start, now = asked(before), asked(before, *requests)
+    assert RoadAsked(Reroute).holds(start, now, [now]) is any_reroute
+    assert RoadAsked(Reroute("A 4")).holds(start, now, [now]) is that_reroute

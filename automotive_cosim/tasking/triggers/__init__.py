@@ -1,12 +1,12 @@
-"""Triggers: which situation on the road a task starts from. Pure questions about one moment, no effects.
+"""Triggers: the situation on the road that starts a task. Pure predicates on one moment, without effects.
 
-Each condition is a frozen dataclass, so that it can be compared and stored; ``str`` says it in words. What a
-condition cannot know (no leader, no limit, no place) does not hold.
+Each condition is a frozen dataclass, so it can be compared and stored; ``str`` describes it in words. A condition
+about something that does not exist (no leader, no limit, no place) does not hold.
 
-base          what a trigger is; all of several, not
+base          what a trigger is; conjunction and negation
 motion        how the car moves
-road          what road it is on, and what comes next on it
-others        who else is on the road
+road          the road that it is on, and what comes next
+others        other vehicles on the road
 surroundings  sky, place, position fix and connection
 car           the car's own signals
 """

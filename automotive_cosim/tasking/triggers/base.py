@@ -1,4 +1,4 @@
-"""What a trigger is, and how conditions go together."""
+"""What a trigger is, and how conditions are combined."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from automotive_cosim.cosim.moment import Moment
 WALKING_MPS = 2.0
 STANDING_MPS = 0.1
 ANY = 1e9
-"""Farther, faster and more than anything."""
+"""Larger than any distance, speed or amount."""
 
 
 class TriggerCondition(Protocol):
-    """A question about one moment."""
+    """A predicate on one moment."""
 
     def __call__(self, moment: Moment) -> bool:
-        """True while it holds."""
+        """Whether it holds at a moment."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class Trigger:
-    """The situation a task starts from: ``condition`` has held for ``for_s`` without a break."""
+    """The situation that starts a task: ``condition`` has held for ``for_s`` without interruption."""
 
     condition: TriggerCondition
     for_s: float
@@ -33,12 +33,12 @@ class Trigger:
 
 @dataclass(frozen=True, slots=True)
 class All:
-    """Every one of them holds."""
+    """All of the conditions hold."""
 
     conditions: tuple[TriggerCondition, ...]
 
     def __call__(self, moment: Moment) -> bool:
-        """Asks each."""
+        """Whether all hold."""
         return all(condition(moment) for condition in self.conditions)
 
     def __str__(self) -> str:
@@ -47,12 +47,12 @@ class All:
 
 @dataclass(frozen=True, slots=True)
 class Not:
-    """It does not hold."""
+    """The condition does not hold."""
 
     condition: TriggerCondition
 
     def __call__(self, moment: Moment) -> bool:
-        """Asks it."""
+        """Whether the condition does not hold."""
         return not self.condition(moment)
 
     def __str__(self) -> str:

@@ -17,7 +17,7 @@ class SignalAbove:
     value: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Compares the value."""
+        """Whether the signal's value qualifies."""
         return float(moment.signals[self.signal.path]) > self.value
 
     def __str__(self) -> str:
@@ -32,7 +32,7 @@ class SignalBelow:
     value: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Compares the value."""
+        """Whether the signal's value qualifies."""
         return float(moment.signals[self.signal.path]) < self.value
 
     def __str__(self) -> str:
@@ -47,7 +47,7 @@ class SignalHas:
     value: Any
 
     def __call__(self, moment: Moment) -> bool:
-        """Compares the value."""
+        """Whether the signal's value qualifies."""
         return bool(moment.signals[self.signal.path] == self.value)
 
     def __str__(self) -> str:

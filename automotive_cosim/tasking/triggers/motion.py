@@ -13,7 +13,7 @@ from automotive_cosim.tasking.triggers.base import ANY, STANDING_MPS, WALKING_MP
 
 @dataclass(frozen=True, slots=True)
 class Driving:
-    """The ego is on its way, faster than walking pace."""
+    """The ego is driving, faster than walking pace."""
 
     def __call__(self, moment: Moment) -> bool:
         """Above 2 m/s."""
@@ -25,10 +25,10 @@ class Driving:
 
 @dataclass(frozen=True, slots=True)
 class Parked:
-    """The ego stands in park."""
+    """The ego is in park."""
 
     def __call__(self, moment: Moment) -> bool:
-        """Looks at the gear."""
+        """Whether the gear is park."""
         return (
             motion(moment.signals[MOTION.GEAR.path], moment.signals[MOTION.SPEED.path]) is Motion.PARKED
             and moment.driving.speed_mps < STANDING_MPS
@@ -40,7 +40,7 @@ class Parked:
 
 @dataclass(frozen=True, slots=True)
 class Standing:
-    """The ego stands, in gear or not."""
+    """The ego is stationary, in gear or not."""
 
     def __call__(self, moment: Moment) -> bool:
         """Below 0.1 m/s."""
@@ -52,14 +52,14 @@ class Standing:
 
 @dataclass(frozen=True, slots=True)
 class SpeedAbove:
-    """Faster than that, on a road with a posted limit between the two given (km/h, inclusive)."""
+    """Faster than a speed, on a road with a posted limit in a range (km/h, inclusive)."""
 
     speed_kmh: float
     limit_from_kmh: float
     limit_to_kmh: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Compares speed and limit."""
+        """Whether speed and limit qualify."""
         limit_mps = moment.driving.road.posted_limit_mps
         return (
             moment.driving.speed_mps * KMH_PER_MPS > self.speed_kmh
@@ -74,13 +74,13 @@ class SpeedAbove:
 
 @dataclass(frozen=True, slots=True)
 class SpeedBetween:
-    """Faster than the one and no faster than the other, whatever is posted."""
+    """Faster than one speed and not faster than another, whatever is posted."""
 
     from_kmh: float
     to_kmh: float = ANY
 
     def __call__(self, moment: Moment) -> bool:
-        """Compares the speed."""
+        """Whether the speed is in the range."""
         return self.from_kmh < moment.driving.speed_mps * KMH_PER_MPS <= self.to_kmh
 
     def __str__(self) -> str:
@@ -91,12 +91,12 @@ class SpeedBetween:
 
 @dataclass(frozen=True, slots=True)
 class OverPosted:
-    """Faster than the posted limit by so much of it."""
+    """Faster than the posted limit by a share of it."""
 
     share: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Compares speed and limit."""
+        """Whether speed and limit qualify."""
         limit_mps = moment.driving.road.posted_limit_mps
         return limit_mps is not None and moment.driving.speed_mps > (1 + self.share) * limit_mps
 

@@ -1,4 +1,4 @@
-"""Who else is on the road."""
+"""Other vehicles on the road."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from automotive_cosim.tasking.triggers.base import WALKING_MPS
 
 @dataclass(frozen=True, slots=True)
 class HeadwayBelow:
-    """Closer behind the leader than that many seconds, while moving."""
+    """Closer behind the leader than a number of seconds, while moving."""
 
     seconds: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Divides gap by speed."""
+        """Whether the time gap is shorter."""
         leader, speed_mps = moment.driving.around.leader, moment.driving.speed_mps
         return leader is not None and speed_mps > WALKING_MPS and leader.gap_m < self.seconds * speed_mps
 
@@ -26,12 +26,12 @@ class HeadwayBelow:
 
 @dataclass(frozen=True, slots=True)
 class CollisionWithin:
-    """The leader would be hit within that many seconds if both kept their speed."""
+    """The leader would be hit within a number of seconds if both kept their speed."""
 
     seconds: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Looks at the leader."""
+        """Whether there is such a leader."""
         leader = moment.driving.around.leader
         return (
             leader is not None
@@ -45,12 +45,12 @@ class CollisionWithin:
 
 @dataclass(frozen=True, slots=True)
 class LeaderWithin:
-    """A vehicle in front, no farther than that."""
+    """A vehicle in front within a distance."""
 
     distance_m: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Looks at the leader."""
+        """Whether there is such a leader."""
         leader = moment.driving.around.leader
         return leader is not None and leader.gap_m <= self.distance_m
 
@@ -60,13 +60,13 @@ class LeaderWithin:
 
 @dataclass(frozen=True, slots=True)
 class SlowLeaderWithin:
-    """A vehicle in front that is slower than that, no farther than that; one that stands is slow too."""
+    """A vehicle in front, slow or stationary, within a distance."""
 
     speed_kmh: float
     distance_m: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Looks at the leader."""
+        """Whether there is such a leader."""
         leader = moment.driving.around.leader
         return (
             leader is not None
@@ -80,12 +80,12 @@ class SlowLeaderWithin:
 
 @dataclass(frozen=True, slots=True)
 class FollowerWithin:
-    """A vehicle behind, no farther than that."""
+    """A vehicle behind within a distance."""
 
     distance_m: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Looks at the follower."""
+        """Whether there is such a follower."""
         follower = moment.driving.around.follower
         return follower is not None and follower.gap_m <= self.distance_m
 
@@ -95,12 +95,12 @@ class FollowerWithin:
 
 @dataclass(frozen=True, slots=True)
 class OncomingWithin:
-    """An oncoming vehicle, no farther than that."""
+    """An oncoming vehicle within a distance."""
 
     distance_m: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Looks at the other direction."""
+        """Whether there is such an oncoming vehicle."""
         oncoming = moment.driving.around.oncoming
         return oncoming is not None and oncoming.gap_m <= self.distance_m
 
@@ -110,12 +110,12 @@ class OncomingWithin:
 
 @dataclass(frozen=True, slots=True)
 class BlueLightWithin:
-    """An emergency vehicle with its blue light on behind, no farther than that."""
+    """An emergency vehicle with its blue lights on, behind within a distance."""
 
     distance_m: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Looks behind."""
+        """Whether there is such an emergency vehicle."""
         behind = moment.driving.around.emergency_behind
         return behind is not None and behind.gap_m <= self.distance_m
 
@@ -125,13 +125,13 @@ class BlueLightWithin:
 
 @dataclass(frozen=True, slots=True)
 class JamWithin:
-    """A jam on the route, its tail between the two distances; 0 is in it."""
+    """A jam on the route with its tail between two distances; 0 is in the jam."""
 
     to_m: float
     from_m: float = 0.0
 
     def __call__(self, moment: Moment) -> bool:
-        """Looks at the route."""
+        """Whether the route qualifies."""
         away_m = moment.driving.ahead.jam_distance_m
         return away_m is not None and self.from_m <= away_m <= self.to_m
 
@@ -141,12 +141,12 @@ class JamWithin:
 
 @dataclass(frozen=True, slots=True)
 class DelayAbove:
-    """The route takes longer than by free flow, by so many seconds."""
+    """The route takes longer than at free flow, by a number of seconds."""
 
     seconds: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Looks at the route."""
+        """Whether the route qualifies."""
         return moment.driving.ahead.delay_s > self.seconds
 
     def __str__(self) -> str:
@@ -155,27 +155,27 @@ class DelayAbove:
 
 @dataclass(frozen=True, slots=True)
 class OtherWayKnown:
-    """The navigation knows another way that saves so many seconds (negative: costs no more than that)."""
+    """The navigation knows another route that saves a number of seconds (if negative, costs no more than that)."""
 
     saves_s: float = 0.0
 
     def __call__(self, moment: Moment) -> bool:
-        """Compares the times."""
+        """Whether such a route is known."""
         ahead = moment.driving.ahead
         return any(ahead.eta_s - way.eta_s > self.saves_s for way in ahead.alternatives)
 
     def __str__(self) -> str:
-        return f"another way saves {self.saves_s:g} s"
+        return f"another route saves {self.saves_s:g} s"
 
 
 @dataclass(frozen=True, slots=True)
 class FlowBelow:
-    """The ego's road is driven at less than that share of its limit."""
+    """Traffic on the ego's road is slower than a share of its limit."""
 
     share: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Looks at the ego's edge."""
+        """Whether the traffic on the ego's edge is slower."""
         return moment.driving.around.relative_speed < self.share
 
     def __str__(self) -> str:
@@ -184,12 +184,12 @@ class FlowBelow:
 
 @dataclass(frozen=True, slots=True)
 class RedLight:
-    """The next signal on the route shows red, no farther than that."""
+    """The next signal on the route shows red, within a distance."""
 
     within_m: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Looks at the signal."""
+        """Whether the next signal qualifies."""
         light = moment.driving.ahead.next_light
         return light is not None and light.state in "rR" and light.distance_m <= self.within_m
 

@@ -1,4 +1,4 @@
-"""What road the car is on, and what comes next on it."""
+"""The road that the car is on, and what comes next on it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ class Unposted:
     """No limit is posted here."""
 
     def __call__(self, moment: Moment) -> bool:
-        """Looks at the context, which knows what signs say."""
+        """Whether the context has no posted limit."""
         return moment.context.posted_limit_kmh is None
 
     def __str__(self) -> str:
@@ -27,7 +27,7 @@ class OnRoadClass:
     classes: tuple[str, ...]
 
     def __call__(self, moment: Moment) -> bool:
-        """Compares the class."""
+        """Whether the road's class is one of these."""
         return moment.driving.road.road_class in self.classes
 
     def __str__(self) -> str:
@@ -36,12 +36,12 @@ class OnRoadClass:
 
 @dataclass(frozen=True, slots=True)
 class OnStreet:
-    """On the street of that name."""
+    """On the street with this name."""
 
     name: str
 
     def __call__(self, moment: Moment) -> bool:
-        """Compares the name."""
+        """Whether the street has this name."""
         return moment.driving.road.name == self.name
 
     def __str__(self) -> str:
@@ -50,12 +50,12 @@ class OnStreet:
 
 @dataclass(frozen=True, slots=True)
 class Lit:
-    """The map says whether the road is lit, and so it is."""
+    """The road is lit, or unlit, according to the map."""
 
     lit: bool = True
 
     def __call__(self, moment: Moment) -> bool:
-        """Looks at the road."""
+        """Whether the road qualifies."""
         return moment.driving.road.lit is self.lit
 
     def __str__(self) -> str:
@@ -69,7 +69,7 @@ class BuiltUp:
     built_up: bool = True
 
     def __call__(self, moment: Moment) -> bool:
-        """As the context has it."""
+        """Whether the context agrees."""
         return moment.context.built_up is self.built_up
 
     def __str__(self) -> str:
@@ -78,26 +78,26 @@ class BuiltUp:
 
 @dataclass(frozen=True, slots=True)
 class CentreLine:
-    """The road has a centre line, or none."""
+    """The road has a centre line, or has none."""
 
     there: bool
 
     def __call__(self, moment: Moment) -> bool:
-        """Looks at the road."""
+        """Whether the road qualifies."""
         return moment.driving.road.centre_line is self.there
 
     def __str__(self) -> str:
-        return f"on a road {'with' if self.there else 'without'} centre line"
+        return f"on a road {'with' if self.there else 'without'} a centre line"
 
 
 @dataclass(frozen=True, slots=True)
 class Lanes:
-    """At least so many lanes in the ego's direction."""
+    """At least a number of lanes in the ego's direction."""
 
     count: int
 
     def __call__(self, moment: Moment) -> bool:
-        """Counts them."""
+        """Whether the road has enough lanes."""
         return moment.driving.road.lane_count >= self.count
 
     def __str__(self) -> str:
@@ -109,7 +109,7 @@ class InTunnel:
     """In a tunnel."""
 
     def __call__(self, moment: Moment) -> bool:
-        """Looks at the road."""
+        """Whether the road qualifies."""
         return moment.driving.road.in_tunnel
 
     def __str__(self) -> str:
@@ -118,12 +118,12 @@ class InTunnel:
 
 @dataclass(frozen=True, slots=True)
 class InSchoolZone:
-    """In a school zone: one whose limit is in force by the clock of the place, or one whose hours are over."""
+    """In a school zone whose limit is in force at the local time, or outside its hours."""
 
     in_force: bool = True
 
     def __call__(self, moment: Moment) -> bool:
-        """Looks at the road and its signs; where no hours are posted the limit is always in force."""
+        """Whether the school zone is, or is not, in force; without posted hours it always is."""
         road = moment.driving.road
         return road.school_zone and (road.limit_by_clock or not road.limit_hours) == self.in_force
 
@@ -133,12 +133,12 @@ class InSchoolZone:
 
 @dataclass(frozen=True, slots=True)
 class TunnelWithin:
-    """The route enters a tunnel within so many seconds at the speed driven."""
+    """The route enters a tunnel within a number of seconds at the present speed."""
 
     seconds: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Divides distance by speed."""
+        """Whether the tunnel is near enough."""
         away_m, speed_mps = moment.driving.ahead.tunnel_distance_m, moment.driving.speed_mps
         return (
             away_m is not None
@@ -157,7 +157,7 @@ class LowerLimitWithin:
     distance_m: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Compares this limit with the next."""
+        """Whether the next limit is lower and near enough."""
         here, ahead = moment.driving.road.posted_limit_mps, moment.driving.ahead
         return (
             ahead.next_limit_mps is not None
@@ -172,12 +172,12 @@ class LowerLimitWithin:
 
 @dataclass(frozen=True, slots=True)
 class GoalWithin:
-    """No more than that is left of the route, or at least that."""
+    """No more than a distance is left of the route."""
 
     distance_m: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Compares the distance left."""
+        """Whether the remaining distance qualifies."""
         return moment.driving.ahead.route_left_m <= self.distance_m
 
     def __str__(self) -> str:
@@ -186,24 +186,24 @@ class GoalWithin:
 
 @dataclass(frozen=True, slots=True)
 class OutOfRange:
-    """The battery does not reach to the goal."""
+    """The battery does not last to the destination."""
 
     def __call__(self, moment: Moment) -> bool:
-        """Compares the range with the distance left."""
+        """Whether the range is shorter than the remaining distance."""
         return float(moment.signals[ENERGY.RANGE.path]) < moment.driving.ahead.route_left_m
 
     def __str__(self) -> str:
-        return "the way left is longer than the range"
+        return "the remaining route is longer than the range"
 
 
 @dataclass(frozen=True, slots=True)
 class LessGripThan:
-    """The lane's friction coefficient is below that; 1 is dry."""
+    """The lane's friction coefficient is below a value; 1 is dry."""
 
     friction: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Looks at the road."""
+        """Whether the road qualifies."""
         return moment.driving.road.friction < self.friction
 
     def __str__(self) -> str:

@@ -10,13 +10,13 @@ from automotive_cosim.tasking.triggers.base import ANY
 
 @dataclass(frozen=True, slots=True)
 class VisibilityBetween:
-    """Visibility in metres from the one to below the other."""
+    """Visibility within a range in metres, the upper end excluded."""
 
     from_m: float
     to_m: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Looks at the weather."""
+        """Whether the weather qualifies."""
         return self.from_m <= moment.weather.visibility < self.to_m
 
     def __str__(self) -> str:
@@ -25,13 +25,13 @@ class VisibilityBetween:
 
 @dataclass(frozen=True, slots=True)
 class RainBetween:
-    """Precipitation in mm/h from the one to below the other."""
+    """Precipitation within a range in mm/h, the upper end excluded."""
 
     from_mm_h: float
     to_mm_h: float = ANY
 
     def __call__(self, moment: Moment) -> bool:
-        """Looks at the weather."""
+        """Whether the weather qualifies."""
         return self.from_mm_h <= moment.weather.precipitation < self.to_mm_h
 
     def __str__(self) -> str:
@@ -41,13 +41,13 @@ class RainBetween:
 
 @dataclass(frozen=True, slots=True)
 class AirBetween:
-    """Air temperature outside in degrees Celsius from the one to below the other."""
+    """Outside temperature within a range in degrees Celsius, the upper end excluded."""
 
     from_c: float
     to_c: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Looks at the weather."""
+        """Whether the weather qualifies."""
         return self.from_c <= moment.weather.temperature_2m < self.to_c
 
     def __str__(self) -> str:
@@ -61,7 +61,7 @@ class Dark:
     dark: bool = True
 
     def __call__(self, moment: Moment) -> bool:
-        """Looks at the sun."""
+        """Whether it is dark, or light."""
         return moment.context.sun is not None and moment.context.sun.is_set is self.dark
 
     def __str__(self) -> str:
@@ -70,12 +70,12 @@ class Dark:
 
 @dataclass(frozen=True, slots=True)
 class InCountry:
-    """On the soil of that country (ISO 3166-1 code)."""
+    """In a country (ISO 3166-1 code)."""
 
     code: str
 
     def __call__(self, moment: Moment) -> bool:
-        """As the context has it."""
+        """Whether the context names that country."""
         return moment.context.country == self.code
 
     def __str__(self) -> str:
@@ -87,7 +87,7 @@ class GpsLost:
     """The receiver has no fix."""
 
     def __call__(self, moment: Moment) -> bool:
-        """Looks at the receiver."""
+        """Whether the receiver has no fix."""
         return moment.gps is not None and not moment.gps.has_fix
 
     def __str__(self) -> str:
@@ -99,7 +99,7 @@ class Offline:
     """The car has no link to the outside."""
 
     def __call__(self, moment: Moment) -> bool:
-        """Looks at the modem."""
+        """Whether there is no link."""
         return not moment.connectivity.online
 
     def __str__(self) -> str:
