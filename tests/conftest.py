@@ -151,7 +151,7 @@ def observation() -> Callable[..., Observation]:
 @pytest.fixture(scope="session")
 def simulations(sumo: None) -> Iterator[Simulations]:
     """Shared by all tests of a worker."""
-    shared = Simulations()
+    shared = Simulations(count_limit=16)
     yield shared
     shared.close()
 

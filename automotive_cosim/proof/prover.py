@@ -77,12 +77,18 @@ class _Findings:
 
 
 class Prover:
-    """Proves tasks one by one in warm simulations of its own."""
+    """Proves tasks one by one in warm simulations."""
 
-    def __init__(self, chosen: Sequence[str] = GATES) -> None:
-        """``chosen`` are the gates to try."""
+    def __init__(self, chosen: Sequence[str] = GATES, simulations: Simulations | None = None) -> None:
+        """Takes what it proves with.
+
+        Args:
+            chosen: the gates to try.
+            simulations: warm ones, which the caller closes; by default its own.
+        """
         self._chosen = frozenset(chosen)
-        self._simulations = Simulations(count_limit=SIMULATIONS)
+        self._simulations = simulations or Simulations(count_limit=SIMULATIONS)
+        self._owns_simulations = simulations is None
         self._last: tuple[str, int, str] | None = None
         """Task, seed and trace hash of the last reference solution."""
 
@@ -130,8 +136,9 @@ class Prover:
         )
 
     def close(self) -> None:
-        """Closes its simulations."""
-        self._simulations.close()
+        """Closes its own simulations."""
+        if self._owns_simulations:
+            self._simulations.close()
 
     def _prove_half(self, found: _Findings, half: str, ground: Ground) -> None:
         right = ground.reference

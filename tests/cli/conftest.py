@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import pytest
 
 from automotive_cosim.cli.main import main
+from automotive_cosim.traffic.fork import Simulations
 
 
 @dataclass
@@ -36,3 +37,16 @@ def cli(
 
     yield run
     signal.signal(signal.SIGTERM, terminated)
+
+
+@pytest.fixture
+def warm(simulations: Simulations, monkeypatch: pytest.MonkeyPatch) -> None:
+    """``automotive-cosim run`` takes the warm simulations that all tests share, instead of its own."""
+
+    class Lent:
+        warm = staticmethod(simulations.warm)
+
+        def close(self) -> None:
+            """They stay warm."""
+
+    monkeypatch.setattr("automotive_cosim.run.episode.Simulations", Lent)

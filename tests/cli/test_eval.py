@@ -19,6 +19,9 @@ def test_the_plan_is_shown_first_and_a_dry_run_ends_there(cli, tmp_path):
     assert ran.code == 0
     assert "16 from 4 warm simulations" in ran.out
     assert "say nothing about a language model" in " ".join(ran.out.split())
+    tasks = ("--tasks", "hvac_fan_max,road_speed_80_in_50", "--scenarios", "grid")
+    for option, count in (((), "1 from"), (("--everywhere",), "3 from")):
+        assert count in cli("eval", "--agents", "oracle", *tasks, *option, "--dry-run").out
     assert not list(tmp_path.iterdir())
 
 
@@ -38,21 +41,13 @@ def test_a_run_is_told_and_the_same_command_finds_it_done(cli, tmp_path):
 
 
 @pytest.mark.sumo
-def test_errors_are_listed_and_set_the_exit_code(cli):
-    ran = cli(
-        "eval",
-        "--agents",
-        "oracle",
-        "--tasks",
-        "road_speed_80_in_50",
-        "--scenarios",
-        "grid",
-        "--everywhere",
-        "--out",
-        "e",
+def test_errors_are_listed_and_set_the_exit_code(cli, tmp_path):
+    (tmp_path / "raises.py").write_text(
+        "class Raises:\n    def reset(self, goal): raise RuntimeError('broken')\n    def act(self, seen): ...\n"
     )
+    ran = cli("eval", "--agents", "oracle,raises:Raises", *GRID, "--out", "e")
     assert ran.code == 3
-    assert "TriggerNotReachedError" in ran.out
+    assert "RuntimeError: broken" in ran.out
     assert "1 of 1 judged episode succeeded; 1 error\n" in ran.out
     assert ran.err.startswith("error: 1 of 2 episodes ended in an infrastructure error")
 

@@ -18,13 +18,17 @@ from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.row import steady as steady_part
 from automotive_cosim.run.store import read_rows, read_trace, trace_file
+from automotive_cosim.run.worker import run_job
 
 TROUBLE = """
 import os, pathlib, time
 
 class Base:
     channels = ()
-    def reset(self, goal): self.tries = pathlib.Path("tries"); self.tries.open("a").write("x")
+    def reset(self, goal):
+        self.tries = pathlib.Path("tries")
+        with self.tries.open("a") as file:
+            file.write("x")
 
 class Dies(Base):
     def act(self, observation): os.kill(os.getpid(), 9)
@@ -59,7 +63,8 @@ def steady(folder):
 def trouble(tmp_path, monkeypatch):
     (tmp_path / "trouble.py").write_text(TROUBLE)
     monkeypatch.chdir(tmp_path)
-    return tmp_path
+    yield tmp_path
+    sys.modules.pop("trouble", None)
 
 
 def tries(folder):
@@ -77,6 +82,9 @@ def test_order_and_number_of_workers_do_not_show(tmp_path, monkeypatch):
     monkeypatch.setattr(type(wanted), "jobs", lambda self: jobs(self)[::-1])
     run_plan(wanted, tmp_path / "two", executor=Processes(2))
     assert steady(tmp_path / "one") == steady(tmp_path / "two")
+    before = (tmp_path / "one" / "episodes.jsonl").read_bytes()
+    assert run_plan(wanted, tmp_path / "one").ran == 0
+    assert (tmp_path / "one" / "episodes.jsonl").read_bytes() == before
     for row in read_rows(tmp_path / "one", EpisodeRow).values():
         *steps, result = read_trace(tmp_path / "one", row.id)
         assert sha256(steps) == row.trace_sha256 == result["result"]["trace_sha256"]
@@ -84,15 +92,6 @@ def test_order_and_number_of_workers_do_not_show(tmp_path, monkeypatch):
         assert (
             trace_file(tmp_path / "one", row.id).read_bytes() == trace_file(tmp_path / "two", row.id).read_bytes()
         )
-
-
-@pytest.mark.sumo
-def test_what_is_done_is_not_run_again(tmp_path):
-    first = run_plan(plan("oracle"), tmp_path / "e")
-    before = (tmp_path / "e" / "episodes.jsonl").read_bytes()
-    again = run_plan(plan("oracle"), tmp_path / "e")
-    assert (first.ran, again.ran) == (1, 0)
-    assert (tmp_path / "e" / "episodes.jsonl").read_bytes() == before
 
 
 @pytest.mark.sumo
@@ -124,53 +123,43 @@ def test_an_agent_that_hangs_is_ended_when_its_wall_time_is_over(trouble):
     assert (row.error_kind, row.success) == ("WallTime", None)
 
 
-@pytest.mark.sumo
-def test_steps_simulated_time_and_tokens_are_limited_and_judged(trouble):
-    run_plan(plan("trouble:Waits", limits={"steps": 3}), trouble / "a")
-    run_plan(plan("trouble:Waits", limits={"sim_s": 12}), trouble / "b")
-    run_plan(plan("asurada", limits={"tokens": 10}), trouble / "c")
-    ends = {name: next(iter(read_rows(trouble / name, EpisodeRow).values())) for name in "abc"}
-    assert [(row.end, row.success) for row in ends.values()] == [
+def test_steps_simulated_time_and_tokens_are_limited_and_judged(trouble, simulations):
+    def ran(agent, **limits):
+        (job,) = plan(agent, limits=limits).jobs()
+        return run_job(job, trouble, Pictures.NONE, simulations)
+
+    ends = [ran("trouble:Waits", steps=3), ran("trouble:Waits", sim_s=12), ran("asurada", tokens=10)]
+    assert [(row.end, row.success) for row in ends] == [
         ("out_of_steps", False), ("out_of_time", False), ("out_of_budget", False),
     ]  # fmt: skip
-    assert ends["a"].steps == 3
-    assert ends["b"].steps == 3
-    assert ends["b"].sim_seconds == 15.0
-
-
-@pytest.mark.sumo
-def test_a_trigger_out_of_reach_is_an_error_that_is_not_tried_again(tmp_path):
-    wanted = plan("oracle", tasks=["road_speed_80_in_50"], everywhere=True)
-    end = run_plan(wanted, tmp_path / "e", retries=5)
-    assert (end.done, end.judged, end.errors) == (2, 1, 1)
-    row = next(row for row in read_rows(tmp_path / "e", EpisodeRow).values() if row.half == "second")
-    assert (row.success, row.error_kind, row.attempts) == (None, "TriggerNotReachedError", 1)
-    assert run_plan(wanted, tmp_path / "e").ran == 0
+    assert [row.steps for row in ends[:2]] == [3, 3]
+    assert ends[1].sim_seconds == 15.0
 
 
 @pytest.mark.sumo
 @pytest.mark.slow
-def test_a_trigger_out_of_reach_is_sought_once_for_all_contestants(tmp_path):
+def test_a_trigger_out_of_reach_is_sought_once_for_all_contestants_and_never_again(tmp_path):
     there = {"tasks": ["road_speed_80_in_50"], "everywhere": True}
-    end = run_plan(plan("no-op", "always-alert", **there), tmp_path / "both")
-    assert (end.planned, end.done, end.ran, end.errors) == (4, 4, 4, 2)
-    rows = [row for row in read_rows(tmp_path / "both", EpisodeRow).values() if row.error]
+    both = plan("no-op", "always-alert", **there)
+    end = run_plan(both, tmp_path / "both", retries=5)
+    assert (end.planned, end.done, end.judged, end.ran, end.errors) == (4, 4, 2, 4, 2)
+    rows = [row for row in read_rows(tmp_path / "both", EpisodeRow).values() if row.half == "second"]
     assert sorted(row.wall_seconds > 0 for row in rows) == [False, True]
-    assert {row.attempts for row in rows} == {1}
+    assert {(row.success, row.error_kind, row.attempts) for row in rows} == {(None, "TriggerNotReachedError", 1)}
+    assert run_plan(both, tmp_path / "both").ran == 0
     run_plan(plan("no-op", **there), tmp_path / "alone")
     assert steady(tmp_path / "alone").items() <= steady(tmp_path / "both").items()
 
 
-@pytest.mark.sumo
-def test_pictures_are_kept_by_choice(tmp_path):
-    wanted = plan("oracle", "always-alert")
+def test_pictures_are_kept_by_choice(tmp_path, simulations):
+    jobs = plan("oracle", "always-alert").jobs()
     for choice, count in ((Pictures.NONE, 0), (Pictures.FAILURES, 1), (Pictures.ALL, 2)):
-        run_plan(wanted, tmp_path / choice, pictures=choice)
-        kept = list((tmp_path / choice / "pictures").iterdir())
+        (tmp_path / choice / "traces").mkdir(parents=True)
+        steps = {job.id: run_job(job, tmp_path / choice, choice, simulations).steps for job in jobs}
+        kept = list((tmp_path / choice / "pictures").glob("*"))
         assert len(kept) == count
         for folder in kept:
-            steps = read_rows(tmp_path / choice, EpisodeRow)[folder.name].steps
-            assert len(list(folder.glob("step_*.jpg"))) == steps + 1
+            assert len(list(folder.glob("step_*.jpg"))) == steps[folder.name] + 1
 
 
 @pytest.mark.sumo

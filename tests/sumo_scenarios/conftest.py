@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import xml.etree.ElementTree as ET
-from collections.abc import Callable
+from collections import defaultdict
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -20,6 +21,20 @@ from automotive_cosim.traffic import sumo_programs
 
 WARM_S, END_S = 900, 4500
 """Stability is asked of the hour after a quarter of an hour."""
+RIDE_WITHIN_S = 1500
+
+
+@dataclass(frozen=True)
+class Ride:
+    """One trip of the ego, an entry a second from its departure on."""
+
+    edges: tuple[str, ...]
+    speed_mps: tuple[float, ...]
+    arrived: bool
+
+    def seconds_on(self, *edges: str) -> int:
+        """How long it was on those edges."""
+        return sum(edge in edges for edge in self.edges)
 
 
 @dataclass(frozen=True)
@@ -33,6 +48,7 @@ class Hour:
     collisions: int
     speed_mps: dict[str, float]
     """Mean speed by edge."""
+    rides: dict[str, Ride]
 
     @property
     def worst_halted(self) -> float:
@@ -89,23 +105,63 @@ def lonlat(net: Callable[[str], Any]) -> Callable[[str, str], tuple[float, float
 
 @pytest.fixture(scope="session")
 def hour(sumo: None, tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Hour]:
+    """A scenario's traffic for an hour, and in it every trip of the ego, driven at the limit or 130 km/h."""
+
     @cache
     def of(name: str) -> Hour:
+        scenario = scenarios.load(name)
         folder = tmp_path_factory.mktemp(name)
-        summary, statistic, edges, extra = (
-            folder / f for f in ("summary.xml", "statistic.xml", "edges.xml", "a.xml")
+        summary, statistic, edges, extra, egos, fcd, ends = (
+            folder / f"{file}.xml" for file in ("summary", "statistic", "edges", "extra", "egos.rou", "fcd", "ends")
         )
         extra.write_text(
             f'<additional><edgeData id="e" file="{edges}" begin="{WARM_S}" end="{END_S}"/></additional>'
         )
-        outputs = ["--summary-output", summary, "--statistic-output", statistic, "--additional-files", extra]
-        run_sumo(scenarios.load(name), 11, "--step-length", "1", "--end", str(END_S), *map(str, outputs))
-        return _read(summary, statistic, edges)
+        trips = "".join(
+            f'<trip id="ego.{trip.name}" type="ego" depart="{scenario.sumo.warm_up_s}" from="{trip.from_edge}" '
+            f'to="{trip.to_edge}"' + (f' via="{" ".join(trip.via)}"' if trip.via else "")
+            + '><param key="has.rerouting.device" value="false"/></trip>'
+            for trip in scenario.ego.trips
+        )  # fmt: skip
+        egos.write_text(f'<routes><vType id="ego" speedFactor="1" speedDev="0" maxSpeed="36"/>{trips}</routes>')
+        known = ",".join(f"ego.{trip.name}" for trip in scenario.ego.trips)
+        routes = ET.parse(scenario.config).getroot().find("input/route-files").get("value")  # type: ignore[union-attr]
+        run_sumo(
+            scenario, 11, "--route-files", f"{scenario.folder / str(routes)},{egos}", "--step-length", "1",
+            "--end", str(END_S), "--summary-output", str(summary), "--statistic-output", str(statistic),
+            "--additional-files", str(extra), "--device.fcd.explicit", known, "--fcd-output", str(fcd),
+            "--device.tripinfo.explicit", known, "--tripinfo-output", str(ends),
+        )  # fmt: skip
+        arrived = {
+            row.get("id")
+            for row in ET.parse(ends).getroot().iter("tripinfo")
+            if float(row.get("duration", 0)) <= RIDE_WITHIN_S
+        }
+        rows = defaultdict[str, list[ET.Element]](list)
+        for row in ET.parse(fcd).getroot().iter("vehicle"):
+            rows[row.get("id", "")].append(row)
+        rides = {
+            trip.name: _ride(rows[ego], ego in arrived)
+            for trip in scenario.ego.trips
+            for ego in (f"ego.{trip.name}",)
+        }
+        return _read(summary, statistic, edges, rides)
 
     return of
 
 
-def _read(summary: Path, statistic: Path, edges: Path) -> Hour:
+@pytest.fixture(scope="session")
+def rides(hour: Callable[[str], Hour]) -> Callable[[str], dict[str, Ride]]:
+    """Every trip of a scenario by its name."""
+    return lambda name: hour(name).rides
+
+
+def _ride(rows: Sequence[ET.Element], arrived: bool) -> Ride:
+    edges = tuple(row.get("lane", "").rpartition("_")[0] for row in rows)
+    return Ride(edges, tuple(float(row.get("speed", 0)) for row in rows), arrived)
+
+
+def _read(summary: Path, statistic: Path, edges: Path, rides: dict[str, Ride]) -> Hour:
     steps = [s for s in ET.parse(summary).getroot() if float(s.get("time", 0)) >= WARM_S]
     totals = ET.parse(statistic).getroot()
     speeds = {e.get("id", ""): e.get("speed") for e in ET.parse(edges).getroot().iter("edge")}
@@ -115,6 +171,7 @@ def _read(summary: Path, statistic: Path, edges: Path) -> Hour:
         int(totals.find("teleports").get("total")),  # type: ignore[union-attr,arg-type]
         int(totals.find("safety").get("collisions")),  # type: ignore[union-attr,arg-type]
         {edge: float(speed) for edge, speed in speeds.items() if speed},
+        rides,
     )
 
 
@@ -151,58 +208,6 @@ def held_s(sumo: None, tmp_path_factory: pytest.TempPathFactory) -> Callable[...
         return longest * scenario.sumo.step_length_s
 
     return measure
-
-
-@dataclass(frozen=True)
-class Ride:
-    """One trip of the ego, an entry a second from its departure on."""
-
-    edges: tuple[str, ...]
-    speed_mps: tuple[float, ...]
-    arrived: bool
-
-    def seconds_on(self, *edges: str) -> int:
-        """How long it was on those edges."""
-        return sum(edge in edges for edge in self.edges)
-
-
-RIDE_WITHIN_S = 1500
-
-
-@pytest.fixture(scope="session")
-def rides(sumo: None, tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], dict[str, Ride]]:
-    """Every trip of a scenario by its name, driven in live traffic at the limit or 130 km/h, all in one run."""
-
-    @cache
-    def of(name: str) -> dict[str, Ride]:
-        scenario = scenarios.load(name)
-        warm = scenario.sumo.warm_up_s
-        folder = tmp_path_factory.mktemp(f"{name}-rides")
-        egos, fcd, ends = folder / "egos.rou.xml", folder / "fcd.xml", folder / "tripinfo.xml"
-        trips = "".join(
-            f'<trip id="ego.{trip.name}" type="ego" depart="{warm}" from="{trip.from_edge}" to="{trip.to_edge}"'
-            + (f' via="{" ".join(trip.via)}"' if trip.via else "")
-            + '><param key="has.rerouting.device" value="false"/></trip>'
-            for trip in scenario.ego.trips
-        )
-        egos.write_text(f'<routes><vType id="ego" speedFactor="1" speedDev="0" maxSpeed="36"/>{trips}</routes>')
-        known = ",".join(f"ego.{trip.name}" for trip in scenario.ego.trips)
-        routes = ET.parse(scenario.config).getroot().find("input/route-files").get("value")  # type: ignore[union-attr]
-        run_sumo(
-            scenario, 5, "--route-files", f"{scenario.folder / str(routes)},{egos}", "--step-length", "1",
-            "--end", str(warm + RIDE_WITHIN_S), "--device.fcd.explicit", known, "--fcd-output", str(fcd),
-            "--device.tripinfo.explicit", known, "--tripinfo-output", str(ends),
-        )  # fmt: skip
-        arrived = {row.get("id") for row in ET.parse(ends).getroot().iter("tripinfo")}
-        return {trip.name: _ride(fcd, f"ego.{trip.name}", arrived) for trip in scenario.ego.trips}
-
-    return of
-
-
-def _ride(fcd: Path, ego: str, arrived: set[str | None]) -> Ride:
-    rows = [row for row in ET.parse(fcd).getroot().iter("vehicle") if row.get("id") == ego]
-    edges = tuple(row.get("lane", "").rpartition("_")[0] for row in rows)
-    return Ride(edges, tuple(float(row.get("speed", 0)) for row in rows), ego in arrived)
 
 
 @cache
