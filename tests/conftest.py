@@ -1,11 +1,16 @@
-"""Builders of observations for tests that need no simulation, and warm simulations for those that do."""
+"""Which tests may start SUMO; builders of observations for those that may not, warm simulations for those that may.
+
+A test starts SUMO if it is marked ``sumo`` or asks, itself or through a fixture, for the fixture ``sumo``, which
+marks it. Any other test that loads libsumo or runs one of SUMO's programs fails.
+"""
 
 import os
 import signal
 import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +27,64 @@ from automotive_cosim.contracts import (
     VehicleState,
 )
 from automotive_cosim.traffic.fork import Simulations
+
+OTHERS = "AUTOMOTIVE_COSIM_TEST_DATA"
+NO_LIBSUMO = Path(__file__).parent / "no_libsumo"
+"""What the children of a test find in the place of libsumo."""
+_forbidden = False
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    for item in items:
+        if "sumo" in getattr(item, "fixturenames", ()):
+            item.add_marker("sumo")
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
+    if item.get_closest_marker("sumo"):
+        return (yield)
+    with _without_sumo():
+        return (yield)
+
+
+@contextmanager
+def _without_sumo() -> Iterator[None]:
+    global _forbidden
+    path = os.environ.get("PYTHONPATH")
+    os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (str(NO_LIBSUMO), path)))
+    sys.path.insert(0, str(NO_LIBSUMO))  # which multiprocessing hands on
+    _forbidden = True
+    try:
+        yield
+    finally:
+        _forbidden = False
+        sys.path.remove(str(NO_LIBSUMO))
+        if path is None:
+            del os.environ["PYTHONPATH"]
+        else:
+            os.environ["PYTHONPATH"] = path
+
+
+def _refuse_sumo(event: str, arguments: tuple[Any, ...]) -> None:
+    if not _forbidden:
+        return
+    if event == "subprocess.Popen":
+        program, words = Path(str(arguments[0])), list(map(str, arguments[1]))
+        starts = program.parts[-3:-1] == ("sumo", "bin") or "automotive_cosim.traffic.process" in words
+    else:
+        starts = event == "import" and arguments[0] == "libsumo"
+    if starts:
+        pytest.fail("this test starts SUMO: mark it `sumo`, or let what starts SUMO ask for the fixture `sumo`")
+
+
+sys.addaudithook(_refuse_sumo)
+
+
+@pytest.fixture(scope="session")
+def sumo() -> None:
+    """Asked for by every fixture that starts SUMO, or returns what does."""
+
 
 PARIS = "Place: Paris, France\nSpeed limit here: 50 km/h (posted on Avenue Foch)"
 
@@ -86,11 +149,26 @@ def observation() -> Callable[..., Observation]:
 
 
 @pytest.fixture(scope="session")
-def simulations() -> Iterator[Simulations]:
+def simulations(sumo: None) -> Iterator[Simulations]:
     """Shared by all tests of a worker."""
     shared = Simulations()
     yield shared
     shared.close()
+
+
+@pytest.fixture(scope="session")
+def data_of_others() -> Callable[[str], Path]:
+    """A file of the networks, maps and counts that some tests try beside what the repository holds."""
+
+    def find(name: str) -> Path:
+        folder = os.environ.get(OTHERS)
+        if folder is None:
+            pytest.skip(f"{OTHERS} is not set: the folder with the networks, maps and counts of others")
+        if not (found := Path(folder) / name).exists():
+            pytest.skip(f"{found} is not there")
+        return found
+
+    return find
 
 
 @pytest.fixture

@@ -139,8 +139,10 @@ def seeds_in(text: str) -> list[int]:
 
 
 def time_left(progress: Progress[Any]) -> str:
-    """For example ``, 3:05 left``; empty if unknown or if nothing is left."""
+    """For example ``, 3:05 left`` or ``, 1:03:05 left``; empty if unknown or if nothing is left."""
     left_s = progress.left_s
     if left_s is None or progress.done == progress.planned:
         return ""
-    return f", {int(left_s) // 60}:{int(left_s) % 60:02d} left"
+    minutes, seconds = divmod(int(left_s), 60)
+    told = f"{minutes // 60}:{minutes % 60:02d}" if minutes >= 60 else f"{minutes}"
+    return f", {told}:{seconds:02d} left"

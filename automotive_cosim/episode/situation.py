@@ -72,9 +72,10 @@ class SituationFinder:
 
         Raises:
             UnknownNameError: no such task, half or scenario.
-            ScenarioError: the scenario cannot be read, or has no such route.
-            UserError: ``origin`` is no position on earth, or a general task is to be monitored.
+                    ScenarioError: the scenario cannot be read, or has no such way.
+            UserError: a value is out of its range, or a general task is to be monitored.
         """
+        spec.check()
         self.task = CATALOGUE[spec.task] if task is None else task
         half = self.task.half(spec.half)
         if spec.mode is Mode.MONITORING and not self.task.is_safety:

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from enum import StrEnum
+from typing import Annotated
 
 import numpy as np
+from annotated_types import Ge, Gt
 
 from automotive_cosim.errors import UnknownNameError
+from automotive_cosim.formats.annotations import Latitude, Longitude, OneOf
+from automotive_cosim.formats.checked import checked
+from automotive_cosim.formats.toml import dotted
 from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.tasking.task import Mode
@@ -52,7 +57,7 @@ class EpisodeSpec:
     """``first`` or, for a pair, ``second``."""
     scenario: str | None = None
     """A name, a folder, a ``.sumocfg`` or a network; None takes the task's own."""
-    origin: tuple[float, float] | None = None
+    origin: tuple[Longitude, Latitude] | None = None
     """Longitude and latitude that the middle of its network is moved to, with that place's law, clock and climate;
     the task's own date, time and weather stay. None leaves it where it is."""
     gps: bool = True
@@ -61,21 +66,29 @@ class EpisodeSpec:
     """Where the ego's route begins, instead of the task's trip: an edge, a street, ``LON,LAT``."""
     to_place: str = ""
     """Where it ends. If only one of the two is given, the other is drawn."""
-    seed: int = 0
+    seed: Annotated[int, Ge(0)] = 0
     """Seed of the traffic, and of everything that is drawn."""
-    mode: Mode = Mode.PROMPTED
+    mode: Annotated[Mode, OneOf(Mode)] = Mode.PROMPTED
     """When the agent is called."""
     held_out: bool = False
     """Whether the driver says the task's held-out phrasing (``tasking.instance.Instance.held_out``); otherwise any
     phrasing is drawn."""
-    geo: GeoInput = GeoInput.FULL
+    geo: Annotated[GeoInput, OneOf(GeoInput, "geo control")] = GeoInput.FULL
     """What the agent is told of where it is."""
-    max_steps: int = MAX_STEPS
+    max_steps: Annotated[int, Ge(1)] = MAX_STEPS
     """Actions after which the episode is cut off."""
-    max_sim_s: float | None = None
+    max_sim_s: Annotated[float, Gt(0)] | None = None
     """Simulated seconds from the hand-over after which it is cut off; None leaves that to ``max_steps``."""
-    action_cost_s: float = ACTION_COST_S
+    action_cost_s: Annotated[float, Gt(0)] = ACTION_COST_S
     """Simulated seconds per action."""
+
+    def check(self) -> None:
+        """Tries the values; whether there is such a task or scenario is found out where those are looked up.
+
+        Raises:
+            UserError: one of the wrong type or out of its range.
+        """
+        checked(type(self), asdict(self), lambda steps: ("the episode", dotted(steps)))
 
     def conditions(self, channels: frozenset[Channel] = ALL) -> Conditions:
         """The conditions for an agent that wants these channels."""

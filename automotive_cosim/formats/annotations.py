@@ -118,7 +118,5 @@ class Chosen:
         return core_schema.tagged_union_schema(members, choose)
 
 
-Longitude = Annotated[float, Ge(-180), Le(180)]
-"""Degrees, east positive."""
-Latitude = Annotated[float, Ge(-90), Le(90)]
-"""Degrees, north positive."""
+Longitude = Annotated[float, Ge(-180), Le(180), Called("a longitude from -180 (west) to 180 (east)")]
+Latitude = Annotated[float, Ge(-90), Le(90), Called("a latitude from -90 (south) to 90 (north)")]

@@ -10,6 +10,8 @@ import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from datetime import date, time
 from difflib import get_close_matches
+from numbers import Integral, Real
+from os import PathLike
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from automotive_cosim.contracts import Json
@@ -26,7 +28,9 @@ Locator = Callable[[Steps], tuple[str, str]]
 """Gives the place of a value, such as ``"plan.toml line 12 [limits]"``, and its name there."""
 
 MOST_PROBLEMS = 8
-"""Maximum number of problems reported at once."""
+"""Told at once."""
+MOST_COMPLAINTS = 200
+"""Looked at; where pydantic has more of them the first are as good."""
 
 
 def checked(kind: type[T], values: object, place: Locator, error: type[UserError] = UserError) -> T:
@@ -47,20 +51,38 @@ def checked(kind: type[T], values: object, place: Locator, error: type[UserError
 
     any_kind: Any = kind  # mypy takes no type for hashable, as a cache wants it
     try:
-        made: T = adapter(any_kind).validate_json(json.dumps(values, default=_plain))
+        made: T = adapter(any_kind).validate_json(as_json(values))
     except ValidationError as refused:
         complaints = refused.errors(include_url=False, include_input=False)
-        raise error(*_told(complaints, json_schema(any_kind), values, place)) from None
+        raise error(*_told(complaints[:MOST_COMPLAINTS], json_schema(any_kind), values, place)) from None
     except (RecursionError, TypeError, ValueError) as broken:
         why = "it is nested too deeply" if isinstance(broken, RecursionError) else str(broken)
         raise error(f"{place(())[0]} cannot be read: {why}") from broken
     return made
 
 
-def _plain(value: object) -> str:
-    if isinstance(value, date | time):
-        return value.isoformat()
-    raise TypeError(f"{shown(value)} cannot be in a file")
+def as_json(values: object) -> str:
+    """The values as a schema sees them: dates and times are texts.
+
+    Raises:
+        TypeError: something in them is nothing that a file can hold.
+        RecursionError: they are nested too deeply.
+    """
+    return json.dumps(values, default=_plain)
+
+
+def _plain(value: object) -> str | int | float:
+    """What JSON has no word for: TOML's dates, and paths and numpy's numbers where a program gives the values."""
+    match value:
+        case date() | time():
+            return value.isoformat()
+        case PathLike():
+            return str(value)
+        case Integral():
+            return int(value)
+        case Real():
+            return float(value)
+    raise TypeError(f"{shown(value)} is nothing that a file can hold")
 
 
 class _Problem(NamedTuple):
@@ -93,6 +115,8 @@ def _leads(steps: Steps, other: Steps) -> bool:
 def _problem(entry: ErrorDetails, values: object, root: Json) -> _Problem:
     """A problem from pydantic, whose location also names the members of unions that it tried."""
     kind, context, location = entry["type"], entry.get("ctx", {}), entry["loc"]
+    if kind == LACKING and isinstance(location[-1], int):  # a list is too short
+        kind, location = "too_short", location[:-1]
     steps: Steps = ()
     value, schemas = values, list(members(root, root))
     for part in location[:-1] if kind in (LACKING, *SURPLUS) else location:

@@ -12,11 +12,12 @@ from typing import Any, TypeVar
 
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.checked import Steps, checked
+from automotive_cosim.formats.files import read_text
 
 T = TypeVar("T")
 
-MOST_BYTES = 4 * 2**20
-"""Size limit: nobody writes more by hand, and a wrong path may be a device that never ends."""
+_DEEP = re.compile(r"""(?<![\w.-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){100}""")
+"""A key of more parts than anybody writes: ``tomllib`` takes the square of their number in memory."""
 
 LABELS = {"id": " {}", "kind": " of kind '{}'", "name": " '{}'"}
 """Keys that identify an entry of a list of tables, and how an error names it."""
@@ -71,19 +72,21 @@ def read_toml(path: Path, error: type[UserError] = UserError) -> Document:
     """Reads a file.
 
     Raises:
-        UserError: of that class: it is missing, too large, or not TOML.
+        UserError: of that class: it cannot be read, or is no TOML.
+    """
+    return parse(read_text(path, error), path, error)
+
+
+def parse(text: str, path: Path, error: type[UserError] = UserError) -> Document:
+    """A document from the text of a file.
+
+    Raises:
+        UserError: of that class: it is no TOML.
     """
     try:
-        with path.open("rb") as file:
-            data = file.read(MOST_BYTES + 1)
-        if len(data) > MOST_BYTES:
-            raise error(f"{path} is larger than {MOST_BYTES // 2**20} MB; give a TOML file written by hand")
-        text = data.decode("utf-8-sig").replace("\r\n", "\n")
+        if _DEEP.search(text):
+            raise RecursionError
         return Document(path, tomllib.loads(text), error, text)
-    except OSError as broken:
-        raise error(f"cannot read {path}: {broken.strerror or broken}") from broken
-    except UnicodeDecodeError as broken:
-        raise error(f"{path} is not TOML: it is not UTF-8 text; save it as UTF-8") from broken
     except (ValueError, RecursionError) as broken:
         why = "it is nested too deeply" if isinstance(broken, RecursionError) else str(broken)
         raise error(f"{path} is not TOML: {why}") from broken
@@ -122,12 +125,15 @@ def _lines(text: str) -> tuple[Mapping[Steps, int], frozenset[Steps]]:
         if depth == 0 and header is not None:
             table = _entry(_keys(text[begin + header.start(2) : begin + header.end(2)]), header[1] == "[[", last)
             tables.add(table)
-            lines.setdefault(table, number)
+            found = table
         elif depth == 0 and equals:
-            lines.setdefault((*table, *_keys(text[begin : begin + len(key)])), number)
+            found = (*table, *_keys(text[begin : begin + len(key)]))
             depth = _depth(rest)
         else:
+            found = ()
             depth += _depth(line)
+        for end in range(1, len(found) + 1):  # a key such as a.b makes the table a
+            lines.setdefault(found[:end], number)
         number += 1 + text.count("\n", begin, begin + len(line))
         begin += len(line) + 1
     return lines, frozenset(tables)

@@ -35,7 +35,8 @@ from annotated_types import Ge, MinLen
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import GeoDataError
 from automotive_cosim.formats.annotations import Called, Chosen, Form, Made, OneOf
-from automotive_cosim.formats.toml import read_toml
+from automotive_cosim.formats.files import read_text
+from automotive_cosim.formats.toml import parse
 from automotive_cosim.geo.rules import ANSWERS, TOPICS, UNITS, USERS, Case, Jurisdiction, Rule, Status, Value
 from automotive_cosim.geo.situation import AreaPolygon, Test, When
 
@@ -96,7 +97,8 @@ class RuleEntry:
     @classmethod
     def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> Json:
         made = handler.resolve_ref_schema(handler(schema))
-        made["oneOf"] = [{"required": ["value"]}, {"required": ["cases"], "not": {"required": ["when"]}}]
+        value, when, cases = ({"required": [name]} for name in ("value", "when", "cases"))
+        made["oneOf"] = [value | {"not": cases}, cases | {"not": {"anyOf": [value, when]}}]
         return made
 
     def __post_init__(self) -> None:
@@ -146,6 +148,7 @@ class CountryEntry:
     code: Annotated[str, Form(r"^[A-Z]{2}$", "FR")]
     """ISO 3166-1, the name of the file."""
     name: TextLine
+    """In English, as the context prints it."""
     status: Annotated[Status, OneOf(Status)]
     """Status of the fields here that are not rules."""
     driving_side: Literal["left", "right"]
@@ -162,6 +165,7 @@ class RegionEntry:
     code: Annotated[str, Form(r"^[A-Z]{2}-\w+$", "FR-paris")]
     """The country's code, a hyphen and a word; the name of the file."""
     name: TextLine
+    """In English, as the context prints it."""
     status: Annotated[Status, OneOf(Status)]
     """Status of the fields here that are not rules."""
     within: Annotated[str, Form(r"^[A-Z]{2}$", "FR")]
@@ -195,16 +199,13 @@ def read_jurisdiction(path: Path) -> Jurisdiction:
     Raises:
         GeoDataError: with file, line of the entry, and reason.
     """
-    try:
-        state = path.stat()
-    except OSError as error:
-        raise GeoDataError(f"cannot read {path}: {error.strerror or error}") from error
-    return _read(path, state.st_mtime_ns, state.st_size)
+    return _read(read_text(path, GeoDataError), path)
 
 
-@lru_cache(maxsize=512)
-def _read(path: Path, _mtime_ns: int, _size: int) -> Jurisdiction:
-    document = read_toml(path, GeoDataError)
+@lru_cache(maxsize=256)
+def _read(text: str, path: Path) -> Jurisdiction:
+    """Of a file's text, which is parsed once in a process: that takes longer than a second of simulation."""
+    document = parse(text, path, GeoDataError)
     file = document.read(RuleFile)
     head = file.jurisdiction
     ids: set[str] = set()

@@ -78,8 +78,11 @@ def read_counts(path: Path, zone: ZoneInfo, arc: str = "") -> Counts:
     lines = _text(path).splitlines()
     delimiter = ";" if lines and ";" in lines[0] else ","
     reader = csv.DictReader(lines, delimiter=delimiter, restval="")
-    columns = tuple(reader.fieldnames or ())
-    rows = list(reader)
+    try:
+        columns = tuple(reader.fieldnames or ())
+        rows = list(reader)
+    except csv.Error as error:
+        raise CountsError(f"{path} line {reader.line_num}: {error}; give a CSV file of counts") from error
     if TIME in columns or delimiter == ";":
         _need(path, columns, (TIME, FLOW, OCCUPANCY, ARC))
         chosen, arc = _of_arc(path, rows, arc)
@@ -136,9 +139,9 @@ def _paris_row(path: Path, number: int, row: Mapping[str, str], zone: ZoneInfo) 
     """None at weekends."""
     try:
         stamp = datetime.fromisoformat(row[TIME])
-    except ValueError as error:
+        local = (stamp if stamp.tzinfo else stamp.replace(tzinfo=UTC)).astimezone(zone)
+    except (ValueError, OverflowError) as error:
         raise CountsError(f"{path} line {number}: {row[TIME]!r} is not a date and time") from error
-    local = (stamp if stamp.tzinfo else stamp.replace(tzinfo=UTC)).astimezone(zone)
     if local.weekday() >= SATURDAY:
         return None
     flow, occupancy = (_figure(path, number, name, row[name]) for name in (FLOW, OCCUPANCY))

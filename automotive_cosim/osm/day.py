@@ -11,11 +11,12 @@ import shutil
 import xml.etree.ElementTree as ET
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
 from zoneinfo import ZoneInfo
 
 from automotive_cosim.contracts import Tell
 from automotive_cosim.errors import CountsError, ScenarioError, UnknownNameError
+from automotive_cosim.formats.checked import checked
+from automotive_cosim.formats.toml import dotted
 from automotive_cosim.osm import folder
 from automotive_cosim.osm.counts import read_counts
 from automotive_cosim.osm.demand import fastest_ways, write
@@ -100,12 +101,10 @@ def read_day(scenario_folder: Path) -> Day:
     """
     path = scenario_folder / DAY_FILE
     try:
-        table: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-        edges, met = tuple(table.pop("edges")), tuple(table.pop("met"))
-        hours = tuple(Hour(**each) for each in table.pop("hours"))
-        return Day(edges=edges, met=met, hours=hours, **table)
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        table = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError) as error:
         raise ScenarioError(f"{path} is not what `automotive-cosim scenarios day` writes: {error}") from error
+    return checked(Day, table, lambda steps: (f"{path} of `scenarios day`", dotted(steps)), ScenarioError)
 
 
 def make_day(

@@ -7,9 +7,9 @@ results.
 from __future__ import annotations
 
 import time
-from collections import Counter, defaultdict, deque
-from collections.abc import Callable, Hashable, Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from collections import Counter, defaultdict
+from collections.abc import Callable, Hashable, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Generic
@@ -19,9 +19,10 @@ from automotive_cosim.run import worker
 from automotive_cosim.run.collect import Pictures, failed
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.executor import CannotWrite, Executor, J, LostError, Opener, R, Worker
-from automotive_cosim.run.pace import SHARED_FROM, JobTurn, Pace, SimulationKey
+from automotive_cosim.run.pace import JobTurn, Pace
 from automotive_cosim.run.plan import Plan
 from automotive_cosim.run.processes import Processes
+from automotive_cosim.run.queue import JobQueue, SimulationKey
 from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.store import Store, cannot_write, opened
 
@@ -134,65 +135,27 @@ class _Place(Generic[J, R]):
         self.job, self.since_s, self.warm = job, time.monotonic(), job.simulation
         self.worker.give(job)
 
-    def turn(self) -> JobTurn[J] | None:
-        """How long it has worked on its job; None if it has none."""
-        return JobTurn(self.job, self.is_cold, time.monotonic() - self.since_s) if self.job else None
+    def turn(self, job: J) -> JobTurn:
+        """How long it has worked on its job."""
+        return JobTurn(job, self.is_cold, time.monotonic() - self.since_s)
 
 
-@dataclass
-class _Queue(Generic[J]):
-    """Jobs by simulation and kind; one of each kind goes first, to learn how long the others take."""
+@dataclass(slots=True)
+class _Tally:
+    """The newest rows, counted as they come."""
 
-    groups: dict[SimulationKey, dict[Hashable, deque[J]]] = field(default_factory=dict)
-    tried: set[Hashable] = field(default_factory=set)
-    """Kinds of which a job has been taken."""
+    judged: int = 0
+    successes: int = 0
+    errors: int = 0
+    closed: int = 0
+    """Rows of jobs that need no further run."""
 
-    def put(self, jobs: Iterable[J]) -> None:
-        for job in jobs:
-            self.groups.setdefault(job.simulation, {}).setdefault(job.kind, deque()).append(job)
-
-    def take(self, warm: SimulationKey | None, busy: Counter[SimulationKey]) -> J | None:
-        """The next job for a worker: of its own simulation, else of one that no worker has, else shared work."""
-        if warm is not None and warm in self.groups:
-            return self._first(warm)
-        left = {simulation: sum(map(len, kinds.values())) for simulation, kinds in self.groups.items()}
-        free = {simulation: count for simulation, count in left.items() if not busy[simulation]}
-        pool = free or {simulation: count for simulation, count in left.items() if count >= SHARED_FROM}
-        return self._first(max(pool, key=lambda simulation: pool[simulation])) if pool else None
-
-    def remove(self, job: J) -> bool:
-        """Takes a particular job; false if it is not waiting."""
-        jobs = self.groups.get(job.simulation, {}).get(job.kind, ())
-        if job not in jobs:
-            return False
-        self._without(job)
-        return True
-
-    def waiting(self) -> dict[SimulationKey, dict[Hashable, int]]:
-        """The number of waiting jobs."""
-        return {
-            simulation: {kind: len(jobs) for kind, jobs in kinds.items()}
-            for simulation, kinds in self.groups.items()
-        }
-
-    def _first(self, simulation: SimulationKey) -> J:
-        kinds = self.groups[simulation]
-        kind = next((kind for kind in kinds if kind not in self.tried), next(iter(kinds)))
-        self.tried.add(kind)
-        job = kinds[kind][0]
-        self._without(job)
-        return job
-
-    def _without(self, job: J) -> None:
-        kinds = self.groups[job.simulation]
-        kinds[job.kind].remove(job)
-        if not kinds[job.kind]:
-            del kinds[job.kind]
-        if not kinds:
-            del self.groups[job.simulation]
-
-    def __bool__(self) -> bool:
-        return bool(self.groups)
+    def count(self, row: JobRow | None, by: int = 1) -> None:
+        if row is not None:
+            self.judged += by * (row.error is None)
+            self.successes += by * row.has_succeeded
+            self.errors += by * (row.error is not None)
+            self.closed += by * (not _is_open(row))
 
 
 class _Batch(Generic[J, R]):
@@ -218,13 +181,17 @@ class _Batch(Generic[J, R]):
         self._newest: R | None = None
         self._failures: dict[str, list[str]] = defaultdict(list)
         self._places: list[_Place[J, R]] = []
-        self._pace = Pace()
-        self._queue: _Queue[J] = _Queue()
-        self._queue.put(job for job in jobs if _is_open(store.rows.get(job.id)))
+        self._queue = JobQueue(job for job in jobs if _is_open(store.rows.get(job.id)))
+        self._tally = _Tally()
         self._alike: dict[Hashable, list[J]] = defaultdict(list)
         """Jobs that wait for the same situation."""
         for job in jobs:
             self._alike[job.situation].append(job)
+            self._tally.count(store.rows.get(job.id))
+        tried = {job.situation for job in jobs if not _is_open(store.rows.get(job.id))}
+        self._pace = Pace(
+            {situation: alike[0].simulation for situation, alike in self._alike.items() if situation not in tried}
+        )
 
     def run(self) -> None:
         self._tell(self.progress)
@@ -244,26 +211,30 @@ class _Batch(Generic[J, R]):
 
     @property
     def progress(self) -> Progress[R]:
-        rows = [row for id_, row in self._store.rows.items() if id_ in self._jobs]
-        judged = [row for row in rows if row.error is None]
-        running = [turn for place in self._places if (turn := place.turn())]
+        tally = self._tally
         return Progress(
             planned=len(self._jobs),
-            done=sum(not _is_open(row) for row in rows) + self._given_up,
-            judged=len(judged),
-            successes=sum(row.has_succeeded for row in judged),
-            errors=len(rows) - len(judged),
+            done=tally.closed + self._given_up,
+            judged=tally.judged,
+            successes=tally.successes,
+            errors=tally.errors,
             ran=self._ran,
             seconds=time.monotonic() - self._began_s,
-            left_s=self._pace.left_s(self._queue.waiting(), running, self._executor.count),
+            left_s=self._expected_s(),
             ended=self._newest,
         )
+
+    def _expected_s(self) -> float | None:
+        running = [place.turn(place.job) for place in self._places if place.job]
+        idle = [place.warm for place in self._places if not place.job]
+        idle += [None] * (self._executor.count - len(self._places))
+        return self._pace.left_s(self._queue.counts(), running, idle)
 
     def _hand_out(self) -> None:
         for place in self._places:
             if place.job is None and place.worker.is_ready:
-                busy = Counter(other.job.simulation for other in self._places if other.job)
-                job = self._queue.take(place.warm, busy)
+                busy = Counter(other.warm for other in self._places if other.job)
+                job = self._queue.take(place.warm, busy, self._pace.timed)
                 if job is not None:
                     place.give(job)
 
@@ -292,39 +263,37 @@ class _Batch(Generic[J, R]):
             raise cannot_write(self._store.folder, answer.error)
         if answer is None:
             self._stillborn = 0
-        elif (turn := self._finished(place)) is not None:
-            self._ended(turn.job, answer, turn.seconds)
+        elif place.job is not None:
+            self._turn_over(place, place.job, answer)
 
     def _lost(self, place: _Place[J, R], kind: str, why: str) -> None:
         """Records the failed attempt of a worker that died."""
-        turn = self._finished(place)
         self._places.remove(place)
         place.worker.end(at_once=True)
-        if turn is not None:
-            self._ended(turn.job, self._failed(turn.job, kind, why), turn.seconds)
+        if place.job is not None:
+            self._turn_over(place, place.job, self._failed(place.job, kind, why))
             return
         self._stillborn += 1
         if self._stillborn >= STILLBORN * self._executor.count:
             raise InfrastructureError(f"no worker becomes ready: {why}; rerun the command to resume")
 
-    def _finished(self, place: _Place[J, R]) -> JobTurn[J] | None:
-        """Takes the job from a worker, if it has one."""
-        turn, place.job = place.turn(), None
-        if turn is not None:
-            self._pace.took(turn)
-        return turn
+    def _turn_over(self, place: _Place[J, R], job: J, row: R) -> None:
+        """Takes a job from a worker that has ended with it, or died."""
+        turn, place.job = place.turn(job), None
+        self._pace.took(turn, is_out_of_reach=row.error_kind in FINAL_KINDS)
+        self._ended(job, replace(row, wall_seconds=round(turn.seconds, 3)))
 
-    def _ended(self, job: J, row: R, seconds: float = 0.0) -> None:
+    def _ended(self, job: J, row: R) -> None:
         failures = self._failures[job.id]
         if row.error is not None:
             failures.append(f"{row.error_kind}: {row.error}")
             if len(failures) <= self._retries and row.error_kind not in FINAL_KINDS:
-                self._queue.put([job])
+                self._queue.put(job)
                 return
         attempts = len(failures) + (row.error is None)
-        self._newest = replace(
-            row, wall_seconds=round(seconds, 3), attempts=attempts, failed_attempts=tuple(failures)
-        )
+        self._newest = replace(row, attempts=attempts, failed_attempts=tuple(failures))
+        self._tally.count(self._store.rows.get(job.id), -1)
+        self._tally.count(self._newest)
         self._store.append(self._newest)
         self._ran += 1
         self._given_up += _is_open(row)

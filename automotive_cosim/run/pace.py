@@ -1,112 +1,210 @@
 """Estimates how long the rest of a batch takes, from what its jobs have taken so far.
 
-A worker that changes to another simulation warms it up first: that job is *cold* and takes the warm-up on top of
-its own time. The own time depends on the kind of job (which agent acts) and on the scenario. So a job is expected
-to take the mean of the warm jobs of its kind in its scenario, drawn towards the mean of its kind while few are
-known, and a warm-up what the cold ones took beyond that. The sum is divided by the workers that have work.
+A worker that changes to another simulation warms it up first: that job is *cold* and takes the warm-up on top
+of its own time. The own time depends on the kind of job (which agent acts) and on the scenario: it is expected
+to be the mean over the warm jobs of that kind in that scenario, drawn towards the mean of the kind while few
+are known. A warm-up takes what the cold jobs took beyond that. A situation that does not arise costs its time
+once for all jobs that wait for it. With these times the rest is played through the way the queue will hand it
+out.
 """
 
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Container, Hashable, Mapping, Sequence
+from copy import deepcopy
 from dataclasses import dataclass, field
-from typing import Any, Generic
+from heapq import heapify, heappop, heappush
 
-from automotive_cosim.run.executor import J
+from automotive_cosim.run.executor import Job
+from automotive_cosim.run.queue import SimulationKey, next_simulation
 
-SimulationKey = tuple[str, int]
-SHARED_FROM = 4
-"""This many jobs must wait for a simulation before a second worker warms it up too."""
+TRIALS = 3
+"""This many jobs of a kind must have ended in a warm simulation before it is known how long the others take."""
 DRAWN_BY = 2.0
 """The mean over all scenarios weighs as much as this many jobs of one."""
+HALF = 0.5
+"""A running job counts as half a job with its time so far, since on average it is half done: the short ones end
+first and would make the mean too small. One that is overdue is expected to take half as long again."""
+STEPS = 200
+"""The rest is played through in about this many steps, however many jobs there are."""
+
+Waiting = Mapping[SimulationKey, Mapping[Hashable, int]]
 
 
 @dataclass(frozen=True, slots=True)
-class JobTurn(Generic[J]):
+class JobTurn:
     """The time that a worker spends on a job."""
 
-    job: J
+    job: Job
     is_cold: bool
     """Whether the worker had to warm up its simulation."""
     seconds: float
     """Seconds so far, or in total."""
+
+    @property
+    def scenario(self) -> str:
+        """Where it takes place."""
+        return self.job.simulation[0]
+
+
+class Pace:
+    """Is told how long each job took, and estimates how long the others will take."""
+
+    def __init__(self, untried: Mapping[Hashable, SimulationKey]) -> None:
+        """Knows no job yet.
+
+        Args:
+            untried: for each situation of which it is not known whether it arises, its simulation.
+        """
+        self._untried = dict(untried)
+        self._own: dict[Hashable, _Means] = defaultdict(_Means)
+        self._search = _Means()
+        self._cold: list[JobTurn] = []
+
+    @property
+    def timed(self) -> frozenset[Hashable]:
+        """Kinds of which enough jobs have been measured."""
+        return frozenset(kind for kind, means in self._own.items() if means.count >= TRIALS)
+
+    def took(self, turn: JobTurn, *, is_out_of_reach: bool) -> None:
+        """Takes note of a job that has ended; ``is_out_of_reach`` if its situation did not arise."""
+        if self._untried.pop(turn.job.situation, None) is not None:
+            self._search.add(turn.scenario, turn.seconds if is_out_of_reach else 0.0)
+        if is_out_of_reach:
+            return
+        if turn.is_cold:
+            self._cold.append(turn)
+        else:
+            self._own[turn.job.kind].add(turn.scenario, turn.seconds)
+
+    def left_s(
+        self, waiting: Waiting, running: Sequence[JobTurn], idle: Sequence[SimulationKey | None]
+    ) -> float | None:
+        """Wall time until everything has ended; None while too little is known of some kind of waiting job.
+
+        Args:
+            waiting: how many jobs wait, by simulation and kind.
+            running: the jobs that workers are running.
+            idle: the warm simulation of each other worker, including those yet to be started.
+        """
+        if not self._knows(waiting, {*idle, *(turn.job.simulation for turn in running)}):
+            return None
+        expected = _Expected(self._own, self._cold, running)
+        untried = Counter(self._untried.values())
+        work = {
+            simulation: _Work(
+                sum(kinds.values()),
+                sum(count * expected.own_s(kind, simulation[0]) for kind, count in kinds.items())
+                + untried[simulation] * self._search.of(simulation[0]),
+                expected.warm_up_s(simulation[0]),
+            )
+            for simulation, kinds in waiting.items()
+        }
+        places = [_Place(expected.rest_s(turn), turn.job.simulation, is_busy=True) for turn in running]
+        places += [_Place(0.0, simulation) for simulation in idle]
+        return _played_s(work, places)
+
+    def _knows(self, waiting: Waiting, held: Container[SimulationKey | None]) -> bool:
+        """Whether there is a basis. A job alone in its simulation is cold, so only the sum of its times matters."""
+        needed: Counter[Hashable] = Counter()
+        for simulation, kinds in waiting.items():
+            if simulation in held or sum(kinds.values()) > 1:
+                needed.update(kinds)
+        known = all(self._own[kind].count >= min(TRIALS, count) for kind, count in needed.items())
+        return known and (bool(self._cold) or any(means.count for means in self._own.values()))
 
 
 @dataclass(slots=True)
 class _Means:
     """Means by scenario, each drawn towards the mean of all."""
 
-    scenarios: dict[str, tuple[float, int]] = field(default_factory=dict)
+    sums: dict[str, tuple[float, float]] = field(default_factory=dict)
+    """By scenario, seconds and number of jobs."""
     total_s: float = 0.0
-    count: int = 0
+    count: float = 0.0
 
-    def add(self, scenario: str, seconds: float) -> None:
-        total_s, count = self.scenarios.get(scenario, (0.0, 0))
-        self.scenarios[scenario] = total_s + seconds, count + 1
+    def add(self, scenario: str, seconds: float, count: float = 1.0) -> None:
+        sum_s, known = self.sums.get(scenario, (0.0, 0.0))
+        self.sums[scenario] = sum_s + seconds, known + count
         self.total_s += seconds
-        self.count += 1
+        self.count += count
 
     def of(self, scenario: str) -> float:
         """The mean; zero while nothing is known at all."""
         if not self.count:
             return 0.0
-        total_s, count = self.scenarios.get(scenario, (0.0, 0))
-        return (total_s + DRAWN_BY * self.total_s / self.count) / (count + DRAWN_BY)
+        sum_s, known = self.sums.get(scenario, (0.0, 0.0))
+        return (sum_s + DRAWN_BY * self.total_s / self.count) / (known + DRAWN_BY)
 
 
-class Pace:
-    """Is told how long each job took, and estimates how long the others will take."""
+class _Expected:
+    """How long jobs and warm-ups are expected to take."""
 
-    def __init__(self) -> None:
-        self._own: dict[Hashable, _Means] = defaultdict(_Means)
-        self._cold: list[JobTurn[Any]] = []
+    def __init__(self, own: Mapping[Hashable, _Means], cold: Sequence[JobTurn], running: Sequence[JobTurn]) -> None:
+        self._own = {kind: deepcopy(means) for kind, means in own.items() if means.count}
+        for turn in running:
+            if not turn.is_cold and turn.job.kind in self._own:
+                self._own[turn.job.kind].add(turn.scenario, turn.seconds, HALF)
+        self._warm_ups = _Means()
+        for turn in [turn for turn in cold if turn.job.kind in self._own] or cold:
+            self._warm_ups.add(turn.scenario, max(0.0, turn.seconds - self.own_s(turn.job.kind, turn.scenario)))
 
-    def took(self, turn: JobTurn[Any]) -> None:
-        """Takes note of a job that has ended, with or without an error."""
-        if turn.is_cold:
-            self._cold.append(turn)
-        else:
-            self._own[turn.job.kind].add(turn.job.simulation[0], turn.seconds)
+    def own_s(self, kind: Hashable, scenario: str) -> float:
+        """A job's time in a warm simulation; zero while nothing is known, so that all counts as warm-up."""
+        return self._own[kind].of(scenario) if kind in self._own else 0.0
 
-    def left_s(
-        self, waiting: Mapping[SimulationKey, Mapping[Hashable, int]], running: Sequence[JobTurn[Any]], workers: int
-    ) -> float | None:
-        """Wall time until everything has ended; None while nothing is known of some kind of job.
+    def warm_up_s(self, scenario: str) -> float:
+        """What a cold job takes on top."""
+        return self._warm_ups.of(scenario)
 
-        Args:
-            waiting: how many jobs wait, by simulation and kind, in the order in which they are taken.
-            running: the jobs that workers are running.
-            workers: how many there are or may be.
-        """
-        warm_ups = self._warm_ups()
-        busy = Counter(turn.job.simulation for turn in running)
-        works_s = [max(0.0, self._takes_s(turn, warm_ups) - turn.seconds) for turn in running]
-        longest_s, seats = max(works_s, default=0.0), len(running)
-        for simulation, kinds in waiting.items():
-            held, count = busy[simulation], sum(kinds.values())
-            if any(not self._own[kind].count and (held or count > 1) for kind in kinds):
-                return None
-            work_s = sum(self._own[kind].of(simulation[0]) * number for kind, number in kinds.items())
-            work_s += 0.0 if held else warm_ups.of(simulation[0])
-            free = max(0 if held else 1, count - SHARED_FROM + (1 if held else 0))
-            works_s.append(work_s)
-            longest_s = max(longest_s, work_s / min(workers, held + free))
-            seats += free
-        shared = min(workers, seats)
-        if not shared or not (self._cold or self._own):
-            return None
-        again = max(0, shared - len({*waiting, *busy}))
-        return max(longest_s, (sum(works_s) + again * warm_ups.of("")) / shared)
+    def rest_s(self, turn: JobTurn) -> float:
+        """What is left of a running job."""
+        takes_s = self.own_s(turn.job.kind, turn.scenario)
+        takes_s += self.warm_up_s(turn.scenario) if turn.is_cold else 0.0
+        return max(takes_s - turn.seconds, HALF * turn.seconds)
 
-    def _takes_s(self, turn: JobTurn[Any], warm_ups: _Means) -> float:
-        scenario = turn.job.simulation[0]
-        return self._own[turn.job.kind].of(scenario) + (warm_ups.of(scenario) if turn.is_cold else 0.0)
 
-    def _warm_ups(self) -> _Means:
-        found = _Means()
-        known = [turn for turn in self._cold if self._own[turn.job.kind].count] or self._cold
-        for turn in known:
-            scenario = turn.job.simulation[0]
-            found.add(scenario, max(0.0, turn.seconds - self._own[turn.job.kind].of(scenario)))
-        return found
+@dataclass(frozen=True, slots=True)
+class _Work:
+    """The waiting jobs of one simulation."""
+
+    count: int
+    own_s: float
+    """Of all of them together."""
+    warm_up_s: float
+
+
+@dataclass(order=True, slots=True)
+class _Place:
+    """A worker while the rest is played through."""
+
+    free_s: float
+    """From now."""
+    warm: SimulationKey | None = field(compare=False)
+    is_busy: bool = field(default=False, compare=False)
+
+
+def _played_s(work: Mapping[SimulationKey, _Work], places: list[_Place]) -> float:
+    """When the last worker ends, if everything takes as long as expected."""
+    left = {simulation: each.count for simulation, each in work.items()}
+    busy = Counter(place.warm for place in places if place.is_busy)
+    at_once = max(1, sum(left.values()) // STEPS)
+    end_s = 0.0
+    heapify(places)
+    while places:
+        place = heappop(places)
+        end_s = max(end_s, place.free_s)
+        if place.is_busy:
+            busy[place.warm] -= 1
+        simulation = next_simulation(left, place.warm, busy)
+        if simulation is None:
+            continue
+        each, count = work[simulation], min(at_once, left[simulation])
+        takes_s = each.own_s * count / each.count + (0.0 if simulation == place.warm else each.warm_up_s)
+        left[simulation] -= count
+        if not left[simulation]:
+            del left[simulation]
+        busy[simulation] += 1
+        heappush(places, _Place(place.free_s + takes_s, simulation, is_busy=True))
+    return end_s

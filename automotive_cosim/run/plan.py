@@ -66,7 +66,7 @@ class Plan:
     """Seeds; each draws its own traffic, weather and phrasing."""
     geo: Annotated[tuple[Annotated[str, OneOf(tuple(GeoInput), "geo control")], ...], MinLen(1)] = ("full",)
     """What an agent is told of where it is."""
-    modes: Annotated[tuple[Annotated[str, OneOf(tuple(Mode), "mode")], ...], MinLen(1)] = (str(Mode.PROMPTED),)
+    modes: Annotated[tuple[Annotated[str, OneOf(tuple(Mode))], ...], MinLen(1)] = (str(Mode.PROMPTED),)
     """When the agent is called: when the driver asks, or, only for safety tasks, before the situation arises."""
     repeats: Annotated[int, Ge(1)] = 1
     """Runs of each episode, for models that do not answer the same twice."""

@@ -9,6 +9,7 @@ from pathlib import Path
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import Action, ActionType, Observation
 from automotive_cosim.errors import ActionError
+from automotive_cosim.formats.files import read_text
 from automotive_cosim.interface.observe import ALL
 
 
@@ -38,13 +39,8 @@ def read_script(path: Path) -> ScriptedAgent:
     Raises:
         ActionError: the file cannot be read, has no action, or a line is malformed; it names file and line.
     """
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        why = getattr(error, "strerror", None) or "it is not UTF-8 text"
-        raise ActionError(f"cannot read the actions in {path}: {why}") from error
     actions = []
-    for number, line in enumerate(text.split("\n"), start=1):
+    for number, line in enumerate(read_text(path, ActionError).split("\n"), start=1):
         if line.strip():
             try:
                 actions.append(parse(line))

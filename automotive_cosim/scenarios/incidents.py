@@ -68,6 +68,7 @@ class Breakdown(Incident):
 
     kind: Literal["breakdown"] = "breakdown"
     edge: EdgeId
+    """Where it stands."""
     position_m: Annotated[float, Ge(0)]
     """Its front bumper, from the start of the edge."""
     lane: Annotated[int, Ge(0)] = 0
@@ -80,7 +81,9 @@ class Roadworks(Incident):
 
     kind: Literal["roadworks"] = "roadworks"
     edge: EdgeId
+    """Where they are."""
     limit_kmh: Annotated[float, Gt(0)]
+    """What is signed there."""
     closed_lanes: tuple[Annotated[int, Ge(0)], ...] = ()
     """Among the edge's lanes for cars, 0 nearest the kerb."""
 
@@ -93,6 +96,7 @@ class Jam(Incident):
     edges: Annotated[tuple[EdgeId, ...], MinLen(1)]
     """In driving order, each leading to the next; together at least as long as the queue."""
     length_m: Annotated[float, Gt(0)]
+    """Of the queue, at first."""
     hold_s: Annotated[float, Gt(0)] = 20.0
     """Average time between vehicles per lane that pass the bottleneck."""
 
@@ -103,6 +107,7 @@ class Closure(Incident):
 
     kind: Literal["closure"] = "closure"
     edge: EdgeId
+    """What is closed."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -111,10 +116,13 @@ class SchoolZone(Incident):
 
     kind: Literal["school_zone"] = "school_zone"
     edges: Annotated[tuple[EdgeId, ...], MinLen(1)]
+    """The roads beside the school."""
     limit_kmh: Annotated[float, Gt(0)]
+    """What holds between the two times."""
     opens: LocalTime
-    """``opens = 08:00:00``, TOML's local time."""
+    """Local time of the place, as in ``opens = 08:00:00``."""
     closes: LocalTime
+    """Later on the same day."""
 
     def __post_init__(self) -> None:
         Incident.__post_init__(self)
@@ -128,6 +136,7 @@ class RushHour(Incident):
 
     kind: Literal["rush_hour"] = "rush_hour"
     scale: Annotated[float, Gt(0)]
+    """Factor on the demand."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -136,10 +145,13 @@ class Tractor(Incident):
 
     kind: Literal["tractor"] = "tractor"
     from_edge: EdgeId
+    """Where it sets out."""
     to_edge: EdgeId
+    """Where it leaves the road."""
     speed_kmh: Annotated[float, Gt(0)] = 25.0
     """25 is a common speed on the plates that slow vehicles carry in Germany (StVZO section 58)."""
     length_m: Annotated[float, Gt(0)] = 9.0
+    """With its trailer."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -151,7 +163,9 @@ class Pedestrians(Incident):
 
     kind: Literal["pedestrians"] = "pedestrians"
     from_edge: EdgeId
+    """They come from its end."""
     to_edge: EdgeId
+    """They go to its start."""
     every_s: Annotated[float, Ge(1)] = 10.0
     """Time between two groups."""
     group: Annotated[int, Ge(1)] = 3
@@ -185,6 +199,7 @@ class BrakingLeader(EgoIncident):
     ahead_m: Annotated[float, Gt(0)] = 30.0
     """Gap to a car that pulls out."""
     deceleration_mps2: Annotated[float, Gt(0), Le(10)] = 6.0
+    """How hard."""
     to_kmh: Annotated[float, Ge(0)] = 0.0
     """The speed that it brakes to."""
     hold_s: Annotated[float, Ge(0)] = 4.0

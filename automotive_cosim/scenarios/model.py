@@ -47,7 +47,9 @@ class Trip:
     name: str
     """Name by which tasks and incidents refer to it."""
     from_edge: EdgeId
+    """Where it begins."""
     to_edge: EdgeId
+    """Where it ends."""
     via: tuple[EdgeId, ...] = ()
     """Edges on the way, in driving order."""
     about: str = ""
@@ -84,6 +86,7 @@ class LinkAt:
     held until the next."""
 
     at_s: float
+    """Seconds after the ego's departure."""
     best: Annotated[str, OneOf(LINKS)]
     """The best available link, of ``LINKS``; on the road, e.g. in a tunnel, it may be worse or none."""
 
@@ -115,6 +118,7 @@ class Street:
     """``[[streets]]``: a street to check in the network."""
 
     name: str
+    """As the network spells it."""
     maxspeed: tuple[str, ...] = ()
     """The limits of its signs, in OpenStreetMap's notation: ``"50"``, ``"20 mph"``, ``"none"``; ``"unposted"``
     where there is no sign. All of these, and no others."""

@@ -62,7 +62,7 @@ def test_it_may_say_its_name_and_channels(module):
         ("1 / 0\n", "ZeroDivisionError"),
         ("raise SystemExit\n", "SystemExit"),
         ("class Mine\n", "SyntaxError"),
-        (WHOLE + "    channels = ('radar',)\n", "radar.* of screenshot, elements, "),
+        (WHOLE + "    channels = ('radar',)\n", "radar.*channels are screenshot, elements, "),
         (WHOLE + "    channels = 3\n", "channels"),
     ],
 )  # fmt: skip

@@ -26,6 +26,7 @@ def test_an_agent_is_shown(cli, name):
     assert ("## How to answer" in told) == (name in PROFILES)
 
 
+@pytest.mark.sumo
 def test_the_rule_model_is_named_for_what_it_is(cli):
     told = json.loads(cli("run", "--json", *GRID, "--agent", "m3a").out)
     assert told["model"] == "rules"
@@ -53,6 +54,7 @@ def test_what_does_not_exist_is_told_in_one_line_and_leaves_nothing(cli, tmp_pat
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.sumo
 def test_an_agent_of_ones_own_is_run_from_the_working_folder(cli, tmp_path):
     (tmp_path / "my_agents.py").write_text(
         "class Mine:\n"
@@ -63,6 +65,7 @@ def test_an_agent_of_ones_own_is_run_from_the_working_folder(cli, tmp_path):
     assert (told["agent"], told["success"], told["steps"]) == ("Mine", False, 1)
 
 
+@pytest.mark.sumo
 def test_what_is_kept_can_be_shown(cli, tmp_path):
     for _ in range(2):
         cli("run", "--json", *GRID, "--memory", "kept.sqlite")
@@ -82,6 +85,7 @@ def test_a_missing_memory_is_told_and_not_made(cli, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.sumo
 def test_geo_and_switches_stand_in_the_record(cli):
     cli("run", "--json", *GRID, "--geo", "none", "--without", "reflection,screen", "--out", "out")
     written = json.loads(Path("out/episode.json").read_text(encoding="utf-8"))
@@ -91,6 +95,7 @@ def test_geo_and_switches_stand_in_the_record(cli):
     assert "reflect" not in stages
 
 
+@pytest.mark.sumo
 def test_a_person_plays_at_the_terminal(cli, monkeypatch):
     monkeypatch.setattr("sys.stdin", io.StringIO("open climate\nnonsense\ndone\n"))
     ran = cli("run", "--json", *GRID, "--agent", "human")
@@ -99,6 +104,7 @@ def test_a_person_plays_at_the_terminal(cli, monkeypatch):
     assert "'nonsense' is not an action" in ran.err
 
 
+@pytest.mark.sumo
 def test_a_person_who_leaves_interrupts(cli, monkeypatch):
     monkeypatch.setattr("sys.stdin", io.StringIO(""))
     assert cli("run", *GRID, "--agent", "human").code == 130

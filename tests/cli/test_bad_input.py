@@ -81,8 +81,7 @@ def test_a_folder_that_cannot_be_made_is_told_before_anything_runs(cli):
     [
         ("", ["lacks"]),
         ("name = ", ["not TOML"]),
-        ('nmae = "x"', ["lacks"]),
-        (b"\xff\xfe", ["not TOML"]),
+        (b"\xff\xfe", ["not UTF-8 text"]),
     ],
 )
 def test_a_broken_scenario_is_named(cli, tmp_path, content, words):
@@ -94,6 +93,17 @@ def test_a_broken_scenario_is_named(cli, tmp_path, content, words):
     assert [path.name for path in tmp_path.iterdir()] == ["mine"]
 
 
+def test_every_problem_of_a_scenario_is_a_line(cli, tmp_path):
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "scenario.toml").write_text('nmae = "x"', encoding="utf-8")
+    ran = cli("run", "--scenario", "mine")
+    assert (ran.code, ran.out) == (2, "")
+    missing, unknown = ran.err.splitlines()
+    assert missing.startswith("error: mine/scenario.toml lacks 'name', 'title',")
+    assert unknown == "error: mine/scenario.toml line 1: no field named 'nmae': did you mean 'name'?"
+
+
+@pytest.mark.sumo
 def test_a_network_without_projection_is_refused(cli, tmp_path):
     folder = tmp_path / "flat"
     shutil.copytree(load("grid").folder, folder)

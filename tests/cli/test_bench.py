@@ -12,6 +12,7 @@ KEYS = {
 }  # fmt: skip
 
 
+@pytest.mark.sumo
 @pytest.mark.slow
 def test_every_figure_is_there_and_a_fork_beats_a_reload(cli):
     ran = cli("bench", "--json", "--scenario", "grid", "--steps", "200")

@@ -22,6 +22,7 @@ def test_the_plan_is_shown_first_and_a_dry_run_ends_there(cli, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.sumo
 def test_a_run_is_told_and_the_same_command_finds_it_done(cli, tmp_path):
     (tmp_path / "plan.toml").write_text('agents = ["oracle"]\ntasks = ["hvac_fan_max"]\nscenarios = ["grid"]\n')
     first = cli("eval", "--plan", "plan.toml", "--json")
@@ -36,6 +37,7 @@ def test_a_run_is_told_and_the_same_command_finds_it_done(cli, tmp_path):
     assert len(list((tmp_path / "runs").iterdir())) == 1
 
 
+@pytest.mark.sumo
 def test_errors_are_listed_and_set_the_exit_code(cli):
     ran = cli(
         "eval",
@@ -98,6 +100,7 @@ def test_a_folder_that_cannot_be_written_is_one_line(cli):
     assert ran.err.count("\n") == 1
 
 
+@pytest.mark.sumo
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for another process")
 @pytest.mark.parametrize("in_background", [False, True], ids=["ctrl-c", "nohup, then kill"])
 def test_a_stop_says_how_to_go_on(program, tmp_path, until, session, in_background):
@@ -127,6 +130,7 @@ def test_a_stop_says_how_to_go_on(program, tmp_path, until, session, in_backgrou
     until(lambda: not session(process.pid))
 
 
+@pytest.mark.sumo
 def test_a_stored_episode_is_run_again_and_compared_step_by_step(cli, tmp_path):
     ran = json.loads(cli("eval", "--agents", "always-alert", *GRID, "--out", "e", "--json").out)
     assert ran["judged"] == 1

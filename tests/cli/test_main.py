@@ -11,7 +11,7 @@ from automotive_cosim.cli.main import app
 from automotive_cosim.errors import TriggerNotReachedError
 from automotive_cosim.tasks import CATALOGUE
 
-HEAVY = ("libsumo", "shapely", "pyproj", "PIL", "openai", "matplotlib", "jinja2", "scipy", "pandas")
+HEAVY = ("libsumo", "pydantic", "shapely", "pyproj", "PIL", "openai", "matplotlib", "jinja2", "scipy", "pandas")
 COMMANDS = (
     "run",
     "eval",
@@ -24,6 +24,7 @@ COMMANDS = (
     "scenarios",
     "tasks",
     "agents",
+    "schema",
 )
 
 
@@ -73,6 +74,7 @@ def test_a_task_is_shown_with_its_words_and_halves(cli, task):
     assert all(f"{half} half" in text for half in CATALOGUE[task].halves)
 
 
+@pytest.mark.sumo
 @pytest.mark.parametrize("task", ["hvac_fan_max", "road_over_the_line"])
 def test_a_picture_shows_what_the_expert_does(cli, tmp_path, task):
     path = tmp_path / "task.png"

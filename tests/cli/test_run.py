@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
+pytestmark = pytest.mark.sumo
+
 GRID = ("--task", "hvac_fan_max", "--scenario", "grid")
 KEYS = {
     "task", "scenario", "agent", "model", "seed", "success", "reward", "steps", "sim_seconds", "trace_sha256",

@@ -68,7 +68,7 @@ def source_texts(places: Mapping[str, int], returns: tuple[str, ...]) -> dict[st
     """Every text given to one of these functions, or returned by one of those, and its file."""
     root, found = Path(package.__file__).parent, dict[str, str]()
     roads = [root.parent / "traffic" / name for name in ("ego.py", "steering.py", "kinematics.py")]
-    for path in (*sorted(root.rglob("*.py")), root.parent / "actions.py", *roads):
+    for path in (*sorted(root.rglob("*.py")), *roads):
         for node in ast.walk(ast.parse(path.read_text("utf-8"))):
             if isinstance(node, ast.FunctionDef) and node.name in returns:
                 given = [one.value for one in ast.walk(node) if isinstance(one, ast.Return)]

@@ -7,6 +7,7 @@ from contextlib import closing
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from automotive_cosim import scenarios
 from automotive_cosim.cockpit.cockpit import Cockpit
@@ -15,6 +16,8 @@ from automotive_cosim.cosim.simulation import couple
 from automotive_cosim.geo.connectivity import ATTACH_S
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
+
+pytestmark = pytest.mark.sumo
 
 TIMELINE = {8.0: "4g", 12.0: "none", 20.0: "5g"}
 

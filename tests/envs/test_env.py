@@ -24,6 +24,7 @@ def env(simulations):
     made.close()
 
 
+@pytest.mark.sumo
 def test_check_env_has_nothing_to_say():
     env = gym.make(ID, **QUICK, render_mode="rgb_array")
     with warnings.catch_warnings():

@@ -27,6 +27,7 @@ def tap(resource_id: str) -> int:
     return FIRST_CONTROL + CONTROLS.index(resource_id)
 
 
+@pytest.mark.sumo
 def test_gymnasiums_check_has_nothing_to_say():
     env = gym.make("AutomotiveCosim/Flat-v0", tasks=TASKS, scenario="grid")
     with warnings.catch_warnings():

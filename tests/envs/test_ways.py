@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import pytest
+
 from automotive_cosim.contracts import Action, ActionType, Reroute
 from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.traffic.road_weather import condition_of
+
+pytestmark = pytest.mark.sumo
 
 WAIT = Action(ActionType.WAIT, seconds=1)
 

@@ -132,17 +132,25 @@ def test_a_branch_goes_its_own_way_from_the_same_instant(begin):
     assert episode.verdict == branch.verdict
 
 
-@pytest.mark.parametrize("acts", [(WAIT,) * 4, (WARN,) + (WAIT,) * 3, (WAIT, WAIT, WARN, WAIT)])
-def test_the_baseline_run_is_the_drive_that_nobody_touched(begin, acts):
-    """However the episode goes, and whenever it parts from it."""
-    episode, alone = begin(), begin()
+@pytest.mark.parametrize("cost_s", [1.0, 0.4, 1.7])
+@pytest.mark.parametrize("acts", [(WAIT,) * 12, (WARN,) + (WAIT,) * 3, (WAIT, WAIT, WARN, WAIT)])
+def test_the_baseline_run_is_the_drive_that_nobody_touched(begin, acts, cost_s):
+    """However the episode goes, whenever the two part and in whatever slices; some seconds after its end too."""
+    episode, alone = begin(replace(BLIND, action_cost_s=cost_s)), begin()
     undisturbed = alone.branch()
     for act in acts:
         episode.step(act)
-    expected = [undisturbed.moments[0], *undisturbed.world.advance(len(acts) * TICK_S)]
+    after_s = episode.aftermath(8.0)[-1].time_s
+    seconds = np.ceil(round(after_s - episode.moments[0].time_s, 6))
+    expected = [undisturbed.moments[0], *undisturbed.world.advance(seconds * TICK_S)]
     undisturbed.close()
-    assert [moment.driving for moment in episode.baseline_moments] == [moment.driving for moment in expected]
-    assert [moment.commands for moment in episode.baseline_moments] == [moment.commands for moment in expected]
+
+    def told(moments):
+        return [(each.driving, each.passed, each.events, each.context, each.commands) for each in moments]
+
+    during = episode.baseline_moments
+    assert told(during) == told(expected[: len(during)])
+    assert told(episode.baseline.until(after_s)) == told(expected)
 
 
 def test_a_listener_hears_of_every_second_in_order(begin):

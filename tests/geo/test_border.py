@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -40,13 +40,6 @@ class Crossing:
     def after(self) -> Moment:
         """The first moment well after it."""
         return next(moment for moment in self.moments if moment.time_s > self.crossed_s + 2)
-
-
-@pytest.fixture(scope="module")
-def simulations() -> Iterator[Simulations]:
-    shared = Simulations()
-    yield shared
-    shared.close()
 
 
 @pytest.fixture(scope="module")

@@ -12,11 +12,12 @@ from automotive_cosim import geo
 from automotive_cosim.contracts import FeedbackCode
 from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.geo import sensor
+from automotive_cosim.traffic.fork import Simulations
 
 
 @pytest.fixture(scope="module")
-def env() -> Iterator[CockpitEnv]:
-    made = CockpitEnv(task="hvac_fan_max", scenario="border", max_steps=30)
+def env(simulations: Simulations) -> Iterator[CockpitEnv]:
+    made = CockpitEnv(task="hvac_fan_max", scenario="border", max_steps=30, simulations=simulations)
     yield made
     made.close()
 

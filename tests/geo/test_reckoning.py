@@ -7,6 +7,7 @@ from contextlib import closing
 from dataclasses import dataclass, replace
 
 import numpy as np
+import pytest
 
 from automotive_cosim.contracts import DrivingState, GpsFix
 from automotive_cosim.geo.gps import Gps
@@ -15,6 +16,8 @@ from automotive_cosim.geo.reckoning import Roads, reckon
 from automotive_cosim.scenarios import load
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
+
+pytestmark = pytest.mark.sumo
 
 
 @dataclass(frozen=True, slots=True)

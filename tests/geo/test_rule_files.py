@@ -100,7 +100,12 @@ def test_a_well_formed_file_reads(tmp_path: Path) -> None:
         ('unit = "mph"\n', "", 11, "a number requires a unit"),
         ('unit = "mph"', 'unit = "mph"\nwhen = 3', 17, "when is 3; it must be a table"),
         ('unit = "mph"', 'unit = "mph"\nwhen = { visibility_below_m = inf }', 17, "must be a number of metres"),
-        ('unit = "mph"', 'unit = "mph"\nwhen = { inside = [[0, 0], [1, 1], [200, 0]] }', 17, "from -180 to 180"),
+        (
+            'unit = "mph"',
+            'unit = "mph"\nwhen = { inside = [[0, 0], [1, 1], [200, 0]] }',
+            17,
+            "it must be a longitude",
+        ),
         ('unit = "mph"', 'unit = "mph"\ncaps = "no"', 17, "caps is 'no'; it must be true"),
         ('unit = "mph"', 'unit = "mph"\nbinds = "everyone"', 17, "no road user named 'everyone'"),
         ('text = "everywhere"', 'text = ""', 14, "text is empty: it must be one line of text"),
@@ -172,7 +177,7 @@ def test_a_file_is_read_again_once_it_has_changed_and_not_before(tmp_path: Path)
         (HEAD + RULE + RULE, "stands twice"),
         (TOWN.replace('within = "ZZ"', 'within = "YY"'), "does not begin with within = 'YY'"),
         (TOWN.replace("[1, 0], ", ""), "polygon"),
-        (TOWN.replace("[1, 0], ", "[181, 0], "), "polygon[1][0] is 181; it must be a number from -180 to 180"),
+        (TOWN.replace("[1, 0], ", "[181, 0], "), "polygon[1][0] is 181; it must be a longitude from -180"),
         (TOWN.replace("[1, 0], ", "[1, 0], [0, 1], "), "edges cross"),
     ],
 )

@@ -323,6 +323,7 @@ def test_without_the_package_it_says_what_to_install(server, monkeypatch):
         make_model("local/m")
 
 
+@pytest.mark.sumo
 def test_no_key_is_in_the_record_of_an_episode(server, tmp_path):
     """The server gives the key away in every answer; the folder must not."""
     text = f'Situation: {KEY}\nPlan: {KEY}\nAction: {{"action_type": "answer", "text": "{KEY}"}}'

@@ -122,7 +122,7 @@ def quick() -> ImportOptions:
 
 @pytest.fixture(scope="session")
 def imported(
-    formats: dict[str, Path], quick: ImportOptions, tmp_path_factory: pytest.TempPathFactory
+    sumo: None, formats: dict[str, Path], quick: ImportOptions, tmp_path_factory: pytest.TempPathFactory
 ) -> tuple[Path, ImportReport]:
     """The village's scenario; not to be written to."""
     out = tmp_path_factory.mktemp("imported") / "village"

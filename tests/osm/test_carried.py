@@ -19,7 +19,7 @@ ALONG_M = 230.0
 
 
 @pytest.fixture(scope="module")
-def built(make_village: Callable[..., Any], tmp_path_factory: pytest.TempPathFactory) -> Built:
+def built(sumo: None, make_village: Callable[..., Any], tmp_path_factory: pytest.TempPathFactory) -> Built:
     folder = tmp_path_factory.mktemp("carried")
     made = make_village()
     for _, tags in made.ways:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import gzip
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from datetime import datetime, timedelta
 from pathlib import Path
 from zoneinfo import ZoneInfo
@@ -15,13 +15,6 @@ from automotive_cosim.osm.counts import ARC, FLOW, OCCUPANCY, TIME, geh, read_co
 
 PARIS = ZoneInfo("Europe/Paris")
 HEADER = f"{TIME};{ARC};Libelle;{FLOW};{OCCUPANCY}"
-REAL = (
-    Path(__file__).resolve().parents[3]
-    / "shared"
-    / "data"
-    / "paris_counts"
-    / "champs_elysees_arc4264_filtered.csv.gz"
-)
 
 
 def _file(folder: Path, lines: Sequence[str], name: str = "counts.csv") -> Path:
@@ -92,6 +85,11 @@ def test_plain_csv_is_read_also_gzipped_and_without_occupancy(tmp_path: Path) ->
         ([HEADER, "yesterday;1;Avenue;1;1"], "line 2: 'yesterday' is not a date and time"),
         ([HEADER, "2023-11-06 00:00:00+00:00;1;Avenue;many;1"], "line 2: Débit horaire is 'many'"),
         (_plain(range(2, 24)), "no count for hour 0, 1 of a working day"),
+        (
+            [HEADER, "0001-01-01 00:00:00+23:59;1;Avenue;1;1"],
+            "line 2: '0001-01-01 00:00:00+23:59' is not a date",
+        ),
+        ([*_plain(), f'3,"{"9" * 200_000}'], "field larger than field limit"),
         ([*_plain(), "24,9"], "line 26: hour '24' is not a whole number from 0 to 23"),
         ([*_plain(), "3,-1"], "line 26: vehicles_per_hour is '-1'"),
         ([*_plain(), "3,nan"], "line 26: vehicles_per_hour is 'nan'"),
@@ -132,10 +130,8 @@ def test_geh_is_that_of_the_handbook() -> None:
     assert geh(0, 50) == pytest.approx(10)
 
 
-def test_the_champs_elysees() -> None:
-    if not REAL.is_file():
-        pytest.skip(f"the counts are not at {REAL}")
-    counts = read_counts(REAL, PARIS)
+def test_the_champs_elysees(data_of_others: Callable[[str], Path]) -> None:
+    counts = read_counts(data_of_others("paris_counts/champs_elysees_arc4264_filtered.csv.gz"), PARIS)
     assert counts.flow_per_h[8] == pytest.approx(994, abs=1)
     assert counts.flow_per_h[18] == 1090
     assert counts.occupancy is not None

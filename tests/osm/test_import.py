@@ -133,6 +133,7 @@ def test_the_traffic_stays_stable_beyond_what_the_import_tried(imported: Importe
     assert run.vehicles_mean > 5
 
 
+@pytest.mark.sumo
 def test_britain_drives_on_the_left_in_miles(
     make_village: Callable[..., object], quick: ImportOptions, tmp_path: Path
 ) -> None:
@@ -147,6 +148,7 @@ def test_britain_drives_on_the_left_in_miles(
     assert all(edge.limit_mps == pytest.approx(30 / 2.236936, abs=0.01) for edge in street)
 
 
+@pytest.mark.sumo
 def test_the_country_may_be_given(formats: dict[str, Path], quick: ImportOptions, tmp_path: Path) -> None:
     report = import_map(formats[""], tmp_path / "out", replace(quick, country="jp", name="somewhere"))
     assert report.country == load(tmp_path / "out").country == "JP"
@@ -154,6 +156,7 @@ def test_the_country_may_be_given(formats: dict[str, Path], quick: ImportOptions
     assert load(tmp_path / "out").name == "somewhere"
 
 
+@pytest.mark.sumo
 def test_a_folder_is_replaced_only_if_asked_and_only_a_scenarios(
     formats: dict[str, Path], quick: ImportOptions, tmp_path: Path
 ) -> None:
@@ -174,6 +177,7 @@ def test_a_folder_is_replaced_only_if_asked_and_only_a_scenarios(
     assert sorted(path.name for path in tmp_path.iterdir()) == ["letters", "scenario"]
 
 
+@pytest.mark.sumo
 @pytest.mark.parametrize(
     "failure", [KeyboardInterrupt(), OSError(28, "No space left on device"), ImportMapError("no")]
 )
@@ -215,7 +219,7 @@ def test_a_place_that_cannot_be_written_is_refused(formats: dict[str, Path], tmp
         ImportOptions(name="../elsewhere"),
         ImportOptions(density_per_km=0.0),
         ImportOptions(density_per_km=float("nan")),
-        ImportOptions(density_per_km=1e-9),
+        pytest.param(ImportOptions(density_per_km=1e-9), marks=pytest.mark.sumo),
         ImportOptions(density_per_km=1e9),
         ImportOptions(seed=-1),
     ],
@@ -227,6 +231,7 @@ def test_an_impossible_option_is_refused(options: ImportOptions, formats: dict[s
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.sumo
 def test_a_map_without_a_drivable_road_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "dot.osm"
     file.write_text(
@@ -250,6 +255,7 @@ def test_without_eclipse_sumo_the_mend_is_named(
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.sumo
 def test_progress_names_every_stage(formats: dict[str, Path], quick: ImportOptions, tmp_path: Path) -> None:
     told: list[tuple[str, float | None]] = []
     import_map(formats[""], tmp_path / "out", quick, lambda stage, share: told.append((stage, share)))
@@ -259,15 +265,13 @@ def test_progress_names_every_stage(formats: dict[str, Path], quick: ImportOptio
     assert all(0 <= share <= 1 for share in shares)
 
 
-PARIS = Path(__file__).resolve().parents[3] / "shared" / "data" / "paris_16e_etoile" / "paris_16e_etoile.osm.xml.gz"
-
-
 @pytest.fixture(scope="module")
-def paris(tmp_path_factory: pytest.TempPathFactory) -> tuple[Scenario, ImportReport]:
-    if not PARIS.is_file():
-        pytest.skip(f"the Paris extract is not at {PARIS}")
+def paris(
+    sumo: None, data_of_others: Callable[[str], Path], tmp_path_factory: pytest.TempPathFactory
+) -> tuple[Scenario, ImportReport]:
+    extract = data_of_others("paris_16e_etoile/paris_16e_etoile.osm.xml.gz")
     out = tmp_path_factory.mktemp("paris") / "etoile"
-    report = import_map(PARIS, out, ImportOptions(stable_for_s=600))
+    report = import_map(extract, out, ImportOptions(stable_for_s=600))
     return load(out), report
 
 

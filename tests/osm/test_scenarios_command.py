@@ -10,6 +10,7 @@ from automotive_cosim.cli.scenarios import app
 from automotive_cosim.errors import ImportMapError, UnknownNameError
 
 
+@pytest.mark.sumo
 def test_import_makes_a_folder_and_prints_the_figures(
     formats: dict[str, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

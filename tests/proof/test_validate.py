@@ -85,6 +85,7 @@ def told(ran):
     return {name: value for name, value in json.loads(ran.stdout).items() if name != "seconds"}
 
 
+@pytest.mark.sumo
 @pytest.mark.slow
 def test_neither_workers_nor_a_stop_show_and_what_is_proven_is_not_proven_again(validate, tmp_path):
     whole = validate("own_one,own_two", "--seeds", "2", "--json", "--out", "whole")
@@ -109,6 +110,7 @@ def test_neither_workers_nor_a_stop_show_and_what_is_proven_is_not_proven_again(
     assert [line.split()[1] for line in again.stderr.splitlines()] == ["1/4", "2/4", "3/4", "4/4"]
 
 
+@pytest.mark.sumo
 @pytest.mark.slow
 def test_another_plan_or_a_changed_task_wants_another_folder(validate, tmp_path):
     assert validate("own_one", "--seeds", "1", "--out", "f").returncode == 0
@@ -122,6 +124,7 @@ def test_another_plan_or_a_changed_task_wants_another_folder(validate, tmp_path)
     assert len(read_rows(tmp_path / "f", Proof)) == 1
 
 
+@pytest.mark.sumo
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks at /proc")
 @pytest.mark.parametrize("how", ["kill", "ctrl-c"])
@@ -154,6 +157,7 @@ def test_however_it_is_ended_no_worker_is_left_and_the_command_goes_on(
     assert read_rows(tmp_path / "f", Proof).keys() == {"own_one-seed0", "own_waits-seed0"}
 
 
+@pytest.mark.sumo
 def test_a_task_that_breaks_the_proof_costs_that_one_alone_and_is_tried_again(validate, tmp_path):
     ran = validate("own_one,own_raises,own_dies", "--seeds", "1", "--out", "f", only="oracle,start")
     assert ran.returncode == 3
@@ -165,6 +169,7 @@ def test_a_task_that_breaks_the_proof_costs_that_one_alone_and_is_tried_again(va
     assert attempts == {"own_one": 1, "own_raises": 2, "own_dies": 2}
 
 
+@pytest.mark.sumo
 def test_a_gate_that_fails_is_told_beneath_its_task_and_sets_the_exit_code(validate):
     ran = validate("own_twice", "--seeds", "1", "--json")
     assert ran.returncode == 1

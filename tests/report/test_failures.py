@@ -141,13 +141,6 @@ def classified(task: str, half: str, moves: Sequence[Any], thought: str, simulat
     return failure_class(collector.row(EpisodeJob(setup, 0, Limits()), result), collector.trace(result))
 
 
-@pytest.fixture(scope="module")
-def simulations():
-    kept = Simulations()
-    yield kept
-    kept.close()
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("planted", PLANTED)
 def test_of_five_planted_faults_of_a_class_four_are_told(planted, simulations):

@@ -66,6 +66,7 @@ def tries(folder):
     return len((folder / "tries").read_text())
 
 
+@pytest.mark.sumo
 @pytest.mark.slow
 def test_order_and_number_of_workers_do_not_show(tmp_path, monkeypatch):
     tasks = ["hvac_fan_max", "hvac_cold_hands", "hvac_driver_seat_heater"]
@@ -85,6 +86,7 @@ def test_order_and_number_of_workers_do_not_show(tmp_path, monkeypatch):
         )
 
 
+@pytest.mark.sumo
 def test_what_is_done_is_not_run_again(tmp_path):
     first = run_plan(plan("oracle"), tmp_path / "e")
     before = (tmp_path / "e" / "episodes.jsonl").read_bytes()
@@ -93,6 +95,7 @@ def test_what_is_done_is_not_run_again(tmp_path):
     assert (tmp_path / "e" / "episodes.jsonl").read_bytes() == before
 
 
+@pytest.mark.sumo
 def test_a_worker_that_dies_again_and_again_costs_its_episode_alone(trouble):
     end = run_plan(plan("oracle", "trouble:Dies"), trouble / "e", retries=2)
     assert (end.planned, end.judged, end.successes, end.errors) == (2, 1, 1, 1)
@@ -103,6 +106,7 @@ def test_a_worker_that_dies_again_and_again_costs_its_episode_alone(trouble):
     assert (row.attempts, len(row.failed_attempts)) == (3, 3)
 
 
+@pytest.mark.sumo
 def test_an_attempt_that_fails_is_made_again_and_told(trouble):
     end = run_plan(plan("trouble:DiesOnce"), trouble / "e", retries=1)
     assert (end.judged, end.errors) == (1, 0)
@@ -111,6 +115,7 @@ def test_an_attempt_that_fails_is_made_again_and_told(trouble):
     assert "WorkerDied" in row.failed_attempts[0]
 
 
+@pytest.mark.sumo
 def test_an_agent_that_hangs_is_ended_when_its_wall_time_is_over(trouble):
     began_s = time.monotonic()
     run_plan(plan("trouble:Hangs", limits={"wall_s": 12}), trouble / "e", retries=0)
@@ -119,6 +124,7 @@ def test_an_agent_that_hangs_is_ended_when_its_wall_time_is_over(trouble):
     assert (row.error_kind, row.success) == ("WallTime", None)
 
 
+@pytest.mark.sumo
 def test_steps_simulated_time_and_tokens_are_limited_and_judged(trouble):
     run_plan(plan("trouble:Waits", limits={"steps": 3}), trouble / "a")
     run_plan(plan("trouble:Waits", limits={"sim_s": 12}), trouble / "b")
@@ -132,6 +138,7 @@ def test_steps_simulated_time_and_tokens_are_limited_and_judged(trouble):
     assert ends["b"].sim_seconds == 15.0
 
 
+@pytest.mark.sumo
 def test_a_trigger_out_of_reach_is_an_error_that_is_not_tried_again(tmp_path):
     wanted = plan("oracle", tasks=["road_speed_80_in_50"], everywhere=True)
     end = run_plan(wanted, tmp_path / "e", retries=5)
@@ -141,6 +148,7 @@ def test_a_trigger_out_of_reach_is_an_error_that_is_not_tried_again(tmp_path):
     assert run_plan(wanted, tmp_path / "e").ran == 0
 
 
+@pytest.mark.sumo
 @pytest.mark.slow
 def test_a_trigger_out_of_reach_is_sought_once_for_all_contestants(tmp_path):
     there = {"tasks": ["road_speed_80_in_50"], "everywhere": True}
@@ -153,6 +161,7 @@ def test_a_trigger_out_of_reach_is_sought_once_for_all_contestants(tmp_path):
     assert steady(tmp_path / "alone").items() <= steady(tmp_path / "both").items()
 
 
+@pytest.mark.sumo
 def test_pictures_are_kept_by_choice(tmp_path):
     wanted = plan("oracle", "always-alert")
     for choice, count in ((Pictures.NONE, 0), (Pictures.FAILURES, 1), (Pictures.ALL, 2)):
@@ -164,6 +173,7 @@ def test_pictures_are_kept_by_choice(tmp_path):
             assert len(list(folder.glob("step_*.jpg"))) == steps + 1
 
 
+@pytest.mark.sumo
 def test_a_disk_that_is_full_stops_the_run_and_the_command_goes_on(tmp_path, monkeypatch):
     (tmp_path / "e" / "traces").mkdir(parents=True)
     if os.geteuid() == 0:
@@ -180,6 +190,7 @@ def test_a_disk_that_is_full_stops_the_run_and_the_command_goes_on(tmp_path, mon
     assert run_plan(plan("oracle"), tmp_path / "e").successes == 1
 
 
+@pytest.mark.sumo
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks at /proc")
 def test_a_kill_loses_at_most_the_running_episodes(program, trouble, until, session):
@@ -256,6 +267,7 @@ class Poor:
         self.ended += 1
 
 
+@pytest.mark.sumo
 @pytest.mark.parametrize(
     ("loses", "said", "started"), [(False, "became ready in 600 s", 2), (True, "its node is gone", 7)]
 )

@@ -172,6 +172,7 @@ def test_doing_nothing_neither_harms_nor_averts(simulations):
     assert result.drive == result.untouched_drive
 
 
+@pytest.mark.sumo
 def test_stored_episodes_are_judged_again_by_the_present_checks(tmp_path, monkeypatch):
     plan = make_plan({"agents": ["oracle", "no-op"], "tasks": ["hvac_fan_max"], "scenarios": ["grid"]})
     run_plan(plan, tmp_path / "e")

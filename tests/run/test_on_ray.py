@@ -24,6 +24,7 @@ on_ray = pytest.importorskip("automotive_cosim.run.on_ray")  # before Ray, whose
 OnRay = on_ray.OnRay
 
 pytestmark = [
+    pytest.mark.sumo,
     pytest.mark.slow,
     pytest.mark.skipif(not Path("/proc").is_dir(), reason="Ray for Linux; looks at /proc"),
 ]

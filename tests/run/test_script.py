@@ -58,10 +58,15 @@ def test_a_file_without_actions_is_refused(tmp_path, content):
         read_script(path)
 
 
-@pytest.mark.parametrize("name", ["missing.jsonl", "."])
+@pytest.mark.parametrize("name", ["missing.jsonl", ".", "/dev/zero"])
 def test_what_cannot_be_read_is_refused(tmp_path, name):
     with pytest.raises(ActionError, match="cannot read"):
         read_script(tmp_path / name)
+
+
+def test_a_file_longer_than_anybody_writes_is_refused(tmp_path):
+    with pytest.raises(ActionError, match="larger than 1 MB"):
+        read_script(_write(tmp_path, "\n" * (2**20 + 1)))
 
 
 @given(st.text(max_size=60))

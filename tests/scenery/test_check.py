@@ -31,7 +31,7 @@ AVENUE = GRID.trip("avenue")
 
 
 @pytest.fixture(scope="module")
-def proof() -> ScenarioProof:
+def proof(sumo: None) -> ScenarioProof:
     return check(GRID, quick=True)
 
 
@@ -49,6 +49,7 @@ def test_every_shipped_scenario_names_its_streets() -> None:
         assert len(scenarios.load(name).streets) >= 3, name
 
 
+@pytest.mark.sumo
 @pytest.mark.parametrize(
     ("street", "said"),
     [
@@ -65,16 +66,19 @@ def test_a_street_that_is_otherwise_fails(street: Street, said: str) -> None:
     assert len(failing) == 1
 
 
+@pytest.mark.sumo
 def test_an_edge_with_another_limit_than_declared_is_named() -> None:
     mixed = check(replace(scenarios.load("new_york"), streets=(Street("Madison Avenue", ("25 mph",)),)), quick=True)
     assert "has another limit than 25 mph" in _failing(mixed)["street Madison Avenue"]
 
 
+@pytest.mark.sumo
 def test_a_sign_that_is_none_is_the_authors_error() -> None:
     with pytest.raises(ScenarioError, match="'fifty' is not a maxspeed"):
         check(replace(_with_trips(AVENUE), streets=(Street("Avenue Centrale", ("fifty",)),)), quick=True)
 
 
+@pytest.mark.sumo
 @pytest.mark.parametrize("trip", [Trip("lost", "cwc0", "nowhere"), Trip("lost", "nowhere", "cwc0")])
 def test_a_trip_that_cannot_be_driven_fails_alone(trip: Trip) -> None:
     failing = _failing(check(_with_trips(AVENUE, trip), quick=True))
@@ -82,6 +86,7 @@ def test_a_trip_that_cannot_be_driven_fails_alone(trip: Trip) -> None:
     assert failing == {}
 
 
+@pytest.mark.sumo
 def test_a_trip_that_is_blocked_for_good_does_not_arrive(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("automotive_cosim.scenery.check.LONGEST_DRIVE_S", 240.0)
     blocks = tuple(Breakdown(edge="c2c3", lane=lane, position_m=150.0) for lane in (0, 1))
@@ -90,6 +95,7 @@ def test_a_trip_that_is_blocked_for_good_does_not_arrive(monkeypatch: pytest.Mon
     assert "Avenue Centrale" in failing["trip avenue"]
 
 
+@pytest.mark.sumo
 @pytest.mark.parametrize(
     ("incident", "is_met"),
     [
@@ -105,11 +111,13 @@ def test_a_situation_that_the_ego_never_meets_fails(incident: Incident, is_met: 
     assert ({f"situation {incident.kind}"} == set(_failing(proof))) is not is_met
 
 
+@pytest.mark.sumo
 def test_a_situation_on_no_road_does_not_load() -> None:
     failing = _failing(check(replace(GRID, incidents=(Breakdown(edge="x", position_m=9.0),)), quick=True))
     assert "no edge 'x'" in failing["loads"]
 
 
+@pytest.mark.sumo
 @pytest.mark.parametrize(("field", "value"), [("country", "DE"), ("start", None)])
 def test_a_country_or_clock_that_is_not_the_places_fails(field: str, value: object) -> None:
     from zoneinfo import ZoneInfo
@@ -126,6 +134,7 @@ def test_a_network_that_is_broken_does_not_load(tmp_path: Path) -> None:
     assert "not a complete SUMO network" in failing["loads"]
 
 
+@pytest.mark.sumo
 def test_traffic_that_locks_up_fails(monkeypatch: pytest.MonkeyPatch) -> None:
     seen: dict[str, float] = {}
     flow = stability.Stability(1.0, 0, 1.0, 3600.0, 0.9, 0.5, 80.0, 99, 5, 7, 0, 0, 0.0)
@@ -141,6 +150,7 @@ def test_traffic_that_locks_up_fails(monkeypatch: pytest.MonkeyPatch) -> None:
     assert seen["step"] == GRID.sumo.step_length_s
 
 
+@pytest.mark.sumo
 def test_progress_is_told() -> None:
     told: list[tuple[str, float | None]] = []
     check(_with_trips(AVENUE), quick=True, tell=lambda what, share: told.append((what, share)))
@@ -149,6 +159,7 @@ def test_progress_is_told() -> None:
     assert told[-1] == ("driving the trip avenue", None)
 
 
+@pytest.mark.sumo
 @pytest.mark.slow
 @pytest.mark.parametrize("name", scenarios.shipped())
 def test_every_shipped_scenario_holds(name: str) -> None:
@@ -156,6 +167,7 @@ def test_every_shipped_scenario_holds(name: str) -> None:
     assert _failing(check(open_scenario(name), quick=True)) == {}
 
 
+@pytest.mark.sumo
 @pytest.mark.slow
 def test_the_hour_of_a_shipped_scenario_holds() -> None:
     assert _failing(check(open_scenario("grid"))) == {}

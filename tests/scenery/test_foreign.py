@@ -24,11 +24,10 @@ from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.ways import way_through
 
 GRID = scenarios.load("grid").folder
-DATA = Path(__file__).resolve().parents[3] / "shared" / "data"
-SHARED = {
-    "ingolstadt1": DATA / "ingolstadt" / "ingolstadt1" / "ingolstadt1.sumocfg",
-    "ingolstadt7": DATA / "ingolstadt" / "ingolstadt7" / "ingolstadt7.sumocfg",
-    "bologna": DATA / "bologna" / "acosta" / "run.sumocfg",
+OTHERS = {
+    "ingolstadt1": "ingolstadt/ingolstadt1/ingolstadt1.sumocfg",
+    "ingolstadt7": "ingolstadt/ingolstadt7/ingolstadt7.sumocfg",
+    "bologna": "bologna/acosta/run.sumocfg",
 }
 
 OUTPUTS = '<output><summary-output value="summary.xml"/><fcd-output value="fcd.xml"/></output>'
@@ -81,6 +80,7 @@ def test_a_configuration_is_read_for_what_it_says(foreign: Path) -> None:
     assert scenario.notes == ()
 
 
+@pytest.mark.sumo
 def test_it_runs_from_its_own_begin_and_leaves_its_folder_alone(foreign: Path) -> None:
     before = _listing(foreign.parent)
     scenario = open_scenario(foreign)
@@ -97,6 +97,7 @@ def test_a_folder_with_one_configuration_opens_as_that(foreign: Path) -> None:
         open_scenario(foreign.parent)
 
 
+@pytest.mark.sumo
 @pytest.mark.parametrize("name", ["grid", "paris_centre"])
 def test_a_bare_network_runs_with_light_traffic_and_says_so(name: str) -> None:
     net = next(scenarios.load(name).folder.glob("*.net.xml*"))
@@ -254,6 +255,7 @@ def test_it_can_be_placed(foreign: Path) -> None:
     assert (scenario.has_place, scenario.country, scenario.notes) == (True, "IT", ())
 
 
+@pytest.mark.sumo
 def test_a_scenarios_folder_without_projection_is_refused_unless_gps_is_asked_to_be_absent(tmp_path: Path) -> None:
     folder = tmp_path / "flat"
     shutil.copytree(GRID, folder)
@@ -272,15 +274,13 @@ def test_a_scenarios_folder_without_projection_is_refused_unless_gps_is_asked_to
         env.close()
 
 
-# --- the networks beside the project ----------------------------------------------------------------------
+# --- the networks of others ----------------------------------------------------------------------
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", SHARED)
-def test_real_scenarios_run_with_their_own_demand(name: str, simulations) -> None:
-    path = SHARED[name]
-    if not path.is_file():
-        pytest.skip(f"{path} is not here")
+@pytest.mark.parametrize("name", OTHERS)
+def test_real_scenarios_run_with_their_own_demand(name: str, simulations, data_of_others) -> None:
+    path = data_of_others(OTHERS[name])
     before = _listing(path.parent)
     scenario = open_scenario(path)
     env = CockpitEnv("hvac_fan_max", scenario=str(path), simulations=simulations)

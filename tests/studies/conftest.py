@@ -86,7 +86,7 @@ Draw = Callable[..., Path]
 
 
 @pytest.fixture(scope="session")
-def two_ways(tmp_path_factory: pytest.TempPathFactory) -> Draw:
+def two_ways(sumo: None, tmp_path_factory: pytest.TempPathFactory) -> Draw:
     """Draws the network in a new folder, with other demand or more in its ``scenario.toml`` if wanted.
 
     Edges meet in points: junctions have no length, so that a way is as long as its edges.

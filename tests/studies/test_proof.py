@@ -21,6 +21,8 @@ from automotive_cosim.traffic.fork import Forked, RemoteTraffic
 
 from .conftest import EDGES, LORRY_EVERY_S, SLOW_MPS, SPEED_MPS
 
+pytestmark = pytest.mark.sumo
+
 STEP_S = 0.1
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import xml.etree.ElementTree as ET
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -17,7 +17,6 @@ from automotive_cosim import scenarios
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.sumo_scenarios import build
 from automotive_cosim.traffic import sumo_programs
-from automotive_cosim.traffic.fork import Simulations
 
 WARM_S, END_S = 900, 4500
 """Stability is asked of the hour after a quarter of an hour."""
@@ -48,7 +47,7 @@ def run_sumo(scenario: Scenario, seed: int, *options: str) -> str:
 
 
 @pytest.fixture(scope="session")
-def complaints() -> Callable[..., str]:
+def complaints(sumo: None) -> Callable[..., str]:
     return run_sumo
 
 
@@ -89,7 +88,7 @@ def lonlat(net: Callable[[str], Any]) -> Callable[[str, str], tuple[float, float
 
 
 @pytest.fixture(scope="session")
-def hour(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Hour]:
+def hour(sumo: None, tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Hour]:
     @cache
     def of(name: str) -> Hour:
         folder = tmp_path_factory.mktemp(name)
@@ -120,7 +119,7 @@ def _read(summary: Path, statistic: Path, edges: Path) -> Hour:
 
 
 @pytest.fixture(scope="session")
-def held_s(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., float]:
+def held_s(sumo: None, tmp_path_factory: pytest.TempPathFactory) -> Callable[..., float]:
     """Longest unbroken time (s) in which a driver of that speed factor, on that trip and in live traffic, is
     faster than ``speed_kmh`` where ``limit_kmh`` is posted, in the first ``within_s`` of the drive."""
 
@@ -171,7 +170,7 @@ RIDE_WITHIN_S = 1500
 
 
 @pytest.fixture(scope="session")
-def rides(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], dict[str, Ride]]:
+def rides(sumo: None, tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], dict[str, Ride]]:
     """Every trip of a scenario by its name, driven in live traffic at the limit or 130 km/h, all in one run."""
 
     @cache
@@ -211,11 +210,3 @@ def lane_limits_kmh(name: str) -> dict[str, float]:
     """Limits by lane id, junctions left out."""
     root = ET.fromstring(build.shipped_net(name))
     return {lane.get("id", ""): float(lane.get("speed", 0)) * 3.6 for lane in root.iterfind("edge[@from]/lane")}
-
-
-@pytest.fixture(scope="module")
-def simulations() -> Iterator[Simulations]:
-    """Warm traffic, shared by a file's tests."""
-    shared = Simulations()
-    yield shared
-    shared.close()

@@ -102,6 +102,7 @@ def _levels_differ(a: Any, b: Any) -> bool:
     return a_layer != b_layer or any(e.getParam("tunnel") == "yes" or e.getName().startswith(low) for e in (a, b))
 
 
+@pytest.mark.sumo
 @pytest.mark.parametrize("name", build.buildable())
 def test_the_shipped_net_is_what_its_plain_xml_builds(name: str) -> None:
     built = build.compile_net(name)
@@ -121,6 +122,7 @@ def test_an_unknown_scenario_is_refused_with_the_nearest_name() -> None:
         build.compile_net("paris_center")
 
 
+@pytest.mark.sumo
 def test_what_netconvert_refuses_comes_back_as_one_line(
     tmp_path: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -52,7 +52,7 @@ def sydney() -> Network:
 
 
 @pytest.fixture(scope="module")
-def forked() -> Iterator[Forked]:
+def forked(sumo: None) -> Iterator[Forked]:
     simulation = Forked(scenarios.load("sydney"), seed=1)
     yield simulation
     simulation.close()
@@ -150,6 +150,7 @@ def test_in_the_dark_others_come_within_the_distance_of_high_beam_and_leave_it(f
     assert min(sum(oncoming), sum(leader), sum(alone)) * 0.1 > 20
 
 
+@pytest.mark.sumo
 def test_the_drive_that_arrives_as_congestion_is_sampled_ends_as_an_arrival() -> None:
     """With this seed the ego leaves the network in the very step in which the network's speeds are sampled."""
     scenario = scenarios.load("sydney")

@@ -44,7 +44,7 @@ def tokyo() -> Network:
 
 
 @pytest.fixture(scope="module")
-def forked() -> Iterator[Forked]:
+def forked(sumo: None) -> Iterator[Forked]:
     simulation = Forked(scenarios.load("tokyo"), seed=1)
     yield simulation
     simulation.close()

@@ -22,7 +22,7 @@ def grid() -> Scenario:
 
 
 @pytest.fixture(scope="module")
-def forked(grid: Scenario) -> Iterator[Forked]:
+def forked(sumo: None, grid: Scenario) -> Iterator[Forked]:
     simulation = Forked(grid, seed=1)
     yield simulation
     simulation.close()
@@ -48,7 +48,7 @@ def variant(grid: Scenario, tmp_path: Path) -> Callable[[Edit], Scenario]:
 
 
 @pytest.fixture(scope="session")
-def walkable() -> Edit:
+def walkable(sumo: None) -> Edit:
     def build(folder: Path) -> None:
         """Gives the grid sidewalks, and zebra crossings over the avenue in its middle."""
         zebras = "".join(

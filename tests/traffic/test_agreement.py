@@ -15,6 +15,8 @@ from automotive_cosim.traffic.base import EgoPlan, Event, Simulation, Traffic
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.in_process import InProcess
 
+pytestmark = pytest.mark.sumo
+
 Edit = Callable[[Path], None]
 
 Record = tuple[list[DrivingState], list[Event], list[object]]

@@ -19,6 +19,8 @@ from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.network import read_network
 from automotive_cosim.traffic.scripted import Scripted, Stretch
 
+pytestmark = pytest.mark.sumo
+
 Variant = Callable[[Callable[[Path], None]], Scenario]
 
 

@@ -27,7 +27,7 @@ AMBULANCE = '\n[[incidents]]\nkind = "emergency"\nat_m = 260.0\nbehind_m = 200.0
 
 
 @pytest.fixture(scope="module")
-def quiet(grid: Scenario, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Forked]:
+def quiet(sumo: None, grid: Scenario, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Forked]:
     """The grid with an ambulance behind the ego and nobody else."""
     folder = tmp_path_factory.mktemp("quiet") / "grid"
     shutil.copytree(grid.folder, folder)
@@ -94,6 +94,7 @@ def test_moving_over_leaves_the_kerb_or_slows_down(quiet: Forked, hurried: EgoPl
     traffic.close()
 
 
+@pytest.mark.sumo
 @pytest.mark.parametrize(("lane", "side"), [(0, -1), (1, 1)])
 def test_a_corridor_opens_between_the_lanes(variant: Variant, hurried: EgoPlan, lane: int, side: int) -> None:
     """With sublanes the car goes to the outer edge of its lane, and back to the middle afterwards."""

@@ -21,6 +21,8 @@ from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked, Simulations
 from automotive_cosim.traffic.in_process import InProcess
 
+pytestmark = pytest.mark.sumo
+
 Variant = Callable[[Callable[[Path], None]], Scenario]
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="looks at processes through /proc")

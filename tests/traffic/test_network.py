@@ -19,8 +19,6 @@ from automotive_cosim.traffic.congestion import MEMORY_S, SAMPLE_PERIOD_S, Conge
 from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.network import Network, read_network
 
-DATA = Path(__file__).resolve().parents[3] / "shared" / "data"
-
 EDGE = '<edge id="{id}" from="{a}" to="{b}" {more}>{lanes}{params}</edge>'
 LANE = '<lane id="{id}_{n}" index="{n}" speed="{speed}" length="100" shape="0,0 100,0"{more}/>'
 
@@ -117,6 +115,7 @@ def test_a_file_that_is_no_network_is_refused(tmp_path: Path, text: str) -> None
         read_network(packed)
 
 
+@pytest.mark.sumo
 def test_lengths_are_sumos(grid: Scenario, hurried: EgoPlan) -> None:
     import libsumo
 
@@ -132,10 +131,9 @@ def test_lengths_are_sumos(grid: Scenario, hurried: EgoPlan) -> None:
         simulation.close()
 
 
-def test_networks_of_others_are_read() -> None:
-    paths = sorted(DATA.rglob("*.net.xml"))
-    if not paths:
-        pytest.skip(f"no networks of others in {DATA}")
+def test_networks_of_others_are_read(data_of_others: Callable[[str], Path]) -> None:
+    paths = sorted(data_of_others("").rglob("*.net.xml"))
+    assert paths
     for path in paths:
         network = read_network(path)
         assert (network.map.projection is None) == ("acosta" in path.name), path.name
@@ -256,6 +254,7 @@ def test_exits_of_a_motorway(town: Network) -> None:
         assert route.ahead(4, route.position_m(4, 0.0), None).exit_distance_m is None
 
 
+@pytest.mark.sumo
 def test_the_shipped_network_is_what_its_sources_make(grid: Scenario, town: Network, tmp_path: Path) -> None:
     pytest.importorskip("sumo", reason="needs eclipse-sumo")
     from automotive_cosim.traffic import sumo_programs

@@ -133,7 +133,7 @@ def test_of_several_the_last_written_holds() -> None:
 
 
 @pytest.fixture
-def school(variant: Variant) -> Iterator[Forked]:
+def school(sumo: None, variant: Variant) -> Iterator[Forked]:
     """The grid with a school zone on the middle of its avenue."""
 
     def edit(folder: Path) -> None:

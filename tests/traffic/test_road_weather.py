@@ -89,6 +89,7 @@ def hits(simulation: InProcess, plan: EgoPlan, condition: RoadCondition, brakes_
     return traffic.advance(30.0).states[-1].end is EgoEnd.COLLIDED
 
 
+@pytest.mark.sumo
 @pytest.mark.parametrize("friction", [0.2, 0.5, 1.0])
 def test_stopping_distances_are_those_of_physics(empty: Scenario, friction: float) -> None:
     """Within 15 % of v^2 / (2 mu g): from a little more the ego stops, from a little less it cannot."""
@@ -149,6 +150,7 @@ def test_a_scripted_road_is_slippery_too() -> None:
 # --- the others -------------------------------------------------------------------------------------------
 
 
+@pytest.mark.sumo
 def test_the_others_drive_by_the_weather_and_back(variant: Variant, hurried: EgoPlan) -> None:
     import libsumo
 
@@ -191,6 +193,7 @@ def test_in_process_and_forked_alike(grid: Scenario, forked: Forked, hurried: Eg
         assert own.advance(60.0) == expected
 
 
+@pytest.mark.sumo
 def test_a_scenario_brings_its_weather(variant: Variant, hurried: EgoPlan) -> None:
     """Its warm traffic has met it already; a plan's own weather takes its place."""
 

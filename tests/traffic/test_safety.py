@@ -43,6 +43,7 @@ def crossing_traffic(folder: Path) -> None:
         </routes>""")
 
 
+@pytest.mark.sumo
 def test_crossing_times_are_those_of_the_drive(variant: Variant, hurried: EgoPlan) -> None:
     """Each PET that is told equals the one found by looking at SUMO on every step."""
     import libsumo

@@ -39,7 +39,7 @@ class Counted:
         return Counted(self._traffic.branch(), self._made)
 
 
-@pytest.fixture(params=["scripted", "forked"])
+@pytest.fixture(params=["scripted", pytest.param("forked", marks=pytest.mark.sumo)])
 def depart(request: pytest.FixtureRequest) -> Depart:
     if request.param == "scripted":
         simulation = Scripted(ROAD, step_length_s=STEP_S)

@@ -81,6 +81,7 @@ def edges_of(states: tuple[DrivingState, ...]) -> list[str]:
 # --- on the road ------------------------------------------------------------------------------------------
 
 
+@pytest.mark.sumo
 def test_a_breakdown_blocks_its_lane(staged: Staged, average: EgoPlan) -> None:
     """On a street of one lane the ego waits behind it until it is gone."""
     plan = replace(average, trip=replace(average.trip, from_edge="sws0", to_edge="s4se"))
@@ -98,6 +99,7 @@ def test_a_breakdown_blocks_its_lane(staged: Staged, average: EgoPlan) -> None:
     assert drive.states[-1].end is EgoEnd.ARRIVED
 
 
+@pytest.mark.sumo
 def test_roadworks_lower_the_sign_and_close_a_lane(staged: Staged, average: EgoPlan, in_sumo: InSumo) -> None:
     works = staged('kind = "roadworks"\nedge = "c2c3"\nlimit_kmh = 30\nclosed_lanes = [0]\nfrom_s = -30.0')
     traffic = in_sumo(works, average)
@@ -117,6 +119,7 @@ def test_roadworks_lower_the_sign_and_close_a_lane(staged: Staged, average: EgoP
     assert not others
 
 
+@pytest.mark.sumo
 def test_a_jam_stands_beyond_a_bend(staged: Staged, average: EgoPlan) -> None:
     """Its tail is in the street that the ego turns into; the queue moves up, and the ego gets through."""
     jam = staged(
@@ -138,6 +141,7 @@ def test_a_jam_stands_beyond_a_bend(staged: Staged, average: EgoPlan) -> None:
     assert not [event for event in drive.events if event.kind == "teleport"]
 
 
+@pytest.mark.sumo
 def test_a_closed_road_is_gone_round(staged: Staged, average: EgoPlan, in_sumo: InSumo) -> None:
     traffic = in_sumo(staged('kind = "closure"\nedge = "c2c3"\nfrom_s = 10.0\nto_s = 500.0'), average)
     import libsumo
@@ -157,6 +161,7 @@ def test_a_closed_road_is_gone_round(staged: Staged, average: EgoPlan, in_sumo: 
     assert not inside
 
 
+@pytest.mark.sumo
 def test_a_school_zone_keeps_school_hours(staged: Staged, average: EgoPlan) -> None:
     zone = staged('kind = "school_zone"\nedges = ["c1c2"]\nlimit_kmh = 20\nopens = 08:00:00\ncloses = 09:00:00')
     limits = {}
@@ -175,6 +180,7 @@ def test_a_school_zone_keeps_school_hours(staged: Staged, average: EgoPlan) -> N
     assert tuesday.weekday() < 5
 
 
+@pytest.mark.sumo
 def test_the_rush_hour_scales_the_demand(staged: Staged, grid: Scenario, average: EgoPlan) -> None:
     rush = staged('kind = "rush_hour"\nscale = 3.0\nfrom_s = -60.0\nto_s = 60.0')
     counts = []
@@ -186,6 +192,7 @@ def test_the_rush_hour_scales_the_demand(staged: Staged, grid: Scenario, average
     assert counts[0][1] < counts[0][0], "it is over"
 
 
+@pytest.mark.sumo
 def test_a_tractor_holds_everybody_up(staged: Staged, average: EgoPlan) -> None:
     tractor = 'kind = "tractor"\nfrom_edge = "n0n1"\nto_edge = "n4ne"\nspeed_kmh = 12\ntrip = "tunnel"'
     scenario = staged(tractor, empty=True)
@@ -206,6 +213,7 @@ def test_a_tractor_holds_everybody_up(staged: Staged, average: EgoPlan) -> None:
 # --- around the ego ---------------------------------------------------------------------------------------
 
 
+@pytest.mark.sumo
 def test_the_leader_brakes(staged: Staged, average: EgoPlan) -> None:
     braking = staged('kind = "braking_leader"\nat_m = 400.0\ndeceleration_mps2 = 6.0\nhold_s = 3.0', empty=True)
     drive = driven(braking, replace(average, trip=replace(average.trip, from_edge="sws0", to_edge="s4se")))
@@ -229,6 +237,7 @@ def test_the_leader_brakes(staged: Staged, average: EgoPlan) -> None:
     assert drive.states[-1].end is EgoEnd.ARRIVED
 
 
+@pytest.mark.sumo
 def test_an_ambulance_comes_from_behind(staged: Staged, average: EgoPlan) -> None:
     ambulance = staged('kind = "emergency"\nat_m = 300.0\nbehind_m = 200.0', empty=True)
     drive = driven(ambulance, replace(average, driver="calm"))
@@ -256,6 +265,7 @@ EVERYTHING = (
 )
 
 
+@pytest.mark.sumo
 def test_all_at_once_in_process_and_forked_alike(staged: Staged, average: EgoPlan, in_sumo: InSumo) -> None:
     scenario = staged(*EVERYTHING)
     with closing(Forked(scenario, seed=1)) as simulation, closing(simulation.depart(average)) as traffic:
@@ -270,6 +280,7 @@ def test_all_at_once_in_process_and_forked_alike(staged: Staged, average: EgoPla
     assert expected.states[-1].ahead.incidents
 
 
+@pytest.mark.sumo
 def test_live_traffic_tells_of_what_lasts_and_can_be_known(staged: Staged, average: EgoPlan) -> None:
     """Within a sample of the traffic, until it is over; of a jam as soon as its edges are that slow."""
     zone = 'kind = "school_zone"\nedges = ["c2c3"]\nlimit_kmh = 20\nopens = 08:00:00\ncloses = 09:00:00'
@@ -297,6 +308,7 @@ def test_live_traffic_tells_of_what_lasts_and_can_be_known(staged: Staged, avera
     assert not [incident for incident in states[1].ahead.incidents if incident.kind is IncidentKind.JAM]
 
 
+@pytest.mark.sumo
 def test_an_incident_of_another_trip_is_not_told_of(staged: Staged, grid: Scenario, average: EgoPlan) -> None:
     other = next(trip.name for trip in grid.ego.trips if trip.name != average.trip.name)
     works = 'kind = "roadworks"\nedge = "s2s3"\nlimit_kmh = 30'
@@ -328,6 +340,7 @@ def test_what_makes_no_sense_is_refused_when_read(staged: Staged, incident: str,
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.sumo
 @pytest.mark.parametrize(
     ("incident", "said"),
     [

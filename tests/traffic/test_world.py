@@ -32,6 +32,8 @@ from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.sumo import load_library
 
+pytestmark = pytest.mark.sumo
+
 Variant = Callable[[Callable[[Path], None]], Scenario]
 
 
