@@ -33,7 +33,7 @@ def posted(
     second: tuple[Start, Trigger, str, float],
     difference: str,
 ) -> Task:
-    """A pair with a different posted limit in each half, which the driver wants to know. The texts are the signs."""
+    """A pair with another posted limit in each half, which the driver wants to know. The texts are the signs."""
     return in_company(
         Task(
             task_id,
