@@ -1,4 +1,4 @@
-"""Apps, the safety pairs: what the smaller apps can do about the way ahead and the weather."""
+"""Apps, safety pairs: what the smaller apps can do about the road ahead and the weather."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from automotive_cosim.tasks.forms import decline
 
 STAYS = {"half an hour": 30, "two hours": 120, "four hours": 240}
 LOW_KPA = 200.0
-"""A fifth below the 250 kPa of a cold tyre: where a monitor has to warn (UN R141, 5.2)."""
+"""A fifth below the 250 kPa of a cold tyre, where a monitor must warn (UN R141, 5.2)."""
 FRONT_LEFT = {TYRE.FRONT_LEFT.path: param("kpa")}
-"""Somewhat soft already, as it would read at 20 degrees."""
+"""A slightly soft tyre, as measured at 20 degrees."""
 FROST = Weather(-16.0, 85.0, 0.0, 3, 90.0, 9000.0, 6.0)
 MILD = Weather(14.0, 70.0, 0.0, 3, 90.0, 9000.0, 6.0)
 NOW_OR_NEVER = Deadline(

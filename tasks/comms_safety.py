@@ -1,4 +1,4 @@
-"""Comms, the safety pairs: whether to call, to answer or to write is up to road and sky."""
+"""Comms, safety pairs: road and sky decide whether to call, to answer or to write."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from automotive_cosim.tasking.triggers import All, DelayAbove, Driving, Not, Sig
 from automotive_cosim.tasks.forms import decline
 
 LATE_S = 60.0
-"""The delay from which the driver wants it told."""
+"""The delay from which the driver wants others to be told."""
 BEFORE_THE_TIME = Deadline(30.0, "who waits has to hear it before they set out, and the car may stand any moment")
 WHILE_IT_RINGS = Deadline(20.0, "a call rings for 30 s at most (ETSI TS 122 082); callers give up sooner")
 CALLED = tuple(Arrival("call", at_s) for at_s in (20.0, 90.0, 160.0))
-"""Again and again, so that one of them rings while the car moves."""
+"""Repeated calls, so that one of them rings while the car moves."""
 FOG = Weather(9.0, 99.0, 0.0, 45, 100.0, 60.0, 4.0)
 FAIR = Weather(9.0, 75.0, 0.0, 2, 60.0, 15000.0, 8.0)
 
@@ -55,7 +55,7 @@ LATE = Task(
 
 
 def _ringing(from_m: float, to_m: float) -> Trigger:
-    """A call rings while one can see so far."""
+    """A call rings at this visibility."""
     return Trigger(
         All((Driving(), Not(SignalHas(CALL.RINGING, "")), VisibilityBetween(from_m, to_m))),
         for_s=2.0,

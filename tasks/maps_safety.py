@@ -1,4 +1,4 @@
-"""Maps: the way ahead as traffic, tunnels, signs and law make it; where place or road decides what is right."""
+"""Maps, safety pairs: traffic, tunnels, signs and law on the road ahead; place or road decides what is right."""
 
 from __future__ import annotations
 
@@ -94,13 +94,13 @@ def told(start: Start, trigger: Trigger, kind: AlertKind, deadline: Deadline, ba
 def in_units(
     start: Start, units: Mapping[Signal[str], str], tile: str, rule: str, trigger: Trigger = ON_THE_WAY
 ) -> Half:
-    """A half in which the display's units have to be those of the place; one of them is not yet."""
+    """A half in which the display's units must match the place; one of them does not yet."""
     goal = AllOf(tuple(SignalIs(signal, (unit,)) for signal, unit in units.items()))
     return acted(start, trigger, goal, NEXT_SIGN, Basis.POSTED, rule, Open("settings"), Tap(f"settings.{tile}"))
 
 
 def leave_at(street: str) -> Move:
-    """Asks for a way to a street."""
+    """Moves that request a route to a street."""
     return Do(Action(ActionType.REQUEST_REROUTE, destination=street))
 
 

@@ -1,4 +1,4 @@
-"""Media, the safety pairs: what is played gives way to what the road, the sky and the place ask for."""
+"""Media, safety pairs: media give way to what the road, the sky and the place require."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Phenomenon: what wet, ice, wind, low sun and dust do to the drive, where place and sky decide what is right."""
+"""Phenomenon: water, ice, wind, low sun and dust; place and sky decide what is right."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ FRICTION = (
 
 
 def alert(kind: AlertKind) -> tuple[Move, ...]:
-    """The way through the safety centre to an alert of that kind."""
+    """Moves through the safety centre to an alert of that kind."""
     return Open("safety"), Tap(f"safety.kind.{kind}"), Tap("safety.warn")
 
 
@@ -72,7 +72,7 @@ def _warned(
     ways: tuple[tuple[Move, ...], ...] = (),
     for_s: float = 3.0,
 ) -> tuple[Half, Half]:
-    """Two halves: in the one the driver has to be warned, in the other there is nothing to warn of."""
+    """Two halves: in one, the driver has to be warned; in the other, there is nothing to warn of."""
     trigger = Trigger(All((Driving(), trouble)), for_s=for_s, within_s=300.0)
     first = Half(start, trigger, AlertGiven(kind), alert(kind), deadline, Basis.PHYSICS, source, ways=ways)
     rest = Trigger(All((Driving(), calm)), for_s=for_s, within_s=300.0)
@@ -82,7 +82,7 @@ def _warned(
 def _set(
     start: Start, trouble: TriggerCondition, goal: Check, moves: tuple[Move, ...], deadline: Deadline, source: str
 ) -> Half:
-    """A half in which a setting answers to what is outside."""
+    """A half in which a setting has to match the conditions outside."""
     trigger = Trigger(All((Driving(), trouble)), for_s=3.0, within_s=300.0)
     return Half(start, trigger, goal, moves, deadline, Basis.PHYSICS, source)
 

@@ -1,4 +1,4 @@
-"""Phenomenon: which lamps fog, rain, snow and the dark allow or ask for, by the law of the place."""
+"""Phenomenon: the lamps that fog, rain, snow and darkness allow or require, by local law."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ CHINA, FRANCE, GERMANY, BRITAIN, ITALY = (114.0, 33.0), (2.5, 47.5), (9.9, 50.5)
 JAPAN, SOUTH_AFRICA, SWEDEN, SWITZERLAND = (138.2, 36.2), (25.0, -30.0), (15.1, 59.3), (7.5, 46.9)
 """Longitude and latitude: far enough inland for a network to lie in one country."""
 NOON, NIGHT = "2026-06-16T12:30:00", "2026-03-17T22:00:00"
-"""Full daylight, and darkness, from South Africa to Sweden alike."""
+"""Times of full daylight, and of darkness, from South Africa to Sweden."""
 MIST_120 = Weather(11.0, 98.0, 0.0, 45, 100.0, 120.0, 4.0)
-"""Fog in which one sees 120 m."""
+"""Fog with a visibility of 120 m."""
 FOG_90 = replace(MIST_120, visibility=90.0)
 HEAVY_RAIN = Weather(13.0, 95.0, 9.0, 65, 100.0, 1500.0, 24.0)
 LIGHT_SNOW = Weather(-2.0, 90.0, 0.6, 71, 100.0, 2500.0, 9.0)
@@ -58,7 +58,7 @@ def lit_by_law(
     difference: str,
     **parameters: tuple[str, ...],
 ) -> Task:
-    """A pair on lamps; the place decides where the halves lie in two."""
+    """A pair on lamps; the place decides if the halves are in two places."""
     places = {(half.start.scenario, half.start.origin) for half in (first, second)}
     tags = frozenset({"lamps", "place"} if len(places) == 2 else {"lamps"})
     return Task(
@@ -69,7 +69,7 @@ def lit_by_law(
 def _at(
     scenario: str, trip: str, origin: tuple[float, float], weather: Weather, signals: dict[str, object] = BEAM
 ) -> Start:
-    """A drive by day that one country or the other may be the place of."""
+    """A drive by day, in one country or another."""
     return Start(scenario, trip, origin, start=NOON, weather=weather, signals=signals, sign_camera=False)
 
 
@@ -89,7 +89,7 @@ CRUISING = {
     LIGHTS.FRONT_FOG.path: True,
     LIGHTS.HAZARD.path: True,
 }
-"""All that China asks for in fog but the speed."""
+"""Everything that China requires in fog except the speed."""
 LOWER = (Open("vehicle"), Tap("vehicle.tab.assistance"))
 OUTRUN = Deadline(
     16.0, "at 70 km/h the car covers 311 m in 16 s, twice as far as it sees: a standing car would have been reached"

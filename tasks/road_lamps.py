@@ -1,4 +1,4 @@
-"""Road: lamps that the law asks for or forbids, by place, by road and by who comes the other way."""
+"""Road: lamps that the law requires or forbids, by place, road and oncoming traffic."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ DIPPED = {LIGHTS.SWITCH.path: "BEAM"}
 FULL = DIPPED | {LIGHTS.HIGH_BEAM.path: True}
 KIRUNA, CHAMPAGNOLE, SPLUEGEN, MILAN = (20.25, 67.85), (5.91, 46.74), (9.20, 46.50), (9.19, 45.46)
 NOBODY = All((Not(OncomingWithin(300.0)), Not(LeaderWithin(110.0)), Dark()))
-"""Nobody whom a full beam could dazzle."""
+"""Nobody whom high beam could dazzle."""
 BLINDED = Deadline(
     10.0, "on dipped beam one sees about 60 m, 2.7 s at 80 km/h; a driver who gets no answer reaches for the stalk"
 )
@@ -52,7 +52,7 @@ def switched(
     rule: str,
     *others: str,
 ) -> Half:
-    """A half in which a lamp has to be switched; ``others`` are widgets that do as well."""
+    """A half in which a lamp has to be switched; ``others`` are widgets that also do it."""
     ways: tuple[tuple[Move, ...], ...] = tuple((*TO_THE_LAMPS, Tap(other)) for other in others)
     return Half(start, trigger, goal, (*TO_THE_LAMPS, Tap(tap)), deadline, Basis.LAW, rule, ways=ways)
 
@@ -74,22 +74,22 @@ def lamp_task(task_id: str, says: tuple[str, ...], first: Half, second: Half, di
 
 
 def wanted(start: Start, trigger: Trigger, rule: str) -> Half:
-    """High beam asked for where it is allowed."""
+    """A half in which high beam is requested and allowed."""
     return switched(start, trigger, SignalIs(LIGHTS.HIGH_BEAM, (True,)), "lights.high_beam", BLINDED, rule)
 
 
 def refused(start: Start, trigger: Trigger, rule: str) -> Half:
-    """High beam asked for where it is forbidden."""
+    """A half in which high beam is requested but forbidden."""
     return decline(start, trigger, BLINDED, Basis.LAW, rule, reasons=(Reason.LAW, Reason.SAFETY))
 
 
 def night(scenario: str, trip: str, weather: Weather, lamps: Mapping[str, Any] = DIPPED) -> Start:
-    """Dark, with the dipped beam on or what is given."""
+    """A drive in the dark, with dipped beam on or as given."""
     return Start(scenario, trip, start=NIGHT, weather=weather, signals=lamps, sign_camera=False)
 
 
 def when(*conditions: TriggerCondition, for_s: float = 2.0, within_s: float = 420.0) -> Trigger:
-    """All of them for a while, on the way."""
+    """A trigger: all conditions hold for a while during the drive."""
     return Trigger(All((Driving(), *conditions)), for_s, within_s)
 
 

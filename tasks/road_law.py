@@ -1,4 +1,4 @@
-"""Road: limits and lamps that signs and law ask for; the same drive is right in one place and wrong in another."""
+"""Road: limits and lamps by signs and law; the same drive is right in one place and wrong in another."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def warned(
 
 
 def figure(start: Start, trigger: Trigger, deadline: Deadline, basis: Basis, rule: str, speed_kmh: float) -> Half:
-    """A half in which the driver has to be told the limit itself, because it is what was asked for."""
+    """A half in which the driver has to be told the limit itself, as requested."""
     return Half(
         start,
         trigger,
@@ -76,7 +76,7 @@ def figure(start: Start, trigger: Trigger, deadline: Deadline, basis: Basis, rul
 
 
 def fine(start: Start, trigger: Trigger, deadline: Deadline, basis: Basis, rule: str) -> Half:
-    """A half in which all is as it should be, and to say so is right."""
+    """A half in which everything is right, and saying so is too."""
     return decline(start, trigger, deadline, basis, rule, reasons=(Reason.ALREADY_SO, Reason.LAW), needed=False)
 
 
@@ -330,7 +330,7 @@ LIMITS_BY_PLACE = (
         ("JP.limit.no_centre_line", "FR.limit.built_up"),
         30.0,
         "a street without centre line, where Japanese law says 30 km/h and French law 50; 45 on both",
-        at="2026-09-17T12:30:00",  # the Japanese limit holds from 1 September 2026 on
+        at="2026-09-17T12:30:00",  # the Japanese limit applies from 1 September 2026
     ),
 )
 

@@ -1,4 +1,4 @@
-"""Road: limits that signs post, some of them by the clock, and the limit that fog sets below them."""
+"""Road: posted limits, some of them by the clock, and the lower limit in fog."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def posted(
     second: tuple[Start, Trigger, str, float],
     difference: str,
 ) -> Task:
-    """Another limit is posted in either half, and the driver wants to be told it. The texts are the signs."""
+    """A pair with another posted limit in each half, which the driver wants to know. The texts are the signs."""
     return in_company(
         Task(
             task_id,

@@ -1,4 +1,4 @@
-"""Road: what the others on it ask of the driver: room, distance, a warning in time."""
+"""Road: consideration for others: room, distance, a timely warning."""
 
 from __future__ import annotations
 
@@ -61,12 +61,12 @@ def honked(start: Start, trigger: Trigger, rule: str) -> Half:
 
 
 def silent(start: Start, trigger: Trigger, rule: str) -> Half:
-    """A half in which it may not."""
+    """A half in which the horn may not be sounded."""
     return decline(start, trigger, BEEP, Basis.LAW, rule, reasons=(Reason.LAW,))
 
 
 def closing(start: Start, trigger: Trigger, rule: str) -> Half:
-    """A half in which the driver has to be told what is in the way; collision and traffic both say it."""
+    """A half in which the driver has to be warned of an obstacle; a collision or a traffic alert will do."""
     return Half(
         start,
         trigger,

@@ -155,8 +155,7 @@ class Prover:
                 found.take(gate, getattr(gates, gate)(ground, self._simulations), half)
 
     def _trace_before(self, task_id: str, seed: int) -> str:
-        """The trace hash of a task's reference solution; empty if it cannot be played, which its own proof
-        reports."""
+        """The trace hash of a task's reference solution; empty if it cannot be played."""
         if self._last is not None and self._last[:2] == (task_id, seed):
             return self._last[2]
         try:
