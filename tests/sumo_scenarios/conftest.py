@@ -127,7 +127,7 @@ def hour(sumo: None, tmp_path_factory: pytest.TempPathFactory) -> Callable[[str]
         known = ",".join(f"ego.{trip.name}" for trip in scenario.ego.trips)
         routes = ET.parse(scenario.config).getroot().find("input/route-files").get("value")  # type: ignore[union-attr]
         run_sumo(
-            scenario, 11, "--route-files", f"{scenario.folder / str(routes)},{egos}", "--step-length", "1",
+            scenario, 5, "--route-files", f"{scenario.folder / str(routes)},{egos}", "--step-length", "1",
             "--end", str(END_S), "--summary-output", str(summary), "--statistic-output", str(statistic),
             "--additional-files", str(extra), "--device.fcd.explicit", known, "--fcd-output", str(fcd),
             "--device.tripinfo.explicit", known, "--tripinfo-output", str(ends),
