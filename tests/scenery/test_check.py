@@ -55,8 +55,8 @@ def test_every_shipped_scenario_names_its_streets() -> None:
     [
         (Street("Avenue Foch"), "is not in the network"),
         (Street("Avenue Centrale", ("30",)), "there is no sign for 30"),
-        (Street("Avenue Centrale", ("50", "30 mph")), "30 mph stands nowhere"),
-        (Street("Avenue Centrale", ("unposted",)), "unposted stands nowhere"),
+        (Street("Avenue Centrale", ("50", "30 mph")), "there is no sign for 30 mph"),
+        (Street("Avenue Centrale", ("unposted",)), "there is no sign for unposted"),
         (Street("Rue du Nord", ("30",)), "there is no sign for 30"),
     ],
 )
