@@ -51,8 +51,8 @@ def asked(
         module: where it belongs.
         says: the phrasings, four at least; the last is held out.
         goal: what must hold.
-        moves: the expert's way; ``complete`` is declared after it.
-        ways: other ways of an expert, at least one to every further end state of the goal.
+        moves: the reference solution; ``complete`` is declared after it.
+        ways: other reference solutions, at least one to every further end state of the goal.
         start: where it begins.
         trigger: what hands over.
         deadline: by when, and why.

@@ -28,7 +28,7 @@ from automotive_cosim.tasks.forms import decline
 from automotive_cosim.tasks.hvac import SHUT_WINDOWS
 
 LOOK = Deadline(
-    12.0, "whoever does it himself may look away for 12 s in all (NHTSA 2013, visual-manual guidelines)"
+    12.0, "drivers who do it themselves may look away for 12 s in total (NHTSA 2013, visual-manual guidelines)"
 )
 WARMER = (0, 1, 2, 3)
 """Variation of the cabin temperature between instances, in degrees."""

@@ -100,8 +100,12 @@ BRISK = Trigger(
 )
 OVERTAKEN = Deadline(8.0, "at 115 km/h the car covers 256 m in 8 s; braking from there on a wet road takes 90 m")
 SKID = Deadline(8.0, "at 50 km/h braking on black ice takes 65 m (v^2 / 2 mu g, mu 0.15): 8 s are 111 m")
-ROAD_MODE = Deadline(10.0, "at 50 km/h the car covers 139 m in 10 s, further than a way to stop on snow (39 m)")
-BLINDED = Deadline(8.0, "at 80 km/h the car covers 178 m in 8 s against the sun: the next bend or walker is nearer")
+ROAD_MODE = Deadline(
+    10.0, "at 50 km/h the car covers 139 m in 10 s, further than the stopping distance on snow (39 m)"
+)
+BLINDED = Deadline(
+    8.0, "at 80 km/h the car covers 178 m in 8 s against the sun: the next bend or pedestrian is nearer"
+)
 GUST = Deadline(10.0, "a gust lasts for some 10 s; in 10 s at 70 km/h the car meets the next gap in the trees")
 LUNGS = Deadline(
     20.0, "the cabin's air takes the outside's dust within a minute: a third of that is a fair time to act"

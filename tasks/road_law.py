@@ -96,8 +96,8 @@ SPEED_80_IN_50 = in_company(
             Trigger(SpeedAbove(78.0, 45.0, 50.0), for_s=3.0, within_s=240.0),
             Deadline(
                 10.0,
-                "at 80 km/h the car covers 222 m in 10 s, about the way between two crossings; a speed assistant "
-                "has to sound after 5 s at 110 % of the limit (Regulation (EU) 2021/1958, annex I)",
+                "at 80 km/h the car covers 222 m in 10 s, about the distance between two crossings; a speed "
+                "assistant has to sound after 5 s at 110 % of the limit (Regulation (EU) 2021/1958, annex I)",
             ),
             Basis.POSTED,
             "sign B14, 50 km/h; FR Code de la route R413-3",
@@ -312,7 +312,7 @@ LIMITS_BY_PLACE = (
         Trigger(All((OnRoadClass(("motorway",)), Unposted(), SpeedBetween(68.0, 129.0))), 3.0, 300.0),
         ("CN.limit.visibility_200", "FR.limit.visibility"),
         60.0,
-        "a motorway with 150 m of sight, where Chinese law says 60 km/h and French law nothing special",
+        "a motorway with 150 m of visibility, where Chinese law says 60 km/h and French law nothing special",
     ),
     across(
         "road_no_centre_line_abroad",

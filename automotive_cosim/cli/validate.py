@@ -53,7 +53,7 @@ def validate(
     against: Annotated[
         Path | None,
         typer.Option(
-            help="What --json printed before: the reference solutions must still give the same traces.",
+            help="Earlier output of --json: the reference solutions must still give the same traces.",
             show_default=False,
         ),
     ] = None,

@@ -111,7 +111,7 @@ class Collector(Watcher):
             speed_compliance=compliance(self._states),
             min_time_to_collision_s=nearest_s(self._states),
             drive=result.drive,
-            baseline_drive=result.untouched_drive,
+            baseline_drive=result.baseline_drive,
             interaction_s=load.interaction_s if load else None,
             within_guideline=load.within_guideline if load else None,
             prompt_tokens=tuple(

@@ -213,7 +213,7 @@ def test_pieces_go_together_and_each_task_comes_after_one_of_its_piece():
 
 @pytest.fixture
 def proving(monkeypatch):
-    """Proves tasks of these names on the grid, all alike, whose expert's traces have the hashes given."""
+    """Proves tasks of these names on the grid, all alike, whose reference solutions have the given trace hashes."""
 
     def make(hashes):
         given = iter(hashes)
