@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from automotive_cosim.cli import results as commands
+from automotive_cosim.episode.specification import End
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.evaluation import all_tables, write_report
 from automotive_cosim.report.findings import classes
@@ -56,7 +57,7 @@ def folder(tmp_path_factory):
             success = succeeds(job)
             parts = PartsHeld(goal=success, clean=True, safe=True, in_time=True, declared=True)
             row = replace(
-                planned(job), country="FR", success=success, reward=float(success), end="declared", parts=parts,
+                planned(job), country="FR", success=success, reward=float(success), end=End.DECLARED, parts=parts,
                 alerts=int(job.setup.agent == "always-alert"), steps=3, speed_compliance=0.9,
                 min_time_to_collision_s=4.0, interaction_s=2.0, within_guideline=True, tokens_in=900,
                 prompt_tokens=(400, 500), drive=DRIVE, baseline_drive=DRIVE, tokens_out=40,
