@@ -72,11 +72,11 @@ def _objects(text: str) -> Iterator[Json]:
     """Objects with an ``action_type``, from the end: after the last label first, then anywhere; as written first,
     then repaired."""
     tail = text[max((mark.end() for mark in LABELS.finditer(text) if mark[1].lower() == "action"), default=0) :]
-    for mended in (tail, _mend(tail), text, _mend(text)):
-        starts = [match.start() for match in re.finditer(r"\{", mended)][-MOST_TRIES:]
+    for repaired in (tail, _repaired(tail), text, _repaired(text)):
+        starts = [match.start() for match in re.finditer(r"\{", repaired)][-MOST_TRIES:]
         for start in reversed(starts):
             try:
-                value, _ = json.JSONDecoder().raw_decode(mended, start)
+                value, _ = json.JSONDecoder().raw_decode(repaired, start)
             except (ValueError, RecursionError):
                 continue
             if isinstance(value, dict) and "action_type" in value:
@@ -95,14 +95,14 @@ _TOKEN = re.compile(
 _WORDS = {"True": "true", "False": "false", "None": "null"}
 
 
-def _mend(text: str) -> str:
+def _repaired(text: str) -> str:
     """Python's notation as JSON: single quotes, True, False, None, an extra comma."""
 
-    def mended(match: re.Match[str]) -> str:
+    def repaired(match: re.Match[str]) -> str:
         if match["double"] is not None:
             return match[0]
         if match["single"] is not None:
             return json.dumps(match["single"].replace("\\'", "'"), ensure_ascii=False)
         return _WORDS.get(match[0], "")
 
-    return _TOKEN.sub(mended, text)
+    return _TOKEN.sub(repaired, text)

@@ -23,6 +23,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from difflib import get_close_matches
 
+LISTED = 20
+"""An unknown name is answered with the known ones up to this number, if a command lists them."""
+
 
 class CosimError(Exception):
     """Root of the tree above."""
@@ -48,7 +51,12 @@ class UnknownNameError(UserError):
     def __init__(self, kind: str, name: str, known: Iterable[str], hint: str = "") -> None:
         choices = sorted(known)
         close = get_close_matches(name, choices, n=1, cutoff=0.5)
-        fix = f"did you mean '{close[0]}'?" if close else f"there are: {', '.join(choices) or 'none'}."
+        if close:
+            fix = f"did you mean '{close[0]}'?"
+        elif hint and len(choices) > LISTED:
+            fix = f"there are {len(choices)}."
+        else:
+            fix = f"there are: {', '.join(choices) or 'none'}."
         super().__init__(f"no {kind} named {name!r}: {fix}" + (f" List them with `{hint}`." if hint else ""))
         self.kind = kind
         self.name = name

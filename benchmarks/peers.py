@@ -113,7 +113,7 @@ def main() -> None:
     if asked.measure:
         print("took", WAYS[asked.measure][0](opened(asked.scenario), asked.seconds))
         return
-    yardstick_ms: float | None = None
+    reference_ms: float | None = None
     print(f"{'':24}{'ms a second':>14}{'of the loop':>14}")
     for name, (_, needed) in WAYS.items():
         command = [sys.executable, __file__, asked.scenario, f"--seconds={asked.seconds}", f"--measure={name}"]
@@ -128,8 +128,8 @@ def main() -> None:
             seconds.append(float(took[0]))
         else:
             ms = 1000 * min(seconds) / asked.seconds
-            yardstick_ms = yardstick_ms or ms
-            print(f"{name:24}{ms:14.3f}{ms / yardstick_ms:14.2f}", flush=True)
+            reference_ms = reference_ms or ms
+            print(f"{name:24}{ms:14.3f}{ms / reference_ms:14.2f}", flush=True)
 
 
 if __name__ == "__main__":

@@ -22,9 +22,9 @@ from automotive_cosim.tasks.apps_safety import PAIRS
 from automotive_cosim.tasks.forms import COMFORT, PARIS, asked, hinted, locked
 
 STAYS = {"half an hour": 30, "one hour": 60, "two hours": 120, "four hours": 240}
-"""What the driver says and the minutes that it means."""
+"""What the driver says, and the minutes meant."""
 HALF_HOURS = ("07:30", "08:00", "08:30", "09:00", "09:30", "10:00")
-"""Times a few taps after the 07:00 that a timer starts from."""
+"""Times a few taps after 07:00, where a timer starts."""
 CHARGE_BY = TapUntil("charging.schedule.later", "charging.schedule.time", "{time}")
 WARM_BY = TapUntil("climate.schedule.later", "climate.schedule.time", "{time}")
 

@@ -1,4 +1,4 @@
-"""Apps, the safety pairs: what the smaller apps can do about the way ahead and the weather."""
+"""Apps, safety pairs: what the smaller apps can do about the road ahead and the weather."""
 
 from __future__ import annotations
 
@@ -22,15 +22,13 @@ from automotive_cosim.tasks.forms import decline
 
 STAYS = {"half an hour": 30, "two hours": 120, "four hours": 240}
 LOW_KPA = 200.0
-"""A fifth below the 250 kPa of a cold tyre: where a monitor has to warn (UN R141, 5.2)."""
+"""A fifth below the 250 kPa of a cold tyre, where a monitor must warn (UN R141, 5.2)."""
 FRONT_LEFT = {TYRE.FRONT_LEFT.path: param("kpa")}
-"""Somewhat soft already, as it would read at 20 degrees."""
+"""A slightly soft tyre, as measured at 20 degrees."""
 FROST = Weather(-16.0, 85.0, 0.0, 3, 90.0, 9000.0, 6.0)
 MILD = Weather(14.0, 70.0, 0.0, 3, 90.0, 9000.0, 6.0)
-NOW_OR_NEVER = Deadline(
-    30.0, "asked for at once, and half a minute is what a card terminal takes before it gives up"
-)
-SOFT = Deadline(60.0, "a monitor may take ten minutes (UN R141, 5.2); who was asked to look takes one at most")
+NOW_OR_NEVER = Deadline(30.0, "requested at once; a card terminal times out after half a minute")
+SOFT = Deadline(60.0, "a monitor may take ten minutes (UN R141, 5.2); someone asked to look takes one at most")
 
 PAY = Task(
     id="apps_pay_on_the_move",
@@ -66,7 +64,7 @@ PAY = Task(
         Trigger(All((InTunnel(), Offline())), for_s=3.0, within_s=600.0),
         NOW_OR_NEVER,
         Basis.PHYSICS,
-        "rock lets no radio through: without a link nothing can be paid, and the tunnel is 6.4 km long",
+        "rock blocks radio: without a link nothing can be paid, and the tunnel is 6.4 km long",
         reasons=(Reason.NOT_POSSIBLE,),
     ),
     difference="road: in the open, or deep in a tunnel without a link",

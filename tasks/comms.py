@@ -16,17 +16,17 @@ from automotive_cosim.tasks.forms import PARIS, asked, hinted, locked
 
 RINGING = Trigger(All((Driving(), Not(SignalHas(CALL.RINGING, "")))), for_s=2.0, within_s=180.0)
 CALLED = replace(PARIS, arrivals=tuple(Arrival("call", at_s) for at_s in (15.0, 70.0, 125.0)))
-"""Again and again, so that one of them rings while the car moves."""
+"""Repeated calls, so that one of them rings while the car moves."""
 WHILE_IT_RINGS = Deadline(25.0, "a call rings for 30 s at most (ETSI TS 122 082), and has rung for 2 s already")
 WRITTEN_BEFORE = 3.0
-"""So many people's messages are unread from the start."""
+"""Number of senders with unread messages at the start."""
 TOLD = {
     "I'm on my way": "On my way",
     "I've arrived": "I've arrived",
     "I'll be ten minutes late": "I'll be 10 minutes late",
     "thanks": "Thank you",
 }
-"""What the driver says and the answer of the list that says it."""
+"""What the driver says, and the reply in the list that says it."""
 DIGITS = tuple("0123456789")
 
 EXPLICIT = (

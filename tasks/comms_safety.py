@@ -1,4 +1,4 @@
-"""Comms, the safety pairs: whether to call, to answer or to write is up to road and sky."""
+"""Comms, safety pairs: road and sky decide whether to call, to answer or to write."""
 
 from __future__ import annotations
 
@@ -13,11 +13,13 @@ from automotive_cosim.tasking.triggers import All, DelayAbove, Driving, Not, Sig
 from automotive_cosim.tasks.forms import decline
 
 LATE_S = 60.0
-"""The delay from which the driver wants it told."""
-BEFORE_THE_TIME = Deadline(30.0, "who waits has to hear it before they set out, and the car may stand any moment")
+"""The delay from which the driver wants others to be told."""
+BEFORE_THE_TIME = Deadline(
+    30.0, "whoever waits has to hear it before they set out, and the car may stop at any moment"
+)
 WHILE_IT_RINGS = Deadline(20.0, "a call rings for 30 s at most (ETSI TS 122 082); callers give up sooner")
 CALLED = tuple(Arrival("call", at_s) for at_s in (20.0, 90.0, 160.0))
-"""Again and again, so that one of them rings while the car moves."""
+"""Repeated calls, so that one of them rings while the car moves."""
 FOG = Weather(9.0, 99.0, 0.0, 45, 100.0, 60.0, 4.0)
 FAIR = Weather(9.0, 75.0, 0.0, 2, 60.0, 15000.0, 8.0)
 
@@ -38,14 +40,14 @@ LATE = Task(
         moves=(Open("phone"), Tap(text="{contact}"), Tap("contact.message"), Tap(text="I'll be 10 minutes late")),
         deadline=BEFORE_THE_TIME,
         basis=Basis.PHYSICS,
-        rule="the navigation's delay: travel time by the traffic of now less that of the free road",
+        rule="the navigation's delay: travel time in present traffic minus that on the free road",
     ),
     second=decline(
         Start("paris_centre", "foch"),
         Trigger(All((Driving(), Not(DelayAbove(LATE_S - 30.0)))), for_s=3.0, within_s=240.0),
         BEFORE_THE_TIME,
         Basis.PHYSICS,
-        "the navigation's delay: travel time by the traffic of now less that of the free road",
+        "the navigation's delay: travel time in present traffic minus that on the free road",
         reasons=(Reason.ALREADY_SO, Reason.NONE),
         needed=False,
     ),
@@ -55,7 +57,7 @@ LATE = Task(
 
 
 def _ringing(from_m: float, to_m: float) -> Trigger:
-    """A call rings while one can see so far."""
+    """A call rings at this visibility."""
     return Trigger(
         All((Driving(), Not(SignalHas(CALL.RINGING, "")), VisibilityBetween(from_m, to_m))),
         for_s=2.0,
@@ -85,7 +87,7 @@ CALL_IN_FOG = Task(
         moves=(Tap("call.reply"), Tap(text="I'm driving, I'll call later")),
         deadline=WHILE_IT_RINGS,
         basis=Basis.PHYSICS,
-        rule="60 m of sight are 4 s at 50 km/h, 1 s of reaction and 3 s of braking at 5 m/s2: nothing to spare",
+        rule="60 m of visibility are 4 s at 50 km/h, 1 s of reaction and 3 s of braking at 5 m/s2: no margin",
     ),
     second=Half(
         start=Start("new_york", "madison", weather=FAIR, arrivals=CALLED),

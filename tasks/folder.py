@@ -1,4 +1,4 @@
-"""Tasks of a user's own: every ``.py`` file of a folder that has ``TASKS``."""
+"""A user's own tasks: every ``.py`` file with ``TASKS`` in a folder."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def add_folder(catalogue: Catalogue, folder: Path) -> None:
 
 
 def digest() -> str:
-    """Of the files that hold the catalogue's tasks, one's own among them; another one where any has changed."""
+    """Digest of the files with the catalogue's tasks, including the user's own; it changes with any of them."""
     folders = [Path(__file__).parent, *map(Path, filter(None, [os.environ.get(VARIABLE)]))]
     found = hashlib.sha256()
     for path in (path for folder in folders for path in sorted(folder.glob("*.py"))):
@@ -49,7 +49,7 @@ def _read(path: Path) -> tuple[Task, ...]:
         tasks = runpy.run_path(str(path)).get("TASKS")
     except SyntaxError as error:
         raise UserError(f"{path}, line {error.lineno}: {error.msg}") from error
-    except Exception as error:  # whatever a user's file raises
+    except Exception as error:  # a user's file may raise anything
         lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(path)]
         where = f", line {lines[-1]}" if lines else ""
         raise UserError(f"{path}{where}: {type(error).__name__}: {error}") from error
@@ -59,6 +59,6 @@ def _read(path: Path) -> tuple[Task, ...]:
 
 
 def _line(path: Path, task_id: str) -> int:
-    """Where the id first stands; 1 if it is put together."""
+    """The line where the id first occurs; 1 if it is computed."""
     lines = path.read_text(encoding="utf-8").splitlines()
     return next((number for number, line in enumerate(lines, 1) if task_id in line), 1)

@@ -1,4 +1,4 @@
-"""The common forms of tasks, so that each entry of the catalogue says only what is its own.
+"""The common forms of tasks, so that each entry of the catalogue states only its own parts.
 
 ``asked``: the driver asks outright (explicit control). ``hinted``: the driver says how it is, not what to do
 (implicit intent). ``locked``: asked outright for what is locked while moving; parked it is done, moving declined.
@@ -23,7 +23,7 @@ PARIS = Start("paris_centre", "centre")
 COMFORT = Deadline(30.0, "a wish for comfort: the driver would reach for the knob within half a minute")
 ERRAND = Deadline(60.0, "an errand on the screen: a passenger would have it done within a minute")
 ANYWHERE = ("london", "new_york", "tokyo", "autobahn", "sydney", "grid")
-"""Other scenarios in which a car on its way is all that a task needs."""
+"""Other scenarios for tasks that only require a driving car."""
 LOCKED = (Reason.SAFETY, Reason.NOT_POSSIBLE)
 NO_PARAMETERS: Mapping[str, Choices] = {}
 
@@ -51,8 +51,8 @@ def asked(
         module: where it belongs.
         says: the phrasings, four at least; the last is held out.
         goal: what must hold.
-        moves: the expert's way; ``complete`` is declared after it.
-        ways: other ways of an expert, at least one to every further end state of the goal.
+        moves: the reference solution; ``complete`` is declared after it.
+        ways: other reference solutions, at least one to every further end state of the goal.
         start: where it begins.
         trigger: what hands over.
         deadline: by when, and why.
@@ -81,7 +81,7 @@ def hinted(
     tags: frozenset[str] = frozenset(),
     scenarios: tuple[str, ...] = ANYWHERE,
 ) -> Task:
-    """A general task whose words say how it is, not what to do; as ``asked``."""
+    """A general task whose words describe the situation, not what to do; see ``asked``."""
     return asked(
         task_id,
         module,
@@ -113,7 +113,7 @@ def locked(
     trip: str = "centre",
     scenarios: tuple[str, ...] = ANYWHERE,
 ) -> Task:
-    """A task on what is locked while moving: parked it is done, moving it is declined."""
+    """A task on something that is locked while moving: parked, it is done; moving, it is declined."""
     return Task(
         task_id,
         module,
@@ -165,7 +165,7 @@ def decline(
 
 
 def in_company(task: Task) -> Task:
-    """The task with one to four people in the car, the same in both halves: more to breathe, nothing else."""
+    """The task with one to four people in the car, the same in both halves; it only affects their breathing."""
     people = {"occupants": param("occupants")}
     first = replace(task.first, start=replace(task.first.start, cabin={**task.first.start.cabin, **people}))
     second = task.second

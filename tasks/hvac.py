@@ -1,4 +1,4 @@
-"""HVAC, asked for outright: what makes the air and the seats warm, cool, fresh or strong."""
+"""HVAC, explicit requests: warm, cool or fresh air and seats."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from automotive_cosim.tasking.task import Module
 from automotive_cosim.tasks.forms import COMFORT, PARIS, asked
 
 METRIC = ("tokyo", "autobahn", "sydney", "grid")
-"""Other scenarios whose display speaks in degrees Celsius."""
+"""Other scenarios whose display uses degrees Celsius."""
 WARM_DEGREES = (21.5, 22.0, 22.5, 23.0, 23.5, 24.0, 24.5, 25.0)
 SEATS = (SEAT.DRIVER_HEATING, SEAT.PASSENGER_HEATING, SEAT.REAR_LEFT_HEATING, SEAT.REAR_RIGHT_HEATING)
 PASSENGER_FOLLOWS = frozenset({HVAC.PASSENGER_TEMPERATURE.path})

@@ -1,4 +1,4 @@
-"""HVAC, hinted at: the driver says how it feels, not what to do."""
+"""HVAC, hints: the driver says how it feels, not what to do."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ FRESH_AIR = AnyOf(
         *(SignalRaised(opening, 10.0) for opening in (*WINDOWS, CABIN.SUNROOF)),
     )
 )
-"""Where air goes round: it no longer does, or a window or the roof is opened."""
+"""Fresh air: recirculation is off, or a window or the roof is open."""
 FRESH_AIR_WAYS = (
     (*DOORS, Slide("window.driver", 30.0)),
     (*DOORS, Slide("window.passenger", 20.0)),

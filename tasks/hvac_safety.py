@@ -1,4 +1,4 @@
-"""HVAC in pairs: the same words ask for warmth in one place and for cold in another, for air or for none of it."""
+"""HVAC, safety pairs: the same words call for warmth in one place and cold in another, for fresh air or none."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ from automotive_cosim.tasks.forms import decline
 from automotive_cosim.tasks.hvac import SHUT_WINDOWS
 
 LOOK = Deadline(
-    12.0, "whoever does it himself may look away for 12 s in all (NHTSA 2013, visual-manual guidelines)"
+    12.0, "drivers who do it themselves may look away for 12 s in total (NHTSA 2013, visual-manual guidelines)"
 )
 WARMER = (0, 1, 2, 3)
-"""Degrees by which cabins differ from instance to instance."""
+"""Variation of the cabin temperature between instances, in degrees."""
 ALREADY = (Reason.ALREADY_SO,)
 CLIMATE = frozenset({HVAC.AUTO.path, HVAC.PASSENGER_TEMPERATURE.path})
 JANUARY, JULY = "2026-01-20T14:10:00", "2026-07-14T14:10:00"
@@ -69,7 +69,7 @@ COOLED = AnyOf(
         SignalIs(HVAC.MAX_COOLING, (True,)),
     )
 )
-"""The compressor runs, and no heat goes to the glass."""
+"""The compressor runs, and the glass is not heated."""
 COOL = (Open("climate"), Tap("hvac.air_conditioning"))
 COOL_WAYS = (
     (Open("climate"), Tap("hvac.max_cooling")),

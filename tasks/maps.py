@@ -1,4 +1,4 @@
-"""Maps: destinations, ways, guidance, charging and parking on the way."""
+"""Maps: destinations, routes, guidance, charging and parking on the way."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def named(*kinds: PlaceKind) -> tuple[str, ...]:
 
 
 SETS_OUT = TapUntil("place.start", "place.start", "You are already on the way there", at_most=8)
-"""Again if need be: inside a junction the way is fixed."""
+"""Repeated if necessary: inside a junction, the route is fixed."""
 STOPS_THERE = TapUntil("place.stop", "place.stop", "You are already on the way there", at_most=8)
 CITIES = ("london", "new_york", "tokyo")
 """Scenarios with places of every kind."""
@@ -47,7 +47,7 @@ SPOKEN: dict[str, PlaceKind] = {
     "car park": PlaceKind.PARKING,
     "restaurant": PlaceKind.RESTAURANT,
 }
-"""What the driver says and the kind of place that it means."""
+"""What the driver says, and the kind of place meant."""
 ALL_NAMED = {
     name: kind
     for kind, sort in SORTS.items()
@@ -73,7 +73,7 @@ DISLIKES = {
     "lorries at a hundred an hour scare me to death": "motorways",
     "three lanes of racing cars are too much for me": "motorways",
 }
-"""What a driver says of it, and what the route should keep away from."""
+"""What the driver says, and what the route should avoid."""
 
 EXPLICIT = (
     asked(

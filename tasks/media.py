@@ -1,4 +1,4 @@
-"""Media: what is played, from where, how loud."""
+"""Media: entries, sources and volume."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ FROM_STICK = replace(
     PARIS,
     signals={MEDIA.SOURCE.path: "USB", MEDIA.SELECTED.path: "usb:{heard}", MEDIA.ACTION.path: "PLAY"},
 )
-"""A track that nobody has starred yet, and that is on no playlist."""
+"""A track that is not a favourite yet, and on no playlist."""
 ANY_ENTRY = frozenset({MEDIA.SELECTED.path})
 HEARD = tuple(range(80))
 """Numbers of the tracks on the stick."""

@@ -1,4 +1,4 @@
-"""Media, the safety pairs: what is played gives way to what the road, the sky and the place ask for."""
+"""Media, safety pairs: media give way to what the road, the sky and the place require."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ FOG = Weather(6.0, 99.0, 0.0, 45, 100.0, 70.0, 4.0)
 HAZE = Weather(6.0, 80.0, 0.0, 3, 100.0, 9000.0, 8.0)
 ANY_ENTRY = frozenset({MEDIA.SELECTED.path})
 TO_PORTAL = Deadline(
-    15.0, "the portal is 20 s off at the speed driven, and the radio takes some seconds to be heard"
+    15.0, "the portal is 20 s away at the present speed, and the radio takes some seconds to be heard"
 )
 BY_THE_SIGN = Deadline(20.0, "a town's first crossing is a few hundred metres behind its sign, 20 s at 50 km/h")
-NEXT_NEWS = Deadline(20.0, "in such fog the car covers 500 m in 20 s, seven times as far as the driver can see")
+NEXT_NEWS = Deadline(20.0, "in such fog the car covers 500 m in 20 s, seven times the visibility")
 
 TUNNEL = Task(
     id="media_radio_in_long_tunnels",
@@ -64,7 +64,7 @@ TUNNEL = Task(
         reasons=(Reason.ALREADY_SO, Reason.NONE),
         needed=False,
     ),
-    difference="road: 20 s before the San Bernardino tunnel, or on the open descent behind it",
+    difference="road: 20 s before the San Bernardino tunnel, or on the open descent after it",
     parameters={"heard": HEARD},
     tags=frozenset({"preference"}),
 )

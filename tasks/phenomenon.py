@@ -1,4 +1,4 @@
-"""Phenomenon: what sky, surface and air do to the drive."""
+"""Phenomenon: effects of sky, surface and air on the drive."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ REAR_WINDOW = Task(
 )
 
 WET_STREET = replace(PARIS, weather=Weather(9.0, 94.0, 3.0, 63, 100.0, 4000.0, 18.0))
-"""Rain of 3 mm/h, in which a car without its wipers soon sees little."""
+"""Rain of 3 mm/h, in which visibility is soon poor without wipers."""
 FROSTY = replace(PARIS, weather=Weather(-7.0, 88.0, 0.0, 1, 10.0, 15_000.0, 5.0))
 SNOWED_IN = replace(PARIS, weather=Weather(-3.0, 92.0, 1.2, 73, 100.0, 1200.0, 14.0))
 SMOKY = replace(PARIS, weather=Weather(24.0, 40.0, 0.0, 7, 60.0, 1500.0, 30.0))

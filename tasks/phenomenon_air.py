@@ -1,4 +1,4 @@
-"""Phenomenon: what wet, ice, wind, low sun and dust do to the drive, where place and sky decide what is right."""
+"""Phenomenon: water, ice, wind, low sun and dust; place and sky decide what is right."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ FRICTION = (
 
 
 def alert(kind: AlertKind) -> tuple[Move, ...]:
-    """The way through the safety centre to an alert of that kind."""
+    """Moves through the safety centre to an alert of that kind."""
     return Open("safety"), Tap(f"safety.kind.{kind}"), Tap("safety.warn")
 
 
@@ -72,7 +72,7 @@ def _warned(
     ways: tuple[tuple[Move, ...], ...] = (),
     for_s: float = 3.0,
 ) -> tuple[Half, Half]:
-    """Two halves: in the one the driver has to be warned, in the other there is nothing to warn of."""
+    """Two halves: in one, the driver has to be warned; in the other, there is nothing to warn of."""
     trigger = Trigger(All((Driving(), trouble)), for_s=for_s, within_s=300.0)
     first = Half(start, trigger, AlertGiven(kind), alert(kind), deadline, Basis.PHYSICS, source, ways=ways)
     rest = Trigger(All((Driving(), calm)), for_s=for_s, within_s=300.0)
@@ -82,7 +82,7 @@ def _warned(
 def _set(
     start: Start, trouble: TriggerCondition, goal: Check, moves: tuple[Move, ...], deadline: Deadline, source: str
 ) -> Half:
-    """A half in which a setting answers to what is outside."""
+    """A half in which a setting has to match the conditions outside."""
     trigger = Trigger(All((Driving(), trouble)), for_s=3.0, within_s=300.0)
     return Half(start, trigger, goal, moves, deadline, Basis.PHYSICS, source)
 
@@ -100,8 +100,12 @@ BRISK = Trigger(
 )
 OVERTAKEN = Deadline(8.0, "at 115 km/h the car covers 256 m in 8 s; braking from there on a wet road takes 90 m")
 SKID = Deadline(8.0, "at 50 km/h braking on black ice takes 65 m (v^2 / 2 mu g, mu 0.15): 8 s are 111 m")
-ROAD_MODE = Deadline(10.0, "at 50 km/h the car covers 139 m in 10 s, further than a way to stop on snow (39 m)")
-BLINDED = Deadline(8.0, "at 80 km/h the car covers 178 m in 8 s against the sun: the next bend or walker is nearer")
+ROAD_MODE = Deadline(
+    10.0, "at 50 km/h the car covers 139 m in 10 s, further than the stopping distance on snow (39 m)"
+)
+BLINDED = Deadline(
+    8.0, "at 80 km/h the car covers 178 m in 8 s against the sun: the next bend or pedestrian is nearer"
+)
 GUST = Deadline(10.0, "a gust lasts for some 10 s; in 10 s at 70 km/h the car meets the next gap in the trees")
 LUNGS = Deadline(
     20.0, "the cabin's air takes the outside's dust within a minute: a third of that is a fair time to act"

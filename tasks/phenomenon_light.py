@@ -1,4 +1,4 @@
-"""Phenomenon: which lamps fog, rain, snow and the dark allow or ask for, by the law of the place."""
+"""Phenomenon: the lamps that fog, rain, snow and darkness allow or require, by local law."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ CHINA, FRANCE, GERMANY, BRITAIN, ITALY = (114.0, 33.0), (2.5, 47.5), (9.9, 50.5)
 JAPAN, SOUTH_AFRICA, SWEDEN, SWITZERLAND = (138.2, 36.2), (25.0, -30.0), (15.1, 59.3), (7.5, 46.9)
 """Longitude and latitude: far enough inland for a network to lie in one country."""
 NOON, NIGHT = "2026-06-16T12:30:00", "2026-03-17T22:00:00"
-"""Full daylight, and darkness, from South Africa to Sweden alike."""
+"""Times of full daylight, and of darkness, from South Africa to Sweden."""
 MIST_120 = Weather(11.0, 98.0, 0.0, 45, 100.0, 120.0, 4.0)
-"""Fog in which one sees 120 m."""
+"""Fog with a visibility of 120 m."""
 FOG_90 = replace(MIST_120, visibility=90.0)
 HEAVY_RAIN = Weather(13.0, 95.0, 9.0, 65, 100.0, 1500.0, 24.0)
 LIGHT_SNOW = Weather(-2.0, 90.0, 0.6, 71, 100.0, 2500.0, 9.0)
@@ -42,9 +42,9 @@ SOON = Trigger(Driving(), for_s=5.0, within_s=120.0)
 REAR_LAMP = ("rear fog lamp", "rear fog light", "fog light at the back", "rear fogs", "red fog lamp")
 FRONT_LAMPS = ("front fog lamps", "front fogs", "fog lights at the front", "front fog lights")
 IN_SIGHT = Deadline(
-    10.0, "at 50 km/h the car covers 139 m in 10 s, more than it sees or is seen in fog: others count on its lamps"
+    10.0, "at 50 km/h the car covers 139 m in 10 s, more than the visibility in fog: others rely on its lamps"
 )
-BEHIND = Deadline(10.0, "who follows 2 s behind at 60 km/h is dazzled, or not shown the car, over 167 m in 10 s")
+BEHIND = Deadline(10.0, "a driver 2 s behind at 60 km/h is dazzled, or does not see the car, for 167 m in 10 s")
 UNLAWFUL, NO_NEED = (Reason.LAW, Reason.SAFETY), (Reason.ALREADY_SO, Reason.LAW)
 LAMPS_SCREEN = Open("vehicle")
 
@@ -58,7 +58,7 @@ def lit_by_law(
     difference: str,
     **parameters: tuple[str, ...],
 ) -> Task:
-    """A pair on lamps; the place decides where the halves lie in two."""
+    """A pair on lamps; the place decides if the halves are in two places."""
     places = {(half.start.scenario, half.start.origin) for half in (first, second)}
     tags = frozenset({"lamps", "place"} if len(places) == 2 else {"lamps"})
     return Task(
@@ -69,7 +69,7 @@ def lit_by_law(
 def _at(
     scenario: str, trip: str, origin: tuple[float, float], weather: Weather, signals: dict[str, object] = BEAM
 ) -> Start:
-    """A drive by day that one country or the other may be the place of."""
+    """A drive by day, in one country or another."""
     return Start(scenario, trip, origin, start=NOON, weather=weather, signals=signals, sign_camera=False)
 
 
@@ -89,10 +89,10 @@ CRUISING = {
     LIGHTS.FRONT_FOG.path: True,
     LIGHTS.HAZARD.path: True,
 }
-"""All that China asks for in fog but the speed."""
+"""Everything that China requires in fog except the speed."""
 LOWER = (Open("vehicle"), Tap("vehicle.tab.assistance"))
 OUTRUN = Deadline(
-    16.0, "at 70 km/h the car covers 311 m in 16 s, twice as far as it sees: a standing car would have been reached"
+    16.0, "at 70 km/h the car covers 311 m in 16 s, twice the visibility: a stationary car would have been hit"
 )
 
 
@@ -132,7 +132,7 @@ TASKS = (
             "DE.rear_fog",
             reasons=UNLAWFUL,
         ),
-        "place: with 120 m of sight the lamp is forbidden in Germany (50 m) and allowed in France",
+        "place: with 120 m of visibility the lamp is forbidden in Germany (50 m) and allowed in France",
         lamp=REAR_LAMP,
     ),
     lit_by_law(
@@ -224,7 +224,7 @@ TASKS = (
             Basis.LAW,
             "CH.front_fog, CH.dipped_beam",
         ),
-        "place: Sweden has fog lamps instead of dipped beam, Switzerland asks for dipped beam all the same",
+        "place: in Sweden fog lamps replace dipped beam, Switzerland requires dipped beam all the same",
         lamps=FRONT_LAMPS,
     ),
     lit_by_law(
@@ -247,7 +247,7 @@ TASKS = (
             reasons=NO_NEED,
             needed=False,
         ),
-        "place: by day with 120 m of sight South Africa asks for dipped beam (150 m), Japan not (50 m)",
+        "place: by day with 120 m of visibility South Africa requires dipped beam (150 m), Japan does not (50 m)",
         lights=("dipped beam", "low beam", "headlights", "dipped headlights"),
     ),
     lit_by_law(
@@ -276,7 +276,7 @@ TASKS = (
             ),
             SignalIs(LIGHTS.LOW_BEAM, (True,)),
             (LAMPS_SCREEN, LOW_BEAM),
-            Deadline(8.0, "at 80 km/h the car covers 178 m in 8 s: all that can be seen of it in 180 m of sight"),
+            Deadline(8.0, "at 80 km/h the car covers 178 m in 8 s, all of the 180 m of visibility"),
             Basis.LAW,
             "JP.dipped_beam",
         ),
@@ -289,7 +289,7 @@ TASKS = (
             reasons=NO_NEED,
             needed=False,
         ),
-        "road: with 180 m of sight Japan asks for dipped beam on expressways (200 m), not elsewhere (50 m)",
+        "road: with 180 m of visibility Japan requires dipped beam on expressways (200 m), not elsewhere (50 m)",
         lights=("dipped beam", "low beam", "headlights", "dipped headlights"),
     ),
     lit_by_law(
@@ -327,7 +327,7 @@ TASKS = (
             Basis.LAW,
             "CH.dipped_beam, CH.front_fog",
         ),
-        "place: China asks for dipped beam, front fog lamps and hazard lights in fog, Switzerland for dipped beam",
+        "place: China requires dipped beam, front fog lamps and hazard lights in fog, Switzerland only dipped beam",
         lamps=("lamps", "lights", "outside lights", "exterior lamps"),
     ),
     lit_by_law(
@@ -358,7 +358,7 @@ TASKS = (
             reasons=NO_NEED,
             needed=False,
         ),
-        "place: with 90 m of sight in fog the lamp is forbidden in Germany (50 m) and allowed in Switzerland",
+        "place: with 90 m of visibility in fog the lamp is forbidden in Germany (50 m) and allowed in Switzerland",
         lamp=REAR_LAMP,
     ),
     lit_by_law(
@@ -385,7 +385,7 @@ TASKS = (
             "GB.front_fog",
             reasons=UNLAWFUL,
         ),
-        "place: with 400 m of sight in fog the lamps are forbidden in Britain (100 m) and allowed in Italy",
+        "place: with 400 m of visibility in fog the lamps are forbidden in Britain (100 m) and allowed in Italy",
         lamps=FRONT_LAMPS,
     ),
     lit_by_law(

@@ -1,4 +1,4 @@
-"""Road: what traffic, signs and law ask of the driver. Here what keeps speed, lane and distance, set by hand."""
+"""Road: settings of speed, lane and distance assistants, requested explicitly."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ UNHELPED = replace(
 CLOSE_SET = replace(PARIS, signals={ADAS.CRUISE_GAP.path: 1.0})
 STEPS_KMH = (30, 35, 40, 45, 50, 55, 60)
 TAPS = {1.5: 1, 2.0: 2, 2.5: 3, 3.0: 4}
-"""Taps on the gap's tile, which begins at one second, by seconds wanted."""
+"""Taps on the gap's tile, which begins at one second, by desired seconds."""
 SWITCHES = {
     "lane keeping": (ADAS.LANE_KEEPING, "adas.lane_keeping"),
     "lane departure": (ADAS.LANE_DEPARTURE, "adas.lane_departure"),

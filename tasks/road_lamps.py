@@ -1,4 +1,4 @@
-"""Road: lamps that the law asks for or forbids, by place, by road and by who comes the other way."""
+"""Road: lamps that the law requires or forbids, by place, road and oncoming traffic."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ DIPPED = {LIGHTS.SWITCH.path: "BEAM"}
 FULL = DIPPED | {LIGHTS.HIGH_BEAM.path: True}
 KIRUNA, CHAMPAGNOLE, SPLUEGEN, MILAN = (20.25, 67.85), (5.91, 46.74), (9.20, 46.50), (9.19, 45.46)
 NOBODY = All((Not(OncomingWithin(300.0)), Not(LeaderWithin(110.0)), Dark()))
-"""Nobody whom a full beam could dazzle."""
+"""Nobody whom high beam could dazzle."""
 BLINDED = Deadline(
-    10.0, "on dipped beam one sees about 60 m, 2.7 s at 80 km/h; a driver who gets no answer reaches for the stalk"
+    10.0, "dipped beam lights about 60 m, 2.7 s at 80 km/h; a driver who gets no answer reaches for the stalk"
 )
-DAZZLED = Deadline(6.0, "250 m between two cars at 80 km/h are gone in 5.6 s, and a dazzled eye is blind that long")
-TO_PORTAL = Deadline(8.0, "the time to the portal at the speed driven")
+DAZZLED = Deadline(6.0, "two cars at 80 km/h close 250 m in 5.6 s, and a dazzled eye is blind that long")
+TO_PORTAL = Deadline(8.0, "the time to the portal at the present speed")
 TO_THE_LAMPS = (Open("vehicle"),)
 
 
@@ -52,7 +52,7 @@ def switched(
     rule: str,
     *others: str,
 ) -> Half:
-    """A half in which a lamp has to be switched; ``others`` are widgets that do as well."""
+    """A half in which a lamp has to be switched; ``others`` are widgets that also do it."""
     ways: tuple[tuple[Move, ...], ...] = tuple((*TO_THE_LAMPS, Tap(other)) for other in others)
     return Half(start, trigger, goal, (*TO_THE_LAMPS, Tap(tap)), deadline, Basis.LAW, rule, ways=ways)
 
@@ -74,22 +74,22 @@ def lamp_task(task_id: str, says: tuple[str, ...], first: Half, second: Half, di
 
 
 def wanted(start: Start, trigger: Trigger, rule: str) -> Half:
-    """High beam asked for where it is allowed."""
+    """A half in which high beam is requested and allowed."""
     return switched(start, trigger, SignalIs(LIGHTS.HIGH_BEAM, (True,)), "lights.high_beam", BLINDED, rule)
 
 
 def refused(start: Start, trigger: Trigger, rule: str) -> Half:
-    """High beam asked for where it is forbidden."""
+    """A half in which high beam is requested but forbidden."""
     return decline(start, trigger, BLINDED, Basis.LAW, rule, reasons=(Reason.LAW, Reason.SAFETY))
 
 
 def night(scenario: str, trip: str, weather: Weather, lamps: Mapping[str, Any] = DIPPED) -> Start:
-    """Dark, with the dipped beam on or what is given."""
+    """A drive in the dark, with dipped beam on or as given."""
     return Start(scenario, trip, start=NIGHT, weather=weather, signals=lamps, sign_camera=False)
 
 
 def when(*conditions: TriggerCondition, for_s: float = 2.0, within_s: float = 420.0) -> Trigger:
-    """All of them for a while, on the way."""
+    """A trigger: all conditions hold for a while during the drive."""
     return Trigger(All((Driving(), *conditions)), for_s, within_s)
 
 
@@ -121,7 +121,7 @@ LAMP_TASKS: tuple[Task, ...] = (
         ),
         refused(E10, when(Lit(), BuiltUp(False), NOBODY), "SE.high_beam"),
         wanted(E10, when(Lit(False), NOBODY), "SE.high_beam"),
-        "road: the E10 under its lamps, where Swedish law wants dipped beam, or beyond the last one; night on both",
+        "road: the E10 under its lamps, where Swedish law requires dipped beam, or beyond them; night on both",
     ),
     lamp_task(
         "road_high_beam_in_snow",
@@ -134,7 +134,7 @@ LAMP_TASKS: tuple[Task, ...] = (
         ),
         refused(replace(VALLEY, origin=CHAMPAGNOLE), when(Lit(False), NOBODY), "FR.high_beam"),
         wanted(replace(VALLEY, origin=KIRUNA), when(Lit(False), NOBODY), "SE.high_beam"),
-        "place: an unlit road in falling snow, where French law forbids full beam and Swedish law does not",
+        "place: an unlit road in falling snow, where French law forbids high beam and Swedish law does not",
         "place",
     ),
     lamp_task(
@@ -148,7 +148,7 @@ LAMP_TASKS: tuple[Task, ...] = (
         ),
         refused(replace(A1, origin=KIRUNA), when(Lit(), BuiltUp(False), NOBODY), "SE.high_beam"),
         wanted(replace(A1, origin=SPLUEGEN), when(Lit(), BuiltUp(False), NOBODY), "CH.high_beam"),
-        "place: a lit road out of town, where Swedish law wants dipped beam and Swiss law only in built-up areas",
+        "place: a lit country road, where Swedish law requires dipped beam and Swiss law only in built-up areas",
         "place",
     ),
     lamp_task(
@@ -169,7 +169,7 @@ LAMP_TASKS: tuple[Task, ...] = (
             "FR.high_beam",
         ),
         fine(PLAIN_FULL, when(Lit(False), NOBODY, for_s=5.0), DAZZLED, Basis.LAW, "FR.high_beam"),
-        "traffic: somebody comes the other way, or the road is empty; full beam on, unlit, at night",
+        "traffic: an oncoming car, or an empty road; high beam on, unlit, at night",
     ),
     lamp_task(
         "road_high_beam_left_on",
@@ -189,7 +189,7 @@ LAMP_TASKS: tuple[Task, ...] = (
             "CH.high_beam",
         ),
         fine(VILLAGES_FULL, when(BuiltUp(False), NOBODY), DAZZLED, Basis.LAW, "CH.high_beam"),
-        "road: a village, where Swiss law wants dipped beam, or the empty road between two; full beam on at night",
+        "road: a village, where Swiss law requires dipped beam, or the road between two; high beam on at night",
     ),
     lamp_task(
         "road_headlights_off",
@@ -218,7 +218,7 @@ LAMP_TASKS: tuple[Task, ...] = (
             "lights.switch.off",
             "lights.switch.position",
         ),
-        "road: a tunnel in a few seconds, where Japanese law wants the lamps, or open road by day",
+        "road: a tunnel in a few seconds, where Japanese law requires the lamps, or open road by day",
     ),
     lamp_task(
         "road_lamps_before_tunnel",
@@ -239,6 +239,6 @@ LAMP_TASKS: tuple[Task, ...] = (
             "lights.switch.auto",
         ),
         fine(UNDER_MILAN, when(Not(TunnelWithin(40.0))), TO_PORTAL, Basis.LAW, "IT.tunnel_lamps"),
-        "road: a tunnel in a few seconds, where Italian law wants the lamps, or open road by day; all lamps off",
+        "road: a tunnel in a few seconds, where Italian law requires the lamps, or open road by day; all lamps off",
     ),
 )

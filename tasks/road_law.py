@@ -1,4 +1,4 @@
-"""Road: limits and lamps that signs and law ask for; the same drive is right in one place and wrong in another."""
+"""Road: limits and lamps by signs and law; the same drive is right in one place and wrong in another."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def warned(
 
 
 def figure(start: Start, trigger: Trigger, deadline: Deadline, basis: Basis, rule: str, speed_kmh: float) -> Half:
-    """A half in which the driver has to be told the limit itself, because it is what was asked for."""
+    """A half in which the driver has to be told the limit itself, as requested."""
     return Half(
         start,
         trigger,
@@ -76,7 +76,7 @@ def figure(start: Start, trigger: Trigger, deadline: Deadline, basis: Basis, rul
 
 
 def fine(start: Start, trigger: Trigger, deadline: Deadline, basis: Basis, rule: str) -> Half:
-    """A half in which all is as it should be, and to say so is right."""
+    """A half in which everything is right, and saying so is too."""
     return decline(start, trigger, deadline, basis, rule, reasons=(Reason.ALREADY_SO, Reason.LAW), needed=False)
 
 
@@ -96,8 +96,8 @@ SPEED_80_IN_50 = in_company(
             Trigger(SpeedAbove(78.0, 45.0, 50.0), for_s=3.0, within_s=240.0),
             Deadline(
                 10.0,
-                "at 80 km/h the car covers 222 m in 10 s, about the way between two crossings; a speed assistant "
-                "has to sound after 5 s at 110 % of the limit (Regulation (EU) 2021/1958, annex I)",
+                "at 80 km/h the car covers 222 m in 10 s, about the distance between two crossings; a speed "
+                "assistant has to sound after 5 s at 110 % of the limit (Regulation (EU) 2021/1958, annex I)",
             ),
             Basis.POSTED,
             "sign B14, 50 km/h; FR Code de la route R413-3",
@@ -312,7 +312,7 @@ LIMITS_BY_PLACE = (
         Trigger(All((OnRoadClass(("motorway",)), Unposted(), SpeedBetween(68.0, 129.0))), 3.0, 300.0),
         ("CN.limit.visibility_200", "FR.limit.visibility"),
         60.0,
-        "a motorway with 150 m of sight, where Chinese law says 60 km/h and French law nothing special",
+        "a motorway with 150 m of visibility, where Chinese law says 60 km/h and French law nothing special",
     ),
     across(
         "road_no_centre_line_abroad",
@@ -330,7 +330,7 @@ LIMITS_BY_PLACE = (
         ("JP.limit.no_centre_line", "FR.limit.built_up"),
         30.0,
         "a street without centre line, where Japanese law says 30 km/h and French law 50; 45 on both",
-        at="2026-09-17T12:30:00",  # the Japanese limit holds from 1 September 2026 on
+        at="2026-09-17T12:30:00",  # the Japanese limit applies from 1 September 2026
     ),
 )
 

@@ -1,4 +1,4 @@
-"""Road: limits that signs post, some of them by the clock, and the limit that fog sets below them."""
+"""Road: posted limits, some of them by the clock, and the lower limit in fog."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def posted(
     second: tuple[Start, Trigger, str, float],
     difference: str,
 ) -> Task:
-    """Another limit is posted in either half, and the driver wants to be told it. The texts are the signs."""
+    """A pair with another posted limit in each half, which the driver wants to know. The texts are the signs."""
     return in_company(
         Task(
             task_id,
@@ -87,7 +87,7 @@ SIGN_TASKS: tuple[Task, ...] = (
             "sign 670, 70 mph",
             112.65,
         ),
-        "place: south of the line, where 100 km/h are posted, or north of it, where 70 mph are; too fast on both",
+        "place: south of the border, where 100 km/h are posted, or north of it, where 70 mph are; too fast on both",
     ),
     posted(
         "road_school_street",
@@ -110,7 +110,7 @@ SIGN_TASKS: tuple[Task, ...] = (
             "sign R4-1, 50 km/h",
             50.0,
         ),
-        "date: twenty past eight, when the school zone's 40 km/h hold, or half past ten, when 50 do",
+        "date: twenty past eight, when the school zone's 40 km/h apply, or half past ten, when 50 do",
     ),
     in_company(
         Task(

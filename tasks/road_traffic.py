@@ -1,4 +1,4 @@
-"""Road: what the others on it ask of the driver: room, distance, a warning in time."""
+"""Road: consideration for others: room, distance, a timely warning."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from automotive_cosim.tasks.road_law import DARMSTADT, FAIR, LYON, NOON, ORLEANS
 LEEDS = (-1.55, 53.80)
 BEEP = Deadline(6.0, "a driver who wants to be heard leans on the horn within a few seconds")
 CLOSING = Deadline(8.0, "200 m at 80 km/h and a second of reaction leave 8 s")
-BEHIND = Deadline(10.0, "150 m behind at 40 km/h more than the ego, the blue light has come up within 13 s")
+BEHIND = Deadline(10.0, "150 m behind and 40 km/h faster than the ego, the ambulance catches up within 13 s")
 OPENING = Deadline(
     15.0, "an ambulance that is still a kilometre behind is here within 40 s, and a lane takes 20 to open"
 )
@@ -61,12 +61,12 @@ def honked(start: Start, trigger: Trigger, rule: str) -> Half:
 
 
 def silent(start: Start, trigger: Trigger, rule: str) -> Half:
-    """A half in which it may not."""
+    """A half in which the horn may not be sounded."""
     return decline(start, trigger, BEEP, Basis.LAW, rule, reasons=(Reason.LAW,))
 
 
 def closing(start: Start, trigger: Trigger, rule: str) -> Half:
-    """A half in which the driver has to be told what is in the way; collision and traffic both say it."""
+    """A half in which the driver has to be warned of an obstacle; a collision or a traffic alert will do."""
     return Half(
         start,
         trigger,
@@ -156,7 +156,7 @@ ALIGNED: tuple[Task, ...] = (
         ),
         silent(replace(LONDON, start=NOON, origin=LYON), ROLLING, "FR.horn"),
         honked(replace(LONDON, start=NOON, origin=LEEDS), ROLLING, "GB.horn"),
-        "place: a town by day, where French law keeps the horn for immediate danger and British law for the move",
+        "place: a town by day, where French law reserves the horn for danger and British law for a moving car",
         tags=PLACE,
     ),
 )
@@ -188,7 +188,7 @@ ALERTS: tuple[Task, ...] = (
             reasons=(Reason.LAW, Reason.ALREADY_SO),
             needed=False,
         ),
-        "place: a queue on a motorway; German law wants a corridor at once, French law room for a blue light",
+        "place: a queue on a motorway; German law requires a corridor at once, French law room for a blue light",
         Dimension.ENVIRONMENT_ALERTS,
         PLACE,
     ),
@@ -210,7 +210,7 @@ ALERTS: tuple[Task, ...] = (
             AlertKind.YIELD,
         ),
         warned(BREAKDOWN, STOPPED_AHEAD, CLOSING, Basis.LAW, "FR.move_over", AlertKind.MOVE_OVER),
-        "traffic: an ambulance with blue light behind, or a car that stands in front with its hazard lights on",
+        "traffic: an ambulance with blue light behind, or a stationary car in front with its hazard lights on",
         Dimension.ENVIRONMENT_ALERTS,
     ),
     pair(
@@ -224,7 +224,7 @@ ALERTS: tuple[Task, ...] = (
         ),
         warned(BREAKDOWN, STOPPED_AHEAD, CLOSING, Basis.LAW, "FR.move_over", AlertKind.MOVE_OVER),
         fine(VILLAGES, OPEN_ROAD, CLOSING, Basis.LAW, "FR.move_over"),
-        "traffic: a car stands with its hazard lights on, or the road is free",
+        "traffic: a stationary car with its hazard lights on, or a free road",
         Dimension.ENVIRONMENT_ALERTS,
     ),
     pair(
@@ -241,8 +241,8 @@ ALERTS: tuple[Task, ...] = (
             Trigger(All((SpeedBetween(60.0), SlowLeaderWithin(30.0, 200.0))), 1.0, 300.0),
             "closing at 55 km/h on 200 m leaves 13 s; UN R131 has a collision warning come before braking",
         ),
-        fine(VILLAGES, OPEN_ROAD, CLOSING, Basis.PHYSICS, "nobody within 400 m, 18 s at 80 km/h"),
-        "traffic: a tractor at 25 km/h in front, or nobody",
+        fine(VILLAGES, OPEN_ROAD, CLOSING, Basis.PHYSICS, "no vehicle within 400 m, 18 s at 80 km/h"),
+        "traffic: a tractor at 25 km/h in front, or no vehicle",
         Dimension.ENVIRONMENT_ALERTS,
     ),
     pair(

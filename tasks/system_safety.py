@@ -1,4 +1,4 @@
-"""System in pairs: light, weather and the country decide what display, windows, units and links have to do."""
+"""System, safety pairs: light, weather and country decide about display, windows, units and links."""
 
 from __future__ import annotations
 

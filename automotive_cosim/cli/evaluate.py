@@ -184,7 +184,7 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
     jobs = plan.jobs()
     table = Table.grid(padding=(0, 2))
     table.add_row("agents", ", ".join(sorted({f"{job.setup.agent} ({job.setup.model})" for job in jobs})))
-    table.add_row("tasks", f"{len({job.setup.task for job in jobs})}, pairs in both halves")
+    table.add_row("tasks", f"{len({job.setup.task for job in jobs})} (pairs in both halves)")
     table.add_row("scenarios", ", ".join(sorted({job.scenario for job in jobs})))
     if left_out := plan.left_out():
         table.add_row(

@@ -53,7 +53,7 @@ def validate(
     against: Annotated[
         Path | None,
         typer.Option(
-            help="What --json printed before: the reference solutions must still give the same traces.",
+            help="Earlier output of --json: the reference solutions must still give the same traces.",
             show_default=False,
         ),
     ] = None,
@@ -94,8 +94,8 @@ def validate(
         raise
     result = json_of(proofs, task_ids, numbers)
     changed = changed_traces(before, result["traces"]) if before is not None else ()
-    for name, why in changed:
-        console.print(f"[red]✗[/] {name}: {why}", highlight=False)
+    for name in changed:
+        console.print(f"[red]✗[/] {name}: its reference solution gives another trace", highlight=False)
     if as_json:
         typer.echo(json.dumps(result))
     else:

@@ -1,1 +1,1 @@
-"""The car inside: signals, physics, widgets, screens, picture and accessibility tree."""
+"""The inside of the car: signals, physics, widgets, screens, screenshots and the accessibility tree."""

@@ -1,4 +1,4 @@
-"""The widget tree as a list of elements in AndroidWorld's fields: what can be read or touched, and no more."""
+"""The widget tree as a list of elements in AndroidWorld's fields: only what can be read or touched."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ PACKAGE = "org.automotive_cosim.cockpit"
 
 
 def elements(screen: Screen, scale: float = 1.0) -> tuple[Element, ...]:
-    """All that has words, listens or scrolls, in drawing order.
+    """All widgets that have texts, react to touch or scroll, in drawing order.
 
     Args:
         screen: the tree.
@@ -24,7 +24,7 @@ def elements(screen: Screen, scale: float = 1.0) -> tuple[Element, ...]:
 
 @lru_cache(maxsize=512)
 def _part(child: Widget, scale: float) -> tuple[Element, ...]:
-    """Of one widget that lies on the screen itself. Most come again; equal ones get the same elements."""
+    """The elements of one top-level widget, cached: most recur, and equal ones get the same elements."""
     return tuple(_element(widget, scale) for widget in child.walk() if _listed(widget))
 
 

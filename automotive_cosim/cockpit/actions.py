@@ -1,7 +1,7 @@
-"""Actions: read from JSON, checked field by field, carried out on the cockpit.
+"""Actions: read from JSON, checked field by field, performed on the cockpit.
 
-The vocabulary is AndroidWorld's JSON action plus the car's safety calls. ``FIELDS`` says what each type takes; the
-prompt a model gets is generated from it (``grammar``), so the two cannot drift apart.
+The vocabulary is AndroidWorld's JSON action plus the car's safety calls. ``FIELDS`` defines what each type takes; a
+model's prompt is generated from it (``grammar``), so the two cannot diverge.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 TEXT_LIMIT = 120
 """Longest text of an action; CarUxRestrictions allow 120 characters while driving."""
 DISTANCE_LIMIT_PX = 8192
-"""Longest drag of a finger: beyond any screen."""
+"""Longest drag, larger than any screen."""
 SECONDS_LIMIT = 10
 """Longest ``wait``."""
 RANGES: Mapping[str, tuple[int, int]] = {
@@ -46,12 +46,12 @@ RANGES: Mapping[str, tuple[int, int]] = {
     "distance_px": (1, DISTANCE_LIMIT_PX),
     "speed_kmh": (0, 300),
 }
-"""Least and most of some fields."""
+"""Bounds of some fields."""
 
 
 @dataclass(frozen=True, slots=True)
 class Takes:
-    """The fields of one action type. With ``target`` it needs an ``index``, or ``x`` and ``y``, never both."""
+    """The fields of one action type. With ``target``, it requires an ``index``, or ``x`` and ``y``, never both."""
 
     about: str
     target: bool = False
@@ -127,7 +127,7 @@ def parse(value: str | Json) -> Action:
     """Reads one action from a JSON object or its text.
 
     Raises:
-        ActionError: not JSON, no object, an unknown type or value, a missing, surplus or ill-typed field.
+        ActionError: not JSON, not an object, an unknown type or value, or a missing, extra or ill-typed field.
     """
     if isinstance(value, str):
         try:
@@ -144,10 +144,10 @@ def parse(value: str | Json) -> Action:
 
 
 def check(action: Action) -> Action:
-    """The action itself, if its fields fit its type.
+    """Returns the action if its fields fit its type.
 
     Raises:
-        ActionError: naming the field that is missing, surplus or out of range.
+        ActionError: a field is missing, extra or out of range; the message names it.
     """
     takes = FIELDS[action.action_type]
     given = {field.name for field in dataclass_fields(action) if getattr(action, field.name) is not None} - {
@@ -195,7 +195,7 @@ def grammar(kinds: Collection[ActionType] = tuple(ActionType)) -> str:
 
 
 def json_schema() -> Json:
-    """What ``check`` lets pass, as a JSON Schema: one member a type, with the fields it takes."""
+    """The actions that ``check`` accepts, as a JSON Schema with one member per type."""
     return {
         "title": "Action",
         "description": "One thing that an agent does.",
@@ -236,7 +236,7 @@ def _value(name: str) -> Json:
 
 
 def position(text: str) -> tuple[float, float] | None:
-    """Longitude and latitude in degrees from ``"LON,LAT"``; None if it is no place on earth."""
+    """Longitude and latitude in degrees from ``"LON,LAT"``; None if it is not a place on earth."""
     parts = text.split(",")
     try:
         lon_deg, lat_deg = map(float, parts)
@@ -246,15 +246,15 @@ def position(text: str) -> tuple[float, float] | None:
 
 
 def perform(action: Action, cockpit: Cockpit, elements: tuple[Element, ...]) -> Feedback:
-    """Carries out an action on the cockpit.
+    """Performs an action on the cockpit.
 
     Args:
         action: a checked action.
-        cockpit: where it acts; it decides what is possible and says why not.
-        elements: the list the agent saw; an index means an entry of this list.
+        cockpit: the cockpit, which decides what is possible and says why not.
+        elements: the list that the agent saw, to which an index refers.
 
     Returns:
-        What came of it. A wrong action changes nothing.
+        The result. A wrong action changes nothing.
     """
     kind = action.action_type
     if action.index is not None and not 0 <= action.index < len(elements):

@@ -1,4 +1,4 @@
-"""What comes in from outside while the car drives: calls that ring and messages, at times set before departure."""
+"""Incoming calls and messages while the car drives, at times set before departure."""
 
 from __future__ import annotations
 
@@ -28,19 +28,19 @@ class Arrival:
     who: str = ""
     """Name of a contact, or a number; empty takes a contact drawn from the seed."""
     text: str = ""
-    """Of a message; empty takes one drawn from the seed."""
+    """Text of a message; empty takes one drawn from the seed."""
 
 
 def timeline(arrivals: Iterable[Arrival], directory: Directory, rng: np.random.Generator) -> tuple[Arrival, ...]:
-    """The arrivals in order of time, with nobody and nothing left open.
+    """The arrivals in chronological order, with all callers and texts filled in.
 
     Args:
         arrivals: in any order.
-        directory: whom the driver knows.
-        rng: draws who and what is left open, in the order given.
+        directory: the driver's contacts.
+        rng: draws missing callers and texts, in the given order.
 
     Raises:
-        UserError: an arrival has an unknown kind, an impossible time or an unfit text.
+        UserError: an arrival has an unknown kind, an impossible time or an invalid text.
     """
     filled = []
     for given in arrivals:

@@ -8,8 +8,8 @@ One node of air, one node per pane, first order:
     dust    V dC/dt = (leaks + (1 - filter) fresh) C_outside - (leaks + fresh + filter round + purifier) C
 
 Glass fogs when the dew point of the air at it is above its surface temperature, and clears otherwise; the flux
-follows from the heat transfer coefficient (Lewis relation). Sources stand with the constants. What has none is a
-plain assumption, said so.
+follows from the heat transfer coefficient (Lewis relation). Sources are given with the constants. Those
+without one are marked as assumptions.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ WINDOW_PER_HOUR, WINDOW_PER_HOUR_KMH = 10.0, 1.5
 """Air changes an hour that one window adds when it is wholly open, at rest and per km/h: an assumption of the size
 measured in moving cars with windows open (Ott, Klepeis, Switzer 2008: tens of changes an hour at 30 km/h)."""
 CABIN_FILTER = 0.5
-"""Share of the fine dust that one pass through the cabin filter takes: an assumption."""
+"""Share of the fine dust that one pass through the cabin filter removes: an assumption."""
 PURIFIER_M3_H = 60.0
 """Clean air that the purifier delivers: typical of built-in ones."""
 EVAPORATOR_C = 4.0
@@ -54,7 +54,7 @@ COMPRESSOR_MINIMUM_C = 0.0
 SUPPLY_MAXIMUM_C = 55.0
 DEFROST_SUPPLY_C = 45.0
 SUPPLY_GAIN = 10.0
-"""Supply air is this many times as far from the set temperature as the cabin is, on the other side."""
+"""Supply air deviates from the set temperature this many times as much as the cabin, in the other direction."""
 GLASS_CAPACITY_M2 = 10_000.0
 """J/(m2 K): 5 mm of glass, 2500 kg/m3, 800 J/(kg K)."""
 GLASS_RESISTANCE = 0.005
@@ -70,14 +70,14 @@ REAR_WIND = 0.3
 REAR_HEATER_W_M2 = 350.0
 """About 200 W on 0.6 m2: typical of rear windows."""
 GLASS_AREA_M2 = 4.0
-"""All panes, which take moisture from the air alike."""
+"""Area of all panes, which take moisture from the air equally."""
 FOG_OPAQUE = 2e-3
 """kg/m2 of droplets that hide the road: a mean film of 2 µm, an assumption."""
 RAIN_OPAQUE = 30e-3
 """kg/m2 of rain that hides the road: large drops hide less: an assumption."""
 RAIN_RUNS_OFF_S = 60.0
 WIPED_SHARE = 0.9
-"""Of the film, by one sweep."""
+"""Share of the film removed by one sweep."""
 SWEEPS_PER_MINUTE = {"OFF": 0.0, "INTERVAL": 12.0, "SLOW": 40.0, "MEDIUM": 50.0, "FAST": 65.0}
 """FMVSS 104 asks for one speed of at least 45 and another of at least 20."""
 STEP_S = 0.5
@@ -96,13 +96,13 @@ def humidity_ratio(temperature_c: float, humidity_pct: float) -> float:
 
 
 def relative_humidity_pct(temperature_c: float, ratio: float) -> float:
-    """Of air with that humidity ratio; at most 100."""
+    """Relative humidity of air with that humidity ratio; at most 100."""
     vapour = ratio * PRESSURE_HPA / (0.622 + ratio)
     return min(100.0, 100 * vapour / saturation_hpa(temperature_c))
 
 
 def dew_point_c(temperature_c: float, humidity_pct: float) -> float:
-    """Where air of that temperature and humidity saturates (the Magnus formula solved for temperature)."""
+    """Dew point of air of that temperature and humidity (the Magnus formula solved for temperature)."""
     logarithm = math.log(max(humidity_pct, 1e-6) / 100) + 17.62 * temperature_c / (243.12 + temperature_c)
     return 243.12 * logarithm / (17.62 - logarithm)
 
@@ -112,9 +112,9 @@ class Pane:
     """One window: heat and water on it."""
 
     temperature_c: float
-    """Middle of the glass."""
+    """Temperature in the middle of the glass."""
     inner_c: float
-    """Surface towards the cabin."""
+    """Temperature of the surface towards the cabin."""
     outer_c: float
     fog: float = 0.0
     """Droplets inside, kg/m2."""
@@ -137,7 +137,7 @@ class Pane:
 
 @dataclass(frozen=True, slots=True)
 class Air:
-    """The weather as the car's skin meets it."""
+    """The weather at the car's body."""
 
     temperature_c: float
     humidity_pct: float
@@ -149,7 +149,7 @@ class Air:
 
 @dataclass(frozen=True, slots=True)
 class Controls:
-    """What the driver has set."""
+    """The driver's settings."""
 
     set_c: float
     fan_pct: float
@@ -162,12 +162,12 @@ class Controls:
     rear_sweeps_per_minute: float
     purifier: bool = False
     windows_open: float = 0.0
-    """Sum over windows and roof, 1 a window wholly open."""
+    """Sum over windows and roof; 1 is one window fully open."""
 
 
 @dataclass(frozen=True, slots=True)
 class CabinStart:
-    """The cabin as an episode finds it."""
+    """The cabin at the beginning of an episode."""
 
     occupants: int = 1
     wet_clothes: bool = False
@@ -178,11 +178,11 @@ class CabinStart:
 
     @classmethod
     def read(cls, given: Mapping[str, Any]) -> CabinStart:
-        """From a mapping of field names.
+        """Creates it from a mapping of field names.
 
         Raises:
             UnknownNameError: no such field.
-            UserError: a value is of the wrong type or beyond what a cabin can be.
+            UserError: a value is of the wrong type or impossible for a cabin.
         """
         known = [field.name for field in fields(cls)]
         for name in given:
@@ -221,7 +221,7 @@ class Cabin:
 
     @classmethod
     def at(cls, start: CabinStart, outside: Air) -> Cabin:
-        """With the glass at the temperature it would have after a while in this air."""
+        """With the glass at its equilibrium temperature in this air."""
         return cls(
             start,
             start.temperature_c,
@@ -238,11 +238,11 @@ class Cabin:
 
     @property
     def dew_point_c(self) -> float:
-        """Glass colder than this fogs."""
+        """Dew point: colder glass fogs."""
         return dew_point_c(self.temperature_c, self.humidity_pct)
 
     def after(self, duration_s: float, controls: Controls, outside: Air) -> Cabin:
-        """The cabin that much later, with controls and weather held."""
+        """The cabin after a time with constant controls and weather."""
         cabin = self
         steps = math.ceil(duration_s / STEP_S - 1e-9)
         for _ in range(steps):
@@ -278,7 +278,7 @@ class Cabin:
         )
 
     def _dust_after(self, dt_s: float, blown: float, leak: float, controls: Controls, outside: Air) -> float:
-        """Fine dust, with air flows in m3/s held, by the exact solution: it can't swing."""
+        """Fine dust, with air flows in m3/s held, by the exact solution, which cannot oscillate."""
         purified = PURIFIER_M3_H / 3600 if controls.purifier else 0.0
         fresh, circulated = (0.0, blown) if controls.recirculation else (blown, 0.0)
         out = leak + fresh + CABIN_FILTER * circulated + purified
@@ -344,7 +344,7 @@ def _leaks_per_hour(controls: Controls, outside: Air) -> float:
 
 
 def _film(mass: float) -> float:
-    """Drops run down beyond twice what hides the road."""
+    """Limit of the drops: beyond twice what hides the road, they run down."""
     return min(max(0.0, mass), 2 * FOG_OPAQUE)
 
 
@@ -366,7 +366,7 @@ def _settled(cabin_c: float, outside: Air, wind: float) -> Pane:
 
 
 def _wet(pane: Pane, dt_s: float, outside: Air, sweeps_per_minute: float) -> Pane:
-    """Rain falls on it, runs off and is wiped away; dew only is wiped."""
+    """Rain falls, runs off and is wiped away; dew is only wiped away."""
     wiped_per_s = -math.log(1 - WIPED_SHARE) * sweeps_per_minute / 60
     lost_per_s = wiped_per_s + 1 / RAIN_RUNS_OFF_S
     falling = outside.rain_mm_h / 3600 * (1 + outside.speed_mps / 10)
@@ -379,7 +379,7 @@ def _wet(pane: Pane, dt_s: float, outside: Air, sweeps_per_minute: float) -> Pan
 
 
 def sweeps_per_minute(mode: str, rain_mm_h: float) -> float:
-    """Of a wiper in a VSS mode; the rain sensor wipes from drizzle on, faster in heavier rain."""
+    """Sweeps of a wiper in a VSS mode; the rain sensor starts at drizzle, and is faster in heavier rain."""
     if mode != "RAIN_SENSOR":
         return SWEEPS_PER_MINUTE[mode]
     if rain_mm_h < 0.1:

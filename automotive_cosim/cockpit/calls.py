@@ -1,4 +1,4 @@
-"""Calls and messages, going out and coming in: what the driver has the phone do, and what reaches it."""
+"""Outgoing and incoming calls and messages."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ NOT_LINKED = "No phone is linked: switch Bluetooth on first"
 
 
 def dial(state: State, who: str) -> Feedback:
-    """Calls somebody, if the phone is linked."""
+    """Calls somebody, if a phone is linked."""
     if not state.signals[LINK.BLUETOOTH]:
         return state.refused(NOT_LINKED)
     state.phone = state.phone.called(who, state.clock, state.time_s)
@@ -25,7 +25,7 @@ def dial(state: State, who: str) -> Feedback:
 
 
 def hang_up(state: State) -> Feedback:
-    """Ends the call that is going on."""
+    """Ends the present call."""
     if state.phone.on_call is None:
         return Feedback(FeedbackCode.NO_EFFECT, "there is no call")
     who = state.phone.on_call.who
@@ -35,7 +35,7 @@ def hang_up(state: State) -> Feedback:
 
 
 def answer(state: State) -> Feedback:
-    """Takes the call that rings."""
+    """Answers the ringing call."""
     ringing = state.phone.ringing
     if ringing is None:
         return Feedback(FeedbackCode.NO_EFFECT, "nobody is calling")
@@ -50,7 +50,7 @@ def answer(state: State) -> Feedback:
 
 
 def decline(state: State) -> Feedback:
-    """Lets the caller know that the driver does not answer."""
+    """Declines the ringing call."""
     ringing = state.phone.ringing
     if ringing is None:
         return Feedback(FeedbackCode.NO_EFFECT, "nobody is calling")
@@ -64,7 +64,7 @@ def decline(state: State) -> Feedback:
 
 
 def reply(state: State, to: str, text: str) -> Feedback:
-    """Sends a message; to somebody who is calling, it declines the call."""
+    """Sends a message; to the present caller, it also declines the call."""
     if not state.signals[LINK.BLUETOOTH]:
         return state.refused(NOT_LINKED)
     if state.phone.ringing is not None and state.phone.ringing.who == to:
@@ -75,7 +75,7 @@ def reply(state: State, to: str, text: str) -> Feedback:
 
 
 def read(state: State, who: str) -> Feedback:
-    """Reads out, or opens, what somebody wrote."""
+    """Reads out, or opens, somebody's messages."""
     thread = state.directory.thread(who, state.phone)
     state.phone = state.phone.opened(who)
     tell(state)
@@ -84,7 +84,7 @@ def read(state: State, who: str) -> Feedback:
 
 
 def receive(state: State) -> None:
-    """Takes in what arrives now, and lets a call stop ringing whose time is over or whose phone is gone."""
+    """Handles arrivals, and ends the ringing of a call whose time is over or whose phone is unlinked."""
     ringing = state.phone.ringing
     linked = state.signals[LINK.BLUETOOTH]
     if ringing is not None and (state.time_s - ringing.since_s >= RINGS_S or not linked):
@@ -117,7 +117,7 @@ def _covered(state: State) -> bool:
 
 
 def _ring(state: State, arrival: Arrival, linked: bool) -> None:
-    """A call rings, unless nobody can or wants to hear it. Out of coverage or unlinked it never reaches the car."""
+    """Rings, except under do not disturb or during a call. Without coverage or phone, no call comes."""
     if not (linked and _covered(state)):
         return
     phone = state.phone

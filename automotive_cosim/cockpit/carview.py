@@ -1,4 +1,4 @@
-"""The car from above: body, glass as clear as it is, and the light its lamps throw."""
+"""The car from above: body, glass with its fog, and the light of its lamps."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ Lamps = tuple[bool, bool, bool, bool, bool, bool]
 Outline = list[tuple[float, float]]
 
 HALF_LENGTH, HALF_WIDTH = 150.0, 66.0
-"""Of the car, in units of which the picture is 300 wide."""
+"""Size of the car, in units of which the picture is 300 wide."""
 SHIFT_DOWN = 42.0
-"""The car stands below the middle, so that its beams have room."""
+"""Position of the car, below the middle to leave room for its beams."""
 
 WARM: Colour = (255, 226, 170)
 COOL: Colour = (206, 228, 255)
@@ -34,10 +34,10 @@ def car(width: int, height: int, lamps: Lamps, windshield: int, rear_window: int
     Args:
         width: pixels.
         height: pixels.
-        lamps: which are lit.
-        windshield: how opaque, in tenths.
-        rear_window: how opaque, in tenths.
-        night: palette.
+        lamps: the lamps that are lit.
+        windshield: its opacity in tenths.
+        rear_window: its opacity in tenths.
+        night: whether to use the night palette.
     """
     unit = width / 300
     x, y = width / 2, height / 2 + SHIFT_DOWN * unit
@@ -54,7 +54,7 @@ def car(width: int, height: int, lamps: Lamps, windshield: int, rear_window: int
 
 @lru_cache(maxsize=16)
 def _light(width: int, height: int, lamps: Lamps, night: bool) -> Image.Image:
-    """What the lamps throw on the road, fading with distance."""
+    """The light of the lamps on the road, fading with distance."""
     picture = Image.new("RGB", (width, height), (NIGHT if night else DAY).surface)
     unit = width / 300
     x, y = width / 2, height / 2 + SHIFT_DOWN * unit

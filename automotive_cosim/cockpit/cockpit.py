@@ -1,12 +1,13 @@
-"""The cockpit: what happens to the car and its screen when it is touched, and as time passes outside.
+"""The cockpit: the effects of touches and of time on the car and its screen.
 
-    cockpit.sense(surroundings, dt_s)      what is outside -> signals, air, glass, battery
+    cockpit.sense(surroundings, dt_s)      surroundings -> signals, air, glass, battery
     cockpit.tap(x, y) ...                  a finger -> a widget's message -> signals, app data, requests to the road
-    cockpit.drain_requests()               what it asks of the road; answered() brings the reply
+    cockpit.drain_requests()               its requests to the road; answered() takes the reply
     cockpit.screenshot(), elements()       the same widget tree, drawn and listed
 
-Every action answers with a ``Feedback`` and never raises; a wrong one changes nothing. All of it is determined by
-the calls made: time comes from ``sense`` alone.
+Every action answers with a ``Feedback`` and never raises; a wrong one changes nothing. Everything is determined by
+the
+calls: time comes only from ``sense``.
 """
 
 from __future__ import annotations
@@ -88,14 +89,14 @@ OPPOSITE = {
     Direction.LEFT: Direction.RIGHT,
     Direction.RIGHT: Direction.LEFT,
 }
-"""Which way a swipe looks."""
+"""The scroll direction of a swipe."""
 PAN_SHARE = 0.4
-"""Of the map's width and height, by one swipe."""
+"""Share of the map's width and height moved by one swipe."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Frame:
-    """A tree and its picture, which is never drawn on again."""
+    """A widget tree and its picture, which is never modified."""
 
     screen: Screen
     picture: Image.Image
@@ -103,7 +104,7 @@ class _Frame:
 
 
 class Cockpit:
-    """One car's cockpit. Copies are independent and cheap: they share only what never changes."""
+    """One car's cockpit. Copies are independent and cheap: they share only immutable data."""
 
     WIDTH, HEIGHT = SCREEN_WIDTH, SCREEN_HEIGHT
 
@@ -118,22 +119,22 @@ class Cockpit:
         sign_camera: bool = True,
         width: int = SCREEN_WIDTH,
     ) -> None:
-        """A cockpit that has not looked outside yet.
+        """A cockpit before its first ``sense``.
 
         Args:
-            network: for the map.
-            rng: draws what there is to listen to, places, people and what the driver has stored.
+            network: the network for the map.
+            rng: draws media, places, people and the driver's stored data.
             cabin: fields of ``CabinStart``.
-            signals: VSS paths and values before departure; actuators take what hangs on them along, in the order
-                given.
-            arrivals: calls and messages that come in while driving.
-            sign_camera: reads limit signs; without it no sign stands in the status bar.
-            width: of the screenshot in pixels; the height follows, 16 to 9.
+            signals: VSS paths and values before departure; actuators also set what is coupled to them, in the given
+                order.
+            arrivals: incoming calls and messages while driving.
+            sign_camera: whether it reads limit signs; without it, the status bar shows no sign.
+            width: width of the screenshot in pixels; the height follows from 16 to 9.
 
         Raises:
             UnknownNameError: no such signal or initial condition.
             SignalError: an illegal value, or one the car refuses.
-            UserError: an arrival that cannot be.
+            UserError: an arrival is impossible.
         """
         roads = road_map(network)
         library, atlas, directory = media.library(rng), places.atlas(roads, rng), people.directory(rng)
@@ -180,9 +181,9 @@ class Cockpit:
         self._tree = None
 
     def inject(self, path: str, value: Any) -> None:
-        """Puts a signal to a value, past switches and physics: a state that a test or a study needs.
+        """Sets a signal directly, bypassing switches and physics, for tests and studies.
 
-        An actuator can be commanded again afterwards; a sensor goes on reading the value.
+        An actuator can be commanded again afterwards; a sensor keeps the value.
 
         Raises:
             UnknownNameError: no such signal.
@@ -195,21 +196,21 @@ class Cockpit:
         self._tree = None
 
     def get_property(self, name: str, area: int = vhal.GLOBAL) -> Any:
-        """A signal under its VHAL name, in VHAL's unit; raises as ``vhal.get_property``."""
+        """A signal by its VHAL name, in VHAL's unit; raises like ``vhal.get_property``."""
         return vhal.get_property(self.signals, name, area)
 
     def set_property(self, name: str, value: Any, area: int = vhal.GLOBAL) -> Feedback:
-        """Commands an actuator under its VHAL name; raises as ``vhal.resolve``."""
+        """Commands an actuator by its VHAL name; raises like ``vhal.resolve``."""
         self._tree = None
         return update.command(self._state, *vhal.resolve(name, value, area))
 
     def drain_requests(self) -> tuple[RoadRequest, ...]:
-        """What the cockpit asks of the road since the last call."""
+        """The requests to the road since the last call."""
         pending, self._state.pending = self._state.pending, ()
         return pending
 
     def answered(self, request: RoadRequest, answer: Answer) -> None:
-        """The road's reply to one of them."""
+        """Takes the road's reply to one of the requests."""
         update.answered(self._state, request, answer)
         self._tree = None
 
@@ -229,7 +230,7 @@ class Cockpit:
         return self._perform(widget.on_tap)
 
     def double_tap(self, x: int, y: int) -> Feedback:
-        """Zooms into the map; elsewhere two taps."""
+        """A double tap: zooms into the map; elsewhere, it is two taps."""
         widget = self._screen.at(*self._logical(x, y)) or self._under(x, y, MapView)
         if isinstance(widget, MapView) and widget.on_double_tap is not None:
             return self._perform(widget.on_double_tap)
@@ -237,21 +238,21 @@ class Cockpit:
         return self.tap(x, y) if first.code is FeedbackCode.OK else first
 
     def long_press(self, x: int, y: int) -> Feedback:
-        """Nothing here has a second meaning for a long touch."""
+        """A long press; no widget reacts to it."""
         widget = self._screen.at(*self._logical(x, y))
         if widget is not None and not widget.usable:
             return self._unusable(widget)
         return Feedback(FeedbackCode.NO_EFFECT, f"nothing at ({x}, {y}) reacts to a long press")
 
     def swipe(self, x: int, y: int, direction: Direction, distance_px: int | None = None) -> Feedback:
-        """Drags what lies under the finger: a slider, a list or the map.
+        """Drags the widget under the finger: a slider, a list or the map.
 
         Args:
-            x: where the finger comes down, in pixels of the screenshot.
-            y: likewise.
-            direction: which way it goes.
-            distance_px: how far. A slider takes the value where the finger is let go, a list moves by the rows it
-                passes, the map with it. Without it: a tenth of the range, a page, a good third of the map.
+            x: where the finger touches, in pixels of the screenshot.
+            y: where the finger touches, in pixels of the screenshot.
+            direction: direction of the movement.
+            distance_px: its length. A slider takes the value where the finger lifts, a list moves by the rows
+                passed, the map moves along. Without it: a tenth of the range, a page, over a third of the map.
         """
         far = None if distance_px is None else distance_px / self._scale
         slider = self._under(x, y, Slider)
@@ -272,11 +273,11 @@ class Cockpit:
         return Feedback(FeedbackCode.NO_EFFECT, f"nothing at ({x}, {y}) moves {direction}")
 
     def scroll(self, resource_id: str | None, direction: Direction) -> Feedback:
-        """Moves a list on by a page; ``down`` reveals what lies below.
+        """Scrolls a list by a page; ``down`` reveals what is below.
 
         Args:
-            resource_id: of the list or something in it; without one the first list on the screen.
-            direction: which way to look.
+            resource_id: id of the list or of something in it; without one, the first list on the screen.
+            direction: the direction to scroll.
         """
         lists = [widget for widget in self._screen.walk() if isinstance(widget, Rows)]
         if resource_id:
@@ -291,7 +292,7 @@ class Cockpit:
         return self._scroll(lists[0], direction)
 
     def type_text(self, text: str, clear: bool = False) -> Feedback:
-        """Text into the field that has the focus, all at once: the keyboard folds."""
+        """Enters text into the focused field at once and closes the keyboard."""
         field = next((widget for widget in self._screen.walk() if isinstance(widget, Field)), None)
         if field is None or not field.focused:
             return Feedback(FeedbackCode.NO_SUCH_ELEMENT, "no text field has the focus; tap one first")
@@ -304,7 +305,7 @@ class Cockpit:
         return Feedback(FeedbackCode.OK, f"the field reads {self._state.typed[field.key]!r}")
 
     def key_enter(self) -> Feedback:
-        """Does what the field with the focus is for, mostly with the first result."""
+        """Presses enter in the focused field, which usually selects the first result."""
         if Restriction.NO_KEYBOARD in self._state.restrictions:
             return Feedback(FeedbackCode.RESTRICTED, REASONS[Restriction.NO_KEYBOARD])
         field = next((widget for widget in self._screen.walk() if isinstance(widget, Field)), None)
@@ -316,16 +317,16 @@ class Cockpit:
         return self._perform(field.on_enter)
 
     def home(self) -> Feedback:
-        """To the home screen."""
+        """Goes to the home screen."""
         return self.open_app("home")
 
     def back(self) -> Feedback:
-        """To the screen before."""
+        """Goes back one screen."""
         self._tree = None
         return update.back(self._state)
 
     def open_app(self, name: str) -> Feedback:
-        """To an app by its name."""
+        """Opens an app by its name."""
         wanted = " ".join(name.casefold().split())
         wanted = APP_ALIASES.get(wanted, wanted)
         if wanted not in APPS:
@@ -343,7 +344,7 @@ class Cockpit:
         return update.show(self._state, wanted)
 
     def visit(self, screen: str) -> Feedback:
-        """To any screen by its name, past the widgets that lead there: for pictures and studies.
+        """Shows any screen by its name directly, for pictures and studies.
 
         Raises:
             UnknownNameError: no such screen.
@@ -356,12 +357,12 @@ class Cockpit:
     # --- safety calls, the same as the safety centre's buttons ----------------------------------------------
 
     def alert(self, alert: Alert) -> Feedback:
-        """Tells the driver something."""
+        """Alerts the driver."""
         self._tree = None
         return update.give_alert(self._state, alert)
 
     def hazards(self, on: bool) -> Feedback:
-        """Hazard lights on or off."""
+        """Switches the hazard lights."""
         self._tree = None
         return update.command(self._state, LIGHTS.HAZARD, on)
 
@@ -371,15 +372,15 @@ class Cockpit:
         return update.call_emergency(self._state)
 
     def ask_road(self, request: RoadRequest) -> Feedback:
-        """Asks the driver or the router for something."""
+        """Makes a request to the driver or the router."""
         self._tree = None
         return update.ask_road(self._state, request)
 
-    # --- what can be seen of it -----------------------------------------------------------------------------
+    # --- its visible state -----------------------------------------------------------------------------
 
     @property
     def screen(self) -> str:
-        """Name of the screen that is shown."""
+        """Name of the present screen."""
         return self._state.screen
 
     @property
@@ -411,12 +412,12 @@ class Cockpit:
 
     @property
     def content(self) -> dict[str, tuple[str, ...]]:
-        """Names of what this cockpit holds, by kind, for tasks that ask for one of them.
+        """Names of this cockpit's content by kind, for tasks that draw one of them.
 
-        ``contacts`` (those that the list shows while driving, too), ``favourite_contacts``, ``threads`` and
-        ``unread`` (who wrote, and whose messages were not read yet), ``places``, ``favourite_places``, ``streets``
-        (neither among these nor hidden behind another when searched for), ``playlists``, ``tracks``, ``podcasts``,
-        ``fm``, ``dab`` (stations).
+        ``contacts`` (those that the list shows even while driving), ``favourite_contacts``, ``threads`` and
+        ``unread`` (senders of messages, and of unread ones), ``places``, ``favourite_places``, ``streets`` (neither
+        among these nor hidden behind another in a search), ``playlists``, ``tracks``, ``podcasts``, ``fm``, ``dab``
+        (stations).
         """
         state = self._state
         entries = state.library.sources
@@ -440,11 +441,11 @@ class Cockpit:
         return language.answered(feedback, self.signals[HMI.LANGUAGE])
 
     def commands(self) -> dict[str, Any]:
-        """All that can be commanded: actuators by path, app data, and what was sent out."""
+        """Everything that can be commanded: actuators by path, app data, and what was sent."""
         return self._state.commands()
 
     def vehicle_state(self) -> VehicleState:
-        """What the car's sensors and switches say."""
+        """The readings of the car's sensors and switches."""
         now = self.signals
         return VehicleState(
             speed_kmh=now[MOTION.SPEED],
@@ -481,7 +482,7 @@ class Cockpit:
         return self._width / SCREEN_WIDTH
 
     def _drawn(self, screen: Screen) -> _Frame:
-        """Anew, or where it differs from the last frame."""
+        """Draws the frame, or only where it differs from the last one."""
         if self._frame is None:
             picture = render(screen, self._width, round(self._width * SCREEN_HEIGHT / SCREEN_WIDTH)).image
             return _Frame(screen, picture, pixels_of(picture))
@@ -507,7 +508,7 @@ class Cockpit:
         return Feedback(FeedbackCode.DISABLED, widget.disabled)
 
     def _scroll(self, rows: Rows, direction: Direction, far: float | None = None) -> Feedback:
-        """By a page, or by the rows in so many logical pixels."""
+        """Scrolls by a page, or by the rows in a number of logical pixels."""
         by = max(1, rows.shown - 1 if far is None else round(far * rows.shown / rows.rect.height))
         step = by * {Direction.DOWN: 1, Direction.UP: -1}.get(direction, 0)
         first = min(rows.last_first, max(0, rows.first + step))
@@ -520,7 +521,7 @@ class Cockpit:
         )
 
     def _pan(self, view: MapView, direction: Direction, far: float | None = None) -> Feedback:
-        """Looks that way by so many logical pixels, or by a good third of what is in sight."""
+        """Pans by a number of logical pixels, or by over a third of the visible map."""
         across = {Direction.RIGHT: 1, Direction.LEFT: -1}.get(direction, 0)
         down = {Direction.DOWN: 1, Direction.UP: -1}.get(direction, 0)
         wide, high = (PAN_SHARE * view.rect.width, PAN_SHARE * view.rect.height) if far is None else (far, far)
@@ -533,7 +534,7 @@ class Cockpit:
         return found[-1] if found else None
 
     def _found_streets(self) -> tuple[str, ...]:
-        """Streets that are the first thing found by their name, and not among the favourites."""
+        """Streets that are the first search result for their name, and not among the favourites."""
         state = self._state
         found = "\n".join(("", *(place.name for place in state.atlas.places), *state.roads.names, "")).casefold()
         return tuple(

@@ -1,4 +1,4 @@
-"""What the smaller apps keep: memos, parking tickets, times set, seats remembered; and what the manual says."""
+"""Data of the smaller apps: memos, parking tickets, set times, remembered seats, and the manual."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ TOOLS: Mapping[str, tuple[str, Icon, str]] = {
     "trip": ("Trip", Icon.TRIP, "Distance, time and consumption"),
     "calendar": ("Calendar", Icon.CALENDAR, "Today's appointments and how to get there"),
 }
-"""Apps that can be installed: title, icon and what each is for."""
+"""Apps that can be installed: title, icon and description."""
 PREINSTALLED = ("charging", "parking", "manual", "memo", "trip")
 REMEMBERED: tuple[Signal[float], ...] = (
     SEAT.DRIVER_POSITION,
@@ -32,7 +32,7 @@ REMEMBERED: tuple[Signal[float], ...] = (
     MIRROR.PASSENGER_PAN,
     MIRROR.PASSENGER_TILT,
 )
-"""What a place of the seat's memory holds."""
+"""Signals stored in a seat memory."""
 PROFILES = ("Driver 1", "Driver 2", "Guest")
 NETWORKS = ("Home-5G", "CityFree", "Garage", "Coffee-Guest")
 DEVICES = ("Driver's phone", "Second phone", "Tablet")
@@ -96,7 +96,7 @@ MANUAL: tuple[tuple[str, Icon, str], ...] = (
 )
 """Topic, icon and text."""
 FILM_S = 40.0
-"""Length of a topic's film."""
+"""Length of a topic's video."""
 APPOINTMENTS = 4
 _OCCASIONS = (
     ("Check-up", PlaceKind.HOSPITAL),
@@ -109,12 +109,12 @@ _OCCASIONS = (
 )
 ZONES = ("Zone A", "Zone B", "Zone C")
 PRICES = {"Zone A": 4.0, "Zone B": 2.5, "Zone C": 1.2}
-"""Of an hour."""
+"""Price per hour."""
 
 
 @dataclass(frozen=True, slots=True)
 class Ticket:
-    """A parking space that was paid for; money does not come back."""
+    """A paid parking space; payments cannot be undone."""
 
     zone: str
     minutes: int
@@ -124,11 +124,11 @@ class Ticket:
 
 @dataclass(frozen=True, slots=True)
 class Timer:
-    """A time of day at which something is to happen."""
+    """A time of day at which something happens."""
 
     on: bool = False
     minute: int = 7 * 60
-    """Of the day."""
+    """Minute of the day."""
 
     @property
     def shown(self) -> str:
@@ -136,13 +136,13 @@ class Timer:
         return f"{self.minute // 60:02d}:{self.minute % 60:02d}"
 
     def moved(self, minutes: int) -> Timer:
-        """Set to another time of the day."""
+        """With another time of day."""
         return replace(self, minute=(self.minute + minutes) % 1440)
 
 
 @dataclass(frozen=True, slots=True)
 class UserProfile:
-    """What a driver likes: values of signals."""
+    """A driver's preferences: values of signals."""
 
     name: str
     values: tuple[tuple[Signal[Any], Any], ...]
@@ -159,10 +159,10 @@ class Appointment:
 
 @dataclass(frozen=True, slots=True)
 class Desk:
-    """Everything the driver has set or made in the smaller apps."""
+    """Everything the driver has set or created in the smaller apps."""
 
     memory: tuple[tuple[float, ...], ...]
-    """Values of ``REMEMBERED`` by place of the memory."""
+    """Values of ``REMEMBERED`` by memory slot."""
     profiles: tuple[UserProfile, ...]
     agenda: tuple[Appointment, ...]
     profile: str = PROFILES[0]
@@ -170,7 +170,7 @@ class Desk:
     memos: tuple[str, ...] = ()
     recording_since_s: float | None = None
     film: tuple[int, float] | None = None
-    """The topic of the manual whose film plays, and since when."""
+    """The topic of the manual whose video is playing, and since when."""
     zone: str = ZONES[0]
     minutes: int = 60
     tickets: tuple[Ticket, ...] = ()
@@ -183,7 +183,7 @@ class Desk:
     """Driven metres, time and battery when the trip computer was reset."""
 
     def with_memory(self, slot: int, signals: Signals) -> Desk:
-        """The seat as it stands now, kept in a place of the memory."""
+        """With the present seat position stored in a memory slot."""
         values = tuple(signals[signal] for signal in REMEMBERED)
         return replace(self, memory=(*self.memory[:slot], values, *self.memory[slot + 1 :]))
 
@@ -194,7 +194,7 @@ class Desk:
         )
 
     def commands(self) -> dict[str, Any]:
-        """What was set, made and paid."""
+        """What was set, created and paid, as app data."""
         return {
             "apps.installed": list(self.installed),
             "apps.memos": list(self.memos),
@@ -214,7 +214,7 @@ class Desk:
 
 
 def desk(rng: np.random.Generator, atlas: Gazetteer) -> Desk:
-    """Draws what others have stored before, and the day's appointments at places of the network."""
+    """Draws earlier stored data, and the day's appointments at places of the network."""
     memory = tuple(_seat(rng) for _ in range(3))
     hours = np.sort(rng.choice(np.arange(8, 21), APPOINTMENTS, replace=False))
     agenda = []

@@ -1,7 +1,7 @@
 """A canvas in logical pixels on a Pillow image of any resolution: soft corners, text, icons, pictures.
 
-Shapes are drawn from cached antialiased masks, so that a frame costs milliseconds. Every text is noted in ``inks``
-with the box it may fill: what the tests of legibility look at.
+Shapes are drawn from cached antialiased masks, so that a frame costs milliseconds. Every text is recorded in
+``inks`` with the box that it may fill, for the tests of legibility.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.theme import CAP_HEIGHT, EAST_ASIAN_FROM, SMALLER, Colour, Icon, Type, Weight, face
 
 _NOT_FIRST = "、。：？！」』）％ーぁぃぅぇぉっゃゅょァィゥェォッャュョ"
-"""What does not begin a line in Japanese."""
+"""Characters that must not begin a line in Japanese."""
 _PIECE = re.compile(f"(?:[{EAST_ASIAN_FROM}-\U0010ffff]|[^{EAST_ASIAN_FROM}-\U0010ffff]+)[{_NOT_FIRST}]*")
 _FINE = 4
 """Oversampling of shapes."""
@@ -27,15 +27,15 @@ _FINE = 4
 
 @dataclass(frozen=True, slots=True)
 class Ink:
-    """A text as it was drawn, in logical pixels."""
+    """A drawn text, in logical pixels."""
 
     text: str
     rect: Rect
     box: Rect
-    """Where it may lie."""
+    """The box that it may fill."""
     colour: Colour
     cut: bool
-    """It did not fit and ends in an ellipsis."""
+    """Whether it did not fit and ends in an ellipsis."""
 
 
 class Canvas:
@@ -50,7 +50,7 @@ class Canvas:
 
     @classmethod
     def plain(cls, width: int, height: int, scale: float, colour: Colour) -> Canvas:
-        """A canvas of that size in pixels, of one colour."""
+        """A canvas of that size in pixels, filled with one colour."""
         return cls(Image.new("RGB", (width, height), colour), scale)
 
     def pixels(self) -> npt.NDArray[np.uint8]:
@@ -89,15 +89,15 @@ class Canvas:
     ) -> None:
         """Text in a box, in the middle of its height; smaller if too long, over several lines if allowed.
 
-        What would have to be very small goes over as many lines as the box has room for first.
+        A text that would be very small is first wrapped to as many lines as the box has room for.
 
         Args:
-            box: where it may lie.
-            text: what.
-            style: from the type scale; smaller steps of it are taken as needed.
-            colour: of the letters.
+            box: the box that it may fill.
+            text: the text.
+            style: a style of the type scale; smaller ones are used as needed.
+            colour: colour of the letters.
             align: ``left``, ``centre`` or ``right``.
-            lines: at most so many.
+            lines: maximum number of lines.
         """
         if not text:
             return
@@ -161,11 +161,11 @@ def fit(text: str, style: Type, width: int, lines: int, height: int = 0) -> tupl
     """The largest style in which the text fits, its lines, and whether it had to be cut.
 
     Args:
-        text: what.
-        style: the largest one.
-        width: of the box.
-        lines: at most so many, as long as the text fits on them in some style.
-        height: of the box; before the finest style more lines are taken if it has room for them.
+        text: the text.
+        style: the largest style.
+        width: width of the box.
+        lines: maximum number of lines, as long as the text fits on them in some style.
+        height: height of the box; more lines are used before the smallest style if it has room for them.
     """
     text = " ".join(text.split())
     styles = [style]
@@ -200,7 +200,7 @@ def _wrap(text: str, style: Type, width: int) -> list[str]:
 
 
 def _pieces(text: str) -> Iterator[tuple[str, str]]:
-    """What may stand on a line of its own, with what joins it to the piece before: words, East Asian letters."""
+    """Pieces between which a line may break, with their joints: words, East Asian letters."""
     for word in text.split(" "):
         for at, piece in enumerate(_PIECE.findall(word)):
             yield "" if at else " ", piece
@@ -216,7 +216,7 @@ def _cut(text: str, style: Type, width: int) -> str:
 
 @lru_cache(maxsize=4096)
 def _mask(text: str, weight: Weight, size: int) -> tuple[Image.Image, int, int, float]:
-    """The text as a mask, where it lies from the pen's start on the base line, and how far the pen moves."""
+    """The text as a mask, its offset from the pen's start on the base line, and the pen's advance."""
     letters = face(text, weight, size)
     left, top, right, bottom = letters.getbbox(text, anchor="ls")
     left, top = int(left), int(top)

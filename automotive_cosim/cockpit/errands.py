@@ -1,4 +1,4 @@
-"""What the driver has the phone, the music and the smaller apps do."""
+"""Commands to the phone, the music and the smaller apps."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.contracts import Feedback, FeedbackCode
 
 WASH_PCT = 2.0
-"""Of the washer's tank, a wash."""
+"""Share of the washer's tank used per wash."""
 
 
 def run(state: State, message: Message) -> Feedback:
@@ -73,7 +73,7 @@ def _pay(state: State) -> Feedback:
 
 
 def price(zone: str, minutes: int) -> float:
-    """Of a parking space."""
+    """Pays for a parking space."""
     return round(PRICES[zone] * minutes / 60, 2)
 
 
@@ -119,7 +119,7 @@ def start(state: State, entry: Entry) -> None:
 
 
 def skipped(state: State, by: int) -> str:
-    """Address of the entry so many places on in the queue."""
+    """Address of the entry a number of places later in the queue."""
     signals = state.signals
     entries = queue(state.library, state.listening, signals[MEDIA.SOURCE], signals[MEDIA.SHUFFLE])
     uris = [entry.uri for entry in entries]
@@ -128,7 +128,7 @@ def skipped(state: State, by: int) -> str:
 
 
 def play_on(state: State, dt_s: float) -> None:
-    """The music goes on; at an entry's end comes the next, or the same again."""
+    """The music continues; at the end of an entry, the next one plays, or the same again."""
     signals = state.signals
     entry = state.library.by_uri[signals[MEDIA.PLAYED]]
     if signals[MEDIA.ACTION] != "PLAY" or entry.length_s is None:

@@ -35,7 +35,7 @@ class Rect:
         return self.x <= x < self.right and self.y <= y < self.bottom
 
     def encloses(self, other: Rect) -> bool:
-        """Whether the other lies wholly in it."""
+        """Whether it contains the other completely."""
         return self.x <= other.x and self.y <= other.y and other.right <= self.right and other.bottom <= self.bottom
 
     def overlaps(self, other: Rect) -> bool:
@@ -43,11 +43,11 @@ class Rect:
         return self.x < other.right and other.x < self.right and self.y < other.bottom and other.y < self.bottom
 
     def edges(self, scale: float) -> tuple[int, int, int, int]:
-        """Left, top, right and bottom in pixels, of which there are ``scale`` to a logical one."""
+        """Left, top, right and bottom in pixels, with ``scale`` pixels per logical pixel."""
         return round(self.x * scale), round(self.y * scale), round(self.right * scale), round(self.bottom * scale)
 
     def within(self, other: Rect) -> Rect:
-        """The part of it that lies in the other; of no size if there is none."""
+        """The intersection with the other; empty if there is none."""
         x, y = max(self.x, other.x), max(self.y, other.y)
         return Rect(x, y, max(0, min(self.right, other.right) - x), max(0, min(self.bottom, other.bottom) - y))
 
@@ -73,7 +73,7 @@ class Rect:
         return Rect(self.x, self.bottom - height, self.width, height)
 
     def below(self, height: int) -> Rect:
-        """What is left under its uppermost ``height`` rows."""
+        """The rest below its uppermost ``height`` rows."""
         return Rect(self.x, self.y + height, self.width, self.height - height)
 
     def middle(self, width: int, height: int) -> Rect:

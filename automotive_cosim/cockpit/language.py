@@ -1,8 +1,8 @@
 """The cockpit in other languages: the finished widget tree, and its answers, translated by one table per language.
 
-Screens are written in English. A table (``languages/fr.toml`` and so on) gives a text for a text; one with ``{}``
-is a form, in which what varies is translated in turn: "Sent to {}: {}". What no table knows stays as it is: names
-of people, places and music, numbers and units, what people wrote, and resource ids and signals in an answer.
+Screens are written in English. A table (``languages/fr.toml`` and so on) maps texts to texts; one with ``{}``
+is a template whose variable parts are translated in turn: "Sent to {}: {}". Texts that are in no table stay as they
+are: names of people, places and music, numbers and units, messages, and resource ids and signals in feedback.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _OWN: Mapping[type[Widget], tuple[str, ...]] = {
     Row: ("detail", "trail"),
     Tile: ("level",),
 }
-"""Further texts of some widgets."""
+"""Additional text fields of some widgets."""
 _WORD = re.compile(r"[^\W\d_]{2}")
 
 
@@ -39,7 +39,7 @@ class Language:
     keys: Mapping[str, str]
     """Texts of single widgets by their resource id, where an English word has several meanings."""
     forms: tuple[tuple[re.Pattern[str], str], ...]
-    """The most specific first."""
+    """Templates, the most specific first."""
 
 
 @lru_cache
@@ -59,7 +59,7 @@ def table(language: str, answers: bool = False) -> Language:
 
 @lru_cache(maxsize=16384)
 def said(language: str, text: str, answers: bool = False) -> str:
-    """A text of the screens, or of answers, in that language; as it is if no table knows it."""
+    """A text of the screens, or of feedback, in that language; unchanged if it is not in the table."""
     if not _WORD.search(text):
         return text
     known = table(language, answers)
@@ -73,12 +73,12 @@ def said(language: str, text: str, answers: bool = False) -> str:
 
 
 def answered(feedback: Feedback, language: str) -> Feedback:
-    """What came of an action, told in that language."""
+    """The feedback to an action in that language."""
     return feedback if language == ENGLISH else replace(feedback, text=said(language, feedback.text, answers=True))
 
 
 def translated(widget: W, language: str) -> W:
-    """The widget and all in it, in that language. What was typed stays."""
+    """The widget and its children in that language. Typed text stays."""
     if language == ENGLISH:
         return widget
     changes: dict[str, Any] = {}
@@ -94,7 +94,7 @@ def translated(widget: W, language: str) -> W:
 
 
 def _fixed(form: str) -> int:
-    """How many letters of a form do not vary."""
+    """Number of fixed letters in a template."""
     return len(form.replace("{}", ""))
 
 

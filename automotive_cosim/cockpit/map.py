@@ -1,4 +1,4 @@
-"""The network as the moving map sees it: what lies in sight of a camera, and which names fit."""
+"""The network for the moving map: what a camera sees, and which names fit."""
 
 from __future__ import annotations
 
@@ -23,31 +23,31 @@ ZOOMS_M_PER_PX = (0.5, 0.9, 1.6, 2.8, 5.0)
 NAMES_AT_MOST = 9
 SHARP_RAD = 0.2
 EGO_DOWN = 0.68
-"""The ego stands this far down the map, so that more lies ahead."""
+"""The ego's position from the top of the map, to show more of what is ahead."""
 
 
 @dataclass(frozen=True, slots=True)
 class Camera:
-    """Where the map looks from."""
+    """The camera of the map."""
 
     x_m: float
     y_m: float
     heading_deg: float
-    """What is up."""
+    """Heading that is up."""
     metres_per_pixel: float
     down: float = EGO_DOWN
-    """How far down the map its point lies, as a share of the height."""
+    """Position of its point from the top, as a share of the height."""
 
 
 def whole_heading_deg(heading_deg: float) -> float:
-    """What a map that turns with the car has upwards: in steps of two degrees, so as to stay still."""
+    """Upward heading of a map that turns with the car, in steps of two degrees to keep it steady."""
     return round(heading_deg / 2) * 2.0 % 360
 
 
 def camera_of(
     roads: RoadMap, ego: tuple[float, float, float] | None, metres_per_pixel: float, north_up: bool = False
 ) -> Camera:
-    """Over the car (x, y and heading), or over the middle of the network while it is not known where the car is."""
+    """Over the car (x, y and heading), or over the middle of the network while the position is unknown."""
     x_min, y_min, x_max, y_max = roads.network.bounds_m
     x_m, y_m, heading_deg = ego or ((x_min + x_max) / 2, (y_min + y_max) / 2, 0.0)
     if north_up:
@@ -57,7 +57,7 @@ def camera_of(
 
 @dataclass(frozen=True, slots=True)
 class StreetName:
-    """A name on the map and where it stands on the screen."""
+    """A name on the map and its position on the screen."""
 
     text: str
     rect: Rect
@@ -95,25 +95,25 @@ class RoadMap:
         return None if at is None else self.roads[at]
 
     def in_sight(self, view: View, width: float, height: float) -> list[Stroke]:
-        """What a picture of that size shows, the uppermost last: tunnels, then the lesser roads, then the greater.
+        """The roads in a picture of that size, the uppermost last: tunnels, then minor roads, then major roads.
 
-        From further away quiet roads are left out, then side streets.
+        From further away, quiet roads are omitted, then side streets.
         """
         found = self._tree.query(view.sight(width, height), predicate="intersects")
         found = found[self._ranks[found] >= _least_rank(view.camera.metres_per_pixel)]
         return self._strokes(found[np.lexsort((found, self._depths[found]))], view)
 
     def strokes(self, edges: Iterable[str], view: View) -> list[Stroke]:
-        """Those of the edges that there are, in their order, in sight or not."""
+        """The roads of existing edges, in order, whether visible or not."""
         found = [self._index[edge] for edge in edges if edge in self._index]
         return self._strokes(np.array(found, dtype=np.int64), view)
 
     def names_in_sight(self, area: Rect, camera: Camera, avoid: tuple[Rect, ...]) -> tuple[StreetName, ...]:
-        """Street names to write on a map that fills ``area``: the greatest roads first, none over another.
+        """Street names for a map that fills ``area``: major roads first, without overlaps.
 
         Args:
-            area: where the map is on the screen.
-            camera: what it shows.
+            area: the map's area on the screen.
+            camera: the map's camera.
             avoid: boxes that must stay free.
         """
         view = View(camera, 1 / camera.metres_per_pixel, area.width / 2, area.height * camera.down)
@@ -159,7 +159,7 @@ _recent: list[RoadMap] = []
 
 
 def road_map(network: RoadNetwork) -> RoadMap:
-    """The network's index, made once for the networks used last: every episode in a scenario has the same one."""
+    """The network's index, cached: every episode in a scenario has the same one."""
     for known in _recent:
         if known.network is network:
             return known
@@ -170,12 +170,12 @@ def road_map(network: RoadNetwork) -> RoadMap:
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """From metres of the network to pixels of a picture."""
+    """Converts metres of the network to pixels of a picture."""
 
     camera: Camera
     per_metre: float
     x: float
-    """Where the camera's point lies, in pixels."""
+    """The camera's point in pixels."""
     y: float
 
     def pixels(self, points_m: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
@@ -200,7 +200,7 @@ class View:
         return self.camera.x_m + across * cos + up * sin, self.camera.y_m - across * sin + up * cos
 
     def sight(self, width: float, height: float) -> Polygon:
-        """What a picture of that size shows, in metres of the network."""
+        """The area of a picture of that size, in metres of the network."""
         return Polygon(self._corners(width, height))
 
     def bounds(self, width: float, height: float) -> Polygon:
@@ -228,7 +228,7 @@ class Stroke:
     line: list[float]
     """x, y, x, y, …"""
     joints: list[tuple[float, float]]
-    """Ends and sharp bends, to be drawn round."""
+    """Ends and sharp bends, which are drawn round."""
 
 
 @lru_cache(maxsize=4096)
@@ -249,7 +249,7 @@ def _middle(shape: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
 
 
 def _rank(road: Road) -> int:
-    """How great a road it is: the greater, the further up and the further away it is drawn."""
+    """Rank of a road: the higher, the further up, and from the further away, it is drawn."""
     if road.road_class in MOTORWAYS:
         return 4
     if road.road_class in AVENUES:

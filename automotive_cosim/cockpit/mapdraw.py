@@ -22,25 +22,25 @@ _FINE = 2
 SHEET_STEP = 96
 """Pixels from one sheet to the next, and what a sheet is larger than the picture."""
 DENSE_BELOW, JAM_BELOW = 0.6, 0.25
-"""Shares of the limit at which traffic is drawn as dense, and as jammed."""
+"""Relative speeds below which traffic is drawn as dense, and as jammed."""
 LEAST_WIDTH = (3.0, 4.0, 5.0, 7.0, 8.0)
-"""In logical pixels, by rank."""
+"""Width in logical pixels, by rank."""
 LANE_M = 3.2
 
 
 @dataclass(frozen=True, slots=True)
 class MapScene:
-    """What a map shows beside the roads."""
+    """What a map shows in addition to the roads."""
 
     camera: Camera
     ego: tuple[float, float, float] | None = None
     """The car: x and y in metres, heading in degrees."""
     route: tuple[str, ...] = ()
-    """Edges of the way ahead."""
+    """Edges of the route ahead."""
     alternatives: tuple[tuple[str, ...], ...] = ()
-    """Edges of other ways."""
+    """Edges of alternative routes."""
     slow: tuple[tuple[str, float], ...] = ()
-    """Edges driven slower than free, and their speed over the limit."""
+    """Edges with slow traffic, and its relative speed."""
 
 
 def draw(roads: RoadMap, scene: MapScene, width: int, height: int, scale: float, night: bool) -> Image.Image:
@@ -91,19 +91,19 @@ def _sheet(
     slow: tuple[tuple[str, float], ...],
     night: bool,
 ) -> Image.Image:
-    """The roads and the ways on them, on one sheet.
+    """The roads and routes on one sheet.
 
     Args:
         roads: the network.
-        heading_deg: what is up.
-        metres_per_pixel: for a logical pixel.
+        heading_deg: upward heading.
+        metres_per_pixel: metres per logical pixel.
         place: column and row of the sheet, and pixels from one to the next.
-        size: of the sheet in pixels.
+        size: size of the sheet in pixels.
         scale: pixels per logical pixel.
-        route: edges of the way ahead.
-        alternatives: edges of other ways.
-        slow: edges and how fast they are driven.
-        night: which palette.
+        route: edges of the route ahead.
+        alternatives: edges of alternative routes.
+        slow: edges and the relative speed of their traffic.
+        night: whether to use the night palette.
     """
     column, row, step = place
     camera = Camera(0.0, 0.0, heading_deg, metres_per_pixel)
@@ -143,16 +143,16 @@ class _Pen:
     """Fine pixels per logical pixel."""
 
     def width(self, stroke: Stroke) -> float:
-        """Of a road."""
+        """Width of a road."""
         return max(LEAST_WIDTH[stroke.rank] * _FINE, stroke.road.lane_count * LANE_M * self.per_metre)
 
     def way(self, strokes: list[Stroke], colour: Colour) -> None:
-        """A route over its roads."""
+        """Draws a route over its roads."""
         for stroke in strokes:
             self.stroke(stroke, max(7.0 * self.unit, 0.8 * self.width(stroke)), colour)
 
     def stroke(self, stroke: Stroke, width: float, colour: Colour) -> None:
-        """One road, its ends and sharp bends round."""
+        """Draws one road, with round ends and sharp bends."""
         self.brush.line(stroke.line, colour, max(1, round(width)))
         half = width / 2 - 0.5
         for x, y in stroke.joints:

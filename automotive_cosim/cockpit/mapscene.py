@@ -1,4 +1,4 @@
-"""What the moving map shows now: where it looks, the ways, and marks of what lies ahead."""
+"""The present content of the moving map: camera, routes, and marks of what is ahead."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ EgoPose = tuple[float, float, float]
 
 
 def ego(state: State) -> EgoPose | None:
-    """Where the car is; None before the first look outside."""
+    """The car's position; None before the first ``sense``."""
     if state.outside is None:
         return None
     driving = state.outside.driving
@@ -24,7 +24,7 @@ def ego(state: State) -> EgoPose | None:
 
 
 def map_camera(state: State) -> Camera:
-    """Of the map app: over the car, or where the driver has moved it, then with north up."""
+    """Camera of the map app: over the car, or where the driver has moved it, then north up."""
     metres_per_pixel = ZOOMS_M_PER_PX[state.zoom]
     if state.panned is not None:
         return Camera(round(state.panned[0], 1), round(state.panned[1], 1), 0.0, metres_per_pixel, 0.5)
@@ -32,7 +32,7 @@ def map_camera(state: State) -> Camera:
 
 
 def panned(state: State, right: float, down: float) -> tuple[float, float]:
-    """Where the map looks after it was moved by so many logical pixels, at most to the network's edge."""
+    """The map's point after a move by a number of logical pixels, at most to the network's edge."""
     camera = map_camera(state)
     x_m, y_m = View(camera, 1 / camera.metres_per_pixel, 0.0, 0.0).metres(right, down)
     x_min, y_min, x_max, y_max = state.roads.network.bounds_m
@@ -40,7 +40,7 @@ def panned(state: State, right: float, down: float) -> tuple[float, float]:
 
 
 def scene(state: State, camera: Camera) -> MapScene:
-    """All that is drawn beside the roads; of the traffic what was heard last."""
+    """Everything drawn in addition to the roads; traffic is the last that was received."""
     if state.outside is None:
         return MapScene(camera)
     ahead = state.outside.driving.ahead
@@ -50,7 +50,7 @@ def scene(state: State, camera: Camera) -> MapScene:
 
 
 def jam(state: State) -> tuple[float, float] | None:
-    """Where the next jam on the route begins, as was heard last."""
+    """Where the next jam on the route begins, as last received."""
     if state.heard is None:
         return None
     road, ahead = state.heard.driving.road, state.heard.driving.ahead
@@ -62,11 +62,11 @@ def jam(state: State) -> tuple[float, float] | None:
 def incidents(
     state: State, *, besides_jam: bool = False
 ) -> tuple[tuple[IncidentKind, Road, tuple[float, float]], ...]:
-    """Those that live traffic told of last: what, on which road, and the point where one comes upon it.
+    """Incidents last reported by live traffic: kind, road, and the point where a driver meets them.
 
     Args:
-        state: of the cockpit.
-        besides_jam: without jams on the route, of which the next has a mark of its own.
+        state: the cockpit's state.
+        besides_jam: whether to omit jams on the route, of which the next has a mark of its own.
     """
     if state.heard is None:
         return ()
@@ -92,7 +92,7 @@ def box_of(camera: Camera, area: Rect, point_m: tuple[float, float], side: int) 
 
 
 def _along(roads: RoadMap, route: tuple[str, ...], driven_m: float) -> tuple[float, float] | None:
-    """The point of a route so far from its start."""
+    """The point of a route at a distance from its start."""
     for road in map(roads.find, route):
         if road is None:
             continue
@@ -103,7 +103,7 @@ def _along(roads: RoadMap, route: tuple[str, ...], driven_m: float) -> tuple[flo
 
 
 def _point(road: Road, at_m: float) -> tuple[float, float]:
-    """The point of a road so far from its start; its shape may be longer or shorter than the road is said to be."""
+    """The point of a road at a distance from its start; its shape may be longer or shorter than its length."""
     steps_m = [math.dist(here, there) for here, there in pairwise(road.shape_m)]
     left_m = min(1.0, at_m / road.length_m) * sum(steps_m)
     for (x_m, y_m), (to_x_m, to_y_m), step_m in zip(road.shape_m, road.shape_m[1:], steps_m, strict=False):

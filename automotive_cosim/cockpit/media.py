@@ -1,4 +1,4 @@
-"""What there is to listen to: made up from a seed, the same in every episode of that seed."""
+"""Media content, generated from a seed: the same in every episode of that seed."""
 
 from __future__ import annotations
 
@@ -55,16 +55,16 @@ class Library:
     by_uri: dict[str, Entry]
 
     def of(self, source: str) -> tuple[Entry, ...]:
-        """What the source offers."""
+        """The entries of a source."""
         return self.sources[source]
 
     def find(self, source: str, uri: str) -> Entry:
-        """The entry of that address; the first of the source if it has none such."""
+        """The entry at an address; the first of the source if it does not exist."""
         entry = self.by_uri.get(uri)
         return entry if entry is not None and source_of(uri) == source else self.sources[source][0]
 
     def named(self, words: str) -> tuple[Entry, ...]:
-        """Entries of every source whose title or artist holds the words."""
+        """Entries of all sources whose title or artist contains the words."""
         wanted = words.casefold().strip()
         return tuple(
             entry
@@ -80,13 +80,13 @@ class Library:
 
 @dataclass(frozen=True, slots=True)
 class Listening:
-    """What the driver has chosen beside source and entry."""
+    """The driver's choices besides source and entry."""
 
     playlists: tuple[Playlist, ...]
     favourites: tuple[str, ...]
     """Addresses."""
     playlist: str = ""
-    """The one that plays; empty for the whole source."""
+    """The playlist that is playing; empty for the whole source."""
 
     def with_favourite(self, uri: str, wanted: bool) -> Listening:
         """With or without that favourite, at the end of the list."""
@@ -107,7 +107,7 @@ class Listening:
         return next((known.uris for known in self.playlists if known.name == playlist), ())
 
     def commands(self) -> dict[str, Any]:
-        """What was chosen."""
+        """The choices as app data."""
         return {
             "media.favourites": list(self.favourites),
             "media.playlists": {known.name: list(known.uris) for known in self.playlists},
@@ -121,7 +121,7 @@ def source_of(uri: str) -> str:
 
 
 def queue(library: Library, listening: Listening, source: str, shuffled: bool) -> tuple[Entry, ...]:
-    """What plays one after the other. Shuffled, each entry has a place of its own that chance seems to give."""
+    """The queue. When shuffled, each entry has a fixed pseudo-random position."""
     known = listening.tracks(listening.playlist) if source in ("BLUETOOTH", "USB") else ()
     entries = tuple(library.by_uri[uri] for uri in known) or library.of(source)
     return tuple(sorted(entries, key=lambda entry: zlib.crc32(entry.uri.encode()))) if shuffled else entries

@@ -1,4 +1,4 @@
-"""What a touched widget says. A screen only says it; ``cockpit.Cockpit`` does it."""
+"""Messages of touched widgets. A screen only defines them; ``cockpit.Cockpit`` performs them."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from automotive_cosim.cockpit.signals import Signal
 from automotive_cosim.contracts import Alert
 
 BACKSPACE = "\b"
-"""The letter that takes one away."""
+"""The letter that deletes one."""
 
 
 @dataclass(frozen=True, slots=True)
 class Show:
-    """Go to a screen, and to one thing on it if there are several."""
+    """Go to a screen, optionally to one item on it."""
 
     screen: str
     item: str = ""
@@ -22,12 +22,12 @@ class Show:
 
 @dataclass(frozen=True, slots=True)
 class Back:
-    """Return to the screen before."""
+    """Return to the previous screen."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pick:
-    """Look at another part of a screen: which of its choices is taken."""
+    """Show another part of a screen: select one of its choices."""
 
     key: str
     value: str
@@ -55,7 +55,7 @@ Book = Literal["draft", "navigation", "listening", "phone", "desk", "notices"]
 
 @dataclass(frozen=True, slots=True)
 class Put:
-    """Change app data: the book's new value, and what there is to say of it."""
+    """Change app data: the new value, and the notice about it."""
 
     book: Book
     value: Any
@@ -64,7 +64,7 @@ class Put:
 
 @dataclass(frozen=True, slots=True)
 class WarnDriver:
-    """Give an alert; without one, that which was put together."""
+    """Give an alert; without one, the prepared alert."""
 
     alert: Alert | None = None
 
@@ -86,30 +86,30 @@ class CallEmergency:
 
 @dataclass(frozen=True, slots=True)
 class Guide:
-    """Ask for a route to a place or street; empty keeps the goal and looks for a faster way."""
+    """Request a route to a place or street; empty keeps the destination and looks for a faster route."""
 
     place: str
     onward: str = ""
-    """Where to go on afterwards."""
+    """The next destination afterwards."""
 
 
 @dataclass(frozen=True, slots=True)
 class Take:
-    """Ask for a route along these edges to the same goal."""
+    """Request a route along these edges to the same destination."""
 
     edges: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Focus:
-    """Put the cursor into a text field, with the keyboard below; empty folds the keyboard."""
+    """Focus a text field and open the keyboard; empty closes the keyboard."""
 
     field: str
 
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """Put letters into a text field by a key of the screen; a backspace takes one away."""
+    """Enter letters into a text field by a key; a backspace deletes one."""
 
     field: str
     letters: str
@@ -117,10 +117,10 @@ class Key:
 
 @dataclass(frozen=True, slots=True)
 class Enter:
-    """Be done with a text field, and do what it is for."""
+    """Press enter in a text field."""
 
     then: Any
-    """A message; None while nothing fits what was typed."""
+    """The message to send; None while nothing matches the typed text."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +132,7 @@ class Zoom:
 
 @dataclass(frozen=True, slots=True)
 class Pan:
-    """Look at what lies elsewhere on the map, by so many logical pixels."""
+    """Pan the map by a number of logical pixels."""
 
     right: float
     down: float
@@ -174,12 +174,12 @@ class HangUp:
 
 @dataclass(frozen=True, slots=True)
 class TakeCall:
-    """Answer the call that rings."""
+    """Answer the ringing call."""
 
 
 @dataclass(frozen=True, slots=True)
 class DeclineCall:
-    """Turn down the call that rings."""
+    """Decline the ringing call."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,7 +204,7 @@ class Pay:
 
 @dataclass(frozen=True, slots=True)
 class Drive:
-    """Let a profile take the wheel."""
+    """Switch to a driver's profile."""
 
     profile: str
 

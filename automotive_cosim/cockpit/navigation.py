@@ -1,4 +1,4 @@
-"""Where the drive goes: the driver's choices, and the turns on the way."""
+"""Navigation: the driver's choices, and the turns of the route."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ AVOIDABLE: Mapping[str, tuple[str, Icon]] = {
     "tunnels": ("Tunnels", Icon.TUNNEL),
     "ferries": ("Ferries", Icon.FERRY),
 }
-"""What a route can keep away from."""
+"""What a route can avoid."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,13 +29,13 @@ class Navigation:
 
     destination: str = ""
     onward: str = ""
-    """Where the drive goes on after a stop."""
+    """The destination after a stop."""
     favourites: tuple[str, ...] = ()
     recents: tuple[str, ...] = ()
     avoid: tuple[str, ...] = ()
 
     def to(self, name: str) -> Navigation:
-        """Under way to there; the last destinations are remembered, newest first."""
+        """With a new destination; the last ones are remembered, newest first."""
         recents = (name, *(known for known in self.recents if known != name))
         return replace(
             self, destination=name, onward="" if self.onward == name else self.onward, recents=recents[:RECENTS]
@@ -47,11 +47,11 @@ class Navigation:
         return replace(self, favourites=(*rest, name) if wanted else rest)
 
     def with_avoided(self, name: str, wanted: bool) -> Navigation:
-        """Keeping away from it or not."""
+        """With or without avoiding something."""
         return replace(self, avoid=tuple(k for k in AVOIDABLE if (wanted if k == name else k in self.avoid)))
 
     def commands(self) -> dict[str, Any]:
-        """What the driver has chosen; recent destinations follow from it."""
+        """The driver's choices as app data; recent destinations follow from them."""
         return {
             "navigation.destination": self.destination,
             "navigation.onward": self.onward,
@@ -62,14 +62,14 @@ class Navigation:
 
 @dataclass(frozen=True, slots=True)
 class Turn:
-    """Where the route leaves a street for another."""
+    """A turn from one street to another."""
 
     words: str
     icon: Icon
     street: str
-    """The one it comes to."""
+    """The street that it leads to."""
     after_m: float
-    """From the start of the route's first edge."""
+    """Distance from the start of the route's first edge."""
 
 
 @lru_cache(maxsize=16)
@@ -91,7 +91,7 @@ def turns(roads: RoadMap, route: tuple[str, ...]) -> tuple[Turn, ...]:
 
 
 def _angle_deg(road: Road, following: Road) -> float:
-    """How far the way turns between them, clockwise, -180 to 180."""
+    """The angle between them, clockwise, -180 to 180."""
     (ax, ay), (bx, by) = road.shape_m[-2:]
     (cx, cy), (dx, dy) = following.shape_m[:2]
     before, after = math.atan2(by - ay, bx - ax), math.atan2(dy - cy, dx - cx)

@@ -1,4 +1,4 @@
-"""Whom one can reach: contacts, calls and messages made up from a seed, and what the driver does with them."""
+"""Contacts, calls and messages, generated from a seed, and the driver's use of them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ TEMPLATES = (
     "Where are you?",
     "I've arrived",
 )
-"""Answers that one tap sends."""
+"""Replies that one tap sends."""
 _FIRST = """Ada Bruno Carla Dario Elif Femi Greta Hugo Ines Jonas Kaya Lena Milo Nora Otis Petra Quinn Rosa Samir
     Tilda"""
 _LAST = "Adler Bianchi Costa Duval Eklund Farrow Girard Holm Ibarra Jansen Keller Lindqvist Moreau Novak"
@@ -36,7 +36,7 @@ SAID = (
     "I left the keys under the mat.",
     "Dinner is at eight, don't be late!",
 )
-"""What people write."""
+"""Texts of messages."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +60,7 @@ class PastCall:
 
 @dataclass(frozen=True, slots=True)
 class Thread:
-    """What somebody wrote last."""
+    """Somebody's last message."""
 
     who: str
     when: str
@@ -70,7 +70,7 @@ class Thread:
 
 @dataclass(frozen=True, slots=True)
 class Directory:
-    """What the phone brought into the car."""
+    """Data of the linked phone."""
 
     contacts: tuple[Contact, ...]
     """By name."""
@@ -80,11 +80,11 @@ class Directory:
     favourites: tuple[str, ...]
 
     def number(self, who: str) -> str:
-        """Of that contact; what is no contact is a number itself."""
+        """Number of a contact; anything else is a number itself."""
         return next((contact.number for contact in self.contacts if contact.name == who), who)
 
     def written(self, phone: Phone) -> tuple[Thread, ...]:
-        """All that was written, with what came in on this drive, the newest first."""
+        """All messages, including those of this drive, the newest first."""
         before = {thread.who: thread for thread in self.threads}
         new: dict[str, Thread] = {}
         for received in phone.received:
@@ -94,17 +94,17 @@ class Directory:
         return (*reversed(new.values()), *(thread for thread in self.threads if thread.who not in new))
 
     def thread(self, who: str, phone: Phone) -> Thread | None:
-        """What that contact wrote."""
+        """The messages of a contact."""
         return next((thread for thread in self.written(phone) if thread.who == who), None)
 
     def unread(self, phone: Phone) -> tuple[str, ...]:
-        """Whose messages were not read yet."""
+        """Senders of unread messages."""
         return tuple(thread.who for thread in self.written(phone) if thread.unread and thread.who not in phone.read)
 
 
 @dataclass(frozen=True, slots=True)
 class OnCall:
-    """The call that is going on."""
+    """The present call."""
 
     who: str
     since_s: float
@@ -113,7 +113,7 @@ class OnCall:
 
 @dataclass(frozen=True, slots=True)
 class Ringing:
-    """The call that wants to be answered."""
+    """The ringing call."""
 
     who: str
     since_s: float
@@ -130,7 +130,7 @@ class Received:
 
 @dataclass(frozen=True, slots=True)
 class Sent:
-    """A message that went out, which cannot be taken back."""
+    """A sent message, which cannot be undone."""
 
     to: str
     text: str
@@ -138,25 +138,25 @@ class Sent:
 
 @dataclass(frozen=True, slots=True)
 class Phone:
-    """What the driver has done with the phone."""
+    """The driver's use of the phone."""
 
     favourites: tuple[str, ...]
     do_not_disturb: bool = False
     read: tuple[str, ...] = ()
-    """Whose messages were opened."""
+    """Senders whose messages were opened."""
     sent: tuple[Sent, ...] = ()
     made: tuple[PastCall, ...] = ()
     """Calls of this drive, newest first."""
     on_call: OnCall | None = None
     ringing: Ringing | None = None
     taken: tuple[str, ...] = ()
-    """Whose calls were answered."""
+    """Callers whose calls were answered."""
     declined: tuple[str, ...] = ()
-    """Whose calls were turned down."""
+    """Callers whose calls were declined."""
     received: tuple[Received, ...] = ()
 
     def called(self, who: str, when: str, time_s: float) -> Phone:
-        """A call goes out."""
+        """With an outgoing call."""
         return replace(self.logged(PastCall(who, when, "out")), on_call=OnCall(who, time_s))
 
     def logged(self, call: PastCall) -> Phone:
@@ -164,16 +164,16 @@ class Phone:
         return replace(self, made=(call, *self.made))
 
     def received_from(self, message: Received) -> Phone:
-        """With one more message, which makes its sender's unread."""
+        """With another message, which makes its sender's thread unread."""
         read = tuple(who for who in self.read if who != message.who)
         return replace(self, received=(*self.received, message), read=read)
 
     def answered(self, who: str, text: str) -> Phone:
-        """A message goes out; the thread is read."""
+        """With a sent message; the thread is read."""
         return replace(self.opened(who), sent=(*self.sent, Sent(who, text)))
 
     def opened(self, who: str) -> Phone:
-        """That contact's messages are read."""
+        """With a contact's messages read."""
         return self if who in self.read else replace(self, read=(*self.read, who))
 
     def with_favourite(self, who: str, wanted: bool) -> Phone:
@@ -182,7 +182,7 @@ class Phone:
         return replace(self, favourites=(*rest, who) if wanted else rest)
 
     def commands(self) -> dict[str, Any]:
-        """Calls stand with those to the emergency services; here is the rest."""
+        """App data, except calls, which are listed with emergency calls."""
         return {
             "phone.favourites": list(self.favourites),
             "phone.do_not_disturb": self.do_not_disturb,

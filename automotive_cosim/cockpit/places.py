@@ -1,4 +1,4 @@
-"""Where one can go: places made up from a seed, on streets of the network."""
+"""Places, generated from a seed, on streets of the network."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from automotive_cosim.cockpit.map import MOTORWAYS, RoadMap
 from automotive_cosim.cockpit.theme import Icon
 
 PLACES = 80
-"""So many, or as many as the network has streets for."""
+"""Number of places, limited by the streets of the network."""
 FAVOURITE_STREETS = 6
 
 
 class PlaceKind(StrEnum):
-    """What a place is."""
+    """Kinds of places."""
 
     HOME = "home"
     WORK = "work"
@@ -40,7 +40,7 @@ class PlaceKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Sort:
-    """How a kind of place is called, drawn and named."""
+    """Title, icon and names of a kind of place."""
 
     title: str
     icon: Icon
@@ -85,7 +85,7 @@ SORTS: Mapping[PlaceKind, Sort] = {
 
 @dataclass(frozen=True, slots=True)
 class Destination:
-    """Somewhere to go."""
+    """A place."""
 
     name: str
     kind: PlaceKind
@@ -94,21 +94,21 @@ class Destination:
     x_m: float
     y_m: float
     detail: str
-    """What one wants to know of such a place."""
+    """Details of a place."""
 
     @property
     def icon(self) -> Icon:
-        """Of its kind."""
+        """Icon of its kind."""
         return SORTS[self.kind].icon
 
     def away_m(self, x_m: float, y_m: float) -> float:
-        """As the crow flies."""
+        """Straight-line distance."""
         return math.hypot(self.x_m - x_m, self.y_m - y_m)
 
 
 @dataclass(frozen=True, slots=True)
 class Gazetteer:
-    """All places, and the streets that stand among the favourites from the start."""
+    """All places, and the initial favourite streets."""
 
     places: tuple[Destination, ...]
     streets: tuple[str, ...]
@@ -161,7 +161,7 @@ def _names(rng: np.random.Generator) -> list[tuple[PlaceKind, str]]:
 
 @lru_cache(maxsize=4)
 def _addresses(roads: RoadMap) -> tuple[int, ...]:
-    """Roads that a house can stand at: with a name, above ground, no motorways; else any."""
+    """Roads with addresses: with a name, above ground, not motorways; else any."""
     fit = [
         i
         for i, road in enumerate(roads.roads)

@@ -1,4 +1,4 @@
-"""How each widget looks, in the palette of the hour."""
+"""Draws each widget, in the day or night palette."""
 
 from __future__ import annotations
 
@@ -50,15 +50,15 @@ from automotive_cosim.contracts import Severity
 NARROW = 150
 """Tiles narrower than this stack icon and text."""
 ROOMY = 230
-"""Low tiles narrower than this show that they are on by their colour alone."""
+"""Low tiles narrower than this show that they are on only by their colour."""
 TALL = 110
 """Stacked choices this high have large icons."""
 DOCK = Rect(0, SCREEN_HEIGHT - DOCK_HEIGHT, SCREEN_WIDTH, DOCK_HEIGHT)
-"""The ground of the dock."""
+"""The background of the dock."""
 SPILL = 4
-"""Letters and icons may reach so far out of their box, in logical pixels."""
+"""How far letters and icons may extend out of their box, in logical pixels."""
 WORTH_IT = 0.7 * SCREEN_WIDTH * SCREEN_HEIGHT
-"""Of more than that, all is drawn anew."""
+"""Above this share of changes, everything is redrawn."""
 LOW = 76
 """Tiles lower than this put icon and text on one line."""
 
@@ -76,7 +76,7 @@ def repaint(before: Screen, picture: Image.Image, screen: Screen) -> tuple[Image
     """Draws the tree on a copy of the picture of another, only where they differ.
 
     Returns:
-        The same picture as ``render`` makes, and the boxes in which it was drawn anew.
+        The same picture as from ``render``, and the boxes that were redrawn.
     """
     gone = [widget for widget in before.children if widget not in screen.children]
     come = [widget for widget in screen.children if widget not in before.children]
@@ -98,12 +98,12 @@ def repaint(before: Screen, picture: Image.Image, screen: Screen) -> tuple[Image
 
 
 def _reach(widget: Widget) -> Rect:
-    """What it may draw on."""
+    """The canvas."""
     return widget.rect.inset(-SPILL).within(Rect(0, 0, SCREEN_WIDTH, SCREEN_HEIGHT))
 
 
 def _grown(boxes: list[Rect], reaches: list[Rect]) -> tuple[Rect, ...]:
-    """The boxes, and what they cut into: a widget is drawn anew as a whole or not at all."""
+    """The boxes, extended to whole widgets: a widget is redrawn completely or not at all."""
     boxes = list(dict.fromkeys(boxes))
     for box in boxes:
         boxes += [reach for reach in reaches if reach.overlaps(box) and reach not in boxes]
@@ -329,7 +329,7 @@ def _row(canvas: Canvas, row: Row, palette: Palette) -> None:
 
 
 def _shares(row: Row, room: int, width: int) -> tuple[int, int]:
-    """Height of a row's text and of its detail: the one that is too long for a line gets two."""
+    """Heights of a row's text and detail: the one that is too long for a line gets two."""
     if not fits(row.text, Type.LABEL, room):
         return 38, 20
     return (26, 24) if fits(row.detail, Type.CAPTION, width) else (21, 37)
@@ -411,4 +411,4 @@ _PAINT: dict[type[Widget], Callable[[Canvas, Any, Palette], None]] = {
     Badge: _badge,
     CarView: _car_view,
 }
-"""How each kind of widget is drawn."""
+"""The drawing function of each kind of widget."""

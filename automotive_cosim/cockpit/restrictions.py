@@ -10,7 +10,7 @@ from enum import IntFlag, StrEnum
 
 
 class Restriction(IntFlag):
-    """One bit per thing that is locked."""
+    """One bit per restriction."""
 
     BASELINE = 0
     NO_DIALPAD = 1
@@ -33,9 +33,9 @@ REASONS = {
     Restriction.NO_SETUP: "This is set up while parked",
     Restriction.NO_TEXT_MESSAGE: "Messages are read out while driving",
 }
-"""What is said where a restriction locks something."""
+"""Texts shown for restrictions."""
 STANDING_KMH = 0.5
-"""Slower than this the car stands."""
+"""Speed below which the car is stationary."""
 STRING_LIMIT = 120
 """Characters of a text shown while ``LIMIT_STRING_LENGTH`` holds; the platform's default."""
 ENTRIES_LIMIT = 21
@@ -47,7 +47,7 @@ class Motion(StrEnum):
 
     PARKED = "parked"
     IDLING = "idling"
-    """Standing in gear."""
+    """Stationary in gear."""
     MOVING = "moving"
 
 
@@ -59,7 +59,7 @@ def motion(gear: str, speed_kmh: float) -> Motion:
 
 
 def restrictions(gear: str, speed_kmh: float) -> Restriction:
-    """Parked: none. Standing in gear: no video, no setup. Moving: all."""
+    """Parked: none. Stationary in gear: no video, no setup. Moving: all."""
     return {
         Motion.PARKED: Restriction.BASELINE,
         Motion.IDLING: Restriction.NO_VIDEO | Restriction.NO_SETUP,

@@ -1,4 +1,4 @@
-"""From what is outside to the car's signals, its air, its glass and its battery."""
+"""Updates the car's signals, air, glass and battery from the surroundings."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def _in_sight(leader: OtherVehicle | None) -> OtherVehicle | None:
 
 
 def _bodies(state: State, air_c: float, dt_s: float) -> None:
-    """Tyres, seats and the display in the air and light they are in."""
+    """Updates tyres, seats and the display for the present air and light."""
     signals = state.signals
     if state.tyres is None:
         cold = Tyres(tuple(signals[tyre] for tyre in TYRES), air_c)
@@ -135,7 +135,7 @@ def _climate(state: State, driving: DrivingState, weather: Weather, dt_s: float)
 
 
 def _prepare_climate(state: State, before: datetime, now: datetime) -> None:
-    """At the time that is set the climate control takes over."""
+    """Starts the climate control at the set time."""
     timer = state.desk.climate_at
     if timer.on and _minute(before) < timer.minute <= _minute(now):
         state.vehicle.command(HVAC.AUTO, True)
@@ -143,12 +143,12 @@ def _prepare_climate(state: State, before: datetime, now: datetime) -> None:
 
 
 def _end_film(state: State) -> None:
-    """A film ends at its end, and where the car leaves park."""
+    """Ends a video at its end, or when the car leaves park."""
     film = state.desk.film
     if film is not None and (Restriction.NO_VIDEO in state.restrictions or state.time_s - film[1] >= FILM_S):
         state.desk = replace(state.desk, film=None)
 
 
 def _minute(time: datetime) -> float:
-    """Of the day."""
+    """Minute of the day."""
     return time.hour * 60 + time.minute + time.second / 60

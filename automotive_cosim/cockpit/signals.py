@@ -21,7 +21,7 @@ T = TypeVar("T")
 
 
 class LeafKind(StrEnum):
-    """VSS's kinds of leaf."""
+    """Kinds of leaves in VSS."""
 
     ACTUATOR = "actuator"
     """Can be commanded."""
@@ -33,42 +33,42 @@ class LeafKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Signal(Generic[T]):
-    """One leaf of the tree: what it is called and which values it takes."""
+    """One leaf of the tree: its path and valid values."""
 
     path: str
     kind: LeafKind
     default: T
     unit: str = ""
-    """VSS's word for the unit."""
+    """Unit as in VSS."""
     minimum: float | None = None
     maximum: float | None = None
     step: float = 1.0
-    """What one press of a button changes; any value in the range is legal."""
+    """Change per press of a button; any value in the range is valid."""
     allowed: tuple[T, ...] = ()
     optional: bool = False
-    """May be None: there is nothing to measure."""
+    """Whether it may be None because there is nothing to measure."""
     overlay: bool = False
-    """Not in VSS 6.0."""
+    """Whether it is an extension of VSS 6.0."""
 
     def __str__(self) -> str:
         return self.path
 
     def __hash__(self) -> int:
-        """By the path, which only one has: widgets and messages that hold signals are hashed on every step."""
+        """Hash of the unique path: widgets and messages with signals are hashed on every step."""
         return hash(self.path)
 
     @property
     def low(self) -> float:
-        """The smallest legal number."""
+        """The smallest valid number."""
         return 0.0 if self.minimum is None else self.minimum
 
     @property
     def high(self) -> float:
-        """The greatest legal number."""
+        """The largest valid number."""
         return 0.0 if self.maximum is None else self.maximum
 
     def check(self, value: object) -> T:
-        """The value as it is stored; an int becomes a float where floats are expected.
+        """The value to store; an int becomes a float if floats are expected.
 
         Raises:
             SignalError: wrong type, out of range or not among the allowed values.
@@ -88,7 +88,7 @@ class Signal(Generic[T]):
 
     @property
     def range(self) -> str:
-        """The legal values, in words."""
+        """The valid values, in words."""
         if self.allowed:
             return "one of " + ", ".join(str(value) for value in self.allowed)
         if isinstance(self.default, bool):
@@ -280,7 +280,7 @@ class BODY:
 
 
 class GLASS:
-    """What stands between the driver's eyes and the road, 0 clear to 1 opaque, as the glass sensors see it."""
+    """Opacity of the glass, 0 clear to 1 opaque, as measured by glass sensors."""
 
     WINDSHIELD_FOG = _measure("Body.Windshield.Front.FogInside", 0.0, "", 0, 1, overlay=True)
     WINDSHIELD_FILM = _measure("Body.Windshield.Front.FilmOutside", 0.0, "", 0, 1, overlay=True)
@@ -316,17 +316,17 @@ class ADAS:
 
 
 class DRIVE:
-    """How the car answers to the pedals, what holds it, and what it is heard by."""
+    """Drive mode, brakes and horn."""
 
     MODE = _choice("Powertrain.Transmission.PerformanceMode", "NORMAL", "NORMAL ECONOMY SPORT SNOW RAIN")
     PARKING_BRAKE = _switch("Chassis.ParkingBrake.IsEngaged")
     PARKING_BRAKE_AUTO = _switch("Chassis.ParkingBrake.IsAutoApplyEnabled", True)
     HORN = _is("Body.Horn.IsActive")
-    """VSS has an actuator; here it sounds for a moment when it is pressed."""
+    """VSS has an actuator; here the horn sounds briefly when pressed."""
 
 
 class MOTION:
-    """How and where the car moves."""
+    """Motion and position."""
 
     SPEED = _measure("Speed", 0.0, "km/h", 0, 400)
     IS_MOVING = _is("IsMoving")
@@ -351,7 +351,7 @@ class ENERGY:
 
 
 class OUTSIDE:
-    """What the car measures of sky, air and light."""
+    """Measurements of sky, air and light."""
 
     TEMPERATURE = _measure("Exterior.AirTemperature", 15.0, "celsius", -60, 70)
     HUMIDITY = _measure("Exterior.Humidity", 60.0, "percent", 0, 100)
@@ -371,7 +371,7 @@ class MEDIA:
     MUTED = _switch("Cabin.Infotainment.Media.IsMuted", overlay=True)
     SOURCE = _choice("Cabin.Infotainment.Media.Played.Source", "BLUETOOTH", "BLUETOOTH FM DAB USB INTERNET")
     SELECTED = _enter(Signal("Vehicle.Cabin.Infotainment.Media.SelectedURI", LeafKind.ACTUATOR, ""))
-    """What was chosen; what plays now is ``PLAYED``."""
+    """Chosen media; what plays now is ``PLAYED``."""
     SHUFFLE = _switch("Cabin.Infotainment.Media.IsShuffleActive", overlay=True)
     REPEAT = _switch("Cabin.Infotainment.Media.IsRepeatActive", overlay=True)
     BASS = _set("Cabin.Infotainment.Media.Equalizer.Bass", 0.0, "dB", -10, 10, 1, overlay=True)
@@ -385,14 +385,14 @@ class MEDIA:
 
 
 class CALL:
-    """The phone, as far as it comes in by itself."""
+    """Incoming calls and messages."""
 
     RINGING = _text("Cabin.Infotainment.Call.Ringing", overlay=True)
-    """Who is calling; empty if nobody is."""
+    """The caller; empty without one."""
     PARTNER = _text("Cabin.Infotainment.Call.Partner", overlay=True)
-    """With whom the driver is on the phone."""
+    """The other party of the present call."""
     UNREAD = _measure("Cabin.Infotainment.Message.Unread", 0.0, "", 0, None, overlay=True)
-    """How many people's messages were not read yet."""
+    """Number of senders with unread messages."""
 
 
 class VOICE:
@@ -415,12 +415,12 @@ class HMI:
     PRESSURE_UNIT = _choice("Cabin.Infotainment.HMI.TirePressureUnit", "BAR", "BAR KPA PSI")
     TIME_FORMAT = _choice("Cabin.Infotainment.HMI.TimeFormat", "HR_24", "HR_24 HR_12")
     CONTRAST = _measure("Cabin.Infotainment.HMI.ContrastRatio", 50.0, "ratio", 1, 2000, overlay=True)
-    """White over black as it is seen in the light that falls on the display."""
+    """Contrast of white to black under the light that falls on the display."""
     LANGUAGE = _choice("Cabin.Infotainment.HMI.CurrentLanguage", "en", "en fr de ja", overlay=True)
 
 
 class LINK:
-    """The way out of the car, and what goes along it."""
+    """Connectivity and privacy."""
 
     ONLINE = _is("Connectivity.IsConnectivityAvailable", True)
     MOBILE_DATA = _switch("Connectivity.Cellular.IsEnabled", True, overlay=True)
@@ -436,7 +436,7 @@ def named(path: str) -> Signal[Any]:
     """The signal of that path.
 
     Raises:
-        UnknownNameError: there is none.
+        UnknownNameError: there is no such signal.
     """
     try:
         return CATALOGUE[path]
@@ -445,16 +445,16 @@ def named(path: str) -> Signal[Any]:
 
 
 class Signals:
-    """Values of every signal, each legal at all times."""
+    """The values of all signals, always valid."""
 
     __slots__ = ("_values",)
 
     def __init__(self, values: Mapping[str, Any] | None = None) -> None:
-        """All at their defaults but for ``values``, by path.
+        """All at their defaults except ``values``, by path.
 
         Raises:
             UnknownNameError: no such path.
-            SignalError: a value is illegal.
+            SignalError: a value is invalid.
         """
         self._values: dict[str, Any] = {path: signal.default for path, signal in CATALOGUE.items()}
         for path, value in (values or {}).items():
@@ -480,7 +480,7 @@ class Signals:
         return {path: self._values[path] for path in ACTUATORS}
 
     def reset(self) -> None:
-        """All at their defaults again."""
+        """Resets all to their defaults."""
         self._values = {path: signal.default for path, signal in CATALOGUE.items()}
 
     def copy(self) -> Signals:
@@ -491,11 +491,11 @@ class Signals:
 
 
 ACTUATORS = tuple(path for path, signal in CATALOGUE.items() if signal.kind is LeafKind.ACTUATOR)
-"""Paths of all that can be commanded."""
+"""Paths of all actuators."""
 
 
 def difference(before: Mapping[str, Any], after: Mapping[str, Any]) -> dict[str, tuple[Any, Any]]:
-    """What differs between two snapshots: path to (before, after)."""
+    """Differences between two snapshots: path to (before, after)."""
     return {
         path: (before.get(path), after.get(path))
         for path in sorted(before.keys() | after.keys())

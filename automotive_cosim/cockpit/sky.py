@@ -1,4 +1,4 @@
-"""What the car feels of sky, air and surface: light, glare, visibility, fine dust and grip."""
+"""The car's sensors of sky, air and surface: light, glare, visibility, fine dust and grip."""
 
 from __future__ import annotations
 
@@ -9,23 +9,24 @@ from automotive_cosim.cockpit.signals import ADAS, OUTSIDE, Signals
 from automotive_cosim.contracts import Surroundings, Weather
 
 LOW_SUN_DEG = 25.0
-"""Below this the sun stands in the windshield of a car that drives towards it."""
+"""Elevation below which the sun shines through the windshield of a car that drives towards it."""
 DUST_CODES = frozenset({6, 7, 8, 9, *range(30, 36)})
 """WMO 4677: dust in suspension or raised, dust and sand storms."""
 ICE_CODES = frozenset({48, 56, 57, 66, 67})
 SNOW_CODES = frozenset({71, 73, 75, 77, 85, 86})
 GRIP_ICE, GRIP_SNOW, GRIP_WET = 0.15, 0.3, 0.7
-"""Of a dry road: rough means of published friction coefficients (0.1, 0.2 to 0.3 and 0.5 to 0.6 against 0.8)."""
+"""Grip relative to a dry road: rough means of published friction coefficients (0.1, 0.2 to 0.3 and 0.5 to 0.6
+against 0.8)."""
 STREET_DUST, JAM_DUST, TUNNEL_DUST = 8.0, 15.0, 60.0
-"""Fine dust in ug/m3: clean city air, what a jam adds and what a tunnel adds. Assumptions of the right size."""
+"""Fine dust in ug/m3: clean city air, what a jam adds and what a tunnel adds. Plausible assumptions."""
 FINE_SHARE = 0.15
-"""Of the dust in a storm, particles under 2.5 micrometres: an assumption."""
+"""Share of particles under 2.5 micrometres in a dust storm: an assumption."""
 GRADES = ((5.0, "Good"), (15.0, "Fair"), (50.0, "Moderate"), (90.0, "Poor"), (140.0, "Very poor"))
 """Upper bounds of fine dust in ug/m3 (European Air Quality Index, EEA, since 2024); above is extremely poor."""
 
 
 def feel(signals: Signals, surroundings: Surroundings) -> None:
-    """Writes what the car's sensors make of the surroundings."""
+    """Writes the sensors' readings of the surroundings."""
     driving, weather = surroundings.driving, surroundings.weather
     tunnel = driving.road.in_tunnel
     signals[OUTSIDE.VISIBILITY] = weather.visibility
@@ -37,7 +38,7 @@ def feel(signals: Signals, surroundings: Surroundings) -> None:
 
 
 def air_grade(fine_dust: float) -> str:
-    """The index's word."""
+    """The index's class."""
     return next((word for bound, word in GRADES if fine_dust <= bound), "Extremely poor")
 
 
@@ -47,7 +48,7 @@ def is_dusty(weather: Weather) -> bool:
 
 
 def _light_pct(sun_elevation_deg: float | None, weather: Weather) -> float:
-    """Full at 30 degrees under a clear sky; clouds take up to two thirds."""
+    """Daylight: full at 30 degrees under a clear sky; clouds reduce it by up to two thirds."""
     if sun_elevation_deg is None:
         return 100.0
     height = math.sin(math.radians(sun_elevation_deg)) / math.sin(math.radians(30))
@@ -55,7 +56,7 @@ def _light_pct(sun_elevation_deg: float | None, weather: Weather) -> float:
 
 
 def _glare_pct(surroundings: Surroundings) -> float:
-    """How much of a low sun shines in from ahead."""
+    """Glare of a low sun from ahead."""
     elevation, driving = surroundings.sun_elevation_deg, surroundings.driving
     if elevation is None or not 0 < elevation < LOW_SUN_DEG or driving.lat_deg is None or driving.lon_deg is None:
         return 0.0
@@ -65,7 +66,7 @@ def _glare_pct(surroundings: Surroundings) -> float:
 
 
 def sun_azimuth_deg(lat_deg: float, lon_deg: float, time: datetime) -> float:
-    """Clockwise from north, to a few degrees: mean sun, and the declination by a cosine over the year."""
+    """Azimuth, clockwise from north, to a few degrees: mean sun, and a cosine for the declination."""
     utc = time.astimezone(UTC)
     hours = utc.hour + utc.minute / 60 + utc.second / 3600
     hour_angle = math.radians(15 * (hours - 12) + lon_deg)
@@ -77,7 +78,8 @@ def sun_azimuth_deg(lat_deg: float, lon_deg: float, time: datetime) -> float:
 
 
 def _fine_dust(weather: Weather, tunnel: bool, relative_speed: float) -> float:
-    """In a dust storm from the visibility (Shao and others 2003: 3802 times the kilometres to the -0.84)."""
+    """Fine dust; in a dust storm from the visibility (Shao and others 2003: 3802 times the kilometres to the
+    -0.84)."""
     dust = STREET_DUST + (TUNNEL_DUST if tunnel else 0.0) + (JAM_DUST if relative_speed < 0.4 else 0.0)
     if is_dusty(weather) and not tunnel:
         dust += FINE_SHARE * 3802.0 * max(weather.visibility / 1000, 0.05) ** -0.84
@@ -85,7 +87,7 @@ def _fine_dust(weather: Weather, tunnel: bool, relative_speed: float) -> float:
 
 
 def _grip(weather: Weather) -> float:
-    """Of a dry road. Water freezes on the road at and under 0 degrees."""
+    """Grip relative to a dry road. Water freezes on the road at and below 0 degrees."""
     wet = weather.precipitation > 0.1
     if weather.weather_code in ICE_CODES and weather.temperature_2m <= 1:
         return GRIP_ICE

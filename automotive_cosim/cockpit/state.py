@@ -1,4 +1,4 @@
-"""Everything the screens are built from: one mutable state of immutable values, so that a copy costs nothing."""
+"""Everything the screens are built from: one mutable state of immutable values, so copying is cheap."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ from automotive_cosim.contracts import (
 )
 
 NOTICE_S = 10.0
-"""A notice stays this long."""
+"""How long a notice stays."""
 NOTICES = 20
-"""So many are kept to be looked up."""
+"""Number of notices kept in the list."""
 
 
 PICKED: Mapping[str, str] = {
@@ -46,17 +46,17 @@ PICKED: Mapping[str, str] = {
     "seats": "driver",
     "manual": "0",
 }
-"""What screens with several parts show first."""
+"""The initial parts of screens with several parts."""
 
 
 @dataclass(frozen=True, slots=True)
 class AlertDraft:
-    """The alert being put together in the safety centre."""
+    """The alert being prepared in the safety centre."""
 
     kind: AlertKind | None = None
     severity: Severity = Severity.WARNING
     speed_kmh: float | None = None
-    """Advised speed; None leaves it to the posted limit."""
+    """Advised speed; None means the posted limit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,12 +66,12 @@ class AlertRecord:
     clock: str
     alert: Alert
     answer: str = ""
-    """What the road said."""
+    """The road's reply."""
 
 
 @dataclass(frozen=True, slots=True)
 class Notice:
-    """A line in the status bar that goes by itself and stays among the notifications."""
+    """A line in the status bar that disappears by itself and stays among the notifications."""
 
     at_s: float
     clock: str
@@ -79,9 +79,9 @@ class Notice:
     icon: Icon
     tone: Severity
     seen: bool = False
-    """Was taken out of the status bar."""
+    """Whether it was removed from the status bar."""
     opens: tuple[str, str] | None = None
-    """Screen, and what on it, that a tap on the notice leads to."""
+    """Screen and item that a tap on the notice leads to."""
 
 
 @dataclass(slots=True)
@@ -100,22 +100,22 @@ class State:
     sign_camera: bool
     cabin_start: CabinStart
     cabin: Cabin | None = None
-    """None until the first look outside."""
+    """The surroundings; None before the first ``sense``."""
     tyres: Tyres | None = None
     injected: Mapping[str, Any] = field(default_factory=dict)
-    """Sensors that read what they were told to, by path."""
+    """Injected values of sensors, by path."""
     outside: Surroundings | None = None
     heard: Surroundings | None = None
-    """What was outside when the car was last online: as of then it knows the live traffic."""
+    """The surroundings when the car was last online, from which it knows the live traffic."""
     screen: str = "home"
     past: tuple[tuple[str, str], ...] = ()
-    """Screens to go back to, and what was shown on them."""
+    """Screens to go back to, with their items."""
     scrolled: Mapping[str, int] = field(default_factory=dict)
-    """Rows each list is scrolled by."""
+    """Scroll position of each list, in rows."""
     picked: Mapping[str, str] = field(default_factory=lambda: PICKED)
-    """What is chosen on a screen that shows several things, by its key."""
+    """Selected parts of screens, by key."""
     focus: str = ""
-    """Key of the text field that takes letters."""
+    """Key of the focused text field."""
     keyboard: bool = False
     """Whether its keys are on the screen."""
     typed: Mapping[str, str] = field(default_factory=dict)
@@ -123,22 +123,22 @@ class State:
     zoom: int = 1
     north_up: bool = False
     panned: tuple[float, float] | None = None
-    """Where the map looks in metres of the network, if not at the car."""
+    """The map's point in metres of the network, if not the car."""
     draft: AlertDraft = field(default_factory=AlertDraft)
     alerts: tuple[AlertRecord, ...] = ()
     notices: tuple[Notice, ...] = ()
     calls: tuple[str, ...] = ()
     asked: tuple[RoadRequest, ...] = ()
-    """Every request that cannot be taken back."""
+    """Every irrevocable request."""
     horns: int = 0
     washes: int = 0
     pending: tuple[RoadRequest, ...] = ()
     expected: tuple[Arrival, ...] = ()
     """Calls and messages still to come."""
     departed_s: float = 0.0
-    """Simulation time of the first look outside."""
+    """Simulation time of the first ``sense``."""
     played_s: float = 0.0
-    """How far the track is."""
+    """Playing time of the track."""
 
     def copy(self) -> State:
         """An independent copy."""
@@ -151,7 +151,7 @@ class State:
 
     @property
     def time_s(self) -> float:
-        """Simulation time; 0 before the first look outside."""
+        """Simulation time; 0 before the first ``sense``."""
         return 0.0 if self.outside is None else self.outside.driving.time_s
 
     @property
@@ -160,19 +160,19 @@ class State:
         return "--:--" if self.outside is None else self.clock_at(self.outside.local_time)
 
     def clock_at(self, time: datetime) -> str:
-        """A time of day as the driver likes it."""
+        """A time of day in the driver's format."""
         if self.signals[HMI.TIME_FORMAT] == "HR_24":
             return time.strftime("%H:%M")
         return f"{(time.hour - 1) % 12 + 1}:{time.minute:02d} {'am' if time.hour < 12 else 'pm'}"
 
     @property
     def restrictions(self) -> Restriction:
-        """What is locked now."""
+        """The present restrictions."""
         return restrictions(self.signals[MOTION.GEAR], self.signals[MOTION.SPEED])
 
     @property
     def entries_limit(self) -> int | None:
-        """How many entries of a list are shown now; None: all."""
+        """Present limit of list entries; None for all."""
         return ENTRIES_LIMIT if Restriction.LIMIT_CONTENT in self.restrictions else None
 
     def locked(self, restriction: Restriction) -> str:
@@ -186,7 +186,7 @@ class State:
 
     @property
     def notice(self) -> Notice | None:
-        """The newest notice, if it has not gone."""
+        """The newest notice, if it is still shown."""
         newest = self.notices[-1] if self.notices else None
         fresh = newest is not None and not newest.seen and self.time_s - newest.at_s < NOTICE_S
         return newest if fresh else None
@@ -205,17 +205,17 @@ class State:
         self.notices = (*self.notices[1 - NOTICES :], notice)
 
     def said(self, words: str, icon: Icon) -> Feedback:
-        """Shows what was done, and answers so."""
+        """Shows and returns a success."""
         self.notify(words, icon)
         return Feedback(FeedbackCode.OK, words)
 
     def refused(self, why: str) -> Feedback:
-        """Shows why it was not done, and answers so."""
+        """Shows and returns a failure."""
         self.notify(why, Icon.INFO)
         return Feedback(FeedbackCode.REFUSED, why)
 
     def commands(self) -> dict[str, Any]:
-        """All that can be commanded: actuators, app data, and what was sent out and can't be taken back."""
+        """Everything that can be commanded: actuators, app data, and what was irrevocably sent."""
         return self.signals.commanded() | {
             "alerts": [
                 {

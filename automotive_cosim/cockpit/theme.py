@@ -24,13 +24,13 @@ SCREEN_WIDTH, SCREEN_HEIGHT = 1280, 720
 STATUS_HEIGHT, DOCK_HEIGHT = 64, 96
 MARGIN, GAP = 24, 16
 TOUCH = 48
-"""Least side of anything that can be tapped."""
+"""Minimum side of anything that can be tapped."""
 CARD_RADIUS, BUTTON_RADIUS = 20, 14
 
 
 @dataclass(frozen=True, slots=True)
 class Palette:
-    """Colours by what they are for. Text colours keep 4.5:1 on the surfaces they are used on."""
+    """Colours by purpose. Text colours have a contrast of at least 4.5:1 on their surfaces."""
 
     background: Colour
     surface: Colour
@@ -60,9 +60,9 @@ class Palette:
     jam: Colour
     halo: Colour
     plate: Colour
-    """Ground of labels and buttons that lie over other things."""
+    """Background of labels and buttons over other things."""
     disabled: Colour
-    """Text of what cannot be used now; still readable on ``raised``."""
+    """Text of disabled widgets; still readable on ``raised``."""
 
 
 def _hex(code: str) -> Colour:
@@ -168,7 +168,7 @@ class Type(Enum):
 
     @property
     def pitch(self) -> int:
-        """From one line to the next."""
+        """Line height."""
         return round(self.size * 1.3)
 
 
@@ -182,15 +182,15 @@ SMALLER = {
     Type.CAPTION: Type.SMALL,
     Type.SMALL: Type.FINE,
 }
-"""Where a text goes that is too long for its box."""
+"""End of a text that is too long for its box."""
 
 EAST_ASIAN_FROM = "\u2e80"
-"""From this character on Unicode has the scripts of East Asia, which Roboto lacks."""
+"""First character of East Asian scripts in Unicode, which Roboto lacks."""
 _HOMES = {Weight.ICON: ("fonticon_mdi7", "fonts"), Weight.EAST_ASIAN: ("noto_cjk_sans_jp_regular", "")}
 """Package and folder of the fonts; of the others, Roboto's."""
 
 CAP_HEIGHT = 0.711
-"""Of Roboto's capitals, in em."""
+"""Height of Roboto's capitals, in em."""
 
 
 @lru_cache(maxsize=128)
@@ -209,7 +209,7 @@ def font(weight: Weight, size: int) -> ImageFont.FreeTypeFont:
 
 
 def face(text: str, weight: Weight, size: int) -> ImageFont.FreeTypeFont:
-    """The face that has the letters of a text; one with a letter from East Asia is set in that font as a whole."""
+    """The face for a text; one with any East Asian letter is set in that font completely."""
     foreign = not text.isascii() and weight is not Weight.ICON and max(text) >= EAST_ASIAN_FROM
     return font(Weight.EAST_ASIAN if foreign else weight, size)
 

@@ -10,25 +10,25 @@ import math
 from dataclasses import dataclass, replace
 
 COLD_C = 20.0
-"""What cold inflation pressures are stated for here."""
+"""Temperature of cold inflation pressures here."""
 KELVIN = 273.15
 AIR_KPA = 101.325
 WARMING_K_PER_KMH = 0.25
-"""Tyres run some 25 K above the air at 100 km/h: an assumption of the size measured on passenger cars."""
+"""Tyres are some 25 K warmer than the air at 100 km/h: an assumption in line with measurements."""
 SETTLING_S = 600.0
 """Time constant: settled after half an hour of driving, as long as rolling resistance is warmed up for tests."""
 
 
 @dataclass(frozen=True, slots=True)
 class Tyres:
-    """All four, equally warm."""
+    """All four tyres, at the same temperature."""
 
     cold_kpa: tuple[float, ...]
     """Gauge pressures at ``COLD_C``."""
     temperature_c: float
 
     def after(self, dt_s: float, air_c: float, speed_kmh: float) -> Tyres:
-        """Some seconds later."""
+        """The tyres some seconds later."""
         settled_c = air_c + WARMING_K_PER_KMH * speed_kmh
         left = math.exp(-dt_s / SETTLING_S)
         return replace(self, temperature_c=settled_c + (self.temperature_c - settled_c) * left)

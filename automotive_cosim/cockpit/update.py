@@ -1,4 +1,4 @@
-"""What a message does to the state, whether a finger or a safety call sent it."""
+"""The effect of messages on the state, from a finger or a safety call."""
 
 from __future__ import annotations
 
@@ -74,14 +74,14 @@ ADVICE: dict[AlertKind, str] = {
     AlertKind.TUNNEL: "Tunnel ahead",
     AlertKind.VEHICLE: "Check the vehicle",
 }
-"""What an alert without words of its own tells the driver."""
+"""Texts of alerts without a text of their own."""
 
 
 FOLDED = "The keyboard is folded"
 
 
 def perform(state: State, message: Message) -> Feedback:
-    """Does what a widget's message says."""
+    """Performs a widget's message."""
     match message:
         case Show(screen, item):
             return show(state, screen, item)
@@ -139,7 +139,7 @@ def perform(state: State, message: Message) -> Feedback:
 
 
 def show(state: State, screen: str, item: str = "") -> Feedback:
-    """Goes to a screen; where it came from can be gone back to."""
+    """Goes to a screen; the previous one can be returned to."""
     if screen == state.screen and item in ("", state.picked.get(screen)):
         return Feedback(FeedbackCode.NO_EFFECT, f"{screen} is already shown")
     state.past = (*state.past[-8:], (state.screen, state.picked.get(state.screen, "")))
@@ -151,7 +151,7 @@ def show(state: State, screen: str, item: str = "") -> Feedback:
 
 
 def back(state: State) -> Feedback:
-    """Returns to the screen before; with text in a field, first to the screen without it."""
+    """Returns to the previous screen; with text in a field, first to the screen without it."""
     if state.focus or state.typed:
         state.focus, state.typed = "", {}
         return Feedback(FeedbackCode.OK, "the search is closed")
@@ -165,14 +165,14 @@ def back(state: State) -> Feedback:
 
 
 def write(state: State, field: str, text: str) -> None:
-    """Puts text into a field; lists begin at their start again."""
+    """Puts text into a field; lists return to their start."""
     printable = "".join(letter for letter in text if letter.isprintable())
     state.typed = {**state.typed, field: printable[:STRING_LIMIT]}
     state.scrolled = {}
 
 
 def command(state: State, signal: Signal[Any], value: Any) -> Feedback:
-    """Sets an actuator, with what hangs on it, and tells the road what concerns it."""
+    """Sets an actuator and what is coupled to it, and makes the related requests to the road."""
     before = state.signals.snapshot()
     refusal = state.vehicle.command(signal, value)
     if refusal:
@@ -202,7 +202,7 @@ def command_all(state: State, values: tuple[tuple[Signal[Any], Any], ...], said:
 
 
 def _tell_road(state: State, before: Mapping[str, Any]) -> None:
-    """Hands on what others see, and the speed to be kept."""
+    """Requests what others see, and the speed to keep."""
     after = state.signals
     if before[LIGHTS.HAZARD.path] != after[LIGHTS.HAZARD]:
         state.pending += (Hazards(after[LIGHTS.HAZARD]),)
@@ -212,14 +212,14 @@ def _tell_road(state: State, before: Mapping[str, Any]) -> None:
 
 
 def _kept_speed(values: Mapping[str, Any]) -> float | None:
-    """The speed that cruise control or the limiter holds the car at or below."""
+    """The speed limit of cruise control or the limiter."""
     if values[ADAS.CRUISE_ACTIVE.path]:
         return float(values[ADAS.CRUISE_SPEED.path])
     return float(values[ADAS.LIMITER_SPEED.path]) if values[ADAS.LIMITER_ACTIVE.path] else None
 
 
 def give_alert(state: State, alert: Alert) -> Feedback:
-    """Tells the driver, on screen and by voice, and hands the alert to the road."""
+    """Alerts the driver, on screen and by voice, and passes the alert to the road."""
     name, icon = KINDS[alert.kind]
     if alert.speed_kmh is not None and not 0 < alert.speed_kmh <= 400:
         return Feedback(FeedbackCode.REFUSED, f"{alert.speed_kmh:g} km/h is no speed to advise")
@@ -235,7 +235,7 @@ def give_alert(state: State, alert: Alert) -> Feedback:
 
 
 def ask_road(state: State, request: RoadRequest) -> Feedback:
-    """Asks something of the driver or the route that can't be taken back."""
+    """Makes an irrevocable request to the driver or the router."""
     if isinstance(request, Alert):
         return give_alert(state, request)
     if isinstance(request, SlowDown) and not 0 <= request.speed_kmh <= 400:
@@ -248,7 +248,7 @@ def ask_road(state: State, request: RoadRequest) -> Feedback:
 
 
 def guide(state: State, place: str, onward: str = "") -> Feedback:
-    """Asks for a route to a place or street; empty looks for a faster one."""
+    """Requests a route to a place or street; empty looks for a faster one."""
     known = state.atlas.find(place)
     feedback = ask_road(state, Reroute(known.edge_id if known else place))
     if place and onward and onward != place:
@@ -257,7 +257,7 @@ def guide(state: State, place: str, onward: str = "") -> Feedback:
 
 
 def answered(state: State, request: RoadRequest, answer: Answer) -> None:
-    """Shows the road's reply where it belongs."""
+    """Shows the road's reply."""
     if isinstance(request, Alert) and state.alerts:
         *rest, last = state.alerts
         state.alerts = (*rest, AlertRecord(last.clock, last.alert, answer.reason))
@@ -324,7 +324,7 @@ def _drive(state: State, name: str) -> Feedback:
 
 
 def _rewind(state: State, lists: str) -> None:
-    """Lists whose key begins so show something else now: they begin at their start."""
+    """Resets the lists whose key has this prefix to their start, since their content changed."""
     state.scrolled = {key: first for key, first in state.scrolled.items() if not key.startswith(lists)}
 
 
@@ -345,7 +345,7 @@ def _key(state: State, field: str, letters: str) -> Feedback:
 
 
 def _play(state: State, uri: str, playlist: str) -> Feedback:
-    """An entry from its beginning, with its source, loud or quiet as it is."""
+    """Plays an entry from its beginning, with its source, at the present volume."""
     entry = state.library.by_uri[uri]
     values: tuple[tuple[Signal[Any], Any], ...] = (
         (MEDIA.SOURCE, source_of(uri)),
@@ -361,7 +361,7 @@ def _play(state: State, uri: str, playlist: str) -> Feedback:
 
 
 def settle(state: State) -> None:
-    """Another source starts with its first entry; another entry from its beginning."""
+    """Another source starts with its first entry; another entry starts at its beginning."""
     signals = state.signals
     entry = state.library.find(signals[MEDIA.SOURCE], signals[MEDIA.SELECTED])
     signals[MEDIA.SELECTED] = entry.uri

@@ -1,4 +1,4 @@
-"""The car behind the switches: what one switch does to others, lamps that follow the light, and the battery."""
+"""Couplings between switches, automatic lamps, and the battery."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ from automotive_cosim.cockpit.signals import (
 T = TypeVar("T")
 
 DEFROST_FAN_PCT = 40.0
-"""Front defrost blows at least this hard: the second of five steps."""
+"""Minimum fan speed of front defrost: the second of five steps."""
 LEAST_FAN_PCT = 20.0
-"""Cooling needs air through the evaporator: the first of five steps."""
+"""Minimum fan speed for cooling, which requires air through the evaporator: the first of five steps."""
 WINDOWS_PCT = 20.0
-"""Cooling wants the windows no further open than this."""
+"""Maximum window opening for cooling."""
 DARK_BELOW_DEG = 1.0
 """Sun elevation at which light sensors switch lamps on: about 1000 lux under a clear sky (UN R48, 6.2.7.6)."""
 
@@ -59,8 +59,8 @@ MODES: Mapping[Signal[bool], Mapping[Signal[Any], Any]] = {
         HVAC.DRIVER_TEMPERATURE: HVAC.DRIVER_TEMPERATURE.low,
     },
 }
-"""What each mode of the air sets, a fan speed being the least; one of them is on at a time. Dry fresh air to the
-windshield clears it; cooled air that goes round cools fastest."""
+"""Settings of each air mode, with a minimum fan speed; one mode is on at a time. Dry fresh air clears the
+windshield; recirculated cooled air cools fastest."""
 WINDOWS = (CABIN.DRIVER_WINDOW, CABIN.PASSENGER_WINDOW, CABIN.REAR_LEFT_WINDOW, CABIN.REAR_RIGHT_WINDOW)
 LOCKS = (CABIN.DRIVER_LOCK, CABIN.PASSENGER_LOCK, CABIN.REAR_LEFT_LOCK, CABIN.REAR_RIGHT_LOCK)
 _LAMPS: tuple[Signal[Any], ...] = (
@@ -132,7 +132,7 @@ HELD: Mapping[str, str] = {
     ENERGY.CHARGE_FLAP.path: "The charging flap stays shut while driving",
     DRIVE.PARKING_BRAKE.path: "The parking brake is for standing still",
 }
-"""What the car does not do while it moves, by path, and why."""
+"""Actuators that are locked while the car moves, by path, and why."""
 
 
 @dataclass(slots=True)
@@ -141,7 +141,7 @@ class Vehicle:
 
     signals: Signals
     dark: bool = False
-    """What the light sensor says."""
+    """Reading of the light sensor."""
     before_mode: Mapping[Signal[Any], Any] = field(default_factory=dict)
     """Settings that a mode of the air overrode, to be restored when it is switched off."""
 
@@ -150,7 +150,7 @@ class Vehicle:
         return Vehicle(self.signals.copy(), self.dark, self.before_mode)
 
     def command(self, signal: Signal[T], value: T) -> str:
-        """Sets an actuator and what hangs on it.
+        """Sets an actuator and what is coupled to it.
 
         Returns:
             Why the car does not do it; empty if it does. A refused command changes nothing.
@@ -196,7 +196,7 @@ class Vehicle:
             now[HMI.DAY_NIGHT] = "NIGHT" if dark else "DAY"
 
     def controls(self, rain_mm_h: float) -> Controls:
-        """What the cabin's physics need to know of the switches."""
+        """The cabin's controls, from the switches."""
         now = self.signals
         return Controls(
             set_c=(now[HVAC.DRIVER_TEMPERATURE] + now[HVAC.PASSENGER_TEMPERATURE]) / 2,
@@ -213,7 +213,7 @@ class Vehicle:
         )
 
     def use_energy(self, dt_s: float, air: Air, cabin_c: float) -> None:
-        """Drains the battery by driving resistance and what is switched on."""
+        """Drains the battery by driving resistance and consumers."""
         power_w = _driving_w(air.speed_mps) + self._auxiliaries_w(air, cabin_c)
         used_pct = 100 * power_w * dt_s / (BATTERY_KWH * 3.6e6)
         level = max(0.0, self.signals[ENERGY.LEVEL] - used_pct)
@@ -267,7 +267,7 @@ class Vehicle:
             now[mode] = now[mode] and all(_meets(one, now[one], least) for one, least in wanted.items())
 
     def _mode(self, mode: Signal[bool], on: bool) -> None:
-        """Overrides what the mode needs; switched off, it goes back."""
+        """Applies a mode's settings, or restores the previous ones when it is switched off."""
         now = self.signals
         for other in MODES:
             if on and other is not mode and now[other]:
@@ -284,7 +284,7 @@ class Vehicle:
             self.before_mode = {}
 
     def _speed_keeping(self, signal: Signal[Any], value: Any) -> None:
-        """Cruise control and limiter take turns."""
+        """Makes cruise control and limiter mutually exclusive."""
         if signal is ADAS.CRUISE_ENABLED and not value:
             self.signals[ADAS.CRUISE_ACTIVE] = False
         elif signal is ADAS.CRUISE_ACTIVE and value:
@@ -293,7 +293,7 @@ class Vehicle:
             self.signals[ADAS.CRUISE_ACTIVE] = False
 
     def _lighting(self, signal: Signal[Any], value: Any) -> None:
-        """A lamp asked for by itself turns the switch."""
+        """Turns the light switch for a lamp that was commanded directly."""
         if signal is LIGHTS.LOW_BEAM:
             self.signals[LIGHTS.SWITCH] = "BEAM" if value else "POSITION"
         elif signal is LIGHTS.POSITION:
@@ -327,7 +327,7 @@ def _meets(signal: Signal[Any], value: Any, wanted: Any) -> bool:
 
 BATTERY_KWH = 64.0
 CONSUMPTION_KWH_KM = 0.165
-"""What the range on the display reckons with: the WLTP figure of a mid-size electric car."""
+"""Consumption for the displayed range: the WLTP figure of a mid-size electric car."""
 MASS_KG, ROLLING, DRAG_AREA_M2, EFFICIENCY = 1900.0, 0.010, 0.65, 0.85
 """A mid-size electric car; rolling resistance coefficient and drag area as published for the class."""
 ELECTRONICS_W, COMPRESSOR_W, REAR_WINDOW_W, SEAT_W, HEAT_PUMP_COP = 300.0, 500.0, 200.0, 60.0, 2.0

@@ -39,7 +39,7 @@ from automotive_cosim.contracts import KMH_PER_MPS
 from automotive_cosim.errors import SignalError, UnknownNameError
 
 GLOBAL = 0
-"""The area of what the car has once."""
+"""The area of properties without areas."""
 
 
 class Seat(IntEnum):
@@ -89,7 +89,7 @@ class Mirror(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class _Codec:
-    """How a value reads in VHAL's terms, and back."""
+    """Conversion of values to and from VHAL."""
 
     read: Callable[[Any], Any]
     write: Callable[[Any], Any]
@@ -135,7 +135,7 @@ class _Property:
     areas: Mapping[int, Signal[Any]]
     codec: _Codec = _SAME
     writable: bool = True
-    """Whether VHAL's name can be set at all: a lamp's state cannot, its switch can."""
+    """Whether the VHAL property can be set: a lamp's state cannot, its switch can."""
 
 
 def _one(signal: Signal[Any], codec: _Codec = _SAME, *, writable: bool = True) -> _Property:
@@ -143,7 +143,7 @@ def _one(signal: Signal[Any], codec: _Codec = _SAME, *, writable: bool = True) -
 
 
 def _front(signal: Signal[Any], codec: _Codec = _SAME) -> _Property:
-    """One that both front seats share."""
+    """A property shared by both front seats."""
     return _Property(dict.fromkeys(_FRONT_SEATS, signal), codec)
 
 

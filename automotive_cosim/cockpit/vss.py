@@ -1,4 +1,4 @@
-"""The signals as a standard VSS tree, as the vss-tools JSON exporter writes one.
+"""The signals as a standard VSS tree, in the format of the vss-tools JSON exporter.
 
     {"Vehicle": {"type": "branch", "description": ..., "children": {"Speed": {"type": "sensor", ...}}}}
 
@@ -14,7 +14,7 @@ from automotive_cosim.cockpit.signals import CATALOGUE, Signal
 from automotive_cosim.contracts import Json
 
 DATATYPES = {bool: "boolean", float: "float", str: "string"}
-"""VSS's word for each type a signal has."""
+"""VSS type of each signal type."""
 OVERLAY = "Overlay: not in VSS 6.0."
 _WORDS = re.compile(r"[A-Z]+(?![a-z])|[A-Z][a-z]+|\d+")
 
@@ -54,7 +54,7 @@ def _leaf(signal: Signal[Any]) -> Json:
 
 
 def _described(parts: list[str]) -> str:
-    """What a path says in words: ``Is locked (cabin, door, row 1, driver side).``"""
+    """A path in words: ``Is locked (cabin, door, row 1, driver side).``"""
     *places, name = (" ".join(_word(word) for word in _WORDS.findall(part)) for part in parts)
     within = f" ({', '.join(places[1:])})" if places[1:] else ""
     return f"{name[:1].upper()}{name[1:]}{within}."

@@ -25,13 +25,13 @@ Tone = Literal["text", "muted", "accent", "good", "warning"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Widget:
-    """What all have."""
+    """Common fields of all widgets."""
 
     rect: Rect
     key: str = ""
     text: str = ""
     description: str = ""
-    """What it is for a reader who does not see its icon."""
+    """Description for a reader who does not see its icon."""
     on_tap: Message | None = None
     disabled: str = ""
     """Why it cannot be used now; empty if it can."""
@@ -43,11 +43,11 @@ class Widget:
 
     @property
     def usable(self) -> bool:
-        """Neither disabled nor locked."""
+        """Whether it is neither disabled nor locked."""
         return not (self.disabled or self.locked)
 
     def walk(self) -> Iterator[Widget]:
-        """Itself and all below it, in drawing order. One generator, not one a level: screens are walked often."""
+        """Itself and all its descendants, in drawing order. One generator for speed: screens are walked often."""
         ahead: list[Widget] = [self]
         while ahead:
             widget = ahead.pop()
@@ -55,7 +55,7 @@ class Widget:
             ahead.extend(reversed(widget.children))
 
     def at(self, x: float, y: float) -> Widget | None:
-        """The uppermost widget under a point that listens to fingers."""
+        """The uppermost widget under a point that reacts to touch."""
         if not self.rect.contains(x, y):
             return None
         for child in reversed(self.children):
@@ -79,7 +79,7 @@ class Screen(Widget):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Card(Widget):
-    """A surface that holds others together."""
+    """A surface that groups other widgets."""
 
     look: Literal["surface", "raised", "plate", "none"] = "surface"
 
@@ -93,7 +93,7 @@ class Label(Widget):
     align: Literal["left", "centre", "right"] = "left"
     lines: int = 1
     plate: bool = False
-    """On a ground of its own, as on the map."""
+    """Whether it has a background of its own, as on the map."""
 
     class_name: ClassVar[str] = "TextView"
 
@@ -110,7 +110,7 @@ class Glyph(Widget):
 
 
 class Look(Enum):
-    """How loud a button is."""
+    """Emphasis of a button."""
 
     PLAIN = "plain"
     TONAL = "tonal"
@@ -128,7 +128,7 @@ class Button(Widget):
     look: Look = Look.TONAL
     style: Type = Type.LABEL
     stacked: bool = False
-    """Icon above the text."""
+    """Whether the icon is above the text."""
 
     class_name: ClassVar[str] = "Button"
 
@@ -140,7 +140,7 @@ class Choice(Widget):
     icon: Icon | None = None
     selected: bool = False
     look: Literal["plain", "boxed", "quiet"] = "plain"
-    """Of one that is not selected: on its group's ground, on a ground of its own, or muted."""
+    """Style when not selected: on its group's background, on its own background, or muted."""
     stacked: bool = False
     style: Type = Type.LABEL
 
@@ -154,14 +154,14 @@ class Tile(Widget):
     icon: Icon
     checked: bool = False
     level: str = ""
-    """What stands beside the name where on and off don't say enough."""
+    """Text next to the name if on and off do not say enough."""
 
     class_name: ClassVar[str] = "Switch"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Slider(Widget):
-    """Sets a number by where it is touched."""
+    """Sets a number by the position of the touch."""
 
     signal: Signal[float]
     value: float
@@ -171,35 +171,35 @@ class Slider(Widget):
 
     @property
     def listens(self) -> bool:
-        """A slider always does."""
+        """True: a slider always does."""
         return True
 
     @property
     def track(self) -> Rect:
-        """The part that stands for the range."""
+        """The part that represents the range."""
         return Rect(self.rect.x + 20, self.rect.bottom - 26, self.rect.width - 40, 8)
 
     def message_at(self, x: float) -> Message:
-        """What a finger at that column says."""
+        """The message of a touch at a column."""
         share = min(1.0, max(0.0, (x - self.track.x) / self.track.width))
         low, high, step = self.signal.low, self.signal.high, self.signal.step
         return Set(self.signal, low + round(share * (high - low) / step) * step)
 
     def message_by(self, steps: int) -> Message:
-        """What dragging it that many steps says."""
+        """The message of dragging it by a number of steps."""
         value = self.value + steps * self.signal.step
         return Set(self.signal, min(self.signal.high, max(self.signal.low, value)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Field(Widget):
-    """Takes text."""
+    """A text field."""
 
     hint: str = ""
     icon: Icon = Icon.SEARCH
     focused: bool = False
     on_enter: Message | None = None
-    """What the enter key does; None while nothing fits what was typed."""
+    """Message of the enter key; None while nothing matches the typed text."""
 
     class_name: ClassVar[str] = "EditText"
 
@@ -211,22 +211,22 @@ class Row(Widget):
     icon: Icon | None = None
     detail: str = ""
     trail: str = ""
-    """Stands at the right end."""
+    """Text at the right end."""
     raised: bool = False
-    """On a card, which has the ground of other rows."""
+    """Whether it is on a card, which has the background of other rows."""
     selected: bool = False
     tone: Tone = "accent"
-    """Of the icon."""
+    """Colour of the icon."""
 
     class_name: ClassVar[str] = "Button"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rows(Widget):
-    """A list that scrolls by whole rows: its children are the rows in sight."""
+    """A list that scrolls by whole rows; its children are the visible rows."""
 
     first: int = 0
-    """Index of the first row in sight."""
+    """Index of the first visible row."""
     shown: int = 0
     total: int = 0
 
@@ -234,13 +234,13 @@ class Rows(Widget):
 
     @property
     def last_first(self) -> int:
-        """How far it can be scrolled."""
+        """Maximum scroll position."""
         return max(0, self.total - self.shown)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Bar(Widget):
-    """How much of something."""
+    """A bar that shows an amount."""
 
     share: float
     tone: Tone = "accent"
@@ -271,7 +271,7 @@ class Badge(Widget):
 
     icon: Icon
     warns: bool = False
-    """In the colour of warnings."""
+    """Whether it has the colour of warnings."""
 
     class_name: ClassVar[str] = "ImageView"
 
@@ -284,7 +284,7 @@ class MapView(Widget):
     scene: MapScene
     on_double_tap: Message | None = None
     pans: bool = False
-    """A swipe moves it."""
+    """Whether a swipe moves it."""
 
     class_name: ClassVar[str] = "View"
 
@@ -300,7 +300,7 @@ class CarView(Widget):
     rear_fog: bool
     hazard: bool
     windshield: int
-    """How opaque, in tenths."""
+    """Opacity in tenths."""
     rear_window: int
 
     class_name: ClassVar[str] = "ImageView"

@@ -25,8 +25,7 @@ class BoundingBox:
 
 @dataclass(frozen=True, slots=True)
 class Element:
-    """One entry of the accessibility tree, like AndroidWorld's ``UIElement``. Its position in the list is its
-    index."""
+    """One entry of the accessibility tree, like AndroidWorld's ``UIElement``. Its index is its position."""
 
     text: str
     content_description: str

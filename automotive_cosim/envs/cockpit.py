@@ -93,7 +93,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         Raises:
             UnknownNameError: no such task, half, mode or scenario.
             ScenarioError: the scenario cannot be read, or has no such route.
-            UserError: ``origin`` is no position on earth, or a general task is to be monitored.
+            UserError: ``origin`` is not a position on earth, or a general task is to be monitored.
         """
         given = None if isinstance(task, str) else task
         name = task if isinstance(task, str) else task.id

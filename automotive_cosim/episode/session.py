@@ -45,8 +45,7 @@ class Session:
     """What the driver says."""
     conditions: Conditions
     drive: tuple[Moment, ...]
-    """The drive before the session, for the virtual sensor and reports: from departure to the beginning,
-    included."""
+    """The drive from departure to the beginning, included, for the virtual sensor and reports."""
     listener: Listener
     shown: Shown
     """Turns the receivers' readings into what the agent is told."""

@@ -200,8 +200,7 @@ class SituationFinder:
         return HandOver(instance, drive.world, drive.moments, self._spec.mode, trigger_s)
 
     def _watch(self, simulation: Simulation, half: Half, plan: EgoPlan, whole: _Drive) -> _Drive:
-        """The same drive again, up to 30 to 60 s before its trigger, with a message that arrives during the
-        watch."""
+        """The same drive again, up to 30 to 60 s before its trigger, with a message during the watch."""
         departed_s, trigger_s = whole.moments[0].time_s, whole.moments[-1].time_s
         rng = np.random.default_rng([plan.seed, 4])
         lead_s, lure_share = WATCH_S * (1 + float(rng.random())), 0.2 + 0.6 * float(rng.random())

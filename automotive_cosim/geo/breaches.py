@@ -27,8 +27,7 @@ EQUAL_UP_TO_KMH = 1.0
 """Tolerance above the limit (Regulation (EU) 2021/1958, annex I)."""
 
 ISA_FROM_KMH = 20.0
-"""Below this speed, intelligent speed assistance need not act (same annex) and no following distance is
-required."""
+"""Below this speed, intelligent speed assistance need not act (same annex) nor does a distance rule apply."""
 
 ISA_CASCADE = ((1.0, 6.0), (1.1, 5.0), (1.2, 4.0), (1.3, 3.0))
 """(ratio of speed to limit, seconds): the tone sounds once that ratio has lasted that long (same annex)."""

@@ -28,8 +28,7 @@ from automotive_cosim.geo.weather import words as weather_words
 class GeoContext:
     """Place, road, law, sky and weather at one instant. States facts and rules; judges nothing.
 
-    It holds its inputs; what follows from them is computed on first use, since most instants need little or
-    nothing.
+    It holds its inputs; what follows from them is computed on first use, since most instants need little.
     """
 
     driving: DrivingState

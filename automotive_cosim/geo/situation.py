@@ -59,8 +59,7 @@ class Situation:
 class Condition:
     """One word of the ``when`` language.
 
-    ``takes`` is the type of the word's value, which becomes the argument of ``holds``; ``expects`` describes it in
-    words.
+    ``takes`` is the type of the word's value, the argument of ``holds``; ``expects`` describes it in words.
     """
 
     expects: str

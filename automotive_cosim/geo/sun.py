@@ -19,8 +19,7 @@ roughly the field between sun visor and dashboard."""
 
 
 class Darkness(StrEnum):
-    """Darkness by the elevation of the sun's centre; the twilights end at 6, 12 and 18 degrees below the
-    horizon."""
+    """Darkness by the sun's elevation; the twilights end at 6, 12 and 18 degrees below the horizon."""
 
     DAY = "day"
     CIVIL_TWILIGHT = "civil twilight"

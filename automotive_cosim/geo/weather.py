@@ -63,8 +63,7 @@ PHENOMENA = frozenset(
         "thunderstorm",
     )
 )
-"""The words a rule may use for weather; ``rain`` includes ``heavy_rain``, ``precipitation`` everything that
-falls."""
+"""The words a rule may use for weather; ``rain`` includes ``heavy_rain``, ``precipitation`` anything that falls."""
 
 _PHENOMENA_OF_CODE: dict[frozenset[int], tuple[str, ...]] = {
     frozenset((7, 31)): ("dust",),

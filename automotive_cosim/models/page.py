@@ -61,7 +61,7 @@ class Page:
             goal=sections.get("What the driver said", ""),
             screen=tuple(line for line in map(_line, lines("The screen")) if line is not None),
             car=dict(text.split(": ", 1) for text in lines("The car") if ": " in text),
-            context=lines("What holds here"),
+            context=lines("What applies here"),
             done=lines("Done so far"),
             plan=sections.get("Your plan", ""),
             result=sections.get("Last result", "").partition(":")[0],

@@ -179,7 +179,7 @@ def _lower_until_it_flows(
             scale=scale,
             seed=options.seed,
             step_length_s=step_length_s,
-            give_up_at=HALTED_SHARE_AIM,
+            stop_at=HALTED_SHARE_AIM,
             on_progress=partial(tell, f"traffic at scale {scale:g}, in steps of {step_length_s:g} s"),
         )
         if run.stable and run.halted_share_max < HALTED_SHARE_AIM:

@@ -21,8 +21,7 @@ from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.tasks.folder import digest
 
 PIECE = 12
-"""Number of tasks of one simulation that a worker takes together; each is also tried for residue of the
-previous."""
+"""Number of tasks of one simulation that a worker takes; each is also tried for residue of the one before."""
 WALL_LIMIT_S = 3_600.0
 """Wall time that the proof of one task with one seed may take; a slow one takes a minute."""
 

@@ -80,10 +80,10 @@ def start(ground: Ground) -> Wrong:
 
 def prefix(ground: Ground) -> Wrong:
     """Declares ``complete`` before the reference solution's last move; at once if nothing has to be done."""
-    expert = ground.oracle()
+    oracle = ground.oracle()
     walk = ground.episode.branch()
     while walk.verdict is None:
-        action = expert.act(walk.observation)
+        action = oracle.act(walk.observation)
         if action.action_type is ActionType.STATUS and len(walk.steps) > 1:
             break  # all is done: the declaration is due
         early = finish(walk.branch(), Script((Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE),)))
@@ -97,7 +97,7 @@ def prefix(ground: Ground) -> Wrong:
 
 def late(ground: Ground) -> Wrong:
     """Plays the reference solution after the deadline."""
-    expert = ground.oracle()
+    oracle = ground.oracle()
     wait_s = ground.half.deadline.seconds
 
     class Late:
@@ -107,7 +107,7 @@ def late(ground: Ground) -> Wrong:
             if self.left_s > 0:
                 self.left_s -= 10
                 return Action(ActionType.WAIT, seconds=10)
-            return expert.act(observation)
+            return oracle.act(observation)
 
     if ground.play(Late(), PATIENCE).success:
         yield f"succeeds {wait_s:g} s late"

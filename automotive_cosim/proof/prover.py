@@ -155,8 +155,7 @@ class Prover:
                 found.take(gate, getattr(gates, gate)(ground, self._simulations), half)
 
     def _trace_before(self, task_id: str, seed: int) -> str:
-        """The trace hash of a task's reference solution; empty if it cannot be played, which its own proof
-        reports."""
+        """The trace hash of a task's reference solution; empty if it cannot be played."""
         if self._last is not None and self._last[:2] == (task_id, seed):
             return self._last[2]
         try:
@@ -194,13 +193,9 @@ def read_traces(path: Path) -> Mapping[str, str]:
     return traces
 
 
-def changed_traces(before: Mapping[str, str], now: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
-    """Names of the traces that have changed, and why, in order."""
-    return tuple(
-        (name, "its reference solution gives another trace" if name in before else "its trace is not on record")
-        for name, sha256 in sorted(now.items())
-        if before.get(name) != sha256
-    )
+def changed_traces(before: Mapping[str, str], now: Mapping[str, str]) -> tuple[str, ...]:
+    """Names of the traces that differ from those on record, in order; one that is not on record is no change."""
+    return tuple(name for name, sha256 in sorted(now.items()) if before.get(name, sha256) != sha256)
 
 
 def as_json(proofs: Sequence[Proof], task_ids: Sequence[str], seeds: Sequence[int]) -> Json:

@@ -141,7 +141,7 @@ class _Place(Generic[J, R]):
 
 
 @dataclass(slots=True)
-class _Tally:
+class _RowCounts:
     """The newest rows, counted as they come."""
 
     judged: int = 0
@@ -182,16 +182,21 @@ class _Batch(Generic[J, R]):
         self._failures: dict[str, list[str]] = defaultdict(list)
         self._places: list[_Place[J, R]] = []
         self._queue = JobQueue(job for job in jobs if _is_open(store.rows.get(job.id)))
-        self._tally = _Tally()
+        self._counts = _RowCounts()
         self._alike: dict[Hashable, list[J]] = defaultdict(list)
         """Jobs that wait for the same situation."""
+        earlier: list[JobTurn] = []
+        tried: set[Hashable] = set()
         for job in jobs:
-            self._alike[job.situation].append(job)
-            self._tally.count(store.rows.get(job.id))
-        tried = {job.situation for job in jobs if not _is_open(store.rows.get(job.id))}
-        self._pace = Pace(
-            {situation: alike[0].simulation for situation, alike in self._alike.items() if situation not in tried}
-        )
+            situation, row = job.situation, store.rows.get(job.id)
+            self._alike[situation].append(job)
+            self._counts.count(row)
+            if row is not None and not _is_open(row):
+                tried.add(situation)
+                if row.error is None:
+                    earlier.append(JobTurn(job, False, row.wall_seconds))
+        untried = {each: alike[0].simulation for each, alike in self._alike.items() if each not in tried}
+        self._pace = Pace(untried, earlier)
 
     def run(self) -> None:
         self._tell(self.progress)
@@ -211,13 +216,13 @@ class _Batch(Generic[J, R]):
 
     @property
     def progress(self) -> Progress[R]:
-        tally = self._tally
+        counts = self._counts
         return Progress(
             planned=len(self._jobs),
-            done=tally.closed + self._given_up,
-            judged=tally.judged,
-            successes=tally.successes,
-            errors=tally.errors,
+            done=counts.closed + self._given_up,
+            judged=counts.judged,
+            successes=counts.successes,
+            errors=counts.errors,
             ran=self._ran,
             seconds=time.monotonic() - self._began_s,
             left_s=self._expected_s(),
@@ -292,8 +297,8 @@ class _Batch(Generic[J, R]):
                 return
         attempts = len(failures) + (row.error is None)
         self._newest = replace(row, attempts=attempts, failed_attempts=tuple(failures))
-        self._tally.count(self._store.rows.get(job.id), -1)
-        self._tally.count(self._newest)
+        self._counts.count(self._store.rows.get(job.id), -1)
+        self._counts.count(self._newest)
         self._store.append(self._newest)
         self._ran += 1
         self._given_up += _is_open(row)

@@ -97,7 +97,7 @@ class EpisodeResult:
     """Visual and manual load on the driver while the car moved; None without a hand-over."""
     drive: DriveFigures | None = None
     """Figures of the drive from the hand-over to the end of the aftermath; only of judged safety tasks."""
-    untouched_drive: DriveFigures | None = None
+    baseline_drive: DriveFigures | None = None
     """The same figures of the baseline run, over the same time."""
 
     def as_json(self) -> Json:
@@ -287,7 +287,7 @@ class _Run:
             held_out=episode.instance.held_out,
             load=driver_load(episode.steps),
             drive=drive_figures(watched, end_s) if self._baseline else None,
-            untouched_drive=drive_figures(self._baseline, end_s) if self._baseline else None,
+            baseline_drive=drive_figures(self._baseline, end_s) if self._baseline else None,
             estimates=estimates(episode.steps, before),
             violations=tuple(
                 replace(found, from_s=round(found.from_s - hand_over_s, 3), to_s=round(found.to_s - hand_over_s, 3))

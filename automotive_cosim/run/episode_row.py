@@ -6,9 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Annotated, Any
 
+from automotive_cosim.episode.specification import End
+from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.run.harm import DriveFigures
 from automotive_cosim.run.row import InColumns, JobRow, Volatile, formerly
-from automotive_cosim.tasking.task import Dimension, Mode, Module
+from automotive_cosim.tasking.task import Basis, Dimension, Mode, Module
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,8 +42,8 @@ class EpisodeRow(JobRow):
     """Name that both halves of a pair share; empty for a task with one half."""
     dimension: Dimension
     module: Module
-    basis: str = ""
-    """What the verdict rests on (``tasking.task.Basis``)."""
+    basis: Basis | None = None
+    """What the verdict rests on."""
     tags: tuple[str, ...] = ()
     skills: tuple[str, ...] = ()
     """Skills that the task requires of an agent."""
@@ -50,10 +52,10 @@ class EpisodeRow(JobRow):
     scenario: str
     agent: str
     model: str
-    geo: str
+    geo: GeoInput
     seed: int
     repeat: int
-    mode: str = Mode.PROMPTED
+    mode: Mode = Mode.PROMPTED
     parameters: Mapping[str, Any] | None = None
     """Drawn for this seed; None without a hand-over."""
     country: str = ""
@@ -61,8 +63,7 @@ class EpisodeRow(JobRow):
     success: bool | None = None
     """None without a verdict."""
     reward: float = 0.0
-    end: str = "error"
-    """Why it ended (``run.episode.End``)."""
+    end: End = End.ERROR
     parts: Annotated[PartsHeld | None, InColumns("part")] = None
     goal_s: float | None = None
     """Seconds from the trigger since when the goal held to the end."""

@@ -1,20 +1,20 @@
 """Estimates how long the rest of a batch takes, from what its jobs have taken so far.
 
-A worker that changes to another simulation warms it up first: that job is *cold* and takes the warm-up on top
-of its own time. The own time depends on the kind of job (which agent acts) and on the scenario: it is expected
-to be the mean over the warm jobs of that kind in that scenario, drawn towards the mean of the kind while few
-are known. A warm-up takes what the cold jobs took beyond that. A situation that does not arise costs its time
-once for all jobs that wait for it. With these times the rest is played through the way the queue will hand it
-out.
+A worker that changes to another simulation warms it up first: that job is *cold* and takes the warm-up on top of
+its own time. The own time depends on the kind of job (which agent acts) and on the scenario: it is expected to be
+the mean over the warm jobs of that kind in that scenario, drawn towards the mean of the kind while few are known.
+A warm-up takes what the cold jobs took beyond that. A situation that does not arise costs its time once for all
+jobs that wait for it. With these times the rest is played through the way the queue will hand it out.
 """
 
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Container, Hashable, Mapping, Sequence
+from collections.abc import Container, Hashable, Iterable, Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, field
 from heapq import heapify, heappop, heappush
+from statistics import fmean
 
 from automotive_cosim.run.executor import Job
 from automotive_cosim.run.queue import SimulationKey, next_simulation
@@ -22,10 +22,15 @@ from automotive_cosim.run.queue import SimulationKey, next_simulation
 TRIALS = 3
 """This many jobs of a kind must have ended in a warm simulation before it is known how long the others take."""
 DRAWN_BY = 2.0
-"""The mean over all scenarios weighs as much as this many jobs of one."""
+"""The mean over all scenarios weighs as much as this many jobs of one; so does that over all earlier starts, which
+may have been on another machine."""
+ARISEN = 8.0
+"""Most situations arise: this many count as having arisen before anything is known, of all and of each scenario."""
 HALF = 0.5
 """A running job counts as half a job with its time so far, since on average it is half done: the short ones end
 first and would make the mean too small. One that is overdue is expected to take half as long again."""
+ODD = 3.0
+"""Of a running job that takes longer than this many times the mean, no more counts: its situation may not arise."""
 STEPS = 200
 """The rest is played through in about this many steps, however many jobs there are."""
 
@@ -51,16 +56,21 @@ class JobTurn:
 class Pace:
     """Is told how long each job took, and estimates how long the others will take."""
 
-    def __init__(self, untried: Mapping[Hashable, SimulationKey]) -> None:
-        """Knows no job yet.
+    def __init__(self, untried: Mapping[Hashable, SimulationKey], earlier: Iterable[JobTurn]) -> None:
+        """Knows only what was measured before.
 
         Args:
             untried: for each situation of which it is not known whether it arises, its simulation.
+            earlier: jobs of earlier starts. The longest of each simulation is taken for a cold one.
         """
         self._untried = dict(untried)
         self._own: dict[Hashable, _Means] = defaultdict(_Means)
-        self._search = _Means()
+        self._search = _Means(drawn_by=ARISEN)
+        self._search.add("", 0.0, ARISEN)
         self._cold: list[JobTurn] = []
+        self._has_begun = False
+        for (kind, scenario), seconds in _warm(earlier).items():
+            self._own[kind].add(scenario, DRAWN_BY * fmean(seconds), DRAWN_BY)
 
     @property
     def timed(self) -> frozenset[Hashable]:
@@ -69,6 +79,7 @@ class Pace:
 
     def took(self, turn: JobTurn, *, is_out_of_reach: bool) -> None:
         """Takes note of a job that has ended; ``is_out_of_reach`` if its situation did not arise."""
+        self._has_begun = True
         if self._untried.pop(turn.job.situation, None) is not None:
             self._search.add(turn.scenario, turn.seconds if is_out_of_reach else 0.0)
         if is_out_of_reach:
@@ -101,8 +112,8 @@ class Pace:
             )
             for simulation, kinds in waiting.items()
         }
-        places = [_Place(expected.rest_s(turn), turn.job.simulation, is_busy=True) for turn in running]
-        places += [_Place(0.0, simulation) for simulation in idle]
+        places = [_Worker(expected.rest_s(turn), turn.job.simulation, is_busy=True) for turn in running]
+        places += [_Worker(0.0, simulation) for simulation in idle]
         return _played_s(work, places)
 
     def _knows(self, waiting: Waiting, held: Container[SimulationKey | None]) -> bool:
@@ -111,14 +122,16 @@ class Pace:
         for simulation, kinds in waiting.items():
             if simulation in held or sum(kinds.values()) > 1:
                 needed.update(kinds)
-        known = all(self._own[kind].count >= min(TRIALS, count) for kind, count in needed.items())
-        return known and (bool(self._cold) or any(means.count for means in self._own.values()))
+        return self._has_begun and all(
+            self._own[kind].count >= min(TRIALS, count) for kind, count in needed.items()
+        )
 
 
 @dataclass(slots=True)
 class _Means:
     """Means by scenario, each drawn towards the mean of all."""
 
+    drawn_by: float = DRAWN_BY
     sums: dict[str, tuple[float, float]] = field(default_factory=dict)
     """By scenario, seconds and number of jobs."""
     total_s: float = 0.0
@@ -135,7 +148,17 @@ class _Means:
         if not self.count:
             return 0.0
         sum_s, known = self.sums.get(scenario, (0.0, 0.0))
-        return (sum_s + DRAWN_BY * self.total_s / self.count) / (known + DRAWN_BY)
+        return (sum_s + self.drawn_by * self.total_s / self.count) / (known + self.drawn_by)
+
+
+def _warm(turns: Iterable[JobTurn]) -> dict[tuple[Hashable, str], list[float]]:
+    """Seconds of the jobs by kind and scenario, without the longest one of each simulation."""
+    longest: dict[SimulationKey, JobTurn] = {}
+    found: dict[tuple[Hashable, str], list[float]] = defaultdict(list)
+    for turn in sorted(turns, key=lambda turn: turn.seconds, reverse=True):
+        if longest.setdefault(turn.job.simulation, turn) is not turn:
+            found[turn.job.kind, turn.scenario].append(turn.seconds)
+    return found
 
 
 class _Expected:
@@ -145,7 +168,8 @@ class _Expected:
         self._own = {kind: deepcopy(means) for kind, means in own.items() if means.count}
         for turn in running:
             if not turn.is_cold and turn.job.kind in self._own:
-                self._own[turn.job.kind].add(turn.scenario, turn.seconds, HALF)
+                most_s = ODD * own[turn.job.kind].of(turn.scenario)
+                self._own[turn.job.kind].add(turn.scenario, min(turn.seconds, most_s), HALF)
         self._warm_ups = _Means()
         for turn in [turn for turn in cold if turn.job.kind in self._own] or cold:
             self._warm_ups.add(turn.scenario, max(0.0, turn.seconds - self.own_s(turn.job.kind, turn.scenario)))
@@ -176,7 +200,7 @@ class _Work:
 
 
 @dataclass(order=True, slots=True)
-class _Place:
+class _Worker:
     """A worker while the rest is played through."""
 
     free_s: float
@@ -185,7 +209,7 @@ class _Place:
     is_busy: bool = field(default=False, compare=False)
 
 
-def _played_s(work: Mapping[SimulationKey, _Work], places: list[_Place]) -> float:
+def _played_s(work: Mapping[SimulationKey, _Work], places: list[_Worker]) -> float:
     """When the last worker ends, if everything takes as long as expected."""
     left = {simulation: each.count for simulation, each in work.items()}
     busy = Counter(place.warm for place in places if place.is_busy)
@@ -206,5 +230,5 @@ def _played_s(work: Mapping[SimulationKey, _Work], places: list[_Place]) -> floa
         if not left[simulation]:
             del left[simulation]
         busy[simulation] += 1
-        heappush(places, _Place(place.free_s + takes_s, simulation, is_busy=True))
+        heappush(places, _Worker(place.free_s + takes_s, simulation, is_busy=True))
     return end_s

@@ -230,8 +230,7 @@ class RoadAsked:
     """Exactly one irrevocable request was made to the road: ``Reroute``, ``PullOver``, ``SlowDown``."""
 
     request: type[RoadRequest] | RoadRequest
-    """Its class or the exact request: ``RoadAsked(Reroute)`` accepts any, ``RoadAsked(Reroute("A 4"))`` only
-    that."""
+    """A class or an exact request: ``RoadAsked(Reroute)`` accepts any, ``RoadAsked(Reroute("A 4"))`` one."""
 
     @property
     def writes(self) -> frozenset[str]:

@@ -175,8 +175,7 @@ class Task:
 
     @property
     def optimal_steps(self) -> int:
-        """Number of actions of the reference solution, declaration included; scrolling and parameters may add
-        some."""
+        """Number of actions of the reference solution, declaration included; scrolling may add some."""
         taps = (move.times if isinstance(move, Tap) else 1 for move in self.first.moves)
         return 1 + sum(times if isinstance(times, int) else 1 for times in taps)  # a parameter counts once
 

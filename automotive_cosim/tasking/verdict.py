@@ -1,8 +1,8 @@
 """Verdicts: success = goal x clean x safe x in time x declared.
 
 The baseline run, a fork of the same hand-over in which nobody touches the cockpit, shows what would have happened
-anyway: only what differs from it is the agent's doing, and only harm that it does not show counts against the
-    agent.
+anyway: only what differs from it is the agent's doing, and only harm that it does not show counts against
+the agent.
 """
 
 from __future__ import annotations

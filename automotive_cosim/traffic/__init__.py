@@ -1,1 +1,1 @@
-"""The road side: SUMO behind one protocol."""
+"""Traffic simulation: SUMO behind one protocol."""

@@ -1,4 +1,4 @@
-"""The road side's protocol: what every traffic simulation offers, whatever runs behind it.
+"""The protocol of traffic simulations, independent of the implementation.
 
 A ``Simulation`` holds a scenario's traffic, loaded and warmed up without the ego. ``depart`` puts the ego into an
 exact copy of it and gives a ``Traffic``: one drive, which can be branched at any instant. The implementations
@@ -17,37 +17,37 @@ from automotive_cosim.contracts import Answer, DrivingState, RoadNetwork, RoadRe
 from automotive_cosim.scenarios import Trip, WeatherAt
 
 WarmUpProgress = Callable[[float, float], None]
-"""Told the simulated seconds of the warm-up that are done, and how many there are."""
+"""Called with the simulated seconds of the warm-up that are done, and their total."""
 
 
 @dataclass(frozen=True, slots=True)
 class EgoPlan:
-    """How the ego drives: its way, its driver, the seed of the driver's reactions, and under which sky."""
+    """How the ego drives: its trip, its driver, the seed of the driver's reactions, and the weather."""
 
     trip: Trip
     driver: str = "average"
     seed: int = 0
     weather: tuple[WeatherAt, ...] = ()
-    """What the road and its drivers meet; empty takes the scenario's own."""
+    """The weather timeline; empty takes the scenario's own."""
     start: datetime | None = None
     """Local time at departure, zone-aware; None takes the scenario's own."""
     parked: bool = False
-    """Stands beside the first lane of its trip and stays there."""
+    """Whether it stays parked beside the first lane of its trip."""
     wait_s: float = 0.0
-    """Traffic that passes before it departs, so that it meets other cars and other lights."""
+    """Additional traffic time before it departs, so that it meets other cars and other signals."""
 
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """Something that happened on the road in passing.
+    """Something that happened on the road.
 
-    | kind | what |
+    | kind | meaning |
     |---|---|
-    | ``driver_...`` | what the driver does after a request: slows, holds, ignores, opens_gap, gives_way, ... |
+    | ``driver_...`` | the driver's reaction to a request: slows, holds, ignores, opens_gap, gives_way, ... |
     | ``incident`` | an incident of the scenario begins or ends |
-    | ``pet`` | the ego and another vehicle crossed within five seconds; the post-encroachment time comes first |
+    | ``pet`` | the ego and another vehicle crossed within five seconds, with their post-encroachment time |
     | ``collision`` | two vehicles touched |
-    | ``teleport`` | SUMO has taken a vehicle off its road because it stood too long |
+    | ``teleport`` | SUMO has moved a vehicle because it stood too long |
     """
 
     time_s: float
@@ -57,7 +57,7 @@ class Event:
 
 @dataclass(frozen=True, slots=True)
 class Advance:
-    """What one ``Traffic.advance`` saw."""
+    """The result of one ``Traffic.advance``."""
 
     states: tuple[DrivingState, ...]
     """One per SUMO step, in order; empty only if the ego had already ended."""
@@ -69,7 +69,7 @@ class Traffic(Protocol):
 
     @property
     def network(self) -> RoadNetwork:
-        """The roads, as a map draws them."""
+        """The road network for maps."""
         ...
 
     @property
@@ -78,8 +78,8 @@ class Traffic(Protocol):
         ...
 
     def start(self, duration_s: float) -> None:
-        """Begins in the background what the next call asks for, which must be ``advance`` of that duration, while
-        the caller does something else. Does nothing where it runs in this process, or has been started already.
+        """Starts the next call, which must be ``advance`` of that duration, in the background while the caller does
+        something else. Does nothing if it runs in this process, or has been started already.
 
         Raises:
             TrafficError: the simulation died.
@@ -90,17 +90,17 @@ class Traffic(Protocol):
         """Lets the traffic run for ``duration_s``, or until the ego's drive ends.
 
         Raises:
-            TrafficError: the simulation failed; the text names the cause.
+            TrafficError: the simulation failed; the message names the cause.
         """
         ...
 
     def request(self, request: RoadRequest) -> Answer:
-        """Asks something of the driver or the car. What cannot be done safely is refused with a reason."""
+        """Makes a request to the driver or the car. What cannot be done safely is refused with a reason."""
         ...
 
     def alternatives(self, age_s: float = 0.0) -> tuple[RouteOption, ...]:
-        """The way that is being driven and up to three others, the quickest first, with the times that the traffic
-        of the last five minutes took. Nothing of it is left in the simulation. Empty where the way is fixed.
+        """The present route and up to three others, the quickest first, with travel times of the last five minutes.
+        It has no side effects on the simulation. Empty where the route cannot be changed.
 
         Args:
             age_s: how long ago those five minutes ended, at most ``congestion.OLDEST_NEWS_S``.
@@ -111,19 +111,19 @@ class Traffic(Protocol):
         ...
 
     def branch(self) -> Traffic:
-        """An exact copy that drives on by itself from this instant."""
+        """An exact copy that is independent from this instant."""
         ...
 
     def close(self) -> None:
-        """Frees everything; harmless when called again."""
+        """Frees everything; may be called again."""
         ...
 
 
 class Simulation(Protocol):
-    """A scenario's traffic, warm, from which drives depart."""
+    """A scenario's warm traffic, from which drives depart."""
 
     def depart(self, plan: EgoPlan) -> Traffic:
-        """Puts the ego on its way and returns its drive at the first instant it is on the road.
+        """Starts the ego and returns its drive at the first instant it is on the road.
 
         Raises:
             ScenarioError: its trip has no route, or its edges are not in the network.
@@ -133,5 +133,5 @@ class Simulation(Protocol):
         ...
 
     def close(self) -> None:
-        """Ends the simulation's process, if it has one; harmless when called again."""
+        """Ends the simulation's process, if it has one; may be called again."""
         ...

@@ -1,4 +1,4 @@
-"""Messages between this process and a simulation's: pickled objects over a pair of sockets."""
+"""Messages between this process and a simulation's process: pickled objects over a pair of sockets."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ class ClosedError(Exception):
 
 
 class MessageChannel:
-    """One end of a connection. Both ends are this package, started by the same user."""
+    """One end of a connection. Both ends run this package, started by the same user."""
 
     def __init__(self, connection: socket.socket) -> None:
-        """Takes the socket over."""
+        """Takes ownership of the socket."""
         self._socket = connection
 
     def fileno(self) -> int:
-        """Descriptor of the socket."""
+        """File descriptor of the socket."""
         return self._socket.fileno()
 
     def send(self, message: object) -> None:
         """Sends an object.
 
         Raises:
-            ClosedError: nobody listens.
+            ClosedError: the other end is closed.
         """
         self.send_pickled(pickle.dumps(message, pickle.HIGHEST_PROTOCOL))
 
@@ -48,7 +48,7 @@ class MessageChannel:
         """Waits for an object.
 
         Args:
-            timeout_s: longest silence; None waits for ever.
+            timeout_s: longest silence; None waits forever.
 
         Raises:
             ClosedError: the other side is gone.
@@ -59,14 +59,14 @@ class MessageChannel:
         return pickle.loads(self._read(length))
 
     def send_socket(self, connection: socket.socket) -> None:
-        """Hands a socket to the process on the other side (not on Windows)."""
+        """Sends a socket to the process on the other side (not on Windows)."""
         try:
             socket.send_fds(self._socket, [b"s"], [connection.fileno()])
         except OSError as error:
             raise ClosedError from error
 
     def receive_socket(self) -> socket.socket:
-        """Takes a socket over."""
+        """Receives a socket."""
         _, descriptors, _, _ = socket.recv_fds(self._socket, 1, 1)
         if not descriptors:
             raise ClosedError
@@ -78,7 +78,7 @@ class MessageChannel:
             self._socket.shutdown(socket.SHUT_WR)
 
     def close(self) -> None:
-        """Closes this end; harmless when called again."""
+        """Closes this end; may be called again."""
         self._socket.close()
 
     def _read(self, length: int) -> bytearray:

@@ -1,8 +1,9 @@
-"""Post-encroachment times: how closely the ego and others cross each other's way inside junctions.
+"""Post-encroachment times: how closely the ego and others cross each other's path inside junctions.
 
-The post-encroachment time (PET) is what passes between one vehicle leaving the point where two ways cross and the
-other reaching it (Allen, Shin and Cooper, 1978). Ways are SUMO's lanes inside junctions, points where their middles
-meet. Vehicles are looked at twice a second and their passage reckoned from position and speed, to about 0.1 s.
+The post-encroachment time (PET) is the time between one vehicle leaving the point where two paths cross and the
+other reaching it (Allen, Shin and Cooper, 1978). Paths are SUMO's lanes inside junctions, points where their centre
+lines meet. Vehicles are sampled twice per second and their passage is computed from position and speed, to about
+0.1 s.
 """
 
 from __future__ import annotations
@@ -18,18 +19,18 @@ from automotive_cosim.traffic.sumo import LibSumo
 
 LOOK_S = 0.5
 LONGEST_PET_S = 5.0
-"""Beyond this nobody speaks of a conflict."""
+"""A longer time is not a conflict."""
 
 NEAR_M = 30.0
-"""The junction ahead is watched from here on, or from ``LONGEST_PET_S`` before it."""
+"""Distance from which the junction ahead is watched, or ``LONGEST_PET_S`` before it."""
 
 CREEPING_MPS = 0.5
-"""A vehicle counts as no slower, so that passages stay finite."""
+"""Minimum speed of a vehicle, so that passages stay finite."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Crossing:
-    """A point where the ego's way and another meet."""
+    """A point where the ego's path and another meet."""
 
     foe_lane: str
     ego_m: float
@@ -39,7 +40,7 @@ class _Crossing:
 
 @dataclass(slots=True)
 class _Sight:
-    """A vehicle on a lane as it was seen last."""
+    """A vehicle on a lane as last seen."""
 
     time_s: float
     position_m: float
@@ -55,11 +56,11 @@ class _Sight:
 
 @dataclass(slots=True)
 class _Way:
-    """One of the ego's lanes through a junction, with who crosses it."""
+    """One of the ego's lanes through a junction, with the vehicles that cross it."""
 
     crossings: tuple[_Crossing, ...]
     foes: dict[tuple[str, str], _Sight] = field(default_factory=dict)
-    """By lane and vehicle."""
+    """Vehicles by lane and id."""
     ego: _Sight | None = None
     told: set[str] = field(default_factory=set)
 
@@ -78,7 +79,7 @@ class Conflicts:
         """Lane, this edge and the next of the route, and the lane through the junction between them."""
 
     def look(self, now: Seen) -> tuple[Event, ...]:
-        """Called every ``LOOK_S``; tells what is sure by now."""
+        """Called every ``LOOK_S``; returns the conflicts that are certain by now."""
         inside = now.lane_id if now.edge_id.startswith(":") else ""
         if not inside and not self._ways and not self._is_near(now):
             return ()
@@ -121,7 +122,7 @@ class Conflicts:
                     )
 
     def _told(self, way: _Way, now_s: float) -> list[Event]:
-        """Conflicts with those that have passed, the ego being through."""
+        """Conflicts with vehicles that have passed, once the ego is through."""
         assert way.ego is not None
         events = []
         for crossing in way.crossings:
@@ -133,7 +134,7 @@ class Conflicts:
                 pet_s, order = max((ego_in_s - foe_out_s, "after"), (foe_in_s - ego_out_s, "before"))
                 if 0.0 <= pet_s <= LONGEST_PET_S:
                     way.told.add(vehicle)
-                    events.append(Event(now_s, "pet", f"{pet_s:.1f} s: the ego crosses {order} {vehicle}"))
+                    events.append(Event(now_s, "pet", f"the ego crosses {pet_s:.1f} s {order} vehicle {vehicle}"))
         return events
 
     def _crossings_of(self, lane: str) -> tuple[_Crossing, ...]:

@@ -1,7 +1,7 @@
-"""How the traffic flows: smoothed speed per edge, and what it means for the route ahead.
+"""Traffic flow: smoothed speed per edge, and the resulting figures of the route ahead.
 
-Speeds are weighted by vehicles and smoothed over about a cycle of the signals: a red light is no jam, and an empty
-edge is free. The route's sums are made anew with each sample; asking for them at a position costs a few additions.
+Speeds are weighted by vehicles and smoothed over about a signal cycle: a red light is not a jam, and an empty edge
+is free. The route's sums are recomputed with each sample; evaluating them at a position costs a few additions.
 """
 
 from __future__ import annotations
@@ -26,39 +26,39 @@ MEMORY_S = 90.0
 
 WINDOW_S = 300.0
 SEEN_AT_LEAST = 3
-"""Travel times for choosing a route are means of this long, where so many vehicles were seen."""
+"""Travel times for route choice are means over this time, if at least this many vehicles were seen."""
 
 OLDEST_NEWS_S = 900.0
-"""How far back travel times can be asked for."""
+"""Maximum age of available travel times."""
 
 FREE_WEIGHT = 0.1
-"""Vehicles that an edge counts at free flow beside those seen, so that an empty one is free."""
+"""Weight of free flow, in vehicles, in an edge's mean speed, so that an empty one is free."""
 
 FORGOTTEN = 1e-6
-"""Smoothed vehicles under which an edge is empty."""
+"""Smoothed number of vehicles below which an edge is empty."""
 
 JAM_BELOW = 0.25
-"""Relative speed under which an edge is jammed."""
+"""Relative speed below which an edge is jammed."""
 
 SLOW_BELOW = 0.75
-"""Relative speed under which a map is told of an edge."""
+"""Relative speed below which an edge is reported to a map."""
 
 SLOWEST_MPS = 0.5
-"""Speeds count as at least this, so that travel times stay finite."""
+"""Minimum speed, so that travel times stay finite."""
 
 MOTORWAY_CLASSES = frozenset({"motorway", "trunk"})
-"""Road classes that are left by exits."""
+"""Road classes with exits."""
 
 
 class Flow(Protocol):
-    """Knows how fast the traffic flows."""
+    """Gives the speeds of the traffic."""
 
     def speed_mps(self, edge_id: str) -> float:
-        """Mean speed driven on an edge, never 0."""
+        """Mean speed on an edge, never 0."""
         ...
 
     def slow_edges(self) -> tuple[tuple[str, float], ...]:
-        """Edges driven slower than ``SLOW_BELOW`` of their limit, and their speed over the limit."""
+        """Edges with traffic slower than ``SLOW_BELOW`` of their limit, and their relative speed."""
         ...
 
 
@@ -69,14 +69,14 @@ class Congestion:
         """Starts at free flow.
 
         Args:
-            network: whose edges.
-            vehicles: for each that is driving now, its edge, inside a junction or not, and its speed in m/s.
+            network: the network.
+            vehicles: the edge, inside a junction or not, and the speed in m/s of each driving vehicle.
         """
         self._edges = network.edges
         self._order = {edge_id: number for number, edge_id in enumerate(network.edges)}
         self._driving = vehicles
         self._vehicles: dict[str, float] = {}
-        """Smoothed number on each edge, and of their speeds' sum; of those where somebody was of late."""
+        """Smoothed number of vehicles and sum of speeds, for each edge with recent traffic."""
         self._flow: dict[str, float] = {}
         self._keep = math.exp(-SAMPLE_PERIOD_S / MEMORY_S)
         self._slow: tuple[tuple[str, float], ...] = ()
@@ -85,7 +85,7 @@ class Congestion:
         )
 
     def sample(self) -> None:
-        """Takes the speeds of now into account; called every ``SAMPLE_PERIOD_S``."""
+        """Takes the present speeds into account; called every ``SAMPLE_PERIOD_S``."""
         keep, vehicles, flow, edges = self._keep, self._vehicles, self._flow, self._edges
         seen: dict[str, tuple[int, float]] = {}
         for edge_id, speed_mps in self._driving():
@@ -120,24 +120,24 @@ class Congestion:
         return {edge_id: flow / count for edge_id, (count, flow) in sums.items() if count >= SEEN_AT_LEAST}
 
     def speed_mps(self, edge_id: str) -> float:
-        """Mean speed driven on an edge."""
+        """Mean speed on an edge."""
         free_mps = self._edges[edge_id].speed_mps
         vehicles, flow_mps = self._vehicles.get(edge_id, 0.0), self._flow.get(edge_id, 0.0)
         driven = (flow_mps + FREE_WEIGHT * free_mps) / (vehicles + FREE_WEIGHT)
         return max(SLOWEST_MPS, min(free_mps, driven))
 
     def relative_speed(self, edge_id: str) -> float:
-        """Mean speed over the edge's limit; 1 is free flow."""
+        """Mean speed divided by the edge's limit; 1 is free flow."""
         return self.speed_mps(edge_id) / self._edges[edge_id].speed_mps
 
     def slow_edges(self) -> tuple[tuple[str, float], ...]:
-        """As ``Flow``; to a hundredth, in the network's order, as of the last sample."""
+        """See ``Flow``; to a hundredth, in the network's order, as of the last sample."""
         return self._slow
 
 
 @dataclass(frozen=True, slots=True)
 class _Leg:
-    """One edge of the route, and what lies behind its end."""
+    """One edge of the route, with sums over the rest of the route."""
 
     edge: Edge
     start_m: float
@@ -145,19 +145,19 @@ class _Leg:
     speed_mps: float
     relative_speed: float
     time_after_s: float
-    """From its end to the goal, at the speeds driven; likewise the three below."""
+    """Travel time from its end to the destination at present speeds; the next three are also for the rest."""
     free_after_s: float
     length_after_m: float
     relative_after_m: float
-    """Relative speed times length, summed."""
+    """Sum of relative speed times length."""
     next_limit: tuple[float | None, float] | None
-    """The next different limit and where it starts."""
+    """The next different limit and its position."""
     tunnel_m: float | None
     """Where the next tunnel starts after this edge."""
     jam: tuple[float, float] | None
     """Where the next jam starts and ends, from this edge on."""
     exit_m: float | None
-    """Where the motorway it belongs to can next be left."""
+    """Position of the next exit of its motorway."""
 
 
 class Route:
@@ -166,7 +166,7 @@ class Route:
     def __init__(
         self, edge_ids: Sequence[str], network: Network, flow: Flow, incidents: tuple[RoadIncident, ...] = ()
     ) -> None:
-        """Prepares the sums from the flow of now; the incidents are passed on."""
+        """Prepares the sums from the present flow; the incidents are passed on."""
         self.edge_ids = tuple(edge_ids)
         edges = [network.edges[edge_id] for edge_id in edge_ids]
         ways = [
@@ -180,7 +180,7 @@ class Route:
         self.bends = tuple(
             (start_m, way.speed_mps) for start_m, way in zip(starts_m[1:], ways, strict=True) if not way.is_straight
         )
-        """Where each turn ends, and the speed it allows."""
+        """The end of each turn, and the speed that it allows."""
         self._cameras_m = sorted(
             start_m + place_m for start_m, edge in zip(starts_m, edges, strict=True) for place_m in edge.cameras_m
         )
@@ -194,7 +194,7 @@ class Route:
         return self._legs[index].start_m + on_edge_m
 
     def relative_speed(self, index: int) -> float:
-        """Mean speed over the limit on an edge of the route; 1 is free flow."""
+        """Mean speed divided by the limit on an edge of the route; 1 is free flow."""
         return self._legs[index].relative_speed
 
     def edge_at(self, position_m: float) -> tuple[int, float]:
@@ -204,10 +204,10 @@ class Route:
         return index, max(0.0, min(position_m - leg.start_m, leg.edge.length_m))
 
     def ahead(self, index: int, position_m: float, next_light: TrafficLight | None) -> RoadAhead:
-        """What lies ahead.
+        """The figures of the road ahead.
 
         Args:
-            index: the edge of the route, or the last one before the junction the car is in.
+            index: the edge of the route, or the last one before the junction that the car is in.
             position_m: from the start of the route.
             next_light: passed on.
         """
@@ -245,7 +245,7 @@ class Route:
 def _legs(
     edges: Sequence[Edge], ways: Sequence[Crossing], starts_m: Sequence[float], network: Network, flow: Flow
 ) -> tuple[_Leg, ...]:
-    """Adds up from the goal back to the start."""
+    """Sums from the destination back to the start."""
     legs: list[_Leg] = []
     for index in range(len(edges) - 1, -1, -1):
         edge = edges[index]

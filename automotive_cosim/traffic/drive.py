@@ -1,4 +1,4 @@
-"""The loop of one drive, the same on every road: step, driver."""
+"""The loop of one drive, the same for every implementation: step, then driver."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from automotive_cosim.traffic.ego import Driver
 from automotive_cosim.traffic.instant import Instant
 
 Call = int | RoadRequest
-"""One call of a drive, as a replay repeats it: a number of steps or a request."""
+"""One call of a drive, for replays: a number of steps or a request."""
 
 
 class Stepper(Protocol):
@@ -20,19 +20,19 @@ class Stepper(Protocol):
     step_s: float
 
     def step(self, *, hazard_lights: bool) -> tuple[Instant, tuple[Event, ...]]:
-        """The instant after one step, and what happened in it; the last has its end set."""
+        """The instant after one step, and its events; the last has its end set."""
         ...
 
     def alternatives(self, age_s: float) -> tuple[RouteOption, ...]:
-        """As ``Traffic.alternatives``."""
+        """See ``Traffic.alternatives``."""
         ...
 
 
 class EgoDrive:
-    """One drive on a road, from its first instant on."""
+    """One drive on a road, from its first instant."""
 
     def __init__(self, road: Stepper, driver: Driver, now: Instant) -> None:
-        """Takes over, and lets the driver set the pedals."""
+        """Takes over the road, and lets the driver set the pedals."""
         self._road = road
         self._driver = driver
         self._now = now
@@ -44,7 +44,7 @@ class EgoDrive:
         return self._now.state
 
     def advance(self, duration_s: float, beat: Callable[[], None] | None = None) -> Advance:
-        """As ``Traffic.advance``; ``beat`` is called after every step."""
+        """See ``Traffic.advance``; ``beat`` is called after every step."""
         road, driver = self._road, self._driver
         passed: list[Instant] = []
         events: list[Event] = []
@@ -62,15 +62,15 @@ class EgoDrive:
         return Advance(tuple(instant.state for instant in passed), tuple(events))
 
     def request(self, request: RoadRequest) -> Answer:
-        """As ``Traffic.request``."""
+        """See ``Traffic.request``."""
         return self._driver.request(request, self.state)
 
     def alternatives(self, age_s: float) -> tuple[RouteOption, ...]:
-        """As ``Traffic.alternatives``."""
+        """See ``Traffic.alternatives``."""
         return () if self._now.end is not None else self._road.alternatives(age_s)
 
     def replay(self, calls: Sequence[Call], beat: Callable[[], None] | None = None) -> None:
-        """Repeats what was done on an equal drive."""
+        """Repeats the calls of an equal drive."""
         for call in calls:
             if isinstance(call, int):
                 self.advance(call * self._road.step_s, beat)

@@ -1,7 +1,7 @@
-"""The driver: how a profile drives, and what becomes of what the cockpit asks.
+"""The driver: how a profile drives, and how it reacts to the cockpit's requests.
 
-Pure logic over a few ``Pedals``, the same in SUMO and on a scripted road. Speed is held by a factor on the limit
-of the road and an upper bound; both change smoothly, because SUMO's own model would brake hard as soon as either
+Pure logic over a few ``Pedals``, the same in SUMO and on a scripted road. Speed is controlled by a factor on the
+road's limit and an upper bound; both change smoothly, because SUMO's own model would brake hard as soon as either
 falls.
 """
 
@@ -37,13 +37,13 @@ REACTION_SPREAD = 0.25
 """Standard deviation of the logarithm of a reaction time: brake reactions are log-normal (Taoka, 1989)."""
 
 EASING_MPS2 = 1.5
-"""Deceleration of a driver who slows down unforced: the accelerator released, then a touch of brake."""
+"""Deceleration of a driver who slows down gently: accelerator released, then a touch of brake."""
 
 BRAKING_MPS2 = 3.0
-"""The same after a critical alert; AASHTO's Green Book takes 3.4 m/s2 as what most drivers find comfortable."""
+"""The same after a critical alert; AASHTO's Green Book takes 3.4 m/s2 as comfortable for most drivers."""
 
 SAFE_HEADWAY_S = 2.0
-"""The gap that a driver opens to when told about the distance (R412-12 and the common two-second rule)."""
+"""The gap that a driver opens after an alert about the distance (R412-12 and the common two-second rule)."""
 
 ATTENTIVE = 0.3
 """Imperfection of a driver who has been woken up."""
@@ -60,18 +60,18 @@ SPEED_KINDS = frozenset(
         AlertKind.TUNNEL,
     }
 )
-"""Alerts after which a driver goes no faster than the limit, or than the speed advised."""
+"""Alerts after which a driver goes no faster than the limit, or the advised speed."""
 
 GAP_KINDS = frozenset({AlertKind.DISTANCE, AlertKind.COLLISION, AlertKind.VISIBILITY, AlertKind.SLIPPERY})
 """Alerts after which a driver keeps further back."""
 
 ROOM_KINDS = frozenset({AlertKind.CORRIDOR, AlertKind.YIELD, AlertKind.MOVE_OVER})
-"""Alerts after which a driver makes room for somebody."""
+"""Alerts after which a driver makes room for others."""
 
 WAKING_KINDS = frozenset({AlertKind.FATIGUE, AlertKind.DISTRACTION})
 
 GIVE_WAY_S = 12.0
-"""How long a driver waits at the side, or keeps to the lane at the kerb, to let a blue light by."""
+"""How long a driver waits at the side, or keeps to the kerb lane, to let an emergency vehicle pass."""
 
 CORRIDOR_S = 90.0
 """How long a driver keeps a corridor open."""
@@ -79,43 +79,43 @@ CORRIDOR_S = 90.0
 MOVE_OVER_S = 30.0
 MOVE_OVER_MPS = 20 / MPH_PER_MPS
 SLOWEST_MOVE_OVER_MPS = 5 / MPH_PER_MPS
-"""Who cannot change lanes passes 20 mph under the limit, at 5 mph where that is 20 or less (Florida statute
-316.126)."""
+"""A driver who cannot change lanes passes at 20 mph below the limit, or at 5 mph if that is 20 or less (Florida
+statute 316.126)."""
 
 SLOWEST_REQUEST_KMH = 5.0
 FAST_ROADS = frozenset({"motorway", "trunk"})
 SLOW_TRAFFIC = 0.5
-"""Relative speed under which going slowly on a fast road hinders nobody."""
+"""Relative speed of traffic below which driving slowly on a fast road hinders nobody."""
 
 
 FOR_GOOD_S = 86_400.0
 
 
 class RefusedError(Exception):
-    """The car cannot do it now; the text says why."""
+    """The car cannot do it now; the message says why."""
 
 
 class Pedals(Protocol):
-    """What a driver does with the car."""
+    """The driver's controls of the car."""
 
     def set_speed_factor(self, factor: float) -> None:
-        """Speed aimed at on every road, over its limit."""
+        """Desired speed on every road, as a factor on its limit."""
         ...
 
     def set_top_speed(self, speed_mps: float) -> None:
-        """No faster than this anywhere."""
+        """Upper bound of the speed."""
         ...
 
     def set_headway(self, headway_s: float) -> None:
-        """Time gap kept to the leader."""
+        """Time gap to the leader."""
         ...
 
     def set_imperfection(self, imperfection: float) -> None:
-        """How unevenly the speed is held, 0 to 1."""
+        """How unevenly the speed is kept, 0 to 1."""
         ...
 
     def set_grip(self, friction: float) -> None:
-        """What the road allows: no braking harder than ``friction * g``."""
+        """Limits braking to ``friction * g``."""
         ...
 
     def set_hazards(self, on: bool) -> None:
@@ -123,7 +123,7 @@ class Pedals(Protocol):
         ...
 
     def pull_over(self, state: DrivingState, for_s: float) -> str:
-        """Stops at the side as soon as can be, for so long; returns where.
+        """Stops at the side as soon as possible, for a time; returns where.
 
         Raises:
             RefusedError: there is no place for it.
@@ -131,21 +131,21 @@ class Pedals(Protocol):
         ...
 
     def change_lane(self, lanes_from_kerb: int, for_s: float) -> bool:
-        """Goes so many lanes away from the kerb, or towards it if negative, and stays there so long.
+        """Moves a number of lanes away from the kerb, or towards it if negative, and stays there for a time.
 
         False if there is no such lane here.
         """
         ...
 
     def leave_corridor(self, leave: bool) -> str:
-        """Drives at the edge of its lane so that a corridor opens, or in its middle again; returns where."""
+        """Drives at the edge of its lane to open a corridor, or in the middle again; returns where."""
         ...
 
     def reroute(self, request: Reroute, state: DrivingState) -> str:
-        """Takes another route; returns it in words.
+        """Takes another route; returns a description of it.
 
         Raises:
-            RefusedError: there is none, or it is too late for it.
+            RefusedError: there is none, or it is too late to take it.
         """
         ...
 
@@ -162,13 +162,13 @@ class _Intent:
 
 @dataclass(slots=True)
 class _Bounds:
-    """Speeds that the driver holds to, in m/s; infinite where nobody asked."""
+    """Speed limits that the driver keeps, in m/s; infinite without a request."""
 
     asked: float = math.inf
     cruise: float = math.inf
     advised: float = math.inf
     advised_under: float | None = None
-    """The limit under which the advice was given: it ends with it."""
+    """The limit at which the advice was given, and with which it ends."""
     advised_until_s: float = math.inf
 
 
@@ -189,9 +189,9 @@ class Driver:
     _factor: float = math.nan
     _top_mps: float = math.nan
     _headway_s: float = field(init=False)
-    """Kept on a dry road."""
+    """Time gap on a dry road."""
     _own_ratio: float = field(init=False)
-    """Speed over the limit that the driver chooses in this weather."""
+    """Factor on the limit that the driver chooses in this weather."""
     _own_top_mps: float = field(init=False)
     _corridor_until_s: float = math.inf
     _condition: RoadCondition = DRY
@@ -204,7 +204,7 @@ class Driver:
         self._choose_speed()
 
     def request(self, request: RoadRequest, state: DrivingState) -> Answer:
-        """Hears a request. What needs no driver happens now, the rest after the reaction time."""
+        """Receives a request. What does not depend on the driver happens now, the rest after the reaction time."""
         if state.end is not None:
             return Answer(False, f"the drive has ended: {state.end}")
         match request:
@@ -230,7 +230,7 @@ class Driver:
                     return Answer(False, str(refusal))
 
     def tick(self, now: Instant) -> tuple[Event, ...]:
-        """Does what is due and holds the speed; what it does acts from the next step on."""
+        """Does what is due and controls the speed; it takes effect from the next step."""
         events: tuple[Event, ...] = ()
         if self._forecast is None:
             self._forecast = Forecast(self.plan.weather, now.time_s)
@@ -248,7 +248,7 @@ class Driver:
         return events
 
     def _hear(self, request: Alert | SlowDown | PullOver, state: DrivingState, reason: str) -> Answer:
-        """Draws once for every request, whatever it is, so that the driver's luck depends on their number alone."""
+        """Draws once per request of any kind, so that the driver's randomness depends only on their number."""
         reaction_s = self._profile.reaction_s * math.exp(REACTION_SPREAD * float(self._draws.standard_normal()))
         complies = float(self._draws.random()) < self._profile.compliance
         self._intents.append(_Intent(state.time_s + reaction_s, state.time_s, request, complies))
@@ -268,7 +268,7 @@ class Driver:
         request, after = intent.request, f"{state.time_s - intent.asked_s:.1f} s after"
         if not intent.complies:
             what = f"the {request.kind} alert" if isinstance(request, Alert) else "the request"
-            return (Event(state.time_s, "driver_ignores", f"driver hears {what} and goes on as before"),)
+            return (Event(state.time_s, "driver_ignores", f"driver hears {what} but does not react"),)
         match request:
             case Alert():
                 return tuple(self._heed(request, state, f"{after} the alert"))
@@ -308,7 +308,7 @@ class Driver:
         ]
 
     def _make_room(self, alert: Alert, state: DrivingState, after: str) -> Event:
-        """For a blue light behind, for a corridor in a jam, for someone who stands at the kerb."""
+        """Gives way to an emergency vehicle behind, in a jam by a corridor, or to a stopped vehicle at the kerb."""
         pedals = self.pedals
         if alert.kind is AlertKind.CORRIDOR:
             self._corridor_until_s = state.time_s + CORRIDOR_S
@@ -345,7 +345,7 @@ class Driver:
     # --- weather ------------------------------------------------------------------------------------------
 
     def _meet(self, condition: RoadCondition) -> None:
-        """Adapts to another weather as far as the driver is cautious; the grip asks nobody."""
+        """Adapts to other weather as far as the driver is cautious; grip changes regardless."""
         if condition != self._condition:
             self._condition = condition
             self._choose_speed()
@@ -365,7 +365,7 @@ class Driver:
     # --- speed --------------------------------------------------------------------------------------------
 
     def _chosen_factor(self, limit_mps: float | None) -> float:
-        """Speed over the limit on a clear road, before anything is asked."""
+        """Factor on the limit on a clear road, before any request."""
         if limit_mps is None:
             return 1.0
         chosen = self._own_ratio
@@ -383,7 +383,7 @@ class Driver:
         return bound_mps if limit_mps is None else min(bound_mps, self._chosen_factor(limit_mps) * limit_mps)
 
     def _hold_speed(self, now: Instant) -> None:
-        """Sets factor and upper bound; from a higher speed both come down at ``_easing_mps2``."""
+        """Sets factor and upper bound; from a higher speed both decrease at ``_easing_mps2``."""
         limit_mps = now.limit_mps
         bounds = self._bounds
         if bounds.advised < math.inf and (
@@ -405,7 +405,7 @@ class Driver:
 
 
 def _too_slow(speed_kmh: float, state: DrivingState) -> str:
-    """Why that speed would be dangerous or senseless; empty if it is not."""
+    """Why that speed would be dangerous or pointless; empty if it is not."""
     if not speed_kmh >= SLOWEST_REQUEST_KMH:
         return f"{speed_kmh:g} km/h is no speed to drive at; ask to pull over to stop"
     limit_mps = state.road.posted_limit_mps

@@ -1,8 +1,8 @@
 """Simulations in processes of their own: warmed up once, then an exact copy for every drive and branch.
 
-Where the platform can fork, a copy is a fork, which takes milliseconds whatever the warm-up took. Elsewhere
-(Windows, and wherever ``by_replay`` asks for it) each copy is a new process that loads, warms up with the same seed
-and repeats the calls so far: the same states, only slower.
+Where the platform can fork, a copy is a fork, which takes milliseconds however long the warm-up took. Elsewhere
+(Windows, or with ``by_replay``) each copy is a new process that loads, warms up with the same seed and repeats the
+calls so far: the same states, only slower.
 """
 
 from __future__ import annotations
@@ -46,21 +46,21 @@ class Forked:
         by_replay: bool = not CAN_FORK,
         outputs: Path | None = None,
     ) -> None:
-        """Loads the scenario and warms its traffic up.
+        """Loads the scenario and warms up its traffic.
 
         Args:
-            scenario: what to run.
-            seed: of SUMO's random numbers.
-            progress: told how far the warm-up is.
-            allow_unprojected: take a network without projection, with lon and lat None.
+            scenario: the scenario to run.
+            seed: seed of SUMO's random numbers.
+            progress: called with the progress of the warm-up.
+            allow_unprojected: accept a network without projection, with lon and lat None.
             timeout_s: wall time without a sign of life after which a simulation counts as hung.
-            by_replay: make copies by repeating everything instead of forking.
+            by_replay: make copies by replaying everything instead of forking.
             outputs: an empty folder for SUMO's own outputs; the warm traffic writes to ``warm`` in it, each drive
-                and branch to its ``drive-N``, whole from the start of the simulation, complete when it is closed.
+                and branch to its ``drive-N``, from the start of the simulation, complete when it is closed.
 
         Raises:
             ScenarioError: the scenario cannot be loaded.
-            SetupError: libsumo is missing or unfit.
+            SetupError: libsumo is missing or unsuitable.
             TrafficError: the process died or hung.
         """
         setup = Setup(scenario, seed, allow_unprojected, outputs)
@@ -68,13 +68,13 @@ class Forked:
         self._is_closed = False
 
     def depart(self, plan: EgoPlan) -> RemoteTraffic:
-        """Puts the ego on its way in an exact copy of the warm traffic.
+        """Starts the ego in an exact copy of the warm traffic.
 
         Raises:
             ScenarioError: its trip has no route, or its edges are not in the network.
             UnknownNameError: no such driver.
-            NoRoomError: no gap opened for it; the next one can depart all the same.
-            TrafficError: the simulation died or hung; likewise.
+            NoRoomError: no gap opened for it; another drive can still depart.
+            TrafficError: the simulation died or hung; another drive can still depart.
         """
         profile(plan.driver)
         if self._is_closed:
@@ -82,17 +82,17 @@ class Forked:
         return self._source.departed(plan)
 
     def watch(self) -> None:
-        """From now on this traffic and every drive that departs from it keep a ledger, which studies read.
+        """Makes this traffic and every drive that departs from it keep a ledger, which studies read.
 
         Raises:
             SetupError: the platform cannot fork.
         """
         if self._source.by_replay:
-            raise SetupError("studies branch a running simulation, which takes a platform that forks: use Linux")
+            raise SetupError("studies branch a running simulation, which requires fork: use Linux")
         self._source.warm_call("watch")
 
     def run_on(self, duration_s: float) -> Pulse:
-        """Lets the watched traffic run on, so that later drives depart later; tells how it is doing.
+        """Lets the watched traffic run, so that later drives depart later; returns its state.
 
         Raises:
             TrafficError: SUMO stopped at an error, died or hung.
@@ -102,11 +102,11 @@ class Forked:
 
     @property
     def memory_bytes(self) -> int:
-        """Memory that the warm process holds; 0 where the platform does not tell, or there is none."""
+        """Memory of the warm process; 0 if the platform does not say, or there is none."""
         return self._source.memory_bytes()
 
     def close(self) -> None:
-        """Ends the warm process; drives that have departed go on until they are closed."""
+        """Ends the warm process; drives that have departed continue until they are closed."""
         self._is_closed = True
         self._source.close()
 
@@ -126,7 +126,7 @@ class RemoteTraffic:
 
     @property
     def network(self) -> RoadNetwork:
-        """The roads, as a map draws them."""
+        """The road network for maps."""
         return self._source.network
 
     @property
@@ -140,13 +140,13 @@ class RemoteTraffic:
         return self._process.pid
 
     def start(self, duration_s: float) -> None:
-        """As ``Traffic.start``."""
+        """See ``Traffic.start``."""
         if self._started_s is None:
             self._process.send("advance", duration_s)
             self._started_s = duration_s
 
     def advance(self, duration_s: float) -> Advance:
-        """As ``Traffic.advance``."""
+        """See ``Traffic.advance``."""
         self.start(duration_s)
         assert duration_s == self._started_s, "another advance was started"
         self._started_s = None
@@ -157,39 +157,39 @@ class RemoteTraffic:
         return advance
 
     def request(self, request: RoadRequest) -> Answer:
-        """As ``Traffic.request``."""
+        """See ``Traffic.request``."""
         answer: Answer = self._process.call("request", request)
         self._remember(request)
         return answer
 
     def alternatives(self, age_s: float = 0.0) -> tuple[RouteOption, ...]:
-        """As ``Traffic.alternatives``."""
+        """See ``Traffic.alternatives``."""
         options: tuple[RouteOption, ...] = self._process.call("alternatives", age_s)
         return options
 
     def own_choice(self) -> tuple[str, ...]:
-        """The way that SUMO's rerouting device would take now, from the present edge on."""
+        """The route that SUMO's rerouting device would take now, from the present edge."""
         with closing(self.branch()) as copy:
             edges: tuple[str, ...] = copy._process.call("own_choice")
             return edges
 
     def others(self) -> tuple[tuple[str, ...], Pulse]:
-        """Who is on the road or due beside the ego, and how the traffic is doing, in a watched simulation."""
+        """The other vehicles on the road or due, and the state of the traffic, in a watched simulation."""
         seen: tuple[tuple[str, ...], Pulse] = self._process.call("others")
         return seen
 
     def nudge(self, place: float) -> str:
-        """Lets one other car, ``place`` of the way through the list of them, aim 0.1 % faster; returns which."""
+        """Lets one other car, at the share ``place`` of their list, aim 0.1 % faster; returns which."""
         chosen: str = self._process.call("nudge", place)
         return chosen
 
     def settle(self, groups: Sequence[Sequence[str]], share: float, limit_s: float) -> Settled:
-        """Drives a watched simulation on until the ego's drive has ended and that share of each group has arrived.
+        """Runs a watched simulation until the ego's drive has ended and a share of each group has arrived.
 
         Args:
-            groups: vehicles, as ``others`` named them.
-            share: 0 to 1.
-            limit_s: simulated seconds at most.
+            groups: ids of vehicles, from ``others``.
+            share: the share, 0 to 1.
+            limit_s: limit of simulated seconds.
 
         Raises:
             TrafficError: SUMO stopped at an error, died or hung.
@@ -200,13 +200,13 @@ class RemoteTraffic:
         return outcome
 
     def branch(self) -> RemoteTraffic:
-        """An exact copy that drives on by itself from this instant, even if this one is closed."""
+        """An exact copy that is independent from this instant, even if this one is closed."""
         if self._source.by_replay:
             return self._source.departed(self._plan, self._calls)
         return self._source.branched(self._process, self._plan, self._state)
 
     def close(self) -> None:
-        """As ``Traffic.close``."""
+        """See ``Traffic.close``."""
         self._process.close()
 
     def _remember(self, call: Call) -> None:
@@ -215,7 +215,7 @@ class RemoteTraffic:
 
 
 class _Source:
-    """Where copies of a warm simulation come from."""
+    """The source of copies of a warm simulation."""
 
     def __init__(
         self, setup: Setup, timeout_s: float, *, by_replay: bool, progress: WarmUpProgress | None = None
@@ -225,7 +225,7 @@ class _Source:
         self._timeout_s = timeout_s
         self._drives = 0
         self._lock = threading.Lock()
-        """Held while the warm process is asked for a copy: threads may depart at the same time."""
+        """Lock for copying the warm process: threads may depart at the same time."""
         self._warm: RemoteProcess | None
         self._warm, self.network = RemoteProcess.start(
             self._writing("drive-1" if by_replay else "warm"), progress, timeout_s
@@ -245,7 +245,7 @@ class _Source:
         return RemoteTraffic(self, process, plan, calls, state)
 
     def branched(self, process: RemoteProcess, plan: EgoPlan, state: DrivingState) -> RemoteTraffic:
-        """A drive that goes on from where another one is."""
+        """A drive that continues from where another one is."""
         return RemoteTraffic(self, process.fork(self._next_outputs()), plan, (), pack_state(state))
 
     def warm_call(self, name: str, *arguments: object) -> Any:
@@ -260,7 +260,7 @@ class _Source:
             self._warm = None
 
     def memory_bytes(self) -> int:
-        """Of the warm process."""
+        """Memory of the warm process."""
         if self._warm is None or not Path("/proc/self/statm").exists():
             return 0
         pages = Path(f"/proc/{self._warm.pid}/statm").read_text(encoding="ascii").split()[1]
@@ -275,7 +275,7 @@ class _Source:
         return self._warm
 
     def _writing(self, name: str) -> Setup:
-        """The setup with a folder of its own for the outputs."""
+        """The setup with its own folder for outputs."""
         outputs = self._setup.outputs
         if outputs is None:
             return self._setup
@@ -287,7 +287,7 @@ class _Source:
         return self._writing(f"drive-{self._drives}").outputs
 
     def _taken(self) -> RemoteProcess:
-        """A warm process that nobody else uses."""
+        """A warm process of its own."""
         process, self._warm = self._ready(), None
         self._drives += 1
         return process
@@ -299,20 +299,20 @@ def replayed(setup: Setup, plan: EgoPlan, calls: Sequence[Call]) -> RemoteTraffi
 
 
 class Simulations:
-    """Keeps warm simulations for the next drive, the least recently used one out first."""
+    """Keeps warm simulations for later drives; the least recently used one is removed first."""
 
     def __init__(self, count_limit: int = 4, memory_limit_bytes: int = 2 * 1024**3) -> None:
         """Starts empty.
 
         Args:
-            count_limit: most simulations kept.
-            memory_limit_bytes: most memory that they may hold together; one is kept whatever it holds.
+            count_limit: maximum number of simulations.
+            memory_limit_bytes: maximum of their total memory; at least one is kept.
         """
         self._count_limit = count_limit
         self._memory_limit_bytes = memory_limit_bytes
         self._kept: OrderedDict[Setup, Forked] = OrderedDict()
         self._held: list[Forked] = []
-        """Once for each thread that is about to depart from it."""
+        """Number of threads about to depart from each."""
         self._lock = threading.Lock()
 
     def warm(
@@ -323,10 +323,10 @@ class Simulations:
         *,
         allow_unprojected: bool = False,
     ) -> Forked:
-        """The warm simulation of a scenario and seed, made now if there is none; it stays the pool's to close.
+        """The warm simulation of a scenario and seed, made now if there is none; the pool closes it.
 
         Raises:
-            as ``Forked``.
+            see ``Forked``.
         """
         setup = Setup(scenario, seed, allow_unprojected)
         if setup not in self._kept:
@@ -337,10 +337,10 @@ class Simulations:
 
     @contextmanager
     def held(self, scenario: Scenario, seed: int, progress: WarmUpProgress | None = None) -> Iterator[Forked]:
-        """As ``warm``, for threads: while one makes a simulation the others wait, and none is ended while held.
+        """Like ``warm``, for threads: while one makes a simulation, the others wait; none in use is closed.
 
         Raises:
-            as ``Forked``.
+            see ``Forked``.
         """
         with self._lock:
             simulation = self.warm(scenario, seed, progress)
@@ -353,7 +353,7 @@ class Simulations:
                 self._make_room()
 
     def close(self) -> None:
-        """Ends them all; harmless when called again."""
+        """Closes them all; may be called again."""
         while self._kept:
             self._kept.popitem()[1].close()
 

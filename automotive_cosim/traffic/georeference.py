@@ -1,8 +1,8 @@
-"""Where a network lies on earth: what its location tag is worth, and another place on demand.
+"""The position of a network on earth: checks its location tag, or moves it elsewhere.
 
-A ``<location>`` tag may name a projection that never fitted the network: SUMO's tools write one down without
-checking it. It is believed if the coordinates it was made from (``origBoundary``) lie where the projection puts the
-network, and, for UTM, if that is inside of the grid at all.
+A ``<location>`` tag may name a projection that does not fit the network, because SUMO's tools write one without
+checking. It is believed if the network's original coordinates (``origBoundary``) lie where the projection puts the
+network and, for UTM, if that is inside the grid at all.
 """
 
 from __future__ import annotations
@@ -20,20 +20,20 @@ UTM_EASTINGS_M = (100_000.0, 900_000.0)
 """A zone, six degrees wide, spans 166 to 834 km at the equator; SUMO lets networks reach into the next."""
 
 MARGIN_DEG, MARGIN_M = 0.1, 10_000.0
-"""Networks that were edited after their making may reach beyond their ``origBoundary``."""
+"""Edited networks may reach beyond their ``origBoundary``."""
 
 
 class GeoReference:
     """Converts between a network's metres and WGS 84."""
 
     def __init__(self, network: RoadNetwork) -> None:
-        """Takes the projection of a network that has one."""
+        """Uses the projection of a network that has one."""
         assert network.projection is not None
         self._proj = Proj(network.projection)
         self._offset_x_m, self._offset_y_m = network.offset_m
 
     def lon_lat(self, x_m: float, y_m: float) -> tuple[float, float]:
-        """Longitude and latitude, degrees."""
+        """Longitude and latitude in degrees."""
         lon_deg, lat_deg = self._proj(x_m - self._offset_x_m, y_m - self._offset_y_m, inverse=True)
         return float(lon_deg), float(lat_deg)
 
@@ -58,10 +58,10 @@ def middle(network: RoadNetwork) -> tuple[float, float]:
 
 
 def doubt(network: RoadNetwork, location: Mapping[str, str]) -> str:
-    """Why the projection of a network is not to be believed; empty if it is.
+    """Why the projection of a network is not believed; empty if it is.
 
     Args:
-        network: as its file says.
+        network: the network as in its file.
         location: the attributes of its ``<location>``.
     """
     if network.projection is None:
@@ -69,14 +69,14 @@ def doubt(network: RoadNetwork, location: Mapping[str, str]) -> str:
     try:
         lon_deg, lat_deg = middle(network)
     except CRSError:
-        return f"has a projection that is none ({network.projection!r})"
+        return f"has an invalid projection ({network.projection!r})"
     x_min, y_min, x_max, y_max = network.bounds_m
     east_m = (x_min + x_max) / 2 - network.offset_m[0]
     north_m = (y_min + y_max) / 2 - network.offset_m[1]
     if not (math.isfinite(lon_deg) and math.isfinite(lat_deg)):
-        return "has a projection that puts it outside of the earth"
+        return "has a projection that puts it outside the earth"
     if "+proj=utm" in network.projection and not UTM_EASTINGS_M[0] <= east_m <= UTM_EASTINGS_M[1]:
-        return f"has a projection that puts it at an easting of {east_m:.0f} m, outside of every UTM zone"
+        return f"has a projection that puts it at an easting of {east_m:.0f} m, outside every UTM zone"
     made_from = tuple(float(number) for number in location.get("origBoundary", "").split(",") if number)
     if len(made_from) != 4 or made_from[0] > made_from[2]:
         return ""
@@ -88,7 +88,7 @@ def doubt(network: RoadNetwork, location: Mapping[str, str]) -> str:
     if fits:
         return ""
     return (
-        f"has a projection that its coordinates do not bear out (it says {lon_deg:.4f},{lat_deg:.4f}, but was made "
+        f"has a projection that contradicts its coordinates (it says {lon_deg:.4f},{lat_deg:.4f}, but was made "
         f"from {west:g},{south:g} to {east:g},{north:g})"
     )
 

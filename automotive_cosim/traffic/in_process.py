@@ -13,7 +13,7 @@ from automotive_cosim.traffic.world import World
 
 
 class InProcess:
-    """A simulation in this process: nothing to send, but no second one beside it.
+    """A simulation in this process: without messages, but only one at a time.
 
     A second ``depart`` loads and warms up again; ``branch`` replays the drive in a process of its own.
     """
@@ -28,21 +28,21 @@ class InProcess:
         *,
         allow_unprojected: bool = False,
     ) -> None:
-        """Loads the scenario and warms its traffic up.
+        """Loads the scenario and warms up its traffic.
 
         Args:
-            scenario: what to run.
-            seed: of SUMO's random numbers.
-            progress: told how far the warm-up is.
-            allow_unprojected: take a network without projection, with lon and lat None.
+            scenario: the scenario to run.
+            seed: seed of SUMO's random numbers.
+            progress: called with the progress of the warm-up.
+            allow_unprojected: accept a network without projection, with lon and lat None.
 
         Raises:
             ScenarioError: the scenario cannot be loaded.
-            SetupError: libsumo is missing or unfit.
-            TrafficError: this process holds another simulation.
+            SetupError: libsumo is missing or unsuitable.
+            TrafficError: this process already has a simulation.
         """
         if InProcess._current is not None:
-            raise TrafficError("this process already holds a simulation; close it first, or use fork.Forked")
+            raise TrafficError("this process already has a simulation; close it first, or use fork.Forked")
         self.setup = Setup(scenario, seed, allow_unprojected)
         self.world: World | None = None
         self._progress = progress
@@ -55,7 +55,7 @@ class InProcess:
         self._fresh = True
 
     def depart(self, plan: EgoPlan) -> InProcessTraffic:
-        """Puts the ego on its way; ends the drive before it.
+        """Starts the ego; ends the previous drive.
 
         Raises:
             ScenarioError: its trip has no route, or its edges are not in the network.
@@ -71,7 +71,7 @@ class InProcess:
         return InProcessTraffic(self, self.world, self.world.depart(plan), plan)
 
     def close(self) -> None:
-        """Ends the simulation; harmless when called again."""
+        """Ends the simulation; may be called again."""
         if self.world is not None:
             self.world.close()
             self.world = None
@@ -96,7 +96,7 @@ class InProcessTraffic:
 
     @property
     def network(self) -> RoadNetwork:
-        """The roads, as a map draws them."""
+        """The road network for maps."""
         return self._world.network.map
 
     @property
@@ -105,27 +105,27 @@ class InProcessTraffic:
         return self._drive.state
 
     def start(self, duration_s: float) -> None:
-        """As ``Traffic.start``: nothing to do."""
+        """See ``Traffic.start``; does nothing."""
 
     def advance(self, duration_s: float) -> Advance:
-        """As ``Traffic.advance``."""
+        """See ``Traffic.advance``."""
         self._check()
         advance = self._drive.advance(duration_s)
         self._log.append(len(advance.states))
         return advance
 
     def bare_step(self) -> None:
-        """One step of SUMO that nobody looks at, for benchmarks; a branch or replay does not know of it."""
+        """One step of SUMO without reading anything, for benchmarks; branches and replays ignore it."""
         self._world.bare_step()
 
     def request(self, request: RoadRequest) -> Answer:
-        """As ``Traffic.request``."""
+        """See ``Traffic.request``."""
         self._check()
         self._log.append(request)
         return self._drive.request(request)
 
     def alternatives(self, age_s: float = 0.0) -> tuple[RouteOption, ...]:
-        """As ``Traffic.alternatives``."""
+        """See ``Traffic.alternatives``."""
         self._check()
         return self._drive.alternatives(age_s)
 
@@ -134,7 +134,7 @@ class InProcessTraffic:
         return replayed(self._check().setup, self._plan, self._log)
 
     def close(self) -> None:
-        """As ``Traffic.close``."""
+        """See ``Traffic.close``."""
         self._owner = None
 
     def _check(self) -> InProcess:

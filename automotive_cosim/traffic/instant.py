@@ -1,7 +1,7 @@
-"""One instant of the drive: what the driver needs of it on every step, and the whole state for whoever asks.
+"""One instant of the drive: what the driver needs on every step, and the whole state on demand.
 
-A step of SUMO throws everything else out of the processor's caches, so that whatever runs between two steps is
-slow. Therefore only SUMO's plain answers are kept then (``Seen``). The states of a message are made of them
+A step of SUMO evicts everything else from the processor's caches, so whatever runs between two steps is slow.
+Therefore only SUMO's plain answers are kept then (``Seen``). The states of a message are computed from them
 afterwards, in a row, which takes a third of the time.
 """
 
@@ -17,7 +17,7 @@ from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.records import make_around, make_light, make_other, make_road, make_state
 
 TOUCHING_M = 0.1
-"""Gaps count as at least this in the DRAC, so that it stays finite."""
+"""Minimum gap in the DRAC, so that it stays finite."""
 
 
 class Instant(Protocol):
@@ -30,22 +30,22 @@ class Instant(Protocol):
 
     @property
     def speed_mps(self) -> float:
-        """Of the ego."""
+        """Speed of the ego."""
         ...
 
     @property
     def limit_mps(self) -> float | None:
-        """As ``RoadHere.posted_limit_mps``."""
+        """See ``RoadHere.posted_limit_mps``."""
         ...
 
     @property
     def end(self) -> EgoEnd | None:
-        """As ``DrivingState.end``."""
+        """See ``DrivingState.end``."""
         ...
 
     @property
     def state(self) -> DrivingState:
-        """All of it."""
+        """The whole state."""
         ...
 
 
@@ -57,17 +57,17 @@ class KnownInstant:
 
     @property
     def time_s(self) -> float:
-        """As ``Instant``; likewise the others."""
+        """See ``Instant``."""
         return self.state.time_s
 
     @property
     def speed_mps(self) -> float:
-        """Of the ego."""
+        """Speed of the ego."""
         return self.state.speed_mps
 
     @property
     def limit_mps(self) -> float | None:
-        """Of the lane."""
+        """Posted limit of the lane."""
         return self.state.road.posted_limit_mps
 
     @property
@@ -78,7 +78,7 @@ class KnownInstant:
 
 @dataclass(frozen=True, slots=True)
 class Lane:
-    """What the state needs of a lane; it changes only with weather and signs."""
+    """The part of the state that depends on a lane; it changes only with weather and signs."""
 
     index: int
     """Among the edge's lanes for cars."""
@@ -96,7 +96,7 @@ Other = tuple[str, float, float, float]
 
 @dataclass(slots=True)
 class Seen:
-    """An instant as SUMO told of it. Everything in it is its own or never changes."""
+    """An instant from SUMO's answers. Everything in it is its own or immutable."""
 
     time_s: float
     speed_mps: float
@@ -110,11 +110,11 @@ class Seen:
     lane_id: str
     lane_position_m: float
     edge: Edge
-    """The one the ego is on; in a junction the one it comes from."""
+    """Index of the ego's edge; in a junction, of the one it comes from."""
     lane: Lane
     route: Route
     index: int
-    """Of that edge on the route."""
+    """Index of that edge on the route."""
     position_m: float
     """Along the route."""
     light: Light | None
@@ -131,12 +131,12 @@ class Seen:
 
     @property
     def limit_mps(self) -> float | None:
-        """As ``Instant``."""
+        """See ``Instant``."""
         return self.lane.limit_mps
 
     @property
     def state(self) -> DrivingState:
-        """As ``Instant``."""
+        """See ``Instant``."""
         if self.made is None:
             self.made = self._make()
         return self.made

@@ -26,7 +26,7 @@ from automotive_cosim.traffic.stretches import Layout, Stretch
 
 
 class ScriptedCar:
-    """Moves by steps and has the driver's pedals (``drive.Road`` and ``ego.Pedals``)."""
+    """Moves step by step and provides the driver's pedals (``drive.Road`` and ``ego.Pedals``)."""
 
     def __init__(
         self,
@@ -54,12 +54,12 @@ class ScriptedCar:
         self._acceleration_mps2 = 0.0
         self._standing_s = 0.0
         self._leader_m = math.inf
-        """Where the leader's rear bumper is."""
+        """Position of the leader's rear bumper."""
         self._enter(0)
         self.now = KnownInstant(self._sense(hazard_lights=False))
 
     def step(self, *, hazard_lights: bool) -> tuple[KnownInstant, tuple[Event, ...]]:
-        """As ``drive.Road``."""
+        """See ``drive.Road``."""
         before_mps = self._speed_mps
         self._speed_mps = self._next_speed()
         self._along_m += self._speed_mps * self.step_s
@@ -81,13 +81,13 @@ class ScriptedCar:
         return self.now, ()
 
     def alternatives(self, age_s: float) -> tuple[RouteOption, ...]:
-        """There is only one way."""
+        """Empty: there is only one route."""
         return ()
 
     # --- pedals -------------------------------------------------------------------------------------------
 
     def set_speed_factor(self, factor: float) -> None:
-        """As ``ego.Pedals``; likewise the rest."""
+        """See ``ego.Pedals``."""
         self._factor = factor
 
     def set_top_speed(self, speed_mps: float) -> None:
@@ -99,17 +99,17 @@ class ScriptedCar:
         self._headway_s = headway_s
 
     def set_grip(self, friction: float) -> None:
-        """Bounds the braking."""
+        """Limits the braking."""
         self._hardest_mps2 = friction * G_MPS2
 
     def set_imperfection(self, imperfection: float) -> None:
-        """Speed is held perfectly here."""
+        """Does nothing: speed is kept perfectly here."""
 
     def set_hazards(self, on: bool) -> None:
-        """Nobody is there to see them."""
+        """Does nothing: nobody is there to see them."""
 
     def pull_over(self, state: DrivingState, for_s: float) -> str:
-        """Stops as soon as can be without haste."""
+        """Stops as soon as possible with gentle braking."""
         needed_m = state.speed_mps**2 / (2 * STOPPING_MPS2) + STOPPING_RESERVE_M
         stop_m = self._along_m + needed_m
         if stop_m >= self._layout.starts_m[-1] or self._layout.stretches[self._layout.index_at(stop_m)].in_tunnel:
@@ -118,21 +118,21 @@ class ScriptedCar:
         return f"in {needed_m:.0f} m"
 
     def change_lane(self, lanes_from_kerb: int, for_s: float) -> bool:
-        """There are no lanes to choose from."""
+        """False: there are no other lanes."""
         return False
 
     def leave_corridor(self, leave: bool) -> str:
-        """Nobody is there to use it."""
+        """Does nothing: nobody is there to use it."""
         return "keeps to the side" if leave else "drives in the middle of the lane"
 
     def reroute(self, request: Reroute, state: DrivingState) -> str:
-        """There is nowhere else to go."""
+        """Refused: there is no other route."""
         raise RefusedError("this road has no other way")
 
     # --- kinematics ---------------------------------------------------------------------------------------
 
     def _next_speed(self) -> float:
-        """The speed wanted, as far as the car can reach it in one step; braking for a leader may be harder."""
+        """The desired speed as far as the car can reach it in one step; braking for a leader may be harder."""
         driver, step_s = self._driver, self.step_s
         stretch = self._layout.stretches[self._index]
         free_mps = stretch.free_mps
@@ -149,7 +149,7 @@ class ScriptedCar:
         return min(self._driver.deceleration_mps2, self._hardest_mps2)
 
     def _lower_ahead(self) -> float:
-        """Speed from which the next stretch's limit is reached without haste."""
+        """Speed from which the next stretch's limit is reached with gentle braking."""
         if self._index + 1 == len(self._layout.stretches):
             return math.inf
         next_mps = self._factor * self._layout.stretches[self._index + 1].free_mps
@@ -157,7 +157,7 @@ class ScriptedCar:
         return math.sqrt(next_mps**2 + 2 * EASING_MPS2 * max(0.0, before_m))
 
     def _safe_speed(self) -> float:
-        """Krauss (1998): the speed from which the car can still stop behind a leader that brakes as hard."""
+        """Krauss (1998): the speed from which the car can still stop behind a leader that brakes equally hard."""
         leader = self._layout.stretches[self._index].leader
         if leader is None:
             return math.inf

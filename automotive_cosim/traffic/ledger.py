@@ -1,7 +1,7 @@
-"""What became of everybody: kept beside a simulation for studies, one entry a step.
+"""A record of all vehicles, kept along with a simulation for studies, with one entry per step.
 
-A study compares futures that leave one instant. It has to know who was on the road or waiting to enter it, when
-each of them arrived, what the ego used up on the way, and whether the traffic as a whole was still flowing.
+A study compares futures of one instant. It has to know which vehicles were on the road or waiting to enter it, when
+each of them arrived, what the ego consumed on the way, and whether the traffic as a whole was still flowing.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ NUDGE = 1.001
 
 
 class Ledger:
-    """Notes a step after it has been made; a fork takes its copy along."""
+    """Records each step; a fork has its own copy."""
 
     def __init__(self, sumo: LibSumo, step_s: float) -> None:
-        """Opens it.
+        """Opens the ledger.
 
         Args:
             sumo: the running simulation.
@@ -31,14 +31,14 @@ class Ledger:
         self._step_s = step_s
         self._departed = self._teleported = 0
         self.arrivals_s: dict[str, float] = {}
-        """When each vehicle left the road."""
+        """Time at which each vehicle left the road."""
         self.arrived: Sequence[str] = ()
-        """Who left it in the last step."""
+        """Vehicles that left in the last step."""
         self._ego_is_on = self._ego_is_halted = False
         self._ego = Account(0.0, 0, 0.0, 0.0, 0.0)
 
     def note(self) -> None:
-        """Takes down the step that has just been made."""
+        """Records the step that has just been made."""
         sumo, now_s = self._sumo, self._sumo.time()
         departed, self.arrived = sumo.departed(), sumo.arrived()
         teleporting = sumo.teleporting()
@@ -66,11 +66,11 @@ class Ledger:
         self._ego_is_halted = halted
 
     def account(self) -> Account:
-        """The ego's, up to now or to its end."""
+        """Figures of the ego's drive, up to now or to its end."""
         return self._ego
 
     def pulse(self) -> Pulse:
-        """How the traffic is doing now."""
+        """The present state of the traffic."""
         vehicle = self._sumo.vehicle
         running = vehicle.getIDList()
         return Pulse(
@@ -84,7 +84,7 @@ class Ledger:
         )
 
     def others(self) -> tuple[str, ...]:
-        """Everybody but the ego who is on the road, teleporting, or due and not yet in; by name."""
+        """All other vehicles on the road, teleporting, or due and not yet in; sorted by name."""
         simulation = self._sumo.simulation
         due = {*self._sumo.vehicle.getIDList(), *simulation.getPendingVehicles()}
         return tuple(sorted(due - {EGO}))
@@ -99,16 +99,16 @@ def settle(
     limit_s: float,
     after_step: Callable[[], None],
 ) -> Settled:
-    """Drives on until the ego's drive has ended and that share of each group has arrived, or the time is over.
+    """Runs until the ego's drive has ended and a share of each group has arrived, or the time is over.
 
     Args:
         world: the simulation.
-        drive: the ego's.
-        ledger: open since before the groups were named.
+        drive: the ego's drive.
+        ledger: opened before the groups were formed.
         groups: vehicles to wait for.
-        share: of each group, 0 to 1.
-        limit_s: simulated seconds at most.
-        after_step: called after every step; it notes it.
+        share: share of each group, 0 to 1.
+        limit_s: limit of simulated seconds.
+        after_step: called after every step to record it.
 
     Raises:
         TrafficError: SUMO stopped at an error.
@@ -138,10 +138,10 @@ def settle(
 
 
 def own_choice(sumo: LibSumo) -> tuple[str, ...]:
-    """The way that SUMO's rerouting device would send the ego on now; the ego takes it, so ask a copy.
+    """The route that SUMO's rerouting device would take now. The ego takes it, so use a copy.
 
-    The device routes by travel times averaged over its adaptation interval; where no vehicle carries one, SUMO
-    begins to average at the first question, which is free flow.
+    The device routes by travel times averaged over its adaptation interval; if no vehicle carries one, SUMO begins
+    to average at the first query, which gives free flow.
     """
     sumo.vehicle.rerouteTraveltime(EGO, True)
     return tuple(sumo.route(EGO)[sumo.route_index(EGO) :])
@@ -152,7 +152,7 @@ def nudge(sumo: LibSumo, place: float) -> str:
 
     Args:
         sumo: the running simulation.
-        place: which one, 0 up to 1 over all of them in order of name.
+        place: which one, from 0 up to 1 over all of them in order of name.
     """
     others = sorted(set(sumo.vehicle.getIDList()) - {EGO})
     if not others:

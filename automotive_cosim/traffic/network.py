@@ -1,18 +1,18 @@
-"""Reads a SUMO network (``.net.xml``, also gzipped): what a map draws and what the driving state needs.
+"""Reads a SUMO network (``.net.xml``, also gzipped), for maps and the driving state.
 
-SUMO knows lanes, speeds and shapes. What else the map's author knew travels in the edges: ``type`` is
+SUMO knows lanes, speeds and shapes. Everything else from the map is in the edges: ``type`` is
 ``highway.<OSM highway value>``, and ``<param>`` keys are OpenStreetMap's own:
 
 | key | meaning |
 |---|---|
 | ``maxspeed`` | present: the limit is posted, else it was assumed; ``none``: there is no limit |
-| ``tunnel`` | anything but ``no``: in a tunnel |
+| ``tunnel`` | anything except ``no``: in a tunnel |
 | ``lit`` | ``yes`` or ``no``: street lighting |
 | ``zone:traffic`` | ``XX:urban``, ``XX:rural`` or ``XX:motorway``: built-up or not |
 | ``lane_markings`` | ``no``: no centre line |
-| ``maxspeed:conditional`` | limits that hold at certain hours (``posted``) |
+| ``maxspeed:conditional`` | limits at certain hours (``posted``) |
 | ``hazard`` | ``school_zone``: beside a school |
-| ``speed_camera`` | where cameras stand, metres from the start of the edge |
+| ``speed_camera`` | positions of cameras, in metres from the start of the edge |
 
 The file is read with ``iterparse``, about twice as fast as sumolib's reader and without its object per connection.
 """
@@ -36,10 +36,10 @@ NO_LIMIT_FROM_MPS = 39.0
 """A lane at least this fast whose edge says ``maxspeed=none`` has no limit: SUMO's OSM import writes 142 km/h."""
 
 DERESTRICTED_MPS = 142 / KMH_PER_MPS
-"""What SUMO is told where there is no limit, as its own import does."""
+"""SUMO's speed for roads without a limit, as in its own import."""
 
 BUILT_UP = {"urban": True, "rural": False, "motorway": False}
-"""What the zone in ``zone:traffic`` says of it."""
+"""Whether a zone in ``zone:traffic`` is built-up."""
 
 Shape = tuple[tuple[float, float], ...]
 
@@ -57,7 +57,7 @@ class Edge:
     """Lanes open to cars, from the kerb."""
     length_m: float
     speed_mps: float
-    """The speed in the file, also where there is no limit."""
+    """The speed in the file, even without a limit."""
     limit_mps: float | None
     limit_source: LimitSource
     in_tunnel: bool
@@ -66,28 +66,28 @@ class Edge:
     centre_line: bool | None
     shape_m: Shape
     bus_lane: bool = False
-    """Another lane of it is for buses and not for cars."""
+    """Whether another of its lanes is for buses and not for cars."""
     cameras_m: tuple[float, ...] = ()
-    """Speed cameras, from its start."""
+    """Positions of speed cameras, from its start."""
     school_zone: bool = False
     timed_limits: tuple[TimedLimit, ...] = ()
     """Limits that are posted for certain hours."""
     timed_limit: TimedLimit | None = None
-    """The one of them that is in force; ``limit_mps`` is what holds now."""
+    """The one of them that is in force; ``limit_mps`` is the present limit."""
 
     @property
     def limit_hours(self) -> str:
-        """What is posted for certain hours, in words."""
+        """The limits posted for certain hours, in words."""
         return "; ".join(limit.text for limit in self.timed_limits)
 
 
 @dataclass(frozen=True, slots=True)
 class Crossing:
-    """The way through a junction from one edge to the next."""
+    """The connection through a junction from one edge to the next."""
 
     length_m: float
     speed_mps: float
-    """The slowest of its lanes: what the turn allows."""
+    """Speed of its slowest lane."""
     is_straight: bool = True
     has_signal: bool = False
 
@@ -97,16 +97,16 @@ class Network:
     """A network, by edge id."""
 
     edges: dict[str, Edge]
-    """The clock or an incident may put up another limit: then its edge is another one."""
+    """The edges; a limit changed by time or an incident replaces its edge."""
     crossings: Mapping[str, Mapping[str, Crossing]]
     """From edge, to edge."""
     opposite: Mapping[str, str]
-    """The edge back, between the same junctions, where there is one."""
+    """The opposite edge between the same junctions, if there is one."""
     map: RoadNetwork
     unplaced: str = ""
-    """Why nothing in it has a place on earth, e.g. "has no projection"; empty if it has one."""
+    """Why it has no position on earth, e.g. "has no projection"; empty if it has one."""
     moved: bool = False
-    """Its place is not the one that its file names."""
+    """Whether it was moved from the position in its file."""
 
     def at(self, origin: tuple[float, float]) -> Network:
         """The same network with its middle at another place: (longitude, latitude)."""
@@ -125,7 +125,7 @@ class _Connection:
 
 @dataclass(slots=True)
 class _Reading:
-    """What one pass over the file collects."""
+    """The data collected in one pass over the file."""
 
     edges: dict[str, Edge] = field(default_factory=dict)
     inner_lanes: dict[str, Crossing] = field(default_factory=dict)
@@ -138,7 +138,7 @@ def read_network(path: Path) -> Network:
     """Reads a network.
 
     Raises:
-        ScenarioError: the file is missing, is no SUMO network, is cut off, or has no road for cars.
+        ScenarioError: the file is missing, is not a SUMO network, is truncated, or has no road for cars.
     """
     reading = _Reading()
     try:
@@ -148,7 +148,7 @@ def read_network(path: Path) -> Network:
         raise ScenarioError(f"the network {path} is missing") from error
     except (ET.ParseError, OSError, EOFError, zlib.error, KeyError, ValueError) as error:
         raise ScenarioError(
-            f"{path} is not a whole SUMO network ({error}); build it again with netconvert"
+            f"{path} is not a complete SUMO network ({error}); build it again with netconvert"
         ) from error
     if not reading.edges:
         raise ScenarioError(f"{path} has no road that cars may use")
@@ -163,7 +163,7 @@ def drives_on_left(path: Path) -> bool:
     """Whether a network's traffic keeps left, read from its first element.
 
     Raises:
-        ScenarioError: the file is missing or no XML.
+        ScenarioError: the file is missing or not XML.
     """
     return root_of(path).get("lefthand") in ("true", "1")
 
@@ -172,7 +172,7 @@ def root_of(path: Path) -> ET.Element:
     """The root element of an XML file, gzipped or not, with its attributes but nothing in it.
 
     Raises:
-        ScenarioError: the file is missing or no XML.
+        ScenarioError: the file is missing or not XML.
     """
     try:
         with _open(path) as file:
@@ -180,7 +180,7 @@ def root_of(path: Path) -> ET.Element:
     except FileNotFoundError as error:
         raise ScenarioError(f"{path} is missing") from error
     except (ET.ParseError, OSError, EOFError, zlib.error, StopIteration) as error:
-        raise ScenarioError(f"{path} is no XML: {error}") from error
+        raise ScenarioError(f"{path} is not XML: {error}") from error
     return root
 
 
@@ -259,7 +259,7 @@ def _open_to_cars(lane: ET.Element) -> bool:
 
 
 def _for_buses(lane: ET.Element) -> bool:
-    """Buses may use it and cars may not; a footway that happens to let them does not count."""
+    """Whether buses may use it and cars may not; a footway that happens to allow buses does not count."""
     return "bus" in lane.get("allow", "").split() and not _open_to_cars(lane)
 
 
@@ -283,7 +283,7 @@ def _take_connection(element: ET.Element, reading: _Reading) -> None:
 
 
 def _crossings(reading: _Reading) -> dict[str, dict[str, Crossing]]:
-    """Adds up the inner lanes of each way through a junction; a waiting place in its middle splits it in two."""
+    """Adds up the inner lanes of each connection through a junction; a waiting position splits it in two."""
     onward = {link.from_lane: link.via for link in reading.connections if link.from_edge.startswith(":")}
     crossings: dict[str, dict[str, Crossing]] = {}
     for link in reading.connections:
@@ -326,7 +326,7 @@ def _map(reading: _Reading) -> RoadNetwork:
 
 
 def road_of(edge: Edge) -> Road:
-    """The edge as a map draws it."""
+    """The edge for maps."""
     return Road(
         edge_id=edge.edge_id,
         name=edge.name,

@@ -1,7 +1,7 @@
-"""A scenario's ``.sumocfg`` and ``scenario.toml`` -> SUMO's command line, which writes nothing anywhere.
+"""A scenario's ``.sumocfg`` and ``scenario.toml`` -> SUMO's command line, without outputs.
 
-The scenario's files are only read. Options that make SUMO write are left out, files are named by their absolute
-path, and additional files whose detectors would write are copied to a scratch folder with their outputs cut off.
+The scenario's files are only read. Options that make SUMO write are omitted, files are named by absolute paths, and
+additional files whose detectors would write are copied to a scratch folder without their outputs.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ ALIASES = {
     "e": "end",
     "l": "log",
 }
-"""Short names a configuration may use."""
+"""Short option names that a configuration may use."""
 
 INPUTS = ("net-file", "route-files", "additional-files")
 
@@ -53,8 +53,8 @@ DROPPED = frozenset(
         "duration-log.statistics",
     }
 )
-"""What a configuration may set and a run inside this package has no use for, besides everything that names an
-output, SUMO's state files and the ``ssm`` device's file. ``threads``: forks must have one; ``end`` is the caller's.
+"""Options of a configuration that a run in this package ignores, in addition to everything that names an output,
+SUMO's state files and the ``ssm`` device's file. ``threads``: forks must have one; ``end`` is the caller's.
 """
 
 DEFAULTS = {
@@ -63,7 +63,7 @@ DEFAULTS = {
     "device.rerouting.period": "60",
     "device.rerouting.adaptation-steps": "180",
 }
-"""Keep traffic from locking up for good; a configuration may say otherwise."""
+"""Options that keep traffic from locking up; a configuration may override them."""
 
 QUIET = {
     "no-step-log": "true",
@@ -76,10 +76,10 @@ QUIET = {
 DETECTORS = "e1Detector inductionLoop e2Detector laneAreaDetector e3Detector entryExitDetector instantInductionLoop"
 COLLECTORS = "edgeData laneData routeProbe vTypeProbe calibrator timedEvent"
 WRITERS = frozenset(f"{DETECTORS} {COLLECTORS}".split())
-"""Elements of an additional file that write to what ``file``, ``output`` or ``dest`` names."""
+"""Elements of an additional file that write to their ``file``, ``output`` or ``dest``."""
 
 OUTPUTS = ("fcd.xml", "tripinfo.xml")
-"""SUMO's own outputs that a run may keep."""
+"""SUMO's own outputs that a run may write."""
 
 NOWHERE = "NUL"
 """SUMO's name for no file, on every platform."""
@@ -87,13 +87,13 @@ NOWHERE = "NUL"
 
 @dataclass(frozen=True, slots=True)
 class Setup:
-    """All that a simulation's course depends on before the ego departs."""
+    """Everything that determines a simulation before the ego departs."""
 
     scenario: Scenario
     seed: int = 0
-    """Of SUMO's random numbers."""
+    """Seed of SUMO's random numbers."""
     allow_unprojected: bool = False
-    """Take a network without projection, with lon and lat None."""
+    """Whether to accept a network without projection, with lon and lat None."""
     outputs: Path | None = None
     """Folder for SUMO's own outputs: the ego's positions (``fcd.xml``) and everybody's trips (``tripinfo.xml``),
     the ego's with its emissions."""
@@ -101,7 +101,7 @@ class Setup:
 
 @dataclass(frozen=True, slots=True)
 class Configuration:
-    """A ``.sumocfg`` as read."""
+    """The content of a ``.sumocfg``."""
 
     path: Path
     net: Path
@@ -121,7 +121,7 @@ class Configuration:
         """The value of an option; times may be written ``[days:]hours:minutes:seconds``.
 
         Raises:
-            ScenarioError: it is no number.
+            ScenarioError: it is not a number.
         """
         text = self.options.get(option, "")
         try:
@@ -129,7 +129,7 @@ class Configuration:
         except ValueError:
             parts = [math.nan]
         if not all(map(math.isfinite, parts)) or len(parts) not in (1, 3, 4):
-            raise ScenarioError(f"{self.path}: {option} = {text!r} is no number")
+            raise ScenarioError(f"{self.path}: {option} = {text!r} is not a number")
         weights = (86_400.0, 3_600.0, 60.0, 1.0)
         return sum(part * weight for part, weight in zip(parts, weights[-len(parts) :], strict=True))
 
@@ -138,7 +138,7 @@ def read_configuration(path: Path) -> Configuration:
     """Reads a ``.sumocfg``; a plain network counts as one that names nothing else.
 
     Raises:
-        ScenarioError: it is no XML, names no network, or names a file that is missing.
+        ScenarioError: it is not XML, names no network, or names a missing file.
     """
     if root_of(path).tag == "net":
         return Configuration(path, path.absolute(), {"net-file": str(path.absolute())})
@@ -162,12 +162,12 @@ def read_configuration(path: Path) -> Configuration:
 
 
 def command_line(configuration: Configuration, setup: Setup, scratch: Path) -> list[str]:
-    """The options SUMO is started with, its name first.
+    """The command line of SUMO, its name first.
 
     Args:
-        configuration: the scenario's own, as read.
+        configuration: the scenario's own.
         setup: seed, and the scenario's step lengths, scale and rerouting.
-        scratch: an empty folder for what has to be changed.
+        scratch: an empty folder for changed files.
     """
     options = DEFAULTS | configuration.options | QUIET
     if files := options.get("additional-files"):
@@ -205,7 +205,7 @@ def silence(path: Path, scratch: Path) -> Path:
     """The additional file, or a copy of it in ``scratch`` that writes nothing if it would.
 
     Raises:
-        ScenarioError: it is no XML.
+        ScenarioError: it is not XML.
     """
     try:
         with gzip.open(path) if path.suffix == ".gz" else path.open("rb") as file:
@@ -221,7 +221,7 @@ def silence(path: Path, scratch: Path) -> Path:
 
 
 def _cut_outputs(element: ET.Element, folder: Path, scratch: Path) -> bool:
-    """Cuts one element's outputs; the files it reads are named absolutely. True if it had to."""
+    """Removes one element's outputs and makes its input paths absolute; true if it had outputs."""
     if element.tag in WRITERS:
         names = [name for name in ("file", "output", "dest") if element.get(name)]
         element.attrib.update(dict.fromkeys(names, NOWHERE))

@@ -1,13 +1,13 @@
-"""Limits as signs state them: a number with its unit, and those that hold at certain hours only.
+"""Limits on signs: a number with its unit, and limits at certain hours.
 
 The words are OpenStreetMap's (wiki pages "Key:maxspeed" and "Conditional restrictions"):
 
     maxspeed              50        30 mph        none
     maxspeed:conditional  40 @ (Mo-Fr 08:00-09:30,14:30-16:00; SH off; PH off)
 
-Of conditions those on weekdays and times of day are understood. ``SH off`` and ``PH off`` are taken note of and no
-more: no calendar of holidays is at hand, so a Monday is a school day. A limit under any other condition (weather,
-axle load, season, ...) is left out, and told as such.
+Conditions on weekdays and times of day are understood. ``SH off`` and ``PH off`` are accepted but ignored: there is
+no calendar of holidays, so every Monday is a school day. A limit under any other condition (weather, axle load,
+season, ...) is omitted and reported.
 """
 
 from __future__ import annotations
@@ -32,20 +32,20 @@ _SPAN = re.compile(r"(\d\d?):(\d\d)-(\d\d?):(\d\d)")
 
 @dataclass(frozen=True, slots=True)
 class TimedLimit:
-    """A limit that holds at certain hours."""
+    """A limit at certain hours."""
 
     limit_mps: float | None
-    """None: no limit then."""
+    """The limit; None for no limit."""
     days: frozenset[int]
     """ISO weekdays: 1 is Monday."""
     spans: tuple[tuple[int, int], ...]
-    """Minutes of the day, the last excluded. One that ends no later than it begins runs past midnight and belongs
-    to the day it begins on."""
+    """Minutes of the day, the last excluded. A span that ends no later than it begins runs past midnight and
+    belongs to the day on which it begins."""
     text: str
-    """As words: ``40 km/h Mo-Fr 08:00-09:30, 14:30-16:00``."""
+    """In words: ``40 km/h Mo-Fr 08:00-09:30, 14:30-16:00``."""
 
     def holds(self, local_time: datetime) -> bool:
-        """Whether it is in force by the clock of the place."""
+        """Whether it is in force at the local time."""
         minute, day = local_time.hour * 60 + local_time.minute, local_time.isoweekday()
         today, yesterday = day in self.days, (day + 5) % 7 + 1 in self.days
         for first, last in self.spans:
@@ -58,7 +58,7 @@ class TimedLimit:
 
 
 def in_force(limits: Sequence[TimedLimit], local_time: datetime) -> TimedLimit | None:
-    """The limit that holds now; of several the one written last, as OpenStreetMap has it."""
+    """The limit in force now; of several, the last one, as in OpenStreetMap."""
     return next((limit for limit in reversed(limits) if limit.holds(local_time)), None)
 
 
@@ -66,13 +66,13 @@ def sign_mps(sign: str) -> float | None:
     """The speed of a sign (``"50"``, ``"30 mph"``); None for ``"none"``.
 
     Raises:
-        ValueError: it is no ``maxspeed``.
+        ValueError: it is not a ``maxspeed``.
     """
     if sign == "none":
         return None
     number, _, unit = sign.partition(" ")
     if unit not in _PER_MPS or not re.fullmatch(r"\d+(\.\d+)?", number):
-        raise ValueError(f'{sign!r} is no maxspeed; write "50", "30 mph" or "none"')
+        raise ValueError(f'{sign!r} is not a maxspeed; write "50", "30 mph" or "none"')
     return float(number) / _PER_MPS[unit]
 
 
@@ -80,7 +80,7 @@ def timed_limits(conditional: str) -> tuple[tuple[TimedLimit, ...], tuple[str, .
     """Reads a ``maxspeed:conditional``.
 
     Returns:
-        The limits that hold by the clock, and the parts that were not understood, as they stand.
+        The limits by the clock, and the parts that were not understood, verbatim.
     """
     found: list[TimedLimit] = []
     unread: list[str] = []

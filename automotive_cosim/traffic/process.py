@@ -1,8 +1,8 @@
 """The simulation's own process: ``python -m automotive_cosim.traffic.process``, started by ``fork``.
 
-It has one thread and holds nothing but SUMO. It loads and warms up once; every ``fork`` makes a child that goes on
-by itself over a connection of its own, and can be forked again. A process ends when its connection closes, so none
-outlives the program that uses it; one that hangs is ended by its alarm.
+It has one thread and contains only SUMO. It loads and warms up once; every ``fork`` makes an independent child with
+a connection of its own, which can be forked again. A process ends when its connection closes, so none outlives the
+program that uses it; one that hangs is ended by its alarm.
 """
 
 from __future__ import annotations
@@ -46,11 +46,11 @@ class Server:
     """Answers the messages of one connection."""
 
     def __init__(self, channel: MessageChannel, hang_limit_s: float) -> None:
-        """Takes the connection over.
+        """Takes over the connection.
 
         Args:
             channel: to the program that uses the simulation.
-            hang_limit_s: wall time after which a step that does not end ends the process.
+            hang_limit_s: wall time after which an unfinished step ends the process.
         """
         self._channel = channel
         self._hang_limit_s = hang_limit_s
@@ -70,7 +70,7 @@ class Server:
                 self._channel.send(answer)  # in a forked child this is its own connection already
         except ClosedError:
             if self._world is not None and self._world.writes:
-                self._world.close()  # which ends the outputs properly
+                self._world.close()  # which completes the outputs
 
     def _answer(self, name: str, arguments: tuple[Any, ...]) -> tuple[str, Any]:
         try:
@@ -79,7 +79,7 @@ class Server:
             raise
         except CosimError as error:
             return "error", (type(error), str(error))
-        except Exception as error:  # whatever it is, the other side has to hear of it
+        except Exception as error:  # whatever the error is, the other side has to learn about it
             traceback.print_exc()
             place = traceback.extract_tb(error.__traceback__)[-1]
             text = f"{type(error).__name__}: {error} ({Path(place.filename).name}, line {place.lineno})"
@@ -98,7 +98,7 @@ class Server:
         return self._world.network.map
 
     def do_fork(self, outputs: Path | None) -> int:
-        """Makes a child that serves the connection that follows; both answer with their process id."""
+        """Makes a child that serves the next connection; both answer with their process id."""
         connection = self._channel.receive_socket()
         child = os.fork()
         if not child:
@@ -124,12 +124,12 @@ class Server:
         return pack_advance(self._drive.advance(duration_s, self._after_step))
 
     def do_request(self, request: RoadRequest) -> Answer:
-        """Asks something of the driver or the car."""
+        """Makes a request to the driver or the car."""
         assert self._drive is not None
         return self._drive.request(request)
 
     def do_alternatives(self, age_s: float) -> tuple[RouteOption, ...]:
-        """Looks for other ways by news of that age."""
+        """Finds alternative routes by news of that age."""
         assert self._drive is not None
         return self._drive.alternatives(age_s)
 
@@ -139,10 +139,10 @@ class Server:
         self._drive.replay(calls, self._beat)
         return pack_state(self._drive.state)
 
-    # --- what studies ask ---------------------------------------------------------------------------------
+    # --- calls of studies ---------------------------------------------------------------------------------
 
     def do_watch(self) -> None:
-        """From now on every step goes into a ledger, which the forks take along."""
+        """Records every step from now on in a ledger, which forks copy."""
         assert self._world is not None
         self._ledger = Ledger(load_library(), self._world.step_s)
 
@@ -156,12 +156,12 @@ class Server:
         return self._ledger.pulse()
 
     def do_others(self) -> tuple[tuple[str, ...], Pulse]:
-        """Who is there beside the ego, and how the traffic is doing."""
+        """The other vehicles, and the state of the traffic."""
         assert self._ledger is not None
         return self._ledger.others(), self._ledger.pulse()
 
     def do_settle(self, groups: Sequence[Sequence[str]], share: float, limit_s: float) -> tuple[Packed, Settled]:
-        """Drives on until everything has ended; returns the ego's last state and the outcome."""
+        """Runs until everything has ended; returns the ego's last state and the outcome."""
         assert self._world is not None
         assert self._drive is not None
         assert self._ledger is not None
@@ -169,7 +169,7 @@ class Server:
         return pack_state(self._drive.state), outcome
 
     def do_own_choice(self) -> tuple[str, ...]:
-        """SUMO's own; nothing else may be asked of this process afterwards."""
+        """The route of SUMO's own device; this process cannot be used for anything else afterwards."""
         return own_choice(load_library())
 
     def do_nudge(self, place: float) -> str:
@@ -195,7 +195,7 @@ class Server:
         self._channel.send(("progress", (done_s, total_s)))
 
     def _set_alarm(self, limit_s: float | None = None) -> None:
-        """The kernel ends the process after the limit, even if nobody is left to see that it hangs."""
+        """The kernel ends the process after the limit, even if nobody is left to notice that it hangs."""
         if sys.platform != "win32":
             signal.setitimer(signal.ITIMER_REAL, limit_s or self._hang_limit_s)
 
@@ -207,7 +207,7 @@ class Server:
 def reopen_files() -> None:
     """Gives this process its own position in every file it was forked with.
 
-    SUMO reads its demand piece by piece; with a shared position the first reader takes the others' traffic.
+    SUMO reads its demand in pieces; with a shared position, the first reader would take the others' traffic.
     """
     for entry in list(DESCRIPTORS.iterdir()):
         descriptor = int(entry.name)
@@ -225,7 +225,7 @@ def reopen_files() -> None:
 def copy_outputs(folder: Path) -> None:
     """Gives this process its own copies, in ``folder``, of the files that it was forked with to write to.
 
-    What SUMO has not written out yet is in this process's memory too, and goes into the copy.
+    What SUMO has not written yet is also in this process's memory, and goes into the copy.
     """
     for entry in list(DESCRIPTORS.iterdir()):
         descriptor = int(entry.name)
@@ -247,10 +247,10 @@ def main() -> None:
     if sys.platform == "win32":
         connection = socket.fromshare(sys.stdin.buffer.read())
     else:
-        signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # children need no waiting for
+        signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # no need to wait for children
         connection = socket.socket(fileno=int(sys.argv[1]))
     Server(MessageChannel(connection), float(sys.argv[2])).run()
-    os._exit(0)  # without tearing the simulation down piece by piece
+    os._exit(0)  # without tearing down the simulation
 
 
 if __name__ == "__main__":

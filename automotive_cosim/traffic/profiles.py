@@ -1,4 +1,4 @@
-"""Kinds of drivers, in SUMO's terms where it has them."""
+"""Driver profiles, in SUMO's terms where it has them."""
 
 from __future__ import annotations
 
@@ -15,26 +15,26 @@ class DriverProfile:
     name: str
     about: str
     speed_ratio: float
-    """Speed chosen on a clear road, over the posted limit (SUMO ``speedFactor``)."""
+    """Speed on a clear road, as a factor on the posted limit (SUMO ``speedFactor``)."""
     over_limit_max_kmh: float
-    """But never more than this above the limit."""
+    """Maximum excess over the limit."""
     top_speed_kmh: float
-    """Speed chosen where there is no limit."""
+    """Speed without a limit."""
     headway_s: float
     """Time gap kept to the leader (SUMO ``tau``)."""
     min_gap_m: float
     acceleration_mps2: float
     deceleration_mps2: float
     imperfection: float
-    """How unevenly the speed is held, 0 to 1 (SUMO ``sigma``)."""
+    """How unevenly the speed is kept, 0 to 1 (SUMO ``sigma``)."""
     overtaking: float
-    """How readily the lane is changed to go faster (SUMO ``lcSpeedGain``)."""
+    """How readily the driver changes lanes to go faster (SUMO ``lcSpeedGain``)."""
     reaction_s: float
     """Median time to react to a request."""
     compliance: float
     """Share of requests that are followed."""
     caution: float
-    """How far speed and gap are adapted to the weather: 1 as much as the others do, 0 not at all."""
+    """How far speed and gap are adapted to the weather: 1 as much as other drivers do, 0 not at all."""
 
 
 PROFILES: Mapping[str, DriverProfile] = {
@@ -74,7 +74,7 @@ PROFILES: Mapping[str, DriverProfile] = {
         ),
         DriverProfile(
             name="steady",
-            about="exactly the limit, without wavering: for studies that reckon by hand",
+            about="exactly the limit, without variation: for studies with calculations by hand",
             speed_ratio=1.0,
             over_limit_max_kmh=0,
             top_speed_kmh=130,
@@ -138,11 +138,11 @@ PROFILES: Mapping[str, DriverProfile] = {
         ),
     )
 }
-"""The drivers there are.
+"""The driver profiles.
 
 The average one's acceleration, deceleration and overtaking are SUMO's defaults for passenger cars (sumo.dlr.de,
-"Vehicle Type Parameter Defaults"). 2 s is the least gap French law allows (code de la route R412-12); the
-tailgating one keeps a quarter of it. Reaction times lie about the 1.25 s that Green (2000, "How long does it take
+"Vehicle Type Parameter Defaults"). 2 s is the minimum gap in French law (code de la route R412-12); the
+tailgating one keeps a quarter of it. Reaction times lie around the 1.25 s that Green (2000, "How long does it take
 to stop?") gives for a common unexpected signal, shorter for alert drivers (0.7 s when expected), longer for drowsy
 ones. The speeds of the hurried and the tailgating driver, the evenness, the compliance and the caution are chosen,
 not measured.
@@ -153,7 +153,7 @@ def profile(name: str) -> DriverProfile:
     """The profile of that name.
 
     Raises:
-        UnknownNameError: there is none such.
+        UnknownNameError: there is no such profile.
     """
     if name not in PROFILES:
         raise UnknownNameError("driver", name, PROFILES)

@@ -1,4 +1,4 @@
-"""Light traffic for a network that comes without any: flows between random edges, by seed."""
+"""Light traffic for a network without any: flows between random edges, by seed."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ from automotive_cosim.traffic.network import Network
 from automotive_cosim.traffic.ways import ways_from
 
 STARTS, GOALS = 24, 5
-"""Flows begin on so many edges and lead from each to so many."""
+"""Number of start edges of flows, and of end edges for each."""
 
 MOST_PER_HOUR = 3600.0
-"""However large the network is."""
+"""Limit of vehicles per hour, however large the network is."""
 
 
 def vehicles_per_hour(network: Network, per_km_h: float) -> float:
-    """How many set out each hour."""
+    """Number of departures per hour."""
     lane_km = sum(edge.length_m * len(edge.lane_ids) for edge in network.edges.values()) / 1000
     return min(MOST_PER_HOUR, per_km_h * lane_km)
 
 
 def write(path: Path, network: Network, per_km_h: float, seed: int) -> None:
-    """Writes the flows as one of SUMO's additional files; nothing but an empty one if no edge leads to another.
+    """Writes the flows as a SUMO additional file, which is empty if no edges are connected.
 
     Args:
         path: the file to write.
-        network: where.
-        per_km_h: vehicles that set out each hour per kilometre of lane.
-        seed: of their starts and goals.
+        network: the network.
+        per_km_h: departures per hour and kilometre of lane.
+        seed: seed of their starts and ends.
     """
     rng = np.random.default_rng(seed)
     edges = list(network.edges.values())

@@ -1,8 +1,8 @@
 """The parts of a driving state, made quickly.
 
 A frozen dataclass sets each of its fields through ``object.__setattr__``, which for a whole driving state takes
-longer than reading it from SUMO. Here an unfrozen twin is filled and then given the frozen class: the same object,
-in a fifth of the time.
+longer than reading it from SUMO. Here an unfrozen copy of the class is filled and then given the frozen class: the
+same object, in a fifth of the time.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ Noun = TypeVar("Noun")
 
 
 def maker(kind: type[Noun]) -> type[Noun]:
-    """What makes records of a frozen dataclass with slots from all their fields, in order.
+    """A function that makes records of a frozen dataclass with slots from all their fields, in order.
 
-    It is typed as the class, so that its arguments are checked, but knows neither defaults nor names.
+    It is typed as the class, so its arguments are checked, but has neither defaults nor keywords.
     """
     twin = make_dataclass(f"{kind.__name__}Twin", [field.name for field in fields(cast(Any, kind))], slots=True)
 

@@ -1,4 +1,4 @@
-"""A simulation's process, seen from the program that uses it: starts it, calls it, copies it, ends it."""
+"""Starts, calls, copies and ends a simulation's process, from the program that uses it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ TIMEOUT_S = 20.0
 """Wall time without a sign of life after which a simulation counts as hung; it gives one every second."""
 
 ALARM_MARGIN_S = 5.0
-"""The simulation's own alarm comes this much later, for when nobody is left to end it."""
+"""The simulation's own alarm comes this much later, in case nobody is left to end it."""
 
 CLOSING_LIMIT_S = 2.0
 
@@ -33,7 +33,7 @@ ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THRE
 
 
 class _Complaints:
-    """What a simulation's process and its children write to their standard error, in a file without a name."""
+    """The standard error of a simulation's process and its children, in an unnamed file."""
 
     def __init__(self) -> None:
         with tempfile.TemporaryFile() as file:
@@ -41,14 +41,14 @@ class _Complaints:
         weakref.finalize(self, os.close, self.descriptor)
 
     def last(self) -> str:
-        """Its end on one line."""
+        """The end of it, on one line."""
         size = os.fstat(self.descriptor).st_size
         os.lseek(self.descriptor, max(0, size - 2000), os.SEEK_SET)
         return " ".join(os.read(self.descriptor, 2000).decode("utf-8", "replace").split())
 
 
 class RemoteProcess:
-    """A simulation's process, seen from here."""
+    """A handle of a simulation's process."""
 
     def __init__(self, channel: MessageChannel, complaints: _Complaints, timeout_s: float) -> None:
         self._channel = channel
@@ -58,7 +58,7 @@ class RemoteProcess:
         self._popen: subprocess.Popen[bytes] | None = None
         self.pid = 0
         self._end: weakref.finalize[..., RemoteProcess] = weakref.finalize(self, channel.close)
-        """Runs even if nobody closes it: a process whose connection is gone ends."""
+        """Finalizer; even without it, a process ends when its connection is gone."""
 
     @classmethod
     def start(
@@ -68,7 +68,7 @@ class RemoteProcess:
 
         Raises:
             ScenarioError: the scenario cannot be loaded.
-            SetupError: libsumo is missing or unfit.
+            SetupError: libsumo is missing or unsuitable.
             TrafficError: the process died or hung.
         """
         ours, theirs = socket.socketpair()
@@ -107,7 +107,7 @@ class RemoteProcess:
 
     @property
     def is_broken(self) -> bool:
-        """It died, hung or was interrupted: every further call fails."""
+        """Whether it died, hung or was interrupted, so every further call fails."""
         return bool(self._broken)
 
     def call(
@@ -121,13 +121,13 @@ class RemoteProcess:
         """Calls a method of ``process.Server``.
 
         Raises:
-            TrafficError: it died or hung; or what the method raised.
+            TrafficError: it died or hung; otherwise whatever the method raised.
         """
         self.send(name, *arguments, hand_over=hand_over)
         return self.receive(progress, timeout_s)
 
     def send(self, name: str, *arguments: object, hand_over: socket.socket | None = None) -> None:
-        """Begins a call whose answer ``receive`` waits for; the process works on it meanwhile.
+        """Starts a call whose answer ``receive`` waits for.
 
         Raises:
             TrafficError: it died.
@@ -142,7 +142,7 @@ class RemoteProcess:
             self._give_up(self._death())
 
     def receive(self, progress: WarmUpProgress | None = None, timeout_s: float | None = None) -> Any:
-        """Waits for an answer; raises as ``call``."""
+        """Waits for an answer; raises like ``call``."""
         limit_s = max(self._timeout_s, timeout_s or 0.0)
         try:
             outcome, value = self._channel.receive(limit_s)
@@ -167,7 +167,7 @@ class RemoteProcess:
         return value
 
     def close(self) -> None:
-        """Ends the process and waits for it; harmless when called again."""
+        """Ends the process and waits for it; may be called again."""
         if not self._broken:
             self._broken = "the simulation is closed"
             self._channel.hang_up()
@@ -193,8 +193,8 @@ class RemoteProcess:
                 os.kill(self.pid, signal.SIGKILL)
 
     def _death(self) -> str:
-        """How the process came to its end, as far as can be told from outside."""
-        cause = "killed, perhaps for want of memory"
+        """How the process ended, as far as can be seen from outside."""
+        cause = "killed, perhaps for lack of memory"
         if self._popen is not None:
             with suppress(subprocess.TimeoutExpired):
                 code = self._popen.wait(CLOSING_LIMIT_S)
@@ -214,7 +214,7 @@ def _end(channel: MessageChannel, popen: subprocess.Popen[bytes]) -> None:
 
 
 def _popen(connection: socket.socket, complaints: int, alarm_s: float) -> subprocess.Popen[bytes]:
-    """Starts ``process`` with one end of the connection, and with an environment of our choice."""
+    """Starts ``process`` with one end of the connection and a controlled environment."""
     environment = {name: value for name, value in os.environ.items() if name not in DROPPED_VARIABLES}
     environment |= ONE_THREAD
     environment["PYTHONPATH"] = os.pathsep.join(str(Path(entry).absolute()) for entry in sys.path)

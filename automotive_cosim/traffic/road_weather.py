@@ -1,7 +1,7 @@
-"""What the weather does to driving: grip, speed choice, gaps and sight, for the ego's driver and for all others.
+"""The effect of weather on driving: grip, speed choice, gaps and visibility, for the ego's driver and all others.
 
-Posted limits stay what they are. SUMO's own friction only lowers the speed wanted, so braking is set here too: no
-vehicle brakes harder than ``friction * g``, which makes stopping distances those of physics, v^2 / (2 friction g).
+Posted limits do not change. SUMO's own friction only lowers the desired speed, so braking is set here too: no
+vehicle brakes harder than ``friction * g``, which gives physical stopping distances, v^2 / (2 friction g).
 """
 
 from __future__ import annotations
@@ -27,23 +27,23 @@ LOSS_PER_KELVIN = 0.0023
 """Asphalt loses 0.232 BPN, hundredths of friction, per kelvin (Bazlamit and Reza, J. Transp. Eng. 131 (2005))."""
 
 WARM_FROM_C = 20.0
-"""Friction tests are referred to about this temperature."""
+"""Reference temperature of friction tests."""
 
 REACTION_S = 2.5
 COMFORTABLE_MPS2 = 3.4
-"""AASHTO's Green Book plans stopping sight distances with this reaction time and deceleration."""
+"""Reaction time and deceleration of stopping sight distances in AASHTO's Green Book."""
 
 
 @dataclass(frozen=True, slots=True)
 class RoadCondition:
-    """How a road is to be driven; the ratios are to what is done on a dry road in clear air."""
+    """How to drive a road; the ratios are relative to a dry road in clear air."""
 
     friction: float = 1.0
-    """1 is dry, as in SUMO."""
+    """Friction; 1 is dry, as in SUMO."""
     speed_ratio: float = 1.0
     headway_ratio: float = 1.0
     sight_mps: float = math.inf
-    """Speed from which one can stop within sight."""
+    """Speed from which a driver can stop within the visibility."""
 
 
 DRY = RoadCondition()
@@ -53,7 +53,7 @@ DRY = RoadCondition()
 # and slush 0.20 to 0.50, black ice 0.15 to 0.30, wet ice 0.05 to 0.10. Dust on asphalt is our choice.
 # Speed and headway: FHWA Road Weather Management Program, "How Do Weather Events Impact Roads?": freeway speeds
 # fall by 3 to 13 % in light rain or snow, 3 to 16 % in heavy rain, 5 to 40 % in heavy snow, 10 to 12 % in low
-# visibility; capacities by 4 to 11, 10 to 30, 12 to 27 and 12 %. The middle is taken; the headway is the
+# visibility; capacities by 4 to 11, 10 to 30, 12 to 27 and 12 %. The middle is used; the headway is the
 # capacity's inverse.
 LIGHT, HEAVY_RAIN, HEAVY_SNOW, LOW_VISIBILITY = (
     (0.92, 1 / 0.925),
@@ -75,7 +75,7 @@ _OF_CODES: dict[frozenset[int], tuple[float, tuple[float, float]]] = {
 
 
 def condition_of(weather: Weather) -> RoadCondition:
-    """What the weather makes of a road in the open."""
+    """The condition of an open road in some weather."""
     friction, ratios = 1.0, (1.0, 1.0)
     for codes, effect in _OF_CODES.items():
         if weather.weather_code in codes:
@@ -90,7 +90,7 @@ def condition_of(weather: Weather) -> RoadCondition:
 
 
 def sight_speed_mps(visibility_m: float, friction: float) -> float:
-    """The speed from which a driver stops within sight: v t + v^2 / 2b, as AASHTO has it."""
+    """The speed from which a driver stops within the visibility: v t + v^2 / 2b, as in AASHTO."""
     braking_mps2 = min(COMFORTABLE_MPS2, friction * G_MPS2)
     return braking_mps2 * (-REACTION_S + math.sqrt(REACTION_S**2 + 2 * visibility_m / braking_mps2))
 
@@ -99,11 +99,11 @@ class Forecast:
     """A timeline of weather as conditions of the road."""
 
     def __init__(self, timeline: tuple[WeatherAt, ...], departure_s: float) -> None:
-        """Takes a timeline in seconds after ``departure_s``; an empty one is dry for good."""
+        """Takes a timeline in seconds after ``departure_s``; an empty one is always dry."""
         self._timeline = timeline
         self._departure_s = departure_s
         self.until_s = -math.inf
-        """Simulation time up to which the condition read last holds."""
+        """Simulation time up to which the last condition holds."""
 
     def read(self, time_s: float) -> RoadCondition:
         """The condition at a simulation time."""
@@ -120,7 +120,7 @@ class Forecast:
 
 @dataclass(slots=True)
 class _Type:
-    """A vehicle type as it is on a dry road."""
+    """A vehicle type's parameters on a dry road."""
 
     deceleration_mps2: float
     emergency_mps2: float
@@ -129,9 +129,9 @@ class _Type:
 
 
 class Surface:
-    """Puts a condition on the road: the friction of the lanes, and how all but the ego drive on it.
+    """Applies a condition to the road: the friction of the lanes, and the driving of all vehicles except the ego.
 
-    Lanes in tunnels stay dry. Speeds wanted are each vehicle's own, the rest is its type's.
+    Lanes in tunnels stay dry. Desired speeds are set per vehicle, the rest per type.
     """
 
     def __init__(self, sumo: LibSumo, network: Network, left_out: tuple[str, ...]) -> None:
@@ -140,7 +140,7 @@ class Surface:
         Args:
             sumo: the simulation.
             network: its roads.
-            left_out: types, or what their names begin with, that stay as they are.
+            left_out: types, or prefixes of their names, that stay unchanged.
         """
         self._sumo = sumo
         self._left_out = left_out
@@ -149,7 +149,7 @@ class Surface:
         self._lanes = tuple(lane for lane in sumo.lane.getIDList() if lane not in tunnels)
         self._types: dict[str, _Type] = {}
         self._factors: dict[str, float] = {}
-        """Speed factor of each vehicle on a dry road, kept while it is not."""
+        """Speed factor of each vehicle on a dry road, stored while the road is not dry."""
 
     def put(self, condition: RoadCondition) -> None:
         """Changes the condition for everything on the road."""
@@ -167,17 +167,17 @@ class Surface:
                 self._slow(vehicle)
 
     def adopt(self, type_id: str) -> None:
-        """A type has been made after the condition was put on the road."""
+        """Handles a type that was created after the condition was applied."""
         if self.condition != DRY:
             self._treat(type_id)
 
     def departed(self, vehicle: str) -> None:
-        """A vehicle has come onto the road."""
+        """Handles a vehicle that has entered the road."""
         if self.condition.speed_ratio != 1.0:
             self._slow(vehicle)
 
     def arrived(self, vehicle: str) -> None:
-        """A vehicle has left the road."""
+        """Handles a vehicle that has left the road."""
         self._factors.pop(vehicle, None)
 
     def _treat(self, type_id: str) -> None:

@@ -1,12 +1,11 @@
-"""Ways to a goal, with honest times: SUMO's router over what the traffic did in the last five minutes.
+"""Routes to a destination with realistic times: SUMO's router over the traffic of the last five minutes.
 
-An edge's time is its length over the mean speed there weighted by vehicles, so that standing in a queue counts and
-empty intervals do not; where too few were seen it is free flow and, at a signal, the wait of whoever comes at
-random.
+An edge's time is its length divided by the vehicle-weighted mean speed, so queueing counts and empty intervals do
+not. If too few vehicles were seen, it is free flow plus, at a signal, the mean wait for a random arrival.
 
-The times that SUMO's router takes stay behind and are there for every vehicle, so they are written for a time that
-no simulation reaches, and the router is asked for a departure then. The vehicle it asks for is the ego's type: its
-speed does not deviate, so that no random number is drawn either.
+The times that SUMO's router uses persist and apply to every vehicle, so they are written for a time that no
+simulation reaches, and the router is queried for a departure then. The query uses the ego's type: its speed does
+not deviate, so no random number is drawn either.
 """
 
 from __future__ import annotations
@@ -25,18 +24,18 @@ NEVER_S = 1e8
 """Three years of simulated time; the edges' times are written for as long from there on."""
 
 MOST = 3
-"""Alternatives offered."""
+"""Maximum number of alternatives."""
 
 SAME_AT_MOST = 0.75
-"""Share of an alternative's length that another way may have in common with it."""
+"""Share of an alternative's length that another route may have in common with it."""
 
 PENALTY = 1.5
-"""What the time of an edge already offered is multiplied by, so that the router looks elsewhere."""
+"""Factor on the time of an edge that is already in a route, so that the router looks elsewhere."""
 
 TRIES = 12
 
 LONGEST = 2.0
-"""Ways that take more than this times the quickest are not offered."""
+"""Routes that take more than this times the quickest are not offered."""
 
 SIGNAL_WAIT_S = 13.6
 """Wait at a signal without a queue: 0.5 C (1 - g/C)^2, the uniform delay of the Highway Capacity Manual, for a
@@ -46,15 +45,15 @@ SLOWEST_MPS = 0.5
 
 
 class Router:
-    """Finds ways for the ego and leaves nothing behind."""
+    """Finds routes for the ego without side effects."""
 
     def __init__(self, sumo: LibSumo, network: Network, congestion: Congestion, type_id: str) -> None:
-        """Takes a running simulation.
+        """Uses a running simulation.
 
         Args:
             sumo: the simulation.
             network: its roads.
-            congestion: knows how fast they are.
+            congestion: the speeds of the traffic.
             type_id: vehicle type without speed deviation or rerouting device.
         """
         self._sumo = sumo
@@ -69,31 +68,31 @@ class Router:
             for edge in network.edges.values()
         }
         self._changed: tuple[str, ...] = ()
-        """Edges whose weight is another than on free roads."""
+        """Edges whose weight differs from free roads."""
         self._write(self._free_s)
 
     def quickest(self, start: str, goals: Iterable[str]) -> tuple[str, ...]:
-        """The quickest way now from an edge to the goal that is reached first; empty if none can be reached."""
+        """The quickest route now from an edge to the destination that is reached first; empty if none can be."""
         self._put(self._seen_s(0.0))
         routes = [self._route(start, goal) for goal in goals]
         found = min((route for route in routes if route.edges), key=lambda route: route.travelTime, default=None)
         return () if found is None else tuple(found.edges)
 
     def is_quicker(self, way: Sequence[str], other: Sequence[str], driven_m: float) -> bool:
-        """Whether one way takes less time now than another from the same edge, of which ``driven_m`` lie behind."""
+        """Whether one route is quicker now than another from the same edge, of which ``driven_m`` are driven."""
         seen_s = self._seen_s(0.0)
         return self._option(way, seen_s, driven_m).eta_s < self._option(other, seen_s, driven_m).eta_s
 
     def alternatives(
         self, route: Sequence[str], fixed: int, driven_m: float, age_s: float = 0.0
     ) -> tuple[RouteOption, ...]:
-        """The way that is being driven, and up to ``MOST`` others, the quickest first.
+        """The present route and up to ``MOST`` others, the quickest first.
 
         Args:
-            route: edges of the ego's route from the present one on.
-            fixed: how many of them it is too late to change.
-            driven_m: of the first edge.
-            age_s: of the news, at most ``congestion.OLDEST_NEWS_S``.
+            route: edges of the ego's route from the present one.
+            fixed: how many of them can no longer be changed.
+            driven_m: distance driven on the first edge.
+            age_s: age of the news, at most ``congestion.OLDEST_NEWS_S``.
         """
         seen_s = self._seen_s(age_s)
         network, weights = self._network, dict(seen_s)
@@ -115,7 +114,7 @@ class Router:
         return (options[0], *others)
 
     def _seen_s(self, age_s: float) -> dict[str, float]:
-        """Times of the edges where enough vehicles were seen."""
+        """Travel times of the edges with enough vehicles."""
         return {
             edge_id: edge.length_m / max(SLOWEST_MPS, min(edge.speed_mps, speed_mps))
             for edge_id, speed_mps in self._congestion.window_speeds_mps(age_s).items()
@@ -123,7 +122,7 @@ class Router:
         }
 
     def _option(self, edges: Sequence[str], seen_s: dict[str, float], driven_m: float) -> RouteOption:
-        """A way without what has been driven of its first edge."""
+        """A route without the driven part of its first edge."""
         network, edges_s = self._network, ChainMap(seen_s, self._free_s)
         first = network.edges[edges[0]]
         left = max(0.0, 1.0 - driven_m / first.length_m)
@@ -139,7 +138,7 @@ class Router:
         return RouteOption(tuple(edges), length_m, time_s, max(0.0, time_s - free_s))
 
     def _put(self, edges_s: Mapping[str, float]) -> None:
-        """Sets the weights of these edges; all others are as on free roads."""
+        """Sets the weights of these edges; all others are those of free roads."""
         self._write({edge_id: self._free_s[edge_id] for edge_id in self._changed if edge_id not in edges_s})
         self._write(edges_s)
         self._changed = tuple(edges_s)
@@ -153,7 +152,7 @@ class Router:
 
 
 def _shared(way: Sequence[str], other: Sequence[str], network: Network) -> float:
-    """Share of a way's length that lies on another one."""
+    """Share of a route's length that is also part of another."""
     on_other = frozenset(other)
     length_m = sum(network.edges[edge].length_m for edge in way)
     return sum(network.edges[edge].length_m for edge in way if edge in on_other) / length_m

@@ -1,4 +1,4 @@
-"""How each kind of incident is staged in SUMO. ``situations`` says when."""
+"""Stages each kind of incident in SUMO. ``situations`` decides when."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from automotive_cosim.traffic.stage import CAR_TYPE, IncidentStage
 from automotive_cosim.traffic.sumo import HAZARD_SIGNAL
 
 AUTHORITY = ("authority",)
-"""Whom a closed lane is left open to."""
+"""Vehicle classes that may use a closed lane."""
 
 CAR_SPACE_M = 7.5
-"""A standing car with its gap: SUMO's default length and minimum gap."""
+"""Length of a stationary car with its gap: SUMO's defaults."""
 
 SCHOOL_DAYS = frozenset(range(1, 6))
 
 NARROW_PLACE_M = 10.0
-"""The head of a jam stands this far before the end of its last edge."""
+"""Distance from the head of a jam to the end of its last edge."""
 
 
 _CROSSING = re.compile(r":.+_c\d+")
@@ -34,27 +34,27 @@ _CROSSING = re.compile(r":.+_c\d+")
 
 
 class Scene(Protocol):
-    """One incident as it is staged."""
+    """One staged incident."""
 
     def begin(self) -> str:
-        """Starts it; returns what has happened in words, empty if nothing is to be told."""
+        """Starts it; returns a description of what happened, or an empty text."""
         ...
 
     def tick(self, local_time: datetime) -> str:
-        """Once per second while it lasts; returns what has happened in words."""
+        """Called once per second while it lasts; returns a description of what happened."""
         ...
 
     def end(self) -> str:
-        """Puts things back; returns what has happened in words."""
+        """Reverts it; returns a description of what happened."""
         ...
 
     def reported(self, slow: Mapping[str, float]) -> RoadIncident | None:
-        """What live traffic tells of it while it lasts, as ``Situations.reported``; None if it cannot know."""
+        """What live traffic reports while it lasts, for ``Situations.reported``; None if it cannot know."""
         ...
 
 
 class _Scene:
-    """Most scenes do nothing while they last, and need no putting back."""
+    """Defaults: most scenes do nothing while they last, and need no reverting."""
 
     def begin(self) -> str:
         return ""
@@ -125,14 +125,14 @@ class _Roadworks(_Scene):
 
 
 class _Jam(_Scene):
-    """A queue, and a place that lets one vehicle a lane pass at a time."""
+    """A queue, and a bottleneck that lets one vehicle per lane pass at a time."""
 
     def __init__(self, stage: IncidentStage, incident: incidents.Jam) -> None:
         self._stage, self._incident = stage, incident
         self._edges = [stage.edge(edge) for edge in incident.edges]
         for here, there in zip(incident.edges, incident.edges[1:], strict=False):
             if there not in stage.network.crossings.get(here, {}):
-                raise ScenarioError(f"[[incidents]]: jam: no way leads from edge {here!r} to {there!r}")
+                raise ScenarioError(f"[[incidents]]: jam: no route leads from edge {here!r} to {there!r}")
         room_m = sum(edge.length_m for edge in self._edges) - NARROW_PLACE_M
         if incident.length_m > room_m:
             raise ScenarioError(f"[[incidents]]: a jam of {incident.length_m:g} m does not fit on {room_m:.0f} m")
@@ -169,13 +169,13 @@ class _Jam(_Scene):
         return ""
 
     def reported(self, slow: Mapping[str, float]) -> RoadIncident | None:
-        """Known by its speed: from the first of its edges that is jammed."""
+        """Reported by its speed, from the first of its edges that is jammed."""
         jammed = (edge for edge in self._incident.edges if slow.get(edge, 1.0) < JAM_BELOW)
         return next((RoadIncident(IncidentKind.JAM, edge, 0.0) for edge in jammed), None)
 
 
 class _Closure(_Scene):
-    """A road that all but the authorities go round."""
+    """A road that all except the authorities go round."""
 
     def __init__(self, stage: IncidentStage, incident: incidents.Closure) -> None:
         self._stage = stage
@@ -207,11 +207,11 @@ class _Closure(_Scene):
         sumo = self._stage.sumo
         self._seen.add(vehicle)
         if vehicle != self._stage.ego_id and self._edge.edge_id in sumo.route(vehicle)[sumo.route_index(vehicle) :]:
-            with suppress(*sumo.refusals):  # without another way it waits
+            with suppress(*sumo.refusals):  # without another route it waits
                 sumo.vehicle.rerouteTraveltime(vehicle, False)
 
     def _turn_off(self) -> str:
-        """The ego's driver sees the sign on the edge before and follows the detour to the goal."""
+        """The ego's driver sees the sign on the previous edge and follows the detour to the destination."""
         sumo, ego, sensor = self._stage.sumo, self._stage.ego_id, self._stage.sensor
         if sensor is None:
             return ""
@@ -254,7 +254,7 @@ class _SchoolZone(_Scene):
         return ""
 
     def reported(self, slow: Mapping[str, float]) -> RoadIncident:
-        """Told of at all hours, like its signs; whether its limit is in force is for the clock to say."""
+        """Reported at all hours, like its signs; the time determines whether its limit is in force."""
         return RoadIncident(IncidentKind.SCHOOL_ZONE, self._edges[0], 0.0)
 
 
@@ -295,7 +295,7 @@ class _Tractor(_Scene):
         way = stage.sumo.find_route(incident.from_edge, incident.to_edge, kind).edges
         if not way:
             raise ScenarioError(
-                f"[[incidents]]: tractor: no way leads from {incident.from_edge!r} to {incident.to_edge!r}"
+                f"[[incidents]]: tractor: no route leads from {incident.from_edge!r} to {incident.to_edge!r}"
             )
         stage.car("tractor", way, stage.lane(incident.from_edge, 0), incident.length_m, "max", kind)
         return f"a tractor{_on(stage.edge(incident.from_edge))}"
@@ -313,7 +313,7 @@ class _Pedestrians(_Scene):
         if not self._walk or not any(_CROSSING.fullmatch(edge) for edge in stage.sumo.edge_ids()):
             raise ScenarioError(
                 f"[[incidents]]: pedestrians cannot walk from {incident.from_edge!r} to {incident.to_edge!r}; the "
-                "network needs sidewalks and crossings (netconvert --sidewalks.guess --crossings.guess)"
+                "network requires sidewalks and crossings (netconvert --sidewalks.guess --crossings.guess)"
             )
         self._next_s = 0
 
@@ -338,7 +338,7 @@ class _Pedestrians(_Scene):
 
 
 class _EmergencyVehicle(_Scene):
-    """An ambulance on the way that the ego has come."""
+    """An ambulance on the route behind the ego."""
 
     def __init__(self, stage: IncidentStage, incident: incidents.EmergencyVehicle) -> None:
         self._stage, self._incident = stage, incident
@@ -399,7 +399,7 @@ class _BrakingLeader(_Scene):
         return "the vehicle ahead brakes"
 
     def _call(self) -> None:
-        """A car pulls out before the ego, as fast as the ego is."""
+        """A car pulls out in front of the ego, as fast as the ego."""
         stage, sensor, ego = self._stage, self._stage.sensor, self._stage.ego_id
         assert sensor is not None
         here, _ = sensor.route.edge_at(sensor.position_m)
@@ -431,11 +431,11 @@ SCENES: Mapping[type[incidents.Incident], Callable[[IncidentStage, Any], Scene]]
     incidents.EmergencyVehicle: _EmergencyVehicle,
     incidents.BrakingLeader: _BrakingLeader,
 }
-"""Who stages which incident."""
+"""The scene of each kind of incident."""
 
 
 def scene_of(stage: IncidentStage, incident: incidents.Incident) -> Scene:
-    """How an incident is staged.
+    """The scene of an incident.
 
     Raises:
         ScenarioError: it does not fit the network.

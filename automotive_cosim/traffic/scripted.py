@@ -1,6 +1,6 @@
 """A road without SUMO: a straight line of given stretches, driven by the same driver with simple kinematics.
 
-For tests, examples and machines without libsumo. Nothing is random but the driver's reactions.
+For tests, examples and machines without libsumo. Only the driver's reactions are random.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class Scripted:
 
         Args:
             stretches: in driving order.
-            origin: (lon, lat) of the start, WGS 84; None leaves the road without a place on earth.
+            origin: (lon, lat) of the start, WGS 84; without it, the road has no position on earth.
             heading_deg: direction of the road, clockwise from north.
             step_length_s: step of the kinematics.
             start_s: time of the first state.
@@ -48,7 +48,7 @@ class Scripted:
             ScenarioError: there is no stretch, or one has no length.
         """
         if not stretches or any(stretch.length_m <= 0 for stretch in stretches):
-            raise ScenarioError("a scripted road needs at least one stretch, each longer than 0 m")
+            raise ScenarioError("a scripted road requires at least one stretch, each longer than 0 m")
         self._layout = Layout(tuple(stretches), origin, math.radians(heading_deg))
         self._step_s = step_length_s
         self._start_s = start_s
@@ -56,7 +56,7 @@ class Scripted:
 
     @property
     def network(self) -> RoadNetwork:
-        """The road as a map."""
+        """The road network for maps."""
         return self._layout.network.map
 
     def depart(self, plan: EgoPlan) -> ScriptedTraffic:
@@ -72,7 +72,7 @@ class Scripted:
         return ScriptedTraffic(EgoDrive(car, Driver(plan, car, self._step_s), car.now), self.network)
 
     def close(self) -> None:
-        """There is nothing to free."""
+        """Does nothing."""
 
 
 class ScriptedTraffic:
@@ -85,7 +85,7 @@ class ScriptedTraffic:
 
     @property
     def network(self) -> RoadNetwork:
-        """The road as a map."""
+        """The road network for maps."""
         return self._network
 
     @property
@@ -94,26 +94,26 @@ class ScriptedTraffic:
         return self._drive.state
 
     def start(self, duration_s: float) -> None:
-        """As ``Traffic.start``: nothing to do."""
+        """See ``Traffic.start``; does nothing."""
 
     def advance(self, duration_s: float) -> Advance:
-        """As ``Traffic.advance``."""
+        """See ``Traffic.advance``."""
         return self._open().advance(duration_s)
 
     def request(self, request: RoadRequest) -> Answer:
-        """As ``Traffic.request``."""
+        """See ``Traffic.request``."""
         return self._open().request(request)
 
     def alternatives(self, age_s: float = 0.0) -> tuple[RouteOption, ...]:
-        """As ``Traffic.alternatives``."""
+        """See ``Traffic.alternatives``."""
         return self._open().alternatives(age_s)
 
     def branch(self) -> ScriptedTraffic:
-        """As ``Traffic.branch``."""
+        """See ``Traffic.branch``."""
         return ScriptedTraffic(copy.deepcopy(self._open()), self._network)
 
     def close(self) -> None:
-        """As ``Traffic.close``."""
+        """See ``Traffic.close``."""
         self._is_closed = True
 
     def _open(self) -> EgoDrive:

@@ -1,4 +1,4 @@
-"""What SUMO knows of the ego and its road, read once per step."""
+"""Reads SUMO's state of the ego and its road, once per step."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from automotive_cosim.traffic.sumo import LibSumo
 
 LEADER_RANGE_M = 200.0
 SIGHT_M = 300.0
-"""How far oncoming and emergency vehicles are looked for."""
+"""Distance within which to look for oncoming and emergency vehicles."""
 
 LOOK_S = 1.0
-"""The next signal and the nearest oncoming vehicle are looked for this often, and followed each step."""
+"""Interval of searching for the next signal and the nearest oncoming vehicle, which are tracked each step."""
 
 NO_GAP_M = 1e6
-"""SUMO's gaps beyond this mean that it found none (near junctions it may report about -1.8e308)."""
+"""A larger gap means that SUMO found none (near junctions it may report about -1.8e308)."""
 
 INVALID_M = -1e6
 """SUMO puts the coordinates of a vehicle that is on no road below this (INVALID_DOUBLE_VALUE)."""
 
 
 class Sensor:
-    """Reads the ego's state. It keeps what SUMO does not: standing time, the route's sums, the last edge."""
+    """Reads the ego's state. It stores what SUMO does not: stationary time, the route's sums, the last edge."""
 
     def __init__(
         self,
@@ -46,8 +46,8 @@ class Sensor:
             ego_id: the ego's vehicle.
             network: the roads.
             congestion: smoothed speeds.
-            incidents: tells of those that live traffic knows of now.
-            emergency: vehicles with blue lights, kept up to date by the owner.
+            incidents: gives those that live traffic reports now.
+            emergency: vehicles with blue lights, updated by the owner.
             step_s: step length.
         """
         self._sumo = sumo
@@ -68,20 +68,20 @@ class Sensor:
         self._steps = 0
         self._lanes: dict[str, Lane] = {}
         self._light: tuple[str, int, float] | None = None
-        """The next signal: id, index of the ego's link, and where its stop line is on the route."""
+        """The next signal: id, index of the ego's link, and position of its stop line on the route."""
         self._oncoming_id = ""
         self._follower_id = ""
         self._follower_min_gap_m = 0.0
         self.refresh()
 
     def refresh(self) -> None:
-        """Takes up a new route, or new congestion and incidents."""
+        """Updates the route, or congestion and incidents."""
         self.route = Route(self._sumo.route(self._ego), self._network, self._congestion, self._incidents())
         self._lanes.clear()
         self._steps = 0
 
     def read(self, *, hazard_lights: bool, vehicle_count: int) -> Seen:
-        """The instant, with what others keep of it."""
+        """Reads the instant."""
         sumo, ego = self._sumo, self._ego
         x_m, y_m = sumo.position(ego)
         heading_deg, speed_mps = sumo.angle(ego), sumo.speed(ego)
@@ -134,7 +134,7 @@ class Sensor:
         )
 
     def _read_lane(self, lane_id: str) -> Lane:
-        """What does not change while the ego is on the lane, but for weather and signs, which cause a refresh."""
+        """The part that does not change on a lane, except with weather and signs, which cause a refresh."""
         sumo, edge = self._sumo, self._edge
         friction = sumo.friction(lane_id)
         if lane_id in edge.lane_ids:
@@ -153,7 +153,7 @@ class Sensor:
         return tls_id, self._sumo.light_state(tls_id)[link], max(0.0, stop_line_m - self.position_m)
 
     def _leader(self, speed_mps: float) -> Other | None:
-        """SUMO's gap begins at the minimum gap before the ego's bumper."""
+        """Gap from the ego's bumper; SUMO's excludes the minimum gap."""
         found = self._sumo.leader(self._ego, LEADER_RANGE_M)
         if found is None or not found[0] or abs(found[1]) > NO_GAP_M:
             return None
@@ -189,7 +189,7 @@ class Sensor:
         return ""
 
     def _oncoming(self, index: int, x_m: float, y_m: float, heading_deg: float, speed_mps: float) -> Other | None:
-        """The one found, as long as it is on the road and ahead; then the next."""
+        """The oncoming vehicle found, as long as it is on the road and ahead; then the next."""
         sumo = self._sumo
         heading = math.radians(heading_deg)
         for _ in range(2):
@@ -207,7 +207,7 @@ class Sensor:
         return None
 
     def _emergency_behind(self, x_m: float, y_m: float, heading_deg: float, speed_mps: float) -> Other | None:
-        """The nearest blue light behind that heads roughly the same way."""
+        """The nearest emergency vehicle behind with blue lights, in roughly the same direction."""
         sumo = self._sumo
         east, north = math.sin(math.radians(heading_deg)), math.cos(math.radians(heading_deg))
         nearest: tuple[float, str] | None = None
@@ -227,7 +227,7 @@ class Sensor:
 
 
 def _converter(sumo: LibSumo, network: Network) -> Callable[[float, float], tuple[float | None, float | None]]:
-    """From metres to longitude and latitude: SUMO's own unless the network was moved."""
+    """Converts metres to longitude and latitude, by SUMO unless the network was moved."""
     if network.map.projection is None:
         return lambda x_m, y_m: (None, None)
     return GeoReference(network.map).lon_lat if network.moved else sumo.to_lon_lat

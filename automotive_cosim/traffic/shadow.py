@@ -1,13 +1,13 @@
-"""A copy of a drive that needs no simulation of its own until the two part.
+"""A copy of a drive that needs no simulation of its own until the two diverge.
 
     shared = SharedTraffic(traffic, step_s)
-    shadow = shared.shadow()     # an exact copy from this instant on
+    shadow = shared.shadow()     # an exact copy from this instant
     shared.advance(1.0)          # simulated
-    shadow.advance(1.0)          # told by the other
+    shadow.advance(1.0)          # reported by the other
     shared.request(alert)        # just before, the shadow gets a simulation of its own, by a branch
 
-The baseline run of an episode is such a copy: most agents ask nothing of the road, or late, and until then a branch
-would only compute the same again. The two are driven side by side; the states are those of a branch.
+The baseline run of an episode is such a copy: most agents make no requests to the road, or late ones, and until
+then a branch would only compute the same again. The two are driven in parallel; the states equal those of a branch.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from automotive_cosim.traffic.base import Advance, Event, Traffic
 
 
 class SharedTraffic:
-    """A drive that others may shadow; to everybody else it is the one that it is made of."""
+    """A drive with shadows; otherwise it behaves like the drive that it wraps."""
 
     def __init__(self, traffic: Traffic, step_s: float) -> None:
-        """Takes a drive over.
+        """Takes over a drive.
 
         Args:
-            traffic: the drive, to be driven and asked through this object only.
+            traffic: the drive, to be used only through this object.
             step_s: length of its steps.
         """
         self._traffic = traffic
@@ -35,59 +35,59 @@ class SharedTraffic:
 
     @property
     def network(self) -> RoadNetwork:
-        """As ``Traffic.network``."""
+        """See ``Traffic.network``."""
         return self._traffic.network
 
     @property
     def state(self) -> DrivingState:
-        """As ``Traffic.state``."""
+        """See ``Traffic.state``."""
         return self._traffic.state
 
     def start(self, duration_s: float) -> None:
-        """As ``Traffic.start``."""
+        """See ``Traffic.start``."""
         self._traffic.start(duration_s)
 
     def advance(self, duration_s: float) -> Advance:
-        """As ``Traffic.advance``."""
+        """See ``Traffic.advance``."""
         passed = self._traffic.advance(duration_s)
         for shadow in self._shadows:
             shadow.see(passed)
         return passed
 
     def request(self, request: RoadRequest) -> Answer:
-        """As ``Traffic.request``; every shadow is on its own from here."""
+        """See ``Traffic.request``; every shadow is independent from here."""
         for shadow in tuple(self._shadows):
             shadow.part()
         return self._traffic.request(request)
 
     def alternatives(self, age_s: float = 0.0) -> tuple[RouteOption, ...]:
-        """As ``Traffic.alternatives``."""
+        """See ``Traffic.alternatives``."""
         options = self._traffic.alternatives(age_s)
         for shadow in self._shadows:
             shadow.hear(self.state.time_s, age_s, options)
         return options
 
     def branch(self) -> SharedTraffic:
-        """As ``Traffic.branch``; it has no shadows."""
+        """See ``Traffic.branch``; it has no shadows."""
         return SharedTraffic(self._traffic.branch(), self._step_s)
 
     def shadow(self) -> SharedTraffic:
-        """An exact copy from this instant on, for somebody who asks nothing of the road."""
+        """An exact copy from this instant, for somebody who makes no requests to the road."""
         shadow = Shadow(self, self._step_s)
         self._shadows.add(shadow)
         return SharedTraffic(shadow, self._step_s)
 
     def dismiss(self, shadow: Shadow) -> None:
-        """Tells it nothing more."""
+        """Stops reporting to a shadow."""
         self._shadows.discard(shadow)
 
     def close(self) -> None:
-        """As ``Traffic.close``. A shadow that has no simulation of its own cannot go on."""
+        """See ``Traffic.close``. A shadow without a simulation of its own cannot continue."""
         self._traffic.close()
 
 
 class Shadow:
-    """A copy of a drive, told what that one saw for as long as both are the same."""
+    """A copy of a drive that receives the other's states as long as both are the same."""
 
     def __init__(self, shared: SharedTraffic, step_s: float) -> None:
         self._shared = shared
@@ -97,25 +97,25 @@ class Shadow:
         self._ahead: deque[tuple[DrivingState, tuple[Event, ...]]] = deque()
         """Steps that the other has driven and this one has not."""
         self._heard: dict[tuple[float, float], tuple[RouteOption, ...]] = {}
-        """Alternatives, by the time at which they were asked for and their age."""
+        """Alternatives, by the time of the query and the age of the news."""
 
     @property
     def network(self) -> RoadNetwork:
-        """As ``Traffic.network``."""
+        """See ``Traffic.network``."""
         return self._shared.network
 
     @property
     def state(self) -> DrivingState:
-        """As ``Traffic.state``."""
+        """See ``Traffic.state``."""
         return self._state
 
     def start(self, duration_s: float) -> None:
-        """As ``Traffic.start``; does nothing for as long as it is told."""
+        """See ``Traffic.start``; does nothing as long as it has no simulation of its own."""
         if self._own is not None and not self._ahead:
             self._own.start(duration_s)
 
     def advance(self, duration_s: float) -> Advance:
-        """As ``Traffic.advance``. What the other has not driven yet is driven in a simulation of its own."""
+        """See ``Traffic.advance``. What the other has not driven yet is run in a simulation of its own."""
         steps = round(duration_s / self._step_s)
         told = [self._ahead.popleft() for _ in range(min(steps, len(self._ahead)))]
         states = tuple(state for state, _ in told)
@@ -128,18 +128,18 @@ class Shadow:
         return Advance(states, events)
 
     def request(self, request: RoadRequest) -> Answer:
-        """As ``Traffic.request``.
+        """See ``Traffic.request``.
 
         Raises:
-            RuntimeError: the other is ahead already; ask before it is driven on.
+            RuntimeError: the other is ahead already; make the request before it advances.
         """
         return self._now().request(request)
 
     def alternatives(self, age_s: float = 0.0) -> tuple[RouteOption, ...]:
-        """As ``Traffic.alternatives``.
+        """See ``Traffic.alternatives``.
 
         Raises:
-            RuntimeError: the other is ahead already, and did not ask at this instant.
+            RuntimeError: the other is ahead already, and made no query at this instant.
         """
         known = self._heard.get((self._state.time_s, age_s))
         if known is not None:
@@ -149,7 +149,7 @@ class Shadow:
         return self._now().alternatives(age_s)
 
     def branch(self) -> Traffic:
-        """As ``Traffic.branch``.
+        """See ``Traffic.branch``.
 
         Raises:
             RuntimeError: the other is ahead already.
@@ -157,15 +157,15 @@ class Shadow:
         return self._now().branch()
 
     def close(self) -> None:
-        """As ``Traffic.close``."""
+        """See ``Traffic.close``."""
         self._shared.dismiss(self)
         if self._own is not None:
             self._own.close()
 
-    # --- told by the other ----------------------------------------------------------------------------------
+    # --- reports from the other ----------------------------------------------------------------------------------
 
     def see(self, passed: Advance) -> None:
-        """Takes note of what it drove."""
+        """Stores the other's states."""
         events = deque(passed.events)
         for state in passed.states:
             happened = []
@@ -174,11 +174,11 @@ class Shadow:
             self._ahead.append((state, tuple(happened)))
 
     def hear(self, time_s: float, age_s: float, options: tuple[RouteOption, ...]) -> None:
-        """Takes note of the alternatives that it was told of."""
+        """Stores the other's alternatives."""
         self._heard[time_s, age_s] = options
 
     def part(self) -> Traffic:
-        """The simulation of its own, which begins where the other is now."""
+        """A simulation of its own, which begins where the other is now."""
         if self._own is None:
             self._own = self._shared.branch()
             self._shared.dismiss(self)
@@ -186,5 +186,5 @@ class Shadow:
 
     def _now(self) -> Traffic:
         if self._ahead:
-            raise RuntimeError("a shadow cannot act in the past; drive it on first")
+            raise RuntimeError("a shadow cannot act in the past; advance it first")
         return self.part()

@@ -1,4 +1,4 @@
-"""Speed limits as they stand in SUMO now: the network's, by the clock, and what incidents put up over them."""
+"""Present speed limits in SUMO: the network's, limits by the clock, and temporary limits of incidents."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from automotive_cosim.traffic.sumo import LibSumo
 
 
 class Signs:
-    """Puts limits up and takes them down. Where incidents do so the lowest of theirs holds, else the network's."""
+    """Sets and removes limits. The lowest limit of the incidents applies, else the network's."""
 
     def __init__(self, sumo: LibSumo, network: Network) -> None:
         self._sumo = sumo
         self._edges = network.edges
         self._as_built: dict[str, tuple[Edge, tuple[float, ...]]] = {}
-        """Edges whose limit was ever changed, with the speeds of their lanes, as the network has them."""
+        """Edges whose limit was ever changed, with the original speeds of their lanes."""
         self._over: dict[str, list[float]] = {}
         self._timed = {edge.edge_id for edge in network.edges.values() if edge.timed_limits}
         self._minute: datetime | None = None
         self.changed = False
-        """Whether a limit has changed since somebody set this to False."""
+        """Whether a limit has changed since this was last set to False."""
 
     @property
     def follow_the_clock(self) -> bool:
@@ -32,17 +32,17 @@ class Signs:
         return bool(self._timed)
 
     def put_up(self, edge_id: str, limit_mps: float) -> None:
-        """A sign that holds until it is taken down."""
+        """Adds a temporary sign."""
         self._over.setdefault(edge_id, []).append(limit_mps)
         self._show(edge_id)
 
     def take_down(self, edge_id: str, limit_mps: float) -> None:
-        """Removes a sign that was put up."""
+        """Removes a temporary sign."""
         self._over[edge_id].remove(limit_mps)
         self._show(edge_id)
 
     def put_up_zone(self, edge_ids: Iterable[str], limit: TimedLimit) -> None:
-        """A school zone with its hours, where the limit is not as low as that anyway."""
+        """Adds a school zone with its hours, where the limit is not as low anyway."""
         for edge_id in edge_ids:
             edge = self._edges[edge_id]
             if limit.limit_mps is not None and edge.speed_mps > limit.limit_mps:
@@ -50,14 +50,14 @@ class Signs:
                 self._post(edge_id, (*edge.timed_limits, limit), school_zone=True)
 
     def take_down_zone(self, edge_ids: Iterable[str], limit: TimedLimit) -> None:
-        """Removes it."""
+        """Removes a school zone."""
         for edge_id in edge_ids:
             if edge_id in self._as_built and limit in self._edges[edge_id].timed_limits:
                 others = tuple(each for each in self._edges[edge_id].timed_limits if each is not limit)
                 self._post(edge_id, others, school_zone=self._as_built[edge_id][0].school_zone)
 
     def follow(self, local_time: datetime) -> None:
-        """Shows what holds at this time of day."""
+        """Applies the limits of this time of day."""
         minute = local_time.replace(second=0, microsecond=0)
         if minute == self._minute:
             return

@@ -1,7 +1,7 @@
-"""When a scenario's incidents begin and end, and which limits hold; ``scenes`` and ``signs`` stage them.
+"""Decides when a scenario's incidents begin and end, and which limits apply; ``scenes`` and ``signs`` stage them.
 
-Nothing here is random: what happens depends on the simulation's time and on the ego's way alone. All times are
-taken at whole seconds of the simulation.
+Nothing here is random: everything depends only on the simulation's time and the ego's route. All times are
+evaluated at whole seconds of the simulation.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ class Situations:
     """The incidents of one simulation."""
 
     def __init__(self, stage: IncidentStage, scenario: Scenario) -> None:
-        """Reads what the scenario declares.
+        """Reads the scenario's incidents.
 
         Raises:
-            ScenarioError: something of it does not fit the network.
+            ScenarioError: one of them does not fit the network.
         """
         self._stage = stage
         self._entries = [_Entry(incident, scene_of(stage, incident)) for incident in scenario.incidents]
@@ -44,11 +44,11 @@ class Situations:
 
     @property
     def are_left(self) -> bool:
-        """Whether anything is still to happen or lasts."""
+        """Whether any incident is pending or active."""
         return self._stage.signs.follow_the_clock or any(not entry.is_over for entry in self._entries)
 
     def set_off(self, plan: EgoPlan, sensor: Sensor, now_s: float) -> None:
-        """The ego has departed: from now on its trip, its way and its clock count."""
+        """Takes note of the ego's departure: from now on its trip, its route and its clock count."""
         self._stage.sensor = sensor
         self._zero_s = now_s
         self._start = plan.start or self._start
@@ -56,7 +56,7 @@ class Situations:
         self._stage.signs.follow(self._local_time(now_s))
 
     def tick(self, now_s: float) -> tuple[Event, ...]:
-        """Begins and ends what is due; called once per second of the simulation."""
+        """Begins and ends the incidents that are due; called once per second of the simulation."""
         since_s = now_s - self._zero_s
         local_time = self._local_time(now_s)
         told: list[str] = []
@@ -67,21 +67,21 @@ class Situations:
         return tuple(Event(now_s, "incident", text) for text in told if text)
 
     def reported(self, slow: Mapping[str, float]) -> tuple[RoadIncident, ...]:
-        """Those going on that a live-traffic service knows of.
+        """Active incidents that a live-traffic service knows of.
 
         Args:
-            slow: edges that it knows to be slow, and their speed over the limit.
+            slow: edges that it knows to be slow, and their relative speed.
         """
         going_on = (entry.scene for entry in self._entries if entry.has_begun and not entry.is_over)
         return tuple(seen for scene in going_on if (seen := scene.reported(slow)) is not None)
 
     def _local_time(self, now_s: float) -> datetime:
-        """The clock of the place: the scenario's in the warm-up, the ego's once it is under way."""
+        """The local time: the scenario's in the warm-up, the ego's once it is driving."""
         since = timedelta(seconds=now_s - self._zero_s)
         return (self._start.astimezone(UTC) + since).astimezone(self._start.tzinfo)
 
     def take_changes(self) -> bool:
-        """Whether signs or the ego's route have changed since this was asked last."""
+        """Whether signs or the ego's route have changed since the last call."""
         stage = self._stage
         changed = stage.signs.changed or stage.route_changed
         stage.signs.changed = stage.route_changed = False

@@ -1,9 +1,9 @@
-"""Does a scenario's traffic flow for an hour, or does it lock up?
+"""Checks whether a scenario's traffic flows for an hour or locks up.
 
-The demand of a network is guessed more often than counted, and SUMO locks for good once a ring of junctions is
-blocked. So a scenario is driven without the ego, by the plain ``sumo`` program, and what it reports every second is
-held against one law: after the warm-up, under a quarter of the vehicles halted in every minute, nobody standing for
-300 s (SUMO would teleport it), no collision, and hardly anybody unable to enter the network.
+The demand of a network is guessed more often than counted, and SUMO locks up for good once a ring of junctions is
+blocked. So a scenario is run without the ego, by the plain ``sumo`` program, and its report of every second is
+checked against one criterion: after the warm-up, under a quarter of the vehicles are halted in every minute, none
+stands for 300 s (SUMO would teleport it), none collides, and hardly any is unable to enter the network.
 """
 
 from __future__ import annotations
@@ -26,40 +26,40 @@ from automotive_cosim.traffic.options import Setup, command_line, read_configura
 from automotive_cosim.traffic.sumo_programs import environment, first_error, program
 
 HALTED_SHARE_LIMIT = 0.25
-"""Halted (under 0.1 m/s, as SUMO counts) among the running vehicles, mean of any minute."""
+"""Maximum share of halted vehicles (under 0.1 m/s, as in SUMO) among those running, mean of any minute."""
 
 FEW_VEHICLES = 40
-"""Of fewer than that the share is taken of so many: one red light halts a third of ten cars, and that is no jam. A
-real one among few is told by the teleports."""
+"""With fewer vehicles, the share is taken of this many: one red light halts a third of ten cars, which is not a
+jam. A real one among few vehicles shows in the teleports."""
 
 LONGEST_WAIT_S = 300
-"""Standing longer than this without a reason is a teleport, SUMO's own default."""
+"""A vehicle that stands longer without a reason is teleported, SUMO's own default."""
 
 BACKLOG_SHARE_LIMIT = 0.05
-"""Vehicles still waiting to enter at the end, among all that wanted to since the start."""
+"""Maximum share of vehicles still waiting to enter at the end, among all that should have."""
 
 SILENCE_LIMIT_S = 120.0
-"""Processor time without a second of traffic after which SUMO counts as hung; one takes it milliseconds. Where a
-system does not tell processor time, wall time stands in for it."""
+"""Processor time without a second of traffic after which SUMO counts as hung; a second takes it milliseconds. If a
+system does not report processor time, wall time is used."""
 
 LOADING_LIMIT_S = 600.0
-"""Likewise before the first one: reading a country's network takes minutes."""
+"""The same before the first second: reading a country's network takes minutes."""
 
 STANDSTILL_LIMIT_S = 1800.0
-"""Wall time without any use of the processor after which it counts as hung: a program that wants to go on gets some
-of it by then, however busy the machine, and one that waits for ever does not."""
+"""Wall time without any use of the processor after which it counts as hung: by then, a running program gets some
+processor time, however busy the machine, and one that waits forever does not."""
 
 LOOK_EVERY_S = 1.0
-"""Wall time between two looks at the program's processor time."""
+"""Wall time between two checks of the program's processor time."""
 
 PROC = Path("/proc")
-"""Where Linux tells processor time."""
+"""Where Linux reports processor time."""
 
 WINDOW_S = 60.0
-"""The halted share is averaged over this, about one cycle of the signals."""
+"""Averaging time of the halted share, about one signal cycle."""
 
 StabilityProgress = Callable[[float], None]
-"""Told the share of the simulation that is done, 0 to 1."""
+"""Called with the share of the simulation that is done, 0 to 1."""
 
 StepFigures = dict[str, float]
 """One ``step`` of SUMO's summary output."""
@@ -67,16 +67,16 @@ StepFigures = dict[str, float]
 
 @dataclass(frozen=True, slots=True)
 class Stability:
-    """How the traffic did after its warm-up."""
+    """Figures of the traffic after its warm-up."""
 
     scale: float
-    """Factor on the demand it was measured at."""
+    """Factor on the demand."""
     seed: int
     step_length_s: float
     observed_s: float
-    """Simulated time the figures cover; shorter than asked for if the run was given up."""
+    """Simulated time covered by the figures; shorter than requested if the run was stopped."""
     halted_share_max: float
-    """Highest of the minutes' means; of at least ``FEW_VEHICLES``, likewise the next."""
+    """Highest mean of a minute, taken of at least ``FEW_VEHICLES``, as is the next."""
     halted_share_mean: float
     vehicles_mean: float
     vehicles_max: int
@@ -86,11 +86,11 @@ class Stability:
     backlog: int
     """Vehicles waiting to enter the network at the end."""
     backlog_share: float
-    """Of all that had set out by then."""
+    """Its share of all departures by then."""
 
     @property
     def problems(self) -> tuple[str, ...]:
-        """What breaks the law, in words; empty if nothing does."""
+        """Violations of the criterion, in words; empty if there are none."""
         found: list[str] = []
         if self.halted_share_max >= HALTED_SHARE_LIMIT:
             found.append(f"{self.halted_share_max:.0%} of the vehicles halted in the worst minute")
@@ -106,7 +106,7 @@ class Stability:
 
     @property
     def stable(self) -> bool:
-        """Nothing breaks the law."""
+        """Whether the criterion is met."""
         return not self.problems
 
 
@@ -117,25 +117,25 @@ def measure(
     scale: float | None = None,
     seed: int = 0,
     step_length_s: float = 1.0,
-    give_up_at: float = 1.0,
+    stop_at: float = 1.0,
     on_progress: StabilityProgress | None = None,
 ) -> Stability:
     """Runs the scenario's traffic, without the ego, through its warm-up and ``observe_s`` more.
 
-    SUMO is started as every drive starts it, so nothing is written to the scenario's folder.
+    SUMO is started as for every drive, so nothing is written to the scenario's folder.
 
     Args:
-        scenario: whose traffic.
+        scenario: the scenario.
         observe_s: seconds after the warm-up.
         scale: factor on the demand; None takes the scenario's own.
         seed: SUMO's seed.
         step_length_s: 1 s shows most jams at a fifth of the cost of 0.1 s.
-        give_up_at: end the run once a minute's halted share reaches this, or a vehicle was teleported after the
-            warm-up; 1 drives on to the end whatever happens.
+        stop_at: end the run once a minute's halted share reaches this, or a vehicle was teleported after the
+            warm-up; 1 runs to the end whatever happens.
         on_progress: called once per simulated minute.
 
     Raises:
-        ScenarioError: SUMO refuses the scenario; the text is SUMO's.
+        ScenarioError: SUMO refuses the scenario; the message is SUMO's.
         TrafficError: SUMO hung or was killed.
         SetupError: eclipse-sumo is not installed.
     """
@@ -154,7 +154,7 @@ def measure(
                 minute_is_over = tally.add(step)
                 if minute_is_over and on_progress:
                     on_progress(min(1.0, (step["time"] - begin_s) / (end_s - begin_s)))
-                if minute_is_over and tally.broken_beyond(give_up_at):
+                if minute_is_over and tally.broken_beyond(stop_at):
                     break
     return tally.result(setup)
 
@@ -182,7 +182,7 @@ def summary(config: str, options: Sequence[str], scratch: Path) -> Generator[Ste
         scratch: the folder it runs in.
 
     Raises:
-        ScenarioError: SUMO refuses the scenario; the text is SUMO's.
+        ScenarioError: SUMO refuses the scenario; the message is SUMO's.
         TrafficError: SUMO hung or was killed.
         SetupError: eclipse-sumo is not installed.
     """
@@ -215,22 +215,22 @@ def summary(config: str, options: Sequence[str], scratch: Path) -> Generator[Ste
 
 
 class _Watchdog:
-    """Kills a process that has had its time and gives no sign of life."""
+    """Kills a process that gives no sign of life in time."""
 
     def __init__(self, process: subprocess.Popen[str]) -> None:
         self._process = process
         self._stat = PROC / str(process.pid) / "stat"
         self._is_told = self._stat.is_file()
-        """Whether processor time can be had."""
+        """Whether processor time is available."""
         self._signs = 0
-        """Of life, so far."""
+        """Number of signs of life so far."""
         self._is_over = threading.Event()
         self._has_bitten = False
         self._thread = threading.Thread(target=self._watch, daemon=True)
         self._thread.start()
 
     def alive(self) -> None:
-        """A sign of life. While its taker looks at it SUMO may have to wait, which takes no processor time."""
+        """A sign of life. While it is processed, SUMO may have to wait, which takes no processor time."""
         self._signs += 1
 
     def judge(self, config: str) -> None:
@@ -243,10 +243,10 @@ class _Watchdog:
             raise TrafficError(f"SUMO hung in {config} and was ended; try again, or a smaller network")
         if self._process.returncode < 0:
             name = signal.Signals(-self._process.returncode).name
-            raise TrafficError(f"SUMO was ended by {name} while it ran {config}; is there memory enough?")
+            raise TrafficError(f"SUMO was ended by {name} while it ran {config}; is there enough memory?")
 
     def stop(self) -> None:
-        """Nothing more is to be watched."""
+        """Stops watching."""
         self._is_over.set()
         self._thread.join()
 
@@ -268,7 +268,7 @@ class _Watchdog:
                 return
 
     def _used_s(self) -> float | None:
-        """Processor time that it has used, the wall clock where the system does not tell; None once it is gone."""
+        """Processor time that it has used, or the wall clock if unavailable; None once it has ended."""
         if not self._is_told:
             return time.monotonic()
         try:
@@ -280,7 +280,7 @@ class _Watchdog:
 
 @dataclass(slots=True)
 class _Tally:
-    """Adds up SUMO's summary from the end of the warm-up on."""
+    """Sums SUMO's summary from the end of the warm-up."""
 
     warm_s: float
     """Simulation time at which the warm-up ends."""
@@ -289,7 +289,7 @@ class _Tally:
     last: StepFigures = field(default_factory=dict)
     minute_start_s: float = 0.0
     running: list[float] = field(default_factory=list)
-    """Vehicle-steps of each minute, the last one unfinished; likewise ``halting``."""
+    """Vehicle-steps of each minute, the last one unfinished; the same for ``halting``."""
     halting: list[float] = field(default_factory=list)
     samples: list[int] = field(default_factory=list)
     """Steps in each minute."""
@@ -297,7 +297,7 @@ class _Tally:
     vehicles_max: int = 0
 
     def add(self, step: StepFigures) -> bool:
-        """Takes one step in; true at the end of every minute, of the warm-up too."""
+        """Adds one step; true at the end of every minute, including the warm-up."""
         minute_is_over = step["time"] - self.minute_start_s >= WINDOW_S
         if minute_is_over:
             self.minute_start_s = step["time"]

@@ -1,4 +1,4 @@
-"""What the staging of incidents works with: signs, lanes and vehicles in SUMO."""
+"""Tools for staging incidents: signs, lanes and vehicles in SUMO."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from automotive_cosim.traffic.signs import Signs
 from automotive_cosim.traffic.sumo import LibSumo
 
 TEMPLATE_TYPE = "automotive_cosim.template"
-"""A passenger car as SUMO has it, whatever the weather makes of the others' types."""
+"""SUMO's default passenger car, unaffected by weather."""
 
 CAR_TYPE = "automotive_cosim.car"
-"""The same, as the weather makes it."""
+"""The same, affected by weather."""
 
 
 class IncidentStage:
-    """What scenes work with."""
+    """The stage on which scenes act."""
 
     def __init__(self, sumo: LibSumo, network: Network, surface: Surface, ego_id: str) -> None:
         self.sumo = sumo
@@ -27,10 +27,10 @@ class IncidentStage:
         self._surface = surface
         self.ego_id = ego_id
         self.sensor: Sensor | None = None
-        """The ego's, once it is on the road."""
+        """The ego's pedals, once it is on the road."""
         self.signs = Signs(sumo, network)
         self.route_changed = False
-        """Whether the ego goes another way since somebody set this to False."""
+        """Whether the ego's route has changed since this was last set to False."""
         self._names = 0
         sumo.copy_type(TEMPLATE_TYPE, CAR_TYPE)
 
@@ -38,7 +38,7 @@ class IncidentStage:
         """An edge of the network.
 
         Raises:
-            ScenarioError: there is none such that cars may use.
+            ScenarioError: there is no such edge for cars.
         """
         if edge_id not in self.network.edges:
             raise ScenarioError(f"[[incidents]]: the network has no edge {edge_id!r} that cars may use")
@@ -48,7 +48,7 @@ class IncidentStage:
         """A lane of an edge, counted from the kerb.
 
         Raises:
-            ScenarioError: there are not so many.
+            ScenarioError: the edge has fewer lanes.
         """
         lanes = self.edge(edge_id).lane_ids
         if not 0 <= lane < len(lanes):
@@ -86,7 +86,7 @@ class IncidentStage:
         return vehicle
 
     def kind(self, what: str) -> str:
-        """A vehicle type of its own that nothing else changes."""
+        """Creates a vehicle type of its own, which nothing else changes."""
         name = self.name(f"type.{what}")
         self.sumo.copy_type(TEMPLATE_TYPE, name)
         return name

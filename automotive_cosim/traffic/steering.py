@@ -15,31 +15,31 @@ from automotive_cosim.traffic.sensing import Sensor
 from automotive_cosim.traffic.sumo import HAZARD_SIGNAL, LibSumo
 
 PARKING = 1
-"""SUMO's stop flag: off the lane, so that the others can pass."""
+"""SUMO's stop flag: off the lane, so that other vehicles can pass."""
 
 FASTEST_MPS = 100.0
 
 STOPPING_MPS2 = 2.0
-"""Deceleration a stop at the side is planned with."""
+"""Deceleration for planning a stop at the side."""
 
 STOPPING_RESERVE_M = 30.0
 
 TURN_TIME_S = 4.0
 TURN_RESERVE_M = 30.0
-"""A turn must be known this long and this far before it, to find its lane; later ones are missed."""
+"""Minimum time and distance before a turn to reach its lane; a later one is missed."""
 
 CORNERING_MPS2 = 2.0
 """Deceleration before a bend that the speed factor would otherwise take too fast."""
 
 BEND_RESERVE_M = 15.0
-"""The bend's speed is reached this far before its end, about where a junction begins."""
+"""Distance before a bend's end at which its speed is reached, about where a junction begins."""
 
 BENDS_WITHIN_M = 500.0
 
 STREET_CANDIDATES = 8
-"""Edges of a street that a route is looked for to, nearest first."""
+"""How many edges of a street to try as destination, nearest first."""
 WALK_M = 400.0
-"""What people walk from the car to a door: five minutes at 1.35 m/s."""
+"""Acceptable walk from the car: five minutes at 1.35 m/s."""
 
 
 class SumoPedals:
@@ -54,28 +54,28 @@ class SumoPedals:
         self._service_mps2: float = sumo.vehicle.getDecel(ego_id)
         self._factor = 1.0
         self._top_mps = self._set_mps = FASTEST_MPS
-        # The first change gives the ego a type of its own and draws its speed factor anew, so it comes before ours.
+        # The first change gives the ego a type of its own and redraws its speed factor, so it comes before ours.
         sumo.set_max_speed(ego_id, FASTEST_MPS)
 
     def set_speed_factor(self, factor: float) -> None:
-        """As the protocol says."""
+        """See ``ego.Pedals``."""
         self._factor = factor
         self._sumo.set_speed_factor(self._ego, factor)
 
     def set_top_speed(self, speed_mps: float) -> None:
-        """As the protocol says; a bend ahead may ask for less."""
+        """See ``ego.Pedals``; a bend ahead may require less."""
         self._top_mps = speed_mps
 
     def set_headway(self, headway_s: float) -> None:
-        """As the protocol says."""
+        """See ``ego.Pedals``."""
         self._sumo.set_headway(self._ego, headway_s)
 
     def set_imperfection(self, imperfection: float) -> None:
-        """As the protocol says."""
+        """See ``ego.Pedals``."""
         self._sumo.set_imperfection(self._ego, imperfection)
 
     def set_grip(self, friction: float) -> None:
-        """As the protocol says."""
+        """See ``ego.Pedals``."""
         hardest_mps2 = friction * G_MPS2
         service_mps2 = min(self._service_mps2, hardest_mps2)
         vehicle = self._sumo.vehicle
@@ -84,13 +84,13 @@ class SumoPedals:
         vehicle.setEmergencyDecel(self._ego, hardest_mps2)
 
     def set_hazards(self, on: bool) -> None:
-        """As the protocol says."""
+        """See ``ego.Pedals``."""
         self._sumo.set_signals(self._ego, HAZARD_SIGNAL if on else -1)
 
     def apply(self) -> None:
-        """Sets the upper bound of the next step: what the driver wants, less before a bend.
+        """Sets the upper bound for the next step: the driver's, reduced before a bend.
 
-        SUMO takes the speed factor for bends too; nobody who speeds on the straight corners as much faster.
+        SUMO applies the speed factor in bends too, but drivers who speed on straights do not corner as fast.
         """
         top_mps = self._top_mps
         if self._factor > 1.0:
@@ -124,7 +124,7 @@ class SumoPedals:
         raise RefusedError("there is no place to stop on the rest of the route")
 
     def change_lane(self, lanes_from_kerb: int, for_s: float) -> bool:
-        """As the protocol says; SUMO changes as soon as there is a gap."""
+        """See ``ego.Pedals``; SUMO changes as soon as there is a gap."""
         lane = self._sumo.lane_of(self._ego)
         edge_id = self._sumo.edge_of(self._ego)
         lanes = self._network.edges[edge_id].lane_ids if edge_id in self._network.edges else ()
@@ -135,7 +135,7 @@ class SumoPedals:
         return True
 
     def leave_corridor(self, leave: bool) -> str:
-        """As the protocol says; without sublanes a lane is all that SUMO knows, and the car stays in it.
+        """See ``ego.Pedals``; without sublanes, SUMO knows no positions in a lane, and the car stays where it is.
 
         The corridor opens between the lane farthest from the kerb and the next (StVO section 11 (2)).
         """
@@ -149,7 +149,7 @@ class SumoPedals:
     # --- routes -------------------------------------------------------------------------------------------
 
     def reroute(self, request: Reroute, state: DrivingState) -> str:
-        """Takes another route; the next turn stays as it is where it is too near to change."""
+        """Takes another route; the next turn stays if it is too near to change."""
         if state.road.edge_id.startswith(":"):
             raise RefusedError("inside a junction the way is fixed; ask again behind it")
         edges = self._given(request.edges) if request.edges else self._found(request.destination, state)
@@ -181,7 +181,7 @@ class SumoPedals:
         return edge_ids
 
     def _found(self, destination: str, state: DrivingState) -> tuple[str, ...]:
-        """The quickest way now to the destination; where none leads there, to an edge within a short walk of it."""
+        """The quickest route now to the destination, or to an edge within a short walk of it."""
         _, planned = self._fixed()
         for goals in (self._goals(destination, state), self._beside(destination)):
             if way := self._router.quickest(planned[-1], goals):
@@ -195,7 +195,7 @@ class SumoPedals:
         )
 
     def _beside(self, edge_id: str) -> tuple[str, ...]:
-        """The edges that end next to where that edge ends; none if there is no such edge."""
+        """The edges that end near the end of that edge; empty without such an edge."""
         if edge_id not in self._network.edges:
             return ()
         end = self._network.edges[edge_id].shape_m[-1]
@@ -204,21 +204,21 @@ class SumoPedals:
         return tuple(near[: STREET_CANDIDATES + 1])
 
     def alternatives(self, age_s: float) -> tuple[RouteOption, ...]:
-        """As ``drive.Road``; empty inside a junction."""
+        """See ``drive.Road``; empty inside a junction."""
         if self._sumo.edge_of(self._ego).startswith(":"):
             return ()
         return self._router.alternatives(self._rest(), len(self._fixed()[1]), self._driven_m(), age_s)
 
     def _rest(self) -> tuple[str, ...]:
-        """The route from the present edge on."""
+        """The route from the present edge."""
         return self._sensor.route.edge_ids[self._sumo.route_index(self._ego) :]
 
     def _driven_m(self) -> float:
-        """What lies behind of the present edge."""
+        """Distance driven on the present edge."""
         return self._sumo.lane_position(self._ego)
 
     def _fixed(self) -> tuple[str, tuple[str, ...]]:
-        """The edge the car is on, and the edges that can no longer be changed."""
+        """The car's edge, and the edges that can no longer be changed."""
         route, index = self._sensor.route, self._sumo.route_index(self._ego)
         here = route.edge_ids[index]
         left_m = self._network.edges[here].length_m - self._sumo.lane_position(self._ego)
@@ -226,7 +226,7 @@ class SumoPedals:
         return here, route.edge_ids[index : index + (2 if left_m < needed_m else 1)]
 
     def _goals(self, destination: str, state: DrivingState) -> tuple[str, ...]:
-        """Edges that a destination may mean."""
+        """Edges that a destination may refer to."""
         edges = self._network.edges
         if not destination:
             return (self._sensor.route.edge_ids[-1],)

@@ -1,4 +1,4 @@
-"""Pieces of road laid end to end, as a network: what a scripted drive goes over."""
+"""Pieces of road laid end to end as a network, for scripted drives."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from automotive_cosim.traffic.congestion import SLOW_BELOW, Route
 from automotive_cosim.traffic.network import Edge, Network, road_of
 
 EARTH_RADIUS_M = 6_371_008.8
-"""Mean radius (IUGG)."""
+"""Mean radius of the earth (IUGG)."""
 
 UNLIMITED_MPS = 142 / KMH_PER_MPS
-"""Speed that SUMO's networks give a road without limit."""
+"""Speed in SUMO's networks of a road without a limit."""
 
 LonLat: TypeAlias = tuple[float, float]
 
@@ -32,7 +32,7 @@ class Leader:
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """A piece of road, straight on from the one before."""
+    """A piece of road, straight on from the previous one."""
 
     name: str = ""
     length_m: float = 500.0
@@ -46,21 +46,21 @@ class Stretch:
     centre_line: bool | None = None
     friction: float = 1.0
     relative_speed: float = 1.0
-    """How fast the traffic flows, over the limit; the ego cannot go faster where this is under 1."""
+    """Relative speed of the traffic; the ego cannot go faster if this is under 1."""
     leader: Leader | None = None
     oncoming_gap_m: float | None = None
     """Distance of a vehicle that comes towards the ego, throughout the stretch."""
     incident: IncidentKind | None = None
-    """What live traffic tells of at the start of the stretch."""
+    """Incident that live traffic reports at the start of the stretch."""
 
     @property
     def free_mps(self) -> float:
-        """Speed on it when nothing is in the way."""
+        """Speed on it at free flow."""
         return UNLIMITED_MPS if self.limit_kmh is None else self.limit_kmh / KMH_PER_MPS
 
 
 class Layout:
-    """Stretches as a network: where they lie and what a route over them knows. Shared by all drives."""
+    """Stretches as a network, with their positions and the sums of a route. Shared by all drives."""
 
     def __init__(self, stretches: tuple[Stretch, ...], origin: LonLat | None, heading: float) -> None:
         self.stretches = stretches
@@ -84,7 +84,7 @@ class Layout:
         return self
 
     def speed_mps(self, edge_id: str) -> float:
-        """Speed that the traffic flows at."""
+        """Speed of the traffic."""
         index = int(edge_id.removeprefix("stretch"))
         return self.stretches[index].relative_speed * self.stretches[index].free_mps
 

@@ -17,10 +17,10 @@ from typing import Any
 from automotive_cosim.errors import ScenarioError, SetupError
 
 VERSION = "1.28"
-"""SUMO's version that networks, scenarios and results belong to."""
+"""SUMO's version for networks, scenarios and results."""
 
 DEBIAN_PACKAGES = "libgl1 libx11-6 libxext6 libxrender1 libatomic1 libexpat1"
-"""System libraries that libsumo wants and slim images lack."""
+"""System libraries that libsumo requires and slim images lack."""
 
 SUMO_VARIABLES = ("SUMO_HOME", "PROJ_DATA", "PROJ_LIB")
 """Variables that would point libsumo to another installation's data; importing it sets the first two itself."""
@@ -41,7 +41,7 @@ class LibSumo:
         self.refusals: tuple[type[Exception], ...] = (library.TraCIException, library.FatalTraCIError)
         self.start: Callable[[list[str]], tuple[int, str]] = library.start
         self.close: Callable[[], None] = library.close
-        # without the library's list of listeners, which nobody uses here
+        # without the library's list of listeners, which is unused here
         self.step: Callable[[], object] = compiled("simulation_step")
         self.time: Callable[[], float] = compiled("simulation_getTime")
         self.arrived: Callable[[], Sequence[str]] = compiled("simulation_getArrivedIDList")
@@ -98,7 +98,7 @@ class LibSumo:
         self.vehicle_ids: Callable[[], Sequence[str]] = vehicle.getIDList
 
     def on_edges(self) -> Iterator[tuple[str, float]]:
-        """The edge and speed of every vehicle in a lane; those parked or off the road are in none."""
+        """The edge and speed of every vehicle in a lane; parked vehicles and those off the road are not in one."""
         lane_of, speed = self.lane_of, self.speed
         for vehicle in self.vehicle_ids():
             if lane := lane_of(vehicle):
@@ -106,8 +106,8 @@ class LibSumo:
 
 
 def _compiled(library: Any) -> Callable[[str], Any]:
-    """Finds the library's C functions by name. Its Python functions only hand their arguments on to them, which
-    costs a second call each time."""
+    """Finds the library's C functions by name. Its Python functions only pass their arguments on, at the cost of a
+    second call."""
     functions = getattr(library, "_libsumo", None)
 
     def find(name: str) -> Any:
@@ -135,7 +135,7 @@ def load_library() -> LibSumo:
         raise SetupError(_mend(error)) from error
     finally:
         own = {name: os.environ[name] for name in SUMO_VARIABLES if name in os.environ}
-        if own or not _OWN_DATA:  # where somebody had imported it before us, the environment already is its own
+        if own or not _OWN_DATA:  # if it was imported before, the environment is already its own
             _OWN_DATA.update(own or {name: value for name, value in kept.items() if value})
         _set_environment(kept)
     if libsumo.__version__.split(".")[:2] != VERSION.split("."):
@@ -150,10 +150,10 @@ _OWN_DATA: dict[str, str] = {}
 
 
 def start(sumo: LibSumo, command: list[str]) -> None:
-    """Starts a simulation; what SUMO prints meanwhile goes into the error.
+    """Starts a simulation; SUMO's output goes into the error.
 
     Raises:
-        ScenarioError: SUMO refuses the files; the text is SUMO's.
+        ScenarioError: SUMO refuses the files; the message is SUMO's.
     """
     kept = {name: os.environ.get(name) for name in SUMO_VARIABLES}
     _set_environment({name: _OWN_DATA.get(name) for name in SUMO_VARIABLES})
@@ -198,7 +198,7 @@ def _standard_error(printed: list[str]) -> Iterator[None]:
 
 
 def _cause(text: str, printed: Sequence[str]) -> str:
-    """SUMO's own words on one line: those of the exception, or the first error printed if it has none."""
+    """SUMO's own message on one line: the exception's, or the first printed error."""
     if text == "Process Error" or text.startswith("Could not parse"):
         errors = [index for index, line in enumerate(printed) if line.startswith("Error:")]
         if errors:

@@ -1,7 +1,7 @@
-"""SUMO's own programs, from the installed ``eclipse-sumo`` distribution and from nowhere else.
+"""SUMO's own programs, only from the installed ``eclipse-sumo`` distribution.
 
-A ``SUMO_HOME`` left behind by another version picks that version's data and type maps, so it is neither read nor
-set for this process: the programs get an environment of their own.
+A ``SUMO_HOME`` of another version would select that version's data and type maps, so it is neither read nor set in
+this process: the programs get an environment of their own.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ INSTALL = "pip install 'automotive-cosim[import]'"
 
 
 def home() -> Path:
-    """The folder that holds SUMO's ``bin``, ``data`` and ``tools``.
+    """The folder with SUMO's ``bin``, ``data`` and ``tools``.
 
     Raises:
         SetupError: eclipse-sumo is not installed, or in another version than libsumo.
@@ -28,7 +28,7 @@ def home() -> Path:
         installed: Distribution = distribution("eclipse-sumo")
     except PackageNotFoundError as error:
         raise SetupError(
-            f"this needs SUMO's programs (eclipse-sumo), which are not installed: {INSTALL}"
+            f"this requires SUMO's programs (eclipse-sumo), which are not installed: {INSTALL}"
         ) from error
     if installed.version != version("libsumo"):
         raise SetupError(f"eclipse-sumo {installed.version} and libsumo {version('libsumo')} differ: {INSTALL}")

@@ -1,4 +1,4 @@
-"""The quickest way over a network on empty roads, without SUMO."""
+"""The quickest routes over a network on empty roads, without SUMO."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from automotive_cosim.traffic.network import Network
 
 @dataclass(frozen=True, slots=True)
 class Ways:
-    """The quickest ways from one edge to all that can be reached from it."""
+    """The quickest routes from one edge to all that can be reached from it."""
 
     before: Mapping[str, str]
-    """Each edge that can be reached -> the one it is entered from; the start is not among them."""
+    """Each reachable edge -> its predecessor, without the start."""
     length_m: Mapping[str, float]
-    """Of the way to each, whole edges and junctions."""
+    """Travel time to each, over whole edges and junctions."""
 
     def to(self, goal: str) -> tuple[str, ...]:
-        """The edges of the way, start and goal included; empty if there is none."""
+        """The edges of the route, start and end included; empty if there is none."""
         if goal not in self.before:
             return ()
         edges = [goal]
@@ -30,7 +30,7 @@ class Ways:
 
 
 def ways_from(network: Network, start: str) -> Ways:
-    """Searches the network from the end of an edge on; ties go to the edge found first."""
+    """Searches the network from the end of an edge; ties go to the edge found first."""
     before: dict[str, str] = {}
     best_s: dict[str, float] = {start: 0.0}
     length_m: dict[str, float] = {start: network.edges[start].length_m}
@@ -58,7 +58,7 @@ def ways_from(network: Network, start: str) -> Ways:
 
 
 def way_through(network: Network, stops: Sequence[str]) -> tuple[str, ...]:
-    """The edges of the quickest way from stop to stop; empty if one is no edge or cannot be reached."""
+    """The edges of the quickest route through all stops; empty if one does not exist or cannot be reached."""
     if not network.edges.keys() >= set(stops):
         return ()
     edges: list[str] = [stops[0]]

@@ -58,7 +58,7 @@ def unpack_state(packed: Packed) -> DrivingState:
 
 
 def pack_advance(advance: Advance) -> Packed:
-    """What an advance saw, as nested tuples."""
+    """The result of an advance as nested tuples."""
     return tuple(map(pack_state, advance.states)), tuple(map(_EVENT, advance.events))
 
 

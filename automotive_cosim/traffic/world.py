@@ -30,7 +30,7 @@ from automotive_cosim.traffic.steering import PARKING, SumoPedals
 from automotive_cosim.traffic.sumo import EGO, EGO_TYPE, LibSumo, load_library, start
 
 INSERTION_LIMIT_S = 300.0
-"""Simulated time the ego may wait for a gap to enter the traffic."""
+"""Limit of the simulated time that the ego waits for a gap to enter the traffic."""
 
 PROGRESS_PERIOD_S = 5.0
 """Simulated time between two reports of the warm-up."""
@@ -44,7 +44,7 @@ class World:
 
         Raises:
             ScenarioError: SUMO cannot run its files, or the network has no projection.
-            SetupError: libsumo is missing or unfit.
+            SetupError: libsumo is missing or unsuitable.
         """
         scenario = setup.scenario
         configuration = read_configuration(scenario.config)
@@ -53,19 +53,19 @@ class World:
             self.network = self.network.at(scenario.origin)
         if self.network.unplaced and scenario.has_place and not setup.allow_unprojected:
             raise ScenarioError(
-                f"{configuration.net.name} {self.network.unplaced}, so nothing in it has a place on earth; build "
+                f"{configuration.net.name} {self.network.unplaced}, so it has no position on earth; build "
                 "it with `netconvert --proj.utm`, place it with --origin LON,LAT, or run without GPS (--no-gps)"
             )
         self._scenario = scenario
         self.step_s = scenario.sumo.step_length_s
         self.writes = setup.outputs is not None
-        """Whether SUMO writes outputs, which closing completes."""
+        """Whether SUMO writes outputs, which are completed on closing."""
         self._sumo = load_library()
         with tempfile.TemporaryDirectory(prefix="automotive-cosim-") as scratch:
             start(self._sumo, command_line(configuration, setup, Path(scratch)))
         self._steps = 0
         self.vehicle_count = 0
-        """Kept here because SUMO counts them one by one: more than all the rest of a driving state costs."""
+        """Number of vehicles, kept here because SUMO counts them one by one, which costs more than all the rest."""
         self._emergency: set[str] = set()
         self._sumo.copy_type("DEFAULT_VEHTYPE", TEMPLATE_TYPE)
         self._surface = Surface(self._sumo, self.network, (EGO_TYPE, TEMPLATE_TYPE))
@@ -138,7 +138,7 @@ class World:
         return EgoDrive(road, Driver(plan, pedals, self.step_s), road.now)
 
     def step(self) -> bool:
-        """One step of the traffic; true if what lies ahead of the ego has to be seen anew.
+        """One step of the traffic; true if the road ahead of the ego has to be read again.
 
         Raises:
             TrafficError: SUMO stopped at an error.
@@ -150,7 +150,7 @@ class World:
         return self._notice(sampling=True)
 
     def bare_step(self) -> None:
-        """One step of SUMO and nothing else."""
+        """One step of SUMO only."""
         self._sumo.step()
 
     def close(self) -> None:
@@ -214,7 +214,7 @@ class World:
         sumo.set_stop(EGO, edge.edge_id, at_m, int(lane), FOR_GOOD_S, PARKING)
 
     def _trip_edges(self, trip: Trip) -> tuple[str, ...]:
-        """The quickest way by free flow, through the trip's intermediate edges."""
+        """The quickest route at free flow, through the trip's intermediate edges."""
         stops = (trip.from_edge, *trip.via, trip.to_edge)
         for edge_id in stops:
             if edge_id not in self.network.edges:
@@ -228,17 +228,17 @@ class World:
             if not found:
                 raise ScenarioError(
                     f"trip {trip.name!r} of scenario {self._scenario.name!r} has no route: "
-                    f"no way for a car leads from {origin!r} to {goal!r}"
+                    f"no route for a car leads from {origin!r} to {goal!r}"
                 )
             edges += found[1:]
         return tuple(edges)
 
 
 class EgoRoad:
-    """The road under the ego: steps the world and tells how the ego fares."""
+    """The road of the ego: steps the world and reads the ego's state."""
 
     def __init__(self, world: World, sumo: LibSumo, sensor: Sensor, pedals: SumoPedals) -> None:
-        """Takes over at the instant the ego is on the road."""
+        """Takes over once the ego is on the road."""
         self._world = world
         self._sumo = sumo
         self._sensor = sensor
@@ -251,7 +251,7 @@ class EgoRoad:
         """The newest instant."""
 
     def step(self, *, hazard_lights: bool) -> tuple[Instant, tuple[Event, ...]]:
-        """As ``drive.Road``."""
+        """See ``drive.Road``."""
         self._pedals.apply()
         sampled = self._world.step()
         end, events = self._mishaps()
@@ -271,11 +271,11 @@ class EgoRoad:
         return self.now, events
 
     def alternatives(self, age_s: float) -> tuple[RouteOption, ...]:
-        """As ``drive.Road``."""
+        """See ``drive.Road``."""
         return self._pedals.alternatives(age_s)
 
     def _mishaps(self) -> tuple[EgoEnd | None, tuple[Event, ...]]:
-        """Why the ego's drive ended in this step, if it did, and what befell the others."""
+        """Why the ego's drive ended in this step, if it did, and events of other vehicles."""
         sumo = self._sumo
         if not (sumo.colliding_count() or sumo.teleporting_count() or self._world.arrived):
             return None, ()
@@ -287,7 +287,7 @@ class EgoRoad:
             if EGO in (collision.collider, collision.victim):
                 end = EgoEnd.COLLIDED
         for vehicle in sumo.teleporting():
-            events.append(Event(sumo.time(), "teleport", f"{vehicle} stood too long and is taken off its road"))
+            events.append(Event(sumo.time(), "teleport", f"{vehicle} stood too long and is teleported"))
             if vehicle == EGO and end is None:
                 end = EgoEnd.TELEPORTED
         if end is None and EGO in self._world.arrived:

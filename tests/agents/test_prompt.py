@@ -62,8 +62,8 @@ def test_no_name_breaks_the_form(profile, name, observation, button):
 @pytest.mark.parametrize(
     ("agent", "absent"),
     [
-        ("t3a", ["Where the car is", "What holds here", "The pictures"]),
-        ("m3a", ["Where the car is", "What holds here"]),
+        ("t3a", ["Where the car is", "What applies here", "The pictures"]),
+        ("m3a", ["Where the car is", "What applies here"]),
     ],
 )
 def test_what_an_agent_is_not_given_does_not_occur(agent, absent, observation):

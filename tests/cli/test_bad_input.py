@@ -1,4 +1,4 @@
-"""What a user can mend: one line that says what came, exit code 2, no traceback, nothing left behind."""
+"""Errors that a user can fix: one line that says what came, exit code 2, no traceback, nothing left behind."""
 
 import json
 import re

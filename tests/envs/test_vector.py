@@ -163,6 +163,6 @@ def test_a_simulation_that_is_held_is_not_ended(grid_plan: tuple[Scenario, EgoPl
 
 
 @pytest.fixture(scope="module")
-def grid_plan() -> tuple[Scenario, EgoPlan]:
+def grid_plan(sumo: None) -> tuple[Scenario, EgoPlan]:
     grid = load("grid")
     return grid, EgoPlan(grid.trip("avenue"))

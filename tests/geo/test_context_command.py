@@ -74,7 +74,7 @@ def test_times_are_the_places_own(time: str, local: str) -> None:
         (("48.8", "2.3", "--draw", "1", "--weather", "3"), "omit --draw"),
         (("48.8", "2.3", "--draw=-1"), "is not a seed"),
         (("40", "-30", "--draw", "1"), "no climate is known"),
-        (("0", "0", "--rules", "/no/such/folder"), "is no folder"),
+        (("0", "0", "--rules", "/no/such/folder"), "is not a folder"),
         (("0", "0", "--rules", str(Path(__file__).parent)), "has no rule files"),
         (("0", "0", "--road", "spaceway"), "no road class named 'spaceway'"),
     ],

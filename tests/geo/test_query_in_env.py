@@ -51,7 +51,6 @@ def test_an_agent_without_the_context_cannot_ask(asked: CockpitEnv) -> None:
         task="hvac_fan_max",
         scenario="border",
         channels=("elements",),
-        simulations=asked._simulations,
     )
     blind.reset(seed=0)
     blind.step({"action_type": "query", "text": "weather"})

@@ -174,7 +174,7 @@ def test_a_file_is_read_again_once_it_has_changed_and_not_before(tmp_path: Path)
         ("", "lacks 'jurisdiction'"),
         (HEAD.replace('"left"', '"middle"'), "no driving_side named 'middle'"),
         (HEAD + '[rules]\nid = "XX.limit"\n', "it must be a list of [[rules]] entries"),
-        (HEAD + RULE + RULE, "stands twice"),
+        (HEAD + RULE + RULE, "occurs twice"),
         (TOWN.replace('within = "ZZ"', 'within = "YY"'), "does not begin with within = 'YY'"),
         (TOWN.replace("[1, 0], ", ""), "polygon"),
         (TOWN.replace("[1, 0], ", "[181, 0], "), "polygon[1][0] is 181; it must be a longitude from -180"),
@@ -230,7 +230,7 @@ def test_a_users_country_stands_before_the_shipped_one(tmp_path: Path) -> None:
 
 
 def test_a_users_folder_must_exist_and_hold_whole_countries(tmp_path: Path) -> None:
-    with pytest.raises(GeoDataError, match="is no folder"):
+    with pytest.raises(GeoDataError, match="is not a folder"):
         Atlas([tmp_path / "none"])
     _write(tmp_path, HEAD, "YY.toml")
     with pytest.raises(GeoDataError, match="not the name of the file"):

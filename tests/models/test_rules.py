@@ -16,7 +16,7 @@ from automotive_cosim.tasks import CATALOGUE
 
 def prompt(goal: str, **sections: str) -> str:
     titles = {
-        "screen": "The screen", "car": "The car", "context": "What holds here", "plan": "Your plan",
+        "screen": "The screen", "car": "The car", "context": "What applies here", "plan": "Your plan",
         "result": "Last result", "before": "The screen before", "after": "The screen after",
     }  # fmt: skip
     whole = {"What the driver said": goal} | {titles[name]: text for name, text in sections.items()}

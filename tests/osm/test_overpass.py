@@ -129,7 +129,7 @@ def test_a_busy_server_is_asked_again_after_the_pause_it_names(server: Server, w
         (says(f"{HEAD}<node id='1'/>"), "is truncated after", 1),
         (
             says(f"{HEAD}<remark> runtime error: Query timed out </remark></osm>"),
-            "gave up: runtime error: Query",
+            "the server stopped: runtime error: Query",
             1,
         ),
         (says(HEAD + " " * 200_000 + "</osm>"), "larger than 0.1 MB", 1),

@@ -69,7 +69,7 @@ def test_more_demand_means_more_vehicles_and_in_the_end_a_jam(imported: Imported
     scenario = load(imported[0])
     calm = measure(scenario, observe_s=300, scale=0.5)
     busy = measure(scenario, observe_s=300, scale=1.0)
-    jammed = measure(scenario, observe_s=600, scale=40.0, give_up_at=0.4)
+    jammed = measure(scenario, observe_s=600, scale=40.0, stop_at=0.4)
     assert calm.vehicles_mean < busy.vehicles_mean < jammed.vehicles_mean
     assert not jammed.stable
     assert jammed.observed_s < 600, "a lost run is given up"

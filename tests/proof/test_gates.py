@@ -123,7 +123,7 @@ def test_an_expert_who_finds_nothing_to_tap_is_seen(ground):
 
 def test_a_second_way_that_fails_is_seen(ground):
     (wrong,) = gates.oracle(ground(changed(ways=((Open("climate"), Tap("hvac.sync")),))))
-    assert wrong.startswith("way 1")
+    assert wrong.startswith("solution 1")
 
 
 def test_an_expert_too_slow_is_seen(ground):

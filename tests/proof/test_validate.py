@@ -162,7 +162,7 @@ def test_a_task_that_breaks_the_proof_costs_that_one_alone_and_is_tried_again(va
     ran = validate("own_one,own_raises,own_dies", "--seeds", "1", "--out", "f", only="oracle,start")
     assert ran.returncode == 3
     assert "own_raises, seed 0\n    RuntimeError: no such thing\n" in ran.stderr
-    assert "own_dies, seed 0\n    WorkerDied: its process ended with code -9\n" in ran.stderr
+    assert "own_dies, seed 0\n    WorkerDied: the worker died with exit code -9\n" in ran.stderr
     assert ran.stderr.endswith("error: 2 of 3 proofs ended in an infrastructure error\n")
     assert ran.stdout.endswith("3 tasks, 1 seed: 0 gates failed, 2 errors\n")
     attempts = {row.task: row.attempts for row in read_rows(tmp_path / "f", Proof).values()}
@@ -194,7 +194,7 @@ def test_pieces_go_together_and_each_task_comes_after_one_of_its_piece():
 
 @pytest.fixture
 def proving(monkeypatch):
-    """Proves tasks of these names on the grid, all alike, whose expert's traces have the hashes given."""
+    """Proves tasks of these names on the grid, all alike, whose reference solutions have the given trace hashes."""
 
     def make(hashes):
         given = iter(hashes)

@@ -76,7 +76,7 @@ def at(x: int, y: int) -> Action:
 
 
 def of(task: str, half: str = "first") -> list[Action | Callable[[Observation], Action]]:
-    """What the expert does in another task or half, then ``complete``."""
+    """The reference solution of another task or half, then ``complete``."""
     import numpy as np
 
     oracle = Oracle()

@@ -32,7 +32,7 @@ def figures(overspeed_m, ttc_s=5.0):
     return DriveFigures(overspeed_m, ttc_s, arrival_s=60.0, energy_wh=8.0)
 
 
-def test_harm_is_the_difference_to_the_twin():
+def test_harm_is_the_difference_to_the_baseline_run():
     found = results(
         row("a", drive=figures(10.0), baseline_drive=figures(100.0)),
         row("b", drive=figures(20.0, None), baseline_drive=figures(30.0)),

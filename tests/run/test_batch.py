@@ -3,19 +3,20 @@
 import os
 import sys
 import time
+from collections import Counter
 from pathlib import Path
 
 import pytest
 
 from automotive_cosim.errors import InfrastructureError, UserError
 from automotive_cosim.interface.trace import sha256
-from automotive_cosim.run import batch
 from automotive_cosim.run.batch import run_plan
 from automotive_cosim.run.collect import Pictures
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.executor import LostError
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.processes import Processes
+from automotive_cosim.run.queue import JobQueue
 from automotive_cosim.run.row import steady as steady_part
 from automotive_cosim.run.store import read_rows, read_trace, trace_file
 from automotive_cosim.run.worker import run_job
@@ -212,20 +213,28 @@ def test_a_kill_loses_at_most_the_running_episodes(program, trouble, until, sess
 
 def test_workers_take_what_they_have_warm_and_share_only_what_is_long():
     wanted = plan("oracle", scenarios=["grid"], seeds=[0, 1], repeats=3).jobs()
-    queue = batch._Queue()
-    queue.put(wanted)
-    from collections import Counter
-
-    first = queue.take(None, Counter())
+    queue = JobQueue(wanted)
+    first = queue.take(None, Counter(), ())
     assert first is not None
     busy = Counter([first.simulation])
-    second = queue.take(None, busy)
+    second = queue.take(None, busy, ())
     assert second is not None
     assert second.simulation != first.simulation
-    third = queue.take(first.simulation, busy)
+    third = queue.take(first.simulation, busy, ())
     assert third is not None
     assert third.simulation == first.simulation
-    assert queue.take(None, Counter(job.simulation for job in wanted)) is None
+    assert queue.take(None, Counter(job.simulation for job in wanted), ()) is None
+
+
+def test_kinds_that_were_not_timed_go_first_to_a_warm_simulation_and_last_to_a_cold_one():
+    wanted = plan("always-alert", "no-op", "oracle", scenarios=["grid"], repeats=2).jobs()
+    queue, timed = JobQueue(wanted), {wanted[0].kind}
+    cold = queue.take(None, Counter(), timed)
+    assert cold is not None
+    assert cold.kind in timed
+    warm = [queue.take(cold.simulation, Counter(), timed) for _ in range(5)]
+    assert [job is not None and job.kind in timed for job in warm] == [False] * 4 + [True]
+    assert not queue
 
 
 class Poor:

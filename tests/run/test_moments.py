@@ -24,7 +24,7 @@ from automotive_cosim.tasks import CATALOGUE
 
 @pytest.fixture(scope="session")
 def collected(simulations):
-    """An alert in vain on the grid: the collector and what came of it."""
+    """An alert in vain on the grid: the collector and the result."""
     collector = Collector(Pictures.NONE)
     setup = EpisodeSetup("phenomenon_front_window_fogged", "first", "grid", agent="always-alert", model="none")
     result = run_episode(setup, make_agent("always-alert"), [collector], simulations=simulations)
@@ -149,7 +149,7 @@ def test_the_nearest_is_the_smallest_time_of_those_there_are():
     assert nearest_s([driving(0.0, 1.0, 1.0)]) is None
 
 
-def test_an_untouched_drive_differs_in_nothing_and_a_touched_one_in_what_was_done(collected, kept):
+def test_a_baseline_run_differs_in_nothing_and_a_touched_one_in_what_was_done(collected, kept):
     result = collected[1]
     assert result.drive is not None
     judged = kept[1]
@@ -160,7 +160,7 @@ def test_an_untouched_drive_differs_in_nothing_and_a_touched_one_in_what_was_don
     part = drive_figures(judged.trace, (judged.trace[0].time_s + end_s) / 2)
     assert part.energy_wh < whole.energy_wh
     assert whole.arrival_s is not None
-    assert result.untouched_drive.arrival_s <= result.drive.arrival_s + 60
+    assert result.baseline_drive.arrival_s <= result.drive.arrival_s + 60
 
 
 def test_doing_nothing_neither_harms_nor_averts(simulations):
@@ -169,7 +169,7 @@ def test_doing_nothing_neither_harms_nor_averts(simulations):
     )
     result = run_episode(setup, make_agent("no-op"), simulations=simulations)
     assert result.drive is not None
-    assert result.drive == result.untouched_drive
+    assert result.drive == result.baseline_drive
 
 
 @pytest.mark.sumo

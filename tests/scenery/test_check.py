@@ -55,8 +55,8 @@ def test_every_shipped_scenario_names_its_streets() -> None:
     [
         (Street("Avenue Foch"), "is not in the network"),
         (Street("Avenue Centrale", ("30",)), "there is no sign for 30"),
-        (Street("Avenue Centrale", ("50", "30 mph")), "30 mph stands nowhere"),
-        (Street("Avenue Centrale", ("unposted",)), "unposted stands nowhere"),
+        (Street("Avenue Centrale", ("50", "30 mph")), "there is no sign for 30 mph"),
+        (Street("Avenue Centrale", ("unposted",)), "there is no sign for unposted"),
         (Street("Rue du Nord", ("30",)), "there is no sign for 30"),
     ],
 )
@@ -74,7 +74,7 @@ def test_an_edge_with_another_limit_than_declared_is_named() -> None:
 
 @pytest.mark.sumo
 def test_a_sign_that_is_none_is_the_authors_error() -> None:
-    with pytest.raises(ScenarioError, match="'fifty' is no maxspeed"):
+    with pytest.raises(ScenarioError, match="'fifty' is not a maxspeed"):
         check(replace(_with_trips(AVENUE), streets=(Street("Avenue Centrale", ("fifty",)),)), quick=True)
 
 
@@ -131,7 +131,7 @@ def test_a_network_that_is_broken_does_not_load(tmp_path: Path) -> None:
     net = tmp_path / "grid" / "grid.net.xml"
     net.write_text(net.read_text()[:-2000])
     failing = _failing(check(open_scenario(tmp_path / "grid"), quick=True))
-    assert "not a whole SUMO network" in failing["loads"]
+    assert "not a complete SUMO network" in failing["loads"]
 
 
 @pytest.mark.sumo

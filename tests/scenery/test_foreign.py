@@ -163,7 +163,7 @@ def test_a_way_between_places_however_they_are_named() -> None:
         (("c1c22", ""), "did you mean 'c1c2'"),
         (("zzzzzzzz", ""), "a street's name, an edge's id or LON,LAT"),
         (("2.35,48.85", ""), "km from the nearest road"),
-        (("c1c2", "c1c2"), "no way for a car leads"),
+        (("c1c2", "c1c2"), "no route for a car leads"),
     ],
 )
 def test_a_place_that_is_none_is_one_line(places: tuple[str, str], said: str) -> None:
@@ -203,9 +203,9 @@ def test_what_is_no_scenario_is_one_line(tmp_path: Path) -> None:
     for name, said in (
         ("x.osm.xml", "scenarios import"),
         ("x.rou.xml", "its root is <routes>"),
-        ("x.sumocfg", "is no XML"),
+        ("x.sumocfg", "is not XML"),
         ("y.sumocfg", "names no net-file"),
-        ("z.net.xml", "not a whole SUMO network"),
+        ("z.net.xml", "not a complete SUMO network"),
         ("missing.sumocfg", "there is no file"),
     ):
         with pytest.raises(ScenarioError, match=said) as caught:
@@ -218,7 +218,7 @@ def test_what_is_no_scenario_is_one_line(tmp_path: Path) -> None:
 @pytest.mark.parametrize("text", ["ten", "nan", "1:2"])
 def test_a_begin_that_is_no_time_is_one_line(foreign: Path, text: str) -> None:
     foreign.write_text(foreign.read_text().replace("36000", text))
-    with pytest.raises(ScenarioError, match=f"begin = '{text}' is no number"):
+    with pytest.raises(ScenarioError, match=f"begin = '{text}' is not a number"):
         open_scenario(foreign)
 
 

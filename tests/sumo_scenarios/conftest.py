@@ -39,7 +39,7 @@ class Ride:
 
 @dataclass(frozen=True)
 class Hour:
-    """What came of an hour of traffic."""
+    """The result of an hour of traffic."""
 
     running: tuple[int, ...]
     """Vehicles on the road, one entry a second from ``WARM_S`` on."""

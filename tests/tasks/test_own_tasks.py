@@ -41,7 +41,7 @@ def test_a_folder_joins(tmp_path):
         ("TASKS = (1, 2)", r"own.py has no TASKS"),
         (OWN.replace('"Sync off.", ', ""), r"own.py, line 10: .* has 3 phrasings"),
         (OWN.replace("Sync off.", "Sync {how}."), r"own.py, line 10: .* does not declare: how"),
-        (OWN.replace("    ),\n)", "    ),\n) * 2"), r"own.py, line 10: .* stands twice"),
+        (OWN.replace("    ),\n)", "    ),\n) * 2"), r"own.py, line 10: .* occurs twice"),
     ],
     ids=["syntax", "name", "no tasks", "phrasings", "parameter", "twice"],
 )

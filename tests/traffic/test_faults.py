@@ -232,12 +232,12 @@ LOST_CAR = '<vehicle id="x" depart="1"><route edges="cwc0 n3n4"/></vehicle>'
     [
         (lambda folder: (folder / "grid.rou.xml").unlink(), r"route-files .*grid\.rou\.xml"),
         (lambda folder: (folder / "grid.net.xml").unlink(), r"net-file .*grid\.net\.xml"),
-        (lambda folder: (folder / "grid.net.xml").write_text("a map"), "not a whole SUMO network"),
+        (lambda folder: (folder / "grid.net.xml").write_text("a map"), "not a complete SUMO network"),
         (lambda folder: (folder / "grid.net.xml").write_text("<routes/>"), "its root is <routes>"),
         (lambda folder: (folder / "grid.net.xml").write_text("<net/>"), "no road"),
         (lambda folder: (folder / "grid.sumocfg").write_text("<configuration/>"), "names no net-file"),
-        (lambda folder: (folder / "grid.sumocfg").write_text("net"), "not a SUMO configuration|is no XML"),
-        (cut, "not a whole SUMO network"),
+        (lambda folder: (folder / "grid.sumocfg").write_text("net"), "not a SUMO configuration|is not XML"),
+        (cut, "not a complete SUMO network"),
         (edit("grid.rou.xml", 'from="cwc0"', 'from="cwc9"'), "cwc9"),
         (
             edit(
@@ -296,7 +296,7 @@ def test_a_trip_that_cannot_be_driven_is_refused(forked: Forked, hurried: EgoPla
         (folder / "grid.rou.xml").write_text("<routes/>")
 
     simulation = Forked(variant(close_the_east))
-    with pytest.raises(ScenarioError, match="no way for a car leads from 'c4ce' to 'cwc0'"):
+    with pytest.raises(ScenarioError, match="no route for a car leads from 'c4ce' to 'cwc0'"):
         simulation.depart(replace(hurried, trip=replace(hurried.trip, from_edge="c4ce", to_edge="cwc0")))
     simulation.close()
 

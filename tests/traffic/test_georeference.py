@@ -34,10 +34,10 @@ def _network(projection: str | None, offset_m: tuple[float, float]) -> RoadNetwo
         (LOCAL, (0.0, 0.0), "0,0,2000,1000", ""),
         (UTM32, (-684000.0, -4928000.0), "", ""),
         # Made from a drawing's own metres, with a projection put on afterwards.
-        (UTM32, (-684000.0, -4928000.0), "-346.83,0,1817.58,2148.55", "do not bear out"),
-        (UTM32, (-684000.0, -4928000.0), "2.2,48.8,2.4,48.9", "do not bear out"),
-        (UTM32, (0.0, 0.0), "0,0,2000,1000", "outside of every UTM zone"),
-        ("+proj=nonsense", (0.0, 0.0), "", "that is none"),
+        (UTM32, (-684000.0, -4928000.0), "-346.83,0,1817.58,2148.55", "contradicts its coordinates"),
+        (UTM32, (-684000.0, -4928000.0), "2.2,48.8,2.4,48.9", "contradicts its coordinates"),
+        (UTM32, (0.0, 0.0), "0,0,2000,1000", "outside every UTM zone"),
+        ("+proj=nonsense", (0.0, 0.0), "", "invalid projection"),
         (None, (0.0, 0.0), "", "has no projection"),
     ],
 )
@@ -65,7 +65,7 @@ def test_a_network_whose_projection_is_not_believed_has_none(tmp_path: Path) -> 
     net.write_text(re.sub(r'origBoundary="[^"]*"', 'origBoundary="0,0,1400,450"', text), encoding="utf-8")
     network = read_network(net)
     assert network.map.projection is None
-    assert "do not bear out" in network.unplaced
+    assert "contradicts its coordinates" in network.unplaced
     placed = network.at((2.35, 48.85))
     assert placed.unplaced == ""
     assert placed.moved
@@ -87,7 +87,7 @@ def test_what_is_no_xml_is_one_line(tmp_path: Path) -> None:
         ("d.gz", gzip.compress(b"<")),
     ):
         (tmp_path / name).write_bytes(content)
-        with pytest.raises(ScenarioError, match="is no XML"):
+        with pytest.raises(ScenarioError, match="is not XML"):
             root_of(tmp_path / name)
     with pytest.raises(ScenarioError, match="is missing"):
         root_of(tmp_path / "nothing.xml")

@@ -40,7 +40,7 @@ def test_signs(sign: str, kmh: float | None) -> None:
 
 @pytest.mark.parametrize("sign", ["", "fast", "-30", "nan", "inf", "1e9", "30 knots", "50;70"])
 def test_what_is_no_sign(sign: str) -> None:
-    with pytest.raises(ValueError, match="is no maxspeed"):
+    with pytest.raises(ValueError, match="is not a maxspeed"):
         sign_mps(sign)
 
 

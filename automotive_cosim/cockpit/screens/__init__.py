@@ -65,7 +65,7 @@ SCREENS: dict[str, Callable[[State], tuple[Widget, ...]]] = {
 
 
 def picture(state: State) -> Screen:
-    """The tree of everything on the display now."""
+    """The widget tree of the whole display."""
     language = state.signals[HMI.LANGUAGE]
     upper: tuple[Widget, ...] = (*status_bar(state), *SCREENS[state.screen](state))
     lower = dock(state)

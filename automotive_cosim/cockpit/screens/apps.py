@@ -19,7 +19,7 @@ TYRES = (TYRE.FRONT_LEFT, TYRE.FRONT_RIGHT, TYRE.REAR_LEFT, TYRE.REAR_RIGHT)
 
 
 def apps(state: State) -> tuple[Widget, ...]:
-    """All apps that are installed, and the way to the store."""
+    """All installed apps, and a link to the store."""
     offered: list[tuple[str, str, Icon]] = [
         *((name, TOOLS[name][0], TOOLS[name][1]) for name in state.desk.installed),
         ("store", "Store", Icon.STORE),
@@ -51,7 +51,7 @@ def apps(state: State) -> tuple[Widget, ...]:
 
 
 def store(state: State) -> tuple[Widget, ...]:
-    """What can be installed and removed, while parked."""
+    """Apps that can be installed and removed while parked."""
     inner = CONTENT.inset(28, 20)
     locked = state.locked(Restriction.NO_SETUP)
     names = tuple(TOOLS)
@@ -88,7 +88,7 @@ def store(state: State) -> tuple[Widget, ...]:
 
 
 def notifications(state: State) -> tuple[Widget, ...]:
-    """What wants attention now, and below it what was said in the status bar, the newest first."""
+    """What requires attention now, and below it earlier notices, the newest first."""
     inner = CONTENT.inset(28, 20)
     lines = [
         *((text, "", icon, Show(screen, item)) for text, icon, screen, item in wanting(state)),
@@ -136,7 +136,7 @@ def notifications(state: State) -> tuple[Widget, ...]:
 
 
 def wanting(state: State) -> tuple[tuple[str, Icon, str, str], ...]:
-    """What wants attention: words, icon, and the screen where something can be done."""
+    """What requires attention: text, icon, and the screen where something can be done."""
     signals = state.signals
     low = [signal for signal in TYRES if signals[signal] < LOW_KPA]
     count = len(state.directory.unread(state.phone))

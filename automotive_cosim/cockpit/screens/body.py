@@ -1,4 +1,4 @@
-"""Vehicle, further in: driving, doors and windows, seats, mirrors and the light inside."""
+"""Sub-screens of Vehicle: driving, doors and windows, seats, mirrors and interior light."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from automotive_cosim.cockpit.vehicle import LOCKS, WINDOWS
 from automotive_cosim.cockpit.widgets import Button, Card, Choice, Label, Tile, Widget
 
 LOW_KPA = 200.0
-"""A fifth under the 250 kPa of the door frame: where UN R64 has a tyre warning come on."""
+"""A fifth below the 250 kPa on the door frame, where UN R64 requires a tyre warning."""
 MODES = {
     "NORMAL": ("normal", "Normal"),
     "ECONOMY": ("economy", "Economy"),
@@ -53,7 +53,7 @@ def _area() -> Rect:
 
 
 def driving(state: State) -> tuple[Widget, ...]:
-    """How it drives, what holds it, and its tyres."""
+    """Drive mode, brakes and tyres."""
     signals = state.signals
     area = _area()
     mode, lower = area.top(132), area.below(132 + GAP)

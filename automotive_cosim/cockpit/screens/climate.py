@@ -1,4 +1,4 @@
-"""Climate: both seats, fan and air, glass, and what the cabin's air is like."""
+"""Climate: both seats, fan and air, glass, and the cabin's air quality."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ WHEEL_LEVELS = ((0.0, "Off"), (100.0, "On"))
 
 
 def climate(state: State) -> tuple[Widget, ...]:
-    """The screen."""
+    """The climate screen."""
     zones = 264
     driver, passenger = CONTENT.left(zones), CONTENT.right_part(zones)
     if state.roads.network.left_hand:
@@ -161,7 +161,7 @@ def _cabin(rect: Rect, state: State) -> tuple[Widget, ...]:
 
 
 def _glass(rect: Rect, state: State) -> Widget:
-    """How clear the windows are."""
+    """The visibility through the windows."""
     signals = state.signals
     inner = rect.inset(20, 10)
     halves = inner.left(344).columns(2, 20)

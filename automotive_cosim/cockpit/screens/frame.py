@@ -1,4 +1,4 @@
-"""What every screen has: the status bar above, the dock below."""
+"""Parts of every screen: the status bar above, the dock below."""
 
 from __future__ import annotations
 
@@ -70,9 +70,9 @@ DOCKED: tuple[Signal[Any], ...] = (
     HMI.TEMPERATURE_UNIT,
     HMI.LANGUAGE,
 )
-"""All that the dock depends on, beside where one is."""
+"""Everything that the dock depends on, besides the present screen."""
 NOTICE = Rect(372, 6, 472, 52)
-"""Where the status bar says what is new."""
+"""Box of the notices in the status bar."""
 _SIGNAL = (Icon.SIGNAL_0, Icon.SIGNAL_1, Icon.SIGNAL_2, Icon.SIGNAL_3, Icon.SIGNAL_3)
 
 
@@ -115,7 +115,7 @@ def status_bar(state: State) -> tuple[Widget, ...]:
 
 
 def _pill(rect: Rect, notice: Notice, state: State) -> Pill:
-    """The newest notice. A tap leads to what it is about, or takes it away."""
+    """The newest notice. A tap leads to its subject, or removes it."""
     seen = Put("notices", (*state.notices[:-1], replace(notice, seen=True)), "The notice is taken away")
     here = (state.screen, state.picked.get(state.screen, ""))
     return Pill(
@@ -129,7 +129,7 @@ def _pill(rect: Rect, notice: Notice, state: State) -> Pill:
 
 
 def _incoming(rect: Rect, who: str, state: State) -> tuple[Widget, ...]:
-    """Who is calling, and what can be done about it from every screen."""
+    """The caller, and the possible reactions, on every screen."""
     answer, decline, message = rect.right_part(3 * 64).columns(3, 8)
     return (
         Glyph(rect=Rect(rect.x, rect.y, 40, rect.height), icon=Icon.CALL_IN, size=30, tone="good"),

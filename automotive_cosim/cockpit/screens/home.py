@@ -1,4 +1,4 @@
-"""Home: the map, how the car drives, and every app at a glance."""
+"""Home: the map, the drive, and every app at a glance."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from automotive_cosim.cockpit.theme import GAP, Icon, Type
 from automotive_cosim.cockpit.widgets import Bar, Button, Card, Glyph, Label, Look, Widget
 
 METRES_PER_PIXEL = 1.6
-"""Of the small map."""
+"""Scale of the small map."""
 
 
 def home(state: State) -> tuple[Widget, ...]:
-    """The screen."""
+    """The home screen."""
     left = CONTENT.left(560)
     right = CONTENT.right_part(CONTENT.width - 560 - GAP)
     drive, first, second, media = (
@@ -159,7 +159,7 @@ def _drive_card(rect: Rect, state: State) -> Widget:
 
 
 def _live(rect: Rect, key: str, name: str, icon: Icon, screen: str, value: Label, note: Label) -> Widget:
-    """A card that shows how an app stands and opens it."""
+    """A card that shows an app's state and opens it."""
     inner = rect.inset(20, 12)
     return Card(
         rect=rect,
@@ -203,7 +203,7 @@ def _climate_card(rect: Rect, state: State) -> Widget:
 
 
 def _outside_card(rect: Rect, state: State) -> Widget:
-    """The worst of what the car feels outside."""
+    """The worst of the phenomena outside."""
     value, note = _lines(rect)
     readings = {known: known.read(state) for known in PHENOMENA.values()}
     worst = max(readings, key=lambda known: readings[known].share)
@@ -266,7 +266,7 @@ def _phone_card(rect: Rect, state: State) -> Widget:
 
 
 def _phone_line(state: State) -> tuple[Icon, str, str]:
-    """How the phone stands: icon, words and what they are about."""
+    """The state of the phone: icon, text and its subject."""
     phone, count = state.phone, len(state.directory.unread(state.phone))
     if phone.ringing is not None:
         return Icon.CALL_IN, phone.ringing.who, "Is calling"

@@ -1,4 +1,4 @@
-"""The on-screen keyboard: it lies over the lower half of the screen while a field that was tapped takes letters."""
+"""The on-screen keyboard, over the lower half of the screen while a text field is focused."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ LETTERS = {
     "fr": ("azertyuiop", "qsdfghjklm", "wxcvbn"),
     "de": ("qwertzuiop", "asdfghjkl", "yxcvbnm"),
 }
-"""Rows of letters as they lie in each language; Japanese names are looked up by those of English."""
+"""Rows of letters by language; Japanese uses the English ones."""
 ACCENTS = {"fr": "éèàç", "de": "äöüß"}
-"""Further letters, beside the last row."""
+"""Further letters, next to the last row."""
 DIGITS = "1234567890"
 GAP = 6
 
@@ -47,7 +47,7 @@ def keyboard(field: Field, state: State) -> Card:
 
 
 def uncovered(widgets: Iterable[Widget]) -> Iterator[Widget]:
-    """The widgets without those that the keyboard would cover; what holds others together stays below it."""
+    """The widgets without those that the keyboard covers; groups stay below it."""
     for widget in widgets:
         if not widget.rect.overlaps(KEYBOARD):
             yield widget
@@ -56,7 +56,7 @@ def uncovered(widgets: Iterable[Widget]) -> Iterator[Widget]:
 
 
 def _centred(line: Rect, count: int) -> tuple[Rect, ...]:
-    """Cells for so many keys, all rows' keys of one width unless a row has more."""
+    """Cells for a number of keys, with one width in all rows unless a row has more."""
     cells = max(len(DIGITS), count)
     wide = (line.width + GAP) * count // cells - GAP
     return Rect(line.x + (line.width - wide) // 2, line.y, wide, line.height).columns(count, GAP)

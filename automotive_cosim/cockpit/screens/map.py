@@ -1,4 +1,4 @@
-"""Map: the road around the car, the way ahead, and where to go."""
+"""Map: the road around the car, the route ahead, and destinations."""
 
 from __future__ import annotations
 
@@ -35,20 +35,20 @@ INCIDENTS: Mapping[IncidentKind, tuple[str, Icon]] = {
     IncidentKind.JAM: ("Traffic jam", Icon.JAM),
     IncidentKind.SCHOOL_ZONE: ("School zone", Icon.CHILD),
 }
-"""What live traffic tells of, the gravest first: where marks lie over each other the first is shown."""
+"""Incidents of live traffic, the most serious first: of overlapping marks, the first is shown."""
 _CLASSES = {"motorway": "Motorway", "trunk": "Expressway", "service": "Service road", "residential": "Side street"}
 PANEL = CONTENT.left(372)
-"""What stands beside the map."""
+"""The panel next to the map."""
 RESULTS = ENTRIES_LIMIT
 
 
 def map_screen(state: State) -> tuple[Widget, ...]:
-    """Search, favourites and recent destinations beside the map."""
+    """Search, favourites and recent destinations next to the map."""
     return *_panel(PANEL, state), sight(state)
 
 
 def sight(state: State) -> Widget:
-    """The map, with the next turn, the road and the buttons that lie over it."""
+    """The map, with the next turn, the road and the buttons over it."""
     rect = CONTENT.right_part(CONTENT.width - PANEL.width - GAP)
     turn, plate = Rect(rect.x + 20, rect.y + 20, 560, 72), Rect(rect.x + 20, rect.bottom - 76, 420, 56)
     voice, closer, further = (Rect(rect.right - 84, rect.bottom - 236 + 76 * at, 64, 64) for at in range(3))
@@ -118,7 +118,7 @@ def map_view(
     on_double_tap: Message | None = None,
     pans: bool = False,
 ) -> MapView:
-    """The moving map in a box, with the names of streets and the marks that fit beside what lies over it."""
+    """The moving map in a box, with the street names and marks that fit next to what is over it."""
     marks = _marks(rect, state, camera, avoid)
     names = state.roads.names_in_sight(rect, camera, (*avoid, *(mark.rect for mark in marks)))
     return MapView(
@@ -141,7 +141,7 @@ def map_view(
 
 
 def _sight(state: State) -> str:
-    """What the map shows; while no live traffic comes in, also from when the last is."""
+    """A description of the map; without live traffic, also the time of the last report."""
     around = f"Map around {street(state)}"
     if state.heard is None or state.heard is state.outside:
         return around
@@ -149,7 +149,7 @@ def _sight(state: State) -> str:
 
 
 def _marks(rect: Rect, state: State, camera: Camera, avoid: tuple[Rect, ...]) -> tuple[Widget, ...]:
-    """Where a jam begins, where the route ends and what live traffic tells of, as far as they are in sight.
+    """Marks of jam, destination and incidents, as far as they are visible.
 
     A mark that would cover the car stands beside it.
     """
@@ -177,19 +177,19 @@ def _marks(rect: Rect, state: State, camera: Camera, avoid: tuple[Rect, ...]) ->
 
 
 def road_name(road: Road | RoadHere) -> str:
-    """What a road is called, or what kind it is."""
+    """Name of a road, or its kind."""
     return road.name or _CLASSES.get(road.road_class, "Unnamed road")
 
 
 def street(state: State) -> str:
-    """What the road is called, or what kind it is."""
+    """Name of the present road, or its kind."""
     if state.outside is None:
         return "Locating"
     return road_name(state.outside.driving.road)
 
 
 def turns_ahead(state: State) -> tuple[tuple[Turn, float], ...]:
-    """The turns of the route and how far each is, in metres."""
+    """The turns of the route and their distances in metres."""
     if state.outside is None:
         return ()
     driving = state.outside.driving
@@ -198,7 +198,7 @@ def turns_ahead(state: State) -> tuple[tuple[Turn, float], ...]:
 
 
 def next_turn(state: State) -> tuple[Turn, float] | None:
-    """The next of them."""
+    """The next turn."""
     return next(iter(turns_ahead(state)), None)
 
 
@@ -323,7 +323,7 @@ def destination(rect: Rect, key: str, name: str, state: State) -> Row:
 
 
 def away(state: State, name: str) -> str:
-    """How far a place is, as the crow flies; empty for a street."""
+    """Straight-line distance of a place; empty for a street."""
     place = state.atlas.find(name)
     if place is None or state.outside is None:
         return ""
@@ -332,7 +332,7 @@ def away(state: State, name: str) -> str:
 
 
 def matches(state: State) -> tuple[str, ...]:
-    """Places and streets whose name holds what was typed."""
+    """Places and streets whose name contains the typed text."""
     wanted = state.typed.get("map.search", "").casefold().strip()
     if not wanted:
         return ()
@@ -357,7 +357,7 @@ def _way(rect: Rect, state: State) -> Widget:
 
 
 def arrival(rect: Rect, key: str, state: State) -> tuple[Widget, ...]:
-    """When, how far and how late."""
+    """Arrival time, distance and delay."""
     ahead = None if state.outside is None else state.outside.driving.ahead
     at, left, late = "--:--", "", ""
     if state.outside is not None and ahead is not None:

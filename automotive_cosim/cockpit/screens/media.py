@@ -1,4 +1,4 @@
-"""Media: what plays, the controls, and what else there is: tracks, playlists, stations, podcasts."""
+"""Media: the present entry, the controls, and tracks, playlists, stations, podcasts."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ FOUND = 21
 
 
 def media(state: State) -> tuple[Widget, ...]:
-    """The screen."""
+    """The media screen."""
     source = state.signals[MEDIA.SOURCE]
     typed = bool(state.typed.get("media.search")) or state.focus == "media.search"
     found = state.library.named(state.typed.get("media.search", ""))[:FOUND] if typed else ()
@@ -186,7 +186,7 @@ def _shows(rect: Rect, state: State) -> tuple[Widget, ...]:
 
 
 def playlist(state: State) -> tuple[Widget, ...]:
-    """One playlist: its tracks, and the one that plays now to add or take out."""
+    """One playlist: its tracks, and the present one to add or remove."""
     name = state.picked.get("playlist") or state.listening.playlists[0].name
     tracks = tuple(state.library.by_uri[uri] for uri in state.listening.tracks(name))
     playing = state.library.by_uri[state.signals[MEDIA.PLAYED]]

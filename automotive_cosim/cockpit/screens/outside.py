@@ -1,4 +1,4 @@
-"""Outside: what the car senses of rain, fog, ice, glare, dust and air, and what can be done about each."""
+"""Outside: rain, fog, ice, glare, dust and air as sensed by the car, and remedies for each."""
 
 from __future__ import annotations
 
@@ -33,22 +33,22 @@ LEFT, RIGHT = CONTENT.left(400), CONTENT.right_part(CONTENT.width - 400 - GAP)
 FOG_M, MIST_M = 1000.0, 5000.0
 """Fog and mist by the WMO's definitions."""
 ICE_C = 3.0
-"""Cars warn of ice from here down: the road can be colder than the air."""
+"""Temperature below which cars warn of ice: the road can be colder than the air."""
 
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """What is felt of one phenomenon."""
+    """The reading of one phenomenon."""
 
     word: str
     value: str
     share: float
-    """How bad, 0 to 1."""
+    """Severity, 0 to 1."""
 
 
 @dataclass(frozen=True, slots=True)
 class Act:
-    """Something to do about it: a setting, on or off."""
+    """A remedy: a setting, on or off."""
 
     key: str
     text: str
@@ -60,7 +60,7 @@ class Act:
 
 @dataclass(frozen=True, slots=True)
 class Phenomenon:
-    """One of what the car senses."""
+    """One phenomenon that the car senses."""
 
     title: str
     icon: Icon
@@ -236,7 +236,7 @@ PHENOMENA: dict[str, Phenomenon] = {
 
 
 def outside(state: State) -> tuple[Widget, ...]:
-    """The screen."""
+    """The outside screen."""
     chosen = state.picked["outside"]
     lines = LEFT.rows(len(PHENOMENA), 8)
     return (

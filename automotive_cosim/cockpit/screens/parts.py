@@ -1,4 +1,4 @@
-"""Pieces that several screens are made of, and how values read."""
+"""Parts shared by several screens, and the formatting of values."""
 
 from __future__ import annotations
 
@@ -39,14 +39,14 @@ CONTENT = Rect(
     SCREEN_WIDTH - 2 * MARGIN,
     SCREEN_HEIGHT - STATUS_HEIGHT - DOCK_HEIGHT - 16,
 )
-"""Where a screen may draw."""
+"""The area of a screen."""
 KEYBOARD = Rect(0, 416, SCREEN_WIDTH, SCREEN_HEIGHT - 416)
-"""Where the on-screen keyboard lies while it is shown."""
+"""The area of the on-screen keyboard."""
 MILE_KM, PSI_KPA = 1.609344, 6.894757
 
 
 def temperature(signals: Signals, celsius: float, digits: int = 1) -> str:
-    """In the unit of the display."""
+    """A value in the unit of the display."""
     if signals[HMI.TEMPERATURE_UNIT] == "F":
         return f"{celsius * 1.8 + 32:.0f} °F"
     return f"{celsius:.{digits}f} °C".replace("-0 ", "0 ").replace("-0.0", "0.0")
@@ -58,12 +58,12 @@ def speed(signals: Signals, kmh: float) -> str:
 
 
 def speed_unit(signals: Signals) -> str:
-    """Of ``speed``."""
+    """Unit of ``speed``."""
     return "mph" if signals[HMI.DISTANCE_UNIT] == "MILES" else "km/h"
 
 
 def distance(signals: Signals, metres: float) -> str:
-    """Rounded as signs are."""
+    """A distance, rounded as on signs."""
     if signals[HMI.DISTANCE_UNIT] == "MILES":
         miles = metres / 1000 / MILE_KM
         return f"{miles:.1f} mi" if miles < 100 else f"{miles:.0f} mi"
@@ -73,7 +73,7 @@ def distance(signals: Signals, metres: float) -> str:
 
 
 def pressure(signals: Signals, kpa: float) -> str:
-    """In the unit of the display."""
+    """A value in the unit of the display."""
     unit = signals[HMI.PRESSURE_UNIT]
     if unit == "PSI":
         return f"{kpa / PSI_KPA:.0f} psi"
@@ -201,7 +201,7 @@ def slider(
     shown: str = "",
     locked: str = "",
 ) -> Slider:
-    """A number; a percentage if nothing else is to be shown."""
+    """A slider for a number, as a percentage by default."""
     return Slider(
         rect=rect,
         key=key,
@@ -247,12 +247,12 @@ def title(rect: Rect, icon: Icon, text: str, key: str = "") -> Card:
 
 
 def note(rect: Rect, key: str, text: str) -> Label:
-    """What stands where a list is empty."""
+    """The text of an empty list."""
     return Label(rect=rect.top(60), key=key, text=text, tone="muted", style=Type.LABEL, align="centre")
 
 
 def fact(rect: Rect, key: str, name: str, value: str) -> tuple[Widget, ...]:
-    """A line with a name and what it is."""
+    """A line with a name and a value."""
     half = rect.width // 2
     return (
         Label(rect=rect.left(half), text=name, style=Type.LABEL, tone="muted"),
@@ -340,7 +340,7 @@ def rows(
 
 
 def _rest(rect: Rect, key: str, state: State) -> Row:
-    """Where a long list ends while driving."""
+    """The end of a long list while driving."""
     return Row(
         rect=rect,
         key=f"{key}.rest",

@@ -41,7 +41,7 @@ KEYS = "123456789*0#"
 
 
 def phone(state: State) -> tuple[Widget, ...]:
-    """The screen."""
+    """The phone screen."""
     shown = state.picked["phone"]
     pages = {
         "favourites": _favourites,
@@ -62,7 +62,7 @@ def phone(state: State) -> tuple[Widget, ...]:
 
 
 def _side(state: State) -> Widget:
-    """The call that goes on, or the phone; and what is always needed."""
+    """The present call, or the phone's state, and permanent buttons."""
     inner = LEFT.inset(20)
     calls = state.phone
     return Card(
@@ -439,7 +439,7 @@ def contact(state: State) -> tuple[Widget, ...]:
 
 
 def thread(state: State) -> tuple[Widget, ...]:
-    """What somebody wrote, and answers that one tap sends. While driving it is read out instead."""
+    """Somebody's messages, and replies that one tap sends. While driving, messages are read out instead."""
     who = state.picked.get("thread") or state.directory.threads[0].who
     known = state.directory.thread(who, state.phone)
     hidden = state.locked(Restriction.NO_TEXT_MESSAGE)

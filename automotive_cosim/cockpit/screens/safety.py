@@ -1,4 +1,4 @@
-"""Safety centre: warn the driver, ask the car to slow down or stop, call for help; and what was given so far."""
+"""Safety centre: warn the driver, ask to slow down or stop, call for help; and earlier alerts."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ SLOWEST_KMH, FASTEST_KMH, STEP_KMH = 10.0, 180.0, 10.0
 
 
 def safety(state: State) -> tuple[Widget, ...]:
-    """The screen."""
+    """The safety centre."""
     left = CONTENT.left(556)
     middle = Rect(left.right + GAP, CONTENT.y, 344, CONTENT.height)
     right = CONTENT.right_part(CONTENT.width - 556 - 344 - 2 * GAP)
@@ -145,7 +145,7 @@ def _draft(rect: Rect, state: State) -> Widget:
 
 
 def _advice(rect: Rect, state: State) -> tuple[Widget, ...]:
-    """Advised speed: left to the posted limit, or a number."""
+    """Advised speed: the posted limit, or a number."""
     signals, draft = state.signals, state.draft
     advised = draft.speed_kmh
     start = signals[ADAS.LIMIT_SIGN] or signals[MOTION.SPEED]
@@ -250,7 +250,7 @@ def _history(rect: Rect, state: State) -> Widget:
 
 
 def emergency(state: State) -> tuple[Widget, ...]:
-    """Asks once more before it calls."""
+    """Asks for confirmation before it calls."""
     card = CONTENT.middle(640, 400)
     inner = card.inset(40, 36)
     cancel, call = inner.bottom_part(88).columns(2, GAP)

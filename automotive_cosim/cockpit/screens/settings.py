@@ -43,7 +43,7 @@ def _page(state: State, *cards: Widget) -> tuple[Widget, ...]:
 
 
 def settings(state: State) -> tuple[Widget, ...]:
-    """The display, and the units it speaks in."""
+    """The display, and its units."""
     left, right = PAGE.columns(2, GAP)
     return _page(state, _display(left, state), _units(right, state))
 
@@ -142,7 +142,7 @@ def _units(rect: Rect, state: State) -> Widget:
 
 
 def sound(state: State) -> tuple[Widget, ...]:
-    """Loudness of all that is heard, and the equaliser."""
+    """Volumes and the equaliser."""
     signals = state.signals
     left, right = PAGE.columns(2, GAP)
     levels, tones = left.inset(28, 24), right.inset(28, 24)
@@ -302,7 +302,7 @@ def connections(state: State) -> tuple[Widget, ...]:
 
 
 def language(state: State) -> tuple[Widget, ...]:
-    """The language, and how times are written."""
+    """The language, and the format of times."""
     signals = state.signals
     left, right = PAGE.columns(2, GAP)
     words, clock = left.inset(28, 24), right.inset(28, 24)
@@ -364,7 +364,7 @@ def language(state: State) -> tuple[Widget, ...]:
 
 
 def privacy(state: State) -> tuple[Widget, ...]:
-    """What leaves the car, and who may listen."""
+    """Data sharing and the microphone."""
     signals = state.signals
     inner = PAGE.inset(28, 24)
     options = (
@@ -406,7 +406,7 @@ def privacy(state: State) -> tuple[Widget, ...]:
 
 
 def profiles(state: State) -> tuple[Widget, ...]:
-    """Who drives: seat, mirrors, temperature and brightness as they like it. They change while parked."""
+    """Driver profiles with seat, mirrors, temperature and brightness. They change only while parked."""
     inner = PAGE.inset(28, 24)
     desk = state.desk
     locked = state.locked(Restriction.NO_SETUP)

@@ -35,11 +35,11 @@ from automotive_cosim.cockpit.vehicle import BATTERY_KWH
 from automotive_cosim.cockpit.widgets import Bar, Button, Card, Glyph, Label, Look, Row, Tile, Widget
 
 STAYS = (30, 60, 120, 240)
-"""Minutes that one can pay for."""
+"""Parking times that can be paid for, in minutes."""
 
 
 def charging(state: State) -> tuple[Widget, ...]:
-    """The battery, how far to charge it and when, and stations nearby."""
+    """The battery, its charge limit and schedule, and stations nearby."""
     signals = state.signals
     left, right = CONTENT.columns(2, GAP)
     inner = left.inset(28, 20)
@@ -208,7 +208,7 @@ def parking(state: State) -> tuple[Widget, ...]:
 
 
 def _film(rect: Rect, topic: int, icon: Icon, state: State) -> tuple[Widget, ...]:
-    """The topic as a film: its picture and how far it is while it plays, and the button."""
+    """The topic's video: its picture, its progress while it plays, and the button."""
     desk, button = state.desk, rect.bottom_part(64).left(320)
     if desk.film is None or desk.film[0] != topic:
         start = Put("desk", replace(desk, film=(topic, state.time_s)), "The film plays")
@@ -251,7 +251,7 @@ def _film(rect: Rect, topic: int, icon: Icon, state: State) -> tuple[Widget, ...
 
 
 def manual(state: State) -> tuple[Widget, ...]:
-    """Topics of the handbook and what it says of one."""
+    """Topics of the manual, and the text of one."""
     wanted = state.typed.get("manual.search", "").casefold().strip()
     found = [
         (at, topic)

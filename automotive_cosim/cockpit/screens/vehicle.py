@@ -1,4 +1,4 @@
-"""Vehicle: lamps and wipers, with the car as it stands; and driver assistance."""
+"""Vehicle: lamps and wipers with a view of the car, and driver assistance."""
 
 from __future__ import annotations
 
@@ -112,7 +112,7 @@ def assistance(state: State) -> tuple[Widget, ...]:
 
 
 def right_side() -> Rect:
-    """What stands beside the car."""
+    """The controls next to the car."""
     return CONTENT.right_part(CONTENT.width - CAR_WIDTH - GAP)
 
 
@@ -213,7 +213,7 @@ def _wipers(rect: Rect, state: State) -> Widget:
 
 
 def _keeping(rect: Rect, state: State) -> Widget:
-    """Cruise control on the left, the limiter on the right; one of them holds the speed."""
+    """Cruise control on the left, the limiter on the right; only one of them is active."""
     signals = state.signals
     inner = rect.inset(20, 12)
     left, right = inner.columns(2, 24)

@@ -1,4 +1,4 @@
-"""Map, further in: places by kind, one place before setting out, and the route with its turns and options."""
+"""Sub-screens of Map: places by kind, one place before departure, and the route with its turns and options."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def nearest(state: State, places: Sequence[Destination]) -> tuple[Destination, .
 
 
 def along(state: State, places: Sequence[Destination]) -> tuple[Destination, ...]:
-    """Places by how far they lie beside the route."""
+    """Places by their distance from the route."""
     route = () if state.outside is None else state.outside.driving.ahead.route_edges
     ways = [road for road in map(state.roads.find, route) if road is not None]
     if not ways:
@@ -97,7 +97,7 @@ def _places(state: State, found: tuple[Destination, ...]) -> Widget:
 
 
 def place(state: State) -> tuple[Widget, ...]:
-    """One destination, before setting out."""
+    """One destination, before departure."""
     name = state.picked.get("place") or next(iter(state.navigation.favourites), "")
     known = state.atlas.find(name)
     card = Rect(PANEL.x, PANEL.y + 72, PANEL.width, 200)
@@ -166,7 +166,7 @@ def _place_buttons(rect: Rect, name: str, known: Destination | None, state: Stat
 
 
 def route(state: State) -> tuple[Widget, ...]:
-    """The way ahead: its turns, other ways, and what to keep away from."""
+    """The route ahead: its turns, alternatives, and what to avoid."""
     shown = state.picked["route"]
     goal = state.navigation.destination or "Route"
     summary = Rect(PANEL.x, PANEL.y + 64, PANEL.width, 72)
@@ -215,7 +215,7 @@ def _turn_list(rect: Rect, state: State) -> tuple[Widget, ...]:
 
 
 def _ways(rect: Rect, state: State) -> tuple[Widget, ...]:
-    """The present way, others that the road offers, and places to charge on the way."""
+    """The present route, alternatives, and places to charge on the way."""
     ahead = None if state.outside is None else state.outside.driving.ahead
     others = () if ahead is None else ahead.alternatives
     chargers = along(state, state.atlas.of(PlaceKind.CHARGING))

@@ -51,4 +51,4 @@ class SignalHas:
         return bool(moment.signals[self.signal.path] == self.value)
 
     def __str__(self) -> str:
-        return f"{self.signal.path} is {self.value}"
+        return f"{self.signal.path} is {'empty' if self.value == '' else self.value}"

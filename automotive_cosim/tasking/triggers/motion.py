@@ -20,7 +20,7 @@ class Driving:
         return moment.driving.speed_mps > WALKING_MPS
 
     def __str__(self) -> str:
-        return "the car is on its way"
+        return "the car is driving"
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +47,7 @@ class Standing:
         return moment.driving.speed_mps < STANDING_MPS
 
     def __str__(self) -> str:
-        return "the car stands"
+        return "the car is stationary"
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +68,9 @@ class SpeedAbove:
         )
 
     def __str__(self) -> str:
-        limits = f"{self.limit_from_kmh:g} to {self.limit_to_kmh:g}"
+        limits = f"{self.limit_from_kmh:g}"
+        if self.limit_to_kmh != self.limit_from_kmh:
+            limits += f" to {self.limit_to_kmh:g}"
         return f"faster than {self.speed_kmh:g} km/h where {limits} km/h are posted"
 
 
@@ -84,9 +86,9 @@ class SpeedBetween:
         return self.from_kmh < moment.driving.speed_mps * KMH_PER_MPS <= self.to_kmh
 
     def __str__(self) -> str:
-        return f"faster than {self.from_kmh:g}" + (
-            " km/h" if self.to_kmh == ANY else f", up to {self.to_kmh:g} km/h"
-        )
+        if self.to_kmh == ANY:
+            return f"faster than {self.from_kmh:g} km/h"
+        return f"{max(self.from_kmh, 0):g} to {self.to_kmh:g} km/h"
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,7 +20,7 @@ class VisibilityBetween:
         return self.from_m <= moment.weather.visibility < self.to_m
 
     def __str__(self) -> str:
-        return f"visibility {self.from_m:g} to {self.to_m:g} m"
+        return "visibility " + _range(self.from_m, self.to_m, "m")
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +35,7 @@ class RainBetween:
         return self.from_mm_h <= moment.weather.precipitation < self.to_mm_h
 
     def __str__(self) -> str:
-        to = "more" if self.to_mm_h == ANY else f"{self.to_mm_h:g}"
-        return f"{self.from_mm_h:g} to {to} mm/h of rain or snow"
+        return _range(self.from_mm_h, self.to_mm_h, "mm/h") + " of rain or snow"
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,3 +103,7 @@ class Offline:
 
     def __str__(self) -> str:
         return "no connection"
+
+
+def _range(low: float, high: float, unit: str) -> str:
+    return f"{low:g} {unit} or more" if high == ANY else f"{low:g} to {high:g} {unit}"

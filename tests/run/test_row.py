@@ -1,0 +1,130 @@
+"""Rows come back from their lines, those of older versions too, and bad ones are told."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import MISSING, fields, replace
+from typing import Any
+
+import pytest
+
+from automotive_cosim.errors import UserError
+from automotive_cosim.proof.prover import Proof
+from automotive_cosim.run.collect import failed, planned
+from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
+from automotive_cosim.run.harm import DriveFigures
+from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.row import JobRow, as_json, columns, from_line, steady
+from automotive_cosim.run.store import opened, read_rows
+from automotive_cosim.studies.rows import NOBODY, NOTHING, Branch, Decision, DriveRow, News
+
+OLD: dict[str, Any] = {
+    "id": "a", "task": "road_speed_80_in_50", "half": "first", "pair": "p", "dimension": "environment_alerts",
+    "module": "road", "scenario": "paris_centre", "agent": "oracle", "model": "none", "geo": "full", "seed": 0,
+    "repeat": 0, "mode": "prompted", "success": True, "reward": 1.0, "end": "declared", "steps": 2, "error": None,
+    "parts": {"goal": True, "clean": True, "safe": True, "in_time": True, "declared": True}, "error_kind": None,
+    "drive": {"overspeed_m": 0.0, "min_time_to_collision_s": 40.9, "arrival_s": 271.1, "energy_wh": 42.9},
+    "untouched_drive": {"overspeed_m": 9.5, "min_time_to_collision_s": None, "arrival_s": None, "energy_wh": 50},
+    "cost_usd": 0, "trace_sha256": "ab" * 32,
+}  # fmt: skip
+"""An episode as the first version wrote it, without the fields that came later."""
+
+JOB = make_plan({"agents": ["oracle"], "tasks": ["road_speed_80_in_50"]}).jobs()[0]
+DRIVE = DriveFigures(1.5, None, 60.0, 9.0)
+EPISODE = replace(
+    planned(JOB), success=False, parts=PartsHeld(True, True, True, False, True), parameters={"x": 3}, drive=DRIVE,
+    baseline_drive=DRIVE, prompt_tokens=(400, 500), attempts=2, failed_attempts=("WorkerDied: gone",),
+)  # fmt: skip
+NEWS = News(age_s=0.0, stay_s=100.0, delay_s=40.0, offered_s=None, branch=None)
+BRANCH = Branch(gains=NOTHING, totals=NOTHING, others=NOBODY)
+DECISION = Decision(
+    at_s=900.0, edge="e", delay_s=40.0, eta_s=100.0, relative_speed=0.5, complies=True, news=(NEWS,), own=0,
+    agents={"asurada": 0}, agents_rerouted=("asurada",), branches=(BRANCH,), placebo=BRANCH,
+)  # fmt: skip
+ROWS = (
+    EPISODE,
+    failed(JOB, "WorkerDied", "its process ended"),
+    DriveRow(
+        id="d", scenario="grid", share=0.5, seed=0, departure_s=60.0, trip="t", stay=NOTHING, decisions=(DECISION,)
+    ),
+    Proof(id="p", task="t", seed=0, wrong={"oracle": [], "near": ["why"]}, oracle_steps={"first": 3}),
+    JobRow(id="j"),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: type(row).__name__)
+def test_a_row_comes_back_from_its_line_equal_and_typed(row):
+    line = json.dumps(as_json(row)).encode()
+    again = from_line(type(row), line)
+    assert again == row
+    assert [type(getattr(again, each.name)) for each in fields(row)] == [
+        type(getattr(row, each.name)) for each in fields(row)
+    ]
+    assert json.loads(line).keys() == {each.name for each in fields(row)}
+
+
+@pytest.mark.parametrize(
+    ("kind", "required"),
+    [
+        (EpisodeRow, "id task half pair dimension module scenario agent model geo seed repeat"),
+        (DriveRow, "id scenario share seed departure_s trip"),
+        (Proof, "id task seed"),
+    ],
+)
+def test_whatever_is_added_to_a_row_has_a_default_so_that_older_lines_are_still_read(kind, required):
+    without = {each.name for each in fields(kind) if each.default is MISSING and each.default_factory is MISSING}
+    assert without == set(required.split())
+
+
+def test_lines_of_the_first_version_are_read():
+    row = from_line(EpisodeRow, json.dumps(OLD).encode())
+    assert row.baseline_drive == DriveFigures(9.5, None, None, 50.0)
+    assert (row.skills, row.tokens_in, row.attempts, row.held_out) == ((), 0, 1, False)
+    assert row.has_succeeded
+    assert not row.missing
+
+
+def test_fields_of_a_newer_version_are_passed_over():
+    assert from_line(EpisodeRow, json.dumps(OLD | {"lane_changes": 3}).encode()) == from_line(
+        EpisodeRow, json.dumps(OLD).encode()
+    )
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"steps": "two"}, "steps: "),
+        ({"success": 1}, "success: "),
+        ({"dimension": "depth"}, "dimension: "),
+        ({"drive": {"overspeed_m": 1.0}}, "drive.min_time_to_collision_s: "),
+        ({"task": None}, "task: "),
+    ],
+)
+def test_a_line_that_is_none_is_named_with_its_field_and_what_to_do(tmp_path, change, said):
+    with opened(tmp_path / "e", {"agents": ["oracle"]}, EpisodeRow) as store:
+        store.append(EPISODE)
+    with (tmp_path / "e" / "episodes.jsonl").open("a") as lines:
+        lines.write(json.dumps(OLD | change) + "\n")
+    with pytest.raises(UserError) as caught:
+        read_rows(tmp_path / "e", EpisodeRow)
+    assert f"line 2 cannot be read: {said}" in str(caught.value)
+    assert "the version that wrote it" in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_what_may_differ_between_two_runs_is_left_out_where_they_are_compared():
+    other = replace(EPISODE, wall_seconds=7.0, attempts=1, failed_attempts=(), model_seconds=3.0)
+    assert steady(other) == steady(EPISODE)
+    assert as_json(EPISODE).keys() - steady(EPISODE).keys() == {
+        "wall_seconds", "attempts", "failed_attempts", "model_seconds",
+    }  # fmt: skip
+    assert steady(replace(EPISODE, steps=9)) != steady(EPISODE)
+
+
+def test_a_data_frame_has_a_column_for_each_part_and_figure():
+    made = columns(EPISODE)
+    assert (made["part_in_time"], made["baseline_drive_overspeed_m"], made["dimension"]) == (
+        False, 1.5, "driving_alignment",
+    )  # fmt: skip
+    assert not {"parts", "drive", "baseline_drive"} & made.keys()
+    assert "part_goal" not in columns(planned(JOB))
