@@ -1,7 +1,11 @@
-# Two commands do everything: `make run` (the main job) and `make test`. Each makes its own environment.
+# `make run` is the main job, `make test-fast` the inner loop, `make check test` what a change must pass. Each makes its
+# own environment.
 PYTHON ?= python3
 VENV ?= .venv
 BIN = $(VENV)/bin
+
+# Container images like to set it; hundreds of processes start in the tests, and each would compile the package anew.
+unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: run test test-fast lint check bench clean
 .DELETE_ON_ERROR:

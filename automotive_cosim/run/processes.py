@@ -38,15 +38,18 @@ class Processes:
         return connection.wait(handles, timeout_s)
 
 
-class _Process(Generic[J, R]):
-    is_ready = True
+class _Ready:
+    """Says that a process has started and can take a job."""
 
+
+class _Process(Generic[J, R]):
     def __init__(self, opener: Opener[J, R], folder: Path) -> None:
         context = multiprocessing.get_context("spawn")
         self._pipe, theirs = context.Pipe()
         self._process = context.Process(target=_work, args=(theirs, opener, folder), daemon=False)
         self._process.start()
         theirs.close()
+        self.is_ready = False
 
     @property
     def handles(self) -> Sequence[Any]:
@@ -56,14 +59,17 @@ class _Process(Generic[J, R]):
         with suppress(OSError):
             self._pipe.send(job)
 
-    def answer(self) -> R | CannotWrite:
+    def answer(self) -> R | CannotWrite | None:
         try:
-            answer: R | CannotWrite | None = self._pipe.recv() if self._pipe.poll() else None
+            answer: R | CannotWrite | _Ready | None = self._pipe.recv() if self._pipe.poll() else None
         except (EOFError, OSError):
             answer = None
         if answer is None:
             self._process.join()
             raise LostError(f"the worker died with exit code {self._process.exitcode}")
+        if isinstance(answer, _Ready):
+            self.is_ready = True
+            return None
         return answer
 
     def end(self, *, at_once: bool) -> None:
@@ -80,13 +86,14 @@ class _Process(Generic[J, R]):
 
 
 def _work(jobs: Connection, opener: Opener[J, R], folder: Path) -> None:
-    """Answers each job with its row, until it receives None.
+    """Says that it is ready, then answers each job with its row, until it receives None.
 
     The parent handles Ctrl-C; when the parent is gone, this process ends at once.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
     with opener() as run:
+        jobs.send(_Ready())
         while (job := jobs.recv()) is not None:
             try:
                 answer: R | CannotWrite = run(job, folder)

@@ -180,25 +180,6 @@ def test_a_gate_that_fails_is_told_beneath_its_task_and_sets_the_exit_code(valid
     assert "goal" in failed["why"]
 
 
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (("--gates", "orakel"), "did you mean 'oracle'?"),
-        (("--gates", ","), "--gates is empty"),
-        (("--tasks", "nothing_*"), "no task"),
-        (("--workers", "0"), "whole number"),
-        (("--out", "file"), "file is a file"),
-    ],
-)
-def test_bad_input_is_one_line(tmp_path, monkeypatch, words, said):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "file").touch()
-    ran = subprocess.run([*PROGRAM, *words], capture_output=True, text=True, check=False)
-    assert (ran.returncode, ran.stderr.count("\n")) == (2, 1)
-    assert ran.stderr.startswith("error: ")
-    assert said in ran.stderr
-
-
 def test_pieces_go_together_and_each_task_comes_after_one_of_its_piece():
     jobs = ProofPlan(("all",), (0, 1)).jobs()
     assert len({job.id for job in jobs}) == len(jobs)

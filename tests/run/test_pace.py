@@ -17,8 +17,6 @@ from automotive_cosim.run.batch import Progress, run_jobs
 from automotive_cosim.run.row import JobRow
 
 OUT_OF_REACH = "TriggerNotReachedError"
-START_S = 2.0
-"""It takes a process to be started."""
 
 MEASURED = {
     "alpine_pass": (17, 1.0, 1.05), "autobahn": (29, 2.0, 3.8), "beauce": (19, 0.6, 0.57),
@@ -86,10 +84,9 @@ class ClockedWorker:
         return [self]
 
     def give(self, job: Planned) -> None:
-        start_s = START_S if self.warm is None else 0.0
         warm_up_s = 0.0 if job.simulation == self.warm else job.warm_up_s
         self.job, self.warm = job, job.simulation
-        self.ends_s = self.clock.now_s + start_s + warm_up_s + job.own_s
+        self.ends_s = self.clock.now_s + warm_up_s + job.own_s
 
     def answer(self) -> JobRow:
         assert self.job is not None
@@ -205,7 +202,7 @@ def test_what_is_known_to_be_out_of_reach_takes_no_time(monkeypatch):
     first = [Planned(f"a{n}", ("grid", 0), "a", f"{n}", 20.0, 1.0, is_out_of_reach=True) for n in range(20)]
     second = [Planned(f"b{n}", ("grid", 0), "b", f"{n}", 20.0, 1.0, is_out_of_reach=True) for n in range(20)]
     told = play(monkeypatch, [*first, *second], 1)
-    assert told[-1][0] == pytest.approx(START_S + 1.0 + 20 * 20.0)
+    assert told[-1][0] == pytest.approx(1.0 + 20 * 20.0)
     assert [open_ for *_, open_ in told] == list(range(40, -1, -1))
 
 
