@@ -1,4 +1,4 @@
-"""``automotive-cosim validate`` refuses what it cannot prove; what it proves is in ``tests/proof/test_validate.py``."""
+"""``automotive-cosim validate`` refuses what it cannot prove; ``tests/proof/test_validate.py`` tests its proofs."""
 
 import pytest
 
