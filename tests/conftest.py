@@ -28,6 +28,13 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.traffic.fork import Simulations
 
+PROXIES = [f"{kind}_proxy" for kind in ("http", "https", "all")]
+for _name in (
+    "COLUMNS", "LINES", "FORCE_COLOR", "NO_COLOR", "PY_COLORS", "GITHUB_ACTIONS", "AUTOMOTIVE_COSIM_DEBUG",
+    *PROXIES, *map(str.upper, PROXIES),
+):  # fmt: skip
+    os.environ.pop(_name, None)  # what is printed, and who answers at 127.0.0.1, must not depend on the machine
+
 OTHERS = "AUTOMOTIVE_COSIM_TEST_DATA"
 NO_LIBSUMO = Path(__file__).parent / "no_libsumo"
 """What the children of a test find in the place of libsumo."""
