@@ -52,12 +52,12 @@ class UnknownNameError(UserError):
         choices = sorted(known)
         close = get_close_matches(name, choices, n=1, cutoff=0.5)
         if close:
-            fix = f"did you mean '{close[0]}'?"
+            fix = f": did you mean '{close[0]}'?"
         elif hint and len(choices) > LISTED:
-            fix = f"there are {len(choices)}."
+            fix = f" among the {len(choices)}."
         else:
-            fix = f"there are: {', '.join(choices) or 'none'}."
-        super().__init__(f"no {kind} named {name!r}: {fix}" + (f" List them with `{hint}`." if hint else ""))
+            fix = f"; choose from: {', '.join(choices)}." if choices else "; there are none."
+        super().__init__(f"no {kind} named {name!r}{fix}" + (f" List them with `{hint}`." if hint else ""))
         self.kind = kind
         self.name = name
 

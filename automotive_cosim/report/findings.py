@@ -22,7 +22,7 @@ PLACE = "place"
 NAMES = {Module.HVAC: "HVAC"}
 FIGURES: tuple[tuple[str, int, Callable[[DriveFigures], float | None]], ...] = (
     ("Above the limit, m", 1, lambda drive: drive.overspeed_m),
-    ("Least time to collision, s", 2, lambda drive: drive.min_time_to_collision_s),
+    ("Minimum time to collision, s", 2, lambda drive: drive.min_time_to_collision_s),
     ("Delay, s", 1, lambda drive: drive.arrival_s),
     ("Energy, Wh", 1, lambda drive: drive.energy_wh),
 )

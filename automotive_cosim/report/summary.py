@@ -150,7 +150,7 @@ def conduct(results: Results) -> Table:
     columns = (
         "Contestant",
         "Speed-limit compliance",
-        "Least time to collision, s",
+        "Minimum time to collision, s",
         "Driver's interaction, s",
         "Within 2 s / 12 s",
         "Steps",

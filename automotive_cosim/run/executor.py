@@ -45,7 +45,10 @@ R = TypeVar("R", bound=JobRow)
 J_contra = TypeVar("J_contra", bound=Job, contravariant=True)
 R_co = TypeVar("R_co", bound=JobRow, covariant=True)
 
-Runner = Callable[[J, Path], R]
+# An alias of variables without bounds, as pyright refuses to specialize one whose bound is a protocol.
+_J = TypeVar("_J")
+_R = TypeVar("_R")
+Runner = Callable[[_J, Path], _R]
 """Runs a job, writes the files to keep into the folder, and returns its row, even after an error.
 
 OSError if something cannot be written.

@@ -28,7 +28,7 @@ class DriveFigures:
     overspeed_m: float
     """Metres driven above the posted limits: the integral of the speed above them."""
     min_time_to_collision_s: float | None
-    """The least time to collision with the car in front; None if none came nearer."""
+    """The minimum time to collision with the car in front; None if none came nearer."""
     arrival_s: float | None
     """From the hand-over to the destination, with the rest estimated at the end; None if the drive was broken off.
     The difference of two drives is the delay."""
@@ -76,6 +76,6 @@ def overspeed(states: Iterable[DrivingState]) -> tuple[float, float]:
 
 
 def nearest_s(states: Iterable[DrivingState]) -> float | None:
-    """The least time to collision with the car in front; None if none came nearer."""
+    """The minimum time to collision with the car in front; None if none came nearer."""
     times = [state.around.leader.time_to_collision_s for state in states if state.around.leader is not None]
     return min((round(time_s, 3) for time_s in times if time_s is not None), default=None)

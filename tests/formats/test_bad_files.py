@@ -241,7 +241,7 @@ WRONG = [
     ("plan", "[limits]", "[[limits]]", "[[limits]]", "it must be a table", True),
     ("rules", 'code = "XX-town"', 'code = "XX"', None, "no field named 'within'", True),
     ("rules", 'within = "XX"', 'within = "YY"', None, "does not begin with within = 'YY'", False),
-    ("rules", 'kind = "city"', 'kind = "town"', "kind", "no kind named 'town': there are: city, region", True),
+    ("rules", 'kind = "city"', 'kind = "town"', "kind", "no kind named 'town'; choose from: city, region", True),
     ("rules", "[1, 0]", "[1, 91]", "polygon", "polygon[1][1] is 91; it must be a latitude", True),
     ("rules", "[1, 0]", "[1, 0, 0]", "polygon", "polygon[1] is [1, 0, 0]; it must be a pair", True),
     ("rules", "[1, 0], ", "[1, 0], [0, 1], ", "polygon", "the polygon's edges cross", False),
