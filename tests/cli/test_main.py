@@ -67,6 +67,7 @@ def test_tasks_and_agents_are_listed(cli):
     assert set(AGENTS) <= set(cli("agents").out.split())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("task", CATALOGUE)
 def test_a_task_is_shown_with_its_words_and_halves(cli, task):
     text = cli("tasks", "show", task).out

@@ -60,6 +60,7 @@ def test_a_hundred_thousand_touches_break_nothing(
             cockpit.drain_requests()
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(text=st.text(max_size=200), screen=st.sampled_from(sorted(SCREENS)), clear=st.booleans())
 def test_any_text_can_be_typed_and_drawn(

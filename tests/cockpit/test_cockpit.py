@@ -458,6 +458,7 @@ def test_thousands_of_random_touches_break_nothing(make: Make, around: Surroundi
     assert visited >= set(DOCK)
 
 
+@pytest.mark.slow
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(text=st.text(max_size=150), more=st.text(max_size=150))
 def test_any_text_can_be_typed_shown_and_said(make: Make, around: Surroundings, text: str, more: str) -> None:

@@ -105,7 +105,15 @@ CASES: dict[str, Callable[[Make, Surroundings], Cockpit]] = {
 }
 
 
-@pytest.fixture(scope="module", params=CASES, ids=str)
+FAST = ("day", "night", "busy", "parked", "parked in German by night", "a call rings")
+"""The others are left to the whole run."""
+
+
+@pytest.fixture(
+    scope="module",
+    params=[name if name in FAST else pytest.param(name, marks=pytest.mark.slow) for name in CASES],
+    ids=str,
+)
 def screens(
     request: pytest.FixtureRequest,
     network: RoadNetwork,
@@ -213,7 +221,7 @@ LONG = (
 
 
 @pytest.mark.parametrize("language", ["en", "de", "ja"])
-@pytest.mark.parametrize("parked", [False, True])
+@pytest.mark.parametrize("parked", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_the_longest_street_names_are_not_cut(
     network: RoadNetwork, around: Surroundings, walker: Any, language: str, parked: bool
 ) -> None:

@@ -397,6 +397,7 @@ _entries = (
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=600, deadline=None)
 @given(kind=st.sampled_from(ActionType), given_fields=st.dictionaries(_fields, _entries, max_size=4))
 def test_the_schema_of_an_action_takes_what_the_program_takes(

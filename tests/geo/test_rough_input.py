@@ -97,6 +97,7 @@ def test_both_sides_of_the_date_line_are_one_place(lat: float) -> None:
     assert east == west
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("zone", ["Europe/Paris", "America/New_York", "Australia/Lord_Howe", "Pacific/Apia"])
 def test_no_instant_of_a_year_lacks_a_context(locate: Callable[..., GeoContext], zone: str) -> None:
     """Hour by hour through 2011, when Apia skipped a day, and summer time's gaps and folds everywhere."""

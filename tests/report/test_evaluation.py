@@ -94,6 +94,7 @@ class Page(html.parser.HTMLParser):
         assert tag != "link" or named.get("href") == "data:,"
 
 
+@pytest.mark.slow
 def test_every_link_of_the_page_leads_somewhere_and_nothing_is_fetched(folder):
     text = (folder / "report.html").read_text(encoding="utf-8")
     page = Page(text)
@@ -230,6 +231,7 @@ def test_compared_traces_name_the_first_difference():
     assert [each.differs for each in other] == [(), ("signals", "action"), ("length",)]
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(CHROMIUM is None, reason="there is no chromium to look with")
 @pytest.mark.parametrize("width", [390, 1280])
 def test_in_a_browser_it_fits_and_makes_no_error(folder, tmp_path, width):

@@ -90,6 +90,7 @@ def test_paired_comparisons_agree_with_statsmodels(both, b, c, neither):
     assert found.interval.low <= found.difference <= found.interval.high
 
 
+@pytest.mark.slow
 def test_the_bootstrap_agrees_with_the_normal_interval_of_many_independent_pairs():
     rng = np.random.default_rng(1)
     one, other = rng.random(800) < 0.7, rng.random(800) < 0.55

@@ -96,9 +96,10 @@ def test_another_process_in_another_folder_gives_the_same_trace(run, tmp_path):
 
 def test_changing_anything_hashed_changes_the_hash(run):
     """Every leaf of traffic, signals, elements and action of one step, one at a time."""
-    lines = _lines(run("oracle").folder)
+    lines = _lines(run("oracle").folder)[:2]
     whole = trace.sha256(lines)
-    step = next(line for line in lines if line["action"])
+    step = lines[1]
+    assert step["action"]
     changed = 0
     for name in ("traffic", "signals", "elements", "action"):
         for path in _leaves(step[name]):

@@ -173,6 +173,7 @@ PLANS: dict[str, Callable[[], list[Planned]]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("workers", "share"), [(1, 0.0), (2, 0.5), (8, 0.0)])
 @pytest.mark.parametrize("name", PLANS)
 def test_after_a_minute_the_time_left_is_right_within_a_factor_of_two(name, workers, share, monkeypatch):

@@ -11,6 +11,7 @@ from automotive_cosim.run.store import opened, read_manifest, read_rows, read_tr
 PLAN = {"agents": ["oracle"]}
 
 
+@pytest.mark.slow
 def test_a_line_cut_short_costs_that_line_alone(tmp_path):
     with opened(tmp_path / "e", PLAN, JobRow) as store:
         store.append(JobRow(id="a"))

@@ -50,6 +50,7 @@ def test_all_roads_lie_on_the_map(name: str) -> None:
         assert np.all(pixels <= (frame.width, frame.height))
 
 
+@pytest.mark.slow
 def test_every_trip_and_road_class_shows() -> None:
     seen = _colours(draw_scenario(scenarios.load("paris_centre")))
     for number in range(len(scenarios.load("paris_centre").ego.trips)):

@@ -125,6 +125,7 @@ def test_gains_up_to_what_the_placebos_change_are_ties() -> None:
     assert noise([decision(1.0)]).time_s == 0
 
 
+@pytest.mark.slow
 def test_intervals_take_the_seeds_as_what_is_independent() -> None:
     """Repeating every decision of a seed adds nothing; and the true mean lies within about as often as it says."""
     rng = np.random.default_rng(1)

@@ -21,7 +21,7 @@ def grid() -> Scenario:
     return load("grid")
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def forked(sumo: None, grid: Scenario) -> Iterator[Forked]:
     simulation = Forked(grid, seed=1)
     yield simulation
