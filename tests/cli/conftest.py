@@ -44,7 +44,7 @@ def warm(simulations: Simulations, monkeypatch: pytest.MonkeyPatch) -> None:
     """``automotive-cosim run`` takes the warm simulations that all tests share, instead of its own."""
 
     class Lent:
-        warm = staticmethod(simulations.warm)
+        held = staticmethod(simulations.held)
 
         def close(self) -> None:
             """They stay warm."""
