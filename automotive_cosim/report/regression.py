@@ -95,11 +95,11 @@ def changes(before: Path, after: Path) -> tuple[SuccessChange, ...]:
     found: list[SuccessChange] = []
     for each in old.contestants:
         if each in new.contestants:
-            sides = [results.planned_of(each) for results in (old, new)]
-            found.append(_change(each, "episodes", *sides, problems))
-            joined = [[pair for pair, _ in pairs(side)] for side in sides]
-            if joined[0]:
-                found.append(_change(each, "pairs", *joined, problems))
+            before_rows, after_rows = old.planned_of(each), new.planned_of(each)
+            found.append(_change(each, "episodes", before_rows, after_rows, problems))
+            before_pairs, after_pairs = ([pair for pair, _ in pairs(rows)] for rows in (before_rows, after_rows))
+            if before_pairs:
+                found.append(_change(each, "pairs", before_pairs, after_pairs, problems))
     if not found:
         raise UserError(f"{before} and {after} share no agent, model and geo control; compare runs of one plan")
     return tuple(found)

@@ -58,8 +58,9 @@ def coverage(manifest: Json, rows: Mapping[str, EpisodeRow]) -> Coverage:
     errors = len(rows) - judged
     if manifest.get("episodes") == len(rows):  # whatever has become of the catalogue since
         return Coverage(judged, errors, shared=frozenset(rows))
+    jobs: dict[str, EpisodeJob] = {}
     try:
-        jobs = {job.id: job for job in make_plan(manifest["plan"]).jobs()}
+        jobs |= {job.id: job for job in make_plan(manifest["plan"]).jobs()}
         problem = _drift(manifest, rows, jobs)
     except UserError as error:
         problem = " ".join(str(error).split())
