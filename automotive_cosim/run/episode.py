@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import ExitStack, closing, suppress
 from dataclasses import asdict, dataclass, replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -30,6 +30,7 @@ from automotive_cosim.models import ModelReply
 from automotive_cosim.run.estimates import PositionEstimate, estimates
 from automotive_cosim.run.harm import DriveFigures, drive_figures
 from automotive_cosim.run.load import DriverLoad, driver_load
+from automotive_cosim.run.row import formerly
 from automotive_cosim.run.timeline import Sample, TimelineEntry, samples, timeline
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.tasking import verdict
@@ -99,7 +100,7 @@ class EpisodeResult:
     """Visual and manual load on the driver while the car moved; None without a hand-over."""
     drive: DriveFigures | None = None
     """Figures of the drive from the hand-over to the end of the aftermath; only of judged safety tasks."""
-    baseline_drive: DriveFigures | None = None
+    baseline_drive: Annotated[DriveFigures | None, formerly("untouched_drive", "baseline_drive")] = None
     """The same figures of the baseline run, over the same time."""
 
     def as_json(self) -> Json:
