@@ -23,6 +23,7 @@ from automotive_cosim.cli import (
     evaluate,
     memory,
     playback,
+    publish,
     results,
     run,
     scenarios,
@@ -55,6 +56,9 @@ app.command()(results.report)
 app.command()(compare.compare)
 app.command()(results.replay)
 app.command()(results.regrade)
+app.command()(publish.bundle)
+app.command()(publish.verify)
+app.command()(publish.leaderboard)
 app.command()(bench.bench)
 app.command()(playback.playback)
 app.command()(screens.screens)

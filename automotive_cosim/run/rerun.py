@@ -12,14 +12,16 @@ from automotive_cosim.agents import AgentSettings, make_agent
 from automotive_cosim.agents.settings import geo_input
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import Action, Json, Observation
-from automotive_cosim.errors import ActionError, InfrastructureError, OutOfBudgetError, UnknownNameError
+from automotive_cosim.errors import ActionError, AgentError, InfrastructureError, OutOfBudgetError, UnknownNameError
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.interface.trace import HASHED, canonical
 from automotive_cosim.run.collect import Collector, Pictures
 from automotive_cosim.run.episode import run_episode
 from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.moments import Judged
+from automotive_cosim.run.plan import EpisodeJob, make_plan
 from automotive_cosim.run.store import read_evaluation, read_rows, read_trace
+from automotive_cosim.traffic.fork import Simulations
 
 MISSING: Json = {}
 """Placeholder for a step that one of the two runs does not have."""
@@ -55,13 +57,45 @@ def rerun(folder: Path, episode: str) -> list[Compared]:
     plan = make_plan(manifest["plan"])
     job = next(job for job in plan.jobs() if job.id == matching[0])
     stored = [line for line in read_trace(folder, job.id) if "step" in line]
+    return compare(stored, [line for line in played(job, stored, rows[job.id].agent_error).lines if "step" in line])
+
+
+@dataclass(frozen=True, slots=True)
+class Played:
+    """What an evaluation would have kept of an episode that was played again."""
+
+    lines: list[Json]
+    """Its trace, the result at the end."""
+    row: EpisodeRow
+    judged: Judged | None
+
+
+def played(
+    job: EpisodeJob,
+    stored: Sequence[Json],
+    failure: str | None = None,
+    *,
+    simulations: Simulations | None = None,
+) -> Played:
+    """Plays the actions of a stored episode in the same setup.
+
+    Args:
+        job: the episode.
+        stored: the steps of its trace.
+        failure: how the agent's side failed after them, if it did.
+        simulations: warm simulations to use; by default its own.
+
+    Raises:
+        UserError: something in the setup does not exist, such as an agent of one's own.
+        InfrastructureError: the simulation failed.
+    """
     settings = AgentSettings(geo_input(job.setup.geo), seed=job.setup.seed)
-    channels = frozenset(make_agent(job.setup.agent, job.model, settings).channels)
+    channels = frozenset(make_agent(job.setup.agent, "rules", settings).channels)  # whatever its model
     collector = Collector(Pictures.NONE)
-    result = run_episode(job.setup, _Player(stored[1:], channels), (collector,))
+    result = run_episode(job.setup, _Player(stored[1:], channels, failure), (collector,), simulations=simulations)
     if result.error is not None:
         raise InfrastructureError(result.error)
-    return compare(stored, [line for line in collector.trace(result) if "step" in line])
+    return Played(collector.trace(result), collector.row(job, result), collector.judged())
 
 
 def compare(stored: Sequence[Json], again: Sequence[Json]) -> list[Compared]:
@@ -83,8 +117,9 @@ class _Player:
 
     name, model = "replay", "none"
 
-    def __init__(self, steps: Sequence[Json], channels: frozenset[Channel]) -> None:
+    def __init__(self, steps: Sequence[Json], channels: frozenset[Channel], failure: str | None) -> None:
         self.channels = channels
+        self._failure = failure
         self._steps = iter(steps)
 
     def reset(self, goal: str) -> None:
@@ -93,6 +128,8 @@ class _Player:
     def act(self, observation: Observation) -> Action:
         """The next recorded action."""
         step = next(self._steps, None)
+        if step is None and self._failure is not None:
+            raise AgentError(self._failure)
         if step is None:
             raise OutOfBudgetError("the recording ends here")
         if step["action"] is None:
