@@ -359,6 +359,13 @@ def _progress() -> Iterator[Tell]:
         yield tell
 
 
+def _agreement(report: ImportReport) -> str:
+    if not report.differences:
+        return "limit, name, class, tunnel and lanes of every edge"
+    found = len(report.differences)
+    return f"all but {counted(found, 'property', 'properties')} ({report.differences[0]}{'; …' * (found > 1)})"
+
+
 def _print_report(report: ImportReport, folder: Path, took_s: float) -> None:
     from rich.console import Console
     from rich.table import Table
@@ -373,6 +380,7 @@ def _print_report(report: ImportReport, folder: Path, took_s: float) -> None:
         ("edges", f"{report.edges} ({report.road_km:.1f} km)"),
         ("posted limit", f"{report.posted_share:.2%} of the length"),
         ("derestricted", f"{report.derestricted_km:.1f} km"),
+        ("as mapped", _agreement(report)),
         ("signals", f"{report.signals}, roundabouts {report.roundabouts}"),
         ("tunnels", f"{counted(report.tunnels, 'edge')} ({report.tunnel_km:.1f} km)"),
         ("lamps", f"known for {report.lit_known_share:.0%} of the length"),
