@@ -17,6 +17,7 @@ from automotive_cosim.cli.batches import (
     Workers,
     executor_of,
     seeds_in,
+    tell_notes,
     time_left,
     words,
 )
@@ -120,6 +121,7 @@ def evaluate(
     from automotive_cosim.run.episode_row import EpisodeRow
     from automotive_cosim.run.plan import make_plan, read_plan
     from automotive_cosim.run.store import megabytes, read_rows
+    from automotive_cosim.scenery import open_scenario
 
     if pictures not in set(Pictures):
         raise UnknownNameError("choice of pictures", pictures, Pictures)
@@ -135,6 +137,7 @@ def evaluate(
     where = executor_of(executor, workers, ray_address, ray_send)
     console = Console(stderr=as_json, highlight=False)
     plan.check()
+    tell_notes(map(open_scenario, plan.scenarios))
     jobs = plan.jobs()
     _announce(console, plan, folder)
     if dry_run:
