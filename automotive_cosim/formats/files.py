@@ -76,7 +76,7 @@ def opened(path: Path) -> IO[bytes]:
 class _Unpacked(io.RawIOBase):
     """An archive's content, up to a size."""
 
-    def __init__(self, content: IO[bytes], path: Path, packed: IO[bytes]) -> None:
+    def __init__(self, content: gzip.GzipFile | bz2.BZ2File, path: Path, packed: IO[bytes]) -> None:
         self._content = content
         self._path = path
         self._packed = packed

@@ -116,7 +116,7 @@ def _template(folder: Path) -> dict[str, str]:
     found: dict[str, str] = {}
     for name, attributes in re.findall(r"^ {8}<([^! ]\S*) (.*)/>$", file.read_text(), re.MULTILINE):
         synonyms = re.search(r'synonymes="([^"]*)"', attributes)
-        found |= dict.fromkeys((name, *(synonyms[1].split() if synonyms else ())), name)
+        found |= dict.fromkeys((str(name), *(synonyms[1].split() if synonyms else ())), str(name))
     return found
 
 
