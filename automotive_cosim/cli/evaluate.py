@@ -17,6 +17,7 @@ from automotive_cosim.cli.batches import (
     Workers,
     executor_of,
     seeds_in,
+    tell_notes,
     time_left,
     words,
 )
@@ -119,6 +120,7 @@ def evaluate(
     from automotive_cosim.run.collect import Pictures
     from automotive_cosim.run.plan import make_plan, read_plan
     from automotive_cosim.run.store import megabytes
+    from automotive_cosim.scenery import open_scenario
 
     if pictures not in set(Pictures):
         raise UnknownNameError("choice of pictures", pictures, Pictures)
@@ -134,6 +136,7 @@ def evaluate(
     where = executor_of(executor, workers, ray_address, ray_send)
     console = Console(stderr=as_json, highlight=False)
     plan.check()
+    tell_notes(map(open_scenario, plan.scenarios))
     _announce(console, plan, folder)
     if dry_run:
         return

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from automotive_cosim import scenarios
+from automotive_cosim.cli.batches import tell_notes
 from automotive_cosim.cli.options import number, whole_number
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.errors import UserError
@@ -50,7 +51,7 @@ def show(scenario: Annotated[str, typer.Argument(help=f"{WHICH}.")]) -> None:
     from automotive_cosim.scenery import open_scenario
 
     found = open_scenario(scenario)
-    _print_notes(found)
+    tell_notes([found])
     typer.echo(f"{found.name}: {found.title}\n{found.about.strip()}\n")
     for label, value in (
         ("folder", found.folder),
@@ -72,11 +73,6 @@ def _weather(scenario: Scenario) -> str:
     first = scenario.weather[0].weather
     changes = f", {counted(len(scenario.weather) - 1, 'change')} to come" if len(scenario.weather) > 1 else ""
     return f"{first.temperature_2m:g} °C, {first.precipitation:g} mm/h, visibility {first.visibility:g} m{changes}"
-
-
-def _print_notes(scenario: Scenario) -> None:
-    for note in scenario.notes:
-        typer.echo(f"note: {note}", err=True)
 
 
 Names = Annotated[
@@ -103,7 +99,7 @@ def check_scenarios(
 
     proofs = []
     for scenario in [open_scenario(name) for name in names or scenarios.shipped()]:
-        _print_notes(scenario)
+        tell_notes([scenario])
         with _progress() as tell:
             proofs.append(check(scenario, quick=quick, tell=tell))
         if not as_json:

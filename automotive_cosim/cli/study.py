@@ -17,6 +17,7 @@ from automotive_cosim.cli.batches import (
     Workers,
     executor_of,
     seeds_in,
+    tell_notes,
     time_left,
     words,
 )
@@ -151,6 +152,7 @@ def reroute(
         **values,
     )
     plan.check()
+    tell_notes([plan.opened])
     folder = out or _folder(plan)
     where = executor_of(executor, workers, ray_address, ray_send)
     console = Console(stderr=as_json, highlight=False)
