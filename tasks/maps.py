@@ -228,7 +228,7 @@ EXPLICIT = (
         RoadAsked(Reroute()),
         Open("map"),
         Tap("map.faster_route"),
-        ways=((Open("map"), Tap("map.route"), Tap("route.tab.ways"), Tap(text="Look for a faster way")),),
+        ways=((Open("map"), Tap("map.route"), Tap("route.tab.ways"), Tap(text="Look for a faster route")),),
         deadline=COMFORT,
     ),
     asked(

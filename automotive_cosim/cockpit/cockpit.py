@@ -313,7 +313,7 @@ class Cockpit:
         if field is None or not field.focused:
             return Feedback(FeedbackCode.NO_SUCH_ELEMENT, "no text field has the focus; tap one first")
         if field.on_enter is None:
-            return Feedback(FeedbackCode.REFUSED, f"nothing fits {field.text!r}")
+            return Feedback(FeedbackCode.REFUSED, f"nothing matches {field.text!r}")
         self._state.focus = ""
         return self._perform(field.on_enter)
 
@@ -335,9 +335,9 @@ class Cockpit:
             missing = repr(name[:40])
             return Feedback(
                 FeedbackCode.NO_SUCH_ELEMENT,
-                f"no app is called {missing}: did you mean {close[0]!r}?"
+                f"no app is named {missing}: did you mean {close[0]!r}?"
                 if close
-                else f"no app is called {missing}: there are {', '.join(APPS)}",
+                else f"no app is named {missing}; choose from {', '.join(APPS)}",
             )
         if wanted in desk.TOOLS and wanted not in self._state.desk.installed:
             return Feedback(FeedbackCode.REFUSED, f"{wanted} is not installed; the store has it")
@@ -527,7 +527,7 @@ class Cockpit:
         step = by * {Direction.DOWN: 1, Direction.UP: -1}.get(direction, 0)
         first = min(rows.last_first, max(0, rows.first + step))
         if first == rows.first:
-            return Feedback(FeedbackCode.NO_EFFECT, f"{rows.key} does not go further {direction}")
+            return Feedback(FeedbackCode.NO_EFFECT, f"{rows.key} cannot move further {direction}")
         self._state.scrolled = {**self._state.scrolled, rows.key: first}
         self._tree = None
         return Feedback(

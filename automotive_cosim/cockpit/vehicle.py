@@ -180,7 +180,7 @@ class Vehicle:
             and now[MEDIA.SOURCE] == "BLUETOOTH"
             and not now[LINK.BLUETOOTH]
         ):
-            return "The phone is not linked: switch Bluetooth on first"
+            return "The phone is not connected: switch Bluetooth on first"
         if value is not True:
             return ""
         if signal is HVAC.AIR_CONDITIONING and any(now[window] > WINDOWS_PCT for window in WINDOWS):

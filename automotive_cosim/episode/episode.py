@@ -137,5 +137,6 @@ class Episode(Session):
             self.declared,
             self.reason,
             self.watched_from_s,
+            self.failure,
         )
         super()._finish(end)

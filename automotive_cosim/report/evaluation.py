@@ -17,8 +17,10 @@ from automotive_cosim.report.results import Results, contestant, read_results
 from automotive_cosim.report.summary import errors, tables
 from automotive_cosim.report.tables import Cell, Table
 from automotive_cosim.report.templates import render
+from automotive_cosim.run.episode import EpisodeResult
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.record import write_whole
+from automotive_cosim.run.row import from_json
 from automotive_cosim.run.store import cannot_write, megabytes, read_trace, trace_file
 
 
@@ -138,7 +140,7 @@ def _episode(folder: Path, row: EpisodeRow) -> Json:
     pictures = sorted((folder / "pictures" / row.id).glob("step_*.jpg"))
     return {
         "row": row,
-        "result": read_trace(folder, row.id)[-1]["result"] if has_trace else None,
+        "result": from_json(EpisodeResult, read_trace(folder, row.id)[-1]["result"]) if has_trace else None,
         "trace": trace_file(folder, row.id).relative_to(folder).as_posix() if has_trace else "",
         "pictures": [path.relative_to(folder).as_posix() for path in pictures],
     }

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import ExitStack, closing, suppress
 from dataclasses import asdict, dataclass, replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -30,6 +30,7 @@ from automotive_cosim.models import ModelReply
 from automotive_cosim.run.estimates import PositionEstimate, estimates
 from automotive_cosim.run.harm import DriveFigures, drive_figures
 from automotive_cosim.run.load import DriverLoad, driver_load
+from automotive_cosim.run.row import formerly
 from automotive_cosim.run.timeline import Sample, TimelineEntry, samples, timeline
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.tasking import verdict
@@ -77,6 +78,8 @@ class EpisodeResult:
     error: str | None = None
     error_kind: str | None = None
     """Name of the error's class in ``automotive_cosim.errors``."""
+    agent_error: str | None = None
+    """How the agent's side failed, if that ended the episode; ``success`` is then False."""
     violations: tuple[Violation, ...] = ()
     """Traffic law violations from departure to the end of the aftermath; seconds since the hand-over."""
     geo: str = "full"
@@ -97,7 +100,7 @@ class EpisodeResult:
     """Visual and manual load on the driver while the car moved; None without a hand-over."""
     drive: DriveFigures | None = None
     """Figures of the drive from the hand-over to the end of the aftermath; only of judged safety tasks."""
-    baseline_drive: DriveFigures | None = None
+    baseline_drive: Annotated[DriveFigures | None, formerly("untouched_drive", "baseline_drive")] = None
     """The same figures of the baseline run, over the same time."""
 
     def as_json(self) -> Json:
@@ -194,8 +197,8 @@ class _Run:
         for watcher in self._watchers:
             watcher.handed_over(episode, first)
         end = play(episode, agent, (self._stepped,))
-        if end is End.OUT_OF_BUDGET:
-            self._stages()  # of the answer that it ran out on
+        if end in (End.OUT_OF_BUDGET, End.AGENT_FAILED):
+            self._stages()  # of the turn that it did not finish
         if isinstance(agent, Learner) and episode.verdict is not None:
             agent.learn(episode.verdict.success)
         self._watch_aftermath(episode)
@@ -281,6 +284,7 @@ class _Run:
             steps=len(episode.steps) - 1,
             sim_seconds=round(episode.seconds, 3),
             trace_sha256=episode.trace_sha256,
+            agent_error=episode.failure,
             verdict=None if judged is None else verdict.as_json(judged),
             timeline=timeline(moments, episode.steps, None if judged is None else judged.goal_s),
             path=samples(moments, hand_over_s),

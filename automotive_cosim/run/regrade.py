@@ -70,6 +70,7 @@ def _regraded(folder: Path, row: EpisodeRow, held: PartsHeld) -> Regraded:
             stored.declared,
             stored.reason,
             stored.watched_from_s,
+            row.agent_error,
         )
     except CosimError as error:
         return Regraded(row.id, row.has_succeeded, None, problem=str(error))

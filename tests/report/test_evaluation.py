@@ -47,7 +47,7 @@ def succeeds(job):
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
+def folder(tmp_path_factory, episode):
     folder = tmp_path_factory.mktemp("evaluation") / "e"
     with opened(folder, PLAN.as_json(), EpisodeRow) as store:
         for job in PLAN.jobs():
@@ -71,7 +71,7 @@ def folder(tmp_path_factory):
                 job.id,
                 [
                     {"step": 0, "elements": []},
-                    {"result": {"goal": "<b>Go", "verdict": verdict, "timeline": timeline}},
+                    {"result": episode(goal="<b>Go", verdict=verdict, timeline=timeline)},
                 ],
             )
     write_report(folder)
