@@ -191,6 +191,17 @@ def test_a_verdict_blind_to_side_effects_is_seen(ground, monkeypatch):
     assert len(list(gates.coupled(stand, played))) > 100
 
 
+def test_a_switch_that_the_car_couples_to_the_goal_fails_when_it_is_turned_by_itself(ground):
+    """Air conditioning follows the fan in this car, but nobody asked for it."""
+    goal = SignalIs(HVAC.FAN_SPEED, (100.0,))
+    stand = ground(changed(goal=goal, moves=(Open("climate"), Tap("hvac.fan.max"))))
+    assert stand.reference.success
+    taps = (Open("climate"), Tap("hvac.fan.max"), Tap("hvac.air_conditioning"))
+    played = stand.play(stand.oracle(taps))
+    assert played.verdict.goal.ok
+    assert played.verdict.clean.why == f"also changed: {HVAC.AIR_CONDITIONING.path}"
+
+
 def test_a_task_that_wants_nothing_is_seen(ground):
     free = changed(goal=AnyOf((SignalIs(HVAC.AUTO, (True,)), NothingDone())), moves=())
     wrong = list(gates.trivial({"first": ground(free)}))
