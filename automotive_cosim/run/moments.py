@@ -113,7 +113,8 @@ def read_judged(folder: Path, episode: str) -> Judged:
         raise UserError(
             f"{path} has an older format without the counterfactual; judge it with the version that wrote it"
         )
-    return replace(judged, counterfactual=_changed(judged.trace[-1].commands, *judged.counterfactual))
+    beside: Any = judged.counterfactual
+    return replace(judged, counterfactual=_changed(judged.trace[-1].commands, *beside))
 
 
 def _bare(moments: Sequence[Moment]) -> tuple[Any, ...]:
