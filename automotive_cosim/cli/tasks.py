@@ -151,6 +151,8 @@ def _half(half: Half) -> Iterable[str]:
         yield f"when      {start.start}"
     yield f"trigger   {half.trigger.condition}, for {half.trigger.for_s:g} s"
     yield f"goal      {half.goal}, then declare {half.declares}"
+    if half.may_write:
+        yield f"allowed   {', '.join(sorted(half.may_write))} may be commanded besides"
     for number, way in enumerate((half.moves, *half.ways)):
         yield f"solution  {'or ' if number else ''}{', '.join(map(_move, way)) or 'declare at once'}"
     yield f"deadline  {half.deadline.seconds:g} s: {half.deadline.reason}"
