@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from automotive_cosim.cli.options import TasksFrom
+from automotive_cosim.cli.options import AsJson, TasksFrom, print_json
 from automotive_cosim.contracts.plain import counted
 
 Folder = Annotated[Path, typer.Argument(help="Results folder of `eval`.", show_default=False)]
@@ -27,15 +28,19 @@ def replay(
     folder: Folder,
     episode: Annotated[str, typer.Argument(help="Id of the episode, or its beginning.", show_default=False)],
     tasks_from: TasksFrom = None,
+    as_json: AsJson = False,
 ) -> None:
     """Repeat a stored episode's actions and compare the trace step by step; exit code 1 if it differs."""
     from automotive_cosim.run.rerun import rerun
 
     compared = rerun(folder, episode)
+    different = [step for step in compared if step.differs]
+    if as_json:
+        print_json({"ok": not different, "steps": [asdict(step) for step in compared]})
+        raise typer.Exit(bool(different))
     for step in compared:
         differs = f"differs in {', '.join(step.differs)}" if step.differs else "the same"
         typer.echo(f"step {step.number:3d}  {step.sha256[:16]}  {differs}")
-    different = [step for step in compared if step.differs]
     if different:
         typer.echo(
             f"{len(different)} of {counted(len(compared), 'step')} differ, from step {different[0].number} on"
