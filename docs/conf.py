@@ -1,4 +1,4 @@
-"""The documentation site: `make docs` builds it offline into docs/_site, and fails on a broken link or an unknown name.
+"""The documentation site: ``make docs`` builds it offline; a broken link or an unknown name fails.
 
 The pages of ``_made/`` come from the package at each build: what a command prints is what it says of itself.
 """

@@ -54,13 +54,23 @@ def replay(
     typer.echo("the only step is the same" if len(compared) == 1 else f"all {len(compared)} steps are the same")
 
 
-def regrade(folder: Folder, tasks_from: TasksFrom = None) -> None:
+def regrade(folder: Folder, tasks_from: TasksFrom = None, as_json: AsJson = False) -> None:
     """Judge the stored episodes by the current checks and print what changes; nothing is written."""
     from automotive_cosim.run.coverage import coverage
     from automotive_cosim.run.episode_row import EpisodeRow
     from automotive_cosim.run.regrade import regrade as judged_again
     from automotive_cosim.run.store import read_evaluation, read_rows
 
+    if as_json:
+        judged = list(judged_again(folder))
+        print_json(
+            {
+                "changed": sum(each.differs for each in judged),
+                "not_judged": sum(bool(each.problem) for each in judged),
+                "episodes": [asdict(each) for each in judged],
+            }
+        )
+        return
     words = {True: "solved", False: "not solved", None: "not judged"}
     count = differing = missing = 0
     for each in judged_again(folder):
