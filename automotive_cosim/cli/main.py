@@ -21,6 +21,7 @@ from automotive_cosim.cli import (
     compare,
     context,
     evaluate,
+    mcp,
     memory,
     playback,
     results,
@@ -59,6 +60,7 @@ app.command()(bench.bench)
 app.command()(playback.playback)
 app.command()(screens.screens)
 app.command()(schema.schema)
+app.command()(mcp.mcp)
 app.command(context_settings=context.COMMAND_SETTINGS)(context.context)
 app.add_typer(study.app, name="study")
 app.add_typer(scenarios.app, name="scenarios")

@@ -59,7 +59,7 @@ class EpisodeService:
     def __init__(
         self,
         simulations: Simulations | None = None,
-        limits: Limits = Limits(),  # noqa: B008, frozen
+        limits: Limits = Limits(),
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         """Begins without episodes.
@@ -95,7 +95,8 @@ class EpisodeService:
             TrafficError: the traffic simulation failed.
         """
         with self._room():
-            hand_over = SituationFinder(spec, self._simulations, listener=listener).find(SeedSource(spec.seed).next())
+            finder = SituationFinder(spec, self._simulations, listener=listener)
+            hand_over = finder.find(SeedSource(spec.seed).next())
             try:
                 episode = Episode.take_over(hand_over, spec.conditions(channels))
             except BaseException:
@@ -184,10 +185,8 @@ class EpisodeService:
         self.expire()
         with self._lock:
             if len(self._running) + self._starting >= self._limits.episodes:
-                raise UserError(
-                    f"{counted(self._limits.episodes, 'episode')} at once is the limit; finish one before you start "
-                    f"another"
-                )
+                at_once = counted(self._limits.episodes, "episode")
+                raise UserError(f"{at_once} at once is the limit; finish one before you start another")
             self._starting += 1
         try:
             yield
@@ -212,7 +211,7 @@ class EpisodeService:
                         running.used_s = self._clock()
                     return
         raise UserError(
-            f"no episode {episode_id!r}: it is finished, failed, or was idle for {self._limits.idle_s:g} s; start one"
+            f"no episode {episode_id!r}: finished, failed, or idle for {self._limits.idle_s:g} s; start another"
         )
 
     def _drop(self, episode_id: str) -> None:

@@ -29,8 +29,11 @@ class Turn:
         return None if screenshot is None else png(screenshot)
 
     def as_json(self) -> Json:
-        """The turn as a JSON object, without the picture. A channel that the agent is not given has no key, nor has a
-        reading that the car does not give. ``elements`` are those that are visible, each with its index."""
+        """The turn as a JSON object, without the picture.
+
+        A channel that the agent is not given has no key, nor has a reading that the car does not give. ``elements``
+        are those that are visible, each with its index.
+        """
         seen = self.observation
         told: Json = {
             "episode_id": self.episode_id,
