@@ -121,6 +121,7 @@ class _Player:
         self.channels = channels
         self._failure = failure
         self._steps = iter(steps)
+        self.thought_s = 0.0
 
     def reset(self, goal: str) -> None:
         """Does nothing."""
@@ -132,6 +133,7 @@ class _Player:
             raise AgentError(self._failure)
         if step is None:
             raise OutOfBudgetError("the recording ends here")
+        self.thought_s = step.get("thought_s", 0.0)
         if step["action"] is None:
             raise ActionError(step["feedback"]["text"])
         return parse(step["action"])
