@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from automotive_cosim.cli.batches import Workers
-from automotive_cosim.cli.options import TasksFrom, whole_number
+from automotive_cosim.cli.options import AsJson, TasksFrom, print_json, whole_number
 from automotive_cosim.contracts.plain import counted
 
 MOST_LISTED = 50
@@ -46,11 +47,16 @@ def verify(
     ] = 3,
     workers: Workers = None,
     tasks_from: TasksFrom = None,
+    as_json: AsJson = False,
 ) -> None:
     """Check an evaluation or a bundle; exit code 1 if something does not fit."""
     from automotive_cosim.publish.verify import verify as verified
 
     found = verified(path, replays=replays, workers=workers or 1)
+    if as_json:
+        problems = [asdict(problem) for problem in found.problems]
+        print_json({"ok": not problems, "facts": found.facts, "problems": problems, "unknown": found.unknown})
+        raise typer.Exit(bool(problems))
     for fact in found.facts:
         typer.echo(fact)
     for problem in found.problems[:MOST_LISTED]:

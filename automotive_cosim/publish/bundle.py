@@ -43,6 +43,7 @@ def write_bundle(folder: Path, out: Path) -> Contents:
     """
     manifest, rows = read_evaluation(folder), read_rows(folder, EpisodeRow)
     found = coverage(manifest, rows)
+    manifest["episodes"] = found.planned  # which older evaluations do not tell
     if not rows:
         raise UserError(f"{folder} has no episodes yet ({found}); rerun its `eval` command")
     if found.problem:

@@ -30,7 +30,7 @@ from automotive_cosim.tasking.task import Mode
 ROWS = "episodes.jsonl"
 PLANNED = (
     "task", "half", "pair", "dimension", "module", "basis", "tags", "skills", "declines", "agent", "model", "geo",
-    "seed", "repeat", "mode",
+    "seed", "repeat", "mode", "clock", "latency_s",
 )  # fmt: skip
 """Fields of a row that the plan and the catalogue determine."""
 ALSO_IN_RESULT = (
@@ -43,7 +43,9 @@ FROM_MOMENTS = (
     "local_time", "traffic", "signals", "weather", "gps", "connectivity", "context", "events",
 )  # fmt: skip
 """Fields of a step that follow from the stored moments."""
-STEP = frozenset({"step", "time_s", *FROM_MOMENTS, "elements", "action", "feedback", "thought", "stages"})
+STEP = frozenset(
+    {"step", "time_s", *FROM_MOMENTS, "elements", "action", "feedback", "thought_s", "thought", "stages"}
+)
 UNJUDGED = ("success", "reward", "parts", "goal_s", "reason_fits")
 """Fields of a row that an episode without a verdict leaves at their defaults."""
 BY_REPLAY = frozenset(
@@ -72,7 +74,9 @@ def check_episode(folder: Path, job: EpisodeJob, row: EpisodeRow) -> tuple[Probl
     """
     try:
         return tuple(_problems(folder, job, row))
-    except (CosimError, OSError, LookupError, TypeError, ValueError, AttributeError, ArithmeticError) as error:
+    except (
+        CosimError, OSError, LookupError, TypeError, ValueError, AttributeError, ArithmeticError, RecursionError,
+    ) as error:  # fmt: skip
         why = str(error) if isinstance(error, CosimError) else f"{type(error).__name__}: {error}"
         return (Problem(f"traces/{row.id}", "", f"cannot be checked: {why}"),)
 
@@ -100,6 +104,7 @@ def _problems(folder: Path, job: EpisodeJob, row: EpisodeRow) -> Iterator[Proble
 def _judged_problems(folder: Path, job: EpisodeJob, row: EpisodeRow, told: Json) -> Iterator[Problem]:
     *steps, last = read_trace(folder, row.id)
     judged = read_judged(folder, row.id)
+    assert judged.counterfactual is not None
     file, result = trace_file(folder, row.id).relative_to(folder).as_posix(), dict(last["result"])
     if "untouched_drive" in result:  # its name in older traces
         result["baseline_drive"] = result.pop("untouched_drive")
@@ -110,6 +115,7 @@ def _judged_problems(folder: Path, job: EpisodeJob, row: EpisodeRow, told: Json)
         instance,
         judged.trace,
         judged.baseline,
+        judged.counterfactual,
         judged.declared,
         judged.reason,
         judged.watched_from_s,
@@ -130,6 +136,7 @@ def _judged_problems(folder: Path, job: EpisodeJob, row: EpisodeRow, told: Json)
         "alerts": alerts(start, end),
         "steps": len(steps) - 1,
         "sim_seconds": round(end.time_s - start.time_s, 3),
+        "thought_s": round(sum(step["thought_s"] for step in steps), 1),
         "trace_sha256": sha256(steps),
         "interaction_s": load.interaction_s,
         "within_guideline": load.within_guideline,

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
+from automotive_cosim.episode.specification import Clock
 from automotive_cosim.errors import UserError
 from automotive_cosim.publish import archive
 from automotive_cosim.publish.contents import read_contents
@@ -152,12 +153,18 @@ def _table(number: int, entries: Sequence[Entry]) -> Table:
                 each.base_model,
                 input_of(Contestant(each.agent, each.model, "full")),
                 each.geo,
-                each.mode,
+                ", ".join([each.mode, *_speed(each)]),
                 *(rate_in_words(rate) if rate.planned else NONE for rate in entry.rates),
                 f"{entry.bundle}, {entry.sha256[:12]}",
             )
         )
     return Table(f"table_{number}", f"Table {number}", COLUMNS, tuple(rows), heads=5)
+
+
+def _speed(each: Contestant) -> list[str]:
+    """How long its answers took on the road, unless they took no time."""
+    clock = [] if each.clock == Clock.FIXED else [f"{each.clock}'s clock"]
+    return clock + ([f"latency {each.latency_s:g} s"] if each.latency_s else [])
 
 
 def _conditions(suite: str, plan: Json, rows: Sequence[EpisodeRow]) -> Conditions:

@@ -31,7 +31,7 @@ RESULT = (
     "baseline_drive",
 )
 """Fields of the result at the end of a trace that the actions determine."""
-STEP = ("time_s", *FROM_MOMENTS, "elements", "action", "feedback")
+STEP = ("time_s", *FROM_MOMENTS, "elements", "action", "feedback", "thought_s")
 
 
 def replay(folder: Path, job: EpisodeJob, row: EpisodeRow, simulations: Simulations) -> Iterator[Problem]:

@@ -25,7 +25,7 @@ import numpy as np
 from automotive_cosim import __version__
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
-from automotive_cosim.errors import CosimError
+from automotive_cosim.errors import CosimError, UserError
 from automotive_cosim.publish import archive
 from automotive_cosim.publish.contents import NAME, Contents, counts, file_sha256, read_contents
 from automotive_cosim.publish.episodes import ROWS, check_episode
@@ -89,10 +89,13 @@ def verify(
     Raises:
         UserError: it is neither, or it cannot be read at all.
     """
-    if path.is_dir():
-        return _verified(path, None, replays, workers, tell)
-    with archive.unpacked(path) as folder:
-        return _verified(folder, path, replays, workers, tell)
+    with ExitStack() as ends:
+        bundle = None if path.is_dir() else path
+        folder = path if bundle is None else ends.enter_context(archive.unpacked(bundle))
+        try:
+            return _verified(folder, bundle, replays, workers, tell)
+        except (LookupError, TypeError, ValueError, AttributeError, RecursionError) as error:
+            raise UserError(f"{path} lacks something or has it in another form: {error!r:.200}") from error
 
 
 def _verified(
@@ -109,6 +112,7 @@ def _verified(
     problems += [Problem(ROWS, name, "is not an episode of the plan") for name in rows if name not in jobs]
     problems += _file_problems(folder, rows)
     if contents is not None:
+        problems += [] if "episodes" in manifest else [Problem(MANIFEST, "episodes", "is missing")]
         problems += _count_problems(contents, manifest, found, rows)
     planned = {name: row for name, row in rows.items() if name in jobs}
     problems += _episode_problems(folder, jobs, planned, workers, tell)

@@ -25,6 +25,7 @@ from typing import IO, Generic
 import automotive_cosim
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats.files import opened as open_unpacked
 from automotive_cosim.run.record import STAMPED, write_whole
 from automotive_cosim.run.row import R, as_json, from_line
 
@@ -186,10 +187,11 @@ def read_trace(folder: Path, episode: str) -> list[Json]:
     """
     path = trace_file(folder, episode)
     try:
-        return [json.loads(line) for line in gzip.decompress(path.read_bytes()).decode().splitlines()]
+        with open_unpacked(path) as file:
+            return [json.loads(line) for line in file.read().decode().splitlines()]
     except FileNotFoundError as error:
         raise UserError(f"there is no trace of episode {episode!r} in {folder}") from error
-    except (OSError, EOFError, ValueError) as error:
+    except (OSError, EOFError, ValueError, RecursionError) as error:
         raise UserError(f"cannot read {path}: {error}") from error
 
 

@@ -112,7 +112,7 @@ def test_other_ends_have_codes_of_their_own(cli, monkeypatch, error, code):
 FILES = {
     ("report",), ("playback",), ("screens",), ("schema",), ("study", "report"), ("tasks", "export"),
     ("signals", "export"), ("scenarios", "render"), ("scenarios", "import"), ("scenarios", "day"),
-    ("scenarios", "download"),
+    ("scenarios", "download"), ("bundle",), ("leaderboard",),
 }  # fmt: skip
 """Commands whose result is a file."""
 
