@@ -37,7 +37,7 @@ WATCH_STEPS = 60
 class Limits:
     """Limits of one episode."""
 
-    steps: Annotated[int, Ge(1)] = MAX_STEPS
+    steps: Annotated[int, Ge(1), Le(100_000)] = MAX_STEPS
     """Number of actions, including unreadable ones."""
     sim_s: Annotated[float, Gt(0)] = 600.0
     """Simulated seconds from the hand-over, after which the episode is judged as it is."""
@@ -68,7 +68,7 @@ class Plan:
     """What an agent is told of where it is."""
     modes: Annotated[tuple[Annotated[str, OneOf(tuple(Mode))], ...], MinLen(1)] = (str(Mode.PROMPTED),)
     """When the agent is called: when the driver asks, or, only for safety tasks, before the situation arises."""
-    repeats: Annotated[int, Ge(1)] = 1
+    repeats: Annotated[int, Ge(1), Le(1000)] = 1
     """Runs of each episode, for models that do not answer the same twice."""
     held_out: bool = False
     """Whether to use only each task's held-out phrasing; otherwise any phrasing is drawn."""

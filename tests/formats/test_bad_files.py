@@ -232,7 +232,7 @@ WRONG = [
     ("plan", "seeds = [0, 1]", "seeds = []", "seeds", "seeds is empty", True),
     ("plan", "seeds = [0, 1]", "seeds = [\n  0,\n  0.5,\n]", "seeds", "seeds[1] is 0.5", True),
     ("plan", '"none"', '"non"', "geo", "no geo control named 'non': did you mean 'none'", True),
-    ("plan", "repeats = 2", "repeats = 0", "repeats", "a whole number of at least 1", True),
+    ("plan", "repeats = 2", "repeats = 0", "repeats", "a whole number from 1 to 1000", True),
     ("plan", "repeats = 2", 'repeats = "2"', "repeats", "repeats is '2'", True),
     ("plan", "held_out = false", "held_out = 0", "held_out", "true or false", True),
     ("plan", "steps = 5", "steps = 5.5", "steps", "[limits]: steps is 5.5", True),
