@@ -40,7 +40,7 @@ class Replay:
             stages = list(_stages(path))
             answers = [(stage["asked"], ModelReply(**stage["reply"])) for stage in stages if stage["reply"]]
             sees_pictures = any(stage["pictures"] for stage in stages)
-        except (OSError, ValueError, KeyError, TypeError) as error:
+        except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
             raise UserError(
                 f"cannot read a model's answers in {path}: {error}; give an episode's folder"
             ) from error

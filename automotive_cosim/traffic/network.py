@@ -46,14 +46,18 @@ LARGEST = 1e9
 """No length or coordinate of a network is beyond it: the earth's circumference is 4e7 m."""
 
 
-def quantity(text: str) -> float:
+SLOWEST_MPS = 0.01
+"""On a slower lane nobody arrives."""
+
+
+def quantity(text: str, least: float = -LARGEST) -> float:
     """A number of a network.
 
     Raises:
-        ValueError: it is no number, not finite or impossibly large.
+        ValueError: it is no number, not finite, below ``least`` or impossibly large.
     """
     number = float(text)
-    if not -LARGEST <= number <= LARGEST:
+    if not least <= number <= LARGEST:
         raise ValueError(f"{text[:80]!r} is no number of a network")
     return number
 
@@ -226,7 +230,7 @@ def _take_edge(element: ET.Element, reading: _Reading) -> None:
     if element.get("function") == "internal":
         for lane in lanes:
             reading.inner_lanes[lane.attrib["id"]] = Crossing(
-                quantity(lane.attrib["length"]), quantity(lane.attrib["speed"])
+                quantity(lane.attrib["length"], 0.0), quantity(lane.attrib["speed"], SLOWEST_MPS)
             )
     elif lanes and "function" not in element.attrib:
         reading.edges[element.attrib["id"]] = _edge(element, lanes)
@@ -234,7 +238,7 @@ def _take_edge(element: ET.Element, reading: _Reading) -> None:
 
 def _edge(element: ET.Element, lanes: list[ET.Element]) -> Edge:
     params = {param.get("key", ""): param.get("value", "") for param in element.iterfind("param")}
-    speed_mps = max(quantity(lane.attrib["speed"]) for lane in lanes)
+    speed_mps = max(quantity(lane.attrib["speed"], SLOWEST_MPS) for lane in lanes)
     unlimited = speed_mps >= NO_LIMIT_FROM_MPS and params.get("maxspeed") == "none"
     middle = lanes[len(lanes) // 2]
     return Edge(
@@ -244,7 +248,7 @@ def _edge(element: ET.Element, lanes: list[ET.Element]) -> Edge:
         name=element.get("name", ""),
         road_class=_road_class(element.get("type", "")),
         lane_ids=tuple(lane.attrib["id"] for lane in lanes),
-        length_m=quantity(lanes[0].attrib["length"]),
+        length_m=quantity(lanes[0].attrib["length"], 0.0),
         speed_mps=speed_mps,
         limit_mps=None if unlimited else speed_mps,
         limit_source=LimitSource.POSTED if params.get("maxspeed") else LimitSource.ASSUMED,
