@@ -21,7 +21,7 @@ from automotive_cosim.cli.batches import (
     time_left,
     words,
 )
-from automotive_cosim.cli.options import TasksFrom, whole_number
+from automotive_cosim.cli.options import AsJson, TasksFrom, whole_number
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.errors import InfrastructureError
 
@@ -109,7 +109,7 @@ def evaluate(
     ] = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Show the plan and exit.")] = False,
     tasks_from: TasksFrom = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Run agents over tasks, scenarios and seeds. Rerun the command to resume."""
     from rich.console import Console

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import os
 from collections.abc import Callable
@@ -49,6 +50,15 @@ def reads_results(command: Callable[P, None]) -> Callable[P, None]:
             raise UserError(f"{folder} is not as this version writes it ({what}); make it again") from error
 
     return guarded
+
+
+AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
+"""For every command that lists or reports."""
+
+
+def print_json(values: object) -> None:
+    """Prints the one JSON object of ``--json``."""
+    typer.echo(json.dumps(values, ensure_ascii=False))
 
 
 def whole_number(least: int, most: int) -> Callable[[str], int]:

@@ -13,14 +13,14 @@ import typer
 
 from automotive_cosim import scenarios
 from automotive_cosim.cli.batches import tell_notes
-from automotive_cosim.cli.options import number, whole_number
+from automotive_cosim.cli.options import AsJson, number, print_json, whole_number
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.errors import UserError
 
 if TYPE_CHECKING:
     from rich.text import Text
 
-    from automotive_cosim.contracts import Tell
+    from automotive_cosim.contracts import Json, Tell
     from automotive_cosim.osm import ImportReport
     from automotive_cosim.osm.day import Day
     from automotive_cosim.scenarios import Scenario
@@ -30,11 +30,14 @@ app = typer.Typer(help="List, check, draw and import scenarios.", no_args_is_hel
 
 
 @app.command("list")
-def list_scenarios() -> None:
+def list_scenarios(as_json: AsJson = False) -> None:
     """List the scenarios that come with the package."""
     from rich.console import Console
     from rich.table import Table
 
+    if as_json:
+        print_json({"scenarios": [_shown(scenarios.load(name)) for name in scenarios.shipped()]})
+        return
     table = Table("name", "country", "title", "ego trips", box=None, header_style="bold", pad_edge=False)
     for name in scenarios.shipped():
         scenario = scenarios.load(name)
@@ -46,11 +49,14 @@ WHICH = "A shipped scenario's name, a scenario's folder, any .sumocfg or .net.xm
 
 
 @app.command("show")
-def show(scenario: Annotated[str, typer.Argument(help=f"{WHICH}.")]) -> None:
+def show(scenario: Annotated[str, typer.Argument(help=f"{WHICH}.")], as_json: AsJson = False) -> None:
     """Show one scenario: its place, time, weather and ego trips."""
     from automotive_cosim.scenery import open_scenario
 
     found = open_scenario(scenario)
+    if as_json:
+        print_json(_shown(found))
+        return
     tell_notes([found])
     typer.echo(f"{found.name}: {found.title}\n{found.about.strip()}\n")
     for label, value in (
@@ -65,6 +71,29 @@ def show(scenario: Annotated[str, typer.Argument(help=f"{WHICH}.")]) -> None:
         typer.echo(f"{label:<9}{value}")
     for trip in found.ego.trips:
         typer.echo(f"trip     {trip.name}: {trip.about or f'{trip.from_edge} to {trip.to_edge}'}")
+
+
+def _shown(scenario: Scenario) -> Json:
+    """A scenario as a JSON object."""
+    return {
+        "name": scenario.name,
+        "title": scenario.title,
+        "about": scenario.about.strip(),
+        "folder": str(scenario.folder),
+        "country": scenario.country,
+        "starts": scenario.start.isoformat(),
+        "weather": _weather(scenario),
+        "step_length_s": scenario.sumo.step_length_s,
+        "warm_up_s": scenario.sumo.warm_up_s,
+        "demand_scale": scenario.sumo.scale,
+        "rerouting_share": scenario.sumo.background_rerouting,
+        "driver": str(scenario.ego.driver),
+        "trips": [
+            {"name": trip.name, "about": trip.about, "from_edge": trip.from_edge, "to_edge": trip.to_edge}
+            for trip in scenario.ego.trips
+        ],
+        "notes": list(scenario.notes),
+    }
 
 
 def _weather(scenario: Scenario) -> str:
@@ -87,7 +116,7 @@ Names = Annotated[
 def check_scenarios(
     names: Names = None,
     quick: Annotated[bool, typer.Option("--quick", help="Skip the hour of traffic.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Prove that scenarios do what they say; exit code 1 if one does not.
 
@@ -355,6 +384,13 @@ def _progress() -> Iterator[Tell]:
         yield tell
 
 
+def _agreement(report: ImportReport) -> str:
+    if not report.differences:
+        return "limit, name, class, tunnel and lanes of every edge"
+    found = len(report.differences)
+    return f"all but {counted(found, 'property', 'properties')} ({report.differences[0]}{'; …' * (found > 1)})"
+
+
 def _print_report(report: ImportReport, folder: Path, took_s: float) -> None:
     from rich.console import Console
     from rich.table import Table
@@ -369,6 +405,7 @@ def _print_report(report: ImportReport, folder: Path, took_s: float) -> None:
         ("edges", f"{report.edges} ({report.road_km:.1f} km)"),
         ("posted limit", f"{report.posted_share:.2%} of the length"),
         ("derestricted", f"{report.derestricted_km:.1f} km"),
+        ("as mapped", _agreement(report)),
         ("signals", f"{report.signals}, roundabouts {report.roundabouts}"),
         ("tunnels", f"{counted(report.tunnels, 'edge')} ({report.tunnel_km:.1f} km)"),
         ("lamps", f"known for {report.lit_known_share:.0%} of the length"),
