@@ -117,6 +117,12 @@ class Episode(Session):
         if self.mode is Mode.MONITORING:
             self._advance(max(0.0, self._window_s - self.world.moment.time_s))
         self.verdict = judge(
-            self.instance, self.moments, self.baseline_moments, self.declared, self.reason, self.watched_from_s
+            self.instance,
+            self.moments,
+            self.baseline_moments,
+            self.declared,
+            self.reason,
+            self.watched_from_s,
+            self.failure,
         )
         super()._finish(end)

@@ -9,7 +9,7 @@ from automotive_cosim.cockpit.actions import check
 from automotive_cosim.contracts import Action, Element, Observation
 from automotive_cosim.episode.session import Session
 from automotive_cosim.episode.specification import End
-from automotive_cosim.errors import ActionError, OutOfBudgetError
+from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError
 
 
 class Actor(Protocol):
@@ -21,6 +21,7 @@ class Actor(Protocol):
         Raises:
             ActionError: its answer could not be read; the step counts all the same.
             OutOfBudgetError: its budget is spent; the session ends as it is.
+            AgentError: it can act no more; the session ends, and is no success.
         """
         ...
 
@@ -57,6 +58,9 @@ def play(session: T, actor: Actor, observers: Sequence[StepObserver[T]] = ()) ->
             session.refuse(str(error))
         except OutOfBudgetError:
             session.cut_off(End.OUT_OF_BUDGET)
+            break
+        except AgentError as error:
+            session.give_up(str(error))
             break
         else:
             session.step(action)

@@ -63,6 +63,8 @@ class Session:
     """The reason code of that declaration."""
     end: End | None = None
     """Why it is over; None while it is not."""
+    failure: str | None = None
+    """Why the agent can act no more, if that ended it."""
     hashed: trace.Hash = field(default_factory=trace.Hash, repr=False)
     """Hash of the steps so far, computed when asked for."""
     _roads: Roads | None = field(default=None, repr=False)
@@ -110,6 +112,11 @@ class Session:
         """Ends it early, e.g. for an agent that has spent its budget."""
         self._check_open()
         self._finish(end)
+
+    def give_up(self, why: str) -> None:
+        """Ends it because the agent can act no more: no success, whatever has been done."""
+        self.failure = why
+        self.cut_off(End.AGENT_FAILED)
 
     def close(self) -> None:
         """Ends the drive; may be called again."""

@@ -147,6 +147,8 @@ class End(StrEnum):
     """Its limit of simulated time is over."""
     OUT_OF_BUDGET = "out_of_budget"
     """The agent has spent its tokens or its time."""
+    AGENT_FAILED = "agent_failed"
+    """The agent's side crashed, ended or did not answer: judged, and never a success."""
     INTERRUPTED = "interrupted"
     """Interrupted by the user: no verdict."""
     ERROR = "error"

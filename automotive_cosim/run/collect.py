@@ -102,6 +102,7 @@ class Collector(Watcher):
             success=result.success,
             reward=result.reward,
             end=result.end,
+            agent_error=result.agent_error,
             parts=PartsHeld(**{name: part["ok"] for name, part in judged["parts"].items()}) if judged else None,
             goal_s=judged["goal_s"] if judged else None,
             reason_fits=judged["reason_fits"] if judged else None,

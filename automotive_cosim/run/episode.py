@@ -78,6 +78,8 @@ class EpisodeResult:
     error: str | None = None
     error_kind: str | None = None
     """Name of the error's class in ``automotive_cosim.errors``."""
+    agent_error: str | None = None
+    """How the agent's side failed, if that ended the episode; ``success`` is then False."""
     violations: tuple[Violation, ...] = ()
     """Traffic law violations from departure to the end of the aftermath; seconds since the hand-over."""
     geo: str = "full"
@@ -195,8 +197,8 @@ class _Run:
         for watcher in self._watchers:
             watcher.handed_over(episode, first)
         end = play(episode, agent, (self._stepped,))
-        if end is End.OUT_OF_BUDGET:
-            self._stages()  # of the answer that it ran out on
+        if end in (End.OUT_OF_BUDGET, End.AGENT_FAILED):
+            self._stages()  # of the turn that it did not finish
         if isinstance(agent, Learner) and episode.verdict is not None:
             agent.learn(episode.verdict.success)
         self._watch_aftermath(episode)
@@ -282,6 +284,7 @@ class _Run:
             steps=len(episode.steps) - 1,
             sim_seconds=round(episode.seconds, 3),
             trace_sha256=episode.trace_sha256,
+            agent_error=episode.failure,
             verdict=None if judged is None else verdict.as_json(judged),
             timeline=timeline(moments, episode.steps, None if judged is None else judged.goal_s),
             path=samples(moments, hand_over_s),

@@ -64,6 +64,8 @@ class EpisodeRow(JobRow):
     """None without a verdict."""
     reward: float = 0.0
     end: End = End.ERROR
+    agent_error: str | None = None
+    """How the agent's side failed, if that ended the episode: a failure like any other, never an error."""
     parts: Annotated[PartsHeld | None, InColumns("part")] = None
     goal_s: float | None = None
     """Seconds from the trigger since when the goal held to the end."""
@@ -102,6 +104,11 @@ class EpisodeRow(JobRow):
     def has_succeeded(self) -> bool:
         """Whether it was judged a success."""
         return self.success is True
+
+    @property
+    def has_run(self) -> bool:
+        """Whether it was judged or ended in an error; false for an episode that is only planned."""
+        return self.success is not None or self.error is not None
 
     @property
     def missing(self) -> tuple[str, ...]:

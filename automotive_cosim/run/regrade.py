@@ -62,7 +62,13 @@ def _regraded(folder: Path, row: EpisodeRow, held: PartsHeld) -> Regraded:
         stored = read_judged(folder, row.id)
         instance = Instance(CATALOGUE[row.task], row.half, stored.goal, stored.parameters)
         verdict = judge(
-            instance, stored.trace, stored.baseline, stored.declared, stored.reason, stored.watched_from_s
+            instance,
+            stored.trace,
+            stored.baseline,
+            stored.declared,
+            stored.reason,
+            stored.watched_from_s,
+            row.agent_error,
         )
     except CosimError as error:
         return Regraded(row.id, row.has_succeeded, None, problem=str(error))

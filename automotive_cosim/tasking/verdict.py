@@ -98,6 +98,7 @@ def judge(
     declared: GoalStatus | None,
     reason: Reason | None,
     watched_from_s: float | None = None,
+    failure: str | None = None,
 ) -> Verdict:
     """Judges a finished episode from what happened; it has no other input and no effect.
 
@@ -108,9 +109,24 @@ def judge(
         declared: the agent's last declaration, if any.
         reason: the reason code that it gave.
         watched_from_s: in ``Mode.MONITORING``, simulation time at which the situation arose.
+        failure: why the agent could act no more, if it could not. No success then, even where silence is right.
     """
-    if watched_from_s is not None:
-        return _judge_watch(instance, trace, baseline, watched_from_s)
+    if watched_from_s is None:
+        verdict = _judge_asked(instance, trace, baseline, declared, reason)
+    else:
+        verdict = _judge_watch(instance, trace, baseline, watched_from_s)
+    if failure is not None:
+        verdict = replace(verdict, declared=Part(False, f"the agent failed: {failure}"))
+    return verdict
+
+
+def _judge_asked(
+    instance: Instance,
+    trace: Sequence[Moment],
+    baseline: Sequence[Moment],
+    declared: GoalStatus | None,
+    reason: Reason | None,
+) -> Verdict:
     half = instance.half
     start, end = trace[0], trace[-1]
     goal_s = _since(instance, trace)
@@ -138,7 +154,7 @@ def _judge_watch(
     half = instance.half
     after = [moment for moment in trace if moment.time_s >= trigger_s - 1e-9] or list(trace[-1:])
     baseline_after = [moment for moment in baseline if moment.time_s >= trigger_s - 1e-9] or list(baseline[-1:])
-    verdict = judge(instance, after, baseline_after, half.declares, None)
+    verdict = _judge_asked(instance, after, baseline_after, half.declares, None)
     early = sorted(_changed(after[0], baseline_after[0]))
     clean, in_time = verdict.clean, verdict.in_time
     if early:

@@ -58,6 +58,17 @@ def test_judging_the_stored_moments_gives_the_same_verdict(kept, collected):
     instance = Instance(task, "first", judged.goal, judged.parameters)
     again = judge(instance, judged.trace, judged.baseline, judged.declared, judged.reason)
     assert as_json(again) == collected[1].verdict
+
+
+def test_an_agent_that_failed_has_no_success_even_where_silence_is_right(collected):
+    judged = collected[0].judged()
+    instance = Instance(CATALOGUE["phenomenon_front_window_fogged"], "first", judged.goal, judged.parameters)
+    told = (instance, judged.baseline, judged.baseline, None, None)
+    for watched_from_s in (None, judged.trace[0].time_s):
+        assert judge(*told, watched_from_s).declared.ok == (watched_from_s is not None)
+        failed = judge(*told, watched_from_s, "it crashed")
+        assert "it crashed" in failed.declared.why
+        assert not failed.success
     assert judged.declared is GoalStatus.COMPLETE
 
 
