@@ -57,7 +57,7 @@ from automotive_cosim.contracts.requests import (
     SlowDown,
 )
 from automotive_cosim.contracts.roads import Road, RoadNetwork
-from automotive_cosim.contracts.snapshot import LaneShape, RoadShapes, RoadSnapshot, SeenVehicle, Signal
+from automotive_cosim.contracts.snapshot import LaneShape, RoadShapes, RoadSnapshot, SeenVehicle, SumoSignal
 
 __all__ = [
     "KMH_PER_MPS",
@@ -101,8 +101,8 @@ __all__ = [
     "RouteOption",
     "SeenVehicle",
     "Severity",
-    "Signal",
     "SlowDown",
+    "SumoSignal",
     "Surroundings",
     "Tell",
     "TrafficLight",

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import IntFlag
 
 
-class Signal(IntFlag):
+class SumoSignal(IntFlag):
     """SUMO's bits for what a vehicle shows; others are ignored."""
 
     RIGHT = 1
@@ -56,7 +56,7 @@ class SeenVehicle:
     """Clockwise from north."""
     speed_mps: float
     signals: int
-    """Bits of ``Signal``."""
+    """Bits of ``SumoSignal``."""
 
 
 @dataclass(frozen=True, slots=True)

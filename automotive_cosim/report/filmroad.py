@@ -15,7 +15,7 @@ from automotive_cosim.cockpit.drawing import Canvas
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.map import EGO_DOWN, Camera, RoadMap, View
 from automotive_cosim.cockpit.theme import NIGHT, Colour, Type
-from automotive_cosim.contracts import SeenVehicle, Signal
+from automotive_cosim.contracts import SeenVehicle, SumoSignal
 from automotive_cosim.geo.sun import SUNSET_DEG
 from automotive_cosim.run.road import RoadRecord, Second
 from automotive_cosim.run.timeline import Sample
@@ -225,16 +225,19 @@ class _Pen:
         is_ego = vehicle.vehicle_id == EGO
         fill = NIGHT.accent if is_ego else self.colours.heavy if vehicle.kind in HEAVY else self.colours.vehicle
         if vehicle.kind == "emergency":
-            fill = BLUE if vehicle.signals & Signal.BLUE else (235, 235, 240)
+            fill = BLUE if vehicle.signals & SumoSignal.BLUE else (235, 235, 240)
         least_m = LEAST_PX * self.unit / self.view.per_metre
         body = _Body(vehicle, max(vehicle.length_m, least_m), max(vehicle.width_m, least_m / 2))
         margin_m = (1.8 if is_ego else 1.0) * self.unit / self.view.per_metre
         self.brush.polygon(self._points(body.outline(margin_m)), (255, 255, 255) if is_ego else self.colours.edge)
         self.brush.polygon(self._points(body.outline(0.0)), fill)
         signals = vehicle.signals
-        if signals & Signal.BRAKE:
+        if signals & SumoSignal.BRAKE:
             self._lamps(body, ((-1.0, -0.62), (-1.0, 0.62)), BRAKE)
-        for bits, side in ((Signal.LEFT | Signal.HAZARD, -0.9), (Signal.RIGHT | Signal.HAZARD, 0.9)):
+        for bits, side in (
+            (SumoSignal.LEFT | SumoSignal.HAZARD, -0.9),
+            (SumoSignal.RIGHT | SumoSignal.HAZARD, 0.9),
+        ):
             if signals & bits:
                 self._lamps(body, ((-0.94, side), (-0.06, side)), INDICATOR)
 

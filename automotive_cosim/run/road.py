@@ -9,7 +9,7 @@ line says ``format``; every other line has one of these keys:
     vehicles   [[number, id, class, length, width], …]                    before a vehicle is first seen
     at_s       one second of the drive:
                seen       [[number, x, y, heading, speed in m/s, signals], …]; x and y of the front bumper; the car
-                          under test is ``ego``; signals are the bits of ``contracts.Signal``
+                          under test is ``ego``; signals are the bits of ``contracts.SumoSignal``
                lights     {light: state} of those that have changed; a lane's ``place`` is that of its letter
                speed_kmh, limit_kmh, road, local_time, sun_deg (elevation; null without a place), weather_code (WMO)
                incidents  [[kind, x, y], …]
@@ -35,7 +35,7 @@ from automotive_cosim.errors import UserError
 FORMAT = 1
 NAME = "road.jsonl.gz"
 
-Points = tuple[tuple[float, float], ...]
+GroundLine = tuple[tuple[float, float], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +79,7 @@ def read_record(path: Path) -> RoadRecord:
         UserError: it cannot be read, or has another format.
     """
     lanes: list[LaneShape] = []
-    junctions: list[Points] = []
+    junctions: list[GroundLine] = []
     names: dict[int, tuple[str, str, float, float]] = {}
     lights: dict[str, str] = {}
     seconds: list[Second] = []
@@ -124,5 +124,5 @@ def _whole_lines(file: gzip.GzipFile) -> Iterator[bytes]:
         return
 
 
-def _points(flat: Sequence[float]) -> Points:
+def _points(flat: Sequence[float]) -> GroundLine:
     return tuple(zip(flat[::2], flat[1::2], strict=True))

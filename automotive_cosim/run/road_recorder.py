@@ -5,9 +5,12 @@ from __future__ import annotations
 import gzip
 import json
 import math
+import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from itertools import pairwise
 from pathlib import Path
+from typing import IO
 
 from shapely import LineString, Point, Polygon, STRtree
 
@@ -20,6 +23,9 @@ from automotive_cosim.run.episode import EpisodeResult, Shot, Watcher
 from automotive_cosim.run.road import FORMAT, NAME
 from automotive_cosim.run.words import limit_kmh
 from automotive_cosim.traffic.lookout import LOOK_RADIUS_M
+
+if sys.platform != "win32":
+    import fcntl
 
 AHEAD_M = 200.0
 """Lanes come into sight this much before they can have a vehicle on them; new ones are sought as often."""
@@ -71,7 +77,9 @@ class _Writer:
     """The file, and what it has told already."""
 
     def __init__(self, path: Path, episode: Episode, hand_over_s: float) -> None:
-        self._file = gzip.open(path, "wb", compresslevel=6)  # noqa: SIM115
+        self._raw = path.open("wb")
+        _lock(self._raw)
+        self._file = gzip.GzipFile(fileobj=self._raw, mode="wb", compresslevel=6, filename="", mtime=0)
         self._hand_over_s = hand_over_s
         self._index = ShapeIndex(episode.world.traffic.shapes())
         self._roads = {road.edge_id: road.shape_m for road in episode.network.roads}
@@ -146,9 +154,11 @@ class _Writer:
             }
         )
         self._file.flush()
+        self._raw.flush()
 
     def close(self) -> None:
         self._file.close()
+        self._raw.close()
 
     def _seek(self, x_m: float, y_m: float) -> None:
         """Tells the lanes and junctions that have come into sight."""
@@ -192,6 +202,30 @@ class ShapeIndex:
             for tree in (self._lanes, self._junctions)
         )
         return lanes, junctions
+
+
+def is_being_written(path: Path) -> bool:
+    """Whether a running program is writing that file; the system knows, however the program ends.
+
+    Always false on Windows.
+    """
+    if sys.platform == "win32":
+        return False
+    try:
+        with path.open("rb") as file:
+            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    except OSError:
+        return False
+    return False
+
+
+def _lock(file: IO[bytes]) -> None:
+    """Marks a file as being written until it is closed."""
+    if sys.platform != "win32":
+        with suppress(OSError):  # some file systems have no locks; then it only looks finished
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
 def along(line: Sequence[tuple[float, float]], position_m: float) -> tuple[float, float]:

@@ -181,9 +181,9 @@ class RemoteTraffic:
 
     def shapes(self) -> RoadShapes:
         """See ``Traffic.shapes``; read once for all drives in the same traffic."""
-        if self._source.shapes is None:
-            self._source.shapes = self._process.call("shapes")
-        return self._source.shapes
+        shapes: RoadShapes = self._source.shapes or self._process.call("shapes")
+        self._source.shapes = shapes
+        return shapes
 
     def own_choice(self) -> tuple[str, ...]:
         """The route that SUMO's rerouting device would take now, from the present edge."""

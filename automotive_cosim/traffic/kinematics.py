@@ -19,7 +19,7 @@ from automotive_cosim.contracts import (
     RoadSnapshot,
     RouteOption,
     SeenVehicle,
-    Signal,
+    SumoSignal,
 )
 from automotive_cosim.traffic.base import Event
 from automotive_cosim.traffic.ego import EASING_MPS2, RefusedError
@@ -97,8 +97,8 @@ class ScriptedCar:
     def look(self) -> RoadSnapshot:
         """See ``drive.Stepper``."""
         stretch, state = self._layout.stretches[self._index], self.now.state
-        braking = Signal.BRAKE if self._acceleration_mps2 < -BRAKE_LIGHT_MPS2 else 0
-        hazards = Signal.HAZARD if state.hazard_lights else 0
+        braking = SumoSignal.BRAKE if self._acceleration_mps2 < -BRAKE_LIGHT_MPS2 else 0
+        hazards = SumoSignal.HAZARD if state.hazard_lights else 0
         seen = [self._seen("ego", self._along_m, self._speed_mps, signals=braking | hazards)]
         if stretch.leader is not None:
             seen.append(self._seen("leader", self._leader_m + CAR_M, stretch.leader.speed_kmh / KMH_PER_MPS))

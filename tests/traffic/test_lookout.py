@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from automotive_cosim.contracts import Hazards, Signal
+from automotive_cosim.contracts import Hazards, SumoSignal
 from automotive_cosim.scenarios import Scenario, Trip
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
@@ -82,7 +82,7 @@ def test_hazard_lights_are_seen_and_nothing_after_the_end(forked: Forked, hurrie
     traffic.request(Hazards(True))
     traffic.advance(2.0)
     (ego,) = (each for each in traffic.look().vehicles if each.vehicle_id == "ego")
-    assert ego.signals & Signal.HAZARD
+    assert ego.signals & SumoSignal.HAZARD
     assert (ego.x_m, ego.y_m, ego.speed_mps) == (traffic.state.x_m, traffic.state.y_m, traffic.state.speed_mps)
     traffic.advance(900.0)
     assert traffic.state.end is not None
@@ -98,8 +98,8 @@ def test_a_scripted_road_shows_its_cars() -> None:
     assert seen["oncoming"].y_m - seen["ego"].y_m == pytest.approx(80.0)
     assert seen["oncoming"].x_m < 0
     assert seen["oncoming"].heading_deg == 180.0
-    assert not seen["ego"].signals & Signal.BRAKE
+    assert not seen["ego"].signals & SumoSignal.BRAKE
     traffic.advance(1.0)
     (ego,) = (each for each in traffic.look().vehicles if each.vehicle_id == "ego")
-    assert ego.signals & Signal.BRAKE, "the car in front is slower"
+    assert ego.signals & SumoSignal.BRAKE, "the car in front is slower"
     assert [lane.line_m[0] for lane in traffic.shapes().lanes] == [(0.0, 0.0)]
