@@ -78,7 +78,7 @@ class _Writer:
 
     def __init__(self, path: Path, episode: Episode, hand_over_s: float) -> None:
         self._raw = path.open("wb")
-        _lock(self._raw)
+        mark_as_written(self._raw)
         self._file = gzip.GzipFile(fileobj=self._raw, mode="wb", compresslevel=6, filename="", mtime=0)
         self._hand_over_s = hand_over_s
         self._index = ShapeIndex(episode.world.traffic.shapes())
@@ -221,8 +221,8 @@ def is_being_written(path: Path) -> bool:
     return False
 
 
-def _lock(file: IO[bytes]) -> None:
-    """Marks a file as being written until it is closed."""
+def mark_as_written(file: IO[bytes]) -> None:
+    """Marks a file as being written, until it is closed or the program ends."""
     if sys.platform != "win32":
         with suppress(OSError):  # some file systems have no locks; then it only looks finished
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
