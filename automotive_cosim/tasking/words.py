@@ -26,6 +26,8 @@ def half_in_words(half: Half) -> Iterable[tuple[str, str]]:
         yield "when", start.start
     yield "trigger", f"{half.trigger.condition}, for {half.trigger.for_s:g} s"
     yield "goal", f"{half.goal}, then declare {half.declares}"
+    if half.may_write:
+        yield "allowed", f"{', '.join(sorted(half.may_write))} may be commanded besides"
     for number, way in enumerate((half.moves, *half.ways)):
         yield "solution", f"{'or ' if number else ''}{', '.join(map(_move, way)) or 'declare at once'}"
     yield "deadline", f"{half.deadline.seconds:g} s: {half.deadline.reason}"
