@@ -175,7 +175,6 @@ class WebServer(ThreadingHTTPServer):
 class RequestHandler(BaseHTTPRequestHandler):
     """One request."""
 
-    server: WebServer
     protocol_version = "HTTP/1.1"
     server_version, sys_version = "automotive-cosim", ""
     timeout = 60
@@ -187,7 +186,7 @@ class RequestHandler(BaseHTTPRequestHandler):
             if query.get("token"):
                 self._welcome(path)
                 return
-            self._send(HTTPStatus.OK, self.server.site.answer(path, query))
+            self._send(HTTPStatus.OK, self._web.site.answer(path, query))
         except RefusedRequestError as refusal:
             is_data = self.path.startswith("/api/")
             why = _json({"error": str(refusal)}) if is_data else WebAnswer(f"{refusal}\n".encode(), "text/plain")
@@ -204,6 +203,11 @@ class RequestHandler(BaseHTTPRequestHandler):
 
     def log_message(self, format: str, *args: object) -> None:  # noqa: A002 (its name in the base class)
         """Says nothing."""
+
+    @property
+    def _web(self) -> WebServer:
+        assert isinstance(self.server, WebServer)
+        return self.server
 
     def _request(self) -> tuple[str, dict[str, str]]:
         """The path and the query of a request that may be answered.
@@ -222,7 +226,7 @@ class RequestHandler(BaseHTTPRequestHandler):
         parts = urlsplit(self.path)
         query = {name: values[-1] for name, values in parse_qs(parts.query).items()}
         given = query.get("token") or self._cookie()
-        if not hmac.compare_digest(given.encode(), self.server.token.encode()):
+        if not hmac.compare_digest(given.encode(), self._web.token.encode()):
             raise RefusedRequestError(
                 HTTPStatus.FORBIDDEN, "the token is missing or wrong; open the address that the server printed"
             )
@@ -231,10 +235,10 @@ class RequestHandler(BaseHTTPRequestHandler):
     def _is_own(self, host: str) -> bool:
         """Whether a request names this server: a foreign name that resolves to it would get around the browser."""
         name, _, port = host.rpartition(":")
-        if not port.isdigit() or int(port) != self.server.server_port:
+        if not port.isdigit() or int(port) != self._web.server_port:
             return False
         name = name.strip("[]").lower()
-        return name in self.server.names or (not self.server.names.isdisjoint(ANY) and _is_address(name))
+        return name in self._web.names or (not self._web.names.isdisjoint(ANY) and _is_address(name))
 
     def _cookie(self) -> str:
         try:
@@ -245,13 +249,13 @@ class RequestHandler(BaseHTTPRequestHandler):
 
     @property
     def _cookie_name(self) -> str:
-        return f"automotive_cosim_{self.server.server_port}"
+        return f"automotive_cosim_{self._web.server_port}"
 
     def _welcome(self, path: str) -> None:
         """Swaps the token in the address for a cookie."""
         self.send_response(HTTPStatus.SEE_OTHER)
         self.send_header("Location", path if path.startswith("/") and not path.startswith("//") else "/")
-        cookie = f"{self._cookie_name}={self.server.token}; HttpOnly; SameSite=Strict; Path=/"
+        cookie = f"{self._cookie_name}={self._web.token}; HttpOnly; SameSite=Strict; Path=/"
         self.send_header("Set-Cookie", cookie)
         self._end(b"")
 
