@@ -143,6 +143,8 @@ def _choices(choices: Choices) -> str:
 
 
 def _half(half: Half) -> Iterable[str]:
+    from automotive_cosim.tasking.binding import needs
+
     start = half.start
     yield f"where     {start.scenario}, trip {start.trip}" + (", parked" if start.parked else "")
     if start.origin:
@@ -155,6 +157,8 @@ def _half(half: Half) -> Iterable[str]:
         yield f"solution  {'or ' if number else ''}{', '.join(map(_move, way)) or 'declare at once'}"
     yield f"deadline  {half.deadline.seconds:g} s: {half.deadline.reason}"
     yield f"basis     {half.basis}: {half.rule}" if half.rule else f"basis     {half.basis}"
+    for need in needs(half):
+        yield f"elsewhere {need}"
 
 
 def _move(move: object) -> str:

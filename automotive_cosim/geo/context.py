@@ -16,7 +16,7 @@ from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, GpsFix, LimitS
 from automotive_cosim.geo.applied import AppliedRule, built_up, limits, other_rules, situation_at
 from automotive_cosim.geo.climate import ClimateNorm, climate_norm
 from automotive_cosim.geo.place import NOWHERE, Atlas, Place
-from automotive_cosim.geo.rules import TOPICS, Rule
+from automotive_cosim.geo.rules import TOPICS, Rule, Value
 from automotive_cosim.geo.situation import Situation
 from automotive_cosim.geo.sun import Sun, sun_at
 from automotive_cosim.geo.text import BUDGET_TOKENS, KM_PER_MILE, Line, amount_of_speed, position, within_budget
@@ -124,6 +124,10 @@ class GeoContext:
     def rule(self, topic: str) -> AppliedRule | None:
         """The first rule on a topic that applies now; None if there is none."""
         return next((found for found in self.rules if found.rule.topic == topic and found.value is not None), None)
+
+    def answer(self, rule: Rule) -> Value | None:
+        """What a rule of any place says to the situation here and now; None if it does not apply."""
+        return rule.answer(self._situation)[0]
 
     @property
     def lines(self) -> tuple[Line, ...]:
