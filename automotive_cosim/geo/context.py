@@ -125,10 +125,6 @@ class GeoContext:
         """The first rule on a topic that applies now; None if there is none."""
         return next((found for found in self.rules if found.rule.topic == topic and found.value is not None), None)
 
-    def answer(self, rule: Rule) -> Value | None:
-        """What a rule of any place says to the situation here and now; None if it does not apply."""
-        return rule.answer(self._situation)[0]
-
     @property
     def lines(self) -> tuple[Line, ...]:
         """Every line of the text with its source, the most important first."""
@@ -149,6 +145,11 @@ class GeoContext:
     @cached_property
     def _limits(self) -> tuple[AppliedRule, ...]:
         return tuple(limits(self.place, self._situation))
+
+
+def answer(rule: Rule, context: GeoContext) -> Value | None:
+    """What a rule of any place says to the situation here and now; None if it does not apply."""
+    return rule.answer(context._situation)[0]
 
 
 # --- in words ---------------------------------------------------------------------------------------------

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 from automotive_cosim.contracts import KMH_PER_MPS, LimitSource
 from automotive_cosim.geo.applied import AppliedRule
-from automotive_cosim.geo.context import GeoContext
+from automotive_cosim.geo.context import GeoContext, answer
 from automotive_cosim.geo.place import Atlas, shipped
 from automotive_cosim.geo.rules import TOPICS, Rule, Status, Value
 from automotive_cosim.geo.text import KM_PER_MILE, amount_of_speed
@@ -102,7 +102,7 @@ def _rule(rule_id: str, atlas: Atlas) -> Rule:
 
 def _law_here(rule: Rule, context: GeoContext) -> str:
     """The verified rule in force here on the same topic with the same answer."""
-    wanted = context.answer(rule)
+    wanted = answer(rule, context)
     topic = TOPICS[rule.topic].lower()
     found = (
         list(_limits(context)) if rule.topic == "limit" else [here for here in [context.rule(rule.topic)] if here]
