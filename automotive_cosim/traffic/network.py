@@ -21,16 +21,15 @@ The file is read with ``iterparse``, about twice as fast as sumolib's reader and
 
 from __future__ import annotations
 
-import gzip
 import xml.etree.ElementTree as ET
-import zlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from io import BufferedReader
 from pathlib import Path
+from typing import IO
 
 from automotive_cosim.contracts import KMH_PER_MPS, LimitSource, Road, RoadNetwork
 from automotive_cosim.errors import ScenarioError
+from automotive_cosim.formats.files import opened
 from automotive_cosim.traffic import georeference
 from automotive_cosim.traffic.posted import TimedLimit, timed_limits
 
@@ -146,11 +145,11 @@ def read_network(path: Path) -> Network:
     """
     reading = _Reading()
     try:
-        with _open(path) as file:
+        with opened(path) as file:
             _scan(file, reading, path)
     except FileNotFoundError as error:
         raise ScenarioError(f"the network {path} is missing") from error
-    except (ET.ParseError, OSError, EOFError, zlib.error, KeyError, ValueError) as error:
+    except (ET.ParseError, OSError, KeyError, ValueError) as error:
         raise ScenarioError(
             f"{path} is not a complete SUMO network ({error}); build it again with netconvert"
         ) from error
@@ -179,20 +178,16 @@ def root_of(path: Path) -> ET.Element:
         ScenarioError: the file is missing or not XML.
     """
     try:
-        with _open(path) as file:
+        with opened(path) as file:
             root: ET.Element = next(ET.iterparse(file, events=("start",)))[1]
     except FileNotFoundError as error:
         raise ScenarioError(f"{path} is missing") from error
-    except (ET.ParseError, OSError, EOFError, zlib.error, StopIteration) as error:
+    except (ET.ParseError, OSError, ValueError, LookupError, StopIteration) as error:
         raise ScenarioError(f"{path} is not XML: {error}") from error
     return root
 
 
-def _open(path: Path) -> gzip.GzipFile | BufferedReader:
-    return gzip.open(path) if path.suffix == ".gz" else path.open("rb")
-
-
-def _scan(file: gzip.GzipFile | BufferedReader, reading: _Reading, path: Path) -> None:
+def _scan(file: IO[bytes], reading: _Reading, path: Path) -> None:
     events = ET.iterparse(file, events=("start", "end"))
     _, root = next(events)
     if root.tag != "net":
