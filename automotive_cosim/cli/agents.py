@@ -30,10 +30,17 @@ def show(name: str) -> None:
     """Show an agent's inputs and actions and, if it uses a model, its prompt."""
     from importlib.resources import files
 
-    from automotive_cosim.agents import PROFILES, make_agent
+    from automotive_cosim.agents import FORMATS, MODELLED, PROFILES, NativeAgent, make_agent
 
-    agent = make_agent(name)
-    typer.echo(f"{agent.name}: gets {', '.join(sorted(agent.channels)) or 'only the goal'}")
+    if name == NativeAgent.name:
+        typer.echo(f"{name}: gets {', '.join(sorted(NativeAgent.channels))}; its model, the screenshot alone\n")
+        for form, each in FORMATS.items():
+            typer.echo(f"{form}: {', '.join(each.verbs)}\n    has no {', '.join(each.lacks) or 'gaps'}")
+        typer.echo()
+    else:
+        agent = make_agent(name)
+        typer.echo(f"{agent.name}: gets {', '.join(sorted(agent.channels)) or 'only the goal'}")
     if name in PROFILES:
         typer.echo(f"actions: {', '.join(sorted(PROFILES[name].actions))}\n")
+    if name in MODELLED:
         typer.echo(files("automotive_cosim.agents").joinpath("prompts", f"{name}.md").read_text("utf-8"), nl=False)
