@@ -15,8 +15,8 @@ from automotive_cosim.cli.terminal import plain
 class Console(RichConsole):
     """rich's console, whose texts are plain and contain no markup."""
 
-    def __init__(self, **named: Any) -> None:
-        super().__init__(**{"markup": False, "emoji": False} | named)
+    def __init__(self, *, markup: bool = False, **named: Any) -> None:
+        super().__init__(markup=markup, emoji=False, **named)
 
     def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterable[Segment]:
         """What is written of something, piece by piece; rich's own controls are marked as such."""
