@@ -28,6 +28,7 @@ from zoneinfo import ZoneInfo
 from automotive_cosim.contracts import GoalStatus, Json, Reason
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats.files import read_json
 from automotive_cosim.geo.locate import Geo
 
 PACKAGE = "automotive_cosim."
@@ -38,8 +39,6 @@ RENAMED = {"idle": "baseline"}
 """Current names of fields in older files."""
 LONG = 3
 """Tuples with more entries go into the pool."""
-MOST_BYTES = 2**28
-"""Largest content that is read; a simulated second takes about a kilobyte."""
 PRESET = 2
 """xz preset: four times as fast as the default, for files that are a tenth larger."""
 
@@ -96,17 +95,11 @@ def read_judged(folder: Path, episode: str) -> Judged:
     """
     path = judged_file(folder, episode)
     try:
-        with lzma.open(path) as file:
-            text = file.read(MOST_BYTES + 1)
-        if len(text) > MOST_BYTES:
-            raise ValueError(f"it unpacks to over {MOST_BYTES >> 20} MB")
-        whole: Json = json.loads(text)
+        whole: Json = read_json(path)
         judged = _Reader(whole["classes"], whole["pool"]).value(whole["value"])
     except FileNotFoundError as error:
         raise UserError(f"{path} does not exist; only judged episodes have one") from error
-    except (
-        OSError, EOFError, lzma.LZMAError, ValueError, LookupError, TypeError, AttributeError, RecursionError
-    ) as error:  # fmt: skip
+    except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError, ImportError) as error:
         raise UserError(f"cannot read {path}: {error}; judge it with the version that wrote it") from error
     if not isinstance(judged, Judged):
         raise UserError(f"{path} has no moments")
