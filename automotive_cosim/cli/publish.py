@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import secrets
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
@@ -40,11 +41,21 @@ def verify(
         int,
         typer.Option(
             "--replay",
-            help="How many drives to replay and compare bit for bit; which ones follows from the content.",
+            help="How many drives to replay and compare bit for bit.",
             metavar="N",
             parser=whole_number(0, 10**6),
         ),
     ] = 3,
+    seed: Annotated[
+        int | None,
+        typer.Option(
+            "--replay-seed",
+            help="Draws the drives to replay.",
+            metavar="N",
+            parser=whole_number(0, 2**31 - 1),
+            show_default="another one each time",
+        ),
+    ] = None,
     workers: Workers = None,
     tasks_from: TasksFrom = None,
     as_json: AsJson = False,
@@ -52,7 +63,8 @@ def verify(
     """Check an evaluation or a bundle; exit code 1 if something does not fit."""
     from automotive_cosim.publish.verify import verify as verified
 
-    found = verified(path, replays=replays, workers=workers or 1)
+    drawn_with = secrets.randbelow(2**31) if seed is None else seed
+    found = verified(path, replays=replays, seed=drawn_with, workers=workers or 1)
     if as_json:
         problems = [asdict(problem) for problem in found.problems]
         print_json({"ok": not problems, "facts": found.facts, "problems": problems, "unknown": found.unknown})

@@ -7,7 +7,6 @@ stored moments, verdicts with a new judgement of these, and a sample of the driv
 from __future__ import annotations
 
 import filecmp
-import hashlib
 import json
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
@@ -75,6 +74,7 @@ def verify(
     path: Path,
     *,
     replays: int = 0,
+    seed: int = 0,
     workers: int = 1,
     tell: Callable[[int, int], None] = lambda done, planned: None,
 ) -> Verified:
@@ -82,7 +82,8 @@ def verify(
 
     Args:
         path: of the folder or the bundle.
-        replays: how many judged episodes to drive again, drawn by the content, so that nobody chooses them.
+        replays: how many judged episodes to drive again.
+        seed: draws them; whoever made the evaluation must not know it, or he could spare what he forged.
         workers: processes that judge.
         tell: called with the number of episodes judged so far and of all.
 
@@ -93,13 +94,13 @@ def verify(
         bundle = None if path.is_dir() else path
         folder = path if bundle is None else ends.enter_context(archive.unpacked(bundle))
         try:
-            return _verified(folder, bundle, replays, workers, tell)
+            return _verified(folder, bundle, replays, seed, workers, tell)
         except (LookupError, TypeError, ValueError, AttributeError, RecursionError) as error:
             raise UserError(f"{path} lacks something or has it in another form: {error!r:.200}") from error
 
 
 def _verified(
-    folder: Path, bundle: Path | None, replays: int, workers: int, tell: Callable[[int, int], None]
+    folder: Path, bundle: Path | None, replays: int, seed: int, workers: int, tell: Callable[[int, int], None]
 ) -> Verified:
     contents = None if bundle is None else read_contents(folder)
     problems = [] if contents is None else hash_problems(folder, contents)
@@ -116,17 +117,14 @@ def _verified(
         problems += _count_problems(contents, manifest, found, rows)
     planned = {name: row for name, row in rows.items() if name in jobs}
     problems += _episode_problems(folder, jobs, planned, workers, tell)
-    drawn = _sample(manifest, rows, planned, replays)
+    drawn = _sample(planned, replays, seed)
     again = [each for name in drawn for each in _replayed(folder, jobs[name], rows[name])] if drawn else []
     facts = [
-        *(
-            []
-            if contents is None
-            else [f"{counted(len(contents.files), 'file')}, sha256 of {NAME} {contents.sha256}"]
-        ),
+        *([f"{counted(len(contents.files), 'file')}, sha256 of {NAME} {contents.sha256}"] if contents else []),
         str(found),
         f"{counted(sum(row.success is not None for row in planned.values()), 'verdict')} judged again",
-        f"{counted(len(drawn), 'drive')} replayed{''.join(f'{chr(10)}    {name}' for name in drawn)}",
+        f"{counted(len(drawn), 'drive')} replayed" + (f", drawn with seed {seed}" if drawn else ""),
+        *(f"  {name}" for name in drawn),
         *_versions(manifest),
     ]
     unknown = [*UNKNOWN]
@@ -253,16 +251,11 @@ def _episode_problems(
     return found
 
 
-def _sample(
-    manifest: Json, rows: Mapping[str, EpisodeRow], planned: Mapping[str, EpisodeRow], count: int
-) -> list[str]:
-    """Judged episodes, drawn by the content of the evaluation."""
-    digest = hashlib.sha256(json.dumps(manifest["plan"], sort_keys=True).encode())
-    for name in sorted(rows):
-        digest.update(json.dumps(as_json(rows[name]), sort_keys=True).encode())
-    names = sorted(name for name, row in planned.items() if row.success is not None)
-    rng = np.random.default_rng(int.from_bytes(digest.digest()[:8]))
-    return [names[number] for number in sorted(rng.permutation(len(names))[:count])]
+def _sample(rows: Mapping[str, EpisodeRow], count: int, seed: int) -> list[str]:
+    """Judged episodes, drawn with this seed."""
+    names = sorted(name for name, row in rows.items() if row.success is not None)
+    drawn = np.random.default_rng(seed).permutation(len(names))[:count]
+    return [names[number] for number in sorted(drawn)]
 
 
 def _replayed(folder: Path, job: EpisodeJob, row: EpisodeRow) -> list[Problem]:

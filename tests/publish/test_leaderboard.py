@@ -68,6 +68,10 @@ def test_the_best_pairs_come_first(packed):
     better = replace(better, rates=(*better.rates[:-2], won, lost))
     ((table, _, _),) = tables([worse, better])
     assert [row[0] for row in table.rows] == [better.contestant.method, worse.contestant.method]
+    fewer = replace(worse, rates=(*worse.rates[:-2], rate([("a", True)], not_run=3), won))
+    half = replace(better, rates=(*better.rates[:-2], rate([("a", True), ("b", False)]), won))
+    ((table, _, _),) = tables([fewer, half])
+    assert [row[0] for row in table.rows] == [half.contestant.method, fewer.contestant.method]
 
 
 def test_a_bundle_with_a_problem_is_left_out_and_named_and_markup_is_escaped(shelf, unpacked, tmp_path):
