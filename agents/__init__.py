@@ -15,7 +15,7 @@ from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.agents.settings import PROFILES, AgentPart, AgentSettings
 from automotive_cosim.agents.trivial import AlwaysAlert, NoOp, PressEverything, Random
 from automotive_cosim.errors import UnknownNameError
-from automotive_cosim.models import make_model
+from automotive_cosim.models import ChatModel, make_model
 
 __all__ = [
     "AGENTS",
@@ -52,12 +52,16 @@ AGENTS = tuple(sorted([*SIMPLE, *PROFILES]))
 """Names of all agents; ``package.module:Class`` names one of your own."""
 
 
-def make_agent(name: str, model: str = "rules", settings: AgentSettings = AgentSettings()) -> Agent:  # noqa: B008, frozen
+def make_agent(
+    name: str,
+    model: str | ChatModel = "rules",
+    settings: AgentSettings = AgentSettings(),  # noqa: B008, frozen
+) -> Agent:
     """An agent by name.
 
     Args:
         name: one of ``AGENTS``, or ``package.module:Class``.
-        model: a model's name (``models.make_model``), for the agents that have one.
+        model: a model, or the name of one (``models.make_model``), for the agents that have one.
         settings: how to run it.
 
     Raises:
@@ -68,7 +72,7 @@ def make_agent(name: str, model: str = "rules", settings: AgentSettings = AgentS
     if ":" in name:
         return load(name)
     if name in PROFILES:
-        return ModelAgent(PROFILES[name], make_model(model), settings)
+        return ModelAgent(PROFILES[name], make_model(model) if isinstance(model, str) else model, settings)
     if name not in SIMPLE:
         raise UnknownNameError("agent", name, AGENTS, "automotive-cosim agents list")
     return SIMPLE[name](settings)

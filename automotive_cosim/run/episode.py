@@ -188,7 +188,11 @@ class _Run:
     def play(self) -> End:
         agent = self._agent
         hand_over = self._finder.find(SeedSource(self._setup.seed).next())
-        conditions = self._setup.conditions(agent.channels)
+        try:
+            conditions = self._setup.conditions(agent.channels)
+        except BaseException:  # its process cannot be started
+            hand_over.world.close()
+            raise
         episode = self._episode = Episode.take_over(hand_over, conditions, _All(self._watchers))
         agent.reset(episode.goal)
         if isinstance(agent, Privileged):

@@ -116,6 +116,21 @@ def test_episodes_of_one_simulation_stand_together():
     assert len(seen) == len(set(seen))
 
 
+def test_the_order_of_episodes_tells_no_half_from_the_other():
+    """An agent that counts how often it heard a goal must not know by that which half it is in."""
+    jobs = make_plan({"agents": ["asurada"], "tasks": ["safety"], "seeds": [0, 1, 2]}).jobs()
+    place = {job.id: number for number, job in enumerate(jobs)}
+    pairs = {(job.pair, job.simulation) for job in jobs}
+    halves = [[job for job in jobs if (job.pair, job.simulation) == pair] for pair in pairs]
+    first = [place[pair[0].id] < place[pair[1].id] for pair in map(_by_half, halves) if len(pair) == 2]
+    assert len(first) > 200
+    assert 0.4 < sum(first) / len(first) < 0.6
+
+
+def _by_half(jobs):
+    return sorted(jobs, key=lambda job: job.setup.half)
+
+
 def test_a_file_says_what_the_options_say(tmp_path):
     path = tmp_path / "plan.toml"
     path.write_text('agents = ["t3a"]\nseeds = [0, 1]\ngeo = ["full", "none"]\n[limits]\nsteps = 5\nwall_s = 60\n')
