@@ -118,9 +118,8 @@ def evaluate(
     from automotive_cosim.report.results import read_results, standings
     from automotive_cosim.run.batch import run_plan
     from automotive_cosim.run.collect import Pictures
-    from automotive_cosim.run.episode_row import EpisodeRow
     from automotive_cosim.run.plan import make_plan, read_plan
-    from automotive_cosim.run.store import megabytes, read_rows
+    from automotive_cosim.run.store import megabytes
 
     if pictures not in set(Pictures):
         raise UnknownNameError("choice of pictures", pictures, Pictures)
@@ -136,7 +135,6 @@ def evaluate(
     where = executor_of(executor, workers, ray_address, ray_send)
     console = Console(stderr=as_json, highlight=False)
     plan.check()
-    jobs = plan.jobs()
     _announce(console, plan, folder)
     if dry_run:
         return
@@ -146,21 +144,20 @@ def evaluate(
                 plan, folder, executor=where, retries=retries, pictures=Pictures(pictures), tell=view.tell
             )
         except KeyboardInterrupt:
-            typer.echo(f"finished episodes are in {folder}; rerun the command to resume", err=True)
+            reached = f" ({read_results(folder).coverage})" if (folder / "manifest.json").is_file() else ""
+            typer.echo(f"finished episodes are in {folder}{reached}; rerun the command to resume", err=True)
             raise
-    rows = read_rows(folder, EpisodeRow)
-    errors = [rows[job.id] for job in jobs if rows[job.id].success is None]
+    found = read_results(folder)
+    errors = [row for row in found.rows if row.success is None]
     size_mb = megabytes(folder)
     if as_json:
         told = {"planned": end.planned, "judged": end.judged, "successes": end.successes, "errors": end.errors}
         typer.echo(json.dumps(told | {"ran": end.ran, "megabytes": round(size_mb, 1), "out": str(folder)}))
     else:
-        console.print(
-            f"{end.successes} of {counted(end.judged, 'judged episode')} succeeded; {counted(end.errors, 'error')}"
-        )
-        for line in standings(read_results(folder)):
+        console.print(f"{end.successes:,} succeeded; {found.coverage}")
+        for line in standings(found):
             console.print(f"  {line}", soft_wrap=True)
-        for line in _failures([rows[job.id] for job in jobs]):
+        for line in _failures(found.rows):
             console.print(f"  {line}", soft_wrap=True, markup=False)
         for row in errors:
             console.print(f"  error in {row.id}: {row.error_kind}: {row.error}", soft_wrap=True)

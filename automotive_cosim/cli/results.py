@@ -16,10 +16,15 @@ Folder = Annotated[Path, typer.Argument(help="Results folder of `eval`.", show_d
 def report(folder: Folder, tasks_from: TasksFrom = None) -> None:
     """Write report.html, tables and plots into the folder of an evaluation or a study."""
     from automotive_cosim.report.evaluation import write_report
+    from automotive_cosim.report.results import read_results
     from automotive_cosim.run.store import read_manifest
     from automotive_cosim.studies.page import write_study
 
-    page = write_study(folder) if "study" in read_manifest(folder)["plan"] else write_report(folder)
+    if "study" in read_manifest(folder)["plan"]:
+        page = write_study(folder)
+    else:
+        page = write_report(folder)
+        typer.echo(str(read_results(folder).coverage))
     typer.echo(f"{page} written; tables in {folder / 'tables'}, plots in {folder / 'plots'}")
 
 
@@ -46,7 +51,10 @@ def replay(
 
 def regrade(folder: Folder, tasks_from: TasksFrom = None) -> None:
     """Judge the stored episodes by the current checks and print what changes; nothing is written."""
+    from automotive_cosim.run.coverage import coverage
+    from automotive_cosim.run.episode_row import EpisodeRow
     from automotive_cosim.run.regrade import regrade as judged_again
+    from automotive_cosim.run.store import read_evaluation, read_rows
 
     words = {True: "solved", False: "not solved", None: "not judged"}
     count = differing = missing = 0
@@ -61,4 +69,5 @@ def regrade(folder: Folder, tasks_from: TasksFrom = None) -> None:
             for change in each.changes:
                 typer.echo(f"    {change.part.replace('_', ' ')} {'yes' if change.now else 'no'}: {change.why}")
     told = f", {missing} could not be judged" if missing else ""
-    typer.echo(f"{differing} of {count} verdicts change{told}")
+    found = coverage(read_evaluation(folder), read_rows(folder, EpisodeRow))
+    typer.echo(f"{differing} of {count} verdicts change{told}; {found}")

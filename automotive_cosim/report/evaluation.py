@@ -14,7 +14,7 @@ from automotive_cosim.report.charts import INK, charts
 from automotive_cosim.report.failures import FailureClass
 from automotive_cosim.report.page import PARTS
 from automotive_cosim.report.results import Results, contestant, read_results
-from automotive_cosim.report.summary import errors, tables
+from automotive_cosim.report.summary import errors, progress, tables
 from automotive_cosim.report.tables import Cell, Table
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.episode import EpisodeResult
@@ -43,9 +43,9 @@ def write_report(folder: Path) -> Path:
     """
     results = read_results(folder)
     if not results.rows:
-        raise UserError(f"{folder} has no episodes yet; rerun its `eval` command to resume")
+        raise UserError(f"{folder} has no episodes yet ({results.coverage}); rerun its `eval` command to resume")
     found = findings.classes(results)
-    made, plots = all_tables(results, found), charts(results)
+    made, plots = all_tables(results, found), charts(results.shared())
     try:
         for name in ("tables", "plots"):
             (folder / name).mkdir(exist_ok=True)
@@ -62,16 +62,18 @@ def write_report(folder: Path) -> Path:
 
 
 def all_tables(results: Results, found: Mapping[str, FailureClass]) -> list[Table]:
-    """Every table of the report, the most important first."""
+    """Every table of the report, the most important first; all but the first and the last on shared instances."""
+    shared = results.shared()
     made = [
-        *tables(results),
-        findings.failures(results, found),
-        findings.harm(results),
-        findings.place_effect(results),
-        findings.by_label(results, "Skill", lambda row: row.skills),
-        findings.by_label(results, "Tag", lambda row: row.tags),
-        findings.prompts(results),
-        findings.distribution(results),
+        progress(results),
+        *tables(shared),
+        findings.failures(shared, found),
+        findings.harm(shared),
+        findings.place_effect(shared),
+        findings.by_label(shared, "Skill", lambda row: row.skills),
+        findings.by_label(shared, "Tag", lambda row: row.tags),
+        findings.prompts(shared),
+        findings.distribution(shared),
         errors(results),
     ]
     return [table for table in made if table.rows]
@@ -89,6 +91,7 @@ def _page(
     return render(
         "report/evaluation.html",
         results=results,
+        coverage=results.coverage,
         tables=[table for table in linked if table[0].name not in ("published", "errors")],
         published=next(table for table in made if table.name == "published"),
         errors=next((table for table in linked if table[0].name == "errors"), None),

@@ -106,6 +106,11 @@ class EpisodeRow(JobRow):
         return self.success is True
 
     @property
+    def has_run(self) -> bool:
+        """Whether it was judged or ended in an error; false for an episode that is only planned."""
+        return self.success is not None or self.error is not None
+
+    @property
     def missing(self) -> tuple[str, ...]:
         """Names of the parts of the verdict that do not hold."""
         return self.parts.missing if self.parts else ()
