@@ -82,7 +82,7 @@ class AskedModel:
         return reply
 
 
-class Server:
+class AgentServer:
     """Starts and ends the agents' processes, one at a time."""
 
     def __init__(self, wire: Wire) -> None:
@@ -239,7 +239,7 @@ def main() -> None:
         connection = socket.socket(fileno=int(sys.argv[1]))
     gc.collect()
     gc.freeze()  # collecting garbage would copy every page that the agents' processes share
-    Server(Wire(connection)).run()
+    AgentServer(Wire(connection)).run()
     os._exit(0)
 
 

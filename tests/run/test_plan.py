@@ -118,17 +118,12 @@ def test_episodes_of_one_simulation_stand_together():
 
 def test_the_order_of_episodes_tells_no_half_from_the_other():
     """An agent that counts how often it heard a goal must not know by that which half it is in."""
-    jobs = make_plan({"agents": ["asurada"], "tasks": ["safety"], "seeds": [0, 1, 2]}).jobs()
-    place = {job.id: number for number, job in enumerate(jobs)}
-    pairs = {(job.pair, job.simulation) for job in jobs}
-    halves = [[job for job in jobs if (job.pair, job.simulation) == pair] for pair in pairs]
-    first = [place[pair[0].id] < place[pair[1].id] for pair in map(_by_half, halves) if len(pair) == 2]
-    assert len(first) > 200
-    assert 0.4 < sum(first) / len(first) < 0.6
-
-
-def _by_half(jobs):
-    return sorted(jobs, key=lambda job: job.setup.half)
+    places: dict[tuple, dict[str, int]] = {}
+    for place, job in enumerate(plan(tasks=["safety"]).jobs()):
+        places.setdefault((job.setup.task, job.simulation), {})[job.setup.half] = place
+    first = [halves["first"] < halves["second"] for halves in places.values() if len(halves) == 2]
+    assert len(first) > 70
+    assert 0.35 < sum(first) / len(first) < 0.65
 
 
 def test_a_file_says_what_the_options_say(tmp_path):
