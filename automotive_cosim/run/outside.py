@@ -29,7 +29,7 @@ from automotive_cosim.interface.observe import Channel
 from automotive_cosim.models import ChatMessage, ChatModel, ModelReply
 from automotive_cosim.run.nursery import Nursery
 
-STEP_S, EPISODE_S = 120.0, 600.0
+STEP_S, EPISODE_S = 120.0, 900.0
 """Default limits of the wall time that an agent's process takes, for one step and for all of an episode."""
 GRACE_S = 2.0
 """Wall time in which a process that has closed its connection has to end."""
