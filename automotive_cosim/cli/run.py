@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from automotive_cosim.cli.options import TasksFrom, lon_lat, whole_number
+from automotive_cosim.cli.options import AsJson, TasksFrom, lon_lat, whole_number
 from automotive_cosim.errors import InfrastructureError, UserError
 
 HEADLINE = (
@@ -106,7 +106,7 @@ def run(
         typer.Option(help="Folder for the results.", show_default="runs/<time>-<task>-<agent>-seed<seed>"),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace the results in --out.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")] = False,
+    as_json: AsJson = False,
     actions: Annotated[
         Path | None,
         typer.Option(

@@ -12,6 +12,7 @@ from automotive_cosim.cockpit.mapscene import panned
 from automotive_cosim.cockpit.media import source_of
 from automotive_cosim.cockpit.messages import (
     BACKSPACE,
+    Ask,
     AskPullOver,
     AskSlowDown,
     Back,
@@ -104,6 +105,8 @@ def perform(state: State, message: Message) -> Feedback:
             return _slow_down(state)
         case AskPullOver():
             return ask_road(state, PullOver())
+        case Ask(request):
+            return ask_road(state, request)
         case CallEmergency():
             return call_emergency(state)
         case Guide(place, onward):

@@ -81,6 +81,7 @@ class Collector(Watcher):
             tuple(episode.moments),
             episode.baseline_moments,
             episode.watched_from_s,
+            episode.counterfactual,
         )
 
     def keep_pictures(self, folder: Path, result: EpisodeResult) -> None:

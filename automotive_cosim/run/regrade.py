@@ -60,11 +60,13 @@ def regrade(folder: Path) -> Iterator[Regraded]:
 def _regraded(folder: Path, row: EpisodeRow, held: PartsHeld) -> Regraded:
     try:
         stored = read_judged(folder, row.id)
+        assert stored.counterfactual is not None
         instance = Instance(CATALOGUE[row.task], row.half, stored.goal, stored.parameters)
         verdict = judge(
             instance,
             stored.trace,
             stored.baseline,
+            stored.counterfactual,
             stored.declared,
             stored.reason,
             stored.watched_from_s,

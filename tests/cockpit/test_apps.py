@@ -27,7 +27,6 @@ from automotive_cosim.cockpit.signals import (
     Signal,
     difference,
 )
-from automotive_cosim.cockpit.vehicle import COUPLED
 from automotive_cosim.contracts import (
     Answer,
     Cruise,
@@ -39,6 +38,8 @@ from automotive_cosim.contracts import (
     RouteOption,
     Surroundings,
 )
+
+from .couplings import COUPLED
 
 Make = Callable[..., Cockpit]
 OK, NO_EFFECT = FeedbackCode.OK, FeedbackCode.NO_EFFECT
