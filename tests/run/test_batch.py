@@ -26,7 +26,8 @@ from automotive_cosim.run.store import opened, read_rows, read_trace, trace_file
 from automotive_cosim.run.worker import episodes, run_job
 
 TROUBLE = """
-import os, pathlib, time
+import gc, os, pathlib, sys, time
+NOUNS = ("Instance", "EpisodeSetup", "EpisodeJob", "HandOver")
 from automotive_cosim.errors import ModelError, TriggerNotReachedError
 
 class Base:
@@ -59,6 +60,23 @@ class Looks(Base):
             pid = (process / "stat").read_text().rpartition(")")[2].split()[1]
         known = [word for word in ("hvac_fan_max", "trouble:Looks") if word in found]
         return {"action_type": "answer", "text": f"{len(found) > 1000} {known}"}
+
+class Cheats(Base):
+    def act(self, observation):
+        return {"action_type": "status", "goal_status": "not_needed" if self.knows() else "complete"}
+
+class Counts(Cheats):
+    heard = {}
+    def reset(self, goal): self.heard[goal] = self.heard.get(goal, 0) + 1
+    def knows(self): return max(self.heard.values()) > 1
+
+class Walks(Cheats):
+    def knows(self):
+        frame, found = sys._getframe(), gc.get_objects()
+        while frame is not None:
+            found += frame.f_locals.values()
+            frame = frame.f_back
+        return any(getattr(each, "half", None) is not None for each in found if type(each).__name__ in NOUNS)
 
 class Blames(Base):
     def act(self, observation): raise TriggerNotReachedError("nobody gets here")
@@ -167,6 +185,16 @@ def test_what_an_agent_does_is_its_own_failure_and_nobody_elses_error(trouble):
     assert ends["trouble:Hangs"] == ("agent_failed", "its process took over 2 s for one step")
     assert ends["trouble:BlamesModel"][0] == "agent_failed"
     assert not any(each.differs or each.problem for each in regrade(trouble / "e"))
+
+
+@pytest.mark.sumo
+@pytest.mark.slow
+def test_agents_that_count_or_look_around_never_know_the_second_half(trouble):
+    wanted = plan("trouble:Counts", "trouble:Walks", tasks=["system_local_units"], repeats=2, limits={"steps": 1})
+    end = run_plan(wanted, trouble / "e")
+    assert (end.judged, end.successes) == (8, 0)
+    for row in read_rows(trouble / "e", EpisodeRow).values():
+        assert read_trace(trouble / "e", row.id)[1]["action"]["goal_status"] == "complete"
 
 
 @pytest.mark.sumo
