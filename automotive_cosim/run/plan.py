@@ -209,11 +209,6 @@ class EpisodeJob:
         return self.scenario, self.setup.seed
 
     @property
-    def contestant(self) -> tuple[str, str, str, float, int]:
-        """Agent, model, geo control, latency and repeat."""
-        return self.setup.agent, self.setup.model, self.setup.geo, self.setup.latency_s, self.repeat
-
-    @property
     def kind(self) -> Hashable:
         """Agent and mode, which determine how long it takes."""
         return self.setup.agent, self.setup.model, self.setup.mode
