@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from automotive_cosim.agents import AgentSettings, make_agent
+from automotive_cosim.agents.settings import geo_input
+from automotive_cosim.contracts import ActionType, Json
+from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.publish.episodes import FROM_MOMENTS, ROWS
 from automotive_cosim.publish.problems import Problem, differences
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.moments import judged_file, read_judged
 from automotive_cosim.run.plan import EpisodeJob
-from automotive_cosim.run.rerun import played
+from automotive_cosim.run.rerun import Played, played
 from automotive_cosim.run.row import as_json, steady
 from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.traffic.fork import Simulations
@@ -34,14 +38,35 @@ RESULT = (
 STEP = ("time_s", *FROM_MOMENTS, "elements", "action", "feedback", "thought_s")
 
 
-def replay(folder: Path, job: EpisodeJob, row: EpisodeRow, simulations: Simulations) -> Iterator[Problem]:
+def replay(folder: Path, job: EpisodeJob, row: EpisodeRow, simulations: Simulations) -> tuple[Problem, ...]:
     """What differs when the actions of a stored episode are played again, bit for bit.
 
     Raises:
         CosimError: it cannot be played.
     """
     *steps, last = read_trace(folder, row.id)
-    again = played(job, steps, row.agent_error, simulations=simulations)
+    found: tuple[Problem, ...] = ()
+    for channels in _channels(job, steps):
+        again = played(job, steps, channels, row.agent_error, simulations=simulations)
+        found = tuple(_differences(folder, row, steps, last, again))
+        if not found:
+            break
+    return found
+
+
+def _channels(job: EpisodeJob, steps: Sequence[Json]) -> list[frozenset[Channel]]:
+    """The channels that its agent may have had; no foreign agent is loaded to be asked for them."""
+    setup = job.setup
+    if ":" not in setup.agent:
+        settings = AgentSettings(geo_input(setup.geo), seed=setup.seed)
+        return [frozenset(make_agent(setup.agent, "rules", settings).channels)]  # whatever its model
+    asks = any(step["action"] and step["action"]["action_type"] == ActionType.QUERY for step in steps)
+    return [ALL, ALL - {Channel.GPS}, ALL - {Channel.CONTEXT}] if asks else [ALL]
+
+
+def _differences(
+    folder: Path, row: EpisodeRow, steps: Sequence[Json], last: Json, again: Played
+) -> Iterator[Problem]:
     *new_steps, new_last = json.loads(json.dumps(again.lines))
     file = trace_file(folder, row.id).relative_to(folder).as_posix()
     if len(steps) != len(new_steps):

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from itertools import zip_longest
 from pathlib import Path
 
-from automotive_cosim.agents import AgentSettings, make_agent
-from automotive_cosim.agents.settings import geo_input
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import Action, Json, Observation
 from automotive_cosim.errors import (
@@ -26,8 +25,10 @@ from automotive_cosim.run.collect import Collector, Pictures
 from automotive_cosim.run.episode import run_episode
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.moments import Judged
+from automotive_cosim.run.nursery import Nursery
 from automotive_cosim.run.plan import EpisodeJob, make_plan
 from automotive_cosim.run.store import read_evaluation, read_rows, read_trace
+from automotive_cosim.run.worker import agent_of
 from automotive_cosim.traffic.fork import Simulations
 
 MISSING: Json = {}
@@ -68,7 +69,10 @@ def rerun(folder: Path, episode: str) -> list[Compared]:
             f"the plan in {folder / 'manifest.json'} has no episode {matching[0]}; it was changed since"
         )
     stored = [line for line in read_trace(folder, job.id) if "step" in line]
-    return compare(stored, [line for line in played(job, stored, rows[job.id].agent_error).lines if "step" in line])
+    with closing(Nursery()) as nursery, agent_of(job, nursery) as agent:
+        channels = frozenset(agent.channels)
+    again = played(job, stored, channels, rows[job.id].agent_error)
+    return compare(stored, [line for line in again.lines if "step" in line])
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +88,7 @@ class Played:
 def played(
     job: EpisodeJob,
     stored: Sequence[Json],
+    channels: frozenset[Channel],
     failure: str | None = None,
     *,
     simulations: Simulations | None = None,
@@ -93,17 +98,17 @@ def played(
     Args:
         job: the episode.
         stored: the steps of its trace.
+        channels: those of its agent, on which the answers to queries depend.
         failure: how the agent's side failed after them, if it did.
         simulations: warm simulations to use; by default its own.
 
     Raises:
-        UserError: something in the setup does not exist, such as an agent of one's own.
+        UserError: something in the setup does not exist.
         InfrastructureError: the simulation failed.
     """
-    settings = AgentSettings(geo_input(job.setup.geo), seed=job.setup.seed)
-    channels = frozenset(make_agent(job.setup.agent, "rules", settings).channels)  # whatever its model
     collector = Collector(Pictures.NONE)
-    result = run_episode(job.setup, _Player(stored[1:], channels, failure), (collector,), simulations=simulations)
+    player = _Player(stored[1:], channels, failure)
+    result = run_episode(job.setup, player, (collector,), simulations=simulations)
     if result.error is not None:
         raise InfrastructureError(result.error)
     return Played(collector.trace(result), collector.row(job, result), collector.judged())

@@ -2,6 +2,7 @@
 
 import shutil
 from collections.abc import Iterator
+from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import pytest
 from automotive_cosim.publish.bundle import write_bundle
 from automotive_cosim.run.collect import Pictures, failed
 from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.nursery import Nursery
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.store import opened
 from automotive_cosim.run.worker import run_job
@@ -24,9 +26,12 @@ def ran(tmp_path_factory: pytest.TempPathFactory, simulations: Simulations) -> P
     """Five judged episodes and one that ended in an error; not to be changed."""
     folder = tmp_path_factory.mktemp("publish") / "e"
     jobs = PLAN.jobs()
-    with opened(folder, PLAN.as_json(), EpisodeRow, planned=len(jobs)) as store:
+    with (
+        opened(folder, PLAN.as_json(), EpisodeRow, planned=len(jobs)) as store,
+        closing(Nursery()) as nursery,
+    ):
         for job in jobs[:-1]:
-            store.append(replace(run_job(job, folder, Pictures.NONE, simulations), wall_seconds=1.5))
+            store.append(replace(run_job(job, folder, Pictures.NONE, simulations, nursery), wall_seconds=1.5))
         why = "/home/anna/lab/agent.py: gone"
         store.append(replace(failed(jobs[-1], "WorkerDied", why), failed_attempts=(f"WorkerDied: {why}",)))
     return folder
