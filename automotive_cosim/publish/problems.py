@@ -59,6 +59,9 @@ def _first(one: Any, other: Any, steps: tuple[str | int, ...]) -> tuple[str | in
 
 
 def _at(value: Any, steps: Iterable[str | int]) -> Any:
+    """The value at a path; None where the last step of it is a field that is not there."""
     for step in steps:
-        value = value[step] if isinstance(value, list | tuple) else (value or {}).get(step)
+        if isinstance(value, Mapping) and step not in value:
+            return None
+        value = value[step]
     return value
