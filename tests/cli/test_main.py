@@ -110,7 +110,7 @@ def test_other_ends_have_codes_of_their_own(cli, monkeypatch, error, code):
 
 
 OTHERS = {
-    ("mcp",),
+    ("mcp",), ("serve",),
     ("report",), ("playback",), ("screens",), ("schema",), ("study", "report"), ("tasks", "export"),
     ("signals", "export"), ("scenarios", "render"), ("scenarios", "import"), ("scenarios", "day"),
     ("scenarios", "download"),
