@@ -20,11 +20,13 @@ plain        factors between units, JSON, numbers in texts, and how progress is 
 
 from automotive_cosim.contracts.action import Action, ActionType, Direction, GoalStatus, Reason
 from automotive_cosim.contracts.driving import (
+    NO_LIMIT,
     STANDING_BELOW_MPS,
     Around,
     DrivingState,
     EgoEnd,
     IncidentKind,
+    Limit,
     LimitSource,
     OtherVehicle,
     RoadAhead,
@@ -60,6 +62,7 @@ from automotive_cosim.contracts.roads import Road, RoadNetwork
 __all__ = [
     "KMH_PER_MPS",
     "MPH_PER_MPS",
+    "NO_LIMIT",
     "STANDING_BELOW_MPS",
     "Action",
     "ActionType",
@@ -81,6 +84,7 @@ __all__ = [
     "Hazards",
     "IncidentKind",
     "Json",
+    "Limit",
     "LimitSource",
     "Observation",
     "OtherVehicle",

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
-from automotive_cosim.contracts import DrivingState, EgoEnd, OtherVehicle
+from automotive_cosim.contracts import DrivingState, EgoEnd, Limit, OtherVehicle
 from automotive_cosim.traffic.congestion import Route
 from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.records import make_around, make_light, make_other, make_road, make_state
@@ -35,7 +35,7 @@ class Instant(Protocol):
 
     @property
     def limit_mps(self) -> float | None:
-        """See ``RoadHere.posted_limit_mps``."""
+        """Speed of ``RoadHere.limit``."""
         ...
 
     @property
@@ -67,8 +67,8 @@ class KnownInstant:
 
     @property
     def limit_mps(self) -> float | None:
-        """Posted limit of the lane."""
-        return self.state.road.posted_limit_mps
+        """Speed of the lane's limit."""
+        return self.state.road.limit.mps
 
     @property
     def end(self) -> EgoEnd | None:
@@ -82,7 +82,7 @@ class Lane:
 
     index: int
     """Among the edge's lanes for cars."""
-    limit_mps: float | None
+    limit: Limit
     friction: float
     limit_hours: str
 
@@ -132,7 +132,7 @@ class Seen:
     @property
     def limit_mps(self) -> float | None:
         """See ``Instant``."""
-        return self.lane.limit_mps
+        return self.lane.limit.mps
 
     @property
     def state(self) -> DrivingState:
@@ -163,8 +163,7 @@ class Seen:
                 self.lane_position_m,
                 edge.name,
                 edge.road_class,
-                lane.limit_mps,
-                edge.limit_source,
+                lane.limit,
                 edge.in_tunnel,
                 edge.lit,
                 edge.built_up,

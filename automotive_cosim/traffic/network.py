@@ -27,7 +27,7 @@ from dataclasses import dataclass, field, replace
 from io import BufferedReader
 from pathlib import Path
 
-from automotive_cosim.contracts import KMH_PER_MPS, LimitSource, Road, RoadNetwork
+from automotive_cosim.contracts import KMH_PER_MPS, Limit, LimitSource, Road, RoadNetwork
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.traffic import georeference
 from automotive_cosim.traffic.posted import TimedLimit, timed_limits
@@ -74,6 +74,11 @@ class Edge:
     """Limits that are posted for certain hours."""
     timed_limit: TimedLimit | None = None
     """The one of them that is in force; ``limit_mps`` is the present limit."""
+
+    @property
+    def limit(self) -> Limit:
+        """The limit, and where it comes from."""
+        return Limit(self.limit_mps, self.limit_source)
 
     @property
     def limit_hours(self) -> str:
