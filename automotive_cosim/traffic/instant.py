@@ -15,6 +15,7 @@ from automotive_cosim.contracts import DrivingState, EgoEnd, Limit, OtherVehicle
 from automotive_cosim.traffic.congestion import Route
 from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.records import make_around, make_light, make_other, make_road, make_state
+from automotive_cosim.traffic.surrogates import drac_mps2, time_to_collision_s
 
 TOUCHING_M = 0.1
 """Minimum gap in the DRAC, so that it stays finite."""
@@ -193,5 +194,5 @@ def other_vehicle(vehicle_id: str, gap_m: float, speed_mps: float, closing_mps: 
     gap_m = max(0.0, gap_m)
     if closing_mps <= 1e-3:
         return make_other(vehicle_id, gap_m, speed_mps, None, None)
-    drac_mps2 = closing_mps**2 / (2 * max(TOUCHING_M, gap_m))
-    return make_other(vehicle_id, gap_m, speed_mps, gap_m / closing_mps, drac_mps2)
+    needed_mps2 = drac_mps2(max(TOUCHING_M, gap_m), closing_mps)
+    return make_other(vehicle_id, gap_m, speed_mps, time_to_collision_s(gap_m, closing_mps), needed_mps2)

@@ -87,6 +87,8 @@ class LibSumo:
         self.type: Any = library.vehicletype
         self.vehicle: Any = vehicle
         self.lane: Any = lane
+        self.edge: Any = edge
+        self.junction: Any = library.junction
         self.person: Any = library.person
         self.simulation: Any = simulation
         self.light_state: Callable[[str], str] = compiled("trafficlight_getRedYellowGreenState")
