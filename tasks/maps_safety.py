@@ -297,9 +297,9 @@ ALIGNED: tuple[Task, ...] = (
         "maps_will_it_last",
         (
             "Will the battery take us there? Warn me if it won't.",
-            "Do we get to the end of this route like that?",
+            "Do we get to the end of this route like that? Sound the alarm if we don't.",
             "Range all right? Give me an alert if not.",
-            "I forgot to charge. Does it matter today?",
+            "I forgot to charge. Speak up if it matters today.",
             "Check what's left in it against how far we have to go.",
         ),
         told(
@@ -329,7 +329,7 @@ ALERTS: tuple[Task, ...] = (
             "Any lower limit coming up? Warn me with the figure.",
             "Announce it when I'll have to slow for a sign.",
             "Give me the next limit in time, as a warning.",
-            "Where do I need to drop my speed?",
+            "Alert me where I need to drop my speed, and to how much.",
         ),
         acted(
             PLAIN,
@@ -355,10 +355,10 @@ ALERTS: tuple[Task, ...] = (
     pair(
         "maps_special_stretch",
         (
-            "You've got the map: what should I be warned of now?",
+            "You've got the map: warn me of what I should be warned of now.",
             "Strange road. Alert me to whatever is special about it.",
             "Tell me what kind of stretch this is going to be, with a warning.",
-            "Sunglasses on, mind elsewhere: what's the thing to mind here?",
+            "Sunglasses on, mind elsewhere: sound off on the thing to mind here.",
             "Put up the alert that fits the next few hundred metres.",
         ),
         told(
@@ -384,10 +384,10 @@ ALERTS: tuple[Task, ...] = (
         "maps_held_up",
         (
             "Warn me about the traffic on our way, if there's cause.",
-            "Anything that's going to hold us up?",
-            "Will I be on time, or is something stuck down the valley?",
+            "Let me have an alert on anything that's going to hold us up.",
+            "I hope to be on time; call out if something is stuck down the valley.",
             "Sound the traffic alarm when the road ahead stands still.",
-            "How is it flowing towards the pass?",
+            "Keep a lookout towards the pass, and warn me should nothing flow there.",
         ),
         told(
             QUEUE,
@@ -405,10 +405,10 @@ ALERTS: tuple[Task, ...] = (
         "maps_school_ahead",
         (
             "New here. Warn me if there are schools about to mind.",
-            "Does the map know of children's crossings in force now?",
+            "Does the map know of children's crossings in force now? Warn me then.",
             "Alert me where pupils are let out or in.",
-            "Is this one of those streets with flashing yellow signs?",
-            "Any pupils on this stretch at this hour?",
+            "Sound off if this is one of those streets with flashing yellow signs.",
+            "Give me an alert if there are pupils on this stretch at this hour.",
         ),
         told(
             SCHOOLS,

@@ -54,7 +54,7 @@ SIGN_TASKS: tuple[Task, ...] = (
             "All these cameras. Shout the limit at me.",
             "Is this thirty or twenty here? Warn me with the right one.",
             "I lose track of which streets are the slow ones, so say the number.",
-            "Don't let me collect points in town: what's posted?",
+            "Don't let me collect points in town: call out what's posted.",
             "Put up a speed alert with the sign that I missed.",
         ),
         (STREETS, Trigger(SpeedAbove(42.0, 32.0, 33.0), 3.0, 300.0), "sign 670, 20 mph", 32.2),
@@ -96,7 +96,7 @@ SIGN_TASKS: tuple[Task, ...] = (
             "By the school: which speed, forty or fifty? Alert me.",
             "Is the zone on? Tell me the figure, loudly.",
             "Make me brake to what the sign says at this hour.",
-            "Kids, bikes, buses: how fast may I be, in numbers?",
+            "Kids, bikes, buses: sound off how fast I may be, in numbers.",
         ),
         (
             SCHOOL_RUN,

@@ -183,7 +183,8 @@ class Conflicts:
         """Where each lane of a junction comes from and leads to, through the lanes in which one waits inside."""
         if junction in self._ends:
             return self._ends[junction]
-        sumo, ends = self._sumo, {}
+        sumo = self._sumo
+        ends: dict[str, _Ends] = {}
         edges = (edge for edge in sumo.junction.getIncomingEdges(junction) if not edge.startswith(":"))
         lanes = (f"{edge}_{index}" for edge in edges for index in range(sumo.edge.getLaneNumber(edge)))
         for origin in lanes:

@@ -6,9 +6,9 @@
 | DRAC | deceleration to avoid a crash: closing speed squared over twice the gap (Cooper, Ferguson, 1976) |
 | MDRAC | the same with a reaction time: closing speed over twice the rest of the TTC (Kuang et al., 2015) |
 | crossing TTC | time until the second reaches the point of crossing, if the first is still on it then |
-| TET, TIT | time with a TTC up to a threshold, and how far it was below, integrated (Minderhoud, Bovy, 2001) |
+| TET, TIT | time with a TTC up to a threshold; how far it was below, integrated (Minderhoud, Bovy, 2001) |
 
-TTC and DRAC agree with SUMO's SSM device (``device.ssm``) once its stamps are moved one step later. SUMO's drivers avoid
+TTC and DRAC agree with SUMO's SSM device (``device.ssm``), its stamps moved one step later. SUMO's drivers avoid
 crashes by construction, so compare drives with each other, never with accident statistics.
 """
 

@@ -139,3 +139,21 @@ def test_forty_safety_tasks_rest_on_verified_law_in_eight_countries():
     }
     assert len(lawful) >= 40
     assert len(countries) >= 8
+
+
+WISH = re.compile(
+    r"\b(warn|alert|alarm|tell|say|speak|shout|sound|call out|object|announce|remind|name|noise|loudly|watch"
+    r"|figure|pipe up)",
+    re.IGNORECASE,
+)
+"""What asks for a warning, not for an answer."""
+
+
+def _warns(task: Task) -> bool:
+    found = [draw(task, name, np.random.default_rng(0)).half.goal for name in task.halves]
+    return any("alerts" in goal.writes for goal in found)
+
+
+@pytest.mark.parametrize("task", [task for task in TASKS if _warns(task)], ids=lambda task: task.id)
+def test_where_only_a_warning_counts_nobody_asks_a_mere_question(task):
+    assert [said for said in task.templates if "?" in said and not WISH.search(said)] == []
