@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from automotive_cosim.cli.options import TasksFrom, lon_lat, whole_number
+from automotive_cosim.cli.options import AsJson, TasksFrom, lon_lat, number, whole_number
 from automotive_cosim.errors import InfrastructureError, UserError
 
 HEADLINE = (
@@ -70,6 +70,16 @@ def run(
             help="Total time to wait for the model, in seconds.", metavar="N", parser=whole_number(1, 10**6)
         ),
     ] = 1800,
+    clock: Annotated[
+        str,
+        typer.Option(help="Whether the seconds that the model takes pass on the road: fixed (no) or model (yes)."),
+    ] = "fixed",
+    latency: Annotated[
+        float,
+        typer.Option(
+            help="Simulated seconds that every answer takes besides.", metavar="SECONDS", parser=number(0, 600)
+        ),
+    ] = 0.0,
     scenario: Annotated[
         str | None,
         typer.Option(
@@ -106,7 +116,7 @@ def run(
         typer.Option(help="Folder for the results.", show_default="runs/<time>-<task>-<agent>-seed<seed>"),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace the results in --out.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")] = False,
+    as_json: AsJson = False,
     actions: Annotated[
         Path | None,
         typer.Option(
@@ -123,17 +133,17 @@ def run(
     from automotive_cosim.agents import AgentSettings, make_agent
     from automotive_cosim.agents.settings import geo_input, parts
     from automotive_cosim.cli.live import Live, Notes
-    from automotive_cosim.episode.specification import MAX_STEPS, mode_of
+    from automotive_cosim.episode.specification import clock_of, mode_of
     from automotive_cosim.report.film import Film
     from automotive_cosim.report.page import write_page
     from automotive_cosim.run.episode import EpisodeSetup, run_episode
-    from automotive_cosim.run.plan import WATCH_STEPS
+    from automotive_cosim.run.plan import most_steps
     from automotive_cosim.run.record import Recorder, check_folder, default_folder
     from automotive_cosim.run.script import read_script
-    from automotive_cosim.tasking.task import Mode
 
     if scenario == "":
         raise UserError("--scenario is empty; name a scenario, or omit the option to use the task's own")
+    called = mode_of(mode)
     off = parts(name.strip() for name in without.split(",") if name.strip())
     settings = AgentSettings(geo_input(geo), off, memory, seed, most_tokens, float(most_seconds))
     player = read_script(actions) if actions else make_agent(agent, model, settings)
@@ -147,11 +157,13 @@ def run(
         to_place=to_place,
         seed=seed,
         geo=settings.geo,
-        mode=mode_of(mode),
-        max_steps=MAX_STEPS + WATCH_STEPS if mode == Mode.MONITORING else MAX_STEPS,
+        mode=called,
+        max_steps=most_steps(called),
         agent=player.name,
         model=player.model,
         without=tuple(sorted(off)),
+        clock=clock_of(clock),
+        latency_s=latency,
     )
     folder = out or default_folder(setup)
     check_folder(folder, force=force)

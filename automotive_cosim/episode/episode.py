@@ -58,6 +58,10 @@ class Episode(Session):
             baseline=Baseline(world.shadow()),
         )
 
+    def think(self, seconds: float) -> None:
+        """As in a session, but no longer than the task's deadline, after which it is too late anyway."""
+        super().think(min(seconds, self.instance.half.deadline.seconds))
+
     def branch(self, max_steps: int | None = None) -> Episode:
         """An independent episode from this instant: neither affects the other from here on.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Protocol, TypeVar
 
 from automotive_cosim.cockpit.actions import check
@@ -38,13 +38,19 @@ class StepObserver(Protocol[S]):
         ...
 
 
-def play(session: T, actor: Actor, observers: Sequence[StepObserver[T]] = ()) -> End:
+def play(
+    session: T,
+    actor: Actor,
+    observers: Sequence[StepObserver[T]] = (),
+    thought_s: Callable[[], float] = lambda: 0.0,
+) -> End:
     """Lets an actor act until the session is over, and returns why it is.
 
     Args:
         session: the session, which may be under way.
         actor: the actor, which has been told the goal.
         observers: called after each step, including the last.
+        thought_s: gives the simulated seconds that the actor's last answer took, which pass before its action.
 
     Raises:
         TrafficError: the traffic simulation failed.
@@ -55,6 +61,7 @@ def play(session: T, actor: Actor, observers: Sequence[StepObserver[T]] = ()) ->
         try:
             action = check(actor.act(session.observation))
         except ActionError as error:
+            session.think(thought_s())
             session.refuse(str(error))
         except OutOfBudgetError:
             session.cut_off(End.OUT_OF_BUDGET)
@@ -63,6 +70,7 @@ def play(session: T, actor: Actor, observers: Sequence[StepObserver[T]] = ()) ->
             session.give_up(str(error))
             break
         else:
+            session.think(thought_s())
             session.step(action)
         for observer in observers:
             observer(session, seen)

@@ -27,6 +27,15 @@ SEED_LIMIT = 2**31
 """SUMO takes seeds below this."""
 
 
+class Clock(StrEnum):
+    """What an agent's answer costs on the road, besides the action itself."""
+
+    FIXED = "fixed"
+    """The same for every answer, by default nothing."""
+    MODEL = "model"
+    """The seconds that the model really took, in addition."""
+
+
 @dataclass(frozen=True, slots=True)
 class Conditions:
     """The agent's input and limits."""
@@ -104,6 +113,17 @@ def mode_of(name: str) -> Mode:
     if name not in set(Mode):
         raise UnknownNameError("mode", name, Mode)
     return Mode(name)
+
+
+def clock_of(name: str) -> Clock:
+    """The clock by name.
+
+    Raises:
+        UnknownNameError: there is none.
+    """
+    if name not in set(Clock):
+        raise UnknownNameError("clock", name, Clock)
+    return Clock(name)
 
 
 @dataclass(frozen=True, slots=True)

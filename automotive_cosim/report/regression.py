@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
+from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.results import Contestant, instance, pair_instance, pairs, read_results
 from automotive_cosim.report.stats import Comparison, Rate, compare
@@ -187,6 +188,25 @@ def _listed(each: SuccessChange, kind: str) -> str:
     if len(cases) > MOST_LISTED:
         lines.append(f"- and {len(cases) - MOST_LISTED} more")
     return f"\n**{title}, {each.contestant.label}**\n\n" + "\n".join(lines) + "\n"
+
+
+def as_json(found: Sequence[SuccessChange], allowed: float) -> Json:
+    """What ``markdown`` says, as a JSON object with every instance."""
+    contestants = [
+        {
+            "contestant": each.contestant.label,
+            "of": each.unit,
+            "outcome": each.outcome(allowed),
+            "before": asdict(each.rates[0]) | {"planned": each.rates[0].planned},
+            "after": asdict(each.rates[1]) | {"planned": each.rates[1].planned},
+            "difference": None if each.found is None else each.found.difference,
+            "interval": None if each.found is None else asdict(each.found.interval),
+            "problems": list(each.problems),
+            "instances": [{"name": case.name, "kind": case.kind, "why": case.why} for case in each.cases],
+        }
+        for each in found
+    ]
+    return {"ok": all(each["outcome"] == "as good" for each in contestants), "contestants": contestants}
 
 
 def junit(found: Sequence[SuccessChange]) -> str:

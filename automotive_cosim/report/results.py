@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
+from automotive_cosim.episode.specification import Clock
 from automotive_cosim.errors import SetupError
 from automotive_cosim.run.coverage import Coverage, coverage
 from automotive_cosim.run.episode_row import EpisodeRow
@@ -32,12 +33,14 @@ NOT_RANKED = {
 
 @dataclass(frozen=True, slots=True, order=True)
 class Contestant:
-    """What is compared: an agent on a model under a geo control, prompted or monitoring."""
+    """What is compared: an agent on a model under a geo control, prompted or monitoring, at a speed."""
 
     agent: str
     model: str
     geo: str
     mode: str = str(Mode.PROMPTED)
+    clock: str = str(Clock.FIXED)
+    latency_s: float = 0.0
 
     @property
     def base_model(self) -> str:
@@ -56,7 +59,9 @@ class Contestant:
         model = {"rules": "rules stand-in", "none": ""}.get(self.model, self.model)
         geo = "" if self.geo == "full" else f"geo {self.geo}"
         mode = "" if self.mode == Mode.PROMPTED else self.mode
-        return ", ".join(part for part in (self.method, model, geo, mode) if part)
+        clock = "" if self.clock == Clock.FIXED else f"{self.clock}'s clock"
+        latency = f"latency {self.latency_s:g} s" if self.latency_s else ""
+        return ", ".join(part for part in (self.method, model, geo, mode, clock, latency) if part)
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +97,7 @@ class Results:
 
 def contestant(row: EpisodeRow) -> Contestant:
     """The contestant that an episode belongs to."""
-    return Contestant(row.agent, row.model, row.geo, row.mode)
+    return Contestant(row.agent, row.model, row.geo, row.mode, row.clock, row.latency_s)
 
 
 def standings(results: Results) -> list[str]:

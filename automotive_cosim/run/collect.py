@@ -110,6 +110,7 @@ class Collector(Watcher):
             alerts=None if episode is None else _alerts(episode),
             steps=result.steps,
             sim_seconds=result.sim_seconds,
+            thought_s=0.0 if episode is None else round(sum(step.thought_s for step in episode.steps), 1),
             speed_compliance=compliance(self._moments),
             min_time_to_collision_s=nearest_s(states_of(self._moments)),
             drive=result.drive,
@@ -152,6 +153,8 @@ def planned(job: EpisodeJob) -> EpisodeRow:
         seed=setup.seed,
         repeat=job.repeat,
         mode=setup.mode,
+        clock=setup.clock,
+        latency_s=setup.latency_s,
         held_out=setup.held_out,
     )
 

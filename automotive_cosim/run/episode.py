@@ -8,10 +8,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import ExitStack, closing, suppress
 from dataclasses import asdict, dataclass, replace
-from typing import Annotated, Any
+from typing import Annotated, Any, Protocol, runtime_checkable
 
 import numpy as np
 import numpy.typing as npt
+from annotated_types import Ge
 
 from automotive_cosim import geo
 from automotive_cosim.agents import Agent, Learner, Privileged, Stage, StageName, Thinker
@@ -22,8 +23,9 @@ from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.loop import play
 from automotive_cosim.episode.situation import SituationFinder
-from automotive_cosim.episode.specification import End, EpisodeSpec, SeedSource
+from automotive_cosim.episode.specification import Clock, End, EpisodeSpec, SeedSource
 from automotive_cosim.errors import InfrastructureError
+from automotive_cosim.formats.annotations import OneOf
 from automotive_cosim.geo.breaches import Violation
 from automotive_cosim.interface import trace
 from automotive_cosim.models import ModelReply
@@ -48,6 +50,10 @@ class EpisodeSetup(EpisodeSpec):
     model: str = "rules"
     without: tuple[str, ...] = ()
     """Parts of the agent that are switched off, for the record."""
+    clock: Annotated[Clock, OneOf(Clock)] = Clock.FIXED
+    """Whether the seconds that the model takes pass on the road."""
+    latency_s: Annotated[float, Ge(0)] = 0.0
+    """Simulated seconds that each answer takes, before its action."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,6 +129,16 @@ class Shot:
     """The stages of the agent's reasoning, for agents that report them."""
 
 
+@runtime_checkable
+class Replayed(Protocol):
+    """An agent that repeats what was recorded, with the time that it took then."""
+
+    @property
+    def thought_s(self) -> float:
+        """Simulated seconds that the answer it gave last took."""
+        ...
+
+
 class Watcher(Listener):
     """Watches an episode while it runs, e.g. to show or record it. It sees everything and changes nothing."""
 
@@ -196,7 +212,7 @@ class _Run:
         first = Shot(episode.steps[0], (), episode.screenshot(), "")
         for watcher in self._watchers:
             watcher.handed_over(episode, first)
-        end = play(episode, agent, (self._stepped,))
+        end = play(episode, agent, (self._stepped,), self._thought_s)
         if end in (End.OUT_OF_BUDGET, End.AGENT_FAILED):
             self._stages()  # of the turn that it did not finish
         if isinstance(agent, Learner) and episode.verdict is not None:
@@ -219,6 +235,15 @@ class _Run:
         shot = Shot(episode.steps[-1], tuple(seen), episode.screenshot(), _thought(stages), stages)
         for watcher in self._watchers:
             watcher.stepped(shot)
+
+    def _thought_s(self) -> float:
+        """Simulated seconds that the agent's last answer took."""
+        if isinstance(self._agent, Replayed):
+            return self._agent.thought_s
+        seconds = self._setup.latency_s
+        if self._setup.clock is Clock.MODEL and isinstance(self._agent, Thinker):
+            seconds += sum(stage.reply.seconds for stage in self._agent.stages if stage.reply is not None)
+        return round(seconds, 1)  # the shortest step of a scenario
 
     def _stages(self) -> tuple[Stage, ...]:
         stages = tuple(self._agent.stages) if isinstance(self._agent, Thinker) else ()

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Annotated, Any
 
-from automotive_cosim.episode.specification import End
+from automotive_cosim.episode.specification import Clock, End
 from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.run.harm import DriveFigures
 from automotive_cosim.run.row import InColumns, JobRow, Volatile, formerly
@@ -56,6 +56,12 @@ class EpisodeRow(JobRow):
     seed: int
     repeat: int
     mode: Mode = Mode.PROMPTED
+    clock: Clock = Clock.FIXED
+    """Whether the seconds that the model took passed on the road."""
+    latency_s: float = 0.0
+    """Simulated seconds that each answer took besides."""
+    thought_s: float = 0.0
+    """Simulated seconds that all answers took."""
     parameters: Mapping[str, Any] | None = None
     """Drawn for this seed; None without a hand-over."""
     country: str = ""
