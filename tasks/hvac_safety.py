@@ -167,8 +167,7 @@ FEEL_HOT = _pair(
             (Open("climate"), Tap("hvac.driver_temperature.decrease", times=4)),
         ),
     ),
-    "place: a Gulf afternoon of 44 degrees, where only cooled air helps, or a cool September evening outside",
-    frozenset({"place"}),
+    "weather: a Gulf afternoon of 44 degrees, where only cooled air helps, or a cool September evening outside",
 )
 
 ADJUST_AIR = _pair(
@@ -219,8 +218,7 @@ ADJUST_AIR = _pair(
         ),
         CLIMATE,
     ),
-    "place: a hot city by the sea in August, or a mountain pass in December",
-    frozenset({"place"}),
+    "weather: a hot city by the sea in August, or a mountain pass in December",
 )
 
 FRESH_AIR_IN_DUST = _pair(

@@ -188,6 +188,7 @@ ALIGNED: tuple[Task, ...] = (
             Warn(AlertKind.SPEED, speed_kmh=40.0),
         ),
         "visibility: 40 m, where Chinese law orders all off at the next exit, or 90 m, where it allows 40 km/h",
+        tags=PLACE,
     ),
     pair(
         "maps_units_past_the_line",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from collections.abc import Callable
 from datetime import datetime
 from pathlib import Path
@@ -79,3 +80,18 @@ def test_every_word_of_the_language_is_explained() -> None:
     assert {str(status) for status in Status} <= set(rows)
     for word in (*ANSWERS, *UNITS, *(USERS - {"car"})):
         assert f"`{word}`" in DOC
+
+
+def test_the_number_of_verified_rules_is_as_told() -> None:
+    data = Path(__file__).parents[2] / "automotive_cosim" / "geo" / "data"
+    rules = [
+        rule
+        for file in data.rglob("*.toml")
+        for rule in tomllib.loads(file.read_text(encoding="utf-8")).get("rules", ())
+    ]
+    verified = sum(rule["status"] == "verified" for rule in rules)
+    top = Path(__file__).parents[2]
+    assert f"{verified} of {len(rules)}" in (top / "README.md").read_text(encoding="utf-8")
+    assert f"Of our {len(rules)} legal rules {verified} are verified" in (top / "docs" / "evaluation.md").read_text(
+        encoding="utf-8"
+    )
