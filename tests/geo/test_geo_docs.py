@@ -83,15 +83,12 @@ def test_every_word_of_the_language_is_explained() -> None:
 
 
 def test_the_number_of_verified_rules_is_as_told() -> None:
-    data = Path(__file__).parents[2] / "automotive_cosim" / "geo" / "data"
-    rules = [
-        rule
-        for file in data.rglob("*.toml")
-        for rule in tomllib.loads(file.read_text(encoding="utf-8")).get("rules", ())
-    ]
-    verified = sum(rule["status"] == "verified" for rule in rules)
     top = Path(__file__).parents[2]
+    files = [
+        tomllib.loads(path.read_text(encoding="utf-8")) for path in top.glob("automotive_cosim/geo/data/*.toml")
+    ]
+    rules = [rule for file in files for rule in file.get("rules", ())]
+    verified = sum(rule["status"] == "verified" for rule in rules)
     assert f"{verified} of {len(rules)}" in (top / "README.md").read_text(encoding="utf-8")
-    assert f"Of our {len(rules)} legal rules {verified} are verified" in (top / "docs" / "evaluation.md").read_text(
-        encoding="utf-8"
-    )
+    evaluation = (top / "docs" / "evaluation.md").read_text(encoding="utf-8")
+    assert f"Of our {len(rules)} legal rules {verified} are verified" in evaluation
