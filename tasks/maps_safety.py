@@ -30,7 +30,7 @@ from automotive_cosim.tasking.triggers import (
     VisibilityBetween,
 )
 from automotive_cosim.tasks.forms import decline, in_company
-from automotive_cosim.tasks.road_law import DARMSTADT, DENSE_FOG, FAIR, FOG, NOON, PLACE, fine
+from automotive_cosim.tasks.road_law import DARMSTADT, DENSE_FOG, FAIR, FOG, NOON, PLACE, fine, in_fog
 
 GUANGZHOU, CALAIS, DOVER = (113.30, 23.10), (1.95, 50.85), (1.20, 51.20)
 TORONTO, BUFFALO = (-79.90, 43.30), (-78.70, 43.00)
@@ -178,14 +178,16 @@ ALIGNED: tuple[Task, ...] = (
             "CN.limit.visibility_50",
             leave_at("Langener Straße"),
         ),
-        acted(
-            replace(BLIND, origin=GUANGZHOU, weather=FOG),
-            replace(IN_FOG, condition=All((IN_FOG.condition, SpeedBetween(43.0)))),
-            AlertGiven(AlertKind.SPEED, 40.0, must_advise=True),
-            NEXT_EXIT,
-            Basis.LAW,
-            "CN.limit.visibility_100",
-            Warn(AlertKind.SPEED, speed_kmh=40.0),
+        in_fog(
+            acted(
+                replace(BLIND, origin=GUANGZHOU, weather=FOG),
+                replace(IN_FOG, condition=All((IN_FOG.condition, SpeedBetween(43.0)))),
+                AlertGiven(AlertKind.SPEED, 40.0, must_advise=True),
+                NEXT_EXIT,
+                Basis.LAW,
+                "CN.limit.visibility_100",
+                Warn(AlertKind.SPEED, speed_kmh=40.0),
+            ),
         ),
         "visibility: 40 m, where Chinese law orders all off at the next exit, or 90 m, where it allows 40 km/h",
         tags=PLACE,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from automotive_cosim.contracts import AlertKind, Reason, Weather
-from automotive_cosim.tasking.checks import AlertGiven
+from automotive_cosim.tasking.checks import AlertGiven, AnyOf
 from automotive_cosim.tasking.moves import Move, Open, Tap, Warn
 from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Task
 from automotive_cosim.tasking.triggers import (
@@ -73,6 +73,16 @@ def figure(start: Start, trigger: Trigger, deadline: Deadline, basis: Basis, rul
         basis,
         rule,
     )
+
+
+def in_fog(half: Half) -> Half:
+    """The half, where the alert about visibility is as right as the one about speed if it names the limit."""
+    goal = half.goal
+    assert isinstance(goal, AlertGiven)
+    assert goal.speed_kmh is not None
+    of_sight = AlertGiven(AlertKind.VISIBILITY, goal.speed_kmh, must_advise=True)
+    way = (Warn(AlertKind.VISIBILITY, speed_kmh=goal.speed_kmh),)
+    return replace(half, goal=AnyOf((goal, of_sight)), ways=(*half.ways, way))
 
 
 def fine(start: Start, trigger: Trigger, deadline: Deadline, basis: Basis, rule: str) -> Half:
@@ -150,6 +160,10 @@ def across(
             tags=PLACE,
         )
     )
+
+
+def _hazy(task: Task) -> Task:
+    return replace(task, first=in_fog(task.first))
 
 
 LIMITS_BY_PLACE = (
@@ -297,22 +311,24 @@ LIMITS_BY_PLACE = (
         32.0,
         "an unsigned street, where the law of Wales says 20 mph and that of France 50 km/h; 40 to 49 on both",
     ),
-    across(
-        "road_haze_limit",
-        (
-            "Hazy ahead. Does that cost me speed in this country? Warn me if so.",
-            "It's getting thick out there; warn me of any rule about it that I'm breaking.",
-            "I can see far enough, I think. What does the law think? Alert me if it disagrees.",
-            "Murky. Pipe up if I must go slower than this.",
-            "Mist over the motorway: sound the alarm if I'm too fast for the book.",
-        ),
-        Start("autobahn", "north", weather=replace(FOG, visibility=150.0)),
-        GUANGZHOU,
-        ORLEANS,
-        Trigger(All((OnRoadClass(("motorway",)), Unposted(), SpeedBetween(68.0, 129.0))), 3.0, 300.0),
-        ("CN.limit.visibility_200", "FR.limit.visibility"),
-        60.0,
-        "a motorway with 150 m of visibility, where Chinese law says 60 km/h and French law nothing special",
+    _hazy(
+        across(
+            "road_haze_limit",
+            (
+                "Hazy ahead. Does that cost me speed in this country? Warn me if so.",
+                "It's getting thick out there; warn me of any rule about it that I'm breaking.",
+                "I can see far enough, I think. What does the law think? Alert me if it disagrees.",
+                "Murky. Pipe up if I must go slower than this.",
+                "Mist over the motorway: sound the alarm if I'm too fast for the book.",
+            ),
+            Start("autobahn", "north", weather=replace(FOG, visibility=150.0)),
+            GUANGZHOU,
+            ORLEANS,
+            Trigger(All((OnRoadClass(("motorway",)), Unposted(), SpeedBetween(68.0, 129.0))), 3.0, 300.0),
+            ("CN.limit.visibility_200", "FR.limit.visibility"),
+            60.0,
+            "a motorway with 150 m of visibility, where Chinese law says 60 km/h and French law nothing special",
+        )
     ),
     across(
         "road_no_centre_line_abroad",
