@@ -79,7 +79,7 @@ def repeat(state: State, deed: Deed, keys: Collection[str]) -> None:
     """Does once more what was done elsewhere, as far as it aims at these keys of ``State.commands``.
 
     Of several switches at once, those among the keys are turned; any other deed is done in full or not at all: app
-    data and a route only if all that they aim at is among the keys, so that nothing is slipped in beside it. What it
+    data and a route only if all that they aim at is among the keys, so that nothing is slipped in. What it
     asks of the road is answered as it was then.
     """
     message = deed.message
