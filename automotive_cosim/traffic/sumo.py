@@ -95,7 +95,6 @@ class LibSumo:
         self.controlled_links: Callable[[str], Sequence[Sequence[tuple[str, str, str]]]] = (
             library.trafficlight.getControlledLinks
         )
-        self.junction: Any = library.junction
         self._around = library.CMD_GET_VEHICLE_VARIABLE
         self._looks = (
             library.VAR_TYPE,
