@@ -8,6 +8,7 @@ from collections.abc import Hashable, Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from fnmatch import fnmatchcase
 from itertools import product
+from math import prod
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -29,6 +30,8 @@ from automotive_cosim.tasking.task import Mode, Task
 from automotive_cosim.tasks import CATALOGUE
 
 NO_MODEL = "none"
+MOST_RUNS = 10_000_000
+"""At a second each, four months."""
 WATCH_STEPS = 60
 """Additional steps in monitoring mode, which begins up to a minute before the trigger."""
 
@@ -109,7 +112,15 @@ class Plan:
         """Every episode, grouped by warm simulation.
 
         Within a group they are ordered by contestant, so a situation that does not arise for one is known by then.
+
+        Raises:
+            UserError: they are more than can ever be run.
         """
+        lists = (self.agents, self.models, self._placed(), self.seeds, self.geo, self.modes, self.latency)
+        if (most := prod(map(len, lists)) * self.repeats) > MOST_RUNS:
+            raise UserError(
+                f"the plan has {most:,} runs of tasks; give fewer seeds or repeats, at most {MOST_RUNS:,}"
+            )
         jobs = {job.id: job for job in self._each()}
         return tuple(sorted(jobs.values(), key=lambda job: (*job.simulation, *job.contestant, job.id)))
 
