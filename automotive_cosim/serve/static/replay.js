@@ -207,7 +207,7 @@ export async function replayPage(query, id, episode) {
   slider.addEventListener("input", () => jump(Number(slider.value)));
   live.addEventListener("click", () => { following = !following; live.setAttribute("aria-pressed", String(following)); if (following) run_(true); });
   const keys = (event) => {
-    if (event.target.closest?.("input, select, button, summary, a") && event.key === " ") return;
+    if (event.target.closest?.("input:not([type=range]), select, button, summary, a") && event.key === " ") return;
     if (event.target.closest?.("input[type=search], select, textarea") || event.ctrlKey || event.metaKey || event.altKey) return;
     const known = { " ": () => run_(!playing), ",": () => hop(-1), ".": () => hop(1) };
     if (known[event.key]) { event.preventDefault(); known[event.key](); }
