@@ -43,7 +43,7 @@ from automotive_cosim.contracts.observation import (
     VehicleState,
 )
 from automotive_cosim.contracts.place import Connectivity, GpsFix, Surroundings, Weather
-from automotive_cosim.contracts.plain import KMH_PER_MPS, MPH_PER_MPS, Json, Tell
+from automotive_cosim.contracts.plain import KMH_PER_MPS, MPH_PER_MPS, Json, Tell, lon_lat
 from automotive_cosim.contracts.requests import (
     Alert,
     AlertKind,
@@ -108,4 +108,5 @@ __all__ = [
     "TrafficLight",
     "VehicleState",
     "Weather",
+    "lon_lat",
 ]
