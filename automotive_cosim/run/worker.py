@@ -15,6 +15,7 @@ from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.executor import Runner
 from automotive_cosim.run.moments import write_judged
 from automotive_cosim.run.plan import EpisodeJob
+from automotive_cosim.run.road_recorder import RoadRecorder
 from automotive_cosim.run.store import write_trace
 from automotive_cosim.traffic.fork import Simulations
 
@@ -30,17 +31,20 @@ def episodes(pictures: Pictures) -> Iterator[Runner[EpisodeJob, EpisodeRow]]:
 
 
 def run_job(job: EpisodeJob, folder: Path, pictures: Pictures, simulations: Simulations) -> EpisodeRow:
-    """Runs one episode, writes its trace and screenshots, and returns its row; an error becomes a row too.
+    """Runs one episode, writes its trace, screenshots and road, and returns its row; an error becomes a row too.
 
     Raises:
         OSError: trace or pictures cannot be written.
     """
     setup = job.setup
     collector = Collector(pictures)
+    road = RoadRecorder(folder / "pictures" / job.id, setup)
+    watchers = (collector,) if pictures is Pictures.NONE else (collector, road)
     settings = AgentSettings(geo_input(setup.geo), seed=setup.seed, most_tokens=job.limits.tokens)
     try:
         agent = make_agent(setup.agent, job.model, settings)
-        result = run_episode(setup, agent, (collector,), simulations=simulations)
+        with closing(road):
+            result = run_episode(setup, agent, watchers, simulations=simulations)
     except CosimError as error:
         return failed(job, type(error).__name__, str(error))
     except Exception as error:
@@ -50,5 +54,8 @@ def run_job(job: EpisodeJob, folder: Path, pictures: Pictures, simulations: Simu
         write_trace(folder, job.id, lines)
         if judged := collector.judged():
             write_judged(folder, job.id, judged)
-        collector.keep_pictures(folder / "pictures" / job.id, result)
+        if collector.keeps_pictures_of(result):
+            collector.keep_pictures(folder / "pictures" / job.id)
+        else:
+            road.discard()
     return collector.row(job, result)

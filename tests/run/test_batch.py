@@ -17,6 +17,7 @@ from automotive_cosim.run.executor import LostError
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.queue import JobQueue
+from automotive_cosim.run.road import read_record
 from automotive_cosim.run.row import steady as steady_part
 from automotive_cosim.run.store import read_rows, read_trace, trace_file
 from automotive_cosim.run.worker import run_job
@@ -161,6 +162,7 @@ def test_pictures_are_kept_by_choice(tmp_path, simulations):
         assert len(kept) == count
         for folder in kept:
             assert len(list(folder.glob("step_*.jpg"))) == steps[folder.name] + 1
+            assert read_record(folder / "road.jsonl.gz").seconds[-1].at_s >= steps[folder.name]
 
 
 @pytest.mark.sumo
