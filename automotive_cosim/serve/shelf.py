@@ -70,6 +70,14 @@ class Shelf:
             raise NotHereError(f"there is no record {name!r} in the folders given")
         return found
 
+    def of(self, folder: Path) -> ShelfEntry:
+        """The recorded episode in a folder.
+
+        Raises:
+            NotHereError: it is not below the folders given.
+        """
+        return self.entry(_id(folder.resolve()))
+
     def file(self, entry: ShelfEntry, *parts: str) -> Path:
         """A file of a record.
 

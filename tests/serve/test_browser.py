@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 
 from automotive_cosim.run.road_recorder import mark_as_written
+from automotive_cosim.serve.play import Game
 
 from .conftest import HOSTILE, Browser, result, road, step, write_evaluation, write_record
 
@@ -163,6 +164,25 @@ def test_results_are_filtered_down_to_a_step(serving: Serving, opened: Callable[
     expect(page.get_by_role("heading", name="Step 1: taps “Warn driver”")).to_be_visible()
 
 
+@pytest.mark.sumo
+def test_a_person_plays_by_keyboard_and_mouse(serving: Serving, opened: Callable[..., Any], tmp_path: Path) -> None:
+    page = opened(serving(tmp_path, game=Game(tmp_path, scenario="grid")), "#/play?task=hvac_fan_max")
+    page.get_by_label("Your code name").fill("blue heron")
+    page.get_by_role("button", name="Begin").click()
+    expect(page.locator(".said")).to_be_visible(timeout=60_000)
+    page.get_by_role("button", name="Climate", exact=True).first.focus()
+    page.keyboard.press("Enter")
+    fan = page.get_by_role("button", name="Max: Fan at full speed")
+    expect(fan).to_have_count(1)
+    box = fan.bounding_box()
+    page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    expect(page.locator(".playing [role=status]")).to_contain_text("FanSpeed is 100")
+    page.get_by_role("button", name="Done").click()
+    page.get_by_role("link", name="See the verdict").click(timeout=60_000)
+    expect(page.locator(".pill")).to_have_text("Success")
+    expect(page.locator(".head")).to_contain_text("human · blue heron")
+
+
 def test_every_page_fits_in_light_and_dark(serving: Serving, opened: Callable[..., Any], tmp_path: Path) -> None:
     write_record(tmp_path / "run", goal="x" * 300)
     write_evaluation(tmp_path / "mine")
@@ -176,6 +196,7 @@ def test_every_page_fits_in_light_and_dark(serving: Serving, opened: Callable[..
         "#/tasks",
         "#/tasks/road_horn_abroad",
         "#/scenarios",
+        "#/play",
         "#/no",
     )
     for width, scheme in ((1400, "light"), (820, "dark"), (360, "light")):
