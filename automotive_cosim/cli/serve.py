@@ -46,8 +46,11 @@ def serve(
     shown = folders if folders is not None else [default] if default.is_dir() else []
     game = None
     if play:
+        from automotive_cosim.errors import UserError
         from automotive_cosim.serve.play import Game
 
+        if (shown[0] / "steps.jsonl").exists() or (shown[0] / "manifest.json").exists():
+            raise UserError(f"{shown[0]} is a record itself; give --play a folder that holds records")
         game = Game(shown[0])
     with WebServer(shown, host, port, game) as server:
         typer.echo(f"Open {server.address}")

@@ -84,7 +84,7 @@ def test_replay_by_mouse_and_keyboard_and_a_link_to_an_instant(
     page.locator("body").press(".")
     expect(page.locator(".clock")).to_have_text("+6 s")
     expect(page.get_by_role("heading", name="Step 3: taps “Warn driver”")).to_be_visible()
-    expect(page.locator(".about")).to_contain_text("72 km/h 50 posted · Rue")
+    expect(page.locator(".about")).to_contain_text("72 km/h limit 50 · Rue")
     expect(page.locator(".about")).to_contain_text("1 other vehicle in sight")
     page.get_by_label("Time in the drive").press("Home")
     expect(page.locator(".clock")).to_have_text("−2 s")
