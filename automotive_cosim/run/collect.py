@@ -84,10 +84,12 @@ class Collector(Watcher):
             episode.counterfactual,
         )
 
-    def keep_pictures(self, folder: Path, result: EpisodeResult) -> None:
-        """Writes the screenshots, if this episode's are to be kept."""
-        if not self._shown or (self._pictures is Pictures.FAILURES and result.success):
-            return
+    def keeps_pictures_of(self, result: EpisodeResult) -> bool:
+        """Whether this episode's pictures are to be kept."""
+        return bool(self._shown) and not (self._pictures is Pictures.FAILURES and result.success)
+
+    def keep_pictures(self, folder: Path) -> None:
+        """Writes the screenshots."""
         folder.mkdir(parents=True, exist_ok=True)
         for number, data in enumerate(self._shown):
             (folder / f"step_{number:03d}.jpg").write_bytes(data)
