@@ -3,7 +3,8 @@
 manifest.json     plan and its number of episodes, versions, state of the code, one entry per start
 episodes.jsonl    one line per episode, appended and synced as it ends; of several lines of one id the last counts
 traces/           <id>.jsonl.gz: one line per step, as ``run`` writes them, and one with the whole result
-pictures/         <id>/step_000.jpg, ...: the cockpit after each step, of the selected episodes
+pictures/         <id>/step_000.jpg, ...: the cockpit after each step, and road.jsonl.gz, of the selected
+                  episodes
 lock              held while an evaluation writes here
 """
 
