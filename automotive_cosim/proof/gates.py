@@ -28,8 +28,6 @@ from dataclasses import replace
 from functools import partial
 from itertools import product
 
-import numpy as np
-
 from automotive_cosim.agents.trivial import AlwaysAlert, NoOp, PressEverything, Random
 from automotive_cosim.contracts import Action, ActionType, AlertKind, GoalStatus, Observation
 from automotive_cosim.episode.episode import Episode
@@ -37,6 +35,7 @@ from automotive_cosim.errors import ScenarioError, TriggerNotReachedError
 from automotive_cosim.proof import mutations
 from automotive_cosim.proof.ground import Ground, Played, Script, finish
 from automotive_cosim.tasking.checks import NothingDone
+from automotive_cosim.tasking.draws import Draws, Purpose
 from automotive_cosim.tasking.task import Basis, Half, Task
 from automotive_cosim.tasking.triggers import All, Parked, Standing, TriggerCondition
 from automotive_cosim.tasking.verdict import judge
@@ -130,7 +129,7 @@ def near(ground: Ground, right: Played) -> Wrong:
 
 def collateral(ground: Ground, right: Played) -> Wrong:
     """Judges the reference solution's end state with an additional change."""
-    rng = np.random.default_rng([ground.seed, 7])
+    rng = Draws(ground.task.id, ground.seed).rng(Purpose.COLLATERAL)
     for what, moments in mutations.collaterals(right.moments[0], right.moments, ground.half, rng):
         if _wins(ground, right, moments):
             yield f"succeeds with {what}"
