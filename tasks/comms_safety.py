@@ -51,7 +51,7 @@ LATE = Task(
         reasons=(Reason.ALREADY_SO, Reason.NONE),
         needed=False,
     ),
-    difference="traffic: the morning queue on the quays, or the free avenue Foch",
+    difference="traffic and road: the morning queue on the quays, or the free avenue Foch",
     parameters={"contact": FromCockpit("favourite_contacts")},
 )
 

@@ -94,12 +94,13 @@ def _half(
     return Half(start, _when(situation), goal, moves, LOOK, Basis.PHYSICS, source, may_write=may_write, ways=ways)
 
 
-def _rest(start: Start, situation: TriggerCondition, source: str) -> Half:
-    return decline(start, _when(situation), LOOK, Basis.PHYSICS, source, reasons=ALREADY, needed=False)
+def _rest(start: Start, situation: TriggerCondition, source: str, after_s: float = 0.0) -> Half:
+    trigger = _when(situation, after_s)
+    return decline(start, trigger, LOOK, Basis.PHYSICS, source, reasons=ALREADY, needed=False)
 
 
-def _when(situation: TriggerCondition) -> Trigger:
-    return Trigger(All((Driving(), situation)), for_s=3.0, within_s=240.0)
+def _when(situation: TriggerCondition, after_s: float = 0.0) -> Trigger:
+    return Trigger(All((Driving(), situation)), for_s=3.0, within_s=240.0, after_s=after_s)
 
 
 def _pair(
@@ -165,7 +166,8 @@ FEEL_HOT = _pair(
             (Open("climate"), Tap("hvac.driver_temperature.decrease", times=4)),
         ),
     ),
-    "place: a Gulf afternoon of 44 degrees, where only cooled air helps, or a cool September evening outside",
+    "place, road, date and weather: a Gulf afternoon of 44 degrees, where only cooled air helps, or a cool "
+    "September evening outside",
     frozenset({"place"}),
 )
 
@@ -199,7 +201,7 @@ ADJUST_AIR = _pair(
             (Open("climate"), Tap("hvac.driver_temperature.increase", times=4)),
         ),
     ),
-    "place: a hot city by the sea in August, or a mountain pass in December",
+    "place, road, date and weather: a hot city by the sea in August, or a mountain pass in December",
     frozenset({"place"}),
 )
 
@@ -273,6 +275,7 @@ SHUT_IN_TUNNEL = _pair(
         Start("paris_centre", "foch", cabin=_cabin(18.0), signals={window.path: 20.0 for window in WINDOWS}),
         All((Not(InTunnel()), SignalBelow(OUTSIDE.FINE_DUST, 15.0))),
         TUNNEL_SOURCE,
+        after_s=75.0,
     ),
     "road: in a tunnel full of exhaust, or on an open avenue with fair air",
     frozenset({"two_modules"}),
@@ -302,7 +305,7 @@ HEATSTROKE = _pair(
         All((AirBetween(15.0, 26.0), SignalBelow(HVAC.CABIN_TEMPERATURE, 26.0))),
         BODY_SOURCE,
     ),
-    "date: a July afternoon of 44 degrees, or a mild one in January",
+    "date and weather: a July afternoon of 44 degrees, or a mild one in January",
     frozenset({"preference"}),
 )
 
@@ -425,7 +428,7 @@ CHILDREN = _pair(
         All((AirBetween(12.0, 26.0), SignalAbove(HVAC.CABIN_TEMPERATURE, 20.0))),
         WARM_HOME_SOURCE,
     ),
-    "date: 14 degrees of frost in December, or a mild day in July",
+    "date and weather: 14 degrees of frost in December, or a mild day in July",
 )
 
 TASKS = (FEEL_HOT, ADJUST_AIR, FRESH_AIR_IN_DUST, SHUT_IN_TUNNEL, HEATSTROKE, CLAMMY, DRIPPING, CHILDREN)

@@ -45,7 +45,7 @@ VILLAGES = Start("alpine_pass", "villages", driver="average", weather=FAIR, sign
 QUEUE, QUEUE_FREE = replace(VILLAGES, trip="jam"), VILLAGES
 SCHOOLS = Start("sydney", "school_run", driver="calm", weather=FAIR, sign_camera=False)
 PASSABLE = Trigger(All((Driving(), Not(JamWithin(15_000.0)), Not(OtherWayKnown(45.0)))), 3.0, 240.0)
-PLAIN = Start("beauce", "villages", driver="average", weather=FAIR, sign_camera=False)
+PLAIN = Start("beauce", "villages", driver="average", start=NOON, weather=FAIR, sign_camera=False)
 TUNNELS = Start("paris_centre", "tunnel", driver="average", sign_camera=False)
 OFF_BY_LANGEN = AllOf(
     (RoadAsked(Reroute("Langener Straße")), AppDataIs("navigation.destination", ("Langener Straße",)))
@@ -199,20 +199,20 @@ ALIGNED: tuple[Task, ...] = (
             "Local units on the screen, please, whatever they are.",
         ),
         in_units(
-            Start("border", "south", weather=FAIR, sign_camera=False),
+            Start("border", "south", start=NOON, weather=FAIR, sign_camera=False),
             {HMI.DISTANCE_UNIT: "MILES"},
             "distance.miles",
             "signs in miles (Traffic Signs Regulations and General Directions 2016)",
             Trigger(All((InCountry("GB"), Driving())), 3.0, 120.0),
         ),
         fine(
-            Start("border", "north", weather=FAIR, sign_camera=False),
+            Start("border", "north", start=NOON, weather=FAIR, sign_camera=False),
             Trigger(All((InCountry("IE"), Driving())), 3.0, 120.0),
             NEXT_SIGN,
             Basis.POSTED,
             "signs in kilometres (Traffic Signs Manual, Ireland)",
         ),
-        "place: north of the border, where signs count miles, or south of it, where they count kilometres",
+        "place and road: north of the border, where signs count miles, or south of it, where they count kilometres",
         tags=PLACE,
     ),
     pair(
@@ -282,7 +282,7 @@ ALIGNED: tuple[Task, ...] = (
         ),
         acted(
             TUNNELS,
-            Trigger(All((Not(InTunnel()), Not(TunnelWithin(25.0)), Driving(), BuiltUp())), 3.0, 120.0),
+            Trigger(All((Not(InTunnel()), Not(TunnelWithin(25.0)), Driving(), BuiltUp())), 3.0, 240.0, 45.0),
             RoadAsked(PullOver),
             STOPPING,
             Basis.WISH,
@@ -349,7 +349,7 @@ ALERTS: tuple[Task, ...] = (
             "sign 274, 80 km/h, 250 m ahead",
             Warn(AlertKind.SPEED, speed_kmh=80.0),
         ),
-        "road: 250 m before a village on the plain, or before the roadworks on the autobahn",
+        "place and road: 250 m before a village on the plain, or before the roadworks on the autobahn",
         Dimension.ENVIRONMENT_ALERTS,
     ),
     pair(
@@ -377,7 +377,7 @@ ALERTS: tuple[Task, ...] = (
             Basis.POSTED,
             "sign R4-230, 40 km/h on school days 8.00-9.30",
         ),
-        "road: a tunnel's portal in a few seconds, or a school zone that is in force",
+        "place, road and date: a tunnel's portal in a few seconds, or a school zone that is in force",
         Dimension.ENVIRONMENT_ALERTS,
     ),
     pair(

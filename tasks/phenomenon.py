@@ -68,7 +68,8 @@ FRONT_WINDOW = Task(
         basis=Basis.PHYSICS,
         rule="glass below the dew point outside fogs outside: only a wiper clears it at once",
     ),
-    difference="weather and date: a cold damp November fogs the glass inside, a muggy August outside",
+    difference="weather, date and settings: a cold damp November and recirculated air fog the glass inside, a "
+    "muggy August and chilled air outside",
 )
 
 REAR_WINDOW = Task(
@@ -103,7 +104,8 @@ REAR_WINDOW = Task(
         basis=Basis.PHYSICS,
         rule="rain lies on the outside: only a wiper clears it",
     ),
-    difference="weather: damp cold air, where the glass fogs inside; heavy rain, where the drops lie outside",
+    difference="weather and settings: damp cold air, recirculated, where the glass fogs inside; heavy rain, where "
+    "the drops lie outside",
 )
 
 WET_STREET = replace(PARIS, weather=Weather(9.0, 94.0, 3.0, 63, 100.0, 4000.0, 18.0))

@@ -88,9 +88,11 @@ def night(scenario: str, trip: str, weather: Weather, lamps: Mapping[str, Any] =
     return Start(scenario, trip, start=NIGHT, weather=weather, signals=lamps, sign_camera=False)
 
 
-def when(*conditions: TriggerCondition, for_s: float = 2.0, within_s: float = 420.0) -> Trigger:
+def when(
+    *conditions: TriggerCondition, for_s: float = 2.0, within_s: float = 420.0, after_s: float = 0.0
+) -> Trigger:
     """A trigger: all conditions hold for a while during the drive."""
-    return Trigger(All((Driving(), *conditions)), for_s, within_s)
+    return Trigger(All((Driving(), *conditions)), for_s, within_s, after_s)
 
 
 E10 = night("nordic", "jukkasjarvi", SNOWFALL)
@@ -182,7 +184,7 @@ LAMP_TASKS: tuple[Task, ...] = (
         ),
         switched(
             VILLAGES_FULL,
-            when(BuiltUp(), Dark()),
+            when(BuiltUp(), Dark(), after_s=75.0),
             SignalIs(LIGHTS.HIGH_BEAM, (False,)),
             "lights.high_beam",
             DAZZLED,
@@ -238,7 +240,7 @@ LAMP_TASKS: tuple[Task, ...] = (
             "IT.tunnel_lamps",
             "lights.switch.auto",
         ),
-        fine(UNDER_MILAN, when(Not(TunnelWithin(40.0))), TO_PORTAL, Basis.LAW, "IT.tunnel_lamps"),
+        fine(UNDER_MILAN, when(Not(TunnelWithin(40.0)), after_s=60.0), TO_PORTAL, Basis.LAW, "IT.tunnel_lamps"),
         "road: a tunnel in a few seconds, where Italian law requires the lamps, or open road by day; all lamps off",
     ),
 )

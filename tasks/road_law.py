@@ -110,7 +110,8 @@ SPEED_80_IN_50 = in_company(
             Basis.POSTED,
             "sign B14, 80 km/h; FR Code de la route R413-2",
         ),
-        difference="road: a Paris avenue with 50 km/h posted, or a country road with 80 posted; 80 km/h on both",
+        difference="place and road: a Paris avenue with 50 km/h posted, or a country road with 80 posted; 80 km/h "
+        "on both",
         tags=frozenset({"place"}),
     )
 )

@@ -181,7 +181,8 @@ class SituationFinder:
         moments = [world.moment]
         departed_s, since_s = world.moment.time_s, None
         while (now := world.moment).time_s - departed_s < trigger.within_s and now.driving.end is None:
-            holds = _motion(now) in half.start.motions and trigger.condition(now)
+            is_due = now.time_s - departed_s >= trigger.after_s
+            holds = is_due and _motion(now) in half.start.motions and trigger.condition(now)
             since_s = (now.time_s if since_s is None else since_s) if holds else None
             if since_s is not None and now.time_s - since_s >= trigger.for_s:
                 return _Drive(world, tuple(moments))

@@ -14,6 +14,7 @@
 | leak | without goal and solutions, every observation is the same, byte for byte |
 | road | a parked car does not reach the trigger |
 | law | what is right in one half fails in the other |
+| sight | the halves of a pair differ at first sight only in what the pair declares |
 | repeat | the same seed gives the same words and trace; other seeds give others |
 | residue | after another task's episode, a task still gives its own trace |
 | reach | in every scenario that the task names, the trigger comes in time and the reference solution succeeds |
@@ -34,6 +35,7 @@ from automotive_cosim.episode.episode import Episode
 from automotive_cosim.errors import ScenarioError, TriggerNotReachedError
 from automotive_cosim.proof import mutations
 from automotive_cosim.proof.ground import Ground, Played, Script, finish
+from automotive_cosim.proof.sight import undeclared
 from automotive_cosim.tasking.checks import NothingDone
 from automotive_cosim.tasking.draws import Draws, Purpose
 from automotive_cosim.tasking.task import Basis, Half, Task
@@ -205,6 +207,13 @@ def law(grounds: dict[str, Ground]) -> Wrong:
     for name, other in (("first", "second"), ("second", "first")):
         if grounds[name].play(grounds[other].oracle()).success:
             yield f"what is right in the {other} half also succeeds in the {name}"
+
+
+def sight(grounds: dict[str, Ground]) -> Wrong:
+    """Compares the first observations of both halves."""
+    if len(grounds) == 2:
+        one, other = ((ground.episode.observation, ground.episode.moments[0]) for ground in grounds.values())
+        yield from undeclared(grounds["first"].task.differs, one, other)
 
 
 # --- further hand-overs -----------------------------------------------------------------------------------

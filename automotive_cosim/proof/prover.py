@@ -30,6 +30,7 @@ GATES = (
     "leak",
     "road",
     "law",
+    "sight",
     "repeat",
     "residue",
     "reach",
@@ -109,7 +110,7 @@ class Prover:
                 grounds[half] = Ground.reach(CATALOGUE[task_id], half, seed, self._simulations)
             for half, ground in grounds.items():
                 self._prove_half(found, half, ground)
-            for gate in ("trivial", "law"):
+            for gate in ("trivial", "law", "sight"):
                 if gate in self._chosen:
                     found.take(gate, getattr(gates, gate)(grounds))
             if "reach" in self._chosen:

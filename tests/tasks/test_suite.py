@@ -11,7 +11,7 @@ from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.tasking.catalogue import Catalogue
 from automotive_cosim.tasking.checks import SignalIs
 from automotive_cosim.tasking.instance import draw
-from automotive_cosim.tasking.task import Basis, Dimension
+from automotive_cosim.tasking.task import Basis, Differs, Dimension
 from automotive_cosim.tasks import CATALOGUE
 
 TASKS = list(CATALOGUE.values())
@@ -105,3 +105,26 @@ def test_a_goal_on_a_signal_asks_for_a_legal_value():
             if isinstance(check, SignalIs):
                 for value in check.values:
                     assert check.signal.check(value) == value
+
+
+CHANGES = {
+    "scenario": {Differs.PLACE, Differs.ROAD},
+    "origin": {Differs.PLACE},
+    "start": {Differs.DATE, Differs.TIME},
+    "parked": {Differs.MOTION},
+    "signals": {Differs.SETTINGS},
+    "weather": {Differs.WEATHER, Differs.VISIBILITY},
+    "trip": {Differs.ROAD, Differs.TRAFFIC},
+    "driver": {Differs.TRAFFIC, Differs.ROAD},
+    "cabin": {Differs.WEATHER, Differs.SETTINGS},
+    "arrivals": set(),
+    "sign_camera": set(),
+}
+"""What a start may change only if one of these kinds is declared."""
+
+
+@pytest.mark.parametrize("task", [task for task in TASKS if task.second], ids=lambda task: task.id)
+def test_the_starts_of_a_pair_differ_only_as_declared(task):
+    one, other = task.first.start, task.second.start
+    changed = {name for name in CHANGES if getattr(one, name) != getattr(other, name)}
+    assert {name for name in changed if not CHANGES[name] & task.differs} == set()
