@@ -210,8 +210,8 @@ ALERTS: tuple[Task, ...] = (
             AlertKind.YIELD,
         ),
         warned(BREAKDOWN, STOPPED_AHEAD, CLOSING, Basis.LAW, "FR.move_over", AlertKind.MOVE_OVER),
-        "traffic and road: an ambulance with blue light behind, or a stationary car in front with its hazard lights "
-        "on",
+        "traffic and road: an ambulance with blue light behind, or a stationary car in front with its hazard "
+        "lights on",
         Dimension.ENVIRONMENT_ALERTS,
     ),
     pair(

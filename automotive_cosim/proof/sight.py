@@ -60,7 +60,7 @@ FREED: Mapping[Differs, frozenset[Facet]] = {
 """What each kind of difference may change. A road has its tunnels; the rules that the context names follow from all
 of it and are free."""
 
-_VEHICLE: Mapping[str, tuple[Facet, float]] = {
+READINGS: Mapping[str, tuple[Facet, float]] = {
     "speed_kmh": (Facet.SPEED, 0.1),
     "gear": (Facet.MOTION, 0.0),
     "restrictions": (Facet.MOTION, 0.0),
@@ -101,10 +101,14 @@ _ELEMENTS: Mapping[str, Facet] = {
     "status.high_beam": Facet.LAMPS,
     "home.outside": Facet.OUTSIDE,
     "home.cabin": Facet.CABIN,
+    "home.battery": Facet.BATTERY,
+    "home.range": Facet.BATTERY,
+    "status.battery": Facet.BATTERY,
     "dock.": Facet.SETTINGS,
 }
-"""Facet of elements by the beginning of their resource id; all others belong to the screen. Their numbers are not
-compared: the readings are."""
+"""Facet of elements by the beginning of their resource id; all others belong to the screen."""
+_EXACT = frozenset({Facet.SCREEN, Facet.SETTINGS})
+"""Facets whose elements are compared with their numbers; those of the others are the readings'."""
 _LINES: Mapping[str, Facet] = {
     "place": Facet.PLACE,
     "climate": Facet.CLIMATE,
@@ -153,7 +157,7 @@ def _facts(observation: Observation, moment: Moment) -> Iterator[Fact]:
 
 
 def _readings(vehicle: VehicleState) -> Iterator[Fact]:
-    for name, (facet, tolerance) in _VEHICLE.items():
+    for name, (facet, tolerance) in READINGS.items():
         yield name, (facet, getattr(vehicle, name), tolerance)
 
 
@@ -165,7 +169,8 @@ def _on_screen(elements: tuple[Element, ...]) -> Iterator[Fact]:
             continue  # names of streets on the map; the song that plays follows from the clock
         counts[name] = counts.get(name, 0) + 1
         facet = next((facet for begin, facet in _ELEMENTS.items() if name.startswith(begin)), Facet.SCREEN)
-        words = _NUMBER.sub("#", f"{element.text} {element.content_description}".strip())
+        words = f"{element.text} {element.content_description}".strip()
+        words = words if facet in _EXACT else _NUMBER.sub("#", words)
         state = (element.is_enabled, element.is_checked, element.is_selected)
         yield f"{name} {counts[name]}", (facet, (words, *state), 0.0)
 
