@@ -212,7 +212,7 @@ LAMP_TASKS: tuple[Task, ...] = (
         ),
         switched(
             YAMATE,
-            when(Not(TunnelWithin(40.0))),
+            when(Not(TunnelWithin(40.0)), after_s=20.0),
             SignalIs(LIGHTS.LOW_BEAM, (False,)),
             "lights.switch.auto",
             TO_PORTAL,

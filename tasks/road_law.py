@@ -92,7 +92,7 @@ SPEED_80_IN_50 = in_company(
             "Just watch my speed for me, would you?",
         ),
         warned(
-            Start("paris_centre", "foch", driver="hurried", sign_camera=False),
+            Start("paris_centre", "foch", driver="hurried", start="2026-11-17T12:30:00", sign_camera=False),
             Trigger(SpeedAbove(78.0, 45.0, 50.0), for_s=3.0, within_s=240.0),
             Deadline(
                 10.0,
@@ -104,7 +104,7 @@ SPEED_80_IN_50 = in_company(
             speed_kmh=50.0,
         ),
         fine(
-            Start("beauce", "plain", driver="average", sign_camera=False),
+            Start("beauce", "plain", driver="average", start="2026-11-17T12:30:00", sign_camera=False),
             Trigger(SpeedAbove(76.0, 80.0, 80.0), for_s=3.0, within_s=240.0),
             Deadline(10.0, "as in the first half"),
             Basis.POSTED,

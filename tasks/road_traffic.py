@@ -14,6 +14,7 @@ from automotive_cosim.tasking.triggers import (
     Driving,
     FlowBelow,
     HeadwayBelow,
+    InTunnel,
     JamWithin,
     Lanes,
     LeaderWithin,
@@ -104,7 +105,7 @@ ALIGNED: tuple[Task, ...] = (
         ),
         warned(
             replace(RING, driver="tailgating"),
-            Trigger(All((SpeedBetween(30.0), HeadwayBelow(1.2))), 3.0, 300.0),
+            Trigger(All((SpeedBetween(30.0), HeadwayBelow(1.2), Not(InTunnel()))), 3.0, 300.0),
             FOLLOWING,
             Basis.LAW,
             "FR.following_distance",
@@ -112,7 +113,9 @@ ALIGNED: tuple[Task, ...] = (
         ),
         fine(
             replace(RING, driver="calm"),
-            Trigger(All((SpeedBetween(30.0), LeaderWithin(120.0), Not(HeadwayBelow(2.0)))), 3.0, 300.0),
+            Trigger(
+                All((SpeedBetween(30.0), LeaderWithin(120.0), Not(HeadwayBelow(2.0)), Not(InTunnel()))), 3.0, 300.0
+            ),
             FOLLOWING,
             Basis.LAW,
             "FR.following_distance",

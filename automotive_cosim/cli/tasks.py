@@ -149,7 +149,8 @@ def _half(half: Half) -> Iterable[str]:
         yield f"at        {start.origin[0]:g}, {start.origin[1]:g} (longitude, latitude)"
     if start.start:
         yield f"when      {start.start}"
-    yield f"trigger   {half.trigger.condition}, for {half.trigger.for_s:g} s"
+    after = f", {half.trigger.after_s:g} s after departure or later" if half.trigger.after_s else ""
+    yield f"trigger   {half.trigger.condition}, for {half.trigger.for_s:g} s{after}"
     yield f"goal      {half.goal}, then declare {half.declares}"
     for number, way in enumerate((half.moves, *half.ways)):
         yield f"solution  {'or ' if number else ''}{', '.join(map(_move, way)) or 'declare at once'}"

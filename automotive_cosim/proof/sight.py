@@ -184,7 +184,7 @@ def _in_context(context: GeoContext) -> Iterator[Fact]:
         lines = tuple(line.text for line in context.lines if _LINES.get(line.source) is facet)
         yield "in the context", (facet, lines, 0.0)
     road = context.road
-    yield "kind", (Facet.ROAD, (road.name, road.road_class, road.lane_count, road.lit), 0.0)
+    yield "kind", (Facet.ROAD, (road.road_class, road.lit), 0.0)
     yield "tunnel or school zone", (Facet.ROAD, (road.in_tunnel, road.school_zone), 0.0)
     yield "sign", (Facet.ROAD, context.posted_limit_kmh, 0.1)
 
