@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from automotive_cosim.cockpit.signals import LIGHTS
+from automotive_cosim.cockpit.signals import HVAC, LIGHTS
 from automotive_cosim.contracts import Reason, Weather
 from automotive_cosim.tasking.checks import Check, SignalIs
 from automotive_cosim.tasking.moves import Move, Open, Tap
@@ -95,7 +95,8 @@ def when(
     return Trigger(All((Driving(), *conditions)), for_s, within_s, after_s)
 
 
-E10 = night("nordic", "jukkasjarvi", SNOWFALL)
+E10 = night("nordic", "jukkasjarvi", SNOWFALL, DIPPED | {HVAC.AUTO.path: True})
+"""Heated, so that the cabin is as warm beyond the lamps as under them."""
 A1 = night("border", "south", CLEAR_NIGHT)
 VALLEY = night("nordic", "kurravaara", SNOWFALL)
 PLAIN_FULL = night("beauce", "plain", CLEAR_NIGHT, FULL)
@@ -170,7 +171,7 @@ LAMP_TASKS: tuple[Task, ...] = (
             DAZZLED,
             "FR.high_beam",
         ),
-        fine(PLAIN_FULL, when(Lit(False), NOBODY, for_s=5.0), DAZZLED, Basis.LAW, "FR.high_beam"),
+        fine(PLAIN_FULL, when(Lit(False), NOBODY, for_s=5.0, after_s=45.0), DAZZLED, Basis.LAW, "FR.high_beam"),
         "traffic: an oncoming car, or an empty road; high beam on, unlit, at night",
     ),
     lamp_task(

@@ -12,6 +12,7 @@ from datetime import datetime
 from enum import StrEnum
 from typing import Any
 
+from automotive_cosim.cockpit.signals import GLASS
 from automotive_cosim.contracts import Element, Observation, VehicleState
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.geo.context import GeoContext
@@ -109,6 +110,8 @@ _ELEMENTS: Mapping[str, Facet] = {
 """Facet of elements by the beginning of their resource id; all others belong to the screen."""
 _EXACT = frozenset({Facet.SCREEN, Facet.SETTINGS})
 """Facets whose elements are compared with their numbers; those of the others are the readings'."""
+_FOLLOWS = ("home.media.", "home.cabin_note")
+"""Elements that follow from others: the song from the clock, the note from humidity and glass."""
 _LINES: Mapping[str, Facet] = {
     "place": Facet.PLACE,
     "climate": Facet.CLIMATE,
@@ -117,6 +120,8 @@ _LINES: Mapping[str, Facet] = {
 """Facet of the lines of the geo-context by their source; the motion and the position are read from the car."""
 CLOCKS_WITHIN_S = 300.0
 """How far apart the local times of hand-overs may be; a later departure into the same traffic makes two minutes."""
+FOG_WITHIN = 0.2
+"""How much the share of fogged glass may differ."""
 _NUMBER = re.compile(r"-?\d+(?:[.,:]\d+)*")
 
 
@@ -152,6 +157,8 @@ def _facts(observation: Observation, moment: Moment) -> Iterator[Fact]:
     assert observation.vehicle is not None
     assert observation.elements is not None
     yield from _readings(observation.vehicle)
+    for glass in (GLASS.WINDSHIELD_FOG, GLASS.REAR_FOG):
+        yield glass.path, (Facet.CABIN, moment.signals[glass.path], FOG_WITHIN)
     yield from _on_screen(observation.elements)
     yield from _in_context(moment.context)
 
@@ -165,8 +172,8 @@ def _on_screen(elements: tuple[Element, ...]) -> Iterator[Fact]:
     counts: dict[str, int] = {}
     for element in elements:
         name = element.resource_id
-        if not name or name.startswith("home.media."):
-            continue  # names of streets on the map; the song that plays follows from the clock
+        if not name or name.startswith(_FOLLOWS):
+            continue  # without a name: the streets on the map
         counts[name] = counts.get(name, 0) + 1
         facet = next((facet for begin, facet in _ELEMENTS.items() if name.startswith(begin)), Facet.SCREEN)
         words = f"{element.text} {element.content_description}".strip()
