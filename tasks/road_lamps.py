@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from automotive_cosim.cockpit.signals import HVAC, LIGHTS
+from automotive_cosim.cockpit.signals import LIGHTS
 from automotive_cosim.contracts import Reason, Weather
 from automotive_cosim.tasking.checks import Check, SignalIs
 from automotive_cosim.tasking.moves import Move, Open, Tap
@@ -95,8 +95,8 @@ def when(
     return Trigger(All((Driving(), *conditions)), for_s, within_s, after_s)
 
 
-E10 = night("nordic", "jukkasjarvi", SNOWFALL, DIPPED | {HVAC.AUTO.path: True})
-"""Heated, so that the cabin is as warm beyond the lamps as under them."""
+E10 = replace(night("nordic", "jukkasjarvi", SNOWFALL), cabin={"temperature_c": 17.0})
+"""So cool that the cabin is as warm beyond the lamps as under them."""
 A1 = night("border", "south", CLEAR_NIGHT)
 VALLEY = night("nordic", "kurravaara", SNOWFALL)
 PLAIN_FULL = night("beauce", "plain", CLEAR_NIGHT, FULL)

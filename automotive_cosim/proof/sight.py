@@ -115,7 +115,6 @@ _FOLLOWS = ("home.media.", "home.cabin_note")
 _LINES: Mapping[str, Facet] = {
     "place": Facet.PLACE,
     "climate": Facet.CLIMATE,
-    "weather": Facet.WEATHER,
 }
 """Facet of the lines of the geo-context by their source; the motion and the position are read from the car."""
 CLOCKS_WITHIN_S = 300.0
@@ -154,6 +153,7 @@ def _facts(observation: Observation, moment: Moment) -> Iterator[Fact]:
     yield "the local time", (Facet.CLOCK, _clock(moment.local_time), CLOCKS_WITHIN_S)
     yield "a position fix", (Facet.LINK, observation.gps is not None and observation.gps.has_fix, 0.0)
     yield "the connection", (Facet.LINK, moment.connectivity.online, 0.0)
+    yield "as given", (Facet.WEATHER, moment.weather, 0.0)
     assert observation.vehicle is not None
     assert observation.elements is not None
     yield from _readings(observation.vehicle)
@@ -189,7 +189,7 @@ def _in_context(context: GeoContext) -> Iterator[Fact]:
         yield "glare of the sun", (Facet.SKY, sun.glares(context.heading_deg), 0.0)
     for facet in set(_LINES.values()):
         lines = tuple(line.text for line in context.lines if _LINES.get(line.source) is facet)
-        yield "in the context", (facet, lines, 0.0)
+        yield f"{facet} in the context", (facet, lines, 0.0)
     road = context.road
     yield "kind", (Facet.ROAD, (road.road_class, road.lit), 0.0)
     yield "tunnel or school zone", (Facet.ROAD, (road.in_tunnel, road.school_zone), 0.0)
