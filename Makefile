@@ -7,7 +7,7 @@ BIN = $(VENV)/bin
 # Container images like to set it; hundreds of processes start in the tests, and each would compile the package anew.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: run test test-fast lint check bench clean
+.PHONY: run test test-fast lint check docs bench clean
 .DELETE_ON_ERROR:
 
 run: $(VENV)/.run
@@ -28,11 +28,14 @@ lint: $(VENV)/.dev
 check: lint
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/pyright
 
+docs: $(VENV)/.docs
+	$(BIN)/python -m sphinx -q -W --keep-going -b html docs docs/_site
+
 bench: $(VENV)/.run
 	$(BIN)/automotive-cosim bench
 
 clean:
-	rm -rf $(VENV) build dist runs *.egg-info .pytest_cache .mypy_cache .ruff_cache .import_linter_cache
+	rm -rf $(VENV) build dist docs/_made docs/_site runs *.egg-info .pytest_cache .mypy_cache .ruff_cache .import_linter_cache
 
 $(VENV)/.run: pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
@@ -42,4 +45,9 @@ $(VENV)/.run: pyproject.toml constraints.txt
 $(VENV)/.dev: pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev]'
+	touch $@ $(VENV)/.run
+
+$(VENV)/.docs: pyproject.toml constraints.txt
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[docs]'
 	touch $@ $(VENV)/.run

@@ -15,7 +15,8 @@ CosimError                 anything a caller may want to catch at once
 │   │   └── NoRoomError    the ego waited for a gap in the traffic to depart into, and none came
 │   ├── ModelError         a model could not be reached, or did not answer
 │   └── TriggerNotReachedError  the drive up to the hand-over ended before the task's trigger held
-└── OutOfBudgetError       the agent has spent its tokens or its time: the episode is judged as it is
+├── OutOfBudgetError       the agent has spent its tokens or its time: the episode is judged as it is
+└── AgentError             the agent's side crashed, ended or did not answer: the episode is a failure
 """
 
 from __future__ import annotations
@@ -112,3 +113,7 @@ class TriggerNotReachedError(InfrastructureError):
 
 class OutOfBudgetError(CosimError):
     """An agent that has spent its budget; this is its own failure."""
+
+
+class AgentError(CosimError):
+    """An agent that can act no more, e.g. because its process has ended; this is its own failure."""

@@ -190,7 +190,6 @@ IMPLICIT = (
         Open("memo"),
         Tap("memo.record"),
         ways=((Open("memo"), Tap("memo.record", times=2)),),
-        may_write=frozenset({"apps.recording"}),
     ),
     hinted(
         "apps_battery_to_last",

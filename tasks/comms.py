@@ -165,7 +165,6 @@ EXPLICIT = (
         start=CALLED,
         trigger=RINGING,
         deadline=WHILE_IT_RINGS,
-        may_write=frozenset({"messages.read"}),
     ),
     asked(
         "comms_drop_favourite",

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
+from automotive_cosim.cockpit.signals import LIGHTS
 from automotive_cosim.contracts import GoalStatus, Reason
 from automotive_cosim.tasking.checks import Check, NothingDone
 from automotive_cosim.tasking.moves import Move
@@ -24,6 +25,8 @@ COMFORT = Deadline(30.0, "a wish for comfort: the driver would reach for the kno
 ERRAND = Deadline(60.0, "an errand on the screen: a passenger would have it done within a minute")
 ANYWHERE = ("london", "new_york", "tokyo", "autobahn", "sydney", "grid")
 """Other scenarios for tasks that only require a driving car."""
+BY_THE_SWITCH = frozenset({LIGHTS.SWITCH.path})
+"""What may be commanded besides for position lamps and dipped beam: the light switch, in whichever position."""
 LOCKED = (Reason.SAFETY, Reason.NOT_POSSIBLE)
 NO_PARAMETERS: Mapping[str, Choices] = {}
 

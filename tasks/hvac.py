@@ -16,7 +16,6 @@ METRIC = ("tokyo", "autobahn", "sydney", "grid")
 """Other scenarios whose display uses degrees Celsius."""
 WARM_DEGREES = (21.5, 22.0, 22.5, 23.0, 23.5, 24.0, 24.5, 25.0)
 SEATS = (SEAT.DRIVER_HEATING, SEAT.PASSENGER_HEATING, SEAT.REAR_LEFT_HEATING, SEAT.REAR_RIGHT_HEATING)
-PASSENGER_FOLLOWS = frozenset({HVAC.PASSENGER_TEMPERATURE.path})
 TO_DEGREES = TapUntil("hvac.driver_temperature.increase", "hvac.driver_temperature", "{degrees:.1f} °C")
 HEATED = {
     SEAT.DRIVER_HEATING.path: 100.0,
@@ -56,7 +55,6 @@ TASKS = (
         Open("climate"),
         Tap("hvac.fan.max"),
         deadline=COMFORT,
-        may_write=frozenset({HVAC.AUTO.path}),
     ),
     asked(
         "hvac_driver_seat_heater",
@@ -88,7 +86,6 @@ TASKS = (
         TO_DEGREES,
         deadline=COMFORT,
         parameters={"degrees": WARM_DEGREES},
-        may_write=PASSENGER_FOLLOWS,
         scenarios=METRIC,
     ),
     asked(

@@ -25,7 +25,6 @@ from automotive_cosim.tasks.hvac import SHUT_WINDOWS
 COLD = replace(PARIS, cabin={"temperature_c": 12.0})
 HOT = Weather(34.0, 45.0, 0.0, 0, 10.0, 20_000.0, 8.0)
 SPRING = Weather(16.0, 55.0, 0.0, 1, 20.0, 20_000.0, 14.0)
-PASSENGER_FOLLOWS = frozenset({HVAC.PASSENGER_TEMPERATURE.path})
 WARMER = (Open("climate"), Tap("hvac.driver_temperature.increase", times=4))
 DOORS = (Open("vehicle"), Tap("vehicle.tab.doors"))
 FRESH_AIR = AnyOf(
@@ -70,7 +69,6 @@ TASKS = (
         Tap("hvac.steering_wheel_heating"),
         ways=(WARMER, (Open("climate"), Tap("hvac.auto"))),
         start=COLD,
-        may_write=PASSENGER_FOLLOWS,
     ),
     hinted(
         "hvac_stuffy",
@@ -125,7 +123,6 @@ TASKS = (
         Tap("hvac.air.down"),
         ways=(WARMER, (Open("climate"), Tap("hvac.auto"))),
         start=COLD,
-        may_write=PASSENGER_FOLLOWS,
     ),
     hinted(
         "hvac_draught",

@@ -228,7 +228,7 @@ EXPLICIT = (
         RoadAsked(Reroute()),
         Open("map"),
         Tap("map.faster_route"),
-        ways=((Open("map"), Tap("map.route"), Tap("route.tab.ways"), Tap(text="Look for a faster way")),),
+        ways=((Open("map"), Tap("map.route"), Tap("route.tab.ways"), Tap(text="Look for a faster route")),),
         deadline=COMFORT,
     ),
     asked(
@@ -282,7 +282,6 @@ EXPLICIT = (
         Tap(param("stay", {"two hours": "parking.time.120", "four hours": "parking.time.240"})),
         Tap("parking.pay"),
         parameters={"park": named(PlaceKind.PARKING), "stay": ("two hours", "four hours")},
-        may_write=frozenset({"parking.zone"}),
         tags=frozenset({"two_modules"}),
         scenarios=CITIES,
     ),

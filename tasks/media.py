@@ -29,7 +29,7 @@ FROM_STICK = replace(
     signals={MEDIA.SOURCE.path: "USB", MEDIA.SELECTED.path: "usb:{heard}", MEDIA.ACTION.path: "PLAY"},
 )
 """A track that is not a favourite yet, and on no playlist."""
-ANY_ENTRY = frozenset({MEDIA.SELECTED.path})
+ANY_ENTRY = frozenset({MEDIA.SOURCE.path, MEDIA.SELECTED.path})
 HEARD = tuple(range(80))
 """Numbers of the tracks on the stick."""
 

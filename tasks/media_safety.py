@@ -26,7 +26,7 @@ HEARD = tuple(range(80))
 RADIO = AllOf((PLAYS, SignalIs(MEDIA.SOURCE, ("FM", "DAB"))))
 FOG = Weather(6.0, 99.0, 0.0, 45, 100.0, 70.0, 4.0)
 HAZE = Weather(6.0, 80.0, 0.0, 3, 100.0, 9000.0, 8.0)
-ANY_ENTRY = frozenset({MEDIA.SELECTED.path})
+ANY_ENTRY = frozenset({MEDIA.SOURCE.path, MEDIA.SELECTED.path})
 TO_PORTAL = Deadline(
     15.0, "the portal is 20 s away at the present speed, and the radio takes some seconds to be heard"
 )

@@ -12,7 +12,7 @@ from automotive_cosim.tasking.parameters import param
 from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Task
 from automotive_cosim.tasking.triggers import All, Driving, LessGripThan, SignalAbove, Trigger
 from automotive_cosim.tasks import phenomenon_air, phenomenon_light
-from automotive_cosim.tasks.forms import PARIS, asked, hinted
+from automotive_cosim.tasks.forms import BY_THE_SWITCH, PARIS, asked, hinted
 
 DAMP = {"occupants": 4, "temperature_c": 17.0, "humidity_pct": 75.0}
 """Four people in wet coats."""
@@ -163,6 +163,7 @@ GENERAL = (
         DRIVING_TAB,
         Tap("drive.mode.rain"),
         start=WET_STREET,
+        may_write=BY_THE_SWITCH,
         parameters={"pace": PACES, "rear": ("interval", "slow")},
     ),
     asked(
@@ -192,6 +193,7 @@ GENERAL = (
         PASSENGER_MIRROR,
         Tap("dock.rear_defroster"),
         start=FROSTY,
+        may_write=BY_THE_SWITCH,
         parameters={"goal": PURPOSES},
         tags=frozenset({"two_modules", "preference"}),
     ),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.cockpit.signals import ADAS, LIGHTS
+from automotive_cosim.cockpit.signals import ADAS, LIGHTS, Signal
 from automotive_cosim.contracts import Reason, Weather
 from automotive_cosim.tasking.checks import AllOf, SignalIs
 from automotive_cosim.tasking.moves import Open, Tap
@@ -23,7 +23,7 @@ from automotive_cosim.tasking.triggers import (
     TunnelWithin,
     VisibilityBetween,
 )
-from automotive_cosim.tasks.forms import decline
+from automotive_cosim.tasks.forms import BY_THE_SWITCH, decline
 
 CHINA, FRANCE, GERMANY, BRITAIN, ITALY = (114.0, 33.0), (2.5, 47.5), (9.9, 50.5), (-1.1, 52.2), (11.4, 43.2)
 JAPAN, SOUTH_AFRICA, SWEDEN, SWITZERLAND = (138.2, 36.2), (25.0, -30.0), (15.1, 59.3), (7.5, 46.9)
@@ -73,9 +73,11 @@ def _at(
     return Start(scenario, trip, origin, start=NOON, weather=weather, signals=signals, sign_camera=False)
 
 
-def _on(start: Start, rule: str, signal: object, *moves: Tap, deadline: Deadline = IN_SIGHT) -> Half:
+def _on(start: Start, rule: str, signal: Signal[bool], *moves: Tap, deadline: Deadline = IN_SIGHT) -> Half:
     """A half in which one lamp has to be lit."""
-    return Half(start, SOON, SignalIs(signal, (True,)), (LAMPS_SCREEN, *moves), deadline, Basis.LAW, rule)  # type: ignore[arg-type]
+    beside = BY_THE_SWITCH if signal is LIGHTS.LOW_BEAM else frozenset()
+    goal = SignalIs(signal, (True,))
+    return Half(start, SOON, goal, (LAMPS_SCREEN, *moves), deadline, Basis.LAW, rule, may_write=beside)
 
 
 REAR_FOG, FRONT_FOG = Tap("lights.rear_fog"), Tap("lights.front_fog")
@@ -213,6 +215,7 @@ TASKS = (
             IN_SIGHT,
             Basis.LAW,
             "SE.front_fog",
+            may_write=BY_THE_SWITCH,
             ways=((LAMPS_SCREEN, Tap("lights.switch.position"), FRONT_FOG),),
         ),
         Half(
@@ -279,6 +282,7 @@ TASKS = (
             Deadline(8.0, "at 80 km/h the car covers 178 m in 8 s, all of the 180 m of visibility"),
             Basis.LAW,
             "JP.dipped_beam",
+            may_write=BY_THE_SWITCH,
         ),
         decline(
             Start("tokyo", "avenues", weather=replace(MIST_120, visibility=180.0), sign_camera=False),
@@ -310,6 +314,7 @@ TASKS = (
             IN_SIGHT,
             Basis.LAW,
             "CN.dipped_beam, CN.front_fog, CN.hazard_lights",
+            may_write=BY_THE_SWITCH,
             ways=((LAMPS_SCREEN, HAZARD, LOW_BEAM, FRONT_FOG),),
         ),
         Half(
@@ -326,6 +331,7 @@ TASKS = (
             IN_SIGHT,
             Basis.LAW,
             "CH.dipped_beam, CH.front_fog",
+            may_write=BY_THE_SWITCH,
         ),
         "place: China requires dipped beam, front fog lamps and hazard lights in fog, Switzerland only dipped beam",
         lamps=("lamps", "lights", "outside lights", "exterior lamps"),

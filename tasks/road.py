@@ -52,7 +52,6 @@ GENERAL: tuple[Task, ...] = (
         Tap("adas.cruise"),
         start=SLOW_SET,
         parameters={"speed": STEPS_KMH},
-        may_write=frozenset({"requests"}),
     ),
     asked(
         "road_limiter_at",
@@ -70,7 +69,6 @@ GENERAL: tuple[Task, ...] = (
         Tap("adas.limiter"),
         start=SLOW_SET,
         parameters={"speed": STEPS_KMH},
-        may_write=frozenset({"requests"}),
     ),
     asked(
         "road_gap_of",
@@ -114,7 +112,6 @@ GENERAL: tuple[Task, ...] = (
         Tap("adas.cruise"),
         start=PLAIN_CRUISE,
         parameters={"speed": (35, 40, 45, 50), "gap": (2.5, 3.0)},
-        may_write=frozenset({"requests"}),
     ),
     asked(
         "road_helper_off",
@@ -145,7 +142,6 @@ GENERAL: tuple[Task, ...] = (
         Open("safety"),
         Tap("safety.hazard_lights"),
         ways=((Open("vehicle"), Tap("lights.hazard")),),
-        may_write=frozenset({"requests"}),
     ),
     hinted(
         "road_wandering",
@@ -178,7 +174,6 @@ GENERAL: tuple[Task, ...] = (
         Tap("adas.speed_warning"),
         ways=((*ASSIST, Tap("adas.limiter")),),
         start=UNHELPED,
-        may_write=frozenset({"requests"}),
     ),
     hinted(
         "road_too_near",

@@ -24,7 +24,7 @@ from automotive_cosim.tasking.triggers import (
     TriggerCondition,
     TunnelWithin,
 )
-from automotive_cosim.tasks.forms import decline, in_company
+from automotive_cosim.tasks.forms import BY_THE_SWITCH, decline, in_company
 from automotive_cosim.tasks.road_law import FAIR, NOON, fine
 
 NIGHT = "2026-12-15T21:00:00"
@@ -54,7 +54,12 @@ def switched(
 ) -> Half:
     """A half in which a lamp has to be switched; ``others`` are widgets that also do it."""
     ways: tuple[tuple[Move, ...], ...] = tuple((*TO_THE_LAMPS, Tap(other)) for other in others)
-    return Half(start, trigger, goal, (*TO_THE_LAMPS, Tap(tap)), deadline, Basis.LAW, rule, ways=ways)
+    moves, beside = (*TO_THE_LAMPS, Tap(tap)), _beside(goal)
+    return Half(start, trigger, goal, moves, deadline, Basis.LAW, rule, may_write=beside, ways=ways)
+
+
+def _beside(goal: Check) -> frozenset[str]:
+    return BY_THE_SWITCH if LIGHTS.LOW_BEAM.path in goal.writes else frozenset()
 
 
 def lamp_task(task_id: str, says: tuple[str, ...], first: Half, second: Half, difference: str, *tags: str) -> Task:

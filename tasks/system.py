@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.cockpit.desk import NETWORKS, REMEMBERED
-from automotive_cosim.cockpit.signals import CABIN, HMI, HVAC, LINK, MIRROR, SEAT, VOICE
+from automotive_cosim.cockpit.desk import NETWORKS
+from automotive_cosim.cockpit.signals import CABIN, HMI, LINK, MIRROR, SEAT, VOICE
 from automotive_cosim.cockpit.vehicle import LOCKS
 from automotive_cosim.tasking.checks import AllOf, AnyOf, AppDataIs, SignalIs, SignalLowered, SignalRaised
 from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil
@@ -15,10 +15,6 @@ from automotive_cosim.tasks import system_safety
 from automotive_cosim.tasks.forms import ANYWHERE, PARIS, asked, hinted, locked
 from automotive_cosim.tasks.hvac import METRIC
 
-PROFILE_BRINGS = frozenset(
-    signal.path for signal in (*REMEMBERED, HVAC.DRIVER_TEMPERATURE, HVAC.PASSENGER_TEMPERATURE, HMI.BRIGHTNESS)
-)
-"""What a driver's profile changes: seat, mirrors, temperature and brightness."""
 DOORS = (Open("vehicle"), Tap("vehicle.tab.doors"))
 SEATS = (Open("vehicle"), Tap("vehicle.tab.seats"))
 INSIDE = (Open("vehicle"), Tap("vehicle.tab.mirrors"))
@@ -63,7 +59,6 @@ TASKS = (
         Tap("settings.page.profiles"),
         Tap(text="{who}"),
         parameters={"who": ("Driver 2", "Guest")},
-        may_write=PROFILE_BRINGS,
         scenarios=METRIC,
     ),
     locked(

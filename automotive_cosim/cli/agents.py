@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import typer
 
+from automotive_cosim.cli.options import AsJson, print_json
+
 app = typer.Typer(help="The agents that can operate the cockpit.", invoke_without_command=True)
 
 
@@ -14,11 +16,14 @@ def _default(context: typer.Context) -> None:
 
 
 @app.command("list")
-def list_agents() -> None:
+def list_agents(as_json: AsJson = False) -> None:
     """List the agents and the models behind them."""
     from automotive_cosim.agents import AGENTS
     from automotive_cosim.models import MODELS
 
+    if as_json:
+        print_json({"agents": list(AGENTS), "models": list(MODELS)})
+        return
     for name in AGENTS:
         typer.echo(name)
     typer.echo("package.module:Class (your own)")
@@ -26,14 +31,23 @@ def list_agents() -> None:
 
 
 @app.command()
-def show(name: str) -> None:
+def show(name: str, as_json: AsJson = False) -> None:
     """Show an agent's inputs and actions and, if it uses a model, its prompt."""
     from importlib.resources import files
 
     from automotive_cosim.agents import PROFILES, make_agent
 
     agent = make_agent(name)
-    typer.echo(f"{agent.name}: gets {', '.join(sorted(agent.channels)) or 'only the goal'}")
+    channels = sorted(agent.channels)
+    actions: list[str] = []
+    prompt = ""
     if name in PROFILES:
-        typer.echo(f"actions: {', '.join(sorted(PROFILES[name].actions))}\n")
-        typer.echo(files("automotive_cosim.agents").joinpath("prompts", f"{name}.md").read_text("utf-8"), nl=False)
+        actions = sorted(PROFILES[name].actions)
+        prompt = files("automotive_cosim.agents").joinpath("prompts", f"{name}.md").read_text("utf-8")
+    if as_json:
+        print_json({"name": agent.name, "channels": channels, "actions": actions, "prompt": prompt})
+        return
+    typer.echo(f"{agent.name}: gets {', '.join(channels) or 'only the goal'}")
+    if actions:
+        typer.echo(f"actions: {', '.join(actions)}\n")
+        typer.echo(prompt, nl=False)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Generic, TypeVar
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from automotive_cosim.run.batch import Progress
     from automotive_cosim.run.executor import Executor
     from automotive_cosim.run.row import JobRow
+    from automotive_cosim.scenarios import Scenario
 
 R = TypeVar("R", bound="JobRow")
 
@@ -109,6 +110,13 @@ class ProgressView(Generic[R]):
         elif progress.seconds - self._said_s >= self.EVERY_S or progress.done == progress.planned:
             self._said_s = progress.seconds
             self._console.print(f"{progress.done} of {progress.planned} {self._what}; {said}")
+
+
+def tell_notes(scenarios: Iterable[Scenario]) -> None:
+    """Prints what is assumed, set or left out in scenarios of others, to the standard error."""
+    for scenario in scenarios:
+        for note in scenario.notes:
+            typer.echo(f"note: {note}", err=True)
 
 
 def words(name: str, text: str) -> list[str]:

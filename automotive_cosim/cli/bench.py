@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from automotive_cosim.cli.options import whole_number
+from automotive_cosim.cli.options import AsJson, whole_number
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -23,7 +23,7 @@ def bench(
         int,
         typer.Option(help="SUMO steps to measure after the warm-up.", metavar="N", parser=whole_number(100, 10**6)),
     ] = 2000,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Time bare SUMO, a libsumo loop and the environment side by side; also resets and memory."""
     from rich.console import Console

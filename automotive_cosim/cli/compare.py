@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from automotive_cosim.cli.options import AsJson, TasksFrom, print_json
 from automotive_cosim.errors import UserError
 
 
@@ -20,8 +21,11 @@ def compare(
         Path | None, typer.Option(help="File for a JUnit report with one case per instance.", show_default=False)
     ] = None,
     markdown: Annotated[Path | None, typer.Option(help="File for the printed summary.", show_default=False)] = None,
+    as_json: AsJson = False,
+    tasks_from: TasksFrom = None,
 ) -> None:
-    """Compare two evaluations on the same instances; exit code 1 if success fell by more than the threshold."""
+    """Compare two evaluations on the same instances; exit code 1 if success fell by more than the threshold, or
+    something that was planned was not run."""
     from automotive_cosim.report import regression
     from automotive_cosim.run.record import write_whole
 
@@ -32,6 +36,9 @@ def compare(
     for path, text in ((junit, regression.junit(found)), (markdown, summary)):
         if path is not None:
             write_whole(path, text)
-    typer.echo(summary, nl=False)
-    if any(each.is_worse(threshold / 100) for each in found):
+    if as_json:
+        print_json(regression.as_json(found, threshold / 100))
+    else:
+        typer.echo(summary, nl=False)
+    if any(each.outcome(threshold / 100) != "as good" for each in found):
         raise typer.Exit(1)

@@ -17,10 +17,11 @@ from automotive_cosim.cli.batches import (
     Workers,
     executor_of,
     seeds_in,
+    tell_notes,
     time_left,
     words,
 )
-from automotive_cosim.cli.options import TasksFrom, whole_number
+from automotive_cosim.cli.options import AsJson, TasksFrom, number, whole_number
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.errors import InfrastructureError
 
@@ -77,6 +78,21 @@ def evaluate(
             help="When agents are called, separated by commas: prompted, monitoring.", show_default="prompted"
         ),
     ] = None,
+    clock: Annotated[
+        str | None,
+        typer.Option(
+            help="Whether the seconds that a model takes pass on the road: fixed (no) or model (yes).",
+            show_default="fixed",
+        ),
+    ] = None,
+    latency: Annotated[
+        str | None,
+        typer.Option(
+            help="Simulated seconds that every answer takes besides, as in 0,1,3,10.",
+            metavar="SECONDS",
+            show_default="0",
+        ),
+    ] = None,
     repeats: Annotated[
         int | None,
         typer.Option(
@@ -108,7 +124,7 @@ def evaluate(
     ] = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Show the plan and exit.")] = False,
     tasks_from: TasksFrom = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Run agents over tasks, scenarios and seeds. Rerun the command to resume."""
     from rich.console import Console
@@ -117,9 +133,9 @@ def evaluate(
     from automotive_cosim.report.results import read_results, standings
     from automotive_cosim.run.batch import run_plan
     from automotive_cosim.run.collect import Pictures
-    from automotive_cosim.run.episode_row import EpisodeRow
     from automotive_cosim.run.plan import make_plan, read_plan
-    from automotive_cosim.run.store import megabytes, read_rows
+    from automotive_cosim.run.store import megabytes
+    from automotive_cosim.scenery import open_scenario
 
     if pictures not in set(Pictures):
         raise UnknownNameError("choice of pictures", pictures, Pictures)
@@ -127,6 +143,8 @@ def evaluate(
     values: dict[str, Any] = read_plan(plan_file) if plan_file else {}
     values |= {name: words(name, text) for name, text in named.items() if text is not None}
     values |= {"seeds": seeds_in(seeds)} if seeds is not None else {}
+    values |= {"clock": clock} if clock is not None else {}
+    values |= {"latency": [number(0, 600)(text) for text in words("latency", latency)]} if latency else {}
     values |= {"repeats": repeats} if repeats is not None else {}
     values |= {"held_out": True} if held_out else {}
     values |= {"everywhere": True} if everywhere else {}
@@ -135,7 +153,7 @@ def evaluate(
     where = executor_of(executor, workers, ray_address, ray_send)
     console = Console(stderr=as_json, highlight=False)
     plan.check()
-    jobs = plan.jobs()
+    tell_notes(map(open_scenario, plan.scenarios))
     _announce(console, plan, folder)
     if dry_run:
         return
@@ -145,19 +163,18 @@ def evaluate(
                 plan, folder, executor=where, retries=retries, pictures=Pictures(pictures), tell=view.tell
             )
         except KeyboardInterrupt:
-            typer.echo(f"finished episodes are in {folder}; rerun the command to resume", err=True)
+            reached = f" ({read_results(folder).coverage})" if (folder / "manifest.json").is_file() else ""
+            typer.echo(f"finished episodes are in {folder}{reached}; rerun the command to resume", err=True)
             raise
-    rows = read_rows(folder, EpisodeRow)
-    errors = [rows[job.id] for job in jobs if rows[job.id].success is None]
+    found = read_results(folder)
+    errors = [row for row in found.rows if row.success is None]
     size_mb = megabytes(folder)
     if as_json:
         told = {"planned": end.planned, "judged": end.judged, "successes": end.successes, "errors": end.errors}
         typer.echo(json.dumps(told | {"ran": end.ran, "megabytes": round(size_mb, 1), "out": str(folder)}))
     else:
-        console.print(
-            f"{end.successes} of {counted(end.judged, 'judged episode')} succeeded; {counted(end.errors, 'error')}"
-        )
-        for line in standings(read_results(folder)):
+        console.print(f"{end.successes:,} succeeded; {found.coverage}")
+        for line in standings(found):
             console.print(f"  {line}", soft_wrap=True)
         for row in errors:
             console.print(f"  error in {row.id}: {row.error_kind}: {row.error}", soft_wrap=True)
@@ -193,6 +210,7 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
     table.add_row("seeds", ", ".join(map(str, plan.seeds)))
     table.add_row("geo controls", ", ".join(plan.geo))
     table.add_row("modes", ", ".join(plan.modes))
+    table.add_row("clock", f"{plan.clock}; latency {', '.join(f'{each:g}' for each in plan.latency)} s")
     table.add_row("repeats", str(plan.repeats))
     table.add_row("phrasings", "held out" if plan.held_out else "any")
     limits = plan.limits

@@ -20,6 +20,7 @@ from automotive_cosim.cli import (
     bench,
     compare,
     context,
+    doctor,
     evaluate,
     memory,
     playback,
@@ -44,7 +45,6 @@ app = typer.Typer(
     name="automotive-cosim",
     help="Agents that operate the cockpit of a car in live SUMO traffic.",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
@@ -59,6 +59,7 @@ app.command()(bench.bench)
 app.command()(playback.playback)
 app.command()(screens.screens)
 app.command()(schema.schema)
+app.command()(doctor.doctor)
 app.command(context_settings=context.COMMAND_SETTINGS)(context.context)
 app.add_typer(study.app, name="study")
 app.add_typer(scenarios.app, name="scenarios")

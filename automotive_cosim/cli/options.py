@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import os
 from collections.abc import Callable
@@ -28,6 +29,15 @@ TasksFrom = Annotated[
     ),
 ]
 """For every command that names tasks; its callback handles the value, so the command ignores it."""
+
+
+AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]
+"""For every command that lists or reports."""
+
+
+def print_json(values: object) -> None:
+    """Prints the one JSON object of ``--json``."""
+    typer.echo(json.dumps(values, ensure_ascii=False))
 
 
 def whole_number(least: int, most: int) -> Callable[[str], int]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from automotive_cosim.cli.options import TasksFrom
+from automotive_cosim.cli.options import AsJson, TasksFrom, print_json
 from automotive_cosim.contracts.plain import counted
 
 Folder = Annotated[Path, typer.Argument(help="Results folder of `eval`.", show_default=False)]
@@ -16,10 +17,15 @@ Folder = Annotated[Path, typer.Argument(help="Results folder of `eval`.", show_d
 def report(folder: Folder, tasks_from: TasksFrom = None) -> None:
     """Write report.html, tables and plots into the folder of an evaluation or a study."""
     from automotive_cosim.report.evaluation import write_report
+    from automotive_cosim.report.results import read_results
     from automotive_cosim.run.store import read_manifest
     from automotive_cosim.studies.page import write_study
 
-    page = write_study(folder) if "study" in read_manifest(folder)["plan"] else write_report(folder)
+    if "study" in read_manifest(folder)["plan"]:
+        page = write_study(folder)
+    else:
+        page = write_report(folder)
+        typer.echo(str(read_results(folder).coverage))
     typer.echo(f"{page} written; tables in {folder / 'tables'}, plots in {folder / 'plots'}")
 
 
@@ -27,15 +33,19 @@ def replay(
     folder: Folder,
     episode: Annotated[str, typer.Argument(help="Id of the episode, or its beginning.", show_default=False)],
     tasks_from: TasksFrom = None,
+    as_json: AsJson = False,
 ) -> None:
     """Repeat a stored episode's actions and compare the trace step by step; exit code 1 if it differs."""
     from automotive_cosim.run.rerun import rerun
 
     compared = rerun(folder, episode)
+    different = [step for step in compared if step.differs]
+    if as_json:
+        print_json({"ok": not different, "steps": [asdict(step) for step in compared]})
+        raise typer.Exit(bool(different))
     for step in compared:
         differs = f"differs in {', '.join(step.differs)}" if step.differs else "the same"
         typer.echo(f"step {step.number:3d}  {step.sha256[:16]}  {differs}")
-    different = [step for step in compared if step.differs]
     if different:
         typer.echo(
             f"{len(different)} of {counted(len(compared), 'step')} differ, from step {different[0].number} on"
@@ -44,10 +54,23 @@ def replay(
     typer.echo("the only step is the same" if len(compared) == 1 else f"all {len(compared)} steps are the same")
 
 
-def regrade(folder: Folder, tasks_from: TasksFrom = None) -> None:
+def regrade(folder: Folder, tasks_from: TasksFrom = None, as_json: AsJson = False) -> None:
     """Judge the stored episodes by the current checks and print what changes; nothing is written."""
+    from automotive_cosim.run.coverage import coverage
+    from automotive_cosim.run.episode_row import EpisodeRow
     from automotive_cosim.run.regrade import regrade as judged_again
+    from automotive_cosim.run.store import read_evaluation, read_rows
 
+    if as_json:
+        judged = list(judged_again(folder))
+        print_json(
+            {
+                "changed": sum(each.differs for each in judged),
+                "not_judged": sum(bool(each.problem) for each in judged),
+                "episodes": [asdict(each) for each in judged],
+            }
+        )
+        return
     words = {True: "solved", False: "not solved", None: "not judged"}
     count = differing = missing = 0
     for each in judged_again(folder):
@@ -61,4 +84,5 @@ def regrade(folder: Folder, tasks_from: TasksFrom = None) -> None:
             for change in each.changes:
                 typer.echo(f"    {change.part.replace('_', ' ')} {'yes' if change.now else 'no'}: {change.why}")
     told = f", {missing} could not be judged" if missing else ""
-    typer.echo(f"{differing} of {count} verdicts change{told}")
+    found = coverage(read_evaluation(folder), read_rows(folder, EpisodeRow))
+    typer.echo(f"{differing} of {count} verdicts change{told}; {found}")

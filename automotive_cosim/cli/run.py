@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from automotive_cosim.cli.options import TasksFrom, lon_lat, whole_number
+from automotive_cosim.cli.options import AsJson, TasksFrom, lon_lat, number, whole_number
 from automotive_cosim.errors import InfrastructureError, UserError
 
 HEADLINE = (
@@ -70,6 +70,16 @@ def run(
             help="Total time to wait for the model, in seconds.", metavar="N", parser=whole_number(1, 10**6)
         ),
     ] = 1800,
+    clock: Annotated[
+        str,
+        typer.Option(help="Whether the seconds that the model takes pass on the road: fixed (no) or model (yes)."),
+    ] = "fixed",
+    latency: Annotated[
+        float,
+        typer.Option(
+            help="Simulated seconds that every answer takes besides.", metavar="SECONDS", parser=number(0, 600)
+        ),
+    ] = 0.0,
     scenario: Annotated[
         str | None,
         typer.Option(
@@ -106,7 +116,7 @@ def run(
         typer.Option(help="Folder for the results.", show_default="runs/<time>-<task>-<agent>-seed<seed>"),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace the results in --out.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")] = False,
+    as_json: AsJson = False,
     actions: Annotated[
         Path | None,
         typer.Option(
@@ -123,7 +133,7 @@ def run(
     from automotive_cosim.agents import AgentSettings, make_agent
     from automotive_cosim.agents.settings import geo_input, parts
     from automotive_cosim.cli.live import Live, Notes
-    from automotive_cosim.episode.specification import MAX_STEPS, mode_of
+    from automotive_cosim.episode.specification import MAX_STEPS, clock_of, mode_of
     from automotive_cosim.report.film import Film
     from automotive_cosim.report.page import write_page
     from automotive_cosim.run.episode import EpisodeSetup, run_episode
@@ -152,6 +162,8 @@ def run(
         agent=player.name,
         model=player.model,
         without=tuple(sorted(off)),
+        clock=clock_of(clock),
+        latency_s=latency,
     )
     folder = out or default_folder(setup)
     check_folder(folder, force=force)

@@ -12,14 +12,15 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from automotive_cosim import scenarios
-from automotive_cosim.cli.options import number, whole_number
+from automotive_cosim.cli.batches import tell_notes
+from automotive_cosim.cli.options import AsJson, number, print_json, whole_number
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.errors import UserError
 
 if TYPE_CHECKING:
     from rich.text import Text
 
-    from automotive_cosim.contracts import Tell
+    from automotive_cosim.contracts import Json, Tell
     from automotive_cosim.osm import ImportReport
     from automotive_cosim.osm.day import Day
     from automotive_cosim.scenarios import Scenario
@@ -29,11 +30,14 @@ app = typer.Typer(help="List, check, draw and import scenarios.", no_args_is_hel
 
 
 @app.command("list")
-def list_scenarios() -> None:
+def list_scenarios(as_json: AsJson = False) -> None:
     """List the scenarios that come with the package."""
     from rich.console import Console
     from rich.table import Table
 
+    if as_json:
+        print_json({"scenarios": [_shown(scenarios.load(name)) for name in scenarios.shipped()]})
+        return
     table = Table("name", "country", "title", "ego trips", box=None, header_style="bold", pad_edge=False)
     for name in scenarios.shipped():
         scenario = scenarios.load(name)
@@ -45,12 +49,15 @@ WHICH = "A shipped scenario's name, a scenario's folder, any .sumocfg or .net.xm
 
 
 @app.command("show")
-def show(scenario: Annotated[str, typer.Argument(help=f"{WHICH}.")]) -> None:
+def show(scenario: Annotated[str, typer.Argument(help=f"{WHICH}.")], as_json: AsJson = False) -> None:
     """Show one scenario: its place, time, weather and ego trips."""
     from automotive_cosim.scenery import open_scenario
 
     found = open_scenario(scenario)
-    _print_notes(found)
+    if as_json:
+        print_json(_shown(found))
+        return
+    tell_notes([found])
     typer.echo(f"{found.name}: {found.title}\n{found.about.strip()}\n")
     for label, value in (
         ("folder", found.folder),
@@ -66,17 +73,35 @@ def show(scenario: Annotated[str, typer.Argument(help=f"{WHICH}.")]) -> None:
         typer.echo(f"trip     {trip.name}: {trip.about or f'{trip.from_edge} to {trip.to_edge}'}")
 
 
+def _shown(scenario: Scenario) -> Json:
+    """A scenario as a JSON object."""
+    return {
+        "name": scenario.name,
+        "title": scenario.title,
+        "about": scenario.about.strip(),
+        "folder": str(scenario.folder),
+        "country": scenario.country,
+        "starts": scenario.start.isoformat(),
+        "weather": _weather(scenario),
+        "step_length_s": scenario.sumo.step_length_s,
+        "warm_up_s": scenario.sumo.warm_up_s,
+        "demand_scale": scenario.sumo.scale,
+        "rerouting_share": scenario.sumo.background_rerouting,
+        "driver": str(scenario.ego.driver),
+        "trips": [
+            {"name": trip.name, "about": trip.about, "from_edge": trip.from_edge, "to_edge": trip.to_edge}
+            for trip in scenario.ego.trips
+        ],
+        "notes": list(scenario.notes),
+    }
+
+
 def _weather(scenario: Scenario) -> str:
     if not scenario.weather:
         return "drawn by seed from the climate of the place and month"
     first = scenario.weather[0].weather
     changes = f", {counted(len(scenario.weather) - 1, 'change')} to come" if len(scenario.weather) > 1 else ""
     return f"{first.temperature_2m:g} °C, {first.precipitation:g} mm/h, visibility {first.visibility:g} m{changes}"
-
-
-def _print_notes(scenario: Scenario) -> None:
-    for note in scenario.notes:
-        typer.echo(f"note: {note}", err=True)
 
 
 Names = Annotated[
@@ -91,7 +116,7 @@ Names = Annotated[
 def check_scenarios(
     names: Names = None,
     quick: Annotated[bool, typer.Option("--quick", help="Skip the hour of traffic.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Prove that scenarios do what they say; exit code 1 if one does not.
 
@@ -103,7 +128,7 @@ def check_scenarios(
 
     proofs = []
     for scenario in [open_scenario(name) for name in names or scenarios.shipped()]:
-        _print_notes(scenario)
+        tell_notes([scenario])
         with _progress() as tell:
             proofs.append(check(scenario, quick=quick, tell=tell))
         if not as_json:
@@ -359,6 +384,13 @@ def _progress() -> Iterator[Tell]:
         yield tell
 
 
+def _agreement(report: ImportReport) -> str:
+    if not report.differences:
+        return "limit, name, class, tunnel and lanes of every edge"
+    found = len(report.differences)
+    return f"all but {counted(found, 'property', 'properties')} ({report.differences[0]}{'; …' * (found > 1)})"
+
+
 def _print_report(report: ImportReport, folder: Path, took_s: float) -> None:
     from rich.console import Console
     from rich.table import Table
@@ -373,6 +405,7 @@ def _print_report(report: ImportReport, folder: Path, took_s: float) -> None:
         ("edges", f"{report.edges} ({report.road_km:.1f} km)"),
         ("posted limit", f"{report.posted_share:.2%} of the length"),
         ("derestricted", f"{report.derestricted_km:.1f} km"),
+        ("as mapped", _agreement(report)),
         ("signals", f"{report.signals}, roundabouts {report.roundabouts}"),
         ("tunnels", f"{counted(report.tunnels, 'edge')} ({report.tunnel_km:.1f} km)"),
         ("lamps", f"known for {report.lit_known_share:.0%} of the length"),

@@ -8,14 +8,23 @@ from typing import Annotated
 
 import typer
 
+from automotive_cosim.cli.options import AsJson, print_json
+
 app = typer.Typer(help="The vehicle's signals.", no_args_is_help=True)
 
 
 @app.command("list")
-def list_() -> None:
+def list_(as_json: AsJson = False) -> None:
     """List the signals: path, kind, valid values, default."""
     from automotive_cosim.cockpit.signals import CATALOGUE
 
+    if as_json:
+        signals = [
+            {"path": path, "kind": signal.kind, "values": signal.range, "default": signal.default}
+            for path, signal in CATALOGUE.items()
+        ]
+        print_json({"signals": signals})
+        return
     width = max(map(len, CATALOGUE))
     for path, signal in CATALOGUE.items():
         default = "nothing" if signal.default is None else json.dumps(signal.default)

@@ -17,10 +17,11 @@ from automotive_cosim.cli.batches import (
     Workers,
     executor_of,
     seeds_in,
+    tell_notes,
     time_left,
     words,
 )
-from automotive_cosim.cli.options import whole_number
+from automotive_cosim.cli.options import AsJson, whole_number
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import InfrastructureError, UserError
 
@@ -111,7 +112,7 @@ def reroute(
         ),
     ] = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Show the plan and exit.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Fork the running traffic at every decision to reroute and drive both futures.
 
@@ -151,6 +152,7 @@ def reroute(
         **values,
     )
     plan.check()
+    tell_notes([plan.opened])
     folder = out or _folder(plan)
     where = executor_of(executor, workers, ray_address, ray_send)
     console = Console(stderr=as_json, highlight=False)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from automotive_cosim.cli.options import TasksFrom, whole_number
+from automotive_cosim.cli.options import AsJson, TasksFrom, print_json, whole_number
 from automotive_cosim.contracts.plain import counted
 
 if TYPE_CHECKING:
@@ -98,15 +98,23 @@ def show(
         ),
     ] = None,
     seed: Annotated[int, typer.Option(help="Seed of the picture.", metavar="N", parser=whole_number(0, 10**6))] = 0,
+    as_json: AsJson = False,
 ) -> None:
     """Show what the driver says, when the task starts, and what is right."""
     from automotive_cosim.errors import UserError
+    from automotive_cosim.tasking.catalogue import described
     from automotive_cosim.tasks import CATALOGUE
 
     if picture is not None and picture.suffix not in PICTURES:
         raise UserError(f"{picture} is not a picture format that can be written; name it {', '.join(PICTURES)}")
 
     entry = CATALOGUE[task]
+    if picture is not None:
+        _draw(entry, picture, seed)
+    if as_json:
+        halves = {name: [line.split(maxsplit=1) for line in _half(entry.half(name))] for name in entry.halves}
+        print_json(described(entry) | {"halves": halves})
+        return
     steps = counted(entry.optimal_steps, "step")
     typer.echo(f"{entry.id}  ({entry.module}, {entry.dimension}, {entry.difficulty}, {steps})")
     for words in entry.templates:
@@ -124,14 +132,18 @@ def show(
     if entry.difference:
         typer.echo(f"\ndifference: {entry.difference}")
     if picture is not None:
-        from automotive_cosim.report.storyboard import picture_of
-
-        drawn = picture_of(entry, tuple(entry.halves), seed, PICTURE_WIDTH)
-        try:
-            drawn.save(picture, quality=85)
-        except OSError as error:
-            raise UserError(f"cannot write {picture}: {error.strerror}") from error
         typer.echo(f"\n{picture} shows the reference solution, with seed {seed}")
+
+
+def _draw(task: Task, picture: Path, seed: int) -> None:
+    from automotive_cosim.errors import UserError
+    from automotive_cosim.report.storyboard import picture_of
+
+    drawn = picture_of(task, tuple(task.halves), seed, PICTURE_WIDTH)
+    try:
+        drawn.save(picture, quality=85)
+    except OSError as error:
+        raise UserError(f"cannot write {picture}: {error.strerror}") from error
 
 
 def _choices(choices: Choices) -> str:
@@ -152,6 +164,8 @@ def _half(half: Half) -> Iterable[str]:
     after = f", {half.trigger.after_s:g} s after departure or later" if half.trigger.after_s else ""
     yield f"trigger   {half.trigger.condition}, for {half.trigger.for_s:g} s{after}"
     yield f"goal      {half.goal}, then declare {half.declares}"
+    if half.may_write:
+        yield f"allowed   {', '.join(sorted(half.may_write))} may be commanded besides"
     for number, way in enumerate((half.moves, *half.ways)):
         yield f"solution  {'or ' if number else ''}{', '.join(map(_move, way)) or 'declare at once'}"
     yield f"deadline  {half.deadline.seconds:g} s: {half.deadline.reason}"

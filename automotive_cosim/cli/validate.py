@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from automotive_cosim.cli.batches import words
-from automotive_cosim.cli.options import TasksFrom, whole_number
+from automotive_cosim.cli.options import AsJson, TasksFrom, whole_number
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import InfrastructureError
 
@@ -58,7 +58,7 @@ def validate(
         ),
     ] = None,
     tasks_from: TasksFrom = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Prove that tasks are solvable by public actions, but not by trivial strategies, and repeat exactly.
 

@@ -11,7 +11,7 @@ from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.contracts import Feedback, FeedbackCode
 
-NOT_LINKED = "No phone is linked: switch Bluetooth on first"
+NOT_LINKED = "No phone is connected: switch Bluetooth on first"
 
 
 def dial(state: State, who: str) -> Feedback:

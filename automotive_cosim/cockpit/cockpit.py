@@ -12,7 +12,7 @@ calls: time comes only from ``sense``.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from typing import Any, TypeVar
@@ -21,12 +21,12 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
-from automotive_cosim.cockpit import accessibility, desk, language, media, people, places, update, vhal
+from automotive_cosim.cockpit import accessibility, deeds, desk, language, media, people, places, update, vhal
 from automotive_cosim.cockpit.arrivals import Arrival, timeline
 from automotive_cosim.cockpit.cabin import CabinStart
 from automotive_cosim.cockpit.drawing import pixels_of
 from automotive_cosim.cockpit.map import road_map
-from automotive_cosim.cockpit.messages import Message, Pan
+from automotive_cosim.cockpit.messages import Ask, CallEmergency, Deed, Message, Pan, Set, WarnDriver
 from automotive_cosim.cockpit.navigation import Navigation
 from automotive_cosim.cockpit.render import render, repaint
 from automotive_cosim.cockpit.restrictions import ENTRIES_LIMIT, REASONS, Restriction
@@ -42,6 +42,7 @@ from automotive_cosim.cockpit.signals import (
     MOTION,
     OUTSIDE,
     LeafKind,
+    Signal,
     Signals,
     named,
 )
@@ -201,8 +202,7 @@ class Cockpit:
 
     def set_property(self, name: str, value: Any, area: int = vhal.GLOBAL) -> Feedback:
         """Commands an actuator by its VHAL name; raises like ``vhal.resolve``."""
-        self._tree = None
-        return update.command(self._state, *vhal.resolve(name, value, area))
+        return self._perform(Set(*vhal.resolve(name, value, area)))
 
     def drain_requests(self) -> tuple[RoadRequest, ...]:
         """The requests to the road since the last call."""
@@ -212,6 +212,7 @@ class Cockpit:
     def answered(self, request: RoadRequest, answer: Answer) -> None:
         """Takes the road's reply to one of the requests."""
         update.answered(self._state, request, answer)
+        deeds.note_answer(self._state, request, answer)
         self._tree = None
 
     # --- fingers ------------------------------------------------------------------------------------------
@@ -312,7 +313,7 @@ class Cockpit:
         if field is None or not field.focused:
             return Feedback(FeedbackCode.NO_SUCH_ELEMENT, "no text field has the focus; tap one first")
         if field.on_enter is None:
-            return Feedback(FeedbackCode.REFUSED, f"nothing fits {field.text!r}")
+            return Feedback(FeedbackCode.REFUSED, f"nothing matches {field.text!r}")
         self._state.focus = ""
         return self._perform(field.on_enter)
 
@@ -334,9 +335,9 @@ class Cockpit:
             missing = repr(name[:40])
             return Feedback(
                 FeedbackCode.NO_SUCH_ELEMENT,
-                f"no app is called {missing}: did you mean {close[0]!r}?"
+                f"no app is named {missing}: did you mean {close[0]!r}?"
                 if close
-                else f"no app is called {missing}: there are {', '.join(APPS)}",
+                else f"no app is named {missing}; choose from {', '.join(APPS)}",
             )
         if wanted in desk.TOOLS and wanted not in self._state.desk.installed:
             return Feedback(FeedbackCode.REFUSED, f"{wanted} is not installed; the store has it")
@@ -358,23 +359,36 @@ class Cockpit:
 
     def alert(self, alert: Alert) -> Feedback:
         """Alerts the driver."""
-        self._tree = None
-        return update.give_alert(self._state, alert)
+        return self._perform(WarnDriver(alert))
 
     def hazards(self, on: bool) -> Feedback:
         """Switches the hazard lights."""
-        self._tree = None
-        return update.command(self._state, LIGHTS.HAZARD, on)
+        return self.command(LIGHTS.HAZARD, on)
 
     def emergency_call(self) -> Feedback:
         """Calls the emergency services."""
-        self._tree = None
-        return update.call_emergency(self._state)
+        return self._perform(CallEmergency())
 
     def ask_road(self, request: RoadRequest) -> Feedback:
         """Makes a request to the driver or the router."""
+        return self._perform(Ask(request))
+
+    # --- what was commanded --------------------------------------------------------------------------------
+
+    @property
+    def deeds(self) -> tuple[Deed, ...]:
+        """What was commanded, in order, by whatever way."""
+        return self._state.deeds
+
+    def command(self, signal: Signal[Any], value: Any) -> Feedback:
+        """Commands an actuator as its switch does."""
+        return self._perform(Set(signal, value))
+
+    def repeat(self, deed: Deed, keys: Collection[str]) -> None:
+        """Does once more what was done at another cockpit, as far as it aims at these keys of ``commands``; the
+        road replies as it did."""
+        deeds.repeat(self._state, deed, keys)
         self._tree = None
-        return update.ask_road(self._state, request)
 
     # --- its visible state -----------------------------------------------------------------------------
 
@@ -500,7 +514,7 @@ class Cockpit:
 
     def _perform(self, message: Message) -> Feedback:
         self._tree = None
-        return update.perform(self._state, message)
+        return deeds.perform(self._state, message)
 
     def _unusable(self, widget: Widget) -> Feedback:
         if widget.locked:
@@ -513,7 +527,7 @@ class Cockpit:
         step = by * {Direction.DOWN: 1, Direction.UP: -1}.get(direction, 0)
         first = min(rows.last_first, max(0, rows.first + step))
         if first == rows.first:
-            return Feedback(FeedbackCode.NO_EFFECT, f"{rows.key} does not go further {direction}")
+            return Feedback(FeedbackCode.NO_EFFECT, f"{rows.key} cannot move further {direction}")
         self._state.scrolled = {**self._state.scrolled, rows.key: first}
         self._tree = None
         return Feedback(

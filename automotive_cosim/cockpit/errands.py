@@ -90,7 +90,7 @@ def _record(state: State) -> Feedback:
 
 def _reset_trip(state: State) -> Feedback:
     state.desk = replace(state.desk, resets=state.desk.resets + 1, trip_from=odometer(state))
-    return Feedback(FeedbackCode.OK, "the trip computer counts from here")
+    return Feedback(FeedbackCode.OK, "the trip computer is reset")
 
 
 def odometer(state: State) -> tuple[float, float, float]:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from automotive_cosim.cockpit.signals import Signal
-from automotive_cosim.contracts import Alert
+from automotive_cosim.contracts import Alert, Answer, RoadRequest
 
 BACKSPACE = "\b"
 """The letter that deletes one."""
@@ -77,6 +78,13 @@ class AskSlowDown:
 @dataclass(frozen=True, slots=True)
 class AskPullOver:
     """Ask the driver to stop at the side."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ask:
+    """Make a request to the driver or the router, as a safety call does."""
+
+    request: RoadRequest
 
 
 @dataclass(frozen=True, slots=True)
@@ -239,6 +247,7 @@ Message = (
     | WarnDriver
     | AskSlowDown
     | AskPullOver
+    | Ask
     | CallEmergency
     | Guide
     | Take
@@ -263,3 +272,18 @@ Message = (
     | Honk
     | Wash
 )
+
+
+@dataclass(frozen=True, slots=True)
+class Deed:
+    """A message that the car has carried out."""
+
+    time_s: float
+    """Simulation time."""
+    message: Message
+    aims: frozenset[str]
+    """The commands (``State.commands``) that it was given for, without what the car couples to them."""
+    changes: Mapping[str, Any] = field(default_factory=dict)
+    """For ``Put``, the fields of the app data that it changed."""
+    answers: tuple[tuple[RoadRequest, Answer], ...] = ()
+    """What it asked of the road, and the replies."""

@@ -107,4 +107,4 @@ def _manoeuvre(angle_deg: float, left_hand: bool) -> tuple[str, Icon]:
         return f"Keep {side}", Icon.SLIGHT_RIGHT if side == "right" else Icon.SLIGHT_LEFT
     if turn < 150:
         return f"Turn {side}", Icon.TURN_RIGHT if side == "right" else Icon.TURN_LEFT
-    return "Turn round", Icon.TURN_BACK_RIGHT if left_hand else Icon.TURN_BACK
+    return "Make a U-turn", Icon.TURN_BACK_RIGHT if left_hand else Icon.TURN_BACK

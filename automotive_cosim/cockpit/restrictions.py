@@ -28,9 +28,9 @@ class Restriction(IntFlag):
 REASONS = {
     Restriction.NO_DIALPAD: "The keypad is locked while driving",
     Restriction.NO_KEYBOARD: "Typing is locked while driving",
-    Restriction.NO_VIDEO: "Films play while parked",
+    Restriction.NO_VIDEO: "Videos play only while parked",
     Restriction.LIMIT_CONTENT: "Long lists end here while driving",
-    Restriction.NO_SETUP: "This is set up while parked",
+    Restriction.NO_SETUP: "This can be set up only while parked",
     Restriction.NO_TEXT_MESSAGE: "Messages are read out while driving",
 }
 """Texts shown for restrictions."""

@@ -12,6 +12,7 @@ from automotive_cosim.cockpit.cabin import Cabin, CabinStart
 from automotive_cosim.cockpit.desk import Desk
 from automotive_cosim.cockpit.map import RoadMap
 from automotive_cosim.cockpit.media import Library, Listening
+from automotive_cosim.cockpit.messages import Deed
 from automotive_cosim.cockpit.navigation import Navigation
 from automotive_cosim.cockpit.people import Directory, Phone
 from automotive_cosim.cockpit.places import Gazetteer
@@ -139,6 +140,8 @@ class State:
     """Simulation time of the first ``sense``."""
     played_s: float = 0.0
     """Playing time of the track."""
+    deeds: tuple[Deed, ...] = ()
+    """What was commanded, in order."""
 
     def copy(self) -> State:
         """An independent copy."""

@@ -12,6 +12,7 @@ from automotive_cosim.cockpit.mapscene import panned
 from automotive_cosim.cockpit.media import source_of
 from automotive_cosim.cockpit.messages import (
     BACKSPACE,
+    Ask,
     AskPullOver,
     AskSlowDown,
     Back,
@@ -59,7 +60,7 @@ ADVICE: dict[AlertKind, str] = {
     AlertKind.SPEED: "Slow down",
     AlertKind.DISTANCE: "Keep more distance",
     AlertKind.COLLISION: "Danger of collision: brake",
-    AlertKind.LANE: "Mind your lane",
+    AlertKind.LANE: "Stay in your lane",
     AlertKind.FATIGUE: "Time for a break",
     AlertKind.DISTRACTION: "Eyes on the road",
     AlertKind.SEAT_BELT: "Fasten seat belts",
@@ -77,7 +78,7 @@ ADVICE: dict[AlertKind, str] = {
 """Texts of alerts without a text of their own."""
 
 
-FOLDED = "The keyboard is folded"
+FOLDED = "The keyboard is hidden"
 
 
 def perform(state: State, message: Message) -> Feedback:
@@ -104,6 +105,8 @@ def perform(state: State, message: Message) -> Feedback:
             return _slow_down(state)
         case AskPullOver():
             return ask_road(state, PullOver())
+        case Ask(request):
+            return ask_road(state, request)
         case CallEmergency():
             return call_emergency(state)
         case Guide(place, onward):
@@ -196,7 +199,7 @@ def command_all(state: State, values: tuple[tuple[Signal[Any], Any], ...], said:
     state.vehicle = vehicle
     settle(state)
     if before == state.signals.snapshot():
-        return Feedback(FeedbackCode.NO_EFFECT, "it is so already")
+        return Feedback(FeedbackCode.NO_EFFECT, "it is already set that way")
     _tell_road(state, before)
     return Feedback(FeedbackCode.OK, said)
 
@@ -222,7 +225,7 @@ def give_alert(state: State, alert: Alert) -> Feedback:
     """Alerts the driver, on screen and by voice, and passes the alert to the road."""
     name, icon = KINDS[alert.kind]
     if alert.speed_kmh is not None and not 0 < alert.speed_kmh <= 400:
-        return Feedback(FeedbackCode.REFUSED, f"{alert.speed_kmh:g} km/h is no speed to advise")
+        return Feedback(FeedbackCode.REFUSED, f"{alert.speed_kmh:g} km/h is not a valid speed to advise")
     text = " ".join(alert.text.split())[:STRING_LIMIT] or ADVICE[alert.kind]
     if alert.speed_kmh is not None and not alert.text:
         text += (
@@ -239,7 +242,7 @@ def ask_road(state: State, request: RoadRequest) -> Feedback:
     if isinstance(request, Alert):
         return give_alert(state, request)
     if isinstance(request, SlowDown) and not 0 <= request.speed_kmh <= 400:
-        return Feedback(FeedbackCode.REFUSED, f"{request.speed_kmh:g} km/h is no speed to slow down to")
+        return Feedback(FeedbackCode.REFUSED, f"{request.speed_kmh:g} km/h is not a valid speed to slow down to")
     words, icon = _asked(state, request)
     state.asked += (request,)
     state.pending += (request,)
@@ -292,7 +295,7 @@ def _enter(state: State, screen: str) -> None:
 
 def _change(state: State, name: str, value: Any, words: str) -> Feedback:
     if getattr(state, name) == value:
-        return Feedback(FeedbackCode.NO_EFFECT, "it is so already")
+        return Feedback(FeedbackCode.NO_EFFECT, "it is already set that way")
     setattr(state, name, value)
     return Feedback(FeedbackCode.OK, words)
 
@@ -316,11 +319,11 @@ def _slow_down(state: State) -> Feedback:
 
 def _drive(state: State, name: str) -> Feedback:
     profile = next(profile for profile in state.desk.profiles if profile.name == name)
-    feedback = command_all(state, profile.values, f"{name} drives now")
+    feedback = command_all(state, profile.values, f"{name} is now the driver")
     if feedback.code is FeedbackCode.REFUSED:
         return feedback
     state.desk = replace(state.desk, profile=name)
-    return Feedback(FeedbackCode.OK, f"{name} drives now")
+    return Feedback(FeedbackCode.OK, f"{name} is now the driver")
 
 
 def _rewind(state: State, lists: str) -> None:
@@ -330,7 +333,7 @@ def _rewind(state: State, lists: str) -> None:
 
 def _focus(state: State, field: str) -> Feedback:
     if state.is_typing and state.focus == field:
-        return Feedback(FeedbackCode.NO_EFFECT, "it is so already")
+        return Feedback(FeedbackCode.NO_EFFECT, "it is already set that way")
     state.focus, state.keyboard = field, bool(field)
     return Feedback(FeedbackCode.OK, "The field takes text" if field else FOLDED)
 
@@ -339,7 +342,7 @@ def _key(state: State, field: str, letters: str) -> Feedback:
     text = state.typed.get(field, "")
     longer = text[:-1] if letters == BACKSPACE else text + letters
     if longer == text:
-        return Feedback(FeedbackCode.NO_EFFECT, "there is nothing to take away")
+        return Feedback(FeedbackCode.NO_EFFECT, "there is nothing to delete")
     write(state, field, longer)
     return Feedback(FeedbackCode.OK, f"the field reads {state.typed[field]!r}")
 

@@ -6,12 +6,11 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.contracts import DrivingState, RouteOption, Surroundings
-from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.contracts import DrivingState, RouteOption
+from automotive_cosim.cosim.moment import Moment, around
 from automotive_cosim.geo.connectivity import Modem
 from automotive_cosim.geo.gps import Gps
 from automotive_cosim.geo.locate import Geo
-from automotive_cosim.geo.sun import elevation_deg
 from automotive_cosim.scenarios import WeatherAt, weather_at
 from automotive_cosim.traffic.base import Event, Traffic
 
@@ -66,12 +65,7 @@ class Car:
             self.alternatives_asked_s = driving.time_s
             self.alternatives = traffic.alternatives()[1:]
         driving = self._navigated(driving)
-        sun_deg = (
-            None
-            if driving.lat_deg is None or driving.lon_deg is None
-            else elevation_deg(driving.lat_deg, driving.lon_deg, local_time)
-        )
-        self.cockpit.sense(Surroundings(driving, weather, local_time, sun_deg, gps, connectivity), dt_s)
+        self.cockpit.sense(around(driving, weather, local_time, gps, connectivity), dt_s)
         return Moment(
             time_s=driving.time_s,
             local_time=local_time,

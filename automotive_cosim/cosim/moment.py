@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
-from automotive_cosim.contracts import Connectivity, DrivingState, GpsFix, Weather
+from automotive_cosim.contracts import Connectivity, DrivingState, GpsFix, Surroundings, Weather
 from automotive_cosim.geo.context import GeoContext
+from automotive_cosim.geo.sun import elevation_deg
 from automotive_cosim.traffic.base import Event
 
 
@@ -32,3 +33,20 @@ class Moment:
     """Every VSS path and its value."""
     commands: Mapping[str, Any]
     """Everything that can be commanded: actuator signals, app data, sent messages and requests."""
+
+    @property
+    def surroundings(self) -> Surroundings:
+        """Everything outside the cockpit."""
+        return around(self.driving, self.weather, self.local_time, self.gps, self.connectivity)
+
+
+def around(
+    driving: DrivingState, weather: Weather, local_time: datetime, gps: GpsFix | None, connectivity: Connectivity
+) -> Surroundings:
+    """Everything outside the cockpit, with the sun where it stands then and there."""
+    sun_deg = (
+        None
+        if driving.lat_deg is None or driving.lon_deg is None
+        else elevation_deg(driving.lat_deg, driving.lon_deg, local_time)
+    )
+    return Surroundings(driving, weather, local_time, sun_deg, gps, connectivity)

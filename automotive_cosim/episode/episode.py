@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
+from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S
 from automotive_cosim.episode.baseline import Baseline
+from automotive_cosim.episode.counterfactual import counterfactual
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.session import Session, beginning
 from automotive_cosim.episode.situation import HandOver
@@ -29,6 +32,8 @@ class Episode(Session):
     mode: Mode
     trigger_s: float
     """Simulation time at which the situation arises."""
+    at_hand_over: Cockpit
+    """The cockpit as the agent took it over, which nobody touches."""
     baseline: Baseline
     owns_baseline: bool = True
     """Whether it owns the baseline run; false for a branch, which shares it."""
@@ -49,8 +54,13 @@ class Episode(Session):
             instance=instance,
             mode=hand_over.mode,
             trigger_s=hand_over.trigger_s,
+            at_hand_over=world.cockpit.copy(),
             baseline=Baseline(world.shadow()),
         )
+
+    def think(self, seconds: float) -> None:
+        """As in a session, but no longer than the task's deadline, after which it is too late anyway."""
+        super().think(min(seconds, self.instance.half.deadline.seconds))
 
     def branch(self, max_steps: int | None = None) -> Episode:
         """An independent episode from this instant: neither affects the other from here on.
@@ -92,6 +102,13 @@ class Episode(Session):
         """The baseline run from the hand-over to now."""
         return self.baseline.until(self.moments[-1].time_s)
 
+    @property
+    def counterfactual(self) -> Mapping[str, Any]:
+        """What would be commanded now, had the agent given only the commands that belong to the goal."""
+        return counterfactual(
+            self.at_hand_over, self.world.cockpit.deeds, self.moments, self.instance.half.allowed_writes
+        )
+
     def _advance(self, duration_s: float) -> None:
         """Advances second by second together with the baseline run: both simulations run at the same time."""
         left_s = duration_s
@@ -117,6 +134,13 @@ class Episode(Session):
         if self.mode is Mode.MONITORING:
             self._advance(max(0.0, self._window_s - self.world.moment.time_s))
         self.verdict = judge(
-            self.instance, self.moments, self.baseline_moments, self.declared, self.reason, self.watched_from_s
+            self.instance,
+            self.moments,
+            self.baseline_moments,
+            self.counterfactual,
+            self.declared,
+            self.reason,
+            self.watched_from_s,
+            self.failure,
         )
         super()._finish(end)

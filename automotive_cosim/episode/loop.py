@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Protocol, TypeVar
 
 from automotive_cosim.cockpit.actions import check
 from automotive_cosim.contracts import Action, Element, Observation
 from automotive_cosim.episode.session import Session
 from automotive_cosim.episode.specification import End
-from automotive_cosim.errors import ActionError, OutOfBudgetError
+from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError
 
 
 class Actor(Protocol):
@@ -21,6 +21,7 @@ class Actor(Protocol):
         Raises:
             ActionError: its answer could not be read; the step counts all the same.
             OutOfBudgetError: its budget is spent; the session ends as it is.
+            AgentError: it can act no more; the session ends, and is no success.
         """
         ...
 
@@ -37,13 +38,19 @@ class StepObserver(Protocol[S]):
         ...
 
 
-def play(session: T, actor: Actor, observers: Sequence[StepObserver[T]] = ()) -> End:
+def play(
+    session: T,
+    actor: Actor,
+    observers: Sequence[StepObserver[T]] = (),
+    thought_s: Callable[[], float] = lambda: 0.0,
+) -> End:
     """Lets an actor act until the session is over, and returns why it is.
 
     Args:
         session: the session, which may be under way.
         actor: the actor, which has been told the goal.
         observers: called after each step, including the last.
+        thought_s: gives the simulated seconds that the actor's last answer took, which pass before its action.
 
     Raises:
         TrafficError: the traffic simulation failed.
@@ -54,11 +61,16 @@ def play(session: T, actor: Actor, observers: Sequence[StepObserver[T]] = ()) ->
         try:
             action = check(actor.act(session.observation))
         except ActionError as error:
+            session.think(thought_s())
             session.refuse(str(error))
         except OutOfBudgetError:
             session.cut_off(End.OUT_OF_BUDGET)
             break
+        except AgentError as error:
+            session.give_up(str(error))
+            break
         else:
+            session.think(thought_s())
             session.step(action)
         for observer in observers:
             observer(session, seen)

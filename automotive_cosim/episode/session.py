@@ -63,6 +63,10 @@ class Session:
     """The reason code of that declaration."""
     end: End | None = None
     """Why it is over; None while it is not."""
+    failure: str | None = None
+    """Why the agent can act no more, if that ended it."""
+    thought_s: float = 0.0
+    """Simulated seconds that have passed since the agent last saw the screen."""
     hashed: trace.Hash = field(default_factory=trace.Hash, repr=False)
     """Hash of the steps so far, computed when asked for."""
     _roads: Roads | None = field(default=None, repr=False)
@@ -89,6 +93,17 @@ class Session:
 
     # --- the loop -----------------------------------------------------------------------------------------
 
+    def think(self, seconds: float) -> None:
+        """Lets the time pass that the agent takes to answer; what it then does refers to the screen that it saw.
+
+        Raises:
+            TrafficError: the traffic simulation failed.
+        """
+        self._check_open()
+        if seconds > 0:
+            self._advance(seconds)
+            self.thought_s += seconds
+
     def step(self, action: Action) -> None:
         """Performs one action, lets its time pass and observes.
 
@@ -110,6 +125,11 @@ class Session:
         """Ends it early, e.g. for an agent that has spent its budget."""
         self._check_open()
         self._finish(end)
+
+    def give_up(self, why: str) -> None:
+        """Ends it because the agent can act no more: no success, whatever has been done."""
+        self.failure = why
+        self.cut_off(End.AGENT_FAILED)
 
     def close(self) -> None:
         """Ends the drive; may be called again."""
@@ -164,7 +184,10 @@ class Session:
         self.elements, self.observation = _seen(
             self.world, self.goal, self.conditions, self.shown, self.moments[0].time_s, feedback
         )
-        self.steps.append(trace.Step(len(self.steps), self.world.moment, self.elements, action, feedback))
+        self.steps.append(
+            trace.Step(len(self.steps), self.world.moment, self.elements, action, feedback, self.thought_s)
+        )
+        self.thought_s = 0.0
         end = self._ended()
         if end is not None:
             self._finish(end)

@@ -26,6 +26,15 @@ ROUNDING_S = 1e-9
 """Tolerance of sums of simulated seconds."""
 
 
+class Clock(StrEnum):
+    """What an agent's answer costs on the road, besides the action itself."""
+
+    FIXED = "fixed"
+    """The same for every answer, by default nothing."""
+    MODEL = "model"
+    """The seconds that the model really took, in addition."""
+
+
 @dataclass(frozen=True, slots=True)
 class Conditions:
     """The agent's input and limits."""
@@ -105,6 +114,17 @@ def mode_of(name: str) -> Mode:
     return Mode(name)
 
 
+def clock_of(name: str) -> Clock:
+    """The clock by name.
+
+    Raises:
+        UnknownNameError: there is none.
+    """
+    if name not in set(Clock):
+        raise UnknownNameError("clock", name, Clock)
+    return Clock(name)
+
+
 @dataclass(frozen=True, slots=True)
 class Seeds:
     """The seeds of everything random in one episode."""
@@ -144,6 +164,8 @@ class End(StrEnum):
     """Its limit of simulated time is over."""
     OUT_OF_BUDGET = "out_of_budget"
     """The agent has spent its tokens or its time."""
+    AGENT_FAILED = "agent_failed"
+    """The agent's side crashed, ended or did not answer: judged, and never a success."""
     INTERRUPTED = "interrupted"
     """Interrupted by the user: no verdict."""
     ERROR = "error"

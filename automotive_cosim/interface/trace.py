@@ -29,6 +29,8 @@ class Step:
     elements: tuple[Element, ...]
     action: Action | None
     feedback: Feedback
+    thought_s: float = 0.0
+    """Simulated seconds that the agent took to answer, before the action."""
 
     def as_json(self) -> Json:
         """The step as a JSON object, for ``steps.jsonl``."""
@@ -42,6 +44,7 @@ class Step:
             "elements": [plain(element) for element in self.elements],
             "action": None if self.action is None else to_json(self.action),
             "feedback": plain(self.feedback),
+            "thought_s": self.thought_s,
             "weather": plain(moment.weather),
             "gps": plain(moment.gps),
             "connectivity": plain(moment.connectivity),

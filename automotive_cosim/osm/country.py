@@ -3,7 +3,8 @@
 The limits are those of the country's traffic code for a car in the dry, as collected on the OpenStreetMap wiki's
 page "Default speed limits" and corrected where the code itself says otherwise (FR: code de la route R413-2 and -3;
 DE: StVO § 3, 130 being advisory; CH: VRV art. 4a; JP: 30 without a centre line since 1 September 2026). They fill
-gaps in a network and are marked as assumed there: no verdict rests on them.
+gaps in a network where the rules of ``geo`` do not determine the limit, and are marked as assumed there: no verdict
+rests on them.
 """
 
 from __future__ import annotations

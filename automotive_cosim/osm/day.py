@@ -5,7 +5,6 @@ This is no calibration: it matches one road, and nothing is known of all others.
 
 from __future__ import annotations
 
-import gzip
 import json
 import shutil
 import xml.etree.ElementTree as ET
@@ -16,6 +15,7 @@ from zoneinfo import ZoneInfo
 from automotive_cosim.contracts import Tell
 from automotive_cosim.errors import CountsError, ScenarioError, UnknownNameError
 from automotive_cosim.formats.checked import checked
+from automotive_cosim.formats.files import opened
 from automotive_cosim.formats.toml import dotted
 from automotive_cosim.osm import folder
 from automotive_cosim.osm.counts import read_counts
@@ -188,7 +188,7 @@ def _read_trips(configuration: Configuration, network: Network) -> list[tuple[fl
     """Departure, first and last edge of each trip."""
     file = Path(configuration.options.get("route-files", ""))
     try:
-        with gzip.open(file) if file.suffix == ".gz" else file.open("rb") as stream:
+        with opened(file) as stream:
             found = [
                 (
                     float(trip.get("depart", "")),
@@ -197,7 +197,7 @@ def _read_trips(configuration: Configuration, network: Network) -> list[tuple[fl
                 )
                 for trip in ET.parse(stream).iter("trip")
             ]
-    except (OSError, EOFError, ET.ParseError, ValueError, KeyError) as error:
+    except (OSError, ET.ParseError, ValueError, KeyError) as error:
         raise ScenarioError(f"the trips of {configuration.path} cannot be read: {error}") from error
     if not any(depart_s > 0 for depart_s, _, _ in found):
         raise ScenarioError(

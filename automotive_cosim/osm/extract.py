@@ -6,8 +6,6 @@ ways (paths, buildings, railways) are removed, because each path that meets a ro
 
 from __future__ import annotations
 
-import math
-from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from importlib import import_module
@@ -16,7 +14,6 @@ from typing import Any, NamedTuple
 
 from automotive_cosim.errors import ImportMapError, SetupError
 from automotive_cosim.osm.area import Area
-from automotive_cosim.osm.limits import complete, zone_of
 from automotive_cosim.traffic.sumo_programs import INSTALL
 
 LINKED = ("motorway", "trunk", "primary", "secondary", "tertiary")
@@ -32,17 +29,6 @@ ACCESS_KEYS = ("motorcar", "motor_vehicle", "vehicle", "access")
 
 BARRED = frozenset(("no", "private", "agricultural", "forestry", "military", "emergency", "psv", "bus", "delivery"))
 """Values that exclude an ordinary car."""
-
-DROPPED_TAGS = ("railway", "cycleway", "sidewalk", "public_transport", "route")
-"""Keys, with any suffix after a colon, that make netconvert give a road a compound type instead of its class."""
-
-CELL_DEG = 0.0025
-"""Side of the cells in which town streets are counted, in degrees of latitude (about 280 m)."""
-
-TOWN_NODES = 12
-"""Minimum number of nodes of town streets in a cell and its eight neighbours for a built-up area."""
-
-TOWN_STREETS = frozenset(("residential", "living_street"))
 
 
 class Position(NamedTuple):
@@ -246,55 +232,3 @@ def _known_pieces(way: OsmWay, nodes: Mapping[int, Node]) -> Iterator[OsmWay]:
     longest = max(stretches, key=len)
     if len(longest) > 1:
         yield OsmWay(way.way_id, way.tags, tuple(longest))
-
-
-def write(extract: Extract, target: Path, country: str) -> None:
-    """Writes the roads as OSM XML for netconvert, each with a limit (``limits.complete``) and a name.
-
-    A road without a name gets its number (``"A 5"``), as on signposts.
-    """
-    osmium = _osmium()
-    mutable = osmium.osm.mutable
-    towns = town_cells(extract)
-    with osmium.SimpleWriter(osmium.io.File(str(target), "osm"), overwrite=True) as writer:
-        for node_id, node in sorted(extract.nodes.items()):
-            writer.add_node(mutable.Node(id=node_id, location=node.position, tags=dict(node.tags)))
-        for way in extract.ways:
-            tags = {key: value for key, value in way.tags.items() if key.split(":")[0] not in DROPPED_TAGS}
-            if not tags.get("name") and tags.get("ref"):
-                tags["name"] = tags["ref"]
-            tags = complete(tags, country, built_up=is_built_up(way, extract.nodes, towns))
-            writer.add_way(mutable.Way(id=way.way_id, nodes=way.nodes, tags=tags))
-        for turn in extract.restrictions:
-            writer.add_relation(mutable.Relation(id=turn.relation_id, members=turn.members, tags=dict(turn.tags)))
-
-
-def _cell(position: Position) -> tuple[int, int]:
-    across = CELL_DEG / max(0.01, math.cos(math.radians(round(position.lat_deg))))
-    return math.floor(position.lon_deg / across), math.floor(position.lat_deg / CELL_DEG)
-
-
-def town_cells(extract: Extract) -> frozenset[tuple[int, int]]:
-    """The cells around which town streets are dense, as columns and rows of a grid."""
-    streets = Counter(
-        _cell(extract.nodes[ref].position)
-        for way in extract.ways
-        if way.road_class in TOWN_STREETS
-        for ref in way.nodes
-    )
-    about = Counter[tuple[int, int]]()
-    for (column, row), count in streets.items():
-        for step in range(9):
-            about[column + step % 3 - 1, row + step // 3 - 1] += count
-    return frozenset(cell for cell, count in about.items() if count >= TOWN_NODES)
-
-
-def is_built_up(way: OsmWay, nodes: Mapping[int, Node], towns: frozenset[tuple[int, int]]) -> bool:
-    """Whether a road lies in a town or village: by its tags, else by the streets around it."""
-    zone = zone_of(way.tags)
-    if zone in ("urban", "rural", "motorway", "trunk"):
-        return zone == "urban"
-    if way.road_class in TOWN_STREETS:
-        return True
-    inside = sum(_cell(nodes[ref].position) in towns for ref in way.nodes)
-    return 2 * inside > len(way.nodes)

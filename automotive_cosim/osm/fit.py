@@ -26,7 +26,7 @@ from automotive_cosim.osm.counts import GOOD_GEH, HOURS, Counts, geh
 from automotive_cosim.osm.demand import Journey, write
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.network import Edge
-from automotive_cosim.traffic.options import Setup, command_line, read_configuration
+from automotive_cosim.traffic.options import Setup, command_line, read_configuration, run_options
 from automotive_cosim.traffic.stability import StepFigures, summary
 
 HOUR_S = 3600.0
@@ -257,17 +257,16 @@ def _drive(
         f' begin="{WARM_UP_S:g}" period="{length_s:g}"/></additional>',
         encoding="utf-8",
     )
-    _, *arguments = command_line(read_configuration(scenario.config), Setup(scenario, seed=demand.seed), scratch)
-    options = dict(zip(arguments[::2], arguments[1::2], strict=True)) | {
-        "--begin": "0",
-        "--end": f"{end_s:g}",
-        "--additional-files": str(collector),
-        "--summary-output": "stdout",
-        "--summary-output.period": f"{LOOK_EVERY_S:g}",
+    setup = Setup(scenario, seed=demand.seed)
+    options = run_options(read_configuration(scenario.config), setup, scratch) | {
+        "begin": "0",
+        "end": f"{end_s:g}",
+        "additional-files": str(collector),
+        "summary-output": "stdout",
+        "summary-output.period": f"{LOOK_EVERY_S:g}",
     }
     looks = [_Look() for _ in range(HOURS)]
-    arguments = [part for option in options.items() for part in option]
-    with closing(summary(scenario.config.name, arguments, scratch)) as steps:
+    with closing(summary(scenario.config.name, command_line(options)[1:], scratch)) as steps:
         for step in steps:
             if step["time"] >= WARM_UP_S:
                 looks[min(HOURS - 1, int((step["time"] - WARM_UP_S) // length_s))].add(step)

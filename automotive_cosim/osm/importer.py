@@ -13,11 +13,12 @@ import numpy as np
 
 from automotive_cosim.contracts import Tell
 from automotive_cosim.errors import ImportMapError
-from automotive_cosim.geo.place import Atlas, Place
+from automotive_cosim.geo.place import Place, shipped
 from automotive_cosim.osm import demand, extract, folder, network, trips
 from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.country import country_codes
 from automotive_cosim.osm.report import ImportReport, make_report
+from automotive_cosim.osm.roads import describe
 from automotive_cosim.scenarios import Scenario, Sumo, Trip, load
 from automotive_cosim.traffic.stability import HALTED_SHARE_LIMIT, Stability, measure
 
@@ -86,20 +87,21 @@ def import_map(
     tell = on_progress or (lambda _stage, _share: None)
     with folder.appearing(out, replaces=options.replace) as building:
         tell("reading the map", None)
-        roads = extract.read(source)
+        mapped = extract.read(source)
         if options.area is not None:
-            roads = roads.crop(options.area)
-        place = Atlas().place(*roads.centre)
+            mapped = mapped.crop(options.area)
+        atlas = shipped()
+        place = atlas.place(*mapped.centre)
         options = replace(options, country=options.country or place.country)
         tell("building the network", None)
-        osm = building.with_name("roads.osm")
-        extract.write(roads, osm, options.country)
-        built = network.convert(osm, building / f"{options.name}.net.xml.gz", options.country, roads.cameras)
+        roads = describe(mapped, atlas, options.country)
+        net = building / f"{options.name}.net.xml.gz"
+        built = network.convert(mapped, roads, net, options.country, building.parent)
         tell("drawing trips", None)
         rng = np.random.default_rng(options.seed)
         journeys = demand.draw(
             built,
-            building / f"{options.name}.net.xml.gz",
+            net,
             scratch=building.parent,
             density_per_km=options.density_per_km,
             duration_s=DEMAND_S,
@@ -111,6 +113,7 @@ def import_map(
         _write(building, options, place, ways, scale=flow.scale)
         report = make_report(
             source,
+            mapped,
             roads,
             built,
             flow,

@@ -4,42 +4,21 @@ from __future__ import annotations
 
 import gzip
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
-from xml.sax.saxutils import quoteattr
+from xml.sax.saxutils import quoteattr, unescape
 
 import shapely
 
 from automotive_cosim.errors import ImportMapError
 from automotive_cosim.osm.country import LEFT_HAND
-from automotive_cosim.osm.extract import Position
+from automotive_cosim.osm.extract import Extract, Position
+from automotive_cosim.osm.roads import Road, way_of
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.network import Edge, Network, read_network
 from automotive_cosim.traffic.sumo_programs import first_error, home, run
-
-KEPT_TAGS = (
-    "bridge",
-    "covered",
-    "dual_carriageway",
-    "hazard",
-    "lane_markings",
-    "layer",
-    "lit",
-    "maxspeed",
-    "maxspeed:conditional",
-    "maxspeed:type",
-    "motorroad",
-    "overtaking",
-    "ref",
-    "source:maxspeed",
-    "surface",
-    "toll",
-    "tunnel",
-    "zone:maxspeed",
-    "zone:traffic",
-)
-"""OSM tags that become parameters of the edges."""
 
 GEOMETRY = (
     "--proj.utm",
@@ -104,25 +83,31 @@ def _neighbours(pairs: Iterable[tuple[str, str]]) -> dict[str, set[str]]:
     return found
 
 
-def convert(osm: Path, target: Path, country: str, cameras: Sequence[Position] = ()) -> Built:
+def convert(extract: Extract, roads: Mapping[int, Road], target: Path, country: str, scratch: Path) -> Built:
     """Builds ``target`` (a ``.net.xml.gz``) with netconvert and reads it back.
 
-    The same input gives the same bytes: netconvert's header with its date and paths is removed. Speed cameras
-    become parameters of their edges.
+    The same input gives the same bytes: netconvert's header with its date and paths is removed. Each edge gets the
+    parameters of its road (``Road.parameters``), and the positions of its speed cameras.
+
+    Args:
+        extract: the map.
+        roads: its roads, by OSM way.
+        target: the file to create.
+        country: ISO 3166-1 code, which decides the driving side.
+        scratch: a folder for intermediate files.
 
     Raises:
         ImportMapError: netconvert refuses the map, or nothing drivable remains.
         SetupError: netconvert is not installed.
     """
-    raw = osm.with_suffix(".net.xml")
+    osm, raw = scratch / "roads.osm", scratch / "roads.net.xml"
+    write_osm(extract, roads, osm)
     ok, printed = run(
         "netconvert",
         (
             f"--osm-files={osm}",
             f"--type-files={home() / 'data' / 'typemap' / 'osmNetconvert.typ.xml'}",
-            "--osm.all-attributes",
             "--osm.lane-access",
-            f"--osm.extra-attributes={','.join(KEPT_TAGS)}",
             *GEOMETRY,
             *SIGNALS,
             *(["--lefthand"] if country in LEFT_HAND else []),
@@ -139,14 +124,29 @@ def convert(osm: Path, target: Path, country: str, cameras: Sequence[Position] =
         )
     text = re.sub(r"<!-- generated on .*?-->\s*", "", text, count=1, flags=re.DOTALL)
     text = _ESCAPED_TWICE.sub(r"&\1;", text)
+    text = _with_parameters(text, lambda edge_id: roads[way_of(edge_id)].parameters(edge_id))
     signals, roundabouts = text.count("<tlLogic "), text.count("<roundabout ")
     _write(text, target)
     network = read_network(target)
-    watched = _watched(network, cameras)
+    watched = _watched(network, extract.cameras)
     if watched:
-        _write(_with_cameras(text, watched), target)
+        _write(_with_parameters(text, lambda edge_id: _cameras(watched.get(edge_id, ()))), target)
         network = read_network(target)
     return Built(network, signals, roundabouts)
+
+
+def write_osm(extract: Extract, roads: Mapping[int, Road], target: Path) -> None:
+    """Writes the roads as OSM XML for netconvert (``Road.for_netconvert``)."""
+    osmium = import_module("osmium")
+    mutable = osmium.osm.mutable
+    with osmium.SimpleWriter(osmium.io.File(str(target), "osm"), overwrite=True) as writer:
+        for node_id, node in sorted(extract.nodes.items()):
+            writer.add_node(mutable.Node(id=node_id, location=node.position, tags=dict(node.tags)))
+        for way in extract.ways:
+            tags = roads[way.way_id].for_netconvert()
+            writer.add_way(mutable.Way(id=way.way_id, nodes=way.nodes, tags=tags))
+        for turn in extract.restrictions:
+            writer.add_relation(mutable.Relation(id=turn.relation_id, members=turn.members, tags=dict(turn.tags)))
 
 
 def _write(text: str, target: Path) -> None:
@@ -174,10 +174,22 @@ def _watched(network: Network, cameras: Sequence[Position]) -> dict[str, list[fl
     return found
 
 
-def _with_cameras(text: str, watched: Mapping[str, Sequence[float]]) -> str:
-    for edge_id, places_m in watched.items():
-        start = text.index(f"<edge id={quoteattr(edge_id)} ")
-        end = text.index("</edge>", start)
-        value = " ".join(f"{place_m:g}" for place_m in sorted(places_m))
-        text = f'{text[:end]}    <param key="speed_camera" value="{value}"/>\n    {text[end:]}'
-    return text
+def _cameras(places_m: Sequence[float]) -> Mapping[str, str]:
+    return {"speed_camera": " ".join(f"{place_m:g}" for place_m in sorted(places_m))} if places_m else {}
+
+
+_EDGE = re.compile(r'(<edge id=("[^":][^"]*")(?: [^>]*)?[^/]>.*?)(\s*</edge>)', re.DOTALL)
+"""An edge that is not inside a junction: all before its end, its quoted id, its end."""
+
+
+def _with_parameters(text: str, of: Callable[[str], Mapping[str, str]]) -> str:
+    """The network's text with parameters added to its edges, by their ids."""
+
+    def extended(edge: re.Match[str]) -> str:
+        params = "".join(
+            f"\n        <param key={quoteattr(key)} value={quoteattr(value)}/>"
+            for key, value in of(unescape(edge[2][1:-1])).items()
+        )
+        return f"{edge[1]}{params}{edge[3]}"
+
+    return _EDGE.sub(extended, text)

@@ -4,19 +4,25 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from automotive_cosim.contracts import LimitSource
+from automotive_cosim.osm.agreement import differences
 from automotive_cosim.osm.area import Area
-from automotive_cosim.osm.country import LEFT_HAND, LIMITS
+from automotive_cosim.osm.country import LEFT_HAND
 from automotive_cosim.osm.extract import Extract
 from automotive_cosim.osm.folder import ATTRIBUTION
+from automotive_cosim.osm.limits import NO_UNIT, doubts
 from automotive_cosim.osm.network import Built
+from automotive_cosim.osm.roads import Road
 from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.posted import timed_limits
 from automotive_cosim.traffic.stability import Stability
+
+WAYS_SHOWN = 10
+"""How many OSM ways a line names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +71,8 @@ class ImportReport:
     """Measured at that scale and the scenario's own step length."""
     guessed: tuple[str, ...]
     """What was guessed or left out, in words."""
+    differences: tuple[str, ...]
+    """Every limit, name, class, tunnel and number of lanes in which an edge differs from its way's tags."""
 
     def write(self, target: Path) -> None:
         """Writes the report as JSON."""
@@ -74,6 +82,7 @@ class ImportReport:
 def make_report(
     source: Path,
     extract: Extract,
+    roads: Mapping[int, Road],
     built: Built,
     stability: Stability,
     *,
@@ -117,6 +126,7 @@ def make_report(
         scale=stability.scale,
         stability=stability,
         guessed=tuple(_guesses(extract, built, country, (length_m - posted_m) / 1000)),
+        differences=tuple(map(str, differences(edges, roads))),
     )
 
 
@@ -141,16 +151,34 @@ def _cameras(built: Built) -> int:
 
 def _guesses(extract: Extract, built: Built, country: str, assumed_km: float) -> Iterator[str]:
     if assumed_km > 0:
-        whose = f"the general limits of {country}" if country in LIMITS else "limits as they are common"
-        yield f"the limit on {assumed_km:.2f} km of road: {whose}"
+        yield f"the limit on {assumed_km:.2f} km of road: by the law of {country} or as is common there"
     mapped = sum(node.tags.get("highway") == "traffic_signals" for node in extract.nodes.values())
     if mapped:
         yield f"junctions and phases of {built.signals} signals, from {mapped} points in the map"
     if built.roundabouts:
         yield f"right of way in {built.roundabouts} roundabouts"
+    for doubt, ways in sorted(_doubted(extract, country).items()):
+        about = "limits without mph, read as km/h" if doubt == NO_UNIT else f"{doubt}, which is no limit, left out"
+        yield f"{about}: {_ways_in_words(ways)}"
+    density_m = sum(edge.length_m for edge in built.edges if edge.built_up is None)
+    if density_m:
+        yield f"built-up or not on {density_m / 1000:.2f} km of road, by the density of the streets"
     unread = {part for way in extract.ways for part in timed_limits(way.tags.get("maxspeed:conditional", ""))[1]}
     if unread:
         yield f"limits under conditions other than times, left out: {', '.join(sorted(unread))}"
     yield "lanes and right of way that the map does not state: by road class"
     yield "traffic: random trips, half of them across the map's edge"
     yield "date, weather and ego trips: to be changed in scenario.toml"
+
+
+def _doubted(extract: Extract, country: str) -> dict[str, list[int]]:
+    found: dict[str, list[int]] = {}
+    for way in extract.ways:
+        for doubt in dict.fromkeys(doubts(way.tags, country)):
+            found.setdefault(doubt, []).append(way.way_id)
+    return found
+
+
+def _ways_in_words(ways: Sequence[int]) -> str:
+    more = f" and {len(ways) - WAYS_SHOWN} more" if len(ways) > WAYS_SHOWN else ""
+    return f"way{'s' * (len(ways) > 1)} {', '.join(map(str, ways[:WAYS_SHOWN]))}{more}"

@@ -8,7 +8,7 @@
 | late | the reference solution after the deadline fails |
 | undone | with the goal's own writes reverted, it fails |
 | near | another zone, value or direction fails |
-| collateral | one additional unrelated change fails |
+| coupled | the reference solution and one switch more fails, for every switch of the car |
 | trivial | no negative control wins both halves of a pair, or the only half |
 | random | random actions win at most one of twenty |
 | leak | without goal and solutions, every observation is the same, byte for byte |
@@ -30,14 +30,15 @@ from functools import partial
 from itertools import product
 
 from automotive_cosim.agents.trivial import AlwaysAlert, NoOp, PressEverything, Random
-from automotive_cosim.contracts import Action, ActionType, AlertKind, GoalStatus, Observation
+from automotive_cosim.cockpit.signals import ACTUATORS, named
+from automotive_cosim.contracts import Action, ActionType, AlertKind, FeedbackCode, GoalStatus, Observation
+from automotive_cosim.episode.counterfactual import replayed
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.errors import ScenarioError, TriggerNotReachedError
 from automotive_cosim.proof import mutations
 from automotive_cosim.proof.ground import Ground, Played, Script, finish
 from automotive_cosim.proof.sight import undeclared
 from automotive_cosim.tasking.checks import NothingDone
-from automotive_cosim.tasking.draws import Draws, Purpose
 from automotive_cosim.tasking.task import Basis, Half, Task
 from automotive_cosim.tasking.triggers import All, Parked, Standing, TriggerCondition
 from automotive_cosim.tasking.verdict import judge
@@ -129,12 +130,23 @@ def near(ground: Ground, right: Played) -> Wrong:
             yield f"succeeds with {what}"
 
 
-def collateral(ground: Ground, right: Played) -> Wrong:
-    """Judges the reference solution's end state with an additional change."""
-    rng = Draws(ground.task.id, ground.seed).rng(Purpose.COLLATERAL)
-    for what, moments in mutations.collaterals(right.moments[0], right.moments, ground.half, rng):
-        if _wins(ground, right, moments):
-            yield f"succeeds with {what}"
+def coupled(ground: Ground, right: Played) -> Wrong:
+    """Turns each switch that the goal does not allow on its own, after the reference solution.
+
+    All are tried, so that those which the car couples to the goal are among them. One that the car refuses or that
+    changes nothing is skipped.
+    """
+    before, end = right.moments[:-1], right.moments[-1]
+    done = replayed(ground.episode.at_hand_over, right.deeds, before)
+    for path in sorted(set(ACTUATORS) - ground.half.allowed_writes):
+        car = done.copy()
+        value = mutations.another_value(named(path), car.signals[named(path)])
+        if car.command(named(path), value).code is not FeedbackCode.OK:
+            continue
+        car.sense(end.surroundings, end.time_s - before[-1].time_s)
+        last = replace(end, signals=car.signals.snapshot(), commands=car.commands())
+        if last.commands != end.commands and _wins(ground, right, (*before, last)):
+            yield f"succeeds with {path} {value} as well"
 
 
 def random(ground: Ground) -> Wrong:
@@ -150,7 +162,14 @@ def random(ground: Ground) -> Wrong:
 def _wins(ground: Ground, right: Played, moments: tuple[object, ...]) -> bool:
     declared = right.actions[-1]
     assert declared is not None
-    verdict = judge(ground.instance, moments, right.baseline, declared.goal_status, declared.reason)  # type: ignore[arg-type]
+    verdict = judge(
+        ground.instance,
+        moments,  # type: ignore[arg-type]
+        right.baseline,
+        right.counterfactual,
+        declared.goal_status,
+        declared.reason,
+    )
     return verdict.success
 
 

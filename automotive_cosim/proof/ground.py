@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 from automotive_cosim.agents.base import Agent, Privileged
 from automotive_cosim.agents.oracle import Oracle
+from automotive_cosim.cockpit.messages import Deed
 from automotive_cosim.contracts import Action, ActionType, FeedbackCode, GoalStatus, Observation
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
@@ -34,6 +36,10 @@ class Played:
     verdict: Verdict
     moments: tuple[Moment, ...]
     baseline: tuple[Moment, ...]
+    counterfactual: Mapping[str, Any]
+    """What would be commanded at the end, had only the commands that belong to the goal been given."""
+    deeds: tuple[Deed, ...]
+    """What was commanded, in order."""
     steps: tuple[Step, ...]
     stuck: str = ""
     """Why the actor could not continue, if it could not."""
@@ -158,7 +164,7 @@ def is_lost(episode: Episode) -> bool:
     """Whether an episode can no longer succeed, because of lasting side effects or its deadline."""
     half = episode.instance.half
     start, now = episode.moments[0], episode.moments[-1]
-    if any(now.commands[key] != start.commands[key] for key in SENT - half.goal.writes - half.may_write):
+    if any(now.commands[key] != start.commands[key] for key in SENT - half.allowed_writes):
         return True
     if now.time_s - start.time_s <= half.deadline.seconds:
         return False
@@ -193,6 +199,8 @@ def finish(episode: Episode, actor: Actor, *, stop_when_lost: bool = False) -> P
         episode.verdict,
         tuple(episode.moments),
         episode.baseline_moments,
+        episode.counterfactual,
+        episode.world.cockpit.deeds,
         tuple(episode.steps),
         stopping.stuck,
     )

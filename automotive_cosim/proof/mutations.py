@@ -6,18 +6,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 from automotive_cosim.cockpit.signals import ACTUATORS, Signal, named
-from automotive_cosim.cockpit.vehicle import COUPLED
 from automotive_cosim.contracts import Hazards, PullOver, RoadRequest
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.tasking.task import Half
 
 SIBLINGS = (("Driver", "Passenger"), ("Front", "Rear"), ("Left", "Right"), ("Row1", "Row2"), ("Low", "High"))
 """Words of signal paths that are swapped: the other seat, window, side, row or beam."""
-COLLATERALS = 3
-"""Number of unrelated switches to try, drawn by seed."""
 
 
 def undone(start: Moment, moments: Sequence[Moment], half: Half) -> tuple[Moment, ...]:
@@ -43,23 +38,10 @@ def near_misses(start: Moment, moments: Sequence[Moment], half: Half) -> Iterato
                 yield f"{key} {other}", put(moments, {key: other})
         elif isinstance(after, str) and after:
             yield f"{key} something else", put(moments, {key: f"another {after}"})
-        elif isinstance(after, list) and after and not (key == "requests" and "alerts" in writes):
-            # An alert's request comes with it: only the alert counts.
+        elif isinstance(after, list) and after:
             other = _another(after[-1])
             wrong = [*after, after[-1]] if other is None else [*after[:-1], other]
             yield f"{key} something else", put(moments, {key: wrong})
-
-
-def collaterals(
-    start: Moment, moments: Sequence[Moment], half: Half, rng: np.random.Generator
-) -> Iterator[tuple[str, tuple[Moment, ...]]]:
-    """The right end state with one additional, unrelated switch."""
-    allowed = half.goal.writes | half.may_write
-    allowed |= frozenset().union(*(COUPLED.get(path, frozenset()) for path in allowed))
-    free = [path for path in ACTUATORS if path not in allowed]
-    for path in rng.choice(free, COLLATERALS, replace=False):
-        value = _other(named(str(path)), moments[-1].commands[str(path)])
-        yield f"{path} {value} as well", put(moments, {str(path): value})
 
 
 def put(moments: Sequence[Moment], values: Mapping[str, Any]) -> tuple[Moment, ...]:
@@ -104,7 +86,8 @@ def _wrong_way(signal: Signal[Any], before: Any, after: Any) -> Any:
     return moved if signal.low <= moved <= signal.high else None
 
 
-def _other(signal: Signal[Any], value: Any) -> Any:
+def another_value(signal: Signal[Any], value: Any) -> Any:
+    """Another value that the signal can have."""
     if isinstance(value, bool):
         return not value
     if signal.allowed:

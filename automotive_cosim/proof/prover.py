@@ -24,7 +24,7 @@ GATES = (
     "late",
     "undone",
     "near",
-    "collateral",
+    "coupled",
     "trivial",
     "random",
     "leak",
@@ -148,7 +148,7 @@ class Prover:
         for gate in ("oracle", "start", "prefix", "late", "random"):
             if gate in self._chosen:
                 found.take(gate, getattr(gates, gate)(ground), half)
-        for gate in ("undone", "near", "collateral"):
+        for gate in ("undone", "near", "coupled"):
             if gate in self._chosen and right.success:
                 found.take(gate, getattr(gates, gate)(ground, right), half)
         for gate in ("leak", "road", "repeat"):

@@ -13,7 +13,9 @@ from automotive_cosim.report.findings import PLACE
 from automotive_cosim.report.page import element, embedded
 from automotive_cosim.report.plot import Plot
 from automotive_cosim.report.results import Results, instance
+from automotive_cosim.run.episode import EpisodeResult
 from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.row import from_json
 from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.run.words import action_in_words
 
@@ -26,7 +28,7 @@ class Side:
     """One of the two episodes, ready to be shown."""
 
     row: EpisodeRow
-    result: Json
+    result: EpisodeResult
     wide: Plot
     narrow: Plot
     steps: tuple[tuple[str, str, str], ...]
@@ -63,13 +65,13 @@ def _has_trace(results: Results, row: EpisodeRow) -> bool:
 
 def _side(folder: Path, row: EpisodeRow) -> Side:
     *steps, last = read_trace(folder, row.id)
-    result = last["result"]
+    result = from_json(EpisodeResult, last["result"])
     pictures = sorted((folder / "pictures" / row.id).glob("step_*.jpg"))
     return Side(
         row,
         result,
-        Plot(result, 480, 260),
-        Plot(result, 360, 240),
+        Plot(result.path, result.timeline, 480, 260),
+        Plot(result.path, result.timeline, 360, 240),
         tuple(_told(steps)),
         embedded(pictures[-1].read_bytes(), "jpeg") if pictures else "",
     )

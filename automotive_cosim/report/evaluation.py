@@ -14,11 +14,13 @@ from automotive_cosim.report.charts import INK, charts
 from automotive_cosim.report.failures import FailureClass
 from automotive_cosim.report.page import PARTS
 from automotive_cosim.report.results import Results, contestant, read_results
-from automotive_cosim.report.summary import errors, tables
+from automotive_cosim.report.summary import errors, progress, tables
 from automotive_cosim.report.tables import Cell, Table
 from automotive_cosim.report.templates import render
+from automotive_cosim.run.episode import EpisodeResult
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.record import write_whole
+from automotive_cosim.run.row import from_json
 from automotive_cosim.run.store import cannot_write, megabytes, read_trace, trace_file
 
 
@@ -41,9 +43,9 @@ def write_report(folder: Path) -> Path:
     """
     results = read_results(folder)
     if not results.rows:
-        raise UserError(f"{folder} has no episodes yet; rerun its `eval` command to resume")
+        raise UserError(f"{folder} has no episodes yet ({results.coverage}); rerun its `eval` command to resume")
     found = findings.classes(results)
-    made, plots = all_tables(results, found), charts(results)
+    made, plots = all_tables(results, found), charts(results.shared())
     try:
         for name in ("tables", "plots"):
             (folder / name).mkdir(exist_ok=True)
@@ -60,16 +62,19 @@ def write_report(folder: Path) -> Path:
 
 
 def all_tables(results: Results, found: Mapping[str, FailureClass]) -> list[Table]:
-    """Every table of the report, the most important first."""
+    """Every table of the report, the most important first; all but the first and the last on shared instances."""
+    shared = results.shared()
     made = [
-        *tables(results),
-        findings.failures(results, found),
-        findings.harm(results),
-        findings.place_effect(results),
-        findings.by_label(results, "Skill", lambda row: row.skills),
-        findings.by_label(results, "Tag", lambda row: row.tags),
-        findings.prompts(results),
-        findings.distribution(results),
+        progress(results),
+        *tables(shared),
+        findings.failures(shared, found),
+        findings.harm(shared),
+        findings.place_effect(shared),
+        findings.think_time(shared),
+        findings.by_label(shared, "Skill", lambda row: row.skills),
+        findings.by_label(shared, "Tag", lambda row: row.tags),
+        findings.prompts(shared),
+        findings.distribution(shared),
         errors(results),
     ]
     return [table for table in made if table.rows]
@@ -87,6 +92,7 @@ def _page(
     return render(
         "report/evaluation.html",
         results=results,
+        coverage=results.coverage,
         tables=[table for table in linked if table[0].name not in ("published", "errors")],
         published=next(table for table in made if table.name == "published"),
         errors=next((table for table in linked if table[0].name == "errors"), None),
@@ -138,7 +144,7 @@ def _episode(folder: Path, row: EpisodeRow) -> Json:
     pictures = sorted((folder / "pictures" / row.id).glob("step_*.jpg"))
     return {
         "row": row,
-        "result": read_trace(folder, row.id)[-1]["result"] if has_trace else None,
+        "result": from_json(EpisodeResult, read_trace(folder, row.id)[-1]["result"]) if has_trace else None,
         "trace": trace_file(folder, row.id).relative_to(folder).as_posix() if has_trace else "",
         "pictures": [path.relative_to(folder).as_posix() for path in pictures],
     }

@@ -110,6 +110,20 @@ def place_effect(results: Results) -> Table:
     return Table("place_effect", "What place is worth", columns, tuple(rows), note, heads=2)
 
 
+def think_time(results: Results) -> Table:
+    """Success over the time that each answer takes; no rows if all were run at one latency."""
+    latencies = sorted({each.latency_s for each in results.contestants})
+    groups = list(dict.fromkeys(replace(each, latency_s=0.0) for each in results.contestants))
+    rows: list[TableRow] = [
+        (each.label, *(rate_cell(results.of(replace(each, latency_s=latency_s))) for latency_s in latencies))
+        for each in groups
+        if len(latencies) > 1
+    ]
+    columns = ("Contestant", *(f"{latency_s:g} s" for latency_s in latencies))
+    note = f"Every answer took this long on the road before its action. All halves. {RATES}"
+    return Table("think_time", "Success over think time", columns, tuple(rows), note)
+
+
 def _effect(results: Results, full: Contestant, other: Contestant, decided: bool) -> Cell:
     def judged(each: Contestant) -> dict[tuple[object, ...], tuple[EpisodeRow, Sequence[EpisodeRow]]]:
         return {

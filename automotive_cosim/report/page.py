@@ -15,7 +15,9 @@ from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import BoundingBox, Element, Json
 from automotive_cosim.report.plot import Plot
 from automotive_cosim.report.templates import render
+from automotive_cosim.run.episode import EpisodeResult
 from automotive_cosim.run.record import screenshot, write_whole
+from automotive_cosim.run.row import from_json
 from automotive_cosim.run.words import action_in_words
 
 PARTS: Mapping[str, str] = {
@@ -34,17 +36,20 @@ def write_page(folder: Path) -> Path:
     Args:
         folder: with ``episode.json``, ``steps.jsonl`` and ``screenshots/``, and possibly ``episode.webp``.
     """
-    episode = json.loads((folder / "episode.json").read_text(encoding="utf-8"))
+    record = json.loads((folder / "episode.json").read_text(encoding="utf-8"))
+    result, manifest = from_json(EpisodeResult, record), record["manifest"]
     lines = (folder / "steps.jsonl").read_text(encoding="utf-8").splitlines()
     film = folder / "episode.webp"
+    drive = result.path, result.timeline
     text = render(
         "report/page.html",
-        episode=episode,
+        result=result,
+        manifest=manifest,
         parts=PARTS,
-        plots={"wide": Plot(episode, 960, 300), "narrow": Plot(episode, 420, 280)},
+        plots={"wide": Plot(*drive, 960, 300), "narrow": Plot(*drive, 420, 280)},
         steps=_steps(folder, [json.loads(line) for line in lines]),
         film=embedded(film.read_bytes()) if film.is_file() else None,
-        versions=sorted(episode["manifest"]["versions"].items()),
+        versions=sorted(manifest["versions"].items()),
     )
     page = folder / "summary.html"
     write_whole(page, text)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import groupby
 
-from automotive_cosim.contracts import Json
+from automotive_cosim.run.timeline import Sample, TimelineEntry
 from automotive_cosim.run.words import is_over
 
 LEFT, RIGHT, TOP, BOTTOM = 44, 14, 34, 40
@@ -16,15 +16,16 @@ MARKED = {"alert": "alert", "limit": "at the limit", "declared": "declared"}
 class Plot:
     """One size of the plot. Coordinates are pixels of its view box."""
 
-    def __init__(self, episode: Json, width: int, height: int) -> None:
+    def __init__(self, path: Sequence[Sample], timeline: Sequence[TimelineEntry], width: int, height: int) -> None:
+        """Draws a drive of at least one sample."""
         self.width, self.height = width, height
         self.left, self.right = LEFT, width - RIGHT
         self.top, self.bottom = TOP, height - BOTTOM
-        self._path: Sequence[Json] = episode["path"]
-        self._timeline: Sequence[Json] = episode["timeline"]
-        self._begin: float = self._path[0]["at_s"]
-        self._end: float = max(self._path[-1]["at_s"], self._begin + 1)
-        most = max(max(sample["speed_kmh"], sample["limit_kmh"] or 0.0) for sample in self._path)
+        self._path = path
+        self._timeline = timeline
+        self._begin = self._path[0].at_s
+        self._end = max(self._path[-1].at_s, self._begin + 1)
+        most = max(max(sample.speed_kmh, sample.limit_kmh or 0.0) for sample in self._path)
         self._most: float = 20.0 * (most // 20 + 1)
 
     def x(self, at_s: float) -> float:
@@ -52,17 +53,17 @@ class Plot:
     @property
     def speed(self) -> str:
         """The speed as a path."""
-        return self._line([(sample["at_s"], sample["speed_kmh"]) for sample in self._path])
+        return self._line([(sample.at_s, sample.speed_kmh) for sample in self._path])
 
     @property
     def over(self) -> tuple[str, ...]:
         """The areas between limit and speed where the speed is above the limit, as closed paths."""
         areas = []
-        for over, group in groupby(self._path, key=lambda s: is_over(s["speed_kmh"], s["limit_kmh"])):
+        for over, group in groupby(self._path, key=lambda s: is_over(s.speed_kmh, s.limit_kmh)):
             samples = list(group)
             if over and len(samples) > 1:
-                above = [(sample["at_s"], sample["speed_kmh"]) for sample in samples]
-                below = [(sample["at_s"], sample["limit_kmh"]) for sample in reversed(samples)]
+                above = [(sample.at_s, sample.speed_kmh) for sample in samples]
+                below = [(each.at_s, each.limit_kmh) for each in reversed(samples) if each.limit_kmh is not None]
                 areas.append(self._line(above + below) + "Z")
         return tuple(areas)
 
@@ -70,22 +71,27 @@ class Plot:
     def limits(self) -> tuple[str, ...]:
         """The limit as steps, one path per stretch with a limit."""
         lines = []
-        ends = [*(sample["at_s"] for sample in self._path[1:]), self._end]
+        ends = [*(sample.at_s for sample in self._path[1:]), self._end]
         rows = zip(self._path, ends, strict=True)
-        for posted, group in groupby(rows, key=lambda row: row[0]["limit_kmh"] is not None):
-            if posted:
-                steps = [(at_s, sample["limit_kmh"]) for sample, end in group for at_s in (sample["at_s"], end)]
+        for _, group in groupby(rows, key=lambda row: row[0].limit_kmh is not None):
+            steps = [
+                (at_s, sample.limit_kmh)
+                for sample, end in group
+                for at_s in (sample.at_s, end)
+                if sample.limit_kmh is not None
+            ]
+            if steps:
                 lines.append(self._line(steps))
         return tuple(lines)
 
     @property
     def marks(self) -> tuple[tuple[float, str, str], ...]:
         """The first event of each kind with a line: x, kind, label."""
-        first: dict[str, Json] = {}
+        first: dict[str, TimelineEntry] = {}
         for entry in self._timeline:
-            if entry["kind"] in MARKED:
-                first.setdefault(entry["kind"], entry)
-        return tuple((self.x(entry["at_s"]), kind, MARKED[kind]) for kind, entry in first.items())
+            if entry.kind in MARKED:
+                first.setdefault(entry.kind, entry)
+        return tuple((self.x(entry.at_s), kind, MARKED[kind]) for kind, entry in first.items())
 
     def _line(self, points: Sequence[tuple[float, float]]) -> str:
         return "M" + "L".join(f"{self.x(at_s):g} {self.y(speed):g}" for at_s, speed in points)

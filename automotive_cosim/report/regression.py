@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Hashable, Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
+from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.results import Contestant, instance, pair_instance, pairs, read_results
-from automotive_cosim.report.stats import Comparison, compare
+from automotive_cosim.report.stats import Comparison, Rate, compare
+from automotive_cosim.report.summary import rate_of
 from automotive_cosim.report.tables import Table
 from automotive_cosim.run.episode_row import EpisodeRow
 
@@ -40,7 +42,9 @@ class ComparedInstance:
     def why(self) -> str:
         """What is missing now."""
         if self.after is None:
-            return "the episode is missing"
+            return "it was not planned"
+        if not self.after.has_run:
+            return "it has not been run"
         if self.after.success is None:
             why = self.after.error
             return f"{self.after.error_kind}: {why}" if why else "one half is not judged"
@@ -58,6 +62,10 @@ class SuccessChange:
     cases: tuple[ComparedInstance, ...]
     found: Comparison | None
     """After compared with before; None if nothing was judged both times."""
+    rates: tuple[Rate, Rate]
+    """Before and after, each over everything that was planned then."""
+    problems: tuple[str, ...] = ()
+    """Why it is not known what was planned."""
 
     def count(self, kind: str) -> int:
         """The cases of one kind."""
@@ -67,6 +75,15 @@ class SuccessChange:
         """Whether success fell by more than ``allowed`` (0 to 1), or something judged before is not judged now."""
         return self.count("error") > 0 or self.found is None or -self.found.difference > allowed + 1e-9
 
+    @property
+    def is_incomplete(self) -> bool:
+        """Whether either evaluation has not run everything that was planned."""
+        return bool(self.problems) or any(each.not_run for each in self.rates)
+
+    def outcome(self, allowed: float) -> str:
+        """``worse``, ``incomplete`` or ``as good``."""
+        return "worse" if self.is_worse(allowed) else "incomplete" if self.is_incomplete else "as good"
+
 
 def changes(before: Path, after: Path) -> tuple[SuccessChange, ...]:
     """Compares two evaluations' folders on what was judged in the first.
@@ -75,19 +92,23 @@ def changes(before: Path, after: Path) -> tuple[SuccessChange, ...]:
         UserError: one folder is not an evaluation's, or no contestant is in both.
     """
     old, new = read_results(before), read_results(after)
+    problems = tuple(f"{each.folder}: {each.coverage}" for each in (old, new) if each.coverage.problem)
     found: list[SuccessChange] = []
     for each in old.contestants:
         if each in new.contestants:
-            found.append(_change(each, "episodes", old.of(each), new.of(each)))
-            joined = [[pair for pair, _ in pairs(results.of(each))] for results in (old, new)]
-            if joined[0]:
-                found.append(_change(each, "pairs", *joined))
+            before_rows, after_rows = old.planned_of(each), new.planned_of(each)
+            found.append(_change(each, "episodes", before_rows, after_rows, problems))
+            before_pairs, after_pairs = ([pair for pair, _ in pairs(rows)] for rows in (before_rows, after_rows))
+            if before_pairs:
+                found.append(_change(each, "pairs", before_pairs, after_pairs, problems))
     if not found:
         raise UserError(f"{before} and {after} share no agent, model and geo control; compare runs of one plan")
     return tuple(found)
 
 
-def _change(each: Contestant, unit: str, old: Iterable[EpisodeRow], new: Iterable[EpisodeRow]) -> SuccessChange:
+def _change(
+    each: Contestant, unit: str, old: Sequence[EpisodeRow], new: Sequence[EpisodeRow], problems: tuple[str, ...]
+) -> SuccessChange:
     key = pair_instance if unit == "pairs" else instance
     news = {key(row): row for row in new}
     cases = tuple(
@@ -102,7 +123,7 @@ def _change(each: Contestant, unit: str, old: Iterable[EpisodeRow], new: Iterabl
         {name: bool(case.before.success) for name, case in judged.items()},
         clusters,
     )
-    return SuccessChange(each, unit, cases, found)
+    return SuccessChange(each, unit, cases, found, (rate_of(old), rate_of(new)), problems)
 
 
 def markdown(found: Sequence[SuccessChange], allowed: float) -> str:
@@ -117,9 +138,10 @@ def markdown(found: Sequence[SuccessChange], allowed: float) -> str:
         }
         rows.append(
             (
-                "worse" if each.is_worse(allowed) else "as good",
+                each.outcome(allowed),
                 each.contestant.label,
                 each.unit,
+                *(f"{rate.judged} of {rate.planned}" for rate in each.rates),
                 *(f"{count}/{judged}" for count in solved.values()),
                 "–"
                 if compared is None
@@ -130,13 +152,31 @@ def markdown(found: Sequence[SuccessChange], allowed: float) -> str:
     table = Table(
         "compare",
         "Success before and after",
-        ("", "Contestant", "Of", "Before", "After", "Difference", "Lost", "Won", "Not judged now"),
+        (
+            "",
+            "Contestant",
+            "Of",
+            "Judged before",
+            "Judged after",
+            "Before",
+            "After",
+            "Difference",
+            "Lost",
+            "Won",
+            "Not judged now",
+        ),
         tuple(rows),
         "On the instances that were judged before, with 95 % intervals over tasks. Worse: a fall of "
-        f"more than {allowed:.1%}, or something that is no longer judged.",
+        f"more than {allowed:.1%}, or something that is no longer judged. Incomplete: no fall, but "
+        "something that was planned has not been run, or it is not known. Judged: of what was planned.",
         heads=3,
     )
-    return table.markdown() + "".join(_listed(each, kind) for each in found for kind in ("lost", "error", "won"))
+    unknown = "".join(f"\n{problem}\n" for problem in dict.fromkeys(each for one in found for each in one.problems))
+    return (
+        table.markdown()
+        + unknown
+        + "".join(_listed(each, kind) for each in found for kind in ("lost", "error", "won"))
+    )
 
 
 def _listed(each: SuccessChange, kind: str) -> str:
@@ -148,6 +188,25 @@ def _listed(each: SuccessChange, kind: str) -> str:
     if len(cases) > MOST_LISTED:
         lines.append(f"- and {len(cases) - MOST_LISTED} more")
     return f"\n**{title}, {each.contestant.label}**\n\n" + "\n".join(lines) + "\n"
+
+
+def as_json(found: Sequence[SuccessChange], allowed: float) -> Json:
+    """What ``markdown`` says, as a JSON object with every instance."""
+    contestants = [
+        {
+            "contestant": each.contestant.label,
+            "of": each.unit,
+            "outcome": each.outcome(allowed),
+            "before": asdict(each.rates[0]) | {"planned": each.rates[0].planned},
+            "after": asdict(each.rates[1]) | {"planned": each.rates[1].planned},
+            "difference": None if each.found is None else each.found.difference,
+            "interval": None if each.found is None else asdict(each.found.interval),
+            "problems": list(each.problems),
+            "instances": [{"name": case.name, "kind": case.kind, "why": case.why} for case in each.cases],
+        }
+        for each in found
+    ]
+    return {"ok": all(each["outcome"] == "as good" for each in contestants), "contestants": contestants}
 
 
 def junit(found: Sequence[SuccessChange]) -> str:

@@ -8,7 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from automotive_cosim.contracts import Json
+from automotive_cosim.contracts.plain import counted
+from automotive_cosim.episode.specification import Clock
 from automotive_cosim.errors import SetupError
+from automotive_cosim.run.coverage import Coverage, coverage
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.row import columns
 from automotive_cosim.run.store import read_evaluation, read_rows
@@ -30,12 +33,14 @@ NOT_RANKED = {
 
 @dataclass(frozen=True, slots=True, order=True)
 class Contestant:
-    """What is compared: an agent on a model under a geo control, prompted or monitoring."""
+    """What is compared: an agent on a model under a geo control, prompted or monitoring, at a speed."""
 
     agent: str
     model: str
     geo: str
     mode: str = str(Mode.PROMPTED)
+    clock: str = str(Clock.FIXED)
+    latency_s: float = 0.0
 
     @property
     def base_model(self) -> str:
@@ -54,7 +59,9 @@ class Contestant:
         model = {"rules": "rules stand-in", "none": ""}.get(self.model, self.model)
         geo = "" if self.geo == "full" else f"geo {self.geo}"
         mode = "" if self.mode == Mode.PROMPTED else self.mode
-        return ", ".join(part for part in (self.method, model, geo, mode) if part)
+        clock = "" if self.clock == Clock.FIXED else f"{self.clock}'s clock"
+        latency = f"latency {self.latency_s:g} s" if self.latency_s else ""
+        return ", ".join(part for part in (self.method, model, geo, mode, clock, latency) if part)
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,26 +71,39 @@ class Results:
     folder: Path
     manifest: Json
     rows: tuple[EpisodeRow, ...]
+    coverage: Coverage
 
     @property
     def contestants(self) -> tuple[Contestant, ...]:
-        """The contestants; references and negative controls come last."""
-        found = {contestant(row) for row in self.rows}
+        """The contestants, with or without episodes yet; references and negative controls come last."""
+        found = {contestant(row) for row in (*self.rows, *self.coverage.not_run)}
         return tuple(sorted(found, key=lambda each: (each.agent in NOT_RANKED, each)))
 
     def of(self, each: Contestant) -> tuple[EpisodeRow, ...]:
         """The episodes of one contestant."""
         return tuple(row for row in self.rows if contestant(row) == each)
 
+    def planned_of(self, each: Contestant) -> tuple[EpisodeRow, ...]:
+        """The same with those that have not been run."""
+        return (*self.of(each), *(row for row in self.coverage.not_run if contestant(row) == each))
+
+    def shared(self) -> Results:
+        """The same with only the instances that all contestants have run, on which they can be set side by side.
+
+        An instance with an episode that ended in an error stays: no contestant can void another's episodes.
+        """
+        return replace(self, rows=tuple(row for row in self.rows if row.id in self.coverage.shared))
+
 
 def contestant(row: EpisodeRow) -> Contestant:
     """The contestant that an episode belongs to."""
-    return Contestant(row.agent, row.model, row.geo, row.mode)
+    return Contestant(row.agent, row.model, row.geo, row.mode, row.clock, row.latency_s)
 
 
 def standings(results: Results) -> list[str]:
-    """A line per contestant: what it won out of what was judged, in all and in held-out phrasings."""
-    return [f"{each.label}: {_won(results.of(each))}" for each in results.contestants]
+    """A line per contestant: what it won out of what was judged, in all and in held-out phrasings, and what was not
+    judged."""
+    return [f"{each.label}: {_won(results.planned_of(each))}" for each in results.contestants]
 
 
 def _won(rows: Sequence[EpisodeRow]) -> str:
@@ -96,14 +116,21 @@ def _won(rows: Sequence[EpisodeRow]) -> str:
 
 def _count(rows: Sequence[EpisodeRow]) -> str:
     counts = []
-    for unit, outcomes in (
-        ("episodes", [row.success for row in rows]),
-        ("pairs", [pair.success for pair, _ in pairs(rows)]),
-    ):
-        judged = [outcome for outcome in outcomes if outcome is not None]
-        if outcomes:
-            counts.append(f"{sum(judged)} of {len(judged)} {unit}")
+    for unit, each in (("episodes", rows), ("pairs", [pair for pair, _ in pairs(rows)])):
+        judged = [row.success for row in each if row.success is not None]
+        if each:
+            beside = not_judged(sum(row.success is None and row.has_run for row in each), _waiting(each))
+            counts.append(f"{sum(judged)} of {len(judged)} {unit}" + (f" ({beside})" if beside else ""))
     return ", ".join(counts)
+
+
+def _waiting(rows: Iterable[EpisodeRow]) -> int:
+    return sum(not row.has_run for row in rows)
+
+
+def not_judged(errors: int, not_run: int) -> str:
+    """For example ``1 error, 3 not run``; empty if everything was judged."""
+    return ", ".join([counted(errors, "error")] * (errors > 0) + [f"{not_run:,} not run"] * (not_run > 0))
 
 
 def read_results(folder: Path) -> Results:
@@ -114,7 +141,7 @@ def read_results(folder: Path) -> Results:
     """
     manifest = read_evaluation(folder)
     rows = read_rows(folder, EpisodeRow)
-    return Results(folder, manifest, tuple(rows[name] for name in sorted(rows)))
+    return Results(folder, manifest, tuple(rows[name] for name in sorted(rows)), coverage(manifest, rows))
 
 
 def load_results(folder: Path | str) -> pd.DataFrame:
@@ -149,7 +176,8 @@ def pair_instance(row: EpisodeRow) -> tuple[object, ...]:
 def pairs(rows: Iterable[EpisodeRow]) -> list[tuple[EpisodeRow, Sequence[EpisodeRow]]]:
     """Both halves of each pair as one episode-like row, whose success is that of both, and the halves.
 
-    An error in one half makes the pair an error, unless the other half has failed anyway.
+    An error in one half makes the pair an error, unless the other half has failed anyway; so does a half that has
+    not been run, for a pair that has not.
     """
     found: dict[str, list[EpisodeRow]] = {}
     for row in rows:
@@ -160,5 +188,6 @@ def pairs(rows: Iterable[EpisodeRow]) -> list[tuple[EpisodeRow, Sequence[Episode
         if len(halves) == 2:
             outcomes = [half.success for half in halves]
             success = False if False in outcomes else None if None in outcomes else True
-            joined.append((replace(halves[0], success=success), halves))
+            shown = max(halves, key=lambda half: half.error is not None) if success is None else halves[0]
+            joined.append((replace(shown, success=success), halves))
     return joined

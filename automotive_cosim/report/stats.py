@@ -28,13 +28,26 @@ class Interval:
 
 @dataclass(frozen=True, slots=True)
 class Rate:
-    """A share of successes among judged episodes; errors are counted apart."""
+    """A share of successes among judged episodes; what was planned and not judged is counted apart."""
 
     successes: int
     judged: int
     errors: int
     interval: Interval | None
     """None if nothing was judged."""
+    not_run: int = 0
+
+    @property
+    def planned(self) -> int:
+        """Judged, ended in an error, or not run."""
+        return self.judged + self.errors + self.not_run
+
+    @property
+    def bounds(self) -> Interval | None:
+        """The rate if everything that was not judged had failed, and if it had succeeded; None without a plan."""
+        if not self.planned:
+            return None
+        return Interval(self.successes / self.planned, (self.successes + self.errors + self.not_run) / self.planned)
 
     @property
     def value(self) -> float | None:
@@ -83,12 +96,15 @@ def wilson(successes: float, count: float, confidence: float = CONFIDENCE) -> In
     return Interval(max(0.0, middle - reach), min(1.0, middle + reach))
 
 
-def rate(outcomes: Iterable[tuple[Hashable, bool | None]], confidence: float = CONFIDENCE) -> Rate:
+def rate(
+    outcomes: Iterable[tuple[Hashable, bool | None]], confidence: float = CONFIDENCE, *, not_run: int = 0
+) -> Rate:
     """A rate with Wilson's interval at the effective sample size (Korn and Graubard 1998, Survey Methodology 24).
 
     Args:
         outcomes: (cluster, success) of each episode; success None is an error.
         confidence: of the interval.
+        not_run: how many further episodes were planned.
     """
     clusters: dict[Hashable, list[bool]] = defaultdict(list)
     errors = 0
@@ -100,9 +116,9 @@ def rate(outcomes: Iterable[tuple[Hashable, bool | None]], confidence: float = C
     groups = list(clusters.values())
     judged, successes = sum(map(len, groups)), sum(map(sum, groups))
     if not judged:
-        return Rate(0, 0, errors, None)
+        return Rate(0, 0, errors, None, not_run)
     size = effective_size(groups)
-    return Rate(successes, judged, errors, wilson(successes / judged * size, size, confidence))
+    return Rate(successes, judged, errors, wilson(successes / judged * size, size, confidence), not_run)
 
 
 def effective_size(clusters: Sequence[Sequence[bool]]) -> float:

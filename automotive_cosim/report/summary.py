@@ -8,10 +8,9 @@ from itertools import combinations
 from operator import itemgetter
 
 from automotive_cosim.agents import PROFILES
-from automotive_cosim.contracts.plain import counted
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.report.published import PAPER, PAPER_COLUMNS, PAPER_ROWS
-from automotive_cosim.report.results import Contestant, Results, instance, pairs
+from automotive_cosim.report.results import Contestant, Results, instance, not_judged, pairs
 from automotive_cosim.report.stats import Rate, compare, mean, pass_hat_k, rate
 from automotive_cosim.report.tables import Cell, Table, TableRow
 from automotive_cosim.run.episode_row import PARTS, EpisodeRow
@@ -26,7 +25,8 @@ DIMENSIONS = {
 }
 RATES = (
     "Per cent of the judged episodes, with 95 % Wilson intervals at the effective number of episodes (tasks are "
-    "clusters), successes and judged episodes. Infrastructure errors are not failures and are counted apart."
+    "clusters), successes and judged episodes. What an agent breaks is its failure. Infrastructure errors are "
+    "not: they stand beside, with the rate if all of them had failed and if all had succeeded."
 )
 
 Outcome = Callable[[EpisodeRow], bool | None]
@@ -34,7 +34,11 @@ Outcome = Callable[[EpisodeRow], bool | None]
 
 
 def tables(results: Results) -> list[Table]:
-    """The tables of success, the most important first; see ``findings`` for the others."""
+    """The tables of success, the most important first; see ``findings`` for the others.
+
+    Args:
+        results: with the same instances for every contestant, ``Results.shared``.
+    """
     made = [
         main(results),
         published(),
@@ -62,6 +66,30 @@ def main(results: Results) -> Table:
     columns = ("Base model", "Method", "Input", *DIMENSIONS.values())
     note = f"First halves of the tasks only, as in the paper. {RATES}"
     return Table("main", "Success by method and input", columns, tuple(rows), note, heads=3)
+
+
+def progress(results: Results) -> Table:
+    """What was planned for each contestant and what has become of it, on all of its own episodes."""
+    rows: list[TableRow] = []
+    for each in results.contestants:
+        mine = results.planned_of(each)
+        found, ids = rate_of(mine), tuple(row.id for row in mine if row.has_run)
+        counts = (found.planned, found.judged, found.errors, found.not_run)
+        joined = pairs(mine)
+        rows.append(
+            (
+                each.label,
+                *map(str, counts),
+                Cell(rate_in_words(found), ids),
+                _pair_cell(joined) if joined else NONE,
+            )
+        )
+    columns = ("Contestant", "Planned", "Judged", "Errors", "Not run", "Success", "Pairs")
+    note = (
+        "Every episode of a contestant, both halves. After the colon: the rate if all that was not judged had "
+        "failed, and if all had succeeded."
+    )
+    return Table("progress", "Planned and run", columns, tuple(rows), note)
 
 
 def published() -> Table:
@@ -256,8 +284,10 @@ def errors(results: Results) -> Table:
 
 
 def rate_of(rows: Iterable[EpisodeRow], of: Outcome = lambda row: row.success) -> Rate:
-    """A rate over episodes; those without a verdict count as errors."""
-    return rate((row.task, None if row.success is None else of(row)) for row in rows)
+    """A rate over episodes; those that have run without a verdict count as errors."""
+    listed = list(rows)
+    outcomes = ((row.task, None if row.success is None else of(row)) for row in listed if row.has_run)
+    return rate(outcomes, not_run=sum(not row.has_run for row in listed))
 
 
 def rate_cell(rows: Iterable[EpisodeRow], of: Outcome = lambda row: row.success) -> Cell:
@@ -274,12 +304,13 @@ def _mean_cell(rows: Iterable[EpisodeRow], digits: int, of: Callable[[EpisodeRow
 
 
 def rate_in_words(found: Rate) -> str:
-    """For example ``75% (41–93), 6/8, 1 error``."""
-    errors = f", {counted(found.errors, 'error')}" if found.errors else ""
-    if found.value is None or found.interval is None:
-        return (NONE + errors).strip()
+    """For example ``75% (41–93), 6/8, 1 error: 67–78%``."""
+    beside = not_judged(found.errors, found.not_run)
+    if found.value is None or found.interval is None or found.bounds is None:
+        return f"{NONE}, {beside}" if beside else NONE
     low, high = found.interval.low * 100, found.interval.high * 100
-    return f"{found.value:.0%} ({low:.0f}–{high:.0f}), {found.successes}/{found.judged}{errors}"
+    told = f"{found.value:.0%} ({low:.0f}–{high:.0f}), {found.successes}/{found.judged}"
+    return f"{told}, {beside}: {found.bounds.low * 100:.0f}–{found.bounds.high:.0%}" if beside else told
 
 
 def input_of(each: Contestant) -> str:
@@ -306,7 +337,7 @@ _SAFETY = tuple(name for name in DIMENSIONS if name.is_safety)
 
 
 def _pair_cell(joined: Sequence[tuple[EpisodeRow, Sequence[EpisodeRow]]]) -> Cell:
-    ids = tuple(half.id for _, halves in joined for half in halves)
+    ids = tuple(half.id for _, halves in joined for half in halves if half.has_run)
     return Cell(rate_in_words(rate_of(pair for pair, _ in joined)), ids)
 
 

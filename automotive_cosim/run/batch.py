@@ -80,7 +80,7 @@ def run_plan(
     """
     plan.check()
     jobs = plan.jobs()
-    with opened(folder, plan.as_json(), EpisodeRow) as store:
+    with opened(folder, plan.as_json(), EpisodeRow, planned=len(jobs)) as store:
         opener = partial(worker.episodes, pictures)
         return run_jobs(jobs, store, opener, failed, executor=executor, retries=retries, tell=tell)
 

@@ -81,6 +81,7 @@ class Collector(Watcher):
             tuple(episode.moments),
             episode.baseline_moments,
             episode.watched_from_s,
+            episode.counterfactual,
         )
 
     def keep_pictures(self, folder: Path, result: EpisodeResult) -> None:
@@ -102,12 +103,14 @@ class Collector(Watcher):
             success=result.success,
             reward=result.reward,
             end=result.end,
+            agent_error=result.agent_error,
             parts=PartsHeld(**{name: part["ok"] for name, part in judged["parts"].items()}) if judged else None,
             goal_s=judged["goal_s"] if judged else None,
             reason_fits=judged["reason_fits"] if judged else None,
             alerts=None if episode is None else _alerts(episode),
             steps=result.steps,
             sim_seconds=result.sim_seconds,
+            thought_s=0.0 if episode is None else round(sum(step.thought_s for step in episode.steps), 1),
             speed_compliance=compliance(self._states),
             min_time_to_collision_s=nearest_s(self._states),
             drive=result.drive,
@@ -150,6 +153,8 @@ def planned(job: EpisodeJob) -> EpisodeRow:
         seed=setup.seed,
         repeat=job.repeat,
         mode=setup.mode,
+        clock=setup.clock,
+        latency_s=setup.latency_s,
         held_out=setup.held_out,
     )
 

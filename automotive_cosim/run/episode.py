@@ -8,10 +8,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import ExitStack, closing, suppress
 from dataclasses import asdict, dataclass, replace
-from typing import Any
+from typing import Annotated, Any, Protocol, runtime_checkable
 
 import numpy as np
 import numpy.typing as npt
+from annotated_types import Ge
 
 from automotive_cosim import geo
 from automotive_cosim.agents import Agent, Learner, Privileged, Stage, StageName, Thinker
@@ -22,14 +23,16 @@ from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.loop import play
 from automotive_cosim.episode.situation import SituationFinder
-from automotive_cosim.episode.specification import End, EpisodeSpec, SeedSource
+from automotive_cosim.episode.specification import Clock, End, EpisodeSpec, SeedSource
 from automotive_cosim.errors import InfrastructureError
+from automotive_cosim.formats.annotations import OneOf
 from automotive_cosim.geo.breaches import Violation
 from automotive_cosim.interface import trace
 from automotive_cosim.models import ModelReply
 from automotive_cosim.run.estimates import PositionEstimate, estimates
 from automotive_cosim.run.harm import DriveFigures, drive_figures
 from automotive_cosim.run.load import DriverLoad, driver_load
+from automotive_cosim.run.row import formerly
 from automotive_cosim.run.timeline import Sample, TimelineEntry, samples, timeline
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.tasking import verdict
@@ -47,6 +50,10 @@ class EpisodeSetup(EpisodeSpec):
     model: str = "rules"
     without: tuple[str, ...] = ()
     """Parts of the agent that are switched off, for the record."""
+    clock: Annotated[Clock, OneOf(Clock)] = Clock.FIXED
+    """Whether the seconds that the model takes pass on the road."""
+    latency_s: Annotated[float, Ge(0)] = 0.0
+    """Simulated seconds that each answer takes, before its action."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +84,8 @@ class EpisodeResult:
     error: str | None = None
     error_kind: str | None = None
     """Name of the error's class in ``automotive_cosim.errors``."""
+    agent_error: str | None = None
+    """How the agent's side failed, if that ended the episode; ``success`` is then False."""
     violations: tuple[Violation, ...] = ()
     """Traffic law violations from departure to the end of the aftermath; seconds since the hand-over."""
     geo: str = "full"
@@ -97,7 +106,7 @@ class EpisodeResult:
     """Visual and manual load on the driver while the car moved; None without a hand-over."""
     drive: DriveFigures | None = None
     """Figures of the drive from the hand-over to the end of the aftermath; only of judged safety tasks."""
-    baseline_drive: DriveFigures | None = None
+    baseline_drive: Annotated[DriveFigures | None, formerly("untouched_drive", "baseline_drive")] = None
     """The same figures of the baseline run, over the same time."""
 
     def as_json(self) -> Json:
@@ -118,6 +127,16 @@ class Shot:
     """The agent's own reason for the action; empty if it gives none."""
     stages: tuple[Stage, ...] = ()
     """The stages of the agent's reasoning, for agents that report them."""
+
+
+@runtime_checkable
+class Replayed(Protocol):
+    """An agent that repeats what was recorded, with the time that it took then."""
+
+    @property
+    def thought_s(self) -> float:
+        """Simulated seconds that the answer it gave last took."""
+        ...
 
 
 class Watcher(Listener):
@@ -193,9 +212,9 @@ class _Run:
         first = Shot(episode.steps[0], (), episode.screenshot(), "")
         for watcher in self._watchers:
             watcher.handed_over(episode, first)
-        end = play(episode, agent, (self._stepped,))
-        if end is End.OUT_OF_BUDGET:
-            self._stages()  # of the answer that it ran out on
+        end = play(episode, agent, (self._stepped,), self._thought_s)
+        if end in (End.OUT_OF_BUDGET, End.AGENT_FAILED):
+            self._stages()  # of the turn that it did not finish
         if isinstance(agent, Learner) and episode.verdict is not None:
             agent.learn(episode.verdict.success)
         self._watch_aftermath(episode)
@@ -216,6 +235,15 @@ class _Run:
         shot = Shot(episode.steps[-1], tuple(seen), episode.screenshot(), _thought(stages), stages)
         for watcher in self._watchers:
             watcher.stepped(shot)
+
+    def _thought_s(self) -> float:
+        """Simulated seconds that the agent's last answer took."""
+        if isinstance(self._agent, Replayed):
+            return self._agent.thought_s
+        seconds = self._setup.latency_s
+        if self._setup.clock is Clock.MODEL and isinstance(self._agent, Thinker):
+            seconds += sum(stage.reply.seconds for stage in self._agent.stages if stage.reply is not None)
+        return round(seconds, 1)  # the shortest step of a scenario
 
     def _stages(self) -> tuple[Stage, ...]:
         stages = tuple(self._agent.stages) if isinstance(self._agent, Thinker) else ()
@@ -281,6 +309,7 @@ class _Run:
             steps=len(episode.steps) - 1,
             sim_seconds=round(episode.seconds, 3),
             trace_sha256=episode.trace_sha256,
+            agent_error=episode.failure,
             verdict=None if judged is None else verdict.as_json(judged),
             timeline=timeline(moments, episode.steps, None if judged is None else judged.goal_s),
             path=samples(moments, hand_over_s),

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Annotated, Any
 
-from automotive_cosim.episode.specification import End
+from automotive_cosim.episode.specification import Clock, End
 from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.run.harm import DriveFigures
 from automotive_cosim.run.row import InColumns, JobRow, Volatile, formerly
@@ -56,6 +56,12 @@ class EpisodeRow(JobRow):
     seed: int
     repeat: int
     mode: Mode = Mode.PROMPTED
+    clock: Clock = Clock.FIXED
+    """Whether the seconds that the model took passed on the road."""
+    latency_s: float = 0.0
+    """Simulated seconds that each answer took besides."""
+    thought_s: float = 0.0
+    """Simulated seconds that all answers took."""
     parameters: Mapping[str, Any] | None = None
     """Drawn for this seed; None without a hand-over."""
     country: str = ""
@@ -64,6 +70,8 @@ class EpisodeRow(JobRow):
     """None without a verdict."""
     reward: float = 0.0
     end: End = End.ERROR
+    agent_error: str | None = None
+    """How the agent's side failed, if that ended the episode: a failure like any other, never an error."""
     parts: Annotated[PartsHeld | None, InColumns("part")] = None
     goal_s: float | None = None
     """Seconds from the trigger since when the goal held to the end."""
@@ -102,6 +110,11 @@ class EpisodeRow(JobRow):
     def has_succeeded(self) -> bool:
         """Whether it was judged a success."""
         return self.success is True
+
+    @property
+    def has_run(self) -> bool:
+        """Whether it was judged or ended in an error; false for an episode that is only planned."""
+        return self.success is not None or self.error is not None
 
     @property
     def missing(self) -> tuple[str, ...]:

@@ -28,7 +28,7 @@ from automotive_cosim.scenery import open_scenario
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Simulations
-from automotive_cosim.traffic.options import Setup, command_line, read_configuration
+from automotive_cosim.traffic.options import Setup, command_line, read_configuration, run_options
 
 TASK = "hvac_fan_max"
 """A task whose trigger holds anywhere: the car is driving."""
@@ -147,20 +147,20 @@ def _bare(scenario: Scenario, steps: int) -> tuple[float | None, str | None]:
     begin_s = read_configuration(scenario.config).begin_s
     warm_s = begin_s + scenario.sumo.warm_up_s
     end_s = warm_s + steps * scenario.sumo.step_length_s
-    with _command(scenario) as command:
-        options = dict(zip(command[1::2], command[2::2], strict=True)) | {"--duration-log.disable": "false"}
+    with _options(scenario) as own:
+        options = own | {"duration-log.disable": "false"}
         with tempfile.TemporaryDirectory(prefix="automotive-cosim-bench-") as scratch:
             state = str(Path(scratch) / "warm.xml.gz")
-            saving = {"--save-state.times": f"{warm_s:g}", "--save-state.files": state, "--save-state.rng": "true"}
-            _seconds_of_program(program, options | saving | {"--end": f"{warm_s + 1:g}"}, warm_s)
-            going_on = {"--load-state": state, "--begin": f"{warm_s:g}", "--end": f"{end_s:g}"}
+            saving = {"save-state.times": f"{warm_s:g}", "save-state.files": state, "save-state.rng": "true"}
+            _seconds_of_program(program, options | saving | {"end": f"{warm_s + 1:g}"}, warm_s)
+            going_on = {"load-state": state, "begin": f"{warm_s:g}", "end": f"{end_s:g}"}
             found = [_seconds_of_program(program, options | going_on, end_s - warm_s) for _ in range(REPEATS)]
     return median(found) / steps, None
 
 
 def _seconds_of_program(program: Path, options: Mapping[str, str], simulated_s: float) -> float:
     """The time that SUMO reports, without loading; its real time factor has more digits than its duration."""
-    command = [str(program), "--verbose", *(word for option in options.items() for word in option)]
+    command = [str(program), "--verbose", *command_line(options)[1:]]
     done = subprocess.run(command, env=sumo_programs.environment(), capture_output=True, text=True, check=False)
     factor = re.search(r"Real time factor: ([\d.]+)", done.stdout)
     if done.returncode != 0 or factor is None:
@@ -171,9 +171,9 @@ def _seconds_of_program(program: Path, options: Mapping[str, str], simulated_s: 
 def _plain(scenario: Scenario, steps: int) -> float:
     """Seconds per step of a loop over libsumo."""
     seconds = []
-    with _command(scenario) as command:
+    with _options(scenario) as options:
         warm_up_steps = round(scenario.sumo.warm_up_s / scenario.sumo.step_length_s)
-        job = json.dumps({"command": command, "warm_up_steps": warm_up_steps, "steps": steps})
+        job = json.dumps({"command": command_line(options), "warm_up_steps": warm_up_steps, "steps": steps})
         for _ in range(REPEATS):
             loop = [sys.executable, "-m", "automotive_cosim.run.plain", job]
             done = subprocess.run(loop, capture_output=True, check=False)
@@ -184,10 +184,10 @@ def _plain(scenario: Scenario, steps: int) -> float:
 
 
 @contextmanager
-def _command(scenario: Scenario) -> Iterator[list[str]]:
-    """SUMO's command line, the same as in the environment's simulation."""
+def _options(scenario: Scenario) -> Iterator[dict[str, str]]:
+    """SUMO's options, the same as in the environment's simulation."""
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-bench-") as scratch:
-        yield command_line(read_configuration(scenario.config), Setup(scenario), Path(scratch))
+        yield run_options(read_configuration(scenario.config), Setup(scenario), Path(scratch))
 
 
 def _plan(scenario: Scenario) -> EgoPlan:

@@ -1,8 +1,9 @@
 """Stores a judge's input, so that later checks can judge the episode again.
 
 traces/<id>.judged.json.xz holds the moments of the agent's drive and of its baseline run from the hand-over to the
-end, the drawn parameters and the declaration. The geo-context is not stored: it is computed from the rest by the
-current rules. The values come back as they were, including their types, so a check sees no difference.
+end, what the counterfactual commands then, the drawn parameters and the declaration. The geo-context is not stored:
+it is computed from the rest by the current rules. The values come back as they were, including their types, so a
+check sees no difference.
 
 A value is a number, a truth value, a text, null, or a list whose first entry says what it is:
 
@@ -55,6 +56,9 @@ class Judged:
     """Moments of the baseline run over the same time."""
     watched_from_s: float | None = None
     """In monitoring mode, the simulation time at which the situation arose."""
+    counterfactual: Mapping[str, Any] | None = None
+    """What would be commanded at the end, had the agent given only the commands that belong to the goal; None in an
+    older file, which had none."""
 
 
 def judged_file(folder: Path, episode: str) -> Path:
@@ -69,7 +73,10 @@ def write_judged(folder: Path, episode: str, judged: Judged) -> None:
         OSError: the file cannot be written.
     """
     writer = _Writer()
-    value = writer.value(replace(judged, trace=_bare(judged.trace), baseline=_bare(judged.baseline)))
+    beside: Any = _changes(judged.trace[-1].commands, judged.counterfactual or {})
+    value = writer.value(
+        replace(judged, trace=_bare(judged.trace), baseline=_bare(judged.baseline), counterfactual=beside)
+    )
     whole = {"classes": writer.classes, "pool": writer.pool, "value": value}
     text = json.dumps(whole, ensure_ascii=False, separators=(",", ":"))
     path = judged_file(folder, episode)
@@ -82,8 +89,8 @@ def read_judged(folder: Path, episode: str) -> Judged:
     """Reads them back, each moment with its geo-context by the current rules.
 
     Raises:
-        UserError: there is no such file, it is damaged, or it was written by a version with other fields or with
-            requests to the road as text.
+        UserError: there is no such file, it is damaged, or it was written by a version with other fields, without
+            the counterfactual or with requests to the road as text.
     """
     path = judged_file(folder, episode)
     try:
@@ -102,7 +109,12 @@ def read_judged(folder: Path, episode: str) -> Judged:
         raise UserError(
             f"{path} has an older format with requests as text; judge it with the version that wrote it"
         )
-    return judged
+    if judged.counterfactual is None:
+        raise UserError(
+            f"{path} has an older format without the counterfactual; judge it with the version that wrote it"
+        )
+    beside: Any = judged.counterfactual
+    return replace(judged, counterfactual=_changed(judged.trace[-1].commands, *beside))
 
 
 def _bare(moments: Sequence[Moment]) -> tuple[Any, ...]:

@@ -16,7 +16,7 @@ from annotated_types import Ge, Gt, Le, MinLen
 from automotive_cosim import scenarios
 from automotive_cosim.agents import PROFILES, make_agent
 from automotive_cosim.contracts import Json
-from automotive_cosim.episode.specification import MAX_STEPS
+from automotive_cosim.episode.specification import MAX_STEPS, Clock
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.annotations import OneOf
 from automotive_cosim.formats.checked import checked
@@ -68,6 +68,10 @@ class Plan:
     """What an agent is told of where it is."""
     modes: Annotated[tuple[Annotated[str, OneOf(tuple(Mode))], ...], MinLen(1)] = (str(Mode.PROMPTED),)
     """When the agent is called: when the driver asks, or, only for safety tasks, before the situation arises."""
+    clock: Annotated[str, OneOf(tuple(Clock))] = str(Clock.FIXED)
+    """Whether the seconds that a model takes to answer pass on the road (``model``) or not (``fixed``)."""
+    latency: Annotated[tuple[Annotated[float, Ge(0), Le(600)], ...], MinLen(1)] = (0.0,)
+    """Simulated seconds that each answer takes besides, before its action."""
     repeats: Annotated[int, Ge(1)] = 1
     """Runs of each episode, for models that do not answer the same twice."""
     held_out: bool = False
@@ -130,13 +134,14 @@ class Plan:
         ]
 
     def _each(self) -> Iterator[EpisodeJob]:
-        for agent, model, (task, scenario), seed, geo, mode, repeat in product(
+        for agent, model, (task, scenario), seed, geo, mode, latency_s, repeat in product(
             self.agents,
             self.models,
             self._placed(),
             self.seeds,
             self.geo,
             self.modes,
+            self.latency,
             range(self.repeats),
         ):
             if mode == Mode.MONITORING and not task.is_safety:
@@ -155,6 +160,8 @@ class Plan:
                     geo=GeoInput(geo),
                     mode=Mode(mode),
                     held_out=self.held_out,
+                    clock=Clock(self.clock),
+                    latency_s=latency_s,
                 )
                 yield EpisodeJob(setup, repeat, self.limits)
 
@@ -188,9 +195,9 @@ class EpisodeJob:
         return self.scenario, self.setup.seed
 
     @property
-    def contestant(self) -> tuple[str, str, str, int]:
-        """Agent, model, geo control, mode and repeat."""
-        return self.setup.agent, self.setup.model, self.setup.geo, self.repeat
+    def contestant(self) -> tuple[str, str, str, float, int]:
+        """Agent, model, geo control, latency and repeat."""
+        return self.setup.agent, self.setup.model, self.setup.geo, self.setup.latency_s, self.repeat
 
     @property
     def kind(self) -> Hashable:
@@ -202,7 +209,9 @@ class EpisodeJob:
         """The drive up to the hand-over, on which no agent acts, except in monitoring mode."""
         if self.setup.mode == Mode.MONITORING:
             return self.id
-        return replace(self.setup, agent="", model="", geo=GeoInput.FULL, without=())
+        return replace(
+            self.setup, agent="", model="", geo=GeoInput.FULL, without=(), clock=Clock.FIXED, latency_s=0.0
+        )
 
     @property
     def wall_s(self) -> float:
@@ -227,6 +236,8 @@ class EpisodeJob:
             setup.scenario or "own",
             *([setup.mode] if setup.mode != Mode.PROMPTED else []),
             *(["held_out"] if setup.held_out else []),
+            *([f"{setup.clock}_clock"] if setup.clock != Clock.FIXED else []),
+            *([f"latency{setup.latency_s:g}"] if setup.latency_s else []),
         )  # fmt: skip
         words = "-".join(re.sub(r"[^A-Za-z0-9_.]+", "_", Path(word).name) for word in exactly)
         return f"{words[:150]}-{hashlib.sha256(canonical(exactly)).hexdigest()[:8]}"

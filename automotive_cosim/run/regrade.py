@@ -60,9 +60,17 @@ def regrade(folder: Path) -> Iterator[Regraded]:
 def _regraded(folder: Path, row: EpisodeRow, held: PartsHeld) -> Regraded:
     try:
         stored = read_judged(folder, row.id)
+        assert stored.counterfactual is not None
         instance = Instance(CATALOGUE[row.task], row.half, stored.goal, stored.parameters)
         verdict = judge(
-            instance, stored.trace, stored.baseline, stored.declared, stored.reason, stored.watched_from_s
+            instance,
+            stored.trace,
+            stored.baseline,
+            stored.counterfactual,
+            stored.declared,
+            stored.reason,
+            stored.watched_from_s,
+            row.agent_error,
         )
     except CosimError as error:
         return Regraded(row.id, row.has_succeeded, None, problem=str(error))

@@ -86,6 +86,7 @@ class _Player:
     def __init__(self, steps: Sequence[Json], channels: frozenset[Channel]) -> None:
         self.channels = channels
         self._steps = iter(steps)
+        self.thought_s = 0.0
 
     def reset(self, goal: str) -> None:
         """Does nothing."""
@@ -95,6 +96,7 @@ class _Player:
         step = next(self._steps, None)
         if step is None:
             raise OutOfBudgetError("the recording ends here")
+        self.thought_s = step.get("thought_s", 0.0)
         if step["action"] is None:
             raise ActionError(step["feedback"]["text"])
         return parse(step["action"])

@@ -84,6 +84,15 @@ def from_line(kind: type[R], line: bytes) -> R:
         raise ValueError(f"{where}: {first['msg']}" if where else first["msg"]) from error
 
 
+def from_json(kind: type[T], values: Json) -> T:
+    """The dataclass whose JSON form this is; keys that it does not have are ignored.
+
+    Raises:
+        ValueError: a field is missing or of another type.
+    """
+    return _form(kind).adapter.validate_python(values)
+
+
 def steady(row: JobRow) -> Json:
     """A row as JSON without the fields that may differ between two runs of one plan."""
     marks = _form(type(row)).marks

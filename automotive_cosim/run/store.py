@@ -1,6 +1,6 @@
 """The folder of an evaluation, written so that a kill at any moment loses at most the running episodes.
 
-manifest.json     plan, versions, state of the code, one entry per start
+manifest.json     plan and its number of episodes, versions, state of the code, one entry per start
 episodes.jsonl    one line per episode, appended and synced as it ends; of several lines of one id the last counts
 traces/           <id>.jsonl.gz: one line per step, as ``run`` writes them, and one with the whole result
 pictures/         <id>/step_000.jpg, ...: the cockpit after each step, of the selected episodes
@@ -60,7 +60,12 @@ class Store(Generic[R]):
 
 @contextmanager
 def opened(
-    folder: Path, plan: Json, kind: type[R], parts: Sequence[str] = ("traces", "pictures")
+    folder: Path,
+    plan: Json,
+    kind: type[R],
+    parts: Sequence[str] = ("traces", "pictures"),
+    *,
+    planned: int | None = None,
 ) -> Iterator[Store[R]]:
     """Creates or resumes an evaluation's folder, and locks it until it is closed.
 
@@ -69,6 +74,7 @@ def opened(
         plan: the plan; a folder that was begun with another is refused.
         kind: kind of its rows.
         parts: folders in it.
+        planned: how many jobs the plan has, for the manifest of an evaluation.
 
     Raises:
         UserError: it cannot be written, is not an evaluation's, is in use, or was begun with another plan or
@@ -80,7 +86,7 @@ def opened(
         for name in parts:
             (folder / name).mkdir(parents=True, exist_ok=True)
         with _locked(folder):
-            _manifest(folder, plan)
+            _manifest(folder, plan, planned)
             path = folder / "episodes.jsonl"
             _mend(path)
             with path.open("ab", buffering=0) as lines:
@@ -233,11 +239,12 @@ def _check(folder: Path) -> None:
             raise UserError(f"{folder} contains something else; give --out an empty folder or an evaluation's")
 
 
-def _manifest(folder: Path, plan: Json) -> None:
+def _manifest(folder: Path, plan: Json, planned: int | None) -> None:
     """Writes the manifest, or adds this start to an existing one."""
     now = {"started": datetime.now().astimezone().isoformat(timespec="seconds"), **stamp()}
     if not (folder / "manifest.json").exists():
-        manifest: Json = {"format": FORMAT, "plan": plan, "starts": [now]}
+        count = {} if planned is None else {"episodes": planned}
+        manifest: Json = {"format": FORMAT, "plan": plan, **count, "starts": [now]}
     else:
         manifest = read_manifest(folder)
         _same("plan", manifest["plan"], plan, folder)

@@ -5,22 +5,23 @@ Its folder is only read. What its files do not say is assumed and stated in ``Sc
 
 from __future__ import annotations
 
-import gzip
 import re
-import xml.etree.ElementTree as ET
+from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 from automotive_cosim.contracts import Weather
 from automotive_cosim.errors import ScenarioError
+from automotive_cosim.formats.xml import scan
 from automotive_cosim.geo.place import NOWHERE, Atlas, Place
 from automotive_cosim.scenarios import Ego, Scenario, Sumo, WeatherAt
 from automotive_cosim.scenery.relocation import zone_of
 from automotive_cosim.scenery.routes import drawn_trips
 from automotive_cosim.traffic.georeference import middle
 from automotive_cosim.traffic.network import Network, read_network
-from automotive_cosim.traffic.options import Configuration, read_configuration
+from automotive_cosim.traffic.options import DEFAULTS, FIXED, INPUTS, QUIET, Configuration, read_configuration
 from automotive_cosim.traffic.random_traffic import vehicles_per_hour
+from automotive_cosim.traffic.vetting import vet
 
 DAY = datetime(2026, 6, 16)
 """A Tuesday in June; SUMO's files have no date."""
@@ -58,6 +59,9 @@ def foreign_scenario(path: Path, *, to_be_moved: bool = False) -> Scenario:
     """
     configuration = read_configuration(path)
     network = read_network(configuration.net)
+    for name in INPUTS:
+        for file in filter(None, configuration.options.get(name, "").split(",")):
+            vet(Path(file))
     place = NOWHERE if network.unplaced else Atlas().place(*middle(network.map))
     notes = []
     if network.unplaced and not to_be_moved:
@@ -71,6 +75,7 @@ def foreign_scenario(path: Path, *, to_be_moved: bool = False) -> Scenario:
         count = vehicles_per_hour(network, random_per_km_h)
         notes.append(f"{path.name} has no traffic of its own: {count:.0f} vehicles per hour are drawn")
     sumo = _sumo(configuration, random_per_km_h)
+    notes += _overridden(configuration, sumo)
     name = re.sub(r"\.(net\.xml|sumocfg|xml)$", "", path.name.removesuffix(".gz"))
     return Scenario(
         name=name if name != "run" else path.absolute().parent.name,
@@ -106,6 +111,18 @@ def _sumo(configuration: Configuration, random_per_km_h: float) -> Sumo:
     )
 
 
+def _overridden(configuration: Configuration, sumo: Sumo) -> Iterator[str]:
+    """What a run sets or leaves out whatever the configuration says."""
+    run = DEFAULTS | configuration.options | FIXED
+    run["step-length"] = f"{sumo.step_length_s:g}"
+    if sumo.action_step_length_s != sumo.step_length_s:
+        run["default.action-step-length"] = f"{sumo.action_step_length_s:g}"
+    settings = [f"{name} {value}" for name, value in run.items() if configuration.options.get(name) != value]
+    yield f"{configuration.path.name} runs with {', '.join(settings)}, and with the run's seed"
+    if ignored := [name for name in configuration.ignored if name not in QUIET]:
+        yield f"{configuration.path.name} runs without its {', '.join(ignored)}"
+
+
 def _start(configuration: Configuration, sumo: Sumo, place: Place) -> datetime:
     """Time of the ego's departure: SUMO's seconds count from midnight unless they begin at 0."""
     zone = zone_of(place)
@@ -128,8 +145,6 @@ def _has_demand(configuration: Configuration) -> bool:
 
 
 def _has_travellers(file: Path) -> bool:
-    try:
-        with gzip.open(file) if file.suffix == ".gz" else file.open("rb") as stream:
-            return any(element.tag in TRAVELLERS for _, element in ET.iterparse(stream, events=("start",)))
-    except (ET.ParseError, OSError, EOFError) as error:
-        raise ScenarioError(f"{file} is not a SUMO additional file: {error}") from error
+    found: set[str] = set()
+    scan(file, lambda element, attributes, line: found.add(element), error=ScenarioError, what="a SUMO file")
+    return not found.isdisjoint(TRAVELLERS)

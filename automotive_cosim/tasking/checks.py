@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar
 
 from automotive_cosim.cockpit.signals import Signal
-from automotive_cosim.contracts import AlertKind, RoadRequest
+from automotive_cosim.contracts import AlertKind, Reroute, RoadRequest
 from automotive_cosim.cosim.moment import Moment
 
 
@@ -234,8 +234,9 @@ class RoadAsked:
 
     @property
     def writes(self) -> frozenset[str]:
-        """The key of the requests."""
-        return frozenset({"requests"})
+        """The key of the requests, and of the destination if one is asked for."""
+        sets_out = isinstance(self.request, Reroute) and bool(self.request.destination)
+        return frozenset({"requests", "navigation.destination"} if sets_out else {"requests"})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Whether exactly that request was made since the start."""
@@ -279,8 +280,8 @@ class AlertGiven:
 
     @property
     def writes(self) -> frozenset[str]:
-        """The keys of the alerts and of the request to the driver that comes with one."""
-        return frozenset({"alerts", "requests"})
+        """The key of the alerts."""
+        return frozenset({"alerts"})
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Whether there was exactly one alert since the start, of this kind."""

@@ -37,8 +37,6 @@ class Purpose(StrEnum):
     """The order in which trips are tried."""
     WATCH = "watch"
     """When a watch begins, and what arrives during it."""
-    COLLATERAL = "collateral"
-    """Unrelated changes with which a proof tries the verdict."""
 
 
 @dataclass(frozen=True, slots=True)

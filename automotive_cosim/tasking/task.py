@@ -152,9 +152,15 @@ class Half:
     reasons: frozenset[Reason] = frozenset()
     """Reason codes that fit a declined task; scored apart, not part of success."""
     may_write: frozenset[str] = frozenset()
-    """Keys of ``Moment.commands`` that may differ in addition to the goal's own."""
+    """Keys of ``Moment.commands`` that may be commanded in addition to the goal's own. What the car itself couples
+    to a command need not be named."""
     ways: tuple[tuple[Move, ...], ...] = ()
     """Other reference solutions: to every further end state that the goal accepts, or in another order."""
+
+    @property
+    def allowed_writes(self) -> frozenset[str]:
+        """Keys of ``Moment.commands`` that may be commanded: the goal's own, and those allowed beside it."""
+        return self.goal.writes | self.may_write
 
 
 @dataclass(frozen=True, slots=True)

@@ -215,7 +215,7 @@ class Driver:
                 return Answer(False, why_not) if why_not else self._hear(request, state, "the driver is asked to")
             case PullOver():
                 if state.road.in_tunnel:
-                    return Answer(False, "stopping in a tunnel is dangerous; it can be done behind it")
+                    return Answer(False, "stopping in a tunnel is dangerous; ask again after it")
                 return self._hear(request, state, "the driver is asked to")
             case Cruise(speed_kmh):
                 return self._cruise(speed_kmh, state)
@@ -407,10 +407,10 @@ class Driver:
 def _too_slow(speed_kmh: float, state: DrivingState) -> str:
     """Why that speed would be dangerous or pointless; empty if it is not."""
     if not speed_kmh >= SLOWEST_REQUEST_KMH:
-        return f"{speed_kmh:g} km/h is no speed to drive at; ask to pull over to stop"
+        return f"{speed_kmh:g} km/h is not a valid speed; to stop, ask to pull over"
     limit_mps = state.road.posted_limit_mps
     fast_kmh = (limit_mps or 130 / KMH_PER_MPS) * KMH_PER_MPS
     is_crawling = state.road.road_class in FAST_ROADS and speed_kmh < fast_kmh / 2
     if is_crawling and state.around.relative_speed > SLOW_TRAFFIC:
-        return f"{speed_kmh:g} km/h is dangerous where the others drive {fast_kmh:.0f}"
+        return f"{speed_kmh:g} km/h is dangerous where traffic drives {fast_kmh:.0f}"
     return ""

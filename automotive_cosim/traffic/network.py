@@ -6,9 +6,11 @@ SUMO knows lanes, speeds and shapes. Everything else from the map is in the edge
 | key | meaning |
 |---|---|
 | ``maxspeed`` | present: the limit is posted, else it was assumed; ``none``: there is no limit |
+| ``maxspeed:assumed`` | ``none``: no limit is posted, and the import assumed that there is none |
 | ``tunnel`` | anything except ``no``: in a tunnel |
 | ``lit`` | ``yes`` or ``no``: street lighting |
 | ``zone:traffic`` | ``XX:urban``, ``XX:rural`` or ``XX:motorway``: built-up or not |
+| ``zone:traffic:assumed`` | the same, assumed from the density of the streets |
 | ``lane_markings`` | ``no``: no centre line |
 | ``maxspeed:conditional`` | limits at certain hours (``posted``) |
 | ``hazard`` | ``school_zone``: beside a school |
@@ -19,21 +21,20 @@ The file is read with ``iterparse``, about twice as fast as sumolib's reader and
 
 from __future__ import annotations
 
-import gzip
 import xml.etree.ElementTree as ET
-import zlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from io import BufferedReader
 from pathlib import Path
+from typing import IO
 
 from automotive_cosim.contracts import KMH_PER_MPS, LimitSource, Road, RoadNetwork
 from automotive_cosim.errors import ScenarioError
+from automotive_cosim.formats.files import opened
 from automotive_cosim.traffic import georeference
 from automotive_cosim.traffic.posted import TimedLimit, timed_limits
 
 NO_LIMIT_FROM_MPS = 39.0
-"""A lane at least this fast whose edge says ``maxspeed=none`` has no limit: SUMO's OSM import writes 142 km/h."""
+"""A lane at least this fast whose edge says that there is none has no limit: SUMO's OSM import writes 142 km/h."""
 
 DERESTRICTED_MPS = 142 / KMH_PER_MPS
 """SUMO's speed for roads without a limit, as in its own import."""
@@ -74,6 +75,8 @@ class Edge:
     """Limits that are posted for certain hours."""
     timed_limit: TimedLimit | None = None
     """The one of them that is in force; ``limit_mps`` is the present limit."""
+    built_up_assumed: bool | None = None
+    """What the import assumed where the map does not say: for reports, no verdict rests on it."""
 
     @property
     def limit_hours(self) -> str:
@@ -142,11 +145,11 @@ def read_network(path: Path) -> Network:
     """
     reading = _Reading()
     try:
-        with _open(path) as file:
+        with opened(path) as file:
             _scan(file, reading, path)
     except FileNotFoundError as error:
         raise ScenarioError(f"the network {path} is missing") from error
-    except (ET.ParseError, OSError, EOFError, zlib.error, KeyError, ValueError) as error:
+    except (ET.ParseError, OSError, KeyError, ValueError) as error:
         raise ScenarioError(
             f"{path} is not a complete SUMO network ({error}); build it again with netconvert"
         ) from error
@@ -175,20 +178,16 @@ def root_of(path: Path) -> ET.Element:
         ScenarioError: the file is missing or not XML.
     """
     try:
-        with _open(path) as file:
+        with opened(path) as file:
             root: ET.Element = next(ET.iterparse(file, events=("start",)))[1]
     except FileNotFoundError as error:
         raise ScenarioError(f"{path} is missing") from error
-    except (ET.ParseError, OSError, EOFError, zlib.error, StopIteration) as error:
+    except (ET.ParseError, OSError, ValueError, LookupError, StopIteration) as error:
         raise ScenarioError(f"{path} is not XML: {error}") from error
     return root
 
 
-def _open(path: Path) -> gzip.GzipFile | BufferedReader:
-    return gzip.open(path) if path.suffix == ".gz" else path.open("rb")
-
-
-def _scan(file: gzip.GzipFile | BufferedReader, reading: _Reading, path: Path) -> None:
+def _scan(file: IO[bytes], reading: _Reading, path: Path) -> None:
     events = ET.iterparse(file, events=("start", "end"))
     _, root = next(events)
     if root.tag != "net":
@@ -225,7 +224,10 @@ def _take_edge(element: ET.Element, reading: _Reading) -> None:
 def _edge(element: ET.Element, lanes: list[ET.Element]) -> Edge:
     params = {param.get("key", ""): param.get("value", "") for param in element.iterfind("param")}
     speed_mps = max(float(lane.attrib["speed"]) for lane in lanes)
-    unlimited = speed_mps >= NO_LIMIT_FROM_MPS and params.get("maxspeed") == "none"
+    unlimited = speed_mps >= NO_LIMIT_FROM_MPS and "none" in (
+        params.get("maxspeed"),
+        params.get("maxspeed:assumed"),
+    )
     middle = lanes[len(lanes) // 2]
     return Edge(
         edge_id=element.attrib["id"],
@@ -240,7 +242,8 @@ def _edge(element: ET.Element, lanes: list[ET.Element]) -> Edge:
         limit_source=LimitSource.POSTED if params.get("maxspeed") else LimitSource.ASSUMED,
         in_tunnel=params.get("tunnel", "no") != "no",
         lit={"yes": True, "no": False}.get(params.get("lit", "")),
-        built_up=BUILT_UP.get(params.get("zone:traffic", "").rpartition(":")[2]),
+        built_up=_built_up(params.get("zone:traffic", "")),
+        built_up_assumed=_built_up(params.get("zone:traffic:assumed", "")),
         centre_line={"yes": True, "no": False}.get(params.get("lane_markings", "")),
         shape_m=_shape(element.get("shape") or middle.attrib["shape"]),
         bus_lane=any(_for_buses(lane) for lane in element.iterfind("lane")),
@@ -248,6 +251,10 @@ def _edge(element: ET.Element, lanes: list[ET.Element]) -> Edge:
         school_zone=params.get("hazard") == "school_zone",
         timed_limits=timed_limits(params.get("maxspeed:conditional", ""))[0],
     )
+
+
+def _built_up(zone: str) -> bool | None:
+    return BUILT_UP.get(zone.rpartition(":")[2])
 
 
 def _open_to_cars(lane: ET.Element) -> bool:

@@ -1,61 +1,26 @@
 """A scenario's ``.sumocfg`` and ``scenario.toml`` -> SUMO's command line, without outputs.
 
-The scenario's files are only read. Options that make SUMO write are omitted, files are named by absolute paths, and
-additional files whose detectors would write are copied to a scratch folder without their outputs.
+The scenario's files are only read. Of its options those in ``vocabulary`` are taken, files are named by absolute
+paths, and those that would write are copied to a scratch folder without their outputs (``vetting``).
 """
 
 from __future__ import annotations
 
-import gzip
 import math
-import xml.etree.ElementTree as ET
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from automotive_cosim.errors import ScenarioError
+from automotive_cosim.errors import ScenarioError, UnknownNameError
+from automotive_cosim.formats.files import is_file
+from automotive_cosim.formats.xml import scan
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic import random_traffic
 from automotive_cosim.traffic.network import read_network, root_of
+from automotive_cosim.traffic.vetting import vet
+from automotive_cosim.traffic.vocabulary import IGNORED, REFUSED, TAKEN
 
-ALIASES = {
-    "n": "net-file",
-    "net": "net-file",
-    "r": "route-files",
-    "routes": "route-files",
-    "a": "additional-files",
-    "additional": "additional-files",
-    "b": "begin",
-    "e": "end",
-    "l": "log",
-}
-"""Short option names that a configuration may use."""
-
-INPUTS = ("net-file", "route-files", "additional-files")
-
-DROPPED = frozenset(
-    {
-        "end",
-        "log",
-        "message-log",
-        "error-log",
-        "netstate-dump",
-        "gui-settings-file",
-        "start",
-        "quit-on-end",
-        "delay",
-        "threads",
-        "device.rerouting.threads",
-        "random",
-        "verbose",
-        "no-internal-links",
-        "remote-port",
-        "save-configuration",
-        "duration-log.statistics",
-    }
-)
-"""Options of a configuration that a run in this package ignores, in addition to everything that names an output,
-SUMO's state files and the ``ssm`` device's file. ``threads``: forks must have one; ``end`` is the caller's.
-"""
+INPUTS = ("net-file", "route-files", "additional-files", "weight-files")
 
 DEFAULTS = {
     "time-to-teleport": "300",
@@ -73,16 +38,11 @@ QUIET = {
     "xml-validation.net": "never",
 }
 
-DETECTORS = "e1Detector inductionLoop e2Detector laneAreaDetector e3Detector entryExitDetector instantInductionLoop"
-COLLECTORS = "edgeData laneData routeProbe vTypeProbe calibrator timedEvent"
-WRITERS = frozenset(f"{DETECTORS} {COLLECTORS}".split())
-"""Elements of an additional file that write to their ``file``, ``output`` or ``dest``."""
+FIXED = {"collision.action": "remove"}
+"""Options of every run: SUMO's default would teleport who collides, and the ego's collision must end its drive."""
 
 OUTPUTS = ("fcd.xml", "tripinfo.xml")
 """SUMO's own outputs that a run may write."""
-
-NOWHERE = "NUL"
-"""SUMO's name for no file, on every platform."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +66,9 @@ class Configuration:
     path: Path
     net: Path
     options: dict[str, str]
-    """Option name -> value, without the outputs; files absolute."""
+    """Option name -> value, only those that are taken; files absolute."""
+    ignored: tuple[str, ...] = ()
+    """Names of the options that have no effect here."""
 
     @property
     def begin_s(self) -> float:
@@ -142,37 +104,75 @@ def read_configuration(path: Path) -> Configuration:
     """
     if root_of(path).tag == "net":
         return Configuration(path, path.absolute(), {"net-file": str(path.absolute())})
-    try:
-        root = ET.parse(path).getroot()
-    except (ET.ParseError, OSError) as error:
-        raise ScenarioError(f"{path} is not a SUMO configuration: {error}") from error
-    options: dict[str, str] = {}
-    for element in root.iter():
-        value = element.get("value", element.get("v"))
-        name = ALIASES.get(element.tag, element.tag)
-        if value is not None and not _dropped(name):
-            options[name] = _absolute(value, path.parent)
-    for name in INPUTS:
-        for file in options.get(name, "").split(","):
-            if file and not Path(file.strip()).is_file():
-                raise ScenarioError(f"{path.name}: its {name} {file.strip()!r} is missing in {path.parent}")
-    if not options.get("net-file"):
+    reader = _Reader(path)
+    scan(path, reader.start, text=reader.text, error=ScenarioError, what="a SUMO configuration")
+    if "net-file" not in reader.options:
         raise ScenarioError(f"{path} names no net-file")
-    return Configuration(path, Path(options["net-file"]), options)
+    return Configuration(path, Path(reader.options["net-file"]), reader.options, tuple(reader.ignored))
 
 
-def command_line(configuration: Configuration, setup: Setup, scratch: Path) -> list[str]:
-    """The command line of SUMO, its name first.
+@dataclass(slots=True)
+class _Reader:
+    """Takes the options of a configuration."""
+
+    path: Path
+    options: dict[str, str] = field(default_factory=dict)
+    ignored: dict[str, None] = field(default_factory=dict)
+    """Names, in their order."""
+
+    def start(self, element: str, attributes: dict[str, str], line: int) -> None:
+        """Takes an option, or passes a section."""
+        value = attributes.get("value", attributes.get("v"))
+        if value is None:
+            return
+        where = f"{self.path} line {line}"
+        if element in TAKEN:
+            name = TAKEN[element]
+            if value:
+                self.options[name] = self._files(name, value, where) if name in INPUTS else value
+        elif element in IGNORED:
+            self.ignored[IGNORED[element]] = None
+        elif element in REFUSED:
+            raise ScenarioError(f"{where}: <{element}> names files that are not checked here; remove it")
+        else:
+            raise ScenarioError(
+                f"{where}: {UnknownNameError('option of SUMO', element[:80], TAKEN, 'sumo --help')}"
+            )
+
+    def text(self, piece: str, line: int) -> None:
+        """Refuses the old form, which SUMO still reads."""
+        if piece.strip():
+            raise ScenarioError(f'{self.path} line {line}: {piece.strip()[:80]!r}; write <option value="..."/>')
+
+    def _files(self, name: str, value: str, where: str) -> str:
+        """The comma-separated files, absolute."""
+        files = [self.path.parent / part.strip() for part in value.split(",") if part.strip()]
+        for file in files:
+            if not is_file(file):
+                raise ScenarioError(f"{where}: its {name} {str(file)!r} is missing")
+        return ",".join(str(file.absolute()) for file in files)
+
+
+def command_line(options: Mapping[str, str]) -> list[str]:
+    """The command line of SUMO, its name first. Each option is one word, so that no value can pass as an option."""
+    return ["sumo", *(f"--{name}={value}" for name, value in options.items())]
+
+
+def run_options(configuration: Configuration, setup: Setup, scratch: Path) -> dict[str, str]:
+    """The options of a run, name -> value.
 
     Args:
         configuration: the scenario's own.
         setup: seed, and the scenario's step lengths, scale and rerouting.
         scratch: an empty folder for changed files.
+
+    Raises:
+        ScenarioError: a file of the scenario is not one of SUMO's, or may write (``vetting``).
     """
-    options = DEFAULTS | configuration.options | QUIET
-    if files := options.get("additional-files"):
-        silenced = (silence(Path(file.strip()), scratch) for file in files.split(","))
-        options["additional-files"] = ",".join(str(file) for file in silenced)
+    options = DEFAULTS | configuration.options | QUIET | FIXED
+    for name in INPUTS:
+        if files := options.get(name):
+            options[name] = ",".join(str(vet(Path(file), scratch)) for file in files.split(","))
     sumo = setup.scenario.sumo
     step_s = sumo.step_length_s
     if sumo.random_traffic_per_km_h > 0:
@@ -185,7 +185,6 @@ def command_line(configuration: Configuration, setup: Setup, scratch: Path) -> l
         "seed": str(setup.seed),
         "scale": f"{sumo.scale:g}",
         "device.rerouting.probability": f"{sumo.background_rerouting:g}",
-        "collision.action": "remove",
     }
     if sumo.lateral_resolution_m is not None:
         options["lateral-resolution"] = f"{sumo.lateral_resolution_m:g}"
@@ -198,52 +197,4 @@ def command_line(configuration: Configuration, setup: Setup, scratch: Path) -> l
             "tripinfo-output": str(setup.outputs / "tripinfo.xml"),
             "precision": "6",
         }
-    return ["sumo"] + [part for name, value in options.items() for part in (f"--{name}", value)]
-
-
-def silence(path: Path, scratch: Path) -> Path:
-    """The additional file, or a copy of it in ``scratch`` that writes nothing if it would.
-
-    Raises:
-        ScenarioError: it is not XML.
-    """
-    try:
-        with gzip.open(path) if path.suffix == ".gz" else path.open("rb") as file:
-            tree = ET.parse(file)
-    except (ET.ParseError, OSError, EOFError) as error:
-        raise ScenarioError(f"{path} is not a SUMO additional file: {error}") from error
-    changed = [_cut_outputs(element, path.parent, scratch) for element in tree.iter()]
-    if not any(changed):
-        return path
-    copy = scratch / f"{len(list(scratch.iterdir()))}-{path.name.removesuffix('.gz')}"
-    tree.write(copy, encoding="utf-8")
-    return copy
-
-
-def _cut_outputs(element: ET.Element, folder: Path, scratch: Path) -> bool:
-    """Removes one element's outputs and makes its input paths absolute; true if it had outputs."""
-    if element.tag in WRITERS:
-        names = [name for name in ("file", "output", "dest") if element.get(name)]
-        element.attrib.update(dict.fromkeys(names, NOWHERE))
-        return bool(names)
-    if element.tag == "include":
-        included = folder / element.get("href", "")
-        silenced = silence(included, scratch)
-        element.set("href", str(silenced.absolute()))
-        return silenced != included
-    for name in ("file", "imgFile"):
-        if element.get(name):
-            element.set(name, str((folder / element.attrib[name]).absolute()))
-    return False
-
-
-def _dropped(name: str) -> bool:
-    return name in DROPPED or "output" in name or name.startswith(("save-state", "device.ssm", "gui", "step-log"))
-
-
-def _absolute(value: str, folder: Path) -> str:
-    """File names among the comma-separated parts, made absolute; everything else as it is."""
-    parts = [part.strip() for part in value.split(",")]
-    return ",".join(
-        str((folder / part).absolute()) if part and (folder / part).is_file() else part for part in parts
-    )
+    return options

@@ -15,6 +15,7 @@ import signal
 import socket
 import stat
 import sys
+import tempfile
 import time
 import traceback
 from collections.abc import Sequence
@@ -91,6 +92,8 @@ class Server:
         """Loads and warms up; returns the network."""
         self._set_alarm(LOADING_LIMIT_S)
         self._world = World(setup)
+        with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as nowhere:
+            os.chdir(nowhere)  # which is gone then: nothing can be made under a relative name
         self._set_alarm()
         self._world.warm_up(self._progress)
         gc.collect()

@@ -22,7 +22,7 @@ from pathlib import Path
 
 from automotive_cosim.errors import ScenarioError, TrafficError
 from automotive_cosim.scenarios import Scenario
-from automotive_cosim.traffic.options import Setup, command_line, read_configuration
+from automotive_cosim.traffic.options import Setup, command_line, read_configuration, run_options
 from automotive_cosim.traffic.sumo_programs import environment, first_error, program
 
 HALTED_SHARE_LIMIT = 0.25
@@ -160,14 +160,13 @@ def measure(
 
 
 def _options(setup: Setup, end_s: float, scratch: Path) -> list[str]:
-    _, *arguments = command_line(read_configuration(setup.scenario.config), setup, scratch)
-    options = dict(zip(arguments[::2], arguments[1::2], strict=True)) | {
-        "--end": f"{end_s:g}",
-        "--time-to-teleport": str(LONGEST_WAIT_S),
-        "--summary-output": "stdout",
-        "--summary-output.period": "1",
+    options = run_options(read_configuration(setup.scenario.config), setup, scratch) | {
+        "end": f"{end_s:g}",
+        "time-to-teleport": str(LONGEST_WAIT_S),
+        "summary-output": "stdout",
+        "summary-output.period": "1",
     }
-    return [part for option in options.items() for part in option]
+    return command_line(options)[1:]
 
 
 _ATTRIBUTE = re.compile(r'(\w+)="(-?[\d.]+)"')

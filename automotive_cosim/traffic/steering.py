@@ -151,10 +151,10 @@ class SumoPedals:
     def reroute(self, request: Reroute, state: DrivingState) -> str:
         """Takes another route; the next turn stays if it is too near to change."""
         if state.road.edge_id.startswith(":"):
-            raise RefusedError("inside a junction the way is fixed; ask again behind it")
+            raise RefusedError("inside a junction the route is fixed; ask again after it")
         edges = self._given(request.edges) if request.edges else self._found(request.destination, state)
         if request == Reroute() and edges == self._rest():
-            return "this is the quickest way"
+            return "this is the quickest route"
         try:
             self._sumo.set_route(self._ego, edges)
         except self._sumo.refusals as error:
@@ -177,7 +177,7 @@ class SumoPedals:
             raise RefusedError("the next junction is too near for another turn")
         for edge_id, following in pairwise(edge_ids):
             if following not in self._network.crossings.get(edge_id, {}):
-                raise RefusedError(f"there is no way from {edge_id!r} to {following!r}")
+                raise RefusedError(f"there is no route from {edge_id!r} to {following!r}")
         return edge_ids
 
     def _found(self, destination: str, state: DrivingState) -> tuple[str, ...]:
@@ -189,9 +189,9 @@ class SumoPedals:
                 is_better = bool(destination) or self._router.is_quicker(found, rest, self._driven_m())
                 return found if is_better else rest
         raise RefusedError(
-            f"there is no way to {destination} from here"
+            f"there is no route to {destination} from here"
             if destination
-            else "there is no way to the goal from here"
+            else "there is no route to the destination from here"
         )
 
     def _beside(self, edge_id: str) -> tuple[str, ...]:

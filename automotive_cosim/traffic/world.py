@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import chdir
 from dataclasses import replace
 from difflib import get_close_matches
 from itertools import pairwise
@@ -19,7 +20,7 @@ from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.ego import FOR_GOOD_S, Driver
 from automotive_cosim.traffic.instant import Instant, KnownInstant
 from automotive_cosim.traffic.network import read_network
-from automotive_cosim.traffic.options import Setup, command_line, read_configuration
+from automotive_cosim.traffic.options import Setup, command_line, read_configuration, run_options
 from automotive_cosim.traffic.profiles import DriverProfile, profile
 from automotive_cosim.traffic.road_weather import G_MPS2, Forecast, Surface
 from automotive_cosim.traffic.router import Router
@@ -62,7 +63,9 @@ class World:
         """Whether SUMO writes outputs, which are completed on closing."""
         self._sumo = load_library()
         with tempfile.TemporaryDirectory(prefix="automotive-cosim-") as scratch:
-            start(self._sumo, command_line(configuration, setup, Path(scratch)))
+            options = run_options(configuration, setup, Path(scratch))
+            with chdir(scratch):
+                start(self._sumo, command_line(options))
         self._steps = 0
         self.vehicle_count = 0
         """Number of vehicles, kept here because SUMO counts them one by one, which costs more than all the rest."""

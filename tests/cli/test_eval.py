@@ -36,7 +36,7 @@ def test_a_run_is_told_and_the_same_command_finds_it_done(cli, tmp_path):
     again = cli("eval", "--agents", "oracle", *GRID)
     assert again.code == 0
     assert "1 of 1 episodes; 100% succeeded" in again.out
-    assert "1 of 1 judged episode succeeded; 0 errors" in again.out
+    assert "1 succeeded; 1 of 1 planned episode judged\n" in again.out
     assert len(list((tmp_path / "runs").iterdir())) == 1
 
 
@@ -48,7 +48,7 @@ def test_errors_are_listed_and_set_the_exit_code(cli, tmp_path):
     ran = cli("eval", "--agents", "oracle,raises:Raises", *GRID, "--out", "e")
     assert ran.code == 3
     assert "RuntimeError: broken" in ran.out
-    assert "1 of 1 judged episode succeeded; 1 error\n" in ran.out
+    assert "1 succeeded; 1 of 2 planned episodes judged, 1 error\n" in ran.out
     assert ran.err.startswith("error: 1 of 2 episodes ended in an infrastructure error")
 
 
@@ -136,7 +136,7 @@ def test_a_stored_episode_is_run_again_and_compared_step_by_step(cli, tmp_path):
     assert again.out.count("the same\n") >= 4
     assert "all 3 steps are the same" in again.out
     judged_again = cli("regrade", "e")
-    assert (judged_again.code, judged_again.out) == (0, "0 of 1 verdicts change\n")
+    assert (judged_again.code, judged_again.out) == (0, "0 of 1 verdicts change; 1 of 1 planned episode judged\n")
     lines = read_trace(tmp_path / "e", name)
     lines[2]["signals"]["Vehicle.Speed"] = -1.0
     write_trace(tmp_path / "e", name, lines)

@@ -1,3 +1,4 @@
+import json
 import subprocess
 import sys
 
@@ -106,3 +107,36 @@ def test_other_ends_have_codes_of_their_own(cli, monkeypatch, error, code):
     assert ran.out == ""
     assert ran.err.startswith("error: ")
     assert len(ran.err.splitlines()) == 1
+
+
+FILES = {
+    ("report",), ("playback",), ("screens",), ("schema",), ("study", "report"), ("tasks", "export"),
+    ("signals", "export"), ("scenarios", "render"), ("scenarios", "import"), ("scenarios", "day"),
+    ("scenarios", "download"),
+}  # fmt: skip
+"""Commands whose result is a file."""
+
+
+@pytest.mark.parametrize("command", list(every_command()), ids=" ".join)
+def test_every_command_that_lists_or_reports_does_so_as_json(cli, command):
+    told = cli(*command, "--help").out
+    is_group = "COMMAND" in told.split("Options")[0]
+    assert ("--json" in told) is (command not in FILES and not is_group)
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "agents list",
+        "agents show t3a",
+        "scenarios list",
+        "scenarios show grid",
+        "signals list",
+        "tasks show hvac_fan_max",
+    ],
+)
+def test_json_is_one_object_and_nothing_else(cli, command):
+    ran = cli(*command.split(), "--json")
+    assert ran.code == 0
+    assert isinstance(json.loads(ran.out), dict)
+    assert ran.err == ""

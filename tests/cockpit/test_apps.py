@@ -27,7 +27,6 @@ from automotive_cosim.cockpit.signals import (
     Signal,
     difference,
 )
-from automotive_cosim.cockpit.vehicle import COUPLED
 from automotive_cosim.contracts import (
     Answer,
     Cruise,
@@ -39,6 +38,8 @@ from automotive_cosim.contracts import (
     RouteOption,
     Surroundings,
 )
+
+from .couplings import COUPLED
 
 Make = Callable[..., Cockpit]
 OK, NO_EFFECT = FeedbackCode.OK, FeedbackCode.NO_EFFECT
@@ -129,7 +130,7 @@ def test_turns_are_named_by_their_angle_and_the_street_they_lead_to() -> None:
         ("Turn right", "B", 200.0),
         ("Keep left", "C", 300.0),
         ("Turn left", "D", 400.0),
-        ("Turn round", "E", 500.0),
+        ("Make a U-turn", "E", 500.0),
         ("Arrive", "E", 600.0),
     ]
     assert turns(roads, ()) == turns(roads, ("unknown",)) == ()
@@ -449,7 +450,7 @@ def test_a_film_of_the_manual_plays_while_parked_alone(parked: Cockpit, around: 
     assert not [ink.text for ink in render(parked.tree).inks if ink.cut]
     parked.sense(replace(still, driving=replace(still.driving, time_s=still.driving.time_s + 3)), 3.0)
     picture = next(one for one in parked.elements() if one.resource_id == "manual.film.picture")
-    assert picture.content_description == "The film is at 0:03 of 0:40"
+    assert picture.content_description == "The video is at 0:03 of 0:40"
     assert (parked.screenshot() != before).any(), "it moves"
     ended = parked.copy()
     ended.sense(replace(still, driving=replace(still.driving, time_s=still.driving.time_s + 41)), 38.0)
@@ -463,7 +464,7 @@ def test_a_film_of_the_manual_plays_while_parked_alone(parked: Cockpit, around: 
         assert parked.commands()["apps.film"] == "", "standing in gear and moving"
         assert press(parked, "manual.film") is FeedbackCode.RESTRICTED
         button = next(one for one in parked.elements() if one.resource_id == "manual.film")
-        assert "Films play while parked" in button.content_description
+        assert "Videos play only while parked" in button.content_description
         assert not button.is_enabled
 
 

@@ -23,7 +23,9 @@ from automotive_cosim.cockpit.signals import (
     difference,
     named,
 )
-from automotive_cosim.cockpit.vehicle import COUPLED, HELD, MODES, Vehicle
+from automotive_cosim.cockpit.vehicle import HELD, MODES, Vehicle
+
+from .couplings import COUPLED
 
 MILD = Air(15.0, 60.0, 0.0, 0.0)
 

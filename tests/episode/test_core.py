@@ -14,7 +14,7 @@ from automotive_cosim.episode.loop import play
 from automotive_cosim.episode.session import Session
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import Conditions, End, EpisodeSpec, SeedSource, mode_of
-from automotive_cosim.errors import ActionError, OutOfBudgetError, UnknownNameError, UserError
+from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError, UnknownNameError, UserError
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.tasking.task import Mode
 
@@ -90,6 +90,15 @@ def test_who_may_think_no_further_is_judged_as_it_stands(begin):
     assert play(episode, Acts(WAIT, OutOfBudgetError("spent"))) is End.OUT_OF_BUDGET
     assert episode.verdict is not None
     assert not episode.verdict.declared.ok
+
+
+def test_who_can_act_no_more_has_failed_whatever_was_done(begin):
+    episode = begin()
+    assert play(episode, Acts(WAIT, AgentError("it crashed"))) is End.AGENT_FAILED
+    assert episode.failure == "it crashed"
+    assert episode.verdict is not None
+    assert not episode.verdict.declared.ok
+    assert "it crashed" in episode.verdict.declared.why
 
 
 @pytest.mark.parametrize(

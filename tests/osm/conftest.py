@@ -73,7 +73,9 @@ def village(origin: tuple[float, float] = ORIGIN) -> Map:
     made.way("n52 t1", **main, maxspeed="50")
     made.way("t1 t2", **main, maxspeed="50", tunnel="yes", lit="yes")
     made.way("t2 east", highway="secondary", ref="D 17", maxspeed="80")
-    made.way("n20 n21 n22 n23 n24", highway="tertiary", name="Rue du Lavoir", maxspeed="30")
+    made.way(
+        "n20 n21 n22 n23 n24", highway="tertiary", name="Rue du Lavoir", maxspeed__type="FR:urban", maxspeed="30"
+    )
     for row in (0, 1, 3, 4):
         names = " ".join(f"n{column}{row}" for column in range(6))
         made.way(names, highway="residential", name=f"Rue des Prés {row}")

@@ -9,8 +9,10 @@ from typing import Any
 import pytest
 
 from automotive_cosim.errors import ImportMapError
+from automotive_cosim.geo.place import shipped
 from automotive_cosim.osm import Area, extract, network
 from automotive_cosim.osm.network import Built
+from automotive_cosim.osm.roads import describe
 from automotive_cosim.traffic.congestion import Route
 from automotive_cosim.traffic.network import Edge
 
@@ -32,9 +34,9 @@ def built(sumo: None, make_village: Callable[..., Any], tmp_path_factory: pytest
     made.nodes["lost"] = (1500.0, 900.0)
     made.node_tags["lost"] = {"highway": "speed_camera"}
     (folder / "village.osm").write_text(made.xml(), encoding="utf-8")
-    roads = extract.read(folder / "village.osm")
-    extract.write(roads, folder / "roads.osm", "FR")
-    return network.convert(folder / "roads.osm", folder / "village.net.xml.gz", "FR", roads.cameras)
+    mapped = extract.read(folder / "village.osm")
+    roads = describe(mapped, shipped(), "FR")
+    return network.convert(mapped, roads, folder / "village.net.xml.gz", "FR", folder)
 
 
 def named(built: Built, name: str) -> list[Edge]:

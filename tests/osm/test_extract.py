@@ -7,6 +7,7 @@ import pytest
 
 from automotive_cosim.errors import ImportMapError, SetupError
 from automotive_cosim.osm import extract
+from automotive_cosim.osm.towns import is_dense, town_cells
 
 OSM = b'<?xml version="1.0"?><osm version="0.6">%s</osm>'
 
@@ -114,10 +115,8 @@ def test_without_osmium_the_mend_is_named(formats: dict[str, Path], monkeypatch:
 
 def test_town_and_country_are_told_apart(make_village: Callable[..., object], formats: dict[str, Path]) -> None:
     roads = extract.read(formats[""])
-    towns = extract.town_cells(roads)
-    built_up = {
-        way.tags["name"]: extract.is_built_up(way, roads.nodes, towns) for way in roads.ways if "name" in way.tags
-    }
-    assert built_up["Rue du Lavoir"]
-    assert built_up["Allée 3"]
-    assert not built_up["Route de Villeneuve-l'Étang"]
+    towns = town_cells(roads)
+    dense = {way.tags["name"]: is_dense(way, roads.nodes, towns) for way in roads.ways if "name" in way.tags}
+    assert dense["Rue du Lavoir"]
+    assert dense["Allée 3"]
+    assert not dense["Chemin du Haut"]

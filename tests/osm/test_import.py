@@ -10,7 +10,10 @@ import pytest
 
 from automotive_cosim.contracts import LimitSource
 from automotive_cosim.errors import ImportMapError, SetupError
-from automotive_cosim.osm import ImportOptions, ImportReport, demand, import_map
+from automotive_cosim.geo.place import shipped
+from automotive_cosim.osm import ImportOptions, ImportReport, demand, extract, import_map
+from automotive_cosim.osm.agreement import differences
+from automotive_cosim.osm.roads import describe
 from automotive_cosim.scenarios import Scenario, load
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.network import Edge, read_network
@@ -93,6 +96,31 @@ def test_a_missing_limit_is_the_countrys_own_and_assumed(imported: Imported) -> 
     posted_m = sum(edge.length_m for edge in edges if edge.limit_source is LimitSource.POSTED)
     assert report.posted_share == pytest.approx(posted_m / sum(edge.length_m for edge in edges), abs=1e-3)
     assert 0.2 < report.posted_share < 0.8
+
+
+def test_every_edge_agrees_with_its_way_and_a_changed_one_is_told(
+    imported: Imported, formats: dict[str, Path]
+) -> None:
+    folder, report = imported
+    assert report.differences == ()
+    roads = describe(extract.read(formats[""]), shipped(), "FR")
+    edges = _edges(folder)
+    assert not list(differences(edges.values(), roads))
+    edge = next(edge for edge in edges.values() if edge.name == "Rue du Lavoir")
+    for what, wrong in (
+        ("limit", replace(edge, limit_mps=50 / 3.6)),
+        ("limit", replace(edge, limit_source=LimitSource.ASSUMED)),
+        ("name", replace(edge, name="Rue du Four")),
+        ("class", replace(edge, road_class="primary")),
+        ("tunnel", replace(edge, in_tunnel=True)),
+    ):
+        assert [found.what for found in differences([wrong], roads)] == [what]
+
+
+def test_a_zone_changes_no_sign_in_the_network(imported: Imported) -> None:
+    lane = _named(imported[0], "Rue du Lavoir")
+    assert {round((edge.limit_mps or 0) * 3.6) for edge in lane} == {30}
+    assert all(edge.built_up for edge in lane), "its zone is urban"
 
 
 def test_signals_roundabouts_and_oneways_are_there(imported: Imported) -> None:

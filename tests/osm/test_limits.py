@@ -1,66 +1,265 @@
+"""The limit of every combination of tags that the OSM wiki documents (pages "Key:maxspeed", "Key:maxspeed:type",
+"Key:source:maxspeed", "Key:zone:maxspeed", "Key:zone:traffic", "Lanes", "Conditional restrictions")."""
+
 from __future__ import annotations
 
 import re
+import string
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from automotive_cosim.geo.place import Atlas, Place, shipped
+from automotive_cosim.osm.assumed import assumed_sign
 from automotive_cosim.osm.country import LEFT_HAND, LIMITS, WORLD, assumed_limit_kmh
 from automotive_cosim.osm.extract import ROAD_CLASSES
-from automotive_cosim.osm.limits import LIMIT_KEYS, ZONE_KEYS, complete, stated_limit
+from automotive_cosim.osm.limits import CAR_KEYS, NO_UNIT, ZONE_KEYS, built_up_of, doubts, kmh_of, stated_limits
+from automotive_cosim.osm.roads import Road
 
 NETCONVERT_READS = re.compile(r"none|\d+(\.\d+)?( mph)?")
 
+ZONES = (
+    "FR:urban",
+    "DE:zone:30",
+    "GB:zone20",
+    "GB:nsl_dual",
+    "US-CA:urban",
+    "DE:motorway",
+    "sign",
+    "RU:rural",
+    "zone",
+)
 VALUES = st.one_of(
-    st.text(max_size=12),
-    st.sampled_from(
-        ["50", "30 mph", "30mph", "none", "walk", "FR:urban", "DE:zone:30", "signals", "70;90", "RU:rural"]
-    ),
+    st.text(string.printable, max_size=12),
+    st.sampled_from(["50", "30 mph", "30mph", "none", "walk", "signals", "70;90", "0", "7.5", "100|80", *ZONES]),
 )
-TAGS = st.dictionaries(st.sampled_from([*LIMIT_KEYS, *ZONE_KEYS, "oneway", "motorroad"]), VALUES) | st.just(
-    {"oneway": "yes", "maxspeed": "50", "maxspeed:backward": "30"}
+DIRECTED = [f"{key}{ending}" for key in CAR_KEYS for ending in ("", ":forward", ":backward", ":lanes")]
+TAGS = st.dictionaries(
+    st.sampled_from([*DIRECTED, *ZONE_KEYS, "zone:traffic", "oneway", "motorroad", "lanes", "lanes:forward"]),
+    VALUES,
 )
 
 
-@given(TAGS, st.sampled_from(sorted(ROAD_CLASSES)), st.sampled_from([*LIMITS, "", "XX"]), st.booleans())
-def test_every_road_gets_a_limit_that_netconvert_reads(
-    tags: dict[str, str], road_class: str, country: str, built_up: bool
-) -> None:
-    done = complete(tags | {"highway": road_class}, country, built_up=built_up)
-    found = {key: value for key, value in done.items() if key in LIMIT_KEYS}
-    assert found
-    assert ("maxspeed" in found) == (stated_limit(tags) is not None)
-    assert all(NETCONVERT_READS.fullmatch(value) for value in found.values())
-    if tags.get("oneway") == "yes":
-        assert "maxspeed:backward" not in found, "netconvert would open the road the other way"
+def read(tags: dict[str, str], country: str = "FR", road_class: str = "tertiary") -> Road:
+    """A road outside towns."""
+    tags = {"highway": road_class} | tags
+    place = Place(country=country, layers=tuple(e for e in shipped().country(country) if e.kind == "country"))
+    built_up = built_up_of(tags)
+    assumed = assumed_sign(tags, shipped(), place, built_up=bool(built_up))
+    return Road(tags, country, stated_limits(tags), assumed, built_up, is_dense=False)
+
+
+@given(TAGS, st.sampled_from(sorted(ROAD_CLASSES)), st.sampled_from([*LIMITS, "", "XX"]))
+def test_every_road_gets_one_limit_for_each_direction(tags: dict[str, str], road_class: str, country: str) -> None:
+    road = read(tags, country, road_class)
+    told = road.for_netconvert()
+    limits = {key: value for key, value in told.items() if re.match("maxspeed|zone|source:maxspeed", key)}
+    assert limits.keys() == ({"maxspeed", "maxspeed:backward"} if road.is_two_way else {"maxspeed"})
+    assert all(NETCONVERT_READS.fullmatch(value) for value in limits.values())
+    for edge in ("1", "-1#0"):
+        assert ("maxspeed" in road.parameters(edge)) == (road.stated.of(edge) is not None)
+        assert ("zone:traffic:assumed" in road.parameters(edge)) == (road.built_up is None)
+
+
+@given(TAGS, st.sampled_from(ZONES), st.sampled_from([*ZONE_KEYS, "zone:traffic"]))
+def test_no_zone_overrides_a_sign(tags: dict[str, str], zone: str, key: str) -> None:
+    """Whatever else is said: adding or changing a zone leaves the limit of a road with a number as it is."""
+    signed = tags | {"maxspeed": "30"}
+    assert stated_limits(signed | {key: zone}) == stated_limits(signed)
+
+
+ZONE_NAMES = ("FR:urban", "DE:motorway", "GB:zone20", "GB:nsl_single", "FR:zone50", "IT:urban", "sign")
+
+
+@pytest.mark.parametrize("zone", ZONE_NAMES)
+@pytest.mark.parametrize("key", [*ZONE_KEYS, "zone:traffic"])
+@pytest.mark.parametrize("value", ["30", "30 mph", "none", "walk"])
+def test_value_unit_and_zone(value: str, key: str, zone: str) -> None:
+    limit = "7" if value == "walk" else value
+    assert stated_limits({key: zone, "maxspeed": value}).forward == limit
+    assert read({key: zone, "maxspeed": value}).for_netconvert()["maxspeed"] == limit
 
 
 @pytest.mark.parametrize(
-    ("tags", "limit"),
+    ("tags", "forward", "backward"),
     [
-        ({"maxspeed": "50"}, "50"),
-        ({"maxspeed": "50 km/h"}, "50"),
-        ({"maxspeed": "20 mph"}, "20 mph"),
-        ({"maxspeed": "20mph"}, "20 mph"),
-        ({"maxspeed": "none"}, "none"),
-        ({"maxspeed": "70;90"}, "70"),
-        ({"maxspeed": "FR:urban"}, "50"),
-        ({"maxspeed": "FR:rural"}, "80"),
-        ({"maxspeed": "DE:rural"}, "100"),
-        ({"zone:maxspeed": "FR:30"}, "30"),
-        ({"source:maxspeed": "DE:zone:30"}, "30"),
+        # a number and its unit
+        ({"maxspeed": "50"}, "50", "50"),
+        ({"maxspeed": "50 km/h"}, "50", "50"),
+        ({"maxspeed": "50kph"}, "50", "50"),
+        ({"maxspeed": "7.5"}, "7.5", "7.5"),
+        ({"maxspeed": "20 mph"}, "20 mph", "20 mph"),
+        ({"maxspeed": "20mph"}, "20 mph", "20 mph"),
+        # words
+        ({"maxspeed": "none"}, "none", "none"),
+        ({"maxspeed": "unlimited"}, "none", "none"),
+        ({"maxspeed": "walk"}, "7", "7"),
+        ({"maxspeed": "signals"}, None, None),
+        ({"maxspeed": "variable"}, None, None),
+        ({"maxspeed": "fast"}, None, None),
+        ({"maxspeed": "0"}, None, None),
+        # several values: the lowest, in whatever unit
+        ({"maxspeed": "70;90"}, "70", "70"),
+        ({"maxspeed": "50;20 mph"}, "20 mph", "20 mph"),
+        # directions
+        ({"maxspeed:forward": "70"}, "70", None),
+        ({"maxspeed:backward": "70"}, None, "70"),
+        ({"maxspeed": "50", "maxspeed:forward": "70"}, "70", "50"),
+        ({"maxspeed": "50", "maxspeed:backward": "30 mph"}, "50", "30 mph"),
+        ({"maxspeed:forward": "70", "source:maxspeed": "DE:zone:30"}, "70", "30"),
+        # who is bound
+        ({"maxspeed": "90", "maxspeed:motorcar": "70"}, "70", "70"),
+        ({"maxspeed": "90", "maxspeed:motor_vehicle": "80"}, "80", "80"),
+        ({"maxspeed": "90", "maxspeed:motorcar:backward": "70"}, "90", "70"),
+        ({"maxspeed": "90", "maxspeed:hgv": "60"}, "90", "90"),
+        ({"maxspeed:hgv": "60"}, None, None),
+        ({"maxspeed:bus": "60"}, None, None),
+        # what is no limit
+        ({"maxspeed:advisory": "40"}, None, None),
+        ({"maxspeed:practical": "40"}, None, None),
+        ({"minspeed": "60"}, None, None),
+        # lanes: the highest, where there is no limit of the road
+        ({"maxspeed:lanes": "100|80|60"}, "100", "100"),
+        ({"maxspeed:lanes": "100|none"}, "none", "none"),
+        ({"maxspeed:lanes": "100||60"}, "100", "100"),
+        ({"maxspeed:lanes:forward": "80|60"}, "80", None),
+        ({"maxspeed": "90", "maxspeed:lanes": "100|80"}, "90", "90"),
+        # conditions: a limit of their own, at their hours
+        ({"maxspeed": "50", "maxspeed:conditional": "30 @ (Mo-Fr 07:00-17:00)"}, "50", "50"),
+        ({"maxspeed:conditional": "30 @ wet"}, None, None),
+        # zones with a number
+        ({"maxspeed": "DE:zone:30"}, "30", "30"),
+        ({"zone:maxspeed": "FR:30"}, "30", "30"),
+        ({"zone:maxspeed": "DE:zone30"}, "30", "30"),
+        ({"zone:maxspeed": "30"}, "30", "30"),
+        ({"zone:maxspeed": "20 mph"}, "20 mph", "20 mph"),
+        ({"source:maxspeed": "DE:zone:30"}, "30", "30"),
+        ({"source:maxspeed": "BE:zone30"}, "30", "30"),
+        ({"maxspeed:type": "GB:zone20"}, "20 mph", "20 mph"),
+        ({"maxspeed:type": "GB:20"}, "20 mph", "20 mph"),
+        ({"maxspeed:type": "US-NY:zone25"}, "25 mph", "25 mph"),
+        # zones without one
+        ({"maxspeed": "FR:urban"}, None, None),
+        ({"maxspeed": "DE:motorway"}, None, None),
+        ({"source:maxspeed": "FR:rural"}, None, None),
+        ({"maxspeed:type": "GB:nsl_single"}, None, None),
+        ({"zone:traffic": "FR:urban"}, None, None),
+        ({"zone:traffic": "DE:30"}, None, None),
+        ({"source:maxspeed": "DE:living_street"}, None, None),
+        # how it is known
+        ({"source:maxspeed": "sign"}, None, None),
+        ({"maxspeed:type": "sign", "maxspeed": "50"}, "50", "50"),
+        ({"source:maxspeed": "markings", "maxspeed": "30 mph"}, "30 mph", "30 mph"),
+        ({}, None, None),
+    ],
+)
+def test_what_mappers_write(tags: dict[str, str], forward: str | None, backward: str | None) -> None:
+    assert stated_limits(tags) == stated_limits(tags | {"zone:traffic": "FR:urban"})
+    assert (stated_limits(tags).forward, stated_limits(tags).backward) == (forward, backward)
+
+
+@pytest.mark.parametrize(
+    ("country", "tags", "sign"),
+    [
+        ("FR", {"maxspeed": "FR:urban"}, "50"),
+        ("FR", {"source:maxspeed": "FR:rural"}, "80"),
+        ("FR", {"zone:traffic": "FR:motorway"}, "130"),
+        ("DE", {"maxspeed": "DE:rural"}, "100"),
+        ("DE", {"source:maxspeed": "DE:urban"}, "50"),
+        ("DE", {"source:maxspeed": "DE:motorway"}, "none"),
+        ("GB", {"maxspeed:type": "GB:nsl_single"}, "60 mph"),
+        ("GB", {"maxspeed:type": "GB:nsl_dual"}, "70 mph"),
+        ("GB", {"maxspeed:type": "GB:motorway"}, "70 mph"),
+        ("GB", {"maxspeed:type": "GB:nsl_restricted"}, "30 mph"),
+        ("GB", {"maxspeed:type": "GB-WLS:nsl_restricted"}, "20 mph"),
+        ("US", {"maxspeed": "US-CA:urban"}, "25 mph"),
+        ("US", {"maxspeed": "US-FL:urban"}, "30 mph"),
+        ("FR", {"maxspeed": "DE:rural"}, "100"),
+    ],
+)
+def test_the_law_of_a_zone_sets_the_limit_that_it_does_not_state(
+    country: str, tags: dict[str, str], sign: str
+) -> None:
+    road = read(tags, country)
+    assert road.for_netconvert()["maxspeed"] == sign
+    assert "maxspeed" not in road.parameters("1"), "no sign with that number was mapped"
+
+
+@pytest.mark.parametrize(
+    ("tags", "built_up"),
+    [
+        ({"zone:traffic": "FR:urban"}, True),
+        ({"source:maxspeed": "IT:urban", "maxspeed": "30"}, True),
+        ({"maxspeed:type": "GB:nsl_restricted"}, True),
+        ({"maxspeed": "DE:living_street"}, True),
+        ({"zone:maxspeed": "US-CA:rural"}, False),
+        ({"maxspeed:type": "GB:nsl_dual"}, False),
+        ({"source:maxspeed": "DE:motorway"}, False),
+        ({"zone:traffic": "DE:rural", "source:maxspeed": "DE:urban"}, False),
+        ({"source:maxspeed": "DE:zone:30", "zone:traffic": "DE:urban"}, True),
+        ({"source:maxspeed": "DE:zone:30"}, None),
         ({"source:maxspeed": "sign"}, None),
-        ({"maxspeed:type": "GB:zone20"}, "20 mph"),
-        ({"maxspeed:forward": "70"}, "70"),
-        ({"maxspeed": "signals"}, None),
-        ({"maxspeed": "fast"}, None),
-        ({"zone:traffic": "FR:urban"}, None),
         ({}, None),
     ],
 )
-def test_what_mappers_write(tags: dict[str, str], limit: str | None) -> None:
-    assert stated_limit(tags) == limit
+def test_every_zone_says_whether_it_is_built_up(tags: dict[str, str], built_up: bool | None) -> None:
+    assert built_up_of(tags) is built_up
+    params = read(tags).parameters("1")
+    if built_up is None:
+        assert params["zone:traffic:assumed"] == "FR:rural"
+    else:
+        assert params["zone:traffic"].rpartition(":")[2] == ("urban" if built_up else "rural")
+
+
+@pytest.mark.parametrize(
+    ("country", "tags", "found"),
+    [
+        ("GB", {"maxspeed": "30"}, [NO_UNIT]),
+        ("US", {"maxspeed:backward": "25"}, [NO_UNIT]),
+        ("GB", {"maxspeed": "30 mph"}, []),
+        ("GB", {"maxspeed": "48 km/h"}, []),
+        ("FR", {"maxspeed": "30"}, []),
+        ("FR", {"maxspeed": "fast"}, ["maxspeed=fast"]),
+        ("FR", {"maxspeed": "signals"}, ["maxspeed=signals"]),
+        ("FR", {"maxspeed": "FR:urban"}, []),
+        ("FR", {}, []),
+    ],
+)
+def test_doubtful_limits_are_told(country: str, tags: dict[str, str], found: list[str]) -> None:
+    assert list(doubts(tags, country)) == found
+
+
+@pytest.mark.parametrize(
+    ("tags", "told"),
+    [
+        ({"oneway": "yes"}, "70"),
+        ({"oneway": "-1"}, "30"),
+        ({"junction": "roundabout"}, "70"),
+        ({"highway": "motorway"}, "70"),
+    ],
+)
+def test_a_road_of_one_direction_has_that_directions_limit(tags: dict[str, str], told: str) -> None:
+    road = read(tags | {"maxspeed:forward": "70", "maxspeed:backward": "30"})
+    assert road.for_netconvert()["maxspeed"] == told
+    assert "maxspeed:backward" not in road.for_netconvert(), "netconvert would open it to both directions"
+
+
+def test_hours_may_differ_by_direction() -> None:
+    hours = {"maxspeed:conditional": "50 @ (06:00-22:00)", "maxspeed:backward:conditional": "30 @ (07:00-09:00)"}
+    road = read({"maxspeed": "70"} | hours)
+    assert road.parameters("1")["maxspeed:conditional"] == "50 @ (06:00-22:00)"
+    assert road.parameters("-1")["maxspeed:conditional"] == "30 @ (07:00-09:00)"
+
+
+def test_the_lane_of_both_directions_is_nobodys() -> None:
+    assert read({"lanes": "3", "lanes:forward": "1", "lanes:backward": "1"}).for_netconvert()["lanes"] == "2"
+
+
+@pytest.mark.parametrize("road_class", sorted(ROAD_CLASSES))
+def test_an_unknown_place_gets_the_most_common_limits(road_class: str) -> None:
+    sign = assumed_sign({"highway": road_class}, Atlas(), Place(), built_up=False)
+    assert kmh_of(sign) == assumed_limit_kmh("", road_class, built_up=False, dual=False)
 
 
 @pytest.mark.parametrize("country", [*LIMITS, ""])

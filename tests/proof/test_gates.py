@@ -100,7 +100,7 @@ def test_a_sound_task_passes(ground, gate):
     assert list(getattr(gates, gate)(ground(SOUND))) == []
 
 
-@pytest.mark.parametrize("gate", ["undone", "near", "collateral"])
+@pytest.mark.parametrize("gate", ["undone", "near", "coupled"])
 def test_a_sound_end_state_passes(ground, gate):
     stand = ground(SOUND)
     assert list(getattr(gates, gate)(stand, stand.reference)) == []
@@ -188,7 +188,18 @@ def test_a_verdict_blind_to_side_effects_is_seen(ground, monkeypatch):
     stand = ground(SOUND)
     played = stand.reference
     monkeypatch.setattr(verdict, "_clean", lambda *_: ALWAYS)
-    assert len(list(gates.collateral(stand, played))) == 3
+    assert len(list(gates.coupled(stand, played))) > 100
+
+
+def test_a_switch_that_the_car_couples_to_the_goal_fails_when_it_is_turned_by_itself(ground):
+    """Air conditioning follows the fan in this car, but nobody asked for it."""
+    goal = SignalIs(HVAC.FAN_SPEED, (100.0,))
+    stand = ground(changed(goal=goal, moves=(Open("climate"), Tap("hvac.fan.max"))))
+    assert stand.reference.success
+    taps = (Open("climate"), Tap("hvac.fan.max"), Tap("hvac.air_conditioning"))
+    played = stand.play(stand.oracle(taps))
+    assert played.verdict.goal.ok
+    assert played.verdict.clean.why == f"also changed: {HVAC.AIR_CONDITIONING.path}"
 
 
 def test_a_task_that_wants_nothing_is_seen(ground):

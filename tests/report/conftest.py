@@ -92,7 +92,7 @@ def _step(number: int, action: dict[str, Any] | None) -> dict[str, Any]:
     }
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def episode() -> Callable[..., dict[str, Any]]:
     return _episode
 

@@ -10,6 +10,7 @@ from automotive_cosim.report import findings
 from automotive_cosim.report.case import contrast
 from automotive_cosim.report.results import Results
 from automotive_cosim.report.stats import clustered_mean
+from automotive_cosim.run.coverage import Coverage
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.harm import DriveFigures
 from automotive_cosim.run.store import write_trace
@@ -25,7 +26,8 @@ def row(task="t", half="first", geo="full", success=True, *, agent="asurada", **
 
 
 def results(*rows, folder=None):
-    return Results(folder, {"plan": {"repeats": 1}, "starts": []}, rows)
+    whole = Coverage(len(rows), 0, shared=frozenset(row.id for row in rows))
+    return Results(folder, {"plan": {"repeats": 1}, "starts": []}, rows, whole)
 
 
 def figures(overspeed_m, ttc_s=5.0):

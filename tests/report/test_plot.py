@@ -5,6 +5,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from automotive_cosim.report.plot import Plot
+from automotive_cosim.run.episode import EpisodeResult
+from automotive_cosim.run.row import from_json
+from automotive_cosim.run.timeline import Sample
 
 samples = st.lists(
     st.tuples(st.floats(0, 250), st.none() | st.sampled_from([30.0, 50.0, 80.0, 130.0])), min_size=1, max_size=60
@@ -12,8 +15,8 @@ samples = st.lists(
 
 
 def _plot(rows, width=960, height=300, timeline=()):
-    path = [{"at_s": float(i - 5), "speed_kmh": speed, "limit_kmh": limit} for i, (speed, limit) in enumerate(rows)]
-    return Plot({"path": path, "timeline": list(timeline)}, width, height)
+    path = [Sample(float(i - 5), speed, limit, "", 0.0, 0.0, 0.0) for i, (speed, limit) in enumerate(rows)]
+    return Plot(path, timeline, width, height)
 
 
 def _points(path):
@@ -48,6 +51,7 @@ def test_no_limit_draws_no_limit():
 
 
 def test_the_first_event_of_a_kind_is_marked(episode):
-    plot = Plot(episode(), 960, 300)
+    result = from_json(EpisodeResult, episode())
+    plot = Plot(result.path, result.timeline, 960, 300)
     assert [kind for _, kind, _ in plot.marks] == ["alert", "declared", "limit"]
     assert plot.marks[0][0] == plot.x(1.0)

@@ -56,8 +56,19 @@ def test_judging_the_stored_moments_gives_the_same_verdict(kept, collected):
     judged = read_judged(kept[0], "a")
     task = CATALOGUE["phenomenon_front_window_fogged"]
     instance = Instance(task, "first", judged.goal, judged.parameters)
-    again = judge(instance, judged.trace, judged.baseline, judged.declared, judged.reason)
+    again = judge(instance, judged.trace, judged.baseline, judged.counterfactual, judged.declared, judged.reason)
     assert as_json(again) == collected[1].verdict
+
+
+def test_an_agent_that_failed_has_no_success_even_where_silence_is_right(collected):
+    judged = collected[0].judged()
+    instance = Instance(CATALOGUE["phenomenon_front_window_fogged"], "first", judged.goal, judged.parameters)
+    told = (instance, judged.baseline, judged.baseline, judged.counterfactual, None, None)
+    for watched_from_s in (None, judged.trace[0].time_s):
+        assert judge(*told, watched_from_s).declared.ok == (watched_from_s is not None)
+        failed = judge(*told, watched_from_s, "it crashed")
+        assert "it crashed" in failed.declared.why
+        assert not failed.success
     assert judged.declared is GoalStatus.COMPLETE
 
 
@@ -69,6 +80,20 @@ def test_a_file_with_the_old_name_of_the_baseline_run_is_read(kept):
     names[names.index("baseline")] = "idle"
     path.write_bytes(lzma.compress(json.dumps(whole).encode()))
     assert read_judged(folder, "a") == judged
+
+
+def test_the_counterfactual_is_stored_and_an_older_file_without_it_refused(kept):
+    folder, judged = kept
+    other = {**judged.trace[-1].commands, "horn": 7}
+    write_judged(folder, "a", replace(judged, counterfactual=other))
+    assert read_judged(folder, "a").counterfactual == other
+    path = judged_file(folder, "a")
+    whole = json.loads(lzma.decompress(path.read_bytes()))
+    names = next(names for kind, names in whole["classes"] if kind.endswith(":Judged"))
+    names[names.index("counterfactual")] = "a_field_of_old"
+    path.write_bytes(lzma.compress(json.dumps(whole).encode()))
+    with pytest.raises(UserError, match="without the counterfactual"):
+        read_judged(folder, "a")
 
 
 def test_fields_that_come_and_go_are_borne_and_other_classes_refused(kept):

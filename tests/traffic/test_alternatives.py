@@ -112,7 +112,7 @@ def test_who_is_on_the_quickest_way_stays_on_it(forked: Forked, average: EgoPlan
         assert traffic.request(Reroute()).accepted
         before = traffic.advance(0.1).states[-1].ahead.route_edges
         answer = traffic.request(Reroute())
-        assert (answer.accepted, answer.reason) == (True, "this is the quickest way")
+        assert (answer.accepted, answer.reason) == (True, "this is the quickest route")
         assert traffic.advance(0.1).states[-1].ahead.route_edges == before
 
 

@@ -373,7 +373,7 @@ def test_a_given_route_is_checked_piece_by_piece(empty: Forked, hurried: EgoPlan
     assert traffic.state.road.edge_id == "cwc0"
     for edges, said in (
         (("c0c1", "c1c2"), "must begin where the car is"),
-        (("cwc0", "n3n4"), "no way from 'cwc0' to 'n3n4'"),
+        (("cwc0", "n3n4"), "no route from 'cwc0' to 'n3n4'"),
         (("cwc0", "elsewhere"), "no edge 'elsewhere'"),
     ):
         answer = traffic.request(Reroute(edges=edges))

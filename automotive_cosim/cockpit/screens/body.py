@@ -184,8 +184,8 @@ def doors(state: State) -> tuple[Widget, ...]:
                             ("passenger", "Passenger", Icon.DOOR, CABIN.PASSENGER_LOCK),
                             ("rear_left", "Rear left", Icon.DOOR, CABIN.REAR_LEFT_LOCK),
                             ("rear_right", "Rear right", Icon.DOOR, CABIN.REAR_RIGHT_LOCK),
-                            ("child_left", "Child left", Icon.CHILD, CABIN.LEFT_CHILD_LOCK),
-                            ("child_right", "Child right", Icon.CHILD, CABIN.RIGHT_CHILD_LOCK),
+                            ("child_left", "Left child lock", Icon.CHILD, CABIN.LEFT_CHILD_LOCK),
+                            ("child_right", "Right child lock", Icon.CHILD, CABIN.RIGHT_CHILD_LOCK),
                             ("trunk", "Trunk", Icon.TRUNK, CABIN.TRUNK),
                         ),
                         strict=True,
@@ -229,8 +229,8 @@ def _windows(rect: Rect, state: State) -> tuple[Widget, ...]:
             key="window.vent",
             text="Open a little",
             icon=Icon.WINDOW,
-            on_tap=SetAll(tuple((window, 20.0) for window in WINDOWS), "all windows are a little open"),
-            disabled="They are a little open" if all(signals[window] == 20 for window in WINDOWS) else "",
+            on_tap=SetAll(tuple((window, 20.0) for window in WINDOWS), "all windows are open a little"),
+            disabled="They are already open a little" if all(signals[window] == 20 for window in WINDOWS) else "",
         ),
         switch(buttons[2], "window.lock", "Window lock", Icon.CHILD, CABIN.WINDOW_LOCK, signals),
     )
@@ -314,7 +314,8 @@ def _memory(rect: Rect, state: State) -> Widget:
     children: list[Widget] = [heading(inner.top(30), "Driver's memory")]
     for slot, line in enumerate(lines):
         recall: Message = SetAll(
-            tuple(zip(REMEMBERED, state.desk.memory[slot], strict=True)), f"seat and mirrors stand as in {slot + 1}"
+            tuple(zip(REMEMBERED, state.desk.memory[slot], strict=True)),
+            f"seat and mirrors are set as in {slot + 1}",
         )
         same = state.desk.memory[slot] == now
         children += [
@@ -331,10 +332,10 @@ def _memory(rect: Rect, state: State) -> Widget:
             Button(
                 rect=line.right_part(72),
                 key=f"seat.store.{slot + 1}",
-                description=f"Store the seat in place {slot + 1}",
+                description=f"Store the seat as position {slot + 1}",
                 icon=Icon.SAVE,
-                on_tap=Put("desk", state.desk.with_memory(slot, state.signals), f"Place {slot + 1} is stored"),
-                disabled="The seat stands so already" if same else "",
+                on_tap=Put("desk", state.desk.with_memory(slot, state.signals), f"Position {slot + 1} is stored"),
+                disabled="The seat is already in this position" if same else "",
             ),
         ]
     return Card(rect=rect, children=tuple(children))
@@ -415,12 +416,12 @@ def _inside(rect: Rect, state: State) -> Widget:
     return Card(
         rect=rect,
         children=(
-            heading(inner.top(28), "Light inside"),
+            heading(inner.top(28), "Interior lights"),
             switch(tiles[0], "light.dome", "Dome light", Icon.DOME_LIGHT, CABIN.DOME_LIGHT, signals),
             switch(
                 tiles[1],
                 "light.driver_reading",
-                "Driver reads",
+                "Driver's reading light",
                 Icon.READING_LIGHT,
                 CABIN.DRIVER_READING_LIGHT,
                 signals,
@@ -428,12 +429,12 @@ def _inside(rect: Rect, state: State) -> Widget:
             switch(
                 tiles[2],
                 "light.passenger_reading",
-                "Passenger reads",
+                "Passenger's reading light",
                 Icon.READING_LIGHT,
                 CABIN.PASSENGER_READING_LIGHT,
                 signals,
             ),
-            slider(glow, "light.ambient", "Glow", Icon.PALETTE, CABIN.AMBIENT_LIGHT, signals),
+            slider(glow, "light.ambient", "Ambient light", Icon.PALETTE, CABIN.AMBIENT_LIGHT, signals),
             choices(
                 lower.right_part(lower.width - 290),
                 "light.colour",

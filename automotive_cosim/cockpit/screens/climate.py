@@ -239,7 +239,7 @@ def _rear(rect: Rect, state: State) -> Widget:
                 signals,
                 SEAT_LEVELS,
             ),
-            title(Rect(inner.x, inner.y + 220, inner.width, 40), Icon.AIR_QUALITY, "Air in the cabin"),
+            title(Rect(inner.x, inner.y + 220, inner.width, 40), Icon.AIR_QUALITY, "Cabin air"),
             *fact(
                 Rect(inner.x, inner.y + 276, inner.width, 36),
                 "comfort.temperature",

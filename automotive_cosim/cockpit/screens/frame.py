@@ -116,7 +116,7 @@ def status_bar(state: State) -> tuple[Widget, ...]:
 
 def _pill(rect: Rect, notice: Notice, state: State) -> Pill:
     """The newest notice. A tap leads to its subject, or removes it."""
-    seen = Put("notices", (*state.notices[:-1], replace(notice, seen=True)), "The notice is taken away")
+    seen = Put("notices", (*state.notices[:-1], replace(notice, seen=True)), "The notification is dismissed")
     here = (state.screen, state.picked.get(state.screen, ""))
     return Pill(
         rect=rect,

@@ -224,7 +224,7 @@ def _outside_card(rect: Rect, state: State) -> Widget:
         Label(
             rect=note,
             key="home.outside.note",
-            text="Nothing to mind outside" if calm else f"{worst.title}: {readings[worst].value}",
+            text="No hazards outside" if calm else f"{worst.title}: {readings[worst].value}",
             style=Type.LABEL,
             tone="muted",
         ),

@@ -77,10 +77,10 @@ def _lowest(line: Rect, field: Field) -> tuple[Widget, ...]:
         Button(
             rect=erase,
             key="keyboard.backspace",
-            description="Take one away",
+            description="Delete the last character",
             icon=Icon.ERASE,
             on_tap=Key(field.key, BACKSPACE),
-            disabled="" if field.text else "There is nothing to take away",
+            disabled="" if field.text else "There is nothing to delete",
         ),
         Button(rect=space, key="keyboard.space", text="Space", on_tap=Key(field.key, " ")),
         Button(
@@ -90,6 +90,6 @@ def _lowest(line: Rect, field: Field) -> tuple[Widget, ...]:
             icon=Icon.CHECK,
             look=Look.ACCENT,
             on_tap=Enter(field.on_enter),
-            disabled="" if field.on_enter else "Nothing fits yet",
+            disabled="" if field.on_enter else "No matches yet",
         ),
     )

@@ -80,7 +80,7 @@ def sight(state: State) -> Widget:
                 icon=Icon.PLUS,
                 look=Look.FLOATING,
                 on_tap=Zoom(-1),
-                disabled="" if state.zoom > 0 else "This is as close as it gets",
+                disabled="" if state.zoom > 0 else "The map cannot zoom in further",
             ),
             Button(
                 rect=further,
@@ -89,7 +89,7 @@ def sight(state: State) -> Widget:
                 icon=Icon.MINUS,
                 look=Look.FLOATING,
                 on_tap=Zoom(1),
-                disabled="" if state.zoom < len(ZOOMS_M_PER_PX) - 1 else "This is as far as it gets",
+                disabled="" if state.zoom < len(ZOOMS_M_PER_PX) - 1 else "The map cannot zoom out further",
             ),
         ),
     )
@@ -272,7 +272,7 @@ def _panel(rect: Rect, state: State) -> tuple[Widget, ...]:
     empty = Label(
         rect=listed.top(60),
         key="map.places.empty",
-        text="No street or place is called so" if typed else "No destinations yet",
+        text="No street or place with this name" if typed else "No destinations yet",
         tone="muted",
         style=Type.LABEL,
         align="centre",
@@ -379,7 +379,7 @@ def arrival(rect: Rect, key: str, state: State) -> tuple[Widget, ...]:
             rect=cells[1].bottom_part(24),
             key=f"{key}.delay",
             text=late,
-            description="Delay by traffic",
+            description="Traffic delay",
             style=Type.CAPTION,
             tone="muted",
             align="right",

@@ -109,7 +109,7 @@ def _linked(inner: Rect, state: State) -> tuple[Widget, ...]:
         Label(
             rect=Rect(inner.x, inner.y + 112, inner.width, 36),
             key="phone.device",
-            text=state.desk.device if on else "No phone linked",
+            text=state.desk.device if on else "No phone paired",
             style=Type.STRONG,
             align="centre",
         ),
@@ -298,7 +298,7 @@ def _contacts(rect: Rect, state: State) -> tuple[Widget, ...]:
             height=56,
         )
         if found
-        else note(rect.below(72), "phone.contacts.empty", "Nobody is called so"),
+        else note(rect.below(72), "phone.contacts.empty", "No contact with this name"),
     )
 
 
@@ -359,7 +359,7 @@ def _keypad(rect: Rect, state: State) -> tuple[Widget, ...]:
         Button(
             rect=erase,
             key="phone.erase",
-            text="Take one away",
+            text="Delete the last character",
             icon=Icon.ERASE,
             on_tap=Key("phone.number", BACKSPACE),
             disabled=empty,

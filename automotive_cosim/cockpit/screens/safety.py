@@ -86,7 +86,7 @@ def _kinds(rect: Rect, state: State) -> Widget:
             rows(
                 inner.below(36),
                 "safety.kinds",
-                "Kinds of alert",
+                "Alert types",
                 state,
                 len(kinds),
                 cell,
@@ -101,7 +101,7 @@ def _kinds(rect: Rect, state: State) -> Widget:
 def _draft(rect: Rect, state: State) -> Widget:
     inner = rect.inset(20, 16)
     draft = state.draft
-    title = "Choose a kind" if draft.kind is None else KINDS[draft.kind][0]
+    title = "Choose a type" if draft.kind is None else KINDS[draft.kind][0]
     return Card(
         rect=rect,
         children=(
@@ -272,7 +272,7 @@ def emergency(state: State) -> tuple[Widget, ...]:
                     key="emergency.about",
                     text="A call was made. They have the car's position."
                     if made
-                    else "They get the car's position. A call can't be taken back.",
+                    else "They receive the car's position. A call can't be undone.",
                     tone="muted",
                     align="centre",
                     lines=2,

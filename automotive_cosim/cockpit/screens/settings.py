@@ -196,10 +196,10 @@ def sound(state: State) -> tuple[Widget, ...]:
                 Button(
                     rect=tones.bottom_part(56),
                     key="sound.flat",
-                    text="All even",
+                    text="Flat",
                     icon=Icon.EQUALIZER,
-                    on_tap=SetAll(flat, "the sound is even"),
-                    disabled="It is even already" if even else "",
+                    on_tap=SetAll(flat, "the equaliser is flat"),
+                    disabled="It is already flat" if even else "",
                 ),
             ),
         ),
@@ -242,12 +242,12 @@ def connections(state: State) -> tuple[Widget, ...]:
                         key=f"link.network.{at}",
                         raised=True,
                         text=name,
-                        trail="Joined" if name == desk.network else "",
+                        trail="Connected" if name == desk.network else "",
                         icon=Icon.WIFI,
                         selected=name == desk.network,
                         disabled=wifi_off,
                         locked=locked,
-                        on_tap=Put("desk", replace(desk, network=name), f"{name} is joined"),
+                        on_tap=Put("desk", replace(desk, network=name), f"{name} is connected"),
                     )
                     for at, (line, name) in enumerate(
                         zip(Rect(links.x, links.y + 268, links.width, 228).rows(4, 6), NETWORKS, strict=True)
@@ -274,12 +274,12 @@ def connections(state: State) -> tuple[Widget, ...]:
                         key=f"link.device.{at}",
                         raised=True,
                         text=name,
-                        trail="Linked" if name == desk.device else "",
+                        trail="Paired" if name == desk.device else "",
                         icon=Icon.MOBILE,
                         selected=name == desk.device,
                         disabled=bluetooth_off,
                         locked=locked,
-                        on_tap=Put("desk", replace(desk, device=name), f"{name} is linked"),
+                        on_tap=Put("desk", replace(desk, device=name), f"{name} is paired"),
                     )
                     for at, (line, name) in enumerate(
                         zip(Rect(phones.x, phones.y + 168, phones.width, 188).rows(3, 8), DEVICES, strict=True)
@@ -288,7 +288,7 @@ def connections(state: State) -> tuple[Widget, ...]:
                 Label(
                     rect=phones.bottom_part(64),
                     key="link.about",
-                    text="Networks are joined and phones are linked while parked.",
+                    text="Connect to networks and pair phones while parked.",
                     style=Type.CAPTION,
                     tone="muted",
                     lines=2,
@@ -373,7 +373,7 @@ def privacy(state: State) -> tuple[Widget, ...]:
             "Share position",
             Icon.GPS,
             LINK.SHARE_POSITION,
-            "Apps get the car's position. Emergency calls send it in any case.",
+            "Apps receive the car's position. Emergency calls always send it.",
         ),
         (
             "privacy.driving",
@@ -423,7 +423,7 @@ def profiles(state: State) -> tuple[Widget, ...]:
                         key=f"profile.{at}",
                         raised=True,
                         text=profile.name,
-                        trail="Drives now" if profile.name == desk.profile else "",
+                        trail="Active" if profile.name == desk.profile else "",
                         icon=Icon.ACCOUNT,
                         selected=profile.name == desk.profile,
                         locked=locked,
@@ -434,7 +434,7 @@ def profiles(state: State) -> tuple[Widget, ...]:
                 Label(
                     rect=Rect(inner.x, inner.y + 336, inner.width, 64),
                     key="profile.about",
-                    text="A profile brings its seat, mirrors, temperature and brightness along.",
+                    text="A profile sets its own seat, mirrors, temperature and brightness.",
                     style=Type.CAPTION,
                     tone="muted",
                     lines=2,

@@ -211,12 +211,12 @@ def _film(rect: Rect, topic: int, icon: Icon, state: State) -> tuple[Widget, ...
     """The topic's video: its picture, its progress while it plays, and the button."""
     desk, button = state.desk, rect.bottom_part(64).left(320)
     if desk.film is None or desk.film[0] != topic:
-        start = Put("desk", replace(desk, film=(topic, state.time_s)), "The film plays")
+        start = Put("desk", replace(desk, film=(topic, state.time_s)), "The video plays")
         return (
             Button(
                 rect=button,
                 key="manual.film",
-                text="Watch the film",
+                text="Watch the video",
                 icon=Icon.PLAY,
                 on_tap=start,
                 locked=state.locked(Restriction.NO_VIDEO),
@@ -232,7 +232,7 @@ def _film(rect: Rect, topic: int, icon: Icon, state: State) -> tuple[Widget, ...
                 Glyph(
                     rect=frame.middle(96, 96),
                     key="manual.film.picture",
-                    description=f"The film is at {minutes(played_s)} of {minutes(FILM_S)}",
+                    description=f"The video is at {minutes(played_s)} of {minutes(FILM_S)}",
                     icon=icon,
                     size=64 + 8 * (int(played_s) % 5),
                     tone="accent",
@@ -243,9 +243,9 @@ def _film(rect: Rect, topic: int, icon: Icon, state: State) -> tuple[Widget, ...
         Button(
             rect=button,
             key="manual.film",
-            text="Stop the film",
+            text="Stop the video",
             icon=Icon.STOP,
-            on_tap=Put("desk", replace(desk, film=None), "The film is stopped"),
+            on_tap=Put("desk", replace(desk, film=None), "The video is stopped"),
         ),
     )
 

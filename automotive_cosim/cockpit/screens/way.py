@@ -27,9 +27,7 @@ def explore(state: State) -> tuple[Widget, ...]:
     found = nearest(state, state.atlas.of(kind))
     return (
         *_head(state, SORTS[kind].title, SORTS[kind].icon, "explore"),
-        _places(state, found)
-        if found
-        else note(PANEL.below(72), "explore.empty", "None of this kind is known here"),
+        _places(state, found) if found else note(PANEL.below(72), "explore.empty", "None known nearby"),
         sight(state),
     )
 
@@ -66,7 +64,7 @@ def _kinds(state: State) -> Widget:
     return rows(
         PANEL.below(72),
         "explore.kinds",
-        "Kinds of places",
+        "Place types",
         state,
         len(_EVERYDAY),
         lambda index, cell: Choice(
@@ -148,7 +146,7 @@ def _place_buttons(rect: Rect, name: str, known: Destination | None, state: Stat
             text="Stop on the way",
             icon=Icon.PLACE,
             on_tap=Guide(name, goal),
-            disabled=there or ("" if goal else "There is no destination to go on to"),
+            disabled=there or ("" if goal else "Guidance has no destination"),
         ),
         Button(
             rect=cells[2],
@@ -181,7 +179,7 @@ def route(state: State) -> tuple[Widget, ...]:
             "route.tab",
             [
                 (name, text, None, shown == name, Pick("route", name))
-                for name, text in (("turns", "Turns"), ("ways", "Ways"), ("options", "Options"))
+                for name, text in (("turns", "Turns"), ("ways", "Routes"), ("options", "Options"))
             ],
         ),
         *pages[shown](body, state),
@@ -221,7 +219,7 @@ def _ways(rect: Rect, state: State) -> tuple[Widget, ...]:
     chargers = along(state, state.atlas.of(PlaceKind.CHARGING))
     lines: list[tuple[str, str, str, Icon, Take | Guide | Show]] = [
         (
-            f"Way {at + 2}",
+            f"Route {at + 2}",
             f"{_more(other.eta_s, 0 if ahead is None else ahead.eta_s)}, {other.delay_s / 60:.0f} min delay",
             distance(state.signals, other.length_m),
             Icon.ROUTE,
@@ -229,7 +227,7 @@ def _ways(rect: Rect, state: State) -> tuple[Widget, ...]:
         )
         for at, other in enumerate(others)
     ]
-    lines.append(("Look for a faster way", "With the traffic as it is now", "", Icon.ROUTE, Guide("")))
+    lines.append(("Look for a faster route", "With the traffic as it is now", "", Icon.ROUTE, Guide("")))
     lines += [
         (charger.name, charger.detail, away(state, charger.name), Icon.CHARGING, Show("place", charger.name))
         for charger in chargers
@@ -238,7 +236,7 @@ def _ways(rect: Rect, state: State) -> tuple[Widget, ...]:
         rows(
             rect,
             "route.ways",
-            "Other ways and charging stops",
+            "Other routes and charging stops",
             state,
             len(lines),
             lambda index, cell: Row(
@@ -258,7 +256,7 @@ def _ways(rect: Rect, state: State) -> tuple[Widget, ...]:
 
 def _more(eta_s: float, now_s: float) -> str:
     minutes = round((eta_s - now_s) / 60)
-    return "As long" if minutes == 0 else f"{abs(minutes)} min {'longer' if minutes > 0 else 'shorter'}"
+    return "Same time" if minutes == 0 else f"{abs(minutes)} min {'longer' if minutes > 0 else 'shorter'}"
 
 
 def _options(rect: Rect, state: State) -> tuple[Widget, ...]:
@@ -268,7 +266,7 @@ def _options(rect: Rect, state: State) -> tuple[Widget, ...]:
     guidance = state.signals[VOICE.GUIDANCE]
     onward = navigation.onward
     return (
-        heading(rect.top(28), "Keep away from"),
+        heading(rect.top(28), "Avoid"),
         *(
             Tile(
                 rect=cell,
@@ -279,7 +277,7 @@ def _options(rect: Rect, state: State) -> tuple[Widget, ...]:
                 on_tap=Put(
                     "navigation",
                     navigation.with_avoided(name, name not in navigation.avoid),
-                    f"{text} are welcome again" if name in navigation.avoid else f"{text} are avoided",
+                    f"{text} are no longer avoided" if name in navigation.avoid else f"{text} are avoided",
                 ),
             )
             for cell, (name, (text, icon)) in zip(cells, AVOIDABLE.items(), strict=True)
@@ -300,7 +298,7 @@ def _options(rect: Rect, state: State) -> tuple[Widget, ...]:
         Button(
             rect=Rect(rect.x, tiles.bottom + 108, rect.width, 56),
             key="route.onward",
-            text=f"Skip the stop: {onward}" if onward else "No stop on the way",
+            text=f"Skip the stop: {onward}" if onward else "Remove the stop",
             icon=Icon.GOAL,
             on_tap=Guide(onward),
             disabled="" if onward else "There is no stop on the way",

@@ -1,0 +1,197 @@
+"""``automotive-cosim doctor``: what this machine lacks, and how to get it."""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import shutil
+import socket
+import tempfile
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from enum import StrEnum
+from importlib.metadata import PackageNotFoundError, version
+from importlib.util import find_spec
+from pathlib import Path
+from typing import NamedTuple
+
+import typer
+
+from automotive_cosim.cli.options import AsJson
+from automotive_cosim.contracts.plain import counted
+
+MEMORY_MB = 1000
+"""For two workers on the shipped scenarios, each with a warm simulation (benchmarks/README.md)."""
+DISK_MB = 500
+"""For the scratch folders of simulations and an evaluation's results."""
+
+
+class State(StrEnum):
+    """How a check ended."""
+
+    OK = "ok"
+    LIMITED = "limited"
+    """It works, with less than the whole."""
+    MISSING = "missing"
+    """The main job does not work."""
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """What one check found."""
+
+    about: str
+    state: State
+    found: str
+    fix: str = ""
+    """What to do; empty if all is well."""
+
+
+class Extra(NamedTuple):
+    """An optional dependency: a package that it needs, and the commands that need it."""
+
+    package: str
+    used_by: str
+
+
+EXTRAS = {
+    "import": Extra("osmium", "scenarios import, day and download"),
+    "llm": Extra("openai", "--model openai:NAME"),
+    "ray": Extra("ray", "eval and study on a cluster"),
+    "report": Extra("matplotlib", "report"),
+    "rl": Extra("stable_baselines3", "training in Flat-v0"),
+}
+
+
+def doctor(
+    as_json: AsJson = False,
+) -> None:
+    """Check this machine and say what is missing and how to get it; exit code 1 if the main job cannot run."""
+    findings = [check() for check in CHECKS]
+    ready = all(each.state is not State.MISSING for each in findings)
+    if as_json:
+        typer.echo(json.dumps({"ok": ready, "checks": [asdict(each) for each in findings]}, ensure_ascii=False))
+    else:
+        for each in findings:
+            typer.echo(f"{each.state:<9}{each.about:<12}{each.found}" + (f"; {each.fix}" if each.fix else ""))
+        typer.echo("ready" if ready else "not ready: fix what is missing")
+    if not ready:
+        raise typer.Exit(1)
+
+
+def _python() -> Finding:
+    return Finding("python", State.OK, f"{platform.python_version()} on {platform.platform(terse=True)}")
+
+
+def _folders() -> Finding:
+    """Tasks, agents and scenarios are links in a checkout, which git on Windows leaves as text files."""
+    missing = [name for name in ("tasks", "agents", "sumo_scenarios") if not _is_package(name)]
+    if not missing:
+        return Finding("folders", State.OK, "tasks, agents and scenarios are found")
+    fix = "in a checkout: `git config core.symlinks true`, then `git checkout -- .`; or install the wheel"
+    return Finding("folders", State.MISSING, f"automotive_cosim has no {', '.join(missing)}", fix)
+
+
+def _is_package(name: str) -> bool:
+    try:
+        return find_spec(f"automotive_cosim.{name}") is not None
+    except ImportError:
+        return False
+
+
+def _sumo() -> Finding:
+    from automotive_cosim.errors import SetupError
+    from automotive_cosim.traffic.sumo import load_library
+
+    try:
+        load_library()
+    except SetupError as error:
+        found, _, fix = str(error).partition(": ")
+        return Finding("SUMO", State.MISSING, found, fix)
+    return Finding("SUMO", State.OK, f"libsumo {version('libsumo')}")
+
+
+def _fonts() -> Finding:
+    from automotive_cosim.cockpit.theme import Weight, font
+    from automotive_cosim.errors import SetupError
+
+    try:
+        for weight in Weight:
+            font(weight, 16)
+    except (SetupError, OSError) as error:
+        return Finding("fonts", State.MISSING, str(error), "pip install --force-reinstall automotive-cosim")
+    return Finding("fonts", State.OK, "all faces of the screens")
+
+
+def _processes() -> Finding:
+    if hasattr(os, "fork"):
+        return Finding("processes", State.OK, f"fork; {counted(_cores(), 'core')}")
+    fix = "use Linux, macOS or WSL for quick resets"
+    return Finding("processes", State.LIMITED, "no fork: each reset runs the warm-up again", fix)
+
+
+def _cores() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _memory() -> Finding:
+    try:
+        lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
+        free_mb = next(int(line.split()[1]) // 1024 for line in lines if line.startswith("MemAvailable"))
+    except (OSError, StopIteration, ValueError):
+        return Finding("memory", State.OK, "unknown on this system")
+    found = f"{free_mb:,} MB available"
+    if free_mb >= MEMORY_MB:
+        return Finding("memory", State.OK, found)
+    return Finding("memory", State.LIMITED, found, f"free {MEMORY_MB:,} MB, or give eval --workers 1")
+
+
+def _disk() -> Finding:
+    scratch = tempfile.gettempdir()
+    free_mb = shutil.disk_usage(scratch).free // 2**20
+    found = f"{free_mb:,} MB free in {scratch}"
+    if free_mb >= DISK_MB:
+        return Finding("disk", State.OK, found)
+    return Finding("disk", State.LIMITED, found, "free some, or set TMPDIR to a folder on another disk")
+
+
+def _ports() -> Finding:
+    try:
+        with socket.create_server(("127.0.0.1", 0)):
+            return Finding("ports", State.OK, "a server may listen on 127.0.0.1")
+    except OSError as error:
+        found = f"no server may listen on 127.0.0.1 ({error.strerror})"
+        return Finding("ports", State.LIMITED, found, "Ray needs one; everything else runs without")
+
+
+def _extras() -> Finding:
+    lacking = {name: extra for name, extra in EXTRAS.items() if find_spec(extra.package) is None}
+    here = [name for name in EXTRAS if name not in lacking]
+    found = f"installed: {', '.join(here) or 'none'}"
+    if not lacking:
+        return Finding("extras", State.OK, found)
+    uses = "; ".join(f"[{name}] for {extra.used_by}" for name, extra in lacking.items())
+    return Finding("extras", State.OK, f"{found}; not installed, if you need them: {uses}")
+
+
+def _version() -> Finding:
+    try:
+        return Finding("package", State.OK, f"automotive-cosim {version('automotive-cosim')}")
+    except PackageNotFoundError:
+        fix = "pip install -c constraints.txt -e ."
+        return Finding("package", State.LIMITED, "runs from a folder without being installed", fix)
+
+
+CHECKS: tuple[Callable[[], Finding], ...] = (
+    _version,
+    _python,
+    _folders,
+    _sumo,
+    _fonts,
+    _processes,
+    _memory,
+    _disk,
+    _ports,
+    _extras,
+)

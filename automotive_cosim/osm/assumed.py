@@ -1,0 +1,108 @@
+"""The limit of a road whose map states none: the one that the law of its place sets.
+
+Where the rules of ``geo`` determine it (``US-CA:urban``: California's 25 mph; ``DE:motorway``: none), it is theirs,
+else the country's most common one (``country``). Either way it is assumed, not posted: no sign was mapped.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from datetime import UTC, datetime
+
+from automotive_cosim.geo.applied import limits
+from automotive_cosim.geo.place import Atlas, Place
+from automotive_cosim.geo.situation import Situation
+from automotive_cosim.osm.country import assumed_limit_kmh
+from automotive_cosim.osm.limits import Zone, zones_of
+
+AS_OF = datetime(2026, 11, 1, 12, tzinfo=UTC)
+"""The day whose law fills the gaps."""
+
+MAYBE_DUAL = frozenset(("trunk", "trunk_link", "primary", "primary_link", "secondary", "secondary_link"))
+"""One-way roads of these classes may be one carriageway of two; other one-way roads are streets."""
+
+
+def assumed_sign(tags: Mapping[str, str], atlas: Atlas, place: Place, *, built_up: bool) -> str:
+    """The most likely limit, as netconvert reads it: ``"50"``, ``"25 mph"`` or ``"none"``.
+
+    Args:
+        tags: the way's, with ``highway``; a zone among them names the place whose law applies.
+        atlas: the rules of every place.
+        place: the way's place.
+        built_up: whether it lies in a town or village.
+    """
+    zone = next(zones_of(tags), None)
+    country = zone.country if zone else place.country
+    there = place if zone is None or zone.place == place.country else _named(zone, atlas, place)
+    situation = _situation(tags, zone.name if zone else "", built_up=built_up)
+    found = [applied for applied in limits(there, situation) if applied.rule.fixed]
+    if situation.road_class == "living_street":
+        found = [one for one in found if any(test.word == "road_classes" for test in one.rule.tests)]
+    if len(found) == 1 and found[0].certain:
+        value, unit = found[0].value, found[0].rule.unit
+        if value == "none":
+            return "none"
+        return f"{value:g} mph" if unit == "mph" else f"{value:g}"
+    dual = tags.get("oneway") == "yes" or "motorroad" in tags
+    road_class = "motorway" if situation.motorway else situation.road_class
+    return f"{assumed_limit_kmh(country, road_class, built_up=built_up, dual=dual):g}"
+
+
+def _named(zone: Zone, atlas: Atlas, place: Place) -> Place:
+    """The place that a zone names: the country with the region, or with the cities and regions around the way."""
+    around = {layer.code for layer in place.layers}
+    layers = tuple(
+        layer
+        for layer in atlas.country(zone.country)
+        if layer.code in (zone.country, zone.place) or (layer.code in around and zone.place == zone.country)
+    )
+    return Place(country=zone.country, layers=layers)
+
+
+def _situation(tags: Mapping[str, str], zone: str, *, built_up: bool) -> Situation:
+    road_class = "living_street" if zone == "living_street" else tags["highway"]
+    motorway = road_class == "motorway" or zone == "motorway" or (None if road_class == "motorway_link" else False)
+    return Situation(
+        local_time=AS_OF,
+        lon_deg=None,
+        lat_deg=None,
+        street=tags.get("name", ""),
+        road_class=road_class,
+        motorway=motorway,
+        dual_carriageway=True if motorway else _dual_carriageway(tags, zone),
+        expressway=_expressway(tags, zone),
+        built_up=False if motorway else built_up,
+        lit=None,
+        centre_line={"yes": True, "no": False}.get(tags.get("lane_markings", "")),
+        lanes=_lanes(tags),
+        tunnel=tags.get("tunnel", "no") != "no",
+        speed_kmh=0.0,
+        standing=True,
+        oncoming_m=None,
+        leader_m=None,
+        phenomena=frozenset(),
+        visibility_m=None,
+        after_sunset=False,
+    )
+
+
+def _dual_carriageway(tags: Mapping[str, str], zone: str) -> bool | None:
+    if zone in ("nsl_single", "nsl_dual"):
+        return zone == "nsl_dual"
+    if tags.get("dual_carriageway") in ("yes", "no"):
+        return tags["dual_carriageway"] == "yes"
+    return None if tags.get("oneway") == "yes" and tags["highway"] in MAYBE_DUAL else False
+
+
+def _expressway(tags: Mapping[str, str], zone: str) -> bool | None:
+    if zone == "trunk" or tags.get("motorroad") == "yes":
+        return True
+    return None if tags["highway"] in ("trunk", "trunk_link") and "motorroad" not in tags else False
+
+
+def _lanes(tags: Mapping[str, str]) -> int:
+    """Number of lanes in one direction; one where the map does not say."""
+    for key, share in (("lanes:forward", 1), ("lanes", 1 if tags.get("oneway") == "yes" else 2)):
+        if tags.get(key, "").isdecimal():
+            return max(1, int(tags[key]) // share)
+    return 1

@@ -1,0 +1,92 @@
+"""How much of its plan an evaluation has run."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.contracts.plain import counted
+from automotive_cosim.errors import UserError
+from automotive_cosim.run.collect import planned
+from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.plan import EpisodeJob, make_plan
+
+
+@dataclass(frozen=True, slots=True)
+class Coverage:
+    """What has become of the planned episodes."""
+
+    judged: int
+    errors: int
+    not_run: tuple[EpisodeRow, ...] = ()
+    """The planned episodes without a row, with what is known of an episode before it runs."""
+    shared: frozenset[str] = frozenset()
+    """Ids of the episodes on whose instance no contestant's episode is still to be run."""
+    shared_instances: int | None = None
+    """Their instances; None if nothing is still to be run."""
+    problem: str = ""
+    """Why it is not known what was planned; then ``not_run`` is empty."""
+
+    @property
+    def planned(self) -> int:
+        """The number of planned episodes, or, if that is not known, of those that have a row."""
+        return self.judged + self.errors + len(self.not_run)
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether every planned episode has a row."""
+        return not self.not_run and not self.problem
+
+    def __str__(self) -> str:
+        errors = f", {counted(self.errors, 'error')}" if self.errors else ""
+        if self.problem:
+            known = f"{counted(self.judged, 'episode')} judged{errors}"
+            return f"{known}; what else was planned is not known: {self.problem}"
+        rest = f", {len(self.not_run):,} not run" if self.not_run else ""
+        return f"{self.judged:,} of {counted(self.planned, 'planned episode')} judged{errors}{rest}"
+
+
+def coverage(manifest: Json, rows: Mapping[str, EpisodeRow]) -> Coverage:
+    """Compares an evaluation's rows with its plan, expanded by the installed catalogue.
+
+    Args:
+        manifest: the evaluation's.
+        rows: its rows by id.
+    """
+    judged = sum(row.success is not None for row in rows.values())
+    errors = len(rows) - judged
+    if manifest.get("episodes") == len(rows):  # whatever has become of the catalogue since
+        return Coverage(judged, errors, shared=frozenset(rows))
+    jobs: dict[str, EpisodeJob] = {}
+    try:
+        jobs |= {job.id: job for job in make_plan(manifest["plan"]).jobs()}
+        problem = _drift(manifest, rows, jobs)
+    except UserError as error:
+        problem = " ".join(str(error).split())
+    if problem:
+        return Coverage(judged, errors, shared=frozenset(rows), problem=problem)
+    not_run = [job for job in jobs.values() if job.id not in rows]
+    waiting = {_instance(job) for job in not_run}
+    shared = [job for job in jobs.values() if _instance(job) not in waiting]
+    return Coverage(
+        judged,
+        errors,
+        tuple(map(planned, not_run)),
+        frozenset(job.id for job in shared),
+        len(set(map(_instance, shared))) if not_run else None,
+    )
+
+
+def _drift(manifest: Json, rows: Mapping[str, EpisodeRow], jobs: Mapping[str, EpisodeJob]) -> str:
+    """How the plan's episodes differ from those of the version that ran it; empty if they do not."""
+    count = manifest.get("episodes", len(jobs))
+    if count != len(jobs):
+        return f"the plan had {count} episodes and has {len(jobs)} with the installed tasks"
+    surplus = [name for name in rows if name not in jobs]
+    return f"{counted(len(surplus), 'episode')} not in the plan, such as {surplus[0]}" if surplus else ""
+
+
+def _instance(job: EpisodeJob) -> Hashable:
+    """What is the same for every contestant."""
+    return job.setup.task, job.setup.half, job.scenario, job.setup.seed, job.repeat

@@ -1,0 +1,124 @@
+"""The documentation site: ``make docs`` builds it offline; a broken link or an unknown name fails.
+
+The pages of ``_made/`` come from the package at each build: what a command prints is what it says of itself.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+from pathlib import Path
+
+import typer
+from sphinx.application import Sphinx
+from typer.cli import get_docs_for_click
+from typer.main import get_command
+from typer.testing import CliRunner
+
+from automotive_cosim import __version__, scenarios
+from automotive_cosim.cli.main import app
+from automotive_cosim.interface import spaces
+from automotive_cosim.tasking.task import Dimension, Module
+from automotive_cosim.tasks import CATALOGUE
+
+DOCS = Path(__file__).parent
+MADE = DOCS / "_made"
+
+project = "automotive_cosim"
+author = "The automotive_cosim authors"
+project_copyright = "The automotive_cosim authors, Apache-2.0"
+version = release = __version__
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
+exclude_patterns = ["_site", "_made/readme.md", "_made/spaces.md"]
+myst_heading_anchors = 4
+myst_enable_extensions = ["colon_fence", "deflist"]
+napoleon_numpy_docstring = False
+autodoc_typehints = "description"
+autodoc_typehints_description_target = "documented"
+autodoc_member_order = "bysource"
+autodoc_default_options = {"members": True}
+autodoc_mock_imports = ["ray", "stable_baselines3", "torch"]
+highlight_language = "none"
+html_theme = "furo"
+html_title = f"automotive_cosim {__version__}"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
+html_theme_options = {"navigation_with_keys": True}
+
+
+def setup(sphinx: Sphinx) -> None:
+    """Makes the pages before Sphinx looks for them."""
+    shutil.rmtree(MADE, ignore_errors=True)
+    _checkout()
+    _catalogue()
+    _gallery()
+    _commands()
+
+
+def _write(page: str, *lines: str) -> None:
+    path = MADE / page
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def _checkout() -> None:
+    """The files that lie beside docs/, with their links into it."""
+    for page, source in (
+        ("readme.md", "README.md"),
+        ("contributing.md", "CONTRIBUTING.md"),
+        ("changelog.md", "CHANGELOG.md"),
+        ("benchmarks.md", "benchmarks/README.md"),
+    ):
+        text = (DOCS.parent / source).read_text(encoding="utf-8")
+        _write(page, re.sub(r"\]\((\.\./)?docs/", "](../", text))
+    _write("spaces.md", (spaces.__doc__ or "").replace("``", "`"))
+
+
+def _printed(*arguments: str) -> str:
+    """What a command prints."""
+    ran = CliRunner().invoke(app, arguments, catch_exceptions=False)
+    if ran.exit_code:
+        raise RuntimeError(f"automotive-cosim {' '.join(arguments)} ended with code {ran.exit_code}: {ran.output}")
+    return ran.output.rstrip()
+
+
+def _catalogue() -> None:
+    """A page for each module; each task is what `tasks show` prints of it."""
+    index = ["# Catalogue", "", f"{len(CATALOGUE)} tasks, by module and dimension:", ""]
+    index += ["| module | " + " | ".join(str(each).replace("_", " ") for each in Dimension) + " |"]
+    index += ["|---" * (len(Dimension) + 1) + "|"]
+    for module in Module:
+        tasks = [task for task in CATALOGUE.values() if task.module is module]
+        counts = [sum(task.dimension is each for task in tasks) for each in Dimension]
+        index.append(f"| [{_title(module)}]({module}.md) | " + " | ".join(map(str, counts)) + " |")
+        page = [f"# {_title(module)}", ""]
+        for task in tasks:
+            page += [f"## {task.id}", "", "```text", _printed("tasks", "show", task.id), "```", ""]
+        _write(f"catalogue/{module}.md", *page)
+    pages = [str(module) for module in Module]
+    _write("catalogue/index.md", *index, "", "```{toctree}", ":hidden:", "", *pages, "```")
+
+
+def _title(module: Module) -> str:
+    return "HVAC" if module is Module.HVAC else str(module).capitalize()
+
+
+def _gallery() -> None:
+    """The README and the map of each scenario that is shipped."""
+    page = ["# Shipped scenarios", ""]
+    for name in scenarios.shipped():
+        folder = scenarios.load(name).folder
+        readme = (folder / "README.md").read_text(encoding="utf-8")
+        page.append(re.sub(r"^#", "##", readme, flags=re.MULTILINE).replace("](map.webp)", f"](maps/{name}.webp)"))
+        (MADE / "maps").mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(folder / "map.webp", MADE / "maps" / f"{name}.webp")
+    _write("gallery.md", *page)
+
+
+def _commands() -> None:
+    """Every command and its options."""
+    command = get_command(app)
+    text = get_docs_for_click(
+        obj=command, ctx=typer.Context(command), name="automotive-cosim", title="Command line"
+    )
+    _write("commands.md", text)

@@ -1,0 +1,133 @@
+"""A stopped evaluation says so everywhere, and its contestants stand side by side on what all of them ran."""
+
+import re
+from dataclasses import replace
+
+import pytest
+from typer.testing import CliRunner
+
+from automotive_cosim.cli.main import app
+from automotive_cosim.report.evaluation import all_tables, write_report
+from automotive_cosim.report.regression import changes, markdown
+from automotive_cosim.report.results import instance, read_results, standings
+from automotive_cosim.report.summary import main, rate_of
+from automotive_cosim.report.tables import Cell
+from automotive_cosim.run.collect import failed, planned
+from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
+from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.store import opened
+
+TASKS = ["hvac_fan_max", "phenomenon_front_window_fogged", "road_speed_80_in_50"]
+PLAN = make_plan({"agents": ["asurada", "t3a", "always-alert"], "tasks": TASKS, "seeds": [0, 1]})
+JOBS = PLAN.jobs()
+WON = PartsHeld(goal=True, clean=True, safe=True, in_time=True, declared=True)
+
+
+def write(folder, ran, errors=(), plan=PLAN, count=True):
+    """An evaluation that has run the jobs with these numbers, and won all but those that ended in an error."""
+    jobs = plan.jobs()
+    with opened(folder, plan.as_json(), EpisodeRow, planned=len(jobs) if count else None) as store:
+        for number in ran:
+            if number in errors:
+                store.append(failed(jobs[number], "WorkerDied", "gone"))
+            else:
+                store.append(replace(planned(jobs[number]), success=True, parts=WON))
+    return folder
+
+
+def invoke(*words):
+    return CliRunner().invoke(app, list(map(str, words)))
+
+
+@pytest.mark.parametrize("cut", range(len(JOBS) + 1))
+def test_wherever_it_stops_everything_planned_is_accounted_for(tmp_path, cut):
+    found = read_results(write(tmp_path / "e", range(cut), errors=range(0, cut, 5)))
+    covered = found.coverage
+    assert (covered.judged + covered.errors, covered.planned) == (cut, len(JOBS))
+    assert covered.is_complete == (cut == len(JOBS))
+    assert f"of {len(JOBS)} planned" in str(covered)
+    assert ("not run" in str(covered)) == (cut < len(JOBS))
+    assert len(found.contestants) == 3
+    for each in found.contestants:
+        rate = rate_of(found.planned_of(each))
+        assert rate.planned == len(JOBS) // 3
+        assert rate.bounds.low == rate.successes / rate.planned
+        assert rate.bounds.high == 1.0
+    waiting = re.findall(r"episodes \([^)]*?(\d+) not run", "\n".join(standings(found)))
+    assert sum(map(int, waiting)) == len(JOBS) - cut
+
+
+@pytest.mark.parametrize("cut", range(1, len(JOBS)))
+def test_contestants_stand_side_by_side_on_what_all_of_them_ran(tmp_path, cut):
+    found = read_results(write(tmp_path / "e", range(cut), errors={0, 3}))
+    instances = [{instance(row) for row in found.shared().of(each)} for each in found.contestants]
+    assert instances[0] == instances[1] == instances[2]
+    assert len(instances[0]) == found.coverage.shared_instances
+    ran = [{instance(row) for row in found.of(each)} for each in found.contestants]
+    assert instances[0] == ran[0] & ran[1] & ran[2]
+    progress, *others, last = all_tables(found, {})
+    assert (progress.name, last.name) == ("progress", "errors")
+    behind = {
+        name
+        for table in others
+        for row in table.rows
+        for cell in row
+        if isinstance(cell, Cell)
+        for name in cell.episodes
+    }
+    assert behind <= found.coverage.shared
+    assert sum(int(str(row[4])) for row in progress.rows) == len(JOBS) - cut
+
+
+def test_an_error_of_one_contestant_takes_no_instance_from_the_others(tmp_path):
+    found = read_results(write(tmp_path / "e", range(len(JOBS)), errors=range(len(JOBS) // 3)))
+    assert len(found.shared().rows) == len(found.rows) == len(JOBS)
+    assert "errors" in str(main(found.shared()).rows)
+
+
+def test_the_page_the_terminal_and_the_other_commands_say_so(tmp_path):
+    part, whole = write(tmp_path / "part", range(11)), write(tmp_path / "whole", range(len(JOBS)))
+    told = f"11 of {len(JOBS)} planned episodes judged, {len(JOBS) - 11} not run"
+    page = write_report(part).read_text(encoding="utf-8")
+    assert told in page
+    assert f"Incomplete: 11 of {len(JOBS)}" in page
+    assert "No infrastructure errors" not in page
+    assert "Incomplete" not in write_report(whole).read_text(encoding="utf-8")
+    assert told in invoke("report", part).output
+    assert told in invoke("regrade", part).output
+    for before, after, outcome in ((part, part, "incomplete"), (part, whole, "incomplete"), (whole, part, "worse")):
+        ran = invoke("compare", before, after)
+        assert (ran.exit_code, "as good" in ran.output) == (1, False)
+        assert outcome in ran.output
+    assert "it has not been run" in invoke("compare", whole, part).output
+    assert invoke("compare", whole, whole).exit_code == 0
+
+
+def test_a_fall_in_a_stopped_evaluation_is_worse_not_merely_incomplete(tmp_path):
+    before = write(tmp_path / "a", range(11))
+    after = write(tmp_path / "b", range(11), errors={4})
+    assert {each.outcome(0.0) for each in changes(before, after)} >= {"worse", "incomplete"}
+
+
+def test_a_contestant_without_an_episode_yet_is_shown(tmp_path):
+    mine = [number for number, job in enumerate(JOBS) if job.setup.agent == "asurada"]
+    found = read_results(write(tmp_path / "e", mine))
+    assert {each.agent for each in found.contestants} == {"asurada", "t3a", "always-alert"}
+    assert not found.shared().rows
+    assert any(
+        line.startswith("t3a") and "0 of 0 episodes" in line and "not run" in line for line in standings(found)
+    )
+
+
+def test_a_catalogue_that_has_changed_since_invents_no_episodes(tmp_path, monkeypatch):
+    whole = write(tmp_path / "whole", range(len(JOBS)))
+    part = write(tmp_path / "part", range(9))
+    older = write(tmp_path / "older", range(9), count=False)
+    monkeypatch.setattr(type(PLAN), "jobs", lambda self: JOBS[:-2])
+    assert read_results(whole).coverage.is_complete
+    assert f"had {len(JOBS)} episodes and has {len(JOBS) - 2}" in str(read_results(part).coverage)
+    assert "Incomplete</span>" in write_report(part).read_text(encoding="utf-8")
+    assert "incomplete" in markdown(changes(part, part), 0.0)
+    assert read_results(older).coverage.planned == len(JOBS) - 2
+    monkeypatch.setattr(type(PLAN), "jobs", lambda self: JOBS[:5])
+    assert "4 episodes not in the plan" in str(read_results(older).coverage)

@@ -1,0 +1,140 @@
+"""Laws over every half's reference solutions on a bare cockpit: clean as they are, but not with one switch more."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from datetime import datetime
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from automotive_cosim.agents.oracle import Oracle
+from automotive_cosim.cockpit import actions
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cockpit.signals import ACTUATORS, difference, named
+from automotive_cosim.contracts import ActionType, Answer, Feedback, FeedbackCode, Observation, RoadNetwork
+from automotive_cosim.episode.counterfactual import counterfactual
+from automotive_cosim.episode.situation import PARKED
+from automotive_cosim.proof.mutations import another_value
+from automotive_cosim.tasking.instance import Instance, draw
+from automotive_cosim.tasking.moves import Move
+from automotive_cosim.tasking.task import Start, Task
+from automotive_cosim.tasks import CATALOGUE
+
+from ..cockpit.conftest import outside, town
+
+HALVES = [(task, name) for task in CATALOGUE.values() for name in task.halves]
+TRIED = [pytest.param(task, half, id=f"{task.id}-{half}") for task, half in HALVES]
+FROM_S = 900.0
+STEPS_LIMIT = 60
+
+pytestmark = pytest.mark.slow
+
+
+@dataclass
+class Solved:
+    """A reference solution, played to its declaration."""
+
+    cockpit: Cockpit
+    moments: list[Any]
+    beside: dict[str, Any]
+    """What the counterfactual commands at the end."""
+
+    def surplus(self, cockpit: Cockpit, allowed: frozenset[str]) -> set[str]:
+        """What that cockpit commands and was not asked for."""
+        return set(difference(self.beside, cockpit.commands())) - allowed
+
+
+@pytest.fixture(scope="module")
+def network() -> RoadNetwork:
+    return town()
+
+
+def _at(start: Start, time_s: float) -> Any:
+    around = outside(time_s, 0.0 if start.parked else 48.0)
+    local_time = around.local_time
+    if start.start is not None:
+        local_time = datetime.fromisoformat(start.start).replace(tzinfo=local_time.tzinfo)
+    sun_deg = 40.0 if 6 <= local_time.hour < 20 else -20.0
+    weather = around.weather if start.weather is None else start.weather
+    return replace(around, local_time=local_time, sun_elevation_deg=sun_deg, weather=weather)
+
+
+def _hand_over_s(start: Start) -> int:
+    """Seconds after departure: at once, or when the first caller rings."""
+    return 2 + int(min((arrival.at_s for arrival in start.arrivals), default=0.0))
+
+
+def _taken_over(task: Task, half: str, network: RoadNetwork) -> tuple[Instance, Cockpit]:
+    """The instance, and the cockpit some seconds after departure."""
+    content = None
+    for _ in range(2):  # what the cockpit holds is known only when there is one
+        instance = draw(task, half, 0, content)
+        start = instance.half.start
+        cockpit = Cockpit(
+            network,
+            rng=np.random.default_rng(1),
+            cabin=start.cabin,
+            signals={**PARKED, **start.signals} if start.parked else start.signals,
+            arrivals=start.arrivals,
+            sign_camera=start.sign_camera,
+        )
+        content = cockpit.content
+    for second in range(_hand_over_s(start) + 1):
+        cockpit.sense(_at(start, FROM_S + second), float(second > 0))
+    return instance, cockpit
+
+
+def _solved(instance: Instance, cockpit: Cockpit, way: tuple[Move, ...]) -> Solved:
+    start, car = instance.half.start, cockpit.copy()
+    oracle, feedback = Oracle(), Feedback(FeedbackCode.NONE, "")
+    oracle.reset(instance.goal)
+    oracle.brief(instance, way)
+    moments: list[Any] = []
+    for second in range(STEPS_LIMIT):
+        around = _at(start, FROM_S + _hand_over_s(start) + second)
+        if second:
+            car.sense(around, 1.0)
+        now = SimpleNamespace(
+            time_s=around.driving.time_s,
+            surroundings=around,
+            signals=car.signals.snapshot(),
+            commands=car.commands(),
+        )
+        moments.append(now)
+        seen = car.elements()
+        action = oracle.act(Observation(instance.goal, float(second), feedback, elements=seen))
+        if action.action_type is ActionType.STATUS:
+            break
+        feedback = actions.perform(action, car, seen)
+        for request in car.drain_requests():
+            car.answered(request, Answer(True, "so it is"))
+    beside = counterfactual(cockpit, car.deeds, moments, instance.half.allowed_writes)
+    return Solved(car, moments, dict(beside))
+
+
+@pytest.mark.parametrize(("task", "half"), TRIED)
+def test_a_reference_solution_reaches_its_goal_and_leaves_nothing_else(task, half, network):
+    instance, cockpit = _taken_over(task, half, network)
+    for way in (instance.half.moves, *instance.half.ways):
+        solved = _solved(instance, cockpit, way)
+        assert instance.half.goal.holds(solved.moments[0], solved.moments[-1], solved.moments), way
+        assert solved.surplus(solved.cockpit, instance.half.allowed_writes) == set(), way
+
+
+@pytest.mark.parametrize(("task", "half"), TRIED)
+def test_one_switch_more_is_seen(task, half, network):
+    """Whether the car couples it to the goal or not; unless the task allows it, or it ends the goal."""
+    instance, cockpit = _taken_over(task, half, network)
+    allowed = instance.half.allowed_writes
+    solved = _solved(instance, cockpit, instance.half.moves)
+    turned = 0
+    for path in sorted(set(ACTUATORS) - allowed):
+        car = solved.cockpit.copy()
+        car.command(named(path), another_value(named(path), car.signals[named(path)]))
+        if car.commands() != solved.cockpit.commands():
+            turned += 1
+            assert solved.surplus(car, allowed), f"{path} as well is not seen"
+    assert turned > len(ACTUATORS) / 2
