@@ -17,7 +17,7 @@ from string import Template
 from automotive_cosim.agents.marks import listed
 from automotive_cosim.agents.settings import AgentProfile
 from automotive_cosim.cockpit.actions import grammar, to_json
-from automotive_cosim.contracts import Action, Element, Feedback, GpsFix, Observation, VehicleState
+from automotive_cosim.contracts import Action, Element, Feedback, GpsFix, Json, Observation, VehicleState
 from automotive_cosim.interface.observe import Channel
 
 SHOWN_FLAGS = ("is_checked", "is_selected", "is_editable", "is_scrollable")
@@ -114,7 +114,8 @@ def summary(number: int, action: Action | None, feedback: Feedback, target: str,
 
 def elements(observation: Observation) -> str:
     """The visible elements with their indices, one JSON object per line."""
-    return "\n".join(_element(index, element) for index, element in listed(observation.elements or ()))
+    entries = (listing(index, element) for index, element in listed(observation.elements or ()))
+    return "\n".join(json.dumps(entry, ensure_ascii=False) for entry in entries)
 
 
 def one_line(text: str) -> str:
@@ -131,8 +132,9 @@ def _lines(text: str) -> str:
     return "\n".join(one_line(line) for line in text.split("\n"))
 
 
-def _element(index: int, element: Element) -> str:
-    entry: dict[str, object] = {"index": index, "kind": element.class_name}
+def listing(index: int, element: Element) -> Json:
+    """An element as a list shows it: a JSON object without what is empty or false."""
+    entry: Json = {"index": index, "kind": element.class_name}
     if element.text:
         entry["text"] = one_line(element.text)
     if element.content_description:
@@ -146,8 +148,7 @@ def _element(index: int, element: Element) -> str:
         entry["clickable"] = True
     if not element.is_enabled:
         entry["disabled"] = True
-    entry |= {flag.removeprefix("is_"): True for flag in SHOWN_FLAGS if getattr(element, flag)}
-    return json.dumps(entry, ensure_ascii=False)
+    return entry | {flag.removeprefix("is_"): True for flag in SHOWN_FLAGS if getattr(element, flag)}
 
 
 def _vehicle(vehicle: VehicleState | None) -> str:

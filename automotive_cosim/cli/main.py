@@ -22,6 +22,7 @@ from automotive_cosim.cli import (
     context,
     doctor,
     evaluate,
+    mcp,
     memory,
     playback,
     results,
@@ -60,6 +61,7 @@ app.command()(playback.playback)
 app.command()(screens.screens)
 app.command()(schema.schema)
 app.command()(doctor.doctor)
+app.command()(mcp.mcp)
 app.command(context_settings=context.COMMAND_SETTINGS)(context.context)
 app.add_typer(study.app, name="study")
 app.add_typer(scenarios.app, name="scenarios")

@@ -133,17 +133,17 @@ def run(
     from automotive_cosim.agents import AgentSettings, make_agent
     from automotive_cosim.agents.settings import geo_input, parts
     from automotive_cosim.cli.live import Live, Notes
-    from automotive_cosim.episode.specification import MAX_STEPS, clock_of, mode_of
+    from automotive_cosim.episode.specification import clock_of, mode_of
     from automotive_cosim.report.film import Film
     from automotive_cosim.report.page import write_page
     from automotive_cosim.run.episode import EpisodeSetup, run_episode
-    from automotive_cosim.run.plan import WATCH_STEPS
+    from automotive_cosim.run.plan import most_steps
     from automotive_cosim.run.record import Recorder, check_folder, default_folder
     from automotive_cosim.run.script import read_script
-    from automotive_cosim.tasking.task import Mode
 
     if scenario == "":
         raise UserError("--scenario is empty; name a scenario, or omit the option to use the task's own")
+    called = mode_of(mode)
     off = parts(name.strip() for name in without.split(",") if name.strip())
     settings = AgentSettings(geo_input(geo), off, memory, seed, most_tokens, float(most_seconds))
     player = read_script(actions) if actions else make_agent(agent, model, settings)
@@ -157,8 +157,8 @@ def run(
         to_place=to_place,
         seed=seed,
         geo=settings.geo,
-        mode=mode_of(mode),
-        max_steps=MAX_STEPS + WATCH_STEPS if mode == Mode.MONITORING else MAX_STEPS,
+        mode=called,
+        max_steps=most_steps(called),
         agent=player.name,
         model=player.model,
         without=tuple(sorted(off)),

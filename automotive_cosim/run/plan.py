@@ -33,6 +33,11 @@ WATCH_STEPS = 60
 """Additional steps in monitoring mode, which begins up to a minute before the trigger."""
 
 
+def most_steps(mode: Mode, steps: int = MAX_STEPS) -> int:
+    """The limit of an episode's actions, whose limit in prompted mode is ``steps``."""
+    return steps + WATCH_STEPS if mode is Mode.MONITORING else steps
+
+
 @dataclass(frozen=True, slots=True)
 class Limits:
     """Limits of one episode."""
@@ -155,7 +160,7 @@ class Plan:
                     agent=agent,
                     model=model if agent in PROFILES else NO_MODEL,
                     seed=seed,
-                    max_steps=self.limits.steps if mode == Mode.PROMPTED else self.limits.steps + WATCH_STEPS,
+                    max_steps=most_steps(Mode(mode), self.limits.steps),
                     max_sim_s=self.limits.sim_s,
                     geo=GeoInput(geo),
                     mode=Mode(mode),

@@ -1,0 +1,69 @@
+"""``automotive-cosim mcp``: a server for assistants that speak the Model Context Protocol."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from automotive_cosim.cli.options import TasksFrom, number, whole_number
+from automotive_cosim.errors import SetupError, UserError
+
+
+def _address(text: str) -> tuple[str, int]:
+    host, _, port = text.rpartition(":")
+    if not host or not port.isdecimal() or not 0 < int(port) < 65536:
+        raise typer.BadParameter(f"{text!r} is not an address; give HOST:PORT, such as 127.0.0.1:8000")
+    return host, int(port)
+
+
+def mcp(
+    http: Annotated[
+        str,
+        typer.Option(
+            help="Serve streamable HTTP at http://HOST:PORT/mcp instead of standard input and output.",
+            metavar="HOST:PORT",
+            show_default=False,
+        ),
+    ] = "",
+    episodes: Annotated[
+        int, typer.Option(help="Most episodes at once.", metavar="N", parser=whole_number(1, 1000))
+    ] = 16,
+    idle_s: Annotated[
+        float,
+        typer.Option(
+            "--idle-s",
+            help="Seconds after which an episode that nobody asks for is closed.",
+            metavar="SECONDS",
+            parser=number(1, 1e6),
+        ),
+    ] = 900.0,
+    tasks_from: TasksFrom = None,
+) -> None:
+    """Serve episodes to any assistant that speaks the Model Context Protocol."""
+    import threading
+    from contextlib import closing
+
+    try:
+        from automotive_cosim.doors.mcp import make_server
+    except ImportError as error:
+        if (error.name or "").partition(".")[0] not in ("mcp", "mcp_types"):
+            raise
+        raise SetupError(
+            "the mcp package is missing; install it with `pip install 'automotive-cosim[mcp]'`"
+        ) from error
+    from automotive_cosim.service import EpisodeService, Limits
+
+    address = _address(http) if http else None
+    with closing(EpisodeService(limits=Limits(episodes, idle_s))) as service:
+        server = make_server(service)
+        if address is None:
+            # Not on this thread: the server cannot be interrupted while it waits for standard input.
+            talk = threading.Thread(target=server.run, args=("stdio",), daemon=True)
+            talk.start()
+            talk.join()
+        else:
+            try:
+                server.run("streamable-http", host=address[0], port=address[1])
+            except SystemExit as error:  # the address is in use, or not this machine's
+                raise UserError(f"cannot serve at {http}; choose another address with --http") from error

@@ -1,0 +1,4 @@
+"""Doors: what other programs speak, each as a thin adapter of the service of episodes.
+
+mcp      a server of the Model Context Protocol (extra ``mcp``)
+"""

@@ -1,0 +1,77 @@
+"""What an agent is told: a turn after each step, the outcome at the end."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+
+from automotive_cosim.agents.marks import listed, png
+from automotive_cosim.agents.prompt import listing
+from automotive_cosim.contracts import Json, Observation
+from automotive_cosim.episode.specification import End
+from automotive_cosim.interface.trace import plain
+
+
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """An episode as its agent sees it. Nothing in it comes from the task's checks."""
+
+    episode_id: str
+    step: int
+    """Actions so far, unreadable ones included."""
+    observation: Observation
+    end: End | None
+    """Why the episode is over; None while it is not."""
+
+    @property
+    def picture(self) -> bytes | None:
+        """The screen as a PNG file; None for an agent that is not given it."""
+        screenshot = self.observation.screenshot
+        return None if screenshot is None else png(screenshot)
+
+    def as_json(self) -> Json:
+        """The turn as a JSON object, without the picture.
+
+        A channel that the agent is not given has no key, nor has a reading that the car does not give. ``elements``
+        are those that are visible, each with its index.
+        """
+        seen = self.observation
+        told: Json = {
+            "episode_id": self.episode_id,
+            "step": self.step,
+            "end": None if self.end is None else str(self.end),
+            "goal": seen.goal,
+            "time_s": seen.time_s,
+            "feedback": {"code": str(seen.feedback.code), "text": seen.feedback.text},
+        }
+        if seen.elements is not None:
+            told["elements"] = [listing(index, element) for index, element in listed(seen.elements)]
+        for name in ("vehicle", "connectivity", "gps"):
+            readings = getattr(seen, name)
+            if readings is not None:
+                told[name] = {key: value for key, value in plain(readings).items() if value is not None}
+        if seen.context is not None:
+            told["context"] = seen.context
+        return told
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """The result of an episode that is over."""
+
+    episode_id: str
+    task: str
+    half: str
+    seed: int
+    end: str
+    success: bool
+    steps: int
+    """Number of actions, unreadable ones included."""
+    sim_seconds: float
+    """Simulated seconds from the hand-over to the end."""
+    trace_sha256: str
+    """Hash of all steps: equal for the same specification and actions, whoever sent them."""
+    verdict: Json
+
+    def as_json(self) -> Json:
+        """The outcome as a JSON object."""
+        return asdict(self)

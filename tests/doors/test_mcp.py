@@ -1,0 +1,209 @@
+"""The server against the protocol's own client: over standard input and output, over HTTP, and in this process."""
+
+import base64
+import json
+import os
+import socket
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from typing import Any
+
+import pytest
+
+from automotive_cosim.cockpit.actions import parse
+from automotive_cosim.contracts import Json
+from automotive_cosim.run.episode import EpisodeSetup, run_episode
+from automotive_cosim.run.script import ScriptedAgent
+from automotive_cosim.service import EpisodeService, Limits
+from automotive_cosim.tasks import CATALOGUE
+from automotive_cosim.traffic.fork import Simulations
+
+pytest.importorskip("mcp", reason="the extra mcp is not installed")
+import anyio
+from mcp import Client, StdioServerParameters
+
+from automotive_cosim.doors.mcp import make_server
+
+START: Json = {"task": "hvac_fan_max", "scenario": "grid", "seed": 0}
+ACTIONS: list[Json] = [
+    {"action_type": "open_app", "app_name": "climate"},
+    {"action_type": "fly"},
+    {"action_type": "status", "goal_status": "complete"},
+]
+SERVER = ["-c", "from automotive_cosim_main import main; main()", "mcp"]
+
+
+@pytest.fixture(scope="module")
+def trace(simulations: Simulations) -> str:
+    """The trace of the same actions on the command line; a line that cannot be read costs a step there too."""
+
+    class Script(ScriptedAgent):
+        def act(self, observation):
+            return parse(left.pop(0))
+
+    left = [*ACTIONS]
+    setup = EpisodeSetup("hvac_fan_max", scenario="grid", agent="script", model="none")
+    result = run_episode(setup, Script([]), simulations=simulations)
+    assert result.steps == 3
+    assert result.trace_sha256
+    return result.trace_sha256
+
+
+@pytest.fixture
+def service(simulations: Simulations) -> Iterator[EpisodeService]:
+    with closing(EpisodeService(simulations, Limits(episodes=2))) as made:
+        yield made
+
+
+def inside(service: EpisodeService, talk: Callable[[Client], Any]) -> Any:
+    """What an assistant gets from a server in this process."""
+
+    async def run() -> Any:
+        async with Client(make_server(service)) as client:
+            return await talk(client)
+
+    return anyio.run(run)
+
+
+async def drive(client: Client, **options: Any) -> Json:
+    """Plays the actions; the outcome."""
+    turn = await call(client, "start", START, **options)
+    for action in ACTIONS:
+        assert turn["end"] is None
+        turn = await call(client, "act", {"episode_id": turn["episode_id"], "action": action})
+    return await call(client, "finish", {"episode_id": turn["episode_id"]})
+
+
+async def call(client: Client, tool: str, given: Json, **options: Any) -> Json:
+    result = await client.call_tool(tool, given, **options)
+    assert not result.is_error, result.content
+    assert json.loads(result.content[0].text) == result.structured_content
+    return result.structured_content
+
+
+async def refused(client: Client, tool: str, given: Json) -> str:
+    result = await client.call_tool(tool, given)
+    assert result.is_error
+    return result.content[0].text
+
+
+@pytest.mark.slow
+@pytest.mark.sumo
+@pytest.mark.parametrize("mode", ["auto", "legacy"])
+def test_an_assistant_over_standard_input_and_output_gets_the_command_lines_trace(trace: str, mode: str) -> None:
+    told: list[tuple[float, float | None, str | None]] = []
+
+    async def progress(done: float, total: float | None, message: str | None) -> None:
+        told.append((done, total, message))
+
+    async def run() -> Json:
+        server = StdioServerParameters(command=sys.executable, args=SERVER, env=dict(os.environ))
+        async with Client(server, mode=mode) as client:
+            return await drive(client, progress_callback=progress)
+
+    outcome = anyio.run(run)
+    assert (outcome["trace_sha256"], outcome["steps"], outcome["end"]) == (trace, 3, "declared")
+    assert "loading Grid" in (told[0][2] or "")
+    assert [done for done, total, _ in told if total] == sorted(done for done, total, _ in told if total) != []
+
+
+@pytest.mark.slow
+@pytest.mark.sumo
+def test_two_assistants_over_http_get_the_command_lines_trace(trace: str, program, until) -> None:
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    program(sys.executable, *SERVER, "--http", f"127.0.0.1:{port}")
+
+    def answers() -> bool:
+        with socket.socket() as tried:
+            return tried.connect_ex(("127.0.0.1", port)) == 0
+
+    until(answers)
+    outcomes: list[Json] = []
+
+    async def one() -> None:
+        async with Client(f"http://127.0.0.1:{port}/mcp") as client:
+            outcomes.append(await drive(client))
+
+    async def run() -> None:
+        async with anyio.create_task_group() as group:
+            group.start_soon(one)
+            group.start_soon(one)
+
+    anyio.run(run)
+    assert [outcome["trace_sha256"] for outcome in outcomes] == [trace, trace]
+
+
+def test_every_tool_says_what_it_takes_and_an_episode_is_named_in_all_but_two(service: EpisodeService) -> None:
+    async def talk(client: Client) -> Any:
+        return (await client.list_tools()).tools
+
+    tools = {tool.name: tool for tool in inside(service, talk)}
+    assert set(tools) == {"list_tasks", "start", "observe", "act", "finish"}
+    for name, tool in tools.items():
+        assert tool.description
+        assert "context" not in tool.input_schema["properties"]
+        assert ("episode_id" in tool.input_schema.get("required", ())) == (name in {"observe", "act", "finish"})
+    assert '"action_type": "show_alert"' in tools["act"].input_schema["properties"]["action"]["description"]
+
+
+def test_a_turn_has_a_picture_and_nothing_of_the_verdict(service: EpisodeService) -> None:
+    async def talk(client: Client) -> Any:
+        return await client.call_tool("start", START)
+
+    result = inside(service, talk)
+    text, picture = result.content
+    assert base64.b64decode(picture.data).startswith(b"\x89PNG")
+    assert picture.mime_type == "image/png"
+    told = set(json.loads(text.text))
+    assert told == {
+        "episode_id", "step", "end", "goal", "time_s", "feedback",
+        "elements", "vehicle", "connectivity", "gps", "context",
+    }  # fmt: skip
+
+
+def test_the_list_says_no_more_of_a_task_than_its_name_and_halves(service: EpisodeService) -> None:
+    async def talk(client: Client) -> Json:
+        return await call(client, "list_tasks", {})
+
+    listed = inside(service, talk)["tasks"]
+    assert [(task["id"], tuple(task["halves"])) for task in listed] == [
+        (task.id, task.halves) for task in CATALOGUE.values()
+    ]
+    assert {frozenset(task) for task in listed} == {frozenset({"id", "halves"})}
+
+
+@pytest.mark.parametrize(
+    ("tool", "given", "said"),
+    [
+        ("start", START | {"task": "hvac_fan_maxx"}, "did you mean 'hvac_fan_max'"),
+        ("start", START | {"half": "third"}, "third"),
+        ("start", START | {"seed": -1}, "greater than or equal to 0"),
+        ("start", START | {"mode": "promted"}, "did you mean 'prompted'"),
+        ("start", START | {"mode": "monitoring"}, "only safety tasks can be monitored"),
+        ("start", START | {"geo": "none at all"}, "geo control"),
+        ("start", START | {"channels": ["radar"]}, "no channel named 'radar'"),
+        ("start", START | {"scenario": "nowhere"}, "nowhere"),
+        ("list_tasks", {"tasks": "nothing*"}, "nothing"),
+        ("observe", {"episode_id": "0"}, "no episode '0'"),
+        ("finish", {"episode_id": "0"}, "no episode '0'"),
+        ("act", {"episode_id": "0", "action": {"action_type": "wait"}}, "no episode '0'"),
+        ("act", {"episode_id": "0"}, "action"),
+    ],
+)
+def test_what_is_wrong_is_told(service: EpisodeService, tool: str, given: Json, said: str) -> None:
+    assert said in inside(service, lambda client: refused(client, tool, given))
+
+
+def test_an_action_may_come_as_text_and_channels_are_left_out(service: EpisodeService) -> None:
+    async def talk(client: Client) -> Any:
+        turn = await call(client, "start", START | {"channels": ["elements"]})
+        given = {"episode_id": turn["episode_id"], "action": json.dumps(ACTIONS[0])}
+        return await client.call_tool("act", given)
+
+    result = inside(service, talk)
+    assert len(result.content) == 1
+    assert result.structured_content["feedback"]["code"] == "ok"
+    assert "vehicle" not in result.structured_content
