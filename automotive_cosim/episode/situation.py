@@ -29,7 +29,7 @@ from automotive_cosim.traffic.fork import Simulations
 
 WATCH_S = 30.0
 """Minimum time from the beginning of a watch to its trigger; at most twice that."""
-WAITS_S = (0.0, 41.0, 113.0)
+WAITS_S = (0.0, 41.0, 113.0, 197.0, 307.0, 431.0)
 """Delays of further departures, tried one by one until the situation arises; out of step with the usual cycles of
 traffic lights."""
 PARKED: Mapping[str, Any] = {MOTION.GEAR.path: "P", DRIVE.PARKING_BRAKE.path: True}
