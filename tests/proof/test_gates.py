@@ -259,7 +259,7 @@ def test_a_pair_that_can_always_be_declined_is_seen(ground):
         (replace(GRID, signals={HVAC.DRIVER_TEMPERATURE.path: 16.0}), "weather and date", "the settings"),
         (replace(GRID, start="2026-03-10T20:30:00"), "road", "the local time"),
         (replace(GRID, start="2026-03-10T20:30:00"), "date", ""),
-        (replace(GRID, parked=True), "weather", "gear and restrictions"),
+        (replace(GRID, sign_camera=False), "weather", "the road"),
     ],
 )
 def test_a_pair_that_gives_itself_away_is_seen(ground, start, differs, seen):
