@@ -110,8 +110,8 @@ _ELEMENTS: Mapping[str, Facet] = {
 """Facet of elements by the beginning of their resource id; all others belong to the screen."""
 _EXACT = frozenset({Facet.SCREEN, Facet.SETTINGS})
 """Facets whose elements are compared with their numbers; those of the others are the readings'."""
-_FOLLOWS = ("home.media.", "home.cabin_note")
-"""Elements that follow from others: the song from the clock, the note from humidity and glass."""
+_FOLLOWS = ("home.media.", "home.cabin_note", "status.notifications")
+"""Elements that follow from others: the song from the clock, the note and the notices from the car's readings."""
 _LINES: Mapping[str, Facet] = {
     "place": Facet.PLACE,
     "climate": Facet.CLIMATE,
