@@ -20,6 +20,7 @@ from automotive_cosim.errors import TriggerNotReachedError, UserError
 from automotive_cosim.geo.forecast import drawn_weather
 from automotive_cosim.scenarios import Scenario, Trip, WeatherAt
 from automotive_cosim.scenery import open_scenario
+from automotive_cosim.tasking.binding import UnmetNeedError, bound, needs
 from automotive_cosim.tasking.draws import Draws, Purpose
 from automotive_cosim.tasking.instance import Instance, draw
 from automotive_cosim.tasking.task import STANDING_ORDER, Half, Mode, Task
@@ -89,6 +90,9 @@ class SituationFinder:
         )
         self._spec = spec
         self._is_elsewhere = bool(spec.from_place or spec.to_place) or self.scenario.name != start.scenario
+        self._has_own_law = not self._is_elsewhere and spec.origin in (None, start.origin)
+        self._missing = ""
+        """What the place lacked when the situation last arose."""
         self._simulations = simulations
         self._listener = listener or Listener()
 
@@ -121,8 +125,14 @@ class SituationFinder:
             f"task {self.task.id!r}: {trigger.condition} did not hold for {trigger.for_s:g} s within "
             f"{trigger.within_s:g} s of {len(waits_s)} departures on any of the trips "
             f"{', '.join(trip.name for trip in trips)} of scenario {self.scenario.name!r} (traffic seed "
-            f"{seeds.traffic}); try another seed, trip or scenario"
+            f"{seeds.traffic}){self._lacking()}; try another seed, trip or scenario"
         )
+
+    def _lacking(self) -> str:
+        if not self._missing:
+            return ""
+        needed = ", ".join(needs(self.task.half(self._spec.half)))
+        return f" where it has what the task needs ({needed}): {self._missing}"
 
     def _draw(self, draws: Draws, content: Mapping[str, tuple[str, ...]] | None = None) -> Instance:
         return draw(self.task, self._spec.half, draws.number, content, held_out=self._spec.held_out)
@@ -185,21 +195,34 @@ class SituationFinder:
         departed_s, since_s = world.moment.time_s, None
         while (now := world.moment).time_s - departed_s < trigger.within_s and now.driving.end is None:
             is_due = now.time_s - departed_s >= trigger.after_s
-            holds = is_due and _motion(now) in half.start.motions and trigger.condition(now)
+            is_so = _motion(now) in half.start.motions and trigger.condition(now)
+            holds = is_due and is_so and self._rests(half, now)
             since_s = (now.time_s if since_s is None else since_s) if holds else None
             if since_s is not None and now.time_s - since_s >= trigger.for_s:
                 return _Drive(world, tuple(moments))
             moments += self._advanced(world)
         return None
 
+    def _rests(self, half: Half, moment: Moment) -> bool:
+        """Whether a sign or law is in force here on which the half can rest."""
+        if self._has_own_law:
+            return True
+        try:
+            bound(half, moment.context)
+        except UnmetNeedError as missing:
+            self._missing = str(missing)
+            return False
+        return True
+
     def _handed_over(
         self, draws: Draws, simulation: Simulation, half: Half, plan: EgoPlan, drive: _Drive
     ) -> HandOver:
         trigger_s = drive.moments[-1].time_s
+        rule = "" if self._has_own_law else bound(half, drive.moments[-1].context)
         if self._spec.mode is Mode.MONITORING:
             drive.world.close()
             drive = self._watch(simulation, half, plan, draws, drive)
-        instance = self._draw(draws, drive.world.cockpit.content)
+        instance = replace(self._draw(draws, drive.world.cockpit.content), rule=rule)
         if self._spec.mode is Mode.MONITORING:
             after_s = trigger_s - drive.world.moment.time_s
             instance = replace(instance, goal=STANDING_ORDER, trigger_after_s=after_s)

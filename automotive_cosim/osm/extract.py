@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 from automotive_cosim.errors import ImportMapError, SetupError
 from automotive_cosim.formats.xml import scan
 from automotive_cosim.osm.area import Area
+from automotive_cosim.osm.overpass_json import OverpassJson, is_json
 from automotive_cosim.traffic.sumo_programs import INSTALL
 
 LINKED = ("motorway", "trunk", "primary", "secondary", "tertiary")
@@ -125,19 +126,14 @@ class Extract:
 
 
 def read(source: Path) -> Extract:
-    """Reads the roads of an extract: OSM XML, plain, gzip or bzip2, or PBF, detected by content, not by name.
+    """Reads the roads of an extract: OSM XML, plain, gzip or bzip2, PBF, or JSON of an Overpass server, detected by
+    content, not by name.
 
     Raises:
         ImportMapError: the file is missing, empty, truncated, not OSM data, or without roads.
         SetupError: the osmium package is not installed.
     """
-    file = _open(source)
-    try:
-        ways, restrictions = _read_ways(file)
-        nodes = _read_nodes(file, {ref for way in ways for ref in way.nodes})
-        cameras = _read_cameras(file)
-    except (RuntimeError, ValueError, ArithmeticError, MemoryError) as error:
-        raise ImportMapError(_explain(source, str(error))) from error
+    ways, restrictions, nodes, cameras = _read_json(source) if is_json(_head(source)) else _read_osm(source)
     complete = tuple(piece for way in ways for piece in _known_pieces(way, nodes))
     if not complete:
         raise ImportMapError(
@@ -147,6 +143,38 @@ def read(source: Path) -> Extract:
     return Extract(complete, nodes, restrictions, cameras)
 
 
+_Read = tuple[list[OsmWay], tuple[TurnRestriction, ...], dict[int, Node], tuple[Position, ...]]
+"""Ways open to cars, turn restrictions, the nodes of those ways, and speed cameras."""
+
+
+def _read_osm(source: Path) -> _Read:
+    kind = _format(source, _head(source))
+    if kind != "pbf":
+        _check_positions(source)
+    file = _osmium().io.File(str(source), kind)
+    try:
+        ways, restrictions = _read_ways(file)
+        nodes = _read_nodes(file, {ref for way in ways for ref in way.nodes})
+        return ways, restrictions, nodes, _read_cameras(file)
+    except (RuntimeError, ValueError, ArithmeticError, MemoryError) as error:
+        raise ImportMapError(_explain(source, str(error))) from error
+
+
+def _read_json(source: Path) -> _Read:
+    read = OverpassJson(source)
+    ways = [OsmWay(way_id, tags, nodes) for way_id, tags, nodes in read.ways() if _is_road(tags)]
+    turns = tuple(TurnRestriction(*relation) for relation in read.relations() if "restriction" in relation[1])
+    wanted = {ref for way in ways for ref in way.nodes}
+    nodes: dict[int, Node] = {}
+    cameras: list[Position] = []
+    for node_id, tags, place in read.nodes():
+        if node_id in wanted:
+            nodes[node_id] = Node(Position(*place), tags)
+        if tags.get("highway") == "speed_camera":
+            cameras.append(Position(*place))
+    return ways, turns, dict(sorted(nodes.items())), tuple(cameras)
+
+
 def _osmium() -> Any:
     try:
         return import_module("osmium")
@@ -154,16 +182,12 @@ def _osmium() -> Any:
         raise SetupError(f"importing maps requires the osmium package: {INSTALL}") from error
 
 
-def _open(source: Path) -> Any:
+def _head(source: Path) -> bytes:
     try:
         with source.open("rb") as stream:
-            head = stream.read(64)
+            return stream.read(4096)
     except OSError as error:
         raise ImportMapError(f"{source}: {error.strerror}; give the path of an OSM extract") from error
-    kind = _format(source, head)
-    if kind != "pbf":
-        _check_positions(source)
-    return _osmium().io.File(str(source), kind)
 
 
 class _UnreadableError(ImportMapError):
@@ -198,7 +222,7 @@ def _format(source: Path, head: bytes) -> str:
     if head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<"):
         return "osm"
     kind = "a zip archive; unpack it and" if head.startswith(b"PK\x03\x04") else "not OSM data;"
-    raise ImportMapError(f"{source} is {kind} give OSM XML (plain, .gz or .bz2) or .osm.pbf")
+    raise ImportMapError(f"{source} is {kind} give OSM XML (plain, .gz or .bz2), .osm.pbf or Overpass JSON")
 
 
 def _explain(source: Path, error: str) -> str:
@@ -219,12 +243,16 @@ def _read_ways(file: Any) -> tuple[list[OsmWay], tuple[TurnRestriction, ...]]:
     for item in osmium.FileProcessor(file, osmium.osm.WAY | osmium.osm.RELATION).with_filter(wanted):
         tags = {tag.k: tag.v for tag in item.tags}
         if item.is_way():
-            if tags.get("highway") in ROAD_CLASSES and tags.get("area") != "yes" and _cars_may(tags):
+            if _is_road(tags):
                 ways.append(OsmWay(item.id, tags, tuple(node.ref for node in item.nodes)))
         elif "restriction" in tags:
             members = tuple((member.type, member.ref, member.role) for member in item.members)
             restrictions.append(TurnRestriction(item.id, tags, members))
     return ways, tuple(restrictions)
+
+
+def _is_road(tags: Mapping[str, str]) -> bool:
+    return tags.get("highway") in ROAD_CLASSES and tags.get("area") != "yes" and _cars_may(tags)
 
 
 def _cars_may(tags: Mapping[str, str]) -> bool:

@@ -15,6 +15,7 @@ import shapely
 from automotive_cosim.errors import ImportMapError
 from automotive_cosim.osm.country import LEFT_HAND
 from automotive_cosim.osm.extract import Extract, Position
+from automotive_cosim.osm.repair import open_traps
 from automotive_cosim.osm.roads import MappedRoad, way_of
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.network import Edge, Network, read_network
@@ -55,6 +56,8 @@ class Built:
     network: Network
     signals: int
     roundabouts: int
+    opened: tuple[str, ...] = ()
+    """Edges with a lane that was opened to cars, so that none is trapped beside it."""
 
     @property
     def edges(self) -> tuple[Edge, ...]:
@@ -124,6 +127,7 @@ def convert(extract: Extract, roads: Mapping[int, MappedRoad], target: Path, cou
         )
     text = re.sub(r"<!-- generated on .*?-->\s*", "", text, count=1, flags=re.DOTALL)
     text = _ESCAPED_TWICE.sub(r"&\1;", text)
+    text, opened = open_traps(text)
     text = _with_parameters(text, lambda edge_id: roads[way_of(edge_id)].parameters(edge_id))
     signals, roundabouts = text.count("<tlLogic "), text.count("<roundabout ")
     _write(text, target)
@@ -132,7 +136,7 @@ def convert(extract: Extract, roads: Mapping[int, MappedRoad], target: Path, cou
     if watched:
         _write(_with_parameters(text, lambda edge_id: _cameras(watched.get(edge_id, ()))), target)
         network = read_network(target)
-    return Built(network, signals, roundabouts)
+    return Built(network, signals, roundabouts, opened)
 
 
 def write_osm(extract: Extract, roads: Mapping[int, MappedRoad], target: Path) -> None:

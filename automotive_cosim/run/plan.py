@@ -14,7 +14,7 @@ from typing import Annotated, Any
 from annotated_types import Ge, Gt, Le, MinLen
 
 from automotive_cosim import scenarios
-from automotive_cosim.agents import PROFILES, make_agent
+from automotive_cosim.agents import MODELLED, make_agent
 from automotive_cosim.contracts import Json
 from automotive_cosim.episode.specification import MAX_STEPS, Clock
 from automotive_cosim.errors import UnknownNameError, UserError
@@ -165,7 +165,7 @@ class Plan:
                     half,
                     None if is_own else scenario,
                     agent=agent,
-                    model=model if agent in PROFILES else NO_MODEL,
+                    model=model if agent in MODELLED else NO_MODEL,
                     seed=seed,
                     max_steps=most_steps(Mode(mode), self.limits.steps),
                     max_sim_s=self.limits.sim_s,

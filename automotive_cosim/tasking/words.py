@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from automotive_cosim.tasking.binding import needs
 from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil, TypeText, Warn
 from automotive_cosim.tasking.parameters import Choices, FromCockpit
 from automotive_cosim.tasking.task import Half
@@ -33,6 +34,8 @@ def half_in_words(half: Half) -> Iterable[tuple[str, str]]:
         yield "solution", f"{'or ' if number else ''}{', '.join(map(_move, way)) or 'declare at once'}"
     yield "deadline", f"{half.deadline.seconds:g} s: {half.deadline.reason}"
     yield "basis", f"{half.basis}: {half.rule}" if half.rule else str(half.basis)
+    for need in needs(half):
+        yield "elsewhere", need
 
 
 def _move(move: object) -> str:
