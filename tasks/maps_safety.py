@@ -30,7 +30,7 @@ from automotive_cosim.tasking.triggers import (
     VisibilityBetween,
 )
 from automotive_cosim.tasks.forms import decline, in_company
-from automotive_cosim.tasks.road_law import DARMSTADT, DENSE_FOG, FAIR, FOG, NOON, PLACE, fine
+from automotive_cosim.tasks.road_law import DARMSTADT, DENSE_FOG, FAIR, NOON, PLACE, fine
 
 GUANGZHOU, CALAIS, DOVER = (113.30, 23.10), (1.95, 50.85), (1.20, 51.20)
 TORONTO, BUFFALO = (-79.90, 43.30), (-78.70, 43.00)
@@ -41,7 +41,8 @@ TO_PORTAL = Deadline(8.0, "the time to the portal at the present speed")
 STOPPING = Deadline(10.0, "a driver who wants to stop does so within a few seconds, without help if necessary")
 NO_FUEL = Deadline(30.0, "with a few kilometres short, every minute of driving makes the way back longer")
 NEXT_EXIT = Deadline(20.0, "at the 20 to 36 km/h that such fog allows, an exit 300 m ahead is 30 s away")
-VILLAGES = Start("alpine_pass", "villages", driver="average", weather=FAIR, sign_camera=False)
+SUMMER_FOG = replace(DENSE_FOG, temperature_2m=18.0)
+VILLAGES = Start("alpine_pass", "villages", driver="average", start=NOON, weather=FAIR, sign_camera=False)
 QUEUE, QUEUE_FREE = replace(VILLAGES, trip="jam"), VILLAGES
 SCHOOLS = Start("sydney", "school_run", driver="calm", weather=FAIR, sign_camera=False)
 PASSABLE = Trigger(All((Driving(), Not(JamWithin(15_000.0)), Not(OtherWayKnown(45.0)))), 3.0, 240.0)
@@ -50,7 +51,7 @@ TUNNELS = Start("paris_centre", "tunnel", driver="average", sign_camera=False)
 OFF_BY_LANGEN = AllOf(
     (RoadAsked(Reroute("Langener Straße")), AppDataIs("navigation.destination", ("Langener Straße",)))
 )
-BLIND = Start("autobahn", "south", start=NOON, weather=DENSE_FOG, sign_camera=False)
+BLIND = Start("autobahn", "south", start=NOON, weather=SUMMER_FOG, sign_camera=False)
 IN_FOG = Trigger(All((OnRoadClass(("motorway",)), SpeedBetween(15.0), VisibilityBetween(0.0, 100.0))), 3.0, 420.0)
 MILES = {HMI.DISTANCE_UNIT.path: "MILES"}
 WIDE = Start("sydney", "putty_road", start=NOON, weather=FAIR, sign_camera=False)
@@ -179,7 +180,7 @@ ALIGNED: tuple[Task, ...] = (
             leave_at("Langener Straße"),
         ),
         acted(
-            replace(BLIND, origin=GUANGZHOU, weather=FOG),
+            replace(BLIND, origin=GUANGZHOU, weather=replace(SUMMER_FOG, visibility=90.0)),
             replace(IN_FOG, condition=All((IN_FOG.condition, SpeedBetween(43.0)))),
             AlertGiven(AlertKind.SPEED, 40.0, must_advise=True),
             NEXT_EXIT,

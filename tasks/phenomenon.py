@@ -112,9 +112,9 @@ REAR_WINDOW = Task(
 
 WET_STREET = replace(PARIS, weather=Weather(9.0, 94.0, 3.0, 63, 100.0, 4000.0, 18.0))
 """Rain of 3 mm/h, in which visibility is soon poor without wipers."""
-FROSTY = replace(PARIS, weather=Weather(-7.0, 88.0, 0.0, 1, 10.0, 15_000.0, 5.0))
-SNOWED_IN = replace(PARIS, weather=Weather(-3.0, 92.0, 1.2, 73, 100.0, 1200.0, 14.0))
-SMOKY = replace(PARIS, weather=Weather(24.0, 40.0, 0.0, 7, 60.0, 1500.0, 30.0))
+FROSTY = replace(PARIS, start="2026-01-20T11:00:00", weather=Weather(-7.0, 88.0, 0.0, 1, 10.0, 15_000.0, 5.0))
+SNOWED_IN = replace(PARIS, start="2026-01-20T11:00:00", weather=Weather(-3.0, 92.0, 1.2, 73, 100.0, 1200.0, 14.0))
+SMOKY = replace(PARIS, start="2026-06-16T11:00:00", weather=Weather(24.0, 40.0, 0.0, 7, 60.0, 1500.0, 30.0))
 """Dust in the wind."""
 VEHICLE, DRIVING_TAB, MIRRORS_TAB = Open("vehicle"), Tap("vehicle.tab.driving"), Tap("vehicle.tab.mirrors")
 DRIVER_MIRROR, PASSENGER_MIRROR = Tap("mirror.driver.heat"), Tap("mirror.passenger.heat")

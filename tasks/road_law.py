@@ -307,7 +307,7 @@ LIMITS_BY_PLACE = (
             "Murky. Pipe up if I must go slower than this.",
             "Mist over the motorway: too fast for the book?",
         ),
-        Start("autobahn", "north", weather=replace(FOG, visibility=150.0)),
+        Start("autobahn", "north", weather=replace(FOG, temperature_2m=18.0, visibility=150.0)),
         GUANGZHOU,
         ORLEANS,
         Trigger(All((OnRoadClass(("motorway",)), Unposted(), SpeedBetween(68.0, 129.0))), 3.0, 300.0),

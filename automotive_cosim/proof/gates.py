@@ -4,6 +4,7 @@
 |---|---|
 | oracle | every reference solution succeeds by public actions, within the budget and 70 % of the deadline |
 | start | the goal does not hold at the hand-over |
+| world | the weather is one that the place has at that date and hour |
 | prefix | ``complete`` after any earlier step of the reference solution scores 0 |
 | late | the reference solution after the deadline fails |
 | undone | with the goal's own writes reverted, it fails |
@@ -38,6 +39,7 @@ from automotive_cosim.errors import ScenarioError, TriggerNotReachedError
 from automotive_cosim.proof import mutations
 from automotive_cosim.proof.ground import Ground, Played, Script, finish
 from automotive_cosim.proof.sight import undeclared
+from automotive_cosim.proof.world import implausible
 from automotive_cosim.tasking.checks import NothingDone
 from automotive_cosim.tasking.task import Basis, Half, Task
 from automotive_cosim.tasking.triggers import All, Parked, Standing, TriggerCondition
@@ -78,6 +80,11 @@ def start(ground: Ground) -> Wrong:
         yield f"holds already: {ground.half.goal}"
     if BY_NUMBER.search(ground.instance.goal):
         yield f"names a widget by its number: {ground.instance.goal!r}"
+
+
+def world(ground: Ground) -> Wrong:
+    """Holds the weather against the climate."""
+    yield from implausible(ground.episode.moments[0])
 
 
 def prefix(ground: Ground) -> Wrong:

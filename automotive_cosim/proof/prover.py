@@ -20,6 +20,7 @@ from automotive_cosim.traffic.fork import Simulations
 GATES = (
     "oracle",
     "start",
+    "world",
     "prefix",
     "late",
     "undone",
@@ -145,7 +146,7 @@ class Prover:
         right = ground.reference
         found.oracle_steps[half] = len(right.actions)
         found.traces[half] = right.trace_sha256
-        for gate in ("oracle", "start", "prefix", "late", "random"):
+        for gate in ("oracle", "start", "world", "prefix", "late", "random"):
             if gate in self._chosen:
                 found.take(gate, getattr(gates, gate)(ground), half)
         for gate in ("undone", "near", "coupled"):
