@@ -26,6 +26,7 @@ GATES = (
     "undone",
     "near",
     "coupled",
+    "lawful",
     "trivial",
     "random",
     "leak",
@@ -149,7 +150,7 @@ class Prover:
         for gate in ("oracle", "start", "world", "prefix", "late", "random"):
             if gate in self._chosen:
                 found.take(gate, getattr(gates, gate)(ground), half)
-        for gate in ("undone", "near", "coupled"):
+        for gate in ("undone", "near", "coupled", "lawful"):
             if gate in self._chosen and right.success:
                 found.take(gate, getattr(gates, gate)(ground, right), half)
         for gate in ("leak", "road", "repeat"):
