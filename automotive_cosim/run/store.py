@@ -256,7 +256,13 @@ def _manifest(folder: Path, plan: Json, planned: int | None) -> None:
     else:
         manifest = read_manifest(folder)
         _same("plan", manifest["plan"], plan, folder)
-        _same("versions", manifest["starts"][0]["versions"], now["versions"], folder)
+        try:
+            before = dict(manifest["starts"][0]["versions"])
+        except (LookupError, TypeError, ValueError) as error:
+            raise UserError(
+                f"{folder / 'manifest.json'} does not say its versions; give --out another folder"
+            ) from error
+        _same("versions", before, now["versions"], folder)
         manifest["starts"].append(now)
     write_whole(folder / "manifest.json", json.dumps(manifest, indent=1))
 
