@@ -16,8 +16,16 @@ from automotive_cosim.contracts import KMH_PER_MPS, ActionType
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
+from automotive_cosim.geo.text import amount_of_speed
 from automotive_cosim.run.episode import EpisodeResult, Shot, Watcher
-from automotive_cosim.run.words import action_in_words, is_over, limit_kmh, road_in_words
+from automotive_cosim.run.words import (
+    action_in_words,
+    is_over,
+    limit_kmh,
+    posted_in_words,
+    road_in_words,
+    speed_in_words,
+)
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.options import read_configuration
 
@@ -125,14 +133,17 @@ class Live(Watcher):
         driving = moment.driving
         limit = limit_kmh(driving.road)
         speed_kmh = driving.speed_mps * KMH_PER_MPS
-        posted = "none posted" if limit is None else f"{limit:g} posted"
+        unit = moment.context.speed_unit
         rows = Table.grid(padding=(0, 2))
         rows.add_column(style="dim", justify="right")
         rows.add_column()
         rows.add_row("time", f"{moment.local_time:%H:%M:%S}  {self._clock(moment)}")
         rows.add_row("road", road_in_words(driving.road) + (", in a tunnel" if driving.road.in_tunnel else ""))
         style = "bold red" if is_over(speed_kmh, limit) else "bold green"
-        rows.add_row("speed", Text.assemble((f"{speed_kmh:.0f} km/h", style), f"  {posted}"))
+        rows.add_row(
+            "speed",
+            Text.assemble((amount_of_speed(speed_kmh, unit), style), f"  {posted_in_words(driving.road, unit)}"),
+        )
         rows.add_row("traffic", _traffic(moment))
         if self._goal:
             rows.add_row("driver", Text(f"“{self._goal}”", style="italic"))
@@ -149,11 +160,8 @@ class Live(Watcher):
 
 def _drive(moment: Moment) -> str:
     driving = moment.driving
-    limit = limit_kmh(driving.road)
-    posted = "no limit posted" if limit is None else f"{limit:g} posted"
-    return (
-        f"{driving.speed_mps * KMH_PER_MPS:3.0f} km/h, {posted}, {road_in_words(driving.road)}; {_traffic(moment)}"
-    )
+    speed = speed_in_words(driving, moment.context.speed_unit)
+    return f"{speed}, {road_in_words(driving.road)}; {_traffic(moment)}"
 
 
 def _traffic(moment: Moment) -> str:

@@ -181,8 +181,11 @@ def render(
         raise UserError(f"--out {out} cannot be used here; give {wanted}")
     for scenario in found:
         target = out if out and to_file else (out or Path()) / f"{scenario.name}.webp"
-        save_picture(scenario, target)
+        unwritten = save_picture(scenario, target)
         typer.echo(str(target))
+        if unwritten:
+            left_out = counted(len(unwritten), "street name")
+            typer.echo(f"{left_out} left out, such as {unwritten[0]}: no font here has that script", err=True)
 
 
 @app.command("import")

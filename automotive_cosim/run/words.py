@@ -4,7 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from automotive_cosim.contracts import KMH_PER_MPS, Action, ActionType, Element, Reason, RoadHere
+from automotive_cosim.contracts import (
+    KMH_PER_MPS,
+    Action,
+    ActionType,
+    DrivingState,
+    Element,
+    LimitSource,
+    Reason,
+    RoadHere,
+)
+from automotive_cosim.geo.text import amount_of_speed
 
 ROUNDING_KMH = 1.0
 """A speedometer's last digit: a speed this much above the limit counts as at the limit."""
@@ -65,7 +75,26 @@ def action_in_words(action: Action | None, elements: Sequence[Element]) -> str:
 
 def road_in_words(road: RoadHere) -> str:
     """A road by its name, else by its class."""
-    return road.name or (f"a {_plain(road.road_class)} road" if road.road_class else "a road without a name")
+    if road.name or not road.road_class:
+        return road.name or "a road without a name"
+    words = _plain(road.road_class)
+    return f"{'an' if words[0] in 'aeiou' else 'a'} {words}" + ("" if words.endswith("street") else " road")
+
+
+def speed_in_words(driving: DrivingState, unit: str) -> str:
+    """Speed and posted limit in the country's unit: ``"48 km/h, 50 posted"``, ``"30 mph, no limit posted"``.
+
+    A limit that the map only assumed is not posted.
+    """
+    speed = amount_of_speed(driving.speed_mps * KMH_PER_MPS, unit)
+    return f"{speed}, {posted_in_words(driving.road, unit)}"
+
+
+def posted_in_words(road: RoadHere, unit: str) -> str:
+    """The posted limit in the country's unit, without it."""
+    if road.limit_source is not LimitSource.POSTED or road.posted_limit_mps is None:
+        return "no limit posted"
+    return f"{amount_of_speed(road.posted_limit_mps * KMH_PER_MPS, unit).partition(' ')[0]} posted"
 
 
 def limit_kmh(road: RoadHere) -> float | None:
