@@ -176,8 +176,8 @@ class DrivingState:
     """The ego's state on the road at one instant: all that the cockpit and the geo-context learn about it."""
 
     time_s: float
-    """SUMO simulation time at the end of the step. SUMO's FCD output gives the same state the time of its beginning:
-    one step less."""
+    """SUMO simulation time at the end of the step. SUMO's FCD output gives the same state the time of its
+    beginning: one step less."""
     x_m: float
     y_m: float
     """Position of the front bumper in the network's coordinates."""
