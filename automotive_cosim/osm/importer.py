@@ -234,16 +234,15 @@ class _Search:
             )
             if run.stable and run.halted_share_max < HALTED_SHARE_AIM:
                 return run
+            self._tell(f"scale {scale:g} does not flow: {_why(run)}", None)
             if run.halted_share_max < HALTED_SHARE_AIM and self._left_out(run):
                 continue
             if scale <= SCALE_MIN:
                 break
             factor = HALTED_SHARE_AIM / max(run.halted_share_max, HALTED_SHARE_AIM)
             scale = round(max(SCALE_MIN, scale * min(max(factor, SCALE_STEPS[0]), SCALE_STEPS[1])), 3)
-        why = "; ".join(run.problems) or f"{run.halted_share_max:.0%} halted in the worst minute"
-        where = f" on lanes {', '.join(sorted({each.lane for each in run.stuck})[:3])}" if run.stuck else ""
         raise ImportMapError(
-            f"traffic on this map locks up even at a scale of {run.scale:g} ({why}{where});"
+            f"traffic on this map locks up even at a scale of {run.scale:g} ({_why(run)});"
             " give a larger extract or a lower --density"
         )
 
@@ -262,3 +261,10 @@ class _Search:
 
     def _scenario(self, scale: float) -> Scenario:
         return _write(self._building, self._options, self._place, self._ways, scale=scale)
+
+
+def _why(run: Stability) -> str:
+    """Why a trial failed, with the lanes on which vehicles stood for good."""
+    problems = "; ".join(run.problems) or f"{run.halted_share_max:.0%} halted in the worst minute"
+    lanes = sorted({each.lane for each in run.stuck})
+    return f"{problems}; they stood on {', '.join(lanes[:3])}{', …' * (len(lanes) > 3)}" if lanes else problems

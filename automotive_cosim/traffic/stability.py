@@ -191,6 +191,8 @@ def _options(setup: Setup, end_s: float, scratch: Path) -> list[str]:
         "time-to-teleport": str(LONGEST_WAIT_S),
         "summary-output": "stdout",
         "summary-output.period": "1",
+        "no-warnings": "false",
+        "emergencydecel.warning-threshold": "10",
     }
     return command_line(options)[1:]
 

@@ -460,7 +460,7 @@ def test_a_city_or_region_overrides_with_a_date(geo: Geo, rules: dict[str, Rule]
     assert all(rule.law and rule.as_of.year >= 2000 for rule in entry.rules)
 
 
-LEFT = {"GB", "IE", "JP", "AU", "IN", "ZA"}
+LEFT = {"GB", "IE", "JP", "AU", "IN", "ZA", "HK", "MO", "SG"}
 MILES = {"GB", "US"}
 
 
@@ -470,6 +470,7 @@ def test_the_side_of_the_road_the_units_and_the_emergency_number(geo: Geo) -> No
     assert {code for code, entry in law.items() if entry.speed_unit == "mph"} == MILES
     assert {code for code, entry in law.items() if entry.temperature_unit == "F"} == {"US"}
     first = {"US": "911", "CA": "911", "AE": "999", "AU": "000", "GB": "999", "BR": "190", "CN": "110", "JP": "110"}
+    first |= {"HK": "999", "MO": "999", "SG": "999", "SA": "911"}
     assert {code: entry.emergency[0] for code, entry in law.items()} == {
         code: first.get(code, "112") for code in law
     }
