@@ -11,6 +11,7 @@ from automotive_cosim.agents.base import Agent, Learner, Privileged, Stage, Stag
 from automotive_cosim.agents.guest import load
 from automotive_cosim.agents.human import Human
 from automotive_cosim.agents.model_agent import ModelAgent
+from automotive_cosim.agents.native import FORMATS, NativeAgent, chosen
 from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.agents.settings import PROFILES, AgentPart, AgentSettings
 from automotive_cosim.agents.trivial import AlwaysAlert, NoOp, PressEverything, Random
@@ -19,6 +20,8 @@ from automotive_cosim.models import make_model
 
 __all__ = [
     "AGENTS",
+    "FORMATS",
+    "MODELLED",
     "PROFILES",
     "Agent",
     "AgentPart",
@@ -27,6 +30,7 @@ __all__ = [
     "Human",
     "Learner",
     "ModelAgent",
+    "NativeAgent",
     "NoOp",
     "Oracle",
     "PressEverything",
@@ -48,7 +52,10 @@ SIMPLE: Mapping[str, Callable[[AgentSettings], Agent]] = {
 }
 """Agents without a model."""
 
-AGENTS = tuple(sorted([*SIMPLE, *PROFILES]))
+MODELLED = frozenset({*PROFILES, NativeAgent.name})
+"""Agents with a model."""
+
+AGENTS = tuple(sorted([*SIMPLE, *MODELLED]))
 """Names of all agents; ``package.module:Class`` names one of your own."""
 
 
@@ -57,7 +64,8 @@ def make_agent(name: str, model: str = "rules", settings: AgentSettings = AgentS
 
     Args:
         name: one of ``AGENTS``, or ``package.module:Class``.
-        model: a model's name (``models.make_model``), for the agents that have one.
+        model: a model's name (``models.make_model``), for the agents that have one; for ``native`` with the setting
+            ``format``.
         settings: how to run it.
 
     Raises:
@@ -69,6 +77,9 @@ def make_agent(name: str, model: str = "rules", settings: AgentSettings = AgentS
         return load(name)
     if name in PROFILES:
         return ModelAgent(PROFILES[name], make_model(model), settings)
+    if name == NativeAgent.name:
+        without_format, form = chosen(model)
+        return NativeAgent(model, make_model(without_format), form, settings)
     if name not in SIMPLE:
         raise UnknownNameError("agent", name, AGENTS, "automotive-cosim agents list")
     return SIMPLE[name](settings)

@@ -5,18 +5,18 @@ reflect on the last action -> remember -> perceive -> interpret -> plan -> act
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from automotive_cosim.agents import answer, prompt
-from automotive_cosim.agents.base import Stage, StageName
+from automotive_cosim.agents.asking import Asking
+from automotive_cosim.agents.base import StageName
 from automotive_cosim.agents.marks import marked, png
 from automotive_cosim.agents.memory import Memory, Strategy, where, why
 from automotive_cosim.agents.settings import AgentProfile, AgentSettings
 from automotive_cosim.contracts import Action, Observation
-from automotive_cosim.errors import ActionError, OutOfBudgetError
+from automotive_cosim.errors import ActionError
 from automotive_cosim.interface.observe import Channel
-from automotive_cosim.models.base import ChatMessage, ChatModel, ModelReply, digest
+from automotive_cosim.models.base import ChatModel
 
 LONGEST_LESSON, LONGEST_PLAN = 300, 2000
 """Characters of its own text that it carries over to the next turn."""
@@ -55,10 +55,9 @@ class ModelAgent:
             UserError: the memory's file cannot be used.
         """
         self._profile = profile.under(settings)
-        self._chat_model = chat_model
-        self._settings = settings
+        self._asking = Asking(chat_model, settings)
         self._memory = Memory(settings.memory) if self._profile.remembers and settings.memory else None
-        self.stages: list[Stage] = []
+        self.stages = self._asking.stages
         self.reset("")
 
     @property
@@ -69,7 +68,7 @@ class ModelAgent:
     @property
     def model(self) -> str:
         """The model's name."""
-        return self._chat_model.name
+        return self._asking.chat_model.name
 
     @property
     def channels(self) -> frozenset[Channel]:
@@ -78,14 +77,12 @@ class ModelAgent:
 
     def reset(self, goal: str) -> None:
         """Forgets the previous episode, except for what the memory keeps."""
-        self.stages.clear()
+        self._asking.reset()
         self._history: list[str] = []
         self._done: list[str] = []
         self._recalled: tuple[str, ...] = ()
         self._first: Observation | None = None
         self._last: _Turn | None = None
-        self._tokens = 0
-        self._seconds = 0.0
 
     def act(self, observation: Observation) -> Action:
         """One turn of the cycle.
@@ -124,7 +121,7 @@ class ModelAgent:
             return
         recalled = self._memory.recall(where(observation), prompt.one_line(observation.goal))
         self._recalled = tuple(strategy.words for strategy in recalled)
-        self._note(StageName.REMEMBER, observation, "\n".join(self._recalled) or "nothing of this place")
+        self._asking.note(StageName.REMEMBER, observation, "\n".join(self._recalled) or "nothing of this place")
 
     def _look_back(self, last: _Turn, now: Observation) -> None:
         lesson = self._reflect(last, now) if self._profile.reflects else ""
@@ -134,15 +131,15 @@ class ModelAgent:
         )
         self._done.append(done)
         self._history.append(line)
-        self._note(StageName.REMEMBER, now, line)
+        self._asking.note(StageName.REMEMBER, now, line)
 
     def _reflect(self, last: _Turn, now: Observation) -> str:
         screens = [_marked(last.seen), _marked(now)] if self._sees else []
         pictures = tuple(screen for screen in screens if screen is not None)
         text = prompt.look_back(last.seen, last.action, now, last.plan, bool(pictures))
-        reply, asked = self._ask(text, pictures)
+        reply, asked = self._asking.ask(text, pictures)
         lesson = prompt.one_line(answer.labelled(reply.text, "lesson") or reply.text)[:LONGEST_LESSON]
-        self._note(StageName.REFLECT, now, lesson, reply, asked, len(pictures))
+        self._asking.note(StageName.REFLECT, now, lesson, reply, asked, len(pictures))
         return lesson
 
     def _decide(self, seen: Observation, plan: str) -> tuple[Action, str]:
@@ -151,8 +148,8 @@ class ModelAgent:
             with_marks = _marked(seen)
             pictures = (png(seen.screenshot), *([] if with_marks is None else [with_marks]))
         text = prompt.turn(self._profile, seen, self._history, plan, self._recalled, bool(pictures))
-        self._note(StageName.PERCEIVE, seen, text)
-        reply, asked = self._ask(text, pictures)
+        self._asking.note(StageName.PERCEIVE, seen, text)
+        reply, asked = self._asking.ask(text, pictures)
         try:
             understood = answer.read(reply.text)
             if understood.action.action_type not in self._profile.actions:
@@ -161,41 +158,17 @@ class ModelAgent:
                 )
         except ActionError as error:
             cut = "; the answer was cut off at its longest" if reply.finish == "length" else ""
-            self._note(StageName.ACT, seen, f"{error}{cut}", reply, asked, len(pictures))
+            self._asking.note(StageName.ACT, seen, f"{error}{cut}", reply, asked, len(pictures))
             raise ActionError(f"{error}{cut}") from None
-        self._note(StageName.INTERPRET, seen, understood.situation, reply, asked, len(pictures))
-        self._note(StageName.PLAN, seen, understood.plan)
+        self._asking.note(StageName.INTERPRET, seen, understood.situation, reply, asked, len(pictures))
+        self._asking.note(StageName.PLAN, seen, understood.plan)
         form = "" if understood.strict else " (read forgivingly)"
-        self._note(StageName.ACT, seen, prompt.action_words(understood.action, seen) + form)
+        self._asking.note(StageName.ACT, seen, prompt.action_words(understood.action, seen) + form)
         return understood.action, understood.plan[:LONGEST_PLAN]
 
     @property
     def _sees(self) -> bool:
-        return Channel.SCREENSHOT in self.channels and self._chat_model.sees_pictures
-
-    def _ask(self, text: str, pictures: Sequence[bytes]) -> tuple[ModelReply, str]:
-        settings = self._settings
-        if self._tokens >= settings.most_tokens or self._seconds >= settings.most_seconds:
-            raise OutOfBudgetError(
-                f"the episode's budget is spent: {self._tokens} of {settings.most_tokens} tokens, "
-                f"{self._seconds:.0f} of {settings.most_seconds:g} s"
-            )
-        messages = [ChatMessage("user", text, tuple(pictures))]
-        reply = self._chat_model.chat(messages)
-        self._tokens += reply.tokens_in + reply.tokens_out
-        self._seconds += reply.seconds
-        return reply, digest(messages)
-
-    def _note(
-        self,
-        name: StageName,
-        seen: Observation,
-        text: str,
-        reply: ModelReply | None = None,
-        asked: str = "",
-        pictures: int = 0,
-    ) -> None:
-        self.stages.append(Stage(name, text, seen.time_s, reply, asked, pictures))
+        return Channel.SCREENSHOT in self.channels and self._asking.chat_model.sees_pictures
 
 
 def _marked(seen: Observation) -> bytes | None:

@@ -35,19 +35,26 @@ def show(name: str, as_json: AsJson = False) -> None:
     """Show an agent's inputs and actions and, if it uses a model, its prompt."""
     from importlib.resources import files
 
-    from automotive_cosim.agents import PROFILES, make_agent
+    from automotive_cosim.agents import FORMATS, MODELLED, PROFILES, NativeAgent, make_agent
 
-    agent = make_agent(name)
-    channels = sorted(agent.channels)
-    actions: list[str] = []
+    if name == NativeAgent.name:
+        channels = sorted(NativeAgent.channels)
+        actions = sorted(frozenset[str]().union(*(form.actions for form in FORMATS.values())))
+    else:
+        channels = sorted(make_agent(name).channels)
+        actions = sorted(PROFILES[name].actions) if name in PROFILES else []
     prompt = ""
-    if name in PROFILES:
-        actions = sorted(PROFILES[name].actions)
+    if name in MODELLED:
         prompt = files("automotive_cosim.agents").joinpath("prompts", f"{name}.md").read_text("utf-8")
     if as_json:
-        print_json({"name": agent.name, "channels": channels, "actions": actions, "prompt": prompt})
+        print_json({"name": name, "channels": channels, "actions": actions, "prompt": prompt})
         return
-    typer.echo(f"{agent.name}: gets {', '.join(channels) or 'only the goal'}")
-    if actions:
+    typer.echo(f"{name}: gets {', '.join(channels) or 'only the goal'}")
+    if name == NativeAgent.name:
+        typer.echo("its model gets the screenshot alone\n")
+        for form, each in FORMATS.items():
+            typer.echo(f"{form}: {', '.join(each.verbs)}\n    has no {', '.join(each.lacks)}")
+        typer.echo()
+    elif actions:
         typer.echo(f"actions: {', '.join(actions)}\n")
-        typer.echo(prompt, nl=False)
+    typer.echo(prompt, nl=False)

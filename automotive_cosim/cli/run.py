@@ -128,10 +128,9 @@ def run(
 
     Without options, a car drives 80 km/h where 50 is posted in Paris, and the agent has been asked to warn of that.
     """
-    from rich.console import Console
-
     from automotive_cosim.agents import AgentSettings, make_agent
     from automotive_cosim.agents.settings import geo_input, parts
+    from automotive_cosim.cli.console import Console
     from automotive_cosim.cli.live import Live, Notes
     from automotive_cosim.episode.specification import clock_of, mode_of
     from automotive_cosim.report.film import Film
@@ -139,6 +138,7 @@ def run(
     from automotive_cosim.run.episode import EpisodeSetup, run_episode
     from automotive_cosim.run.plan import most_steps
     from automotive_cosim.run.record import Recorder, check_folder, default_folder
+    from automotive_cosim.run.road_recorder import RoadRecorder
     from automotive_cosim.run.script import read_script
 
     if scenario == "":
@@ -170,7 +170,7 @@ def run(
     recorder = Recorder(folder, setup, {"actions": str(actions) if actions else None, "out": str(folder)})
     # A panel that redraws itself would interfere with a person who types.
     view = Live(Console(force_terminal=False, highlight=False)) if player.name == "human" else Live()
-    watchers = [recorder, Film(folder), Notes() if as_json else view]
+    watchers = [recorder, RoadRecorder(folder), Film(folder), Notes() if as_json else view]
     try:
         result = run_episode(setup, player, watchers)
     except KeyboardInterrupt:

@@ -173,7 +173,7 @@ class SituationFinder:
             arrivals=(*start.arrivals, *lures),
             sign_camera=start.sign_camera,
         )
-        return couple(
+        world = couple(
             traffic,
             cockpit,
             self.scenario,
@@ -182,6 +182,9 @@ class SituationFinder:
             departure=plan.start or self.scenario.start,
             links=self.scenario.connectivity,
         )
+        if self._listener.looks:
+            world.onlooker = self._listener.looked
+        return world
 
     def _drive_up(self, world: CoSimulation, half: Half) -> _Drive | None:
         """The drive up to the trigger; None if that does not hold within its time limit."""

@@ -6,6 +6,7 @@ ways (paths, buildings, railways) are removed, because each path that meets a ro
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from importlib import import_module
@@ -13,6 +14,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from automotive_cosim.errors import ImportMapError, SetupError
+from automotive_cosim.formats.xml import scan
 from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.overpass_json import OverpassJson, is_json
 from automotive_cosim.traffic.sumo_programs import INSTALL
@@ -30,6 +32,9 @@ ACCESS_KEYS = ("motorcar", "motor_vehicle", "vehicle", "access")
 
 BARRED = frozenset(("no", "private", "agricultural", "forestry", "military", "emergency", "psv", "bus", "delivery"))
 """Values that exclude an ordinary car."""
+
+POSITION = re.compile(r"-?\d{1,3}(\.\d*)?([eE]-?\d{1,2})?")
+"""A latitude or longitude as OpenStreetMap writes it."""
 
 
 class Position(NamedTuple):
@@ -143,12 +148,15 @@ _Read = tuple[list[OsmWay], tuple[TurnRestriction, ...], dict[int, Node], tuple[
 
 
 def _read_osm(source: Path) -> _Read:
-    file = _osmium().io.File(str(source), _format(source, _head(source)))
+    kind = _format(source, _head(source))
+    if kind != "pbf":
+        _check_positions(source)
+    file = _osmium().io.File(str(source), kind)
     try:
         ways, restrictions = _read_ways(file)
         nodes = _read_nodes(file, {ref for way in ways for ref in way.nodes})
         return ways, restrictions, nodes, _read_cameras(file)
-    except RuntimeError as error:
+    except (RuntimeError, ValueError, ArithmeticError, MemoryError) as error:
         raise ImportMapError(_explain(source, str(error))) from error
 
 
@@ -180,6 +188,26 @@ def _head(source: Path) -> bytes:
             return stream.read(4096)
     except OSError as error:
         raise ImportMapError(f"{source}: {error.strerror}; give the path of an OSM extract") from error
+
+
+class _UnreadableError(ImportMapError):
+    """XML that osmium's own words describe better."""
+
+
+def _check_positions(source: Path) -> None:
+    """Refuses positions that libosmium would misread (1e300 becomes 0), and an archive of more than is read."""
+
+    def start(name: str, attributes: dict[str, str], line: int) -> None:
+        for key, most in (("lat", 90), ("lon", 180)) if name == "node" else ():
+            text = attributes.get(key, "0")
+            if not POSITION.fullmatch(text) or abs(float(text)) > most:
+                raise ImportMapError(f"{source} line {line}: {key} is {text[:40]!r}; it is from {-most} to {most}")
+
+    try:
+        scan(source, start, error=_UnreadableError)
+    except _UnreadableError as error:
+        if isinstance(error.__cause__, OSError):
+            raise ImportMapError(f"{source} is truncated or damaged ({error.__cause__})") from error
 
 
 def _format(source: Path, head: bytes) -> str:

@@ -16,7 +16,7 @@ from automotive_cosim.errors import ImportMapError
 from automotive_cosim.osm.country import LEFT_HAND
 from automotive_cosim.osm.extract import Extract, Position
 from automotive_cosim.osm.repair import open_traps
-from automotive_cosim.osm.roads import Road, way_of
+from automotive_cosim.osm.roads import MappedRoad, way_of
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.network import Edge, Network, read_network
 from automotive_cosim.traffic.sumo_programs import first_error, home, run
@@ -86,11 +86,11 @@ def _neighbours(pairs: Iterable[tuple[str, str]]) -> dict[str, set[str]]:
     return found
 
 
-def convert(extract: Extract, roads: Mapping[int, Road], target: Path, country: str, scratch: Path) -> Built:
+def convert(extract: Extract, roads: Mapping[int, MappedRoad], target: Path, country: str, scratch: Path) -> Built:
     """Builds ``target`` (a ``.net.xml.gz``) with netconvert and reads it back.
 
     The same input gives the same bytes: netconvert's header with its date and paths is removed. Each edge gets the
-    parameters of its road (``Road.parameters``), and the positions of its speed cameras.
+    parameters of its road (``MappedRoad.parameters``), and the positions of its speed cameras.
 
     Args:
         extract: the map.
@@ -139,8 +139,8 @@ def convert(extract: Extract, roads: Mapping[int, Road], target: Path, country: 
     return Built(network, signals, roundabouts, opened)
 
 
-def write_osm(extract: Extract, roads: Mapping[int, Road], target: Path) -> None:
-    """Writes the roads as OSM XML for netconvert (``Road.for_netconvert``)."""
+def write_osm(extract: Extract, roads: Mapping[int, MappedRoad], target: Path) -> None:
+    """Writes the roads as OSM XML for netconvert (``MappedRoad.for_netconvert``)."""
     osmium = import_module("osmium")
     mutable = osmium.osm.mutable
     with osmium.SimpleWriter(osmium.io.File(str(target), "osm"), overwrite=True) as writer:

@@ -17,7 +17,7 @@ from automotive_cosim.osm.extract import Extract
 from automotive_cosim.osm.folder import ATTRIBUTION
 from automotive_cosim.osm.limits import NO_UNIT, doubts
 from automotive_cosim.osm.network import Built
-from automotive_cosim.osm.roads import Road, way_of
+from automotive_cosim.osm.roads import MappedRoad, way_of
 from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.posted import timed_limits
 from automotive_cosim.traffic.stability import Stability, Stuck
@@ -83,7 +83,7 @@ class ImportReport:
 def make_report(
     source: Path,
     extract: Extract,
-    roads: Mapping[int, Road],
+    roads: Mapping[int, MappedRoad],
     built: Built,
     stability: Stability,
     *,

@@ -17,7 +17,15 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from automotive_cosim.contracts import Answer, DrivingState, RoadNetwork, RoadRequest, RouteOption
+from automotive_cosim.contracts import (
+    Answer,
+    DrivingState,
+    RoadNetwork,
+    RoadRequest,
+    RoadShapes,
+    RoadSnapshot,
+    RouteOption,
+)
 from automotive_cosim.errors import SetupError, TrafficError
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.accounts import Pulse, Settled
@@ -26,7 +34,7 @@ from automotive_cosim.traffic.drive import Call
 from automotive_cosim.traffic.options import Setup
 from automotive_cosim.traffic.profiles import profile
 from automotive_cosim.traffic.remote import TIMEOUT_S, RemoteProcess
-from automotive_cosim.traffic.wire import Packed, pack_state, unpack_advance, unpack_state
+from automotive_cosim.traffic.wire import Packed, pack_state, unpack_advance, unpack_snapshot, unpack_state
 
 CAN_FORK = sys.platform == "linux"
 """Files are reopened through /proc, which only Linux has."""
@@ -167,6 +175,16 @@ class RemoteTraffic:
         options: tuple[RouteOption, ...] = self._process.call("alternatives", age_s)
         return options
 
+    def look(self) -> RoadSnapshot:
+        """See ``Traffic.look``."""
+        return unpack_snapshot(self._process.call("look"))
+
+    def shapes(self) -> RoadShapes:
+        """See ``Traffic.shapes``; read once for all drives in the same traffic."""
+        shapes: RoadShapes = self._source.shapes or self._process.call("shapes")
+        self._source.shapes = shapes
+        return shapes
+
     def own_choice(self) -> tuple[str, ...]:
         """The route that SUMO's rerouting device would take now, from the present edge."""
         with closing(self.branch()) as copy:
@@ -224,8 +242,10 @@ class _Source:
         self._setup = setup
         self._timeout_s = timeout_s
         self._drives = 0
+        self.shapes: RoadShapes | None = None
         self._lock = threading.Lock()
         """Lock for copying the warm process: threads may depart at the same time."""
+        self._warm_calls: list[tuple[str, tuple[object, ...]]] = []
         self._warm: RemoteProcess | None
         self._warm, self.network = RemoteProcess.start(
             self._writing("drive-1" if by_replay else "warm"), progress, timeout_s
@@ -249,9 +269,11 @@ class _Source:
         return RemoteTraffic(self, process.fork(self._next_outputs()), plan, (), pack_state(state))
 
     def warm_call(self, name: str, *arguments: object) -> Any:
-        """Calls the warm process itself."""
+        """Calls the warm process itself, and any that takes its place."""
         assert self._warm is not None
-        return self._warm.call(name, *arguments)
+        answer = self._warm.call(name, *arguments)
+        self._warm_calls.append((name, arguments))
+        return answer
 
     def close(self) -> None:
         """Ends the warm process."""
@@ -261,9 +283,12 @@ class _Source:
 
     def memory_bytes(self) -> int:
         """Memory of the warm process."""
-        if self._warm is None or not Path("/proc/self/statm").exists():
+        if self._warm is None:
             return 0
-        pages = Path(f"/proc/{self._warm.pid}/statm").read_text(encoding="ascii").split()[1]
+        try:
+            pages = Path(f"/proc/{self._warm.pid}/statm").read_text(encoding="ascii").split()[1]
+        except OSError:  # it has died, or the platform does not say
+            return 0
         return int(pages) * os.sysconf("SC_PAGE_SIZE")
 
     def _ready(self) -> RemoteProcess:
@@ -272,6 +297,8 @@ class _Source:
             self.close()
             name = f"drive-{self._drives + 1}" if self.by_replay else "warm"
             self._warm, _ = RemoteProcess.start(self._writing(name), None, self._timeout_s)
+            for call, arguments in self._warm_calls:
+                self._warm.call(call, *arguments)
         return self._warm
 
     def _writing(self, name: str) -> Setup:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from automotive_cosim.agents import AGENTS, PROFILES
+from automotive_cosim.agents import AGENTS, MODELLED
 from automotive_cosim.models import MODELS
 
 GRID = ("--task", "hvac_fan_max", "--scenario", "grid")
@@ -23,7 +23,7 @@ def test_agents_and_models_are_listed(cli):
 def test_an_agent_is_shown(cli, name):
     told = cli("agents", "show", name).out
     assert told.startswith(f"{name}: gets ")
-    assert ("## How to answer" in told) == (name in PROFILES)
+    assert ("## How to answer" in told) == (name in MODELLED)
 
 
 @pytest.mark.usefixtures("warm")

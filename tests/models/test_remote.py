@@ -8,16 +8,25 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from automotive_cosim.agents import ModelAgent
+from automotive_cosim.agents import FORMATS, ModelAgent, make_agent
+from automotive_cosim.agents.native.grid import GuiScreen
+from automotive_cosim.agents.native.verbs import call_for
 from automotive_cosim.agents.settings import T3A
+from automotive_cosim.contracts import Action, ActionType
 from automotive_cosim.errors import ModelError, SetupError, UserError
 from automotive_cosim.models import ChatMessage, make_model
-from automotive_cosim.run.episode import EpisodeSetup, run_episode
+from automotive_cosim.models.remote import _Endpoint
+from automotive_cosim.run.episode import EpisodeSetup, Shot, Watcher, run_episode
 from automotive_cosim.run.record import Recorder
+from automotive_cosim.traffic.fork import Simulations
 
 KEY = "sk-a-very-secret-key-0123456789"
 
@@ -337,3 +346,93 @@ def test_no_key_is_in_the_record_of_an_episode(server, tmp_path):
     assert files
     for path in files:
         assert KEY.encode() not in path.read_bytes()
+
+
+# --- native formats -------------------------------------------------------------------------------------------
+
+
+class Touches(Watcher):
+    """The actions of an episode, by where they touch the screen instead of by element."""
+
+    def __init__(self) -> None:
+        self.actions: list[Action] = []
+
+    def stepped(self, shot: Shot) -> None:
+        action = shot.step.action
+        assert action is not None
+        index = action.index
+        if action.action_type is ActionType.OPEN_APP:  # for which not every format has a word
+            ids = [element.resource_id for element in shot.seen]
+            index = ids.index(f"dock.{action.app_name}")
+            action = Action(ActionType.CLICK)
+        if index is not None:
+            box = shot.seen[index].bbox_pixels
+            action = replace(action, index=None, x=(box.x_min + box.x_max) // 2, y=(box.y_min + box.y_max) // 2)
+        self.actions.append(action)
+
+
+@pytest.fixture(scope="module")
+def touches(simulations: Simulations) -> list[Action]:
+    """The reference solution of the task below."""
+    watcher = Touches()
+    setup = EpisodeSetup("hvac_fan_max", scenario="grid", agent="oracle", model="none")
+    assert run_episode(setup, make_agent("oracle"), (watcher,), simulations=simulations).success
+    return watcher.actions
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("form", FORMATS)
+def test_a_model_at_an_endpoint_works_the_car_in_its_own_format(
+    server: Server, touches: list[Action], simulations: Simulations, tmp_path: Path, form: str
+) -> None:
+    chosen = FORMATS[form]
+    screen = GuiScreen(1280, 720, chosen.grid)
+    calls = [call_for(chosen.verbs, action, screen) for action in touches]
+    assert all(calls)
+    texts = [chosen.syntax.write("I see.", [call], chosen.verbs) for call in calls if call]
+
+    def answer(text: str) -> Behave:
+        return lambda handler: send(handler, 200, completion(text))
+
+    server.behaviours = [answer(text) for text in texts]
+    name = f"local/some-model?seed=7&format={form}"
+    setup = EpisodeSetup("hvac_fan_max", scenario="grid", agent="native", model=name)
+    result = run_episode(
+        setup, make_agent("native", name), (Recorder(tmp_path / "out", setup, {}),), simulations=simulations
+    )
+    assert (result.success, result.model) == (True, name)
+    assert (result.tokens_in, result.tokens_out) == (7 * len(texts), 3 * len(texts))
+    for asked in server.asked:
+        assert (asked["model"], asked["seed"]) == ("some-model", 7)
+        [message] = asked["messages"]
+        assert [part["type"] for part in message["content"]] == ["text", "image_url"]
+    again = make_agent("native", f"replay/{tmp_path / 'out'}?format={form}")
+    assert run_episode(setup, again, simulations=simulations).trace_sha256 == result.trace_sha256
+
+
+# --- what is sent, and to whom -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("status", [301, 302, 303, 307, 308])
+def test_a_question_is_not_sent_on(server, monkeypatch, status):
+    other = Server()
+    server.behaviours = [lambda handler: send(handler, status, b"", Location=f"{other.url}/chat/completions")]
+    with pytest.raises(ModelError, match=rf"refused: status {status}.*it sends to {other.url}") as caught:
+        make_model("local/m?retries=2").chat([ChatMessage("user", "where is the car?")])
+    other.close()
+    assert "\n" not in str(caught.value)
+    assert len(server.asked) == 1
+    assert other.asked == other.keys == []
+
+
+@given(before=st.binary(max_size=7), after=st.binary(max_size=7))
+def test_no_encoding_of_a_key_gets_into_a_record(before, after):
+    clean = _Endpoint("local", None, KEY).clean
+    whole = before + KEY.encode() + after
+    for encoded in (base64.b64encode(whole), base64.urlsafe_b64encode(whole), whole.hex().encode()):
+        left = clean(f"it is {encoded.decode()}, is it not?")
+        assert "***" in left
+        assert len(left) < len(f"it is , is it not? {encoded.decode()}") - len(KEY)
+    for text in (KEY, KEY.encode().hex().upper(), KEY[::-1]):
+        assert clean(f"<{text}>") == "<***>"
+    assert clean("nothing of it") == "nothing of it"

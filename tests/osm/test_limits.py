@@ -15,7 +15,7 @@ from automotive_cosim.osm.assumed import assumed_sign
 from automotive_cosim.osm.country import LEFT_HAND, LIMITS, WORLD, assumed_limit_kmh
 from automotive_cosim.osm.extract import ROAD_CLASSES
 from automotive_cosim.osm.limits import CAR_KEYS, NO_UNIT, ZONE_KEYS, built_up_of, doubts, kmh_of, stated_limits
-from automotive_cosim.osm.roads import Road
+from automotive_cosim.osm.roads import MappedRoad
 
 NETCONVERT_READS = re.compile(r"none|\d+(\.\d+)?( mph)?")
 
@@ -41,13 +41,13 @@ TAGS = st.dictionaries(
 )
 
 
-def read(tags: dict[str, str], country: str = "FR", road_class: str = "tertiary") -> Road:
+def read(tags: dict[str, str], country: str = "FR", road_class: str = "tertiary") -> MappedRoad:
     """A road outside towns."""
     tags = {"highway": road_class} | tags
     place = Place(country=country, layers=tuple(e for e in shipped().country(country) if e.kind == "country"))
     built_up = built_up_of(tags)
     assumed = assumed_sign(tags, shipped(), place, built_up=bool(built_up))
-    return Road(tags, country, stated_limits(tags), assumed, built_up, is_dense=False)
+    return MappedRoad(tags, country, stated_limits(tags), assumed, built_up, is_dense=False)
 
 
 @settings(deadline=None)

@@ -1,0 +1,117 @@
+"""The agent ``native``: a model that answers in the format that it was trained on. It sees the picture alone."""
+
+from __future__ import annotations
+
+from collections import deque
+
+from automotive_cosim.agents import prompt
+from automotive_cosim.agents.asking import Asking
+from automotive_cosim.agents.base import StageName
+from automotive_cosim.agents.marks import png
+from automotive_cosim.agents.native.formats import Format
+from automotive_cosim.agents.native.grid import GuiScreen
+from automotive_cosim.agents.native.verbs import Hand, actions
+from automotive_cosim.agents.settings import AgentSettings
+from automotive_cosim.contracts import Action, Observation
+from automotive_cosim.errors import ActionError, UserError
+from automotive_cosim.interface.observe import Channel
+from automotive_cosim.models.base import ChatModel
+
+MOST_ACTIONS = 10
+"""Most actions of one answer; each is a step."""
+REMEMBERED = 200
+"""Characters of an action in the history."""
+
+
+class NativeAgent:
+    """Asks its model once per answer, which may hold several actions; each costs a step.
+
+    The model gets the driver's words, what it did so far and the picture. The elements stay with the agent, as in a
+    phone: they say which field has the focus and which list lies under a point.
+    """
+
+    name = "native"
+    channels = frozenset({Channel.SCREENSHOT, Channel.ELEMENTS})
+
+    def __init__(self, model: str, chat_model: ChatModel, form: Format, settings: AgentSettings) -> None:
+        """Puts the agent together.
+
+        Args:
+            model: the model's whole name, with its format, for results.
+            chat_model: the model to ask.
+            form: how it answers.
+            settings: the budget.
+
+        Raises:
+            UserError: the model sees no pictures.
+        """
+        if not chat_model.sees_pictures:
+            raise UserError(
+                f"agent 'native' shows its model nothing but pictures, and {chat_model.name!r} sees none"
+            )
+        self.model = model
+        self._form = form
+        self._asking = Asking(chat_model, settings)
+        self.stages = self._asking.stages
+        self.reset("")
+
+    def reset(self, goal: str) -> None:
+        """Forgets the previous episode."""
+        self._asking.reset()
+        self._history: list[str] = []
+        self._left: deque[Action] = deque()
+        self._last: tuple[int, int] | None = None
+        self._problem = ""
+
+    def act(self, observation: Observation) -> Action:
+        """The next action of the last answer, or the first of another one.
+
+        Raises:
+            ActionError: the answer cannot be read, or asks for what the car does not have.
+            OutOfBudgetError: the episode's tokens or seconds are spent.
+            ModelError: the model does not answer.
+        """
+        self.stages.clear()
+        if self._left:
+            return self._next(observation)
+        assert observation.screenshot is not None
+        height, width = observation.screenshot.shape[:2]
+        screen = GuiScreen(width, height, self._form.grid)
+        text = self._question(observation, screen)
+        self._asking.note(StageName.PERCEIVE, observation, text)
+        reply, asked = self._asking.ask(text, (png(observation.screenshot),))
+        hand = Hand(screen, observation.elements or (), self._last)
+        try:
+            calls = self._form.syntax.read(reply.text, self._form.verbs)
+            found = [action for call in calls for action in actions(self._form.verbs, call, hand)]
+            if len(found) > MOST_ACTIONS:
+                raise ActionError(f"the answer has {len(found)} actions; at most {MOST_ACTIONS} are allowed")
+        except ActionError as error:
+            self._problem = f"It could not be carried out: {prompt.one_line(str(error))}"
+            self._asking.note(StageName.ACT, observation, str(error), reply, asked, 1)
+            raise
+        self._problem = ""
+        self._asking.note(StageName.INTERPRET, observation, reply.text, reply, asked, 1)
+        self._left.extend(found)
+        return self._next(observation)
+
+    def _next(self, seen: Observation) -> Action:
+        action = self._left.popleft()
+        if action.x is not None and action.y is not None:
+            self._last = action.x, action.y
+        words = prompt.action_words(action, seen)
+        self._history.append(f"Step {len(self._history) + 1}: {words[:REMEMBERED]}")
+        self._asking.note(StageName.ACT, seen, words)
+        return action
+
+    def _question(self, seen: Observation, screen: GuiScreen) -> str:
+        span = self._form.grid.span(screen.width, screen.height)
+        return prompt.fill(
+            "native",
+            {
+                "grammar": self._form.syntax.describe(self._form.verbs, *span),
+                "goal": prompt.one_line(seen.goal),
+                "history": "\n".join(map(prompt.one_line, self._history)) or "nothing yet",
+                "problem": self._problem or None,
+            },
+        )

@@ -1,0 +1,352 @@
+"""A format's texts: reads the calls out of an answer, and writes them. Nothing in an answer is ever evaluated."""
+
+from __future__ import annotations
+
+import ast
+import json
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from automotive_cosim.agents import answer
+from automotive_cosim.agents.native.verbs import CAR, CAR_ACTIONS, GuiCall, Meaning, Verb
+from automotive_cosim.cockpit.actions import grammar, to_json
+from automotive_cosim.contracts import ActionType, Json
+from automotive_cosim.errors import ActionError
+
+LONGEST = 20_000
+"""Characters at the end of an answer in which to look for calls."""
+Verbs = Mapping[str, Verb]
+
+
+class Syntax(Protocol):
+    """How a format writes calls."""
+
+    def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
+        """The calls in an answer, in order.
+
+        Raises:
+            ActionError: it has none.
+        """
+        ...
+
+    def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str:
+        """An answer with these calls."""
+        ...
+
+    def describe(self, verbs: Verbs, width: int, height: int) -> str:
+        """The calls that a model may make, for its prompt; the picture has the coordinates 0 to width, height."""
+        ...
+
+
+def _sample(name: str, verb: Verb) -> str:
+    """A placeholder for an argument."""
+    if name == verb.direction:
+        return "up|down|left|right"
+    if name == verb.seconds:
+        return "seconds"
+    if verb.meaning is Meaning.END:
+        return "success|failure"
+    return {Meaning.KEY: "home|back|enter", Meaning.OPEN: "name"}.get(verb.meaning, "...")
+
+
+# --- UI-TARS ------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Labelled:
+    """``Thought: ...``, ``Action: name(argument='...')``: UI-TARS."""
+
+    point: str
+    """Form of a point, with ``{x}`` and ``{y}``."""
+
+    def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
+        """See ``Syntax``."""
+        tail = text[-LONGEST:].rpartition("Action:")[2].strip()
+        calls = [
+            GuiCall(found[1], _keywords(found[2]))
+            for found in re.finditer(r"^[ \t]*([a-z_]+)\((.*?)\)[ \t]*$", tail, re.MULTILINE | re.DOTALL)
+        ]
+        if not calls:
+            raise ActionError("the answer has no action; end it with `Action: name(argument='...')`")
+        return calls
+
+    def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str:
+        """See ``Syntax``."""
+        lines = "\n\n".join(self._call(call, verbs[call.name]) for call in calls)
+        return f"Thought: {thought}\nAction: {lines}"
+
+    def describe(self, verbs: Verbs, width: int, height: int) -> str:
+        """See ``Syntax``."""
+        return "\n".join(
+            f"{name}({', '.join(f'{each}={self._shown(each, verb)!r}' for each in verb.arguments())})"
+            for name, verb in verbs.items()
+        )
+
+    def _shown(self, name: str, verb: Verb) -> str:
+        if name in verb.at + verb.to:
+            return self.point.format(x="x", y="y")
+        return _sample(name, verb)
+
+    def _call(self, call: GuiCall, verb: Verb) -> str:
+        texts = []
+        for name, value in call.arguments.items():
+            said = self.point.format(x=value[0], y=value[1]) if name in verb.at + verb.to else str(value)
+            texts.append(f"{name}={said!r}")
+        return f"{call.name}({', '.join(texts)})"
+
+
+def _keywords(text: str) -> Json:
+    """``name='text', ...`` as a mapping; quotes inside a text need not be escaped."""
+    try:
+        call = ast.parse(f"_({text})", mode="eval").body
+        assert isinstance(call, ast.Call)
+        return {word.arg: ast.literal_eval(word.value) for word in call.keywords if word.arg}
+    except (SyntaxError, ValueError, AssertionError, RecursionError, MemoryError):
+        found = re.finditer(r"(\w+)\s*=\s*(['\"])(.*?)\2(?=\s*(?:,\s*\w+\s*=|$))", text, re.DOTALL)
+        return {each[1]: each[3].replace("\\n", "\n") for each in found}
+
+
+# --- tool calls in the text: Qwen, GUI-Owl, MAI-UI ----------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class ToolCalls:
+    """``<tool_call>{"name": ..., "arguments": {"action": ...}}</tool_call>``."""
+
+    function: str = "mobile_use"
+    preamble: str = "Thought: {thought}\nAction: {thought}\n"
+    """What stands before the calls, with ``{thought}``."""
+
+    def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
+        """See ``Syntax``."""
+        calls = []
+        for value in _objects(text[-LONGEST:]):
+            given = value.get("arguments")
+            if not isinstance(given, dict):
+                continue
+            if value.get("name") == CAR:
+                calls.append(GuiCall(CAR, given))
+            elif "action" in given:
+                calls.append(
+                    GuiCall(str(given["action"]), {key: each for key, each in given.items() if key != "action"})
+                )
+        if not calls:
+            raise ActionError('the answer has no <tool_call>{"name": ..., "arguments": {...}}</tool_call>')
+        return calls
+
+    def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str:
+        """See ``Syntax``."""
+        values = [
+            {"name": CAR, "arguments": dict(call.arguments)}
+            if call.name == CAR
+            else {"name": self.function, "arguments": {"action": call.name, **call.arguments}}
+            for call in calls
+        ]
+        texts = (f"<tool_call>\n{json.dumps(value, ensure_ascii=False)}\n</tool_call>" for value in values)
+        return self.preamble.format(thought=thought) + "\n".join(texts)
+
+    def describe(self, verbs: Verbs, width: int, height: int) -> str:
+        """See ``Syntax``."""
+        touch = {name: verb for name, verb in verbs.items() if verb.meaning is not Meaning.CAR}
+        properties: Json = {"action": {"type": "string", "enum": list(touch)}}
+        for verb in touch.values():
+            for name in verb.arguments():
+                properties.setdefault(name, _schema(name, verb))
+        functions = [
+            {
+                "name": self.function,
+                "description": f"Use the car's touch screen of {width}x{height}; coordinates are [x, y].",
+                "parameters": {"type": "object", "properties": properties, "required": ["action"]},
+            }
+        ]
+        if CAR in verbs:
+            functions.append(car_function())
+        tools = "\n".join(json.dumps({"type": "function", "function": function}) for function in functions)
+        return (
+            f"<tools>\n{tools}\n</tools>\n\nCall one inside <tool_call></tool_call>:\n"
+            f'<tool_call>\n{{"name": "{self.function}", "arguments": {{"action": ...}}}}\n</tool_call>'
+        )
+
+
+def car_function() -> Json:
+    """The function with the car's own actions, as a JSON Schema."""
+    kinds = [kind for kind in ActionType if kind in CAR_ACTIONS]
+    return {
+        "name": CAR,
+        "description": f"Use the car's own functions. The arguments are one of:\n{grammar(kinds)}",
+        "parameters": {
+            "type": "object",
+            "properties": {"action_type": {"type": "string", "enum": [str(kind) for kind in kinds]}},
+            "required": ["action_type"],
+        },
+    }
+
+
+def _schema(name: str, verb: Verb) -> Json:
+    if name in verb.at + verb.to:
+        return {"type": "array", "items": {"type": "number"}, "description": "[x, y]"}
+    if name == verb.seconds:
+        return {"type": "number"}
+    return (
+        {"type": "string", "description": _sample(name, verb)}
+        if _sample(name, verb) != "..."
+        else {"type": "string"}
+    )
+
+
+def _objects(text: str) -> Iterator[Json]:
+    """JSON objects one after the other, those inside others left out."""
+    start = text.find("{")
+    while start >= 0:
+        try:
+            value, end = json.JSONDecoder().raw_decode(text, start)
+        except (ValueError, RecursionError):
+            end = start + 1
+        else:
+            if isinstance(value, dict):
+                yield value
+        start = text.find("{", end)
+
+
+# --- Python's pyautogui: OpenCUA ----------------------------------------------------------------------------
+
+_ORDER: Mapping[str, tuple[str, ...]] = {
+    "click": ("x", "y"),
+    "doubleClick": ("x", "y"),
+    "triple_click": ("x", "y"),
+    "moveTo": ("x", "y"),
+    "dragTo": ("x", "y"),
+    "write": ("message",),
+    "press": ("keys",),
+    "hotkey": ("keys",),
+    "scroll": ("clicks", "x", "y"),
+    "hscroll": ("clicks", "x", "y"),
+    "sleep": ("seconds",),
+    "terminate": ("status",),
+}
+"""Names of positional arguments."""
+
+
+@dataclass(frozen=True, slots=True)
+class Code:
+    """``## Action``, ``## Code`` with lines of pyautogui: OpenCUA."""
+
+    def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
+        """See ``Syntax``."""
+        blocks = re.findall(r"```(?:python|code)?\s*\n(.*?)```", text[-LONGEST:], re.DOTALL)
+        try:
+            statements = ast.parse(blocks[-1] if blocks else "").body
+            calls = list(_joined(_python(each) for each in statements if not isinstance(each, ast.Import)))
+        except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+            raise ActionError(
+                f"the code cannot be read: {error}; write one call with constants per line"
+            ) from error
+        if not calls:
+            raise ActionError("the answer has no code; end it with a block of pyautogui calls")
+        return calls
+
+    def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str:
+        """See ``Syntax``."""
+        lines = "\n".join(line for call in calls for line in _lines(call))
+        return f"## Action:\n{thought}\n\n## Code:\n```python\n{lines}\n```"
+
+    def describe(self, verbs: Verbs, width: int, height: int) -> str:
+        """See ``Syntax``."""
+        lines = (
+            line
+            for name, verb in verbs.items()
+            for line in _lines(GuiCall(name, {each: _Word(each) for each in verb.arguments()}))
+        )
+        return "\n".join(lines)
+
+
+class _Word(str):
+    """A placeholder, shown without quotes."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
+def _python(statement: ast.stmt) -> GuiCall:
+    """The call in a line such as ``pyautogui.click(x=1, y=2)``."""
+    match statement:
+        case ast.Expr(ast.Call(ast.Attribute(ast.Name("pyautogui" | "computer" | "time"), name), given, words)):
+            values = [ast.literal_eval(each) for each in given]
+            names = _ORDER.get(name, ())
+            if name == "hotkey" and len(values) > 1:
+                raise ValueError("this car has no combinations of keys")
+            if len(values) > len(names):
+                raise ValueError(f"{name} has too many arguments")
+            found = dict(zip(names, values, strict=False))
+            return GuiCall(name, found | {word.arg: ast.literal_eval(word.value) for word in words if word.arg})
+    raise ValueError(f"{ast.unparse(statement)[:60]!r} is no call of pyautogui")
+
+
+def _joined(calls: Iterator[GuiCall]) -> Iterator[GuiCall]:
+    """Calls with the meaning that pyautogui gives them by sign and by order: scroll's direction, a drag's start."""
+    start: Json | None = None
+    for call in calls:
+        given = dict(call.arguments)
+        if call.name == "moveTo":
+            start = {"x": given.get("x"), "y": given.get("y")}
+            continue
+        if call.name in ("scroll", "hscroll"):
+            clicks = given.pop("clicks", 0)
+            ways = ("up", "down") if call.name == "scroll" else ("right", "left")
+            given["direction"] = ways[0] if isinstance(clicks, int | float) and clicks > 0 else ways[1]
+            yield GuiCall("scroll", given)
+        elif call.name == "dragTo":
+            from_x, from_y = (start or {}).get("x"), (start or {}).get("y")
+            yield GuiCall("dragTo", {"from_x": from_x, "from_y": from_y, "x": given.get("x"), "y": given.get("y")})
+        elif call.name == "click" and start is not None and not given:
+            yield GuiCall("click", start)
+        else:
+            yield GuiCall(call.name, given)
+        start = None
+    if start is not None:
+        raise ValueError("moving the pointer does nothing on a touch screen")
+
+
+def _lines(call: GuiCall) -> Iterator[str]:
+    given = dict(call.arguments)
+    module = {"terminate": "computer", "triple_click": "computer", "sleep": "time"}.get(call.name, "pyautogui")
+    name = call.name
+    if name == "dragTo":
+        yield f"pyautogui.moveTo(x={given.pop('from_x')!r}, y={given.pop('from_y')!r})"
+    first = ""
+    if name == "scroll":
+        way = given.pop("direction")
+        name = "hscroll" if way in ("left", "right") else "scroll"
+        first = "5, " if way in ("up", "right") else "-5, "
+    words = first + ", ".join(f"{key}={value!r}" for key, value in given.items())
+    yield f"{module}.{name}({words.removesuffix(', ')})"
+
+
+# --- this project's own JSON --------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class JsonSyntax:
+    """``Situation``, ``Plan``, ``Action: {"action_type": ...}``: as this project's other agents answer."""
+
+    def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
+        """See ``Syntax``."""
+        action = answer.read(text).action
+        return [GuiCall(str(action.action_type), to_json(action))]
+
+    def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str:
+        """See ``Syntax``."""
+        lines = "\n".join(f"Action: {json.dumps(dict(call.arguments), ensure_ascii=False)}" for call in calls)
+        return f"Situation: {thought}\nPlan: none\n{lines}"
+
+    def describe(self, verbs: Verbs, width: int, height: int) -> str:
+        """See ``Syntax``."""
+        kinds = [ActionType(name) for name in verbs]
+        return grammar(kinds).replace(POINT_TOO, "").replace('"index": <int>', '"x": <int>, "y": <int>')
+
+
+POINT_TOO = ' (or "x", "y" in place of "index")'
