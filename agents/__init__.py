@@ -16,7 +16,7 @@ from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.agents.settings import PROFILES, AgentPart, AgentSettings
 from automotive_cosim.agents.trivial import AlwaysAlert, NoOp, PressEverything, Random
 from automotive_cosim.errors import UnknownNameError
-from automotive_cosim.models import make_model
+from automotive_cosim.models import ChatModel, make_model
 
 __all__ = [
     "AGENTS",
@@ -40,6 +40,7 @@ __all__ = [
     "StageName",
     "Thinker",
     "make_agent",
+    "model_of",
 ]
 
 SIMPLE: Mapping[str, Callable[[AgentSettings], Agent]] = {
@@ -59,7 +60,12 @@ AGENTS = tuple(sorted([*SIMPLE, *MODELLED]))
 """Names of all agents; ``package.module:Class`` names one of your own."""
 
 
-def make_agent(name: str, model: str = "rules", settings: AgentSettings = AgentSettings()) -> Agent:  # noqa: B008, frozen
+def make_agent(
+    name: str,
+    model: str = "rules",
+    settings: AgentSettings = AgentSettings(),  # noqa: B008, frozen
+    chat_model: ChatModel | None = None,
+) -> Agent:
     """An agent by name.
 
     Args:
@@ -67,6 +73,7 @@ def make_agent(name: str, model: str = "rules", settings: AgentSettings = AgentS
         model: a model's name (``models.make_model``), for the agents that have one; for ``native`` with the setting
             ``format``.
         settings: how to run it.
+        chat_model: what answers in that model's place, e.g. a connection to it.
 
     Raises:
         UnknownNameError: no agent or model of that name.
@@ -76,10 +83,21 @@ def make_agent(name: str, model: str = "rules", settings: AgentSettings = AgentS
     if ":" in name:
         return load(name)
     if name in PROFILES:
-        return ModelAgent(PROFILES[name], make_model(model), settings)
+        return ModelAgent(PROFILES[name], chat_model or make_model(model), settings)
     if name == NativeAgent.name:
         without_format, form = chosen(model)
-        return NativeAgent(model, make_model(without_format), form, settings)
+        return NativeAgent(model, chat_model or make_model(without_format), form, settings)
     if name not in SIMPLE:
         raise UnknownNameError("agent", name, AGENTS, "automotive-cosim agents list")
     return SIMPLE[name](settings)
+
+
+def model_of(name: str, model: str) -> ChatModel | None:
+    """The model that an agent of this name asks; None if it has none.
+
+    Raises:
+        as ``make_agent``.
+    """
+    if name not in MODELLED:
+        return None
+    return make_model(chosen(model)[0] if name == NativeAgent.name else model)

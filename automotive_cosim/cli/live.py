@@ -17,13 +17,14 @@ from automotive_cosim.contracts import KMH_PER_MPS, ActionType
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
+from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.geo.text import amount_of_speed
 from automotive_cosim.run.episode import EpisodeResult, Shot, Watcher
 from automotive_cosim.run.words import (
     action_in_words,
     is_over,
+    limit_in_words,
     limit_kmh,
-    posted_in_words,
     road_in_words,
     speed_in_words,
 )
@@ -132,7 +133,7 @@ class Live(Watcher):
 
     def _panel(self, moment: Moment) -> Panel:
         driving = moment.driving
-        limit = limit_kmh(driving.road)
+        limit = limit_at(moment.context)
         speed_kmh = driving.speed_mps * KMH_PER_MPS
         unit = moment.context.speed_unit
         rows = Table.grid(padding=(0, 2))
@@ -140,11 +141,9 @@ class Live(Watcher):
         rows.add_column()
         rows.add_row("time", f"{moment.local_time:%H:%M:%S}  {self._clock(moment)}")
         rows.add_row("road", road_in_words(driving.road) + (", in a tunnel" if driving.road.in_tunnel else ""))
-        style = "bold red" if is_over(speed_kmh, limit) else "bold green"
-        rows.add_row(
-            "speed",
-            Text.assemble((amount_of_speed(speed_kmh, unit), style), f"  {posted_in_words(driving.road, unit)}"),
-        )
+        style = "bold red" if is_over(speed_kmh, limit_kmh(limit)) else "bold green"
+        speed = amount_of_speed(speed_kmh, unit)
+        rows.add_row("speed", Text.assemble((speed, style), f"  {limit_in_words(limit, unit)}"))
         rows.add_row("traffic", _traffic(moment))
         if self._goal:
             rows.add_row("driver", Text(f"“{self._goal}”", style="italic"))
@@ -161,12 +160,12 @@ class Live(Watcher):
 
 def _drive(moment: Moment) -> str:
     driving = moment.driving
-    speed = speed_in_words(driving, moment.context.speed_unit)
+    speed = speed_in_words(driving.speed_mps, limit_at(moment.context), moment.context.speed_unit)
     return f"{speed}, {road_in_words(driving.road)}; {_traffic(moment)}"
 
 
 def _traffic(moment: Moment) -> str:
-    """Congestion here and ahead: mean speed over posted limit."""
+    """Congestion here and ahead: mean speed over the limit."""
     driving = moment.driving
     here = f"{driving.around.relative_speed:.0%} of free flow here, {driving.ahead.relative_speed:.0%} ahead"
     jam_m = driving.ahead.jam_distance_m

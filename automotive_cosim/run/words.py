@@ -4,16 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from automotive_cosim.contracts import (
-    KMH_PER_MPS,
-    Action,
-    ActionType,
-    DrivingState,
-    Element,
-    LimitSource,
-    Reason,
-    RoadHere,
-)
+from automotive_cosim.contracts import KMH_PER_MPS, Action, ActionType, Element, Limit, Reason, RoadHere
 from automotive_cosim.geo.text import amount_of_speed
 
 ROUNDING_KMH = 1.0
@@ -81,25 +72,22 @@ def road_in_words(road: RoadHere) -> str:
     return f"{'an' if words[0] in 'aeiou' else 'a'} {words}" + ("" if words.endswith("street") else " road")
 
 
-def speed_in_words(driving: DrivingState, unit: str) -> str:
-    """Speed and posted limit in the country's unit: ``"48 km/h, 50 posted"``, ``"30 mph, no limit posted"``.
-
-    A limit that the map only assumed is not posted.
-    """
-    speed = amount_of_speed(driving.speed_mps * KMH_PER_MPS, unit)
-    return f"{speed}, {posted_in_words(driving.road, unit)}"
+def speed_in_words(speed_mps: float, limit: Limit, unit: str) -> str:
+    """A speed and the limit in the unit of the place: ``"48 km/h, 50 posted"``, ``"30 mph, no limit known"``."""
+    return f"{amount_of_speed(speed_mps * KMH_PER_MPS, unit)}, {limit_in_words(limit, unit)}"
 
 
-def posted_in_words(road: RoadHere, unit: str) -> str:
-    """The posted limit in the country's unit, without it."""
-    if road.limit_source is not LimitSource.POSTED or road.posted_limit_mps is None:
-        return "no limit posted"
-    return f"{amount_of_speed(road.posted_limit_mps * KMH_PER_MPS, unit).partition(' ')[0]} posted"
+def limit_in_words(limit: Limit, unit: str) -> str:
+    """A limit with its source, in the unit of the place but without it."""
+    if limit.kmh is None:
+        return "no limit" if limit.is_posted else "no limit known"
+    amount = amount_of_speed(limit.kmh, unit).partition(" ")[0]
+    return f"{amount} posted" if limit.is_posted else f"{amount} by law"
 
 
-def limit_kmh(road: RoadHere) -> float | None:
-    """The posted limit in km/h, to a tenth; None if there is none."""
-    return None if road.posted_limit_mps is None else round(road.posted_limit_mps * KMH_PER_MPS, 1)
+def limit_kmh(limit: Limit) -> float | None:
+    """A limit in km/h, to a tenth; None if there is none."""
+    return None if limit.kmh is None else round(limit.kmh, 1)
 
 
 def is_over(speed_kmh: float, limit_kmh: float | None) -> bool:

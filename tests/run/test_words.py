@@ -5,16 +5,18 @@ import pytest
 
 from automotive_cosim.cockpit.actions import FIELDS
 from automotive_cosim.contracts import (
+    NO_LIMIT,
     Action,
     ActionType,
     AlertKind,
     Direction,
     Element,
     GoalStatus,
+    Limit,
     LimitSource,
     RoadHere,
 )
-from automotive_cosim.run.words import action_in_words, is_over, posted_in_words, road_in_words
+from automotive_cosim.run.words import action_in_words, is_over, limit_in_words, road_in_words
 
 VALUES = {
     "text": "hello",
@@ -67,7 +69,7 @@ def test_the_last_digit_of_a_speedometer_is_not_speeding(speed_kmh: float, limit
 
 
 def _road(**changes: object) -> RoadHere:
-    road = RoadHere("e", "e_0", 0, 1, 0.0, "", "primary", None, LimitSource.POSTED, False, None, None, None, 1.0)
+    road = RoadHere("e", "e_0", 0, 1, 0.0, "", "primary", NO_LIMIT, False, None, None, None, 1.0)
     return replace(road, **changes)  # type: ignore[arg-type]
 
 
@@ -92,9 +94,11 @@ def test_a_road_is_called_as_people_say(name: str, road_class: str, words: str):
         (50 / 3.6, LimitSource.POSTED, "km/h", "50 posted"),
         (13.41, LimitSource.POSTED, "mph", "30 posted"),
         (8.94, LimitSource.POSTED, "mph", "20 posted"),
-        (50 / 3.6, LimitSource.ASSUMED, "km/h", "no limit posted"),
-        (None, LimitSource.POSTED, "km/h", "no limit posted"),
+        (70 / 3.6, LimitSource.LAW, "km/h", "70 by law"),
+        (26.82, LimitSource.LAW, "mph", "60 by law"),
+        (None, LimitSource.POSTED, "km/h", "no limit"),
+        (None, LimitSource.NONE, "km/h", "no limit known"),
     ],
 )
 def test_a_limit_is_told_as_its_sign_shows_it(limit_mps: float | None, source: LimitSource, unit: str, words: str):
-    assert posted_in_words(_road(posted_limit_mps=limit_mps, limit_source=source), unit) == words
+    assert limit_in_words(Limit(limit_mps, source), unit) == words
