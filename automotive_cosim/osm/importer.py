@@ -222,7 +222,7 @@ class _Search:
         return flow, self._journeys, tuple(self._stuck)
 
     def _until_it_flows(self, scale: float, step_length_s: float, observe_s: float) -> Stability:
-        for _ in range(TRIALS):
+        for trials_left in reversed(range(TRIALS)):
             run = measure(
                 self._scenario(scale),
                 observe_s=observe_s,
@@ -235,16 +235,16 @@ class _Search:
             if run.stable and run.halted_share_max < HALTED_SHARE_AIM:
                 return run
             self._tell(f"scale {scale:g} does not flow: {_why(run)}", None)
-            if run.halted_share_max < HALTED_SHARE_AIM and self._left_out(run):
-                continue
-            if scale <= SCALE_MIN:
-                break
-            factor = HALTED_SHARE_AIM / max(run.halted_share_max, HALTED_SHARE_AIM)
-            scale = round(max(SCALE_MIN, scale * min(max(factor, SCALE_STEPS[0]), SCALE_STEPS[1])), 3)
-        raise ImportMapError(
-            f"traffic on this map locks up even at a scale of {run.scale:g} ({_why(run)});"
-            " give a larger extract or a lower --density"
-        )
+            rest_flows = run.halted_share_max < HALTED_SHARE_AIM and self._left_out(run)
+            if not trials_left or (scale <= SCALE_MIN and not rest_flows):
+                raise ImportMapError(
+                    f"traffic on this map locks up even at a scale of {scale:g} ({_why(run)});"
+                    " give a larger extract or a lower --density"
+                )
+            if not rest_flows:
+                factor = HALTED_SHARE_AIM / max(run.halted_share_max, HALTED_SHARE_AIM)
+                scale = round(max(SCALE_MIN, scale * min(max(factor, SCALE_STEPS[0]), SCALE_STEPS[1])), 3)
+        raise AssertionError("the last trial returns or raises")
 
     def _left_out(self, run: Stability) -> bool:
         """Whether trips that stood for good where the rest flowed could be left out."""
