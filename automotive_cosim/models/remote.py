@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 
 BODY_LIMIT_BYTES = 4_000_000
 """Longest body to read; an answer of a few thousand tokens has some tens of kilobytes."""
+MOST_TOKENS = 10**9
+LONGEST_FINISH = 40
+"""Characters of the reason why an answer ends."""
 LONGEST_PAUSE_S = 60.0
 FIRST_PAUSE_S = 0.5
 SHORTEST_KEY = 12
@@ -218,12 +221,12 @@ class Remote:
         try:
             body = self._post(messages)
         except openai.APIStatusError as error:
-            why = f"status {error.status_code}: {error.message[:300]}"
+            why = f"status {error.status_code}: {self._endpoint.clean(error.message)[:300]}"
             if error.status_code in (408, 409, 429) or error.status_code >= 500:
                 raise _PassingError(why, _pause(error.response.headers.get("retry-after"))) from None
             if 300 <= error.status_code < 400:
-                where = error.response.headers.get("location", "somewhere")
-                why += f"; it sends to {where[:200]}, and nothing is sent on: if that is right, make it the address"
+                where = self._endpoint.clean(error.response.headers.get("location", "somewhere"))[:200]
+                why += f"; it sends to {where}, and nothing is sent on: if that is right, make it the address"
             raise self._error(f"refused: {why}") from None
         except (openai.APIError, httpx2.HTTPError, httpx2.StreamError) as error:
             raise _PassingError(f"{type(error).__name__}: {error}") from None
@@ -259,17 +262,20 @@ class Remote:
             choice = told["choices"][0]
             content = choice["message"].get("content")
             usage = told.get("usage") or {}
-            tokens_in = int(usage.get("prompt_tokens") or 0)
-            tokens_out = int(usage.get("completion_tokens") or 0)
+            tokens_in, tokens_out = (int(usage.get(f"{kind}_tokens") or 0) for kind in ("prompt", "completion"))
+            if not (0 <= tokens_in <= MOST_TOKENS and 0 <= tokens_out <= MOST_TOKENS):
+                raise ValueError("no number of tokens")
             finish = str(choice.get("finish_reason") or "stop")
-        except (ValueError, LookupError, TypeError, AttributeError, RecursionError):
-            shown = body[:80].decode(errors="replace")
+        except (ArithmeticError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
+            shown = self._endpoint.clean(body.decode(errors="replace"))[:80]  # cut first, half a key would pass
             raise _PassingError(f"the answer is not a chat completion: {shown!r}") from None
         settings = self._settings
         cost_usd = (tokens_in * settings.usd_per_million_in + tokens_out * settings.usd_per_million_out) / 1e6
         # Half a surrogate pair is valid JSON but not valid text: it could not be written into a record.
-        text = self._endpoint.clean(_text(content)).encode("utf-8", "replace").decode()
-        return ModelReply(text, tokens_in, tokens_out, cost_usd, finish=finish)
+        text, finish = (
+            self._endpoint.clean(each).encode("utf-8", "replace").decode() for each in (_text(content), finish)
+        )
+        return ModelReply(text, tokens_in, tokens_out, cost_usd, finish=finish[:LONGEST_FINISH])
 
 
 def _pause(header: str | None) -> float | None:
