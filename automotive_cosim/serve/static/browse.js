@@ -18,7 +18,7 @@ export async function tasksPage(query) {
     list.replaceChildren(...kept.map((task) => h("li", { class: "card" },
       h("div", {}, h("a", { href: `#/tasks/${task.id}` }, task.id), h("p", {}, `“${task.goal_templates[0]}”`),
         h("p", { class: "muted" }, [task.module, plain(task.dimension), task.difficulty, counted(task.optimal_steps, "step")].join(" · "))),
-      task.pair ? h("span", { class: "pill" }, "Pair") : null)));
+      task.pair ? h("span", { class: "pill quiet" }, "Pair") : null)));
     const parameters = new URLSearchParams();
     choices.forEach((choice) => choice.value && parameters.set(choice.name, choice.value));
     if (search.value) parameters.set("q", search.value);

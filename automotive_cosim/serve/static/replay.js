@@ -57,7 +57,7 @@ export async function replayPage(query, id, episode) {
   const step = () => steps.findLastIndex((each) => each.at_s <= at + 1e-6);
 
   function head() {
-    const told = [run.half && `${run.half} half`, run.scenario, run.agent, run.model, run.seed !== null && `seed ${run.seed}`];
+    const told = [run.half && `${run.half} half`, run.scenario, run.agent, run.model !== "none" && run.model, run.seed !== null && `seed ${run.seed}`];
     heading.replaceChildren(
       h("div", {}, h("h1", {}, run.task), run.goal && h("p", { class: "said" }, `“${run.goal}”`), h("p", { class: "muted" }, told.filter(Boolean).join(" · "))),
       outcome({ ...run, running }));

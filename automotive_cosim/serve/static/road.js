@@ -427,12 +427,15 @@ export class RoadView {
     const [east, north] = [Math.sin(angle), Math.cos(angle)];
     const long = Math.max(length, 1.7 * LEAST_PX * this.pixel);
     const wide = Math.max(width, 0.8 * LEAST_PX * this.pixel) / 2;
-    context.strokeStyle = "#1f78e6";
-    context.lineWidth = 2 * this.pixel;
-    context.setLineDash([4 * this.pixel, 3 * this.pixel]);
     context.beginPath();
     for (const [ahead, right] of [[0, -1], [0, 1], [-1, 1], [-1, -1]]) context.lineTo(x + ahead * long * east + right * wide * north, y + ahead * long * north - right * wide * east);
     context.closePath();
+    context.strokeStyle = "#fff";
+    context.lineWidth = 4 * this.pixel;
+    context.stroke();
+    context.strokeStyle = "#1f78e6";
+    context.lineWidth = 2.4 * this.pixel;
+    context.setLineDash([5 * this.pixel, 3 * this.pixel]);
     context.stroke();
     context.setLineDash([]);
   }
