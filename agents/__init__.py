@@ -79,7 +79,7 @@ def make_agent(name: str, model: str = "rules", settings: AgentSettings = AgentS
         return ModelAgent(PROFILES[name], make_model(model), settings)
     if name == NativeAgent.name:
         without_format, form = chosen(model)
-        return NativeAgent(model, make_model(without_format), form, settings)
+        return NativeAgent(model, make_model(without_format, form.wire), form, settings)
     if name not in SIMPLE:
         raise UnknownNameError("agent", name, AGENTS, "automotive-cosim agents list")
     return SIMPLE[name](settings)

@@ -109,7 +109,7 @@ class NativeAgent:
         return prompt.fill(
             "native",
             {
-                "grammar": self._form.syntax.describe(self._form.verbs, *span),
+                "grammar": self._form.syntax.describe(self._form.verbs, *span) or None,
                 "goal": prompt.one_line(seen.goal),
                 "history": "\n".join(map(prompt.one_line, self._history)) or "nothing yet",
                 "problem": self._problem or None,

@@ -1,8 +1,8 @@
 """Tasks for Inspect (``inspect eval automotive_cosim/cockpit``): one sample per task, half and seed.
 
 Its models get a tool ``act`` and, after each action, the screen as text and picture. What the road breaks is an
-error of the sample; what a limit of Inspect's cuts short is judged as it is. Needs the ``inspect-ai`` package (extra
-``inspect``).
+error of the sample; what a limit of Inspect's cuts short is judged as it is. Needs the package ``inspect-ai``
+(extra ``inspect``).
 """
 
 from __future__ import annotations
