@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import re
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from automotive_cosim.contracts import Json, Observation
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats.words import shown
 
 MOST_STRATEGIES = 500
 MOST_RECALLED = 3
@@ -113,7 +114,13 @@ class Memory:
             rows = file.execute(
                 "SELECT place, goal, trigger, steps, worked, failed FROM strategies ORDER BY used DESC"
             )
-            return tuple(Strategy(*row) for row in rows)
+            return tuple(map(self._strategy, rows))
+
+    def _strategy(self, row: Sequence[object]) -> Strategy:
+        match row:
+            case [str(place), str(goal), str(trigger), str(steps), int(worked), int(failed)]:
+                return Strategy(place, goal, trigger, steps, worked, failed)
+        raise UserError(f"cannot use {self._path} as a memory: it has a strategy {shown(row)}; give another file")
 
     @contextmanager
     def _open(self) -> Iterator[sqlite3.Connection]:

@@ -19,8 +19,8 @@ from statistics import median
 import numpy as np
 
 from automotive_cosim.contracts import DrivingState, GpsFix
+from automotive_cosim.geo.earth import METRES_PER_DEGREE, metres_per_degree_east
 from automotive_cosim.geo.gps import Gps
-from automotive_cosim.geo.place import METRES_PER_DEGREE, metres_per_degree_east
 from automotive_cosim.geo.reckoning import Roads, reckon
 from automotive_cosim.scenarios import load
 from automotive_cosim.traffic.base import EgoPlan

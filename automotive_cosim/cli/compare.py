@@ -7,10 +7,11 @@ from typing import Annotated
 
 import typer
 
-from automotive_cosim.cli.options import AsJson, TasksFrom, print_json
+from automotive_cosim.cli.options import AsJson, TasksFrom, print_json, reads_results
 from automotive_cosim.errors import UserError
 
 
+@reads_results
 def compare(
     before: Annotated[Path, typer.Argument(help="Results folder of `eval` before the change.", show_default=False)],
     after: Annotated[Path, typer.Argument(help="Results folder of `eval` after the change.", show_default=False)],

@@ -27,7 +27,7 @@ DISK_MB = 500
 """For the scratch folders of simulations and an evaluation's results."""
 
 
-class State(StrEnum):
+class Health(StrEnum):
     """How a check ended."""
 
     OK = "ok"
@@ -42,7 +42,7 @@ class Finding:
     """What one check found."""
 
     about: str
-    state: State
+    state: Health
     found: str
     fix: str = ""
     """What to do; empty if all is well."""
@@ -57,7 +57,8 @@ class Extra(NamedTuple):
 
 EXTRAS = {
     "import": Extra("osmium", "scenarios import, day and download"),
-    "llm": Extra("openai", "--model openai:NAME"),
+    "llm": Extra("openai", "--model openai/NAME"),
+    "mcp": Extra("mcp", "mcp"),
     "ray": Extra("ray", "eval and study on a cluster"),
     "report": Extra("matplotlib", "report"),
     "rl": Extra("stable_baselines3", "training in Flat-v0"),
@@ -69,7 +70,7 @@ def doctor(
 ) -> None:
     """Check this machine and say what is missing and how to get it; exit code 1 if the main job cannot run."""
     findings = [check() for check in CHECKS]
-    ready = all(each.state is not State.MISSING for each in findings)
+    ready = all(each.state is not Health.MISSING for each in findings)
     if as_json:
         typer.echo(json.dumps({"ok": ready, "checks": [asdict(each) for each in findings]}, ensure_ascii=False))
     else:
@@ -81,16 +82,16 @@ def doctor(
 
 
 def _python() -> Finding:
-    return Finding("python", State.OK, f"{platform.python_version()} on {platform.platform(terse=True)}")
+    return Finding("python", Health.OK, f"{platform.python_version()} on {platform.platform(terse=True)}")
 
 
 def _folders() -> Finding:
     """Tasks, agents and scenarios are links in a checkout, which git on Windows leaves as text files."""
     missing = [name for name in ("tasks", "agents", "sumo_scenarios") if not _is_package(name)]
     if not missing:
-        return Finding("folders", State.OK, "tasks, agents and scenarios are found")
+        return Finding("folders", Health.OK, "tasks, agents and scenarios are found")
     fix = "in a checkout: `git config core.symlinks true`, then `git checkout -- .`; or install the wheel"
-    return Finding("folders", State.MISSING, f"automotive_cosim has no {', '.join(missing)}", fix)
+    return Finding("folders", Health.MISSING, f"automotive_cosim has no {', '.join(missing)}", fix)
 
 
 def _is_package(name: str) -> bool:
@@ -108,8 +109,8 @@ def _sumo() -> Finding:
         load_library()
     except SetupError as error:
         found, _, fix = str(error).partition(": ")
-        return Finding("SUMO", State.MISSING, found, fix)
-    return Finding("SUMO", State.OK, f"libsumo {version('libsumo')}")
+        return Finding("SUMO", Health.MISSING, found, fix)
+    return Finding("SUMO", Health.OK, f"libsumo {version('libsumo')}")
 
 
 def _fonts() -> Finding:
@@ -120,15 +121,15 @@ def _fonts() -> Finding:
         for weight in Weight:
             font(weight, 16)
     except (SetupError, OSError) as error:
-        return Finding("fonts", State.MISSING, str(error), "pip install --force-reinstall automotive-cosim")
-    return Finding("fonts", State.OK, "all faces of the screens")
+        return Finding("fonts", Health.MISSING, str(error), "pip install --force-reinstall automotive-cosim")
+    return Finding("fonts", Health.OK, "all faces of the screens")
 
 
 def _processes() -> Finding:
     if hasattr(os, "fork"):
-        return Finding("processes", State.OK, f"fork; {counted(_cores(), 'core')}")
+        return Finding("processes", Health.OK, f"fork; {counted(_cores(), 'core')}")
     fix = "use Linux, macOS or WSL for quick resets"
-    return Finding("processes", State.LIMITED, "no fork: each reset runs the warm-up again", fix)
+    return Finding("processes", Health.LIMITED, "no fork: each reset runs the warm-up again", fix)
 
 
 def _cores() -> int:
@@ -140,11 +141,11 @@ def _memory() -> Finding:
         lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
         free_mb = next(int(line.split()[1]) // 1024 for line in lines if line.startswith("MemAvailable"))
     except (OSError, StopIteration, ValueError):
-        return Finding("memory", State.OK, "unknown on this system")
+        return Finding("memory", Health.OK, "unknown on this system")
     found = f"{free_mb:,} MB available"
     if free_mb >= MEMORY_MB:
-        return Finding("memory", State.OK, found)
-    return Finding("memory", State.LIMITED, found, f"free {MEMORY_MB:,} MB, or give eval --workers 1")
+        return Finding("memory", Health.OK, found)
+    return Finding("memory", Health.LIMITED, found, f"free {MEMORY_MB:,} MB, or give eval --workers 1")
 
 
 def _disk() -> Finding:
@@ -152,17 +153,17 @@ def _disk() -> Finding:
     free_mb = shutil.disk_usage(scratch).free // 2**20
     found = f"{free_mb:,} MB free in {scratch}"
     if free_mb >= DISK_MB:
-        return Finding("disk", State.OK, found)
-    return Finding("disk", State.LIMITED, found, "free some, or set TMPDIR to a folder on another disk")
+        return Finding("disk", Health.OK, found)
+    return Finding("disk", Health.LIMITED, found, "free some, or set TMPDIR to a folder on another disk")
 
 
 def _ports() -> Finding:
     try:
         with socket.create_server(("127.0.0.1", 0)):
-            return Finding("ports", State.OK, "a server may listen on 127.0.0.1")
+            return Finding("ports", Health.OK, "a server may listen on 127.0.0.1")
     except OSError as error:
         found = f"no server may listen on 127.0.0.1 ({error.strerror})"
-        return Finding("ports", State.LIMITED, found, "Ray needs one; everything else runs without")
+        return Finding("ports", Health.LIMITED, found, "Ray needs one; everything else runs without")
 
 
 def _extras() -> Finding:
@@ -170,17 +171,17 @@ def _extras() -> Finding:
     here = [name for name in EXTRAS if name not in lacking]
     found = f"installed: {', '.join(here) or 'none'}"
     if not lacking:
-        return Finding("extras", State.OK, found)
+        return Finding("extras", Health.OK, found)
     uses = "; ".join(f"[{name}] for {extra.used_by}" for name, extra in lacking.items())
-    return Finding("extras", State.OK, f"{found}; not installed, if you need them: {uses}")
+    return Finding("extras", Health.OK, f"{found}; not installed, if you need them: {uses}")
 
 
 def _version() -> Finding:
     try:
-        return Finding("package", State.OK, f"automotive-cosim {version('automotive-cosim')}")
+        return Finding("package", Health.OK, f"automotive-cosim {version('automotive-cosim')}")
     except PackageNotFoundError:
         fix = "pip install -c constraints.txt -e ."
-        return Finding("package", State.LIMITED, "runs from a folder without being installed", fix)
+        return Finding("package", Health.LIMITED, "runs from a folder without being installed", fix)
 
 
 CHECKS: tuple[Callable[[], Finding], ...] = (

@@ -30,6 +30,7 @@ from automotive_cosim.cli import (
     scenarios,
     schema,
     screens,
+    serve,
     signals,
     study,
     tasks,
@@ -58,6 +59,7 @@ app.command()(results.replay)
 app.command()(results.regrade)
 app.command()(bench.bench)
 app.command()(playback.playback)
+app.command()(serve.serve)
 app.command()(screens.screens)
 app.command()(schema.schema)
 app.command()(doctor.doctor)

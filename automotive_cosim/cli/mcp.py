@@ -52,10 +52,10 @@ def mcp(
         raise SetupError(
             "the mcp package is missing; install it with `pip install 'automotive-cosim[mcp]'`"
         ) from error
-    from automotive_cosim.service import EpisodeService, Limits
+    from automotive_cosim.service import EpisodeService, ServiceLimits
 
     address = _address(http) if http else None
-    with closing(EpisodeService(limits=Limits(episodes, idle_s))) as service:
+    with closing(EpisodeService(limits=ServiceLimits(episodes, idle_s))) as service:
         server = make_server(service)
         if address is None:
             # Not on this thread: the server cannot be interrupted while it waits for standard input.

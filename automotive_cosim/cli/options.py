@@ -6,10 +6,15 @@ import json
 import math
 import os
 from collections.abc import Callable
+from functools import wraps
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, ParamSpec
 
 import typer
+
+from automotive_cosim.errors import UserError
+
+P = ParamSpec("P")
 
 
 def _use_tasks_from(folder: Path | None) -> None:
@@ -29,6 +34,22 @@ TasksFrom = Annotated[
     ),
 ]
 """For every command that names tasks; its callback handles the value, so the command ignores it."""
+
+
+def reads_results(command: Callable[P, None]) -> Callable[P, None]:
+    """For a command that reads what another wrote and someone may have changed since: whatever is wrong with it is
+    one error for the user, and ``--debug`` shows its cause."""
+
+    @wraps(command)
+    def guarded(*given: P.args, **named: P.kwargs) -> None:
+        try:
+            command(*given, **named)
+        except (ArithmeticError, AttributeError, LookupError, RecursionError, TypeError, ValueError) as error:
+            folder = next((value for value in (*given, *named.values()) if isinstance(value, Path)), "the folder")
+            what = f"{type(error).__name__}: {error}"[:200]
+            raise UserError(f"{folder} is not as this version writes it ({what}); make it again") from error
+
+    return guarded
 
 
 AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object and nothing else.")]

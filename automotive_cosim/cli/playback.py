@@ -7,9 +7,11 @@ from typing import Annotated
 
 import typer
 
+from automotive_cosim.cli.options import reads_results
 from automotive_cosim.contracts.plain import counted
 
 
+@reads_results
 def playback(
     folder: Annotated[Path, typer.Argument(help="Results folder of `run`.", show_default=False)],
     film: Annotated[Path | None, typer.Option(help="Write the screens as an animation, .webp or .gif.")] = None,

@@ -8,12 +8,13 @@ from typing import Annotated
 
 import typer
 
-from automotive_cosim.cli.options import AsJson, TasksFrom, print_json
+from automotive_cosim.cli.options import AsJson, TasksFrom, print_json, reads_results
 from automotive_cosim.contracts.plain import counted
 
 Folder = Annotated[Path, typer.Argument(help="Results folder of `eval`.", show_default=False)]
 
 
+@reads_results
 def report(folder: Folder, tasks_from: TasksFrom = None) -> None:
     """Write report.html, tables and plots into the folder of an evaluation or a study."""
     from automotive_cosim.report.evaluation import write_report
@@ -29,6 +30,7 @@ def report(folder: Folder, tasks_from: TasksFrom = None) -> None:
     typer.echo(f"{page} written; tables in {folder / 'tables'}, plots in {folder / 'plots'}")
 
 
+@reads_results
 def replay(
     folder: Folder,
     episode: Annotated[str, typer.Argument(help="Id of the episode, or its beginning.", show_default=False)],
@@ -54,6 +56,7 @@ def replay(
     typer.echo("the only step is the same" if len(compared) == 1 else f"all {len(compared)} steps are the same")
 
 
+@reads_results
 def regrade(folder: Folder, tasks_from: TasksFrom = None, as_json: AsJson = False) -> None:
     """Judge the stored episodes by the current checks and print what changes; nothing is written."""
     from automotive_cosim.run.coverage import coverage

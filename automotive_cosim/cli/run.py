@@ -139,6 +139,7 @@ def run(
     from automotive_cosim.run.episode import EpisodeSetup, run_episode
     from automotive_cosim.run.plan import most_steps
     from automotive_cosim.run.record import Recorder, check_folder, default_folder
+    from automotive_cosim.run.road_recorder import RoadRecorder
     from automotive_cosim.run.script import read_script
 
     if scenario == "":
@@ -170,7 +171,7 @@ def run(
     recorder = Recorder(folder, setup, {"actions": str(actions) if actions else None, "out": str(folder)})
     # A panel that redraws itself would interfere with a person who types.
     view = Live(Console(force_terminal=False, highlight=False)) if player.name == "human" else Live()
-    watchers = [recorder, Film(folder), Notes() if as_json else view]
+    watchers = [recorder, RoadRecorder(folder), Film(folder), Notes() if as_json else view]
     try:
         result = run_episode(setup, player, watchers)
     except KeyboardInterrupt:

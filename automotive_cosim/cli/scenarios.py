@@ -186,7 +186,7 @@ def render(
 
 @app.command("import")
 def import_scenario(
-    file: Annotated[Path, typer.Argument(help="OSM extract: .osm, .osm.gz, .osm.bz2 or .osm.pbf.")],
+    file: Annotated[Path, typer.Argument(help="OSM extract: .osm, .osm.gz, .osm.bz2, .osm.pbf or Overpass JSON.")],
     out: Annotated[Path | None, typer.Option(help="Folder to create; by default, the scenario's name.")] = None,
     name: Annotated[str, typer.Option(help="The scenario's name; by default, the file's.")] = "",
     country: Annotated[

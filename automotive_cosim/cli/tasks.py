@@ -6,7 +6,6 @@ import csv
 import io
 import json
 from collections import Counter
-from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -16,8 +15,7 @@ from automotive_cosim.cli.options import AsJson, TasksFrom, print_json, whole_nu
 from automotive_cosim.contracts.plain import counted
 
 if TYPE_CHECKING:
-    from automotive_cosim.tasking.parameters import Choices
-    from automotive_cosim.tasking.task import Half, Task
+    from automotive_cosim.tasking.task import Task
 
 PICTURES = (".webp", ".png", ".jpg")
 PICTURE_WIDTH = 640
@@ -103,6 +101,7 @@ def show(
     """Show what the driver says, when the task starts, and what is right."""
     from automotive_cosim.errors import UserError
     from automotive_cosim.tasking.catalogue import described
+    from automotive_cosim.tasking.words import choices_in_words, half_in_words
     from automotive_cosim.tasks import CATALOGUE
 
     if picture is not None and picture.suffix not in PICTURES:
@@ -112,7 +111,7 @@ def show(
     if picture is not None:
         _draw(entry, picture, seed)
     if as_json:
-        halves = {name: [line.split(maxsplit=1) for line in _half(entry.half(name))] for name in entry.halves}
+        halves = {name: list(half_in_words(entry.half(name))) for name in entry.halves}
         print_json(described(entry) | {"halves": halves})
         return
     steps = counted(entry.optimal_steps, "step")
@@ -120,15 +119,15 @@ def show(
     for words in entry.templates:
         typer.echo(f"  “{words}”")
     for name, choices in entry.parameters.items():
-        said = _choices(choices)
+        said = choices_in_words(choices)
         typer.echo(f"  {{{name}}}: {said}")
     typer.echo(f"skills      {', '.join(sorted(entry.skills)) or 'none'}")
     typer.echo(f"tags        {', '.join(sorted(entry.tags)) or 'none'}")
     typer.echo(f"scenarios   {', '.join(entry.runs_in)}")
     for name in entry.halves:
         typer.echo(f"\n{name} half")
-        for line in _half(entry.half(name)):
-            typer.echo(f"  {line}")
+        for label, said in half_in_words(entry.half(name)):
+            typer.echo(f"  {label:<9} {said}")
     if entry.difference:
         typer.echo(f"\ndifference: {entry.difference}")
     if picture is not None:
@@ -144,51 +143,6 @@ def _draw(task: Task, picture: Path, seed: int) -> None:
         drawn.save(picture, quality=85)
     except OSError as error:
         raise UserError(f"cannot write {picture}: {error.strerror}") from error
-
-
-def _choices(choices: Choices) -> str:
-    from automotive_cosim.tasking.parameters import FromCockpit
-
-    if isinstance(choices, FromCockpit):
-        return f"one of the cockpit's {choices.kind}"
-    return ", ".join(map(str, choices))
-
-
-def _half(half: Half) -> Iterable[str]:
-    start = half.start
-    yield f"where     {start.scenario}, trip {start.trip}" + (", parked" if start.parked else "")
-    if start.origin:
-        yield f"at        {start.origin[0]:g}, {start.origin[1]:g} (longitude, latitude)"
-    if start.start:
-        yield f"when      {start.start}"
-    yield f"trigger   {half.trigger.condition}, for {half.trigger.for_s:g} s"
-    yield f"goal      {half.goal}, then declare {half.declares}"
-    if half.may_write:
-        yield f"allowed   {', '.join(sorted(half.may_write))} may be commanded besides"
-    for number, way in enumerate((half.moves, *half.ways)):
-        yield f"solution  {'or ' if number else ''}{', '.join(map(_move, way)) or 'declare at once'}"
-    yield f"deadline  {half.deadline.seconds:g} s: {half.deadline.reason}"
-    yield f"basis     {half.basis}: {half.rule}" if half.rule else f"basis     {half.basis}"
-
-
-def _move(move: object) -> str:
-    from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil, TypeText, Warn
-
-    match move:
-        case Open(name):
-            return f"open {name}"
-        case Tap(resource_id, times, text):
-            return f"tap {resource_id or repr(text)}" + (f" x{times}" if times != 1 else "")
-        case TapUntil(resource_id, shown, text):
-            return f"tap {resource_id} until {shown} reads {text!r}"
-        case Slide(resource_id, value):
-            return f"slide {resource_id} to {value}"
-        case TypeText(resource_id, text):
-            return f"type {text!r} into {resource_id}"
-        case Warn(kind):
-            return f"alert {kind}"
-        case _:
-            return str(getattr(getattr(move, "action", move), "action_type", move))
 
 
 def _chosen(words: str) -> list[Task]:

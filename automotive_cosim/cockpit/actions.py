@@ -29,8 +29,10 @@ from automotive_cosim.contracts import (
     Reroute,
     Severity,
     SlowDown,
+    lon_lat,
 )
 from automotive_cosim.errors import ActionError, UnknownNameError
+from automotive_cosim.formats.words import shown
 
 if TYPE_CHECKING:
     from automotive_cosim.cockpit.cockpit import Cockpit
@@ -41,7 +43,10 @@ DISTANCE_LIMIT_PX = 8192
 """Longest drag, larger than any screen."""
 SECONDS_LIMIT = 10
 """Longest ``wait``."""
+LARGEST = 2**31 - 1
+"""A number beyond it counts no element and no pixel."""
 RANGES: Mapping[str, tuple[int, int]] = {
+    **dict.fromkeys(("index", "x", "y"), (-LARGEST, LARGEST)),
     "seconds": (1, SECONDS_LIMIT),
     "distance_px": (1, DISTANCE_LIMIT_PX),
     "speed_kmh": (0, 300),
@@ -179,7 +184,7 @@ def check(action: Action) -> Action:
     for field, (least, most) in RANGES.items():
         value = getattr(action, field)
         if value is not None and not least <= value <= most:
-            came = f"{value:g}" if isinstance(value, float) else value
+            came = f"{value:g}" if isinstance(value, float) else shown(value)
             raise ActionError(f"{name}: {field} is {came}; it goes from {least} to {most}")
     return action
 
@@ -237,12 +242,10 @@ def _value(name: str) -> Json:
 
 def position(text: str) -> tuple[float, float] | None:
     """Longitude and latitude in degrees from ``"LON,LAT"``; None if it is not a place on earth."""
-    parts = text.split(",")
     try:
-        lon_deg, lat_deg = map(float, parts)
+        return lon_lat(text)
     except ValueError:
         return None
-    return (lon_deg, lat_deg) if abs(lon_deg) <= 180 and abs(lat_deg) <= 90 else None
 
 
 def perform(action: Action, cockpit: Cockpit, elements: tuple[Element, ...]) -> Feedback:
@@ -289,7 +292,12 @@ def perform(action: Action, cockpit: Cockpit, elements: tuple[Element, ...]) -> 
             assert action.speed_kmh is not None
             return cockpit.ask_road(SlowDown(action.speed_kmh))
         case ActionType.REQUEST_REROUTE:
-            return cockpit.ask_road(Reroute(action.destination or ""))
+            destination = action.destination or ""
+            try:
+                lon_lat(destination)
+            except ValueError as error:
+                return Feedback(FeedbackCode.REFUSED, str(error))
+            return cockpit.ask_road(Reroute(destination))
         case ActionType.PULL_OVER:
             return cockpit.ask_road(PullOver())
         case ActionType.ESTIMATE_POSITION if position(action.text or "") is None:

@@ -11,6 +11,7 @@ kilometres per hour, ``_c`` degrees Celsius, ``_pct`` per cent. ``None`` means t
 
 driving      the car's state on the road, and what is around and ahead of it
 roads        the network as a map draws it
+snapshot     the road as a picture shows it, with every vehicle
 place        weather, position fix, connection, surroundings
 observation  what an agent sees
 action       what an agent does
@@ -42,7 +43,7 @@ from automotive_cosim.contracts.observation import (
     VehicleState,
 )
 from automotive_cosim.contracts.place import Connectivity, GpsFix, Surroundings, Weather
-from automotive_cosim.contracts.plain import KMH_PER_MPS, MPH_PER_MPS, Json, Tell
+from automotive_cosim.contracts.plain import KMH_PER_MPS, MPH_PER_MPS, Json, Tell, lon_lat
 from automotive_cosim.contracts.requests import (
     Alert,
     AlertKind,
@@ -56,6 +57,7 @@ from automotive_cosim.contracts.requests import (
     SlowDown,
 )
 from automotive_cosim.contracts.roads import Road, RoadNetwork
+from automotive_cosim.contracts.snapshot import LaneShape, RoadShapes, RoadSnapshot, SeenVehicle, SumoSignal
 
 __all__ = [
     "KMH_PER_MPS",
@@ -81,6 +83,7 @@ __all__ = [
     "Hazards",
     "IncidentKind",
     "Json",
+    "LaneShape",
     "LimitSource",
     "Observation",
     "OtherVehicle",
@@ -93,12 +96,17 @@ __all__ = [
     "RoadIncident",
     "RoadNetwork",
     "RoadRequest",
+    "RoadShapes",
+    "RoadSnapshot",
     "RouteOption",
+    "SeenVehicle",
     "Severity",
     "SlowDown",
+    "SumoSignal",
     "Surroundings",
     "Tell",
     "TrafficLight",
     "VehicleState",
     "Weather",
+    "lon_lat",
 ]

@@ -15,6 +15,21 @@ Tell = Callable[[str, float | None], None]
 """Told what is being done, and the share of it that is done (0 to 1), None where that is not known."""
 
 
+def lon_lat(text: str) -> tuple[float, float] | None:
+    """Longitude and latitude in degrees from ``"LON,LAT"``; None if it is something else.
+
+    Raises:
+        ValueError: they are two numbers, but no place on earth; the message says so.
+    """
+    try:
+        lon_deg, lat_deg = map(float, text.split(","))
+    except ValueError:
+        return None
+    if not (abs(lon_deg) <= 180 and abs(lat_deg) <= 90):
+        raise ValueError(f"{text[:80]!r} is no place on earth; give LON,LAT in degrees, such as 2.3522,48.8566")
+    return lon_deg, lat_deg
+
+
 def counted(number: int, noun: str, plural: str = "") -> str:
     """A number with its noun: ``1 step``, ``2,460 episodes``; ``plural`` is for nouns that add more than an "s"."""
     return f"{number:,} {noun if number == 1 else plural or noun + 's'}"

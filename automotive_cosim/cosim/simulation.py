@@ -6,6 +6,7 @@ advance:  road -> receiver and sky -> cockpit -> place and law, once every simul
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime
 
@@ -13,7 +14,7 @@ import numpy as np
 
 from automotive_cosim.cockpit import actions
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.contracts import Action, Element, Feedback
+from automotive_cosim.contracts import Action, Element, Feedback, RoadSnapshot
 from automotive_cosim.cosim.car import Car
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.geo.connectivity import Modem
@@ -34,6 +35,8 @@ class CoSimulation:
     traffic: SharedTraffic
     car: Car
     moment: Moment
+    onlooker: Callable[[RoadSnapshot], None] | None = None
+    """Is shown the road after each tick; copies have none. The traffic is not asked unless there is one."""
 
     @property
     def cockpit(self) -> Cockpit:
@@ -58,6 +61,8 @@ class CoSimulation:
         while left_s > 1e-9 and self.moment.driving.end is None:
             tick_s = min(TICK_S, left_s)
             drive = self.traffic.advance(tick_s)
+            if self.onlooker is not None:
+                self.onlooker(self.traffic.look())
             self.moment = self.car.sense(self.traffic, drive.states, drive.events, tick_s)
             moments.append(self.moment)
             left_s -= tick_s

@@ -28,7 +28,7 @@ from automotive_cosim.errors import CosimError, InfrastructureError, UnknownName
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.run.plan import choose, most_steps
 from automotive_cosim.scenarios import Scenario
-from automotive_cosim.service import EpisodeService, Turn
+from automotive_cosim.service import EpisodeService, EpisodeTurn
 from automotive_cosim.tasks import CATALOGUE
 
 INSTRUCTIONS = """\
@@ -154,7 +154,7 @@ def _channels(names: list[str] | None) -> frozenset[Channel]:
     return frozenset(map(Channel, names))
 
 
-def _turn(turn: Turn) -> CallToolResult:
+def _turn(turn: EpisodeTurn) -> CallToolResult:
     picture = turn.picture
     if picture is None:
         return _result(turn.as_json())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.contracts import RoadSnapshot
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.scenarios import Scenario
 
@@ -10,11 +11,17 @@ from automotive_cosim.scenarios import Scenario
 class Listener:
     """Ignores everything; override the methods of interest."""
 
+    looks = False
+    """Whether ``looked`` is to be called."""
+
     def loading(self, scenario: Scenario) -> None:
         """SUMO loads the scenario; its ``notes`` say what was assumed."""
 
     def warming(self, scenario: str, done_s: float, total_s: float) -> None:
         """The scenario's traffic is being warmed up, in simulated seconds."""
+
+    def looked(self, snapshot: RoadSnapshot) -> None:
+        """Every vehicle around the car, once a simulated second, before ``moved`` reports that second."""
 
     def moved(self, moment: Moment, cockpit: Cockpit) -> None:
         """Another simulated second has passed: of the drive to the hand-over, of a step, or of the aftermath."""

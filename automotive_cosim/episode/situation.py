@@ -22,6 +22,7 @@ from automotive_cosim.errors import TriggerNotReachedError, UserError
 from automotive_cosim.geo.forecast import drawn_weather
 from automotive_cosim.scenarios import Scenario, Trip, WeatherAt
 from automotive_cosim.scenery import open_scenario
+from automotive_cosim.tasking.binding import UnmetNeedError, bound, needs
 from automotive_cosim.tasking.instance import Instance, draw
 from automotive_cosim.tasking.task import STANDING_ORDER, Half, Mode, Task
 from automotive_cosim.tasks import CATALOGUE
@@ -90,6 +91,9 @@ class SituationFinder:
         )
         self._spec = spec
         self._is_elsewhere = bool(spec.from_place or spec.to_place) or self.scenario.name != start.scenario
+        self._has_own_law = not self._is_elsewhere and spec.origin in (None, start.origin)
+        self._missing = ""
+        """What the place lacked when the situation last arose."""
         self._simulations = simulations
         self._listener = listener or Listener()
 
@@ -121,8 +125,14 @@ class SituationFinder:
             f"task {self.task.id!r}: {trigger.condition} did not hold for {trigger.for_s:g} s within "
             f"{trigger.within_s:g} s of {len(waits_s)} departures on any of the trips "
             f"{', '.join(trip.name for trip in trips)} of scenario {self.scenario.name!r} (traffic seed "
-            f"{seeds.traffic}); try another seed, trip or scenario"
+            f"{seeds.traffic}){self._lacking()}; try another seed, trip or scenario"
         )
+
+    def _lacking(self) -> str:
+        if not self._missing:
+            return ""
+        needed = ", ".join(needs(self.task.half(self._spec.half)))
+        return f" where it has what the task needs ({needed}): {self._missing}"
 
     def _draw(self, seeds: Seeds, content: Mapping[str, tuple[str, ...]] | None = None) -> Instance:
         rng = np.random.default_rng([seeds.instance, 0])
@@ -163,7 +173,7 @@ class SituationFinder:
             arrivals=(*start.arrivals, *lures),
             sign_camera=start.sign_camera,
         )
-        return couple(
+        world = couple(
             traffic,
             cockpit,
             self.scenario,
@@ -172,6 +182,9 @@ class SituationFinder:
             departure=plan.start or self.scenario.start,
             links=self.scenario.connectivity,
         )
+        if self._listener.looks:
+            world.onlooker = self._listener.looked
+        return world
 
     def _drive_up(self, world: CoSimulation, half: Half) -> _Drive | None:
         """The drive up to the trigger; None if that does not hold within its time limit."""
@@ -179,21 +192,33 @@ class SituationFinder:
         moments = [world.moment]
         departed_s, since_s = world.moment.time_s, None
         while (now := world.moment).time_s - departed_s < trigger.within_s and now.driving.end is None:
-            holds = _motion(now) in half.start.motions and trigger.condition(now)
+            holds = _motion(now) in half.start.motions and trigger.condition(now) and self._rests(half, now)
             since_s = (now.time_s if since_s is None else since_s) if holds else None
             if since_s is not None and now.time_s - since_s >= trigger.for_s:
                 return _Drive(world, tuple(moments))
             moments += self._advanced(world)
         return None
 
+    def _rests(self, half: Half, moment: Moment) -> bool:
+        """Whether a sign or law is in force here on which the half can rest."""
+        if self._has_own_law:
+            return True
+        try:
+            bound(half, moment.context)
+        except UnmetNeedError as missing:
+            self._missing = str(missing)
+            return False
+        return True
+
     def _handed_over(
         self, seeds: Seeds, simulation: Simulation, half: Half, plan: EgoPlan, drive: _Drive
     ) -> HandOver:
         trigger_s = drive.moments[-1].time_s
+        rule = "" if self._has_own_law else bound(half, drive.moments[-1].context)
         if self._spec.mode is Mode.MONITORING:
             drive.world.close()
             drive = self._watch(simulation, half, plan, drive)
-        instance = self._draw(seeds, drive.world.cockpit.content)
+        instance = replace(self._draw(seeds, drive.world.cockpit.content), rule=rule)
         if self._spec.mode is Mode.MONITORING:
             after_s = trigger_s - drive.world.moment.time_s
             instance = replace(instance, goal=STANDING_ORDER, trigger_after_s=after_s)

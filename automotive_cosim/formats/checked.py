@@ -27,6 +27,9 @@ Steps = tuple[str | int, ...]
 Locator = Callable[[Steps], tuple[str, str]]
 """Gives the place of a value, such as ``"plan.toml line 12 [limits]"``, and its name there."""
 
+LARGEST = 1e10
+"""No quantity in a file, in any of our units, is beyond it either way; a computation with such a number could end
+in infinities."""
 MOST_PROBLEMS = 8
 """Told at once."""
 MOST_COMPLAINTS = 200
@@ -58,7 +61,25 @@ def checked(kind: type[T], values: object, place: Locator, error: type[UserError
     except (RecursionError, TypeError, ValueError) as broken:
         why = "it is nested too deeply" if isinstance(broken, RecursionError) else str(broken)
         raise error(f"{place(())[0]} cannot be read: {why}") from broken
+    if far := [steps for steps, number in _numbers(values) if abs(number) > LARGEST]:
+        told = [f"{where}: {name} is beyond {LARGEST:g}" for where, name in map(place, far[:MOST_PROBLEMS])]
+        raise error(*dict.fromkeys(told))
     return made
+
+
+def _numbers(values: object, steps: Steps = ()) -> Iterator[tuple[Steps, float]]:
+    """Every number, with the path to it."""
+    match values:
+        case bool():
+            pass
+        case int() | float():
+            yield steps, values
+        case Mapping():
+            for key, value in values.items():
+                yield from _numbers(value, (*steps, str(key)))
+        case list() | tuple():
+            for index, value in enumerate(values):
+                yield from _numbers(value, (*steps, index))
 
 
 def as_json(values: object) -> str:

@@ -5,10 +5,12 @@ from __future__ import annotations
 import bz2
 import gzip
 import io
+import json
+import lzma
 import stat
 import zlib
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 from automotive_cosim.errors import UserError
 
@@ -42,6 +44,29 @@ def read_text(path: Path, error: type[UserError] = UserError) -> str:
     return text.replace("\r\n", "\n")
 
 
+def read_json(path: Path) -> Any:
+    """What a JSON file holds, also packed.
+
+    Raises:
+        OSError: it cannot be read.
+        ValueError: it is not JSON.
+    """
+    with opened(path) as file:
+        return parse_json(file.read())
+
+
+def parse_json(text: str | bytes) -> Any:
+    """What a text of JSON holds.
+
+    Raises:
+        ValueError: it is not JSON, or nested deeper than Python reads.
+    """
+    try:
+        return json.loads(text)
+    except RecursionError as error:
+        raise ValueError("it is nested too deeply") from error
+
+
 def is_file(path: Path) -> bool:
     """Whether there is a regular file of that name, which may be any text."""
     try:
@@ -51,7 +76,7 @@ def is_file(path: Path) -> bool:
 
 
 def opened(path: Path) -> IO[bytes]:
-    """The bytes of a file, unpacked if they are gzip's or bzip2's, whatever it is called.
+    """The bytes of a file, unpacked if they are gzip's, bzip2's or xz's, whatever it is called.
 
     Raises:
         OSError: it cannot be opened or is no regular file. Reading raises it too, where an archive is damaged or
@@ -61,12 +86,14 @@ def opened(path: Path) -> IO[bytes]:
     try:
         if not stat.S_ISREG(path.stat().st_mode):
             raise OSError(f"{path} is no regular file")
-        head = file.read(3)
+        head = file.read(6)
         file.seek(0)
         if head.startswith(b"\x1f\x8b"):
             return io.BufferedReader(_Unpacked(gzip.GzipFile(fileobj=file), path, file), CHUNK_BYTES)
-        if head == b"BZh":
+        if head.startswith(b"BZh"):
             return io.BufferedReader(_Unpacked(bz2.BZ2File(file), path, file), CHUNK_BYTES)
+        if head == b"\xfd7zXZ\x00":
+            return io.BufferedReader(_Unpacked(lzma.LZMAFile(file), path, file), CHUNK_BYTES)
     except BaseException:
         file.close()
         raise
@@ -76,7 +103,7 @@ def opened(path: Path) -> IO[bytes]:
 class _Unpacked(io.RawIOBase):
     """An archive's content, up to a size."""
 
-    def __init__(self, content: gzip.GzipFile | bz2.BZ2File, path: Path, packed: IO[bytes]) -> None:
+    def __init__(self, content: gzip.GzipFile | bz2.BZ2File | lzma.LZMAFile, path: Path, packed: IO[bytes]) -> None:
         self._content = content
         self._path = path
         self._packed = packed
@@ -90,7 +117,7 @@ class _Unpacked(io.RawIOBase):
     def readinto(self, buffer: bytearray | memoryview) -> int:  # type: ignore[override]
         try:
             data = self._content.read(len(buffer))
-        except (EOFError, zlib.error) as error:
+        except (EOFError, zlib.error, lzma.LZMAError) as error:
             raise OSError(f"the archive is damaged: {error}") from error
         self._size += len(data)
         if self._size > self._limit:

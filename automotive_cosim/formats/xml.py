@@ -15,13 +15,13 @@ from automotive_cosim.formats.files import opened
 
 ENCODINGS = frozenset(("utf-8", "us-ascii", "ascii", "iso-8859-1", "latin1", "utf-16"))
 
-Start = Callable[[str, dict[str, str], int], None]
+OnStart = Callable[[str, dict[str, str], int], None]
 """Takes an element's name, its attributes and its line."""
 
 
 def scan(
     path: Path,
-    start: Start,
+    start: OnStart,
     end: Callable[[str], None] | None = None,
     text: Callable[[str, int], None] | None = None,
     *,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 
 from automotive_cosim.contracts import (
@@ -26,6 +26,10 @@ STREETS = ("residential", "living_street", "pedestrian")
 
 MAYBE_DUAL = ("trunk", "trunk_link", "primary", "secondary")
 """Roads that may have a central reservation if they have two lanes or more in one direction."""
+
+OWN_LAW = frozenset(("living_street", "pedestrian"))
+"""Road classes with a limit of their own in most laws. A rule about built-up areas in general says nothing certain
+about them: only one that names the class does."""
 
 MAYBE_EXPRESSWAY = ("trunk", "trunk_link", "")
 """Roads that may be closed to slow traffic; the network does not say which."""
@@ -104,21 +108,36 @@ def _applied(rule: Rule, jurisdiction: str, situation: Situation) -> AppliedRule
 def limits(place: Place, situation: Situation) -> Iterator[AppliedRule]:
     """The limits that this road may have, without those that an earlier one rules out.
 
-    A limit that lowers signs is ruled out by its own layer only: fog also slows a street with a city's limit.
+    A limit that lowers signs is ruled out by its own layer only: fog also slows a street with a city's limit. On a
+    road of ``OWN_LAW``, rules about its class come before all others, even those of a city; without one, no limit
+    is certain.
     """
+    own = situation.road_class in OWN_LAW
+    named = own and any(
+        _names(rule, situation.road_class) and rule.may_apply(situation) is not False
+        for layer in place.layers
+        for rule in layer.by_topic.get("limit", ())
+    )
     doubts: list[frozenset[Test]] = []
     for layer in place.layers:
         for rule in layer.by_topic.get("limit", ()):
-            if rule.may_apply(situation) is False:
+            about_it = _names(rule, situation.road_class)
+            if rule.may_apply(situation) is False or (named and rule.fixed and not about_it):
                 continue
             doubt = frozenset(test for test in rule.tests if test.fixed and test.holds(situation) is None)
             ruled_out = any(earlier <= doubt for earlier in doubts)
             if not ruled_out or rule.caps:
-                yield _applied(rule, layer.code, situation)
+                found = _applied(rule, layer.code, situation)
+                yield replace(found, certain=False) if own and rule.fixed and not about_it else found
             if rule.fixed:
                 doubts.append(doubt)
                 if not doubt:
                     break
+
+
+def _names(rule: Rule, road_class: str) -> bool:
+    """Whether a rule is about a road class by name."""
+    return any(test.word == "road_classes" and road_class in test.argument for test in rule.tests)
 
 
 def other_rules(place: Place, situation: Situation) -> Iterator[AppliedRule]:

@@ -16,7 +16,7 @@ from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, GpsFix, LimitS
 from automotive_cosim.geo.applied import AppliedRule, built_up, limits, other_rules, situation_at
 from automotive_cosim.geo.climate import ClimateNorm, climate_norm
 from automotive_cosim.geo.place import NOWHERE, Atlas, Place
-from automotive_cosim.geo.rules import TOPICS, Rule
+from automotive_cosim.geo.rules import TOPICS, Rule, Value
 from automotive_cosim.geo.situation import Situation
 from automotive_cosim.geo.sun import Sun, sun_at
 from automotive_cosim.geo.text import BUDGET_TOKENS, KM_PER_MILE, Line, amount_of_speed, position, within_budget
@@ -145,6 +145,11 @@ class GeoContext:
     @cached_property
     def _limits(self) -> tuple[AppliedRule, ...]:
         return tuple(limits(self.place, self._situation))
+
+
+def answer(rule: Rule, context: GeoContext) -> Value | None:
+    """What a rule of any place says to the situation here and now; None if it does not apply."""
+    return rule.answer(context._situation)[0]
 
 
 # --- in words ---------------------------------------------------------------------------------------------

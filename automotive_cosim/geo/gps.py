@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from automotive_cosim.contracts import DrivingState, GpsFix
-from automotive_cosim.geo.place import METRES_PER_DEGREE, metres_per_degree_east
+from automotive_cosim.geo.earth import METRES_PER_DEGREE, metres_per_degree_east
 
 OPEN_SKY_SIGMA_M = 2.0
 """Error per axis: 95 % of positions within 4.9 m, the radius GPS.gov gives for phones under open sky (van Diggelen

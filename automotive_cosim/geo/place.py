@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -14,14 +13,9 @@ import shapely
 import tzfpy
 
 from automotive_cosim.errors import GeoDataError, UserError
+from automotive_cosim.geo.borders import countries_near, country_of_zone, is_near
 from automotive_cosim.geo.rulefile import read_jurisdiction
 from automotive_cosim.geo.rules import Jurisdiction
-
-NEAR_BORDER_M = 2000.0
-"""Within this distance of another country or region, position or coarse polygons may be wrong; our choice."""
-
-METRES_PER_DEGREE = 111_320.0
-"""Metres per degree of latitude, and of longitude at the equator."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +80,7 @@ class Atlas:
         check_position(lon_deg, lat_deg)
         lon_deg = (lon_deg + 180.0) % 360.0 - 180.0
         zone = tzfpy.get_tz(lon_deg, lat_deg)
-        country = _country_of_zone().get(zone, "")
+        country = country_of_zone().get(zone, "")
         layers = tuple(self._layers(country, lon_deg, lat_deg))
         inner = {layer.kind: layer.name for layer in layers}
         return Place(
@@ -129,14 +123,13 @@ class Atlas:
     def _neighbours(
         self, lon_deg: float, lat_deg: float, country: str, layers: tuple[Jurisdiction, ...]
     ) -> tuple[str, ...]:
-        own = {country} | {layer.code for layer in layers}
-        found: set[str] = set()
-        for lon, lat in _ring(lon_deg, lat_deg):
-            there = _country_of_zone().get(tzfpy.get_tz(lon, lat), "")
-            found.add(there)
-            if there == country:
-                found |= {layer.code for layer in self._layers(there, lon, lat) if layer.kind == "region"}
-        return tuple(sorted(found - own - {""}))
+        own = {country, "", *(layer.code for layer in layers)}
+        regions = {
+            entry.code
+            for entry in self.country(country)
+            if entry.kind == "region" and entry.area is not None and is_near(entry.area, lon_deg, lat_deg)
+        }
+        return tuple(sorted((countries_near(lon_deg, lat_deg) | regions) - own))
 
 
 @cache
@@ -155,27 +148,6 @@ def check_position(lon_deg: float, lat_deg: float) -> None:
         raise UserError(f"latitude {lat_deg:g} is not on earth; give -90 (south) to 90 (north)")
     if not -180.0 <= lon_deg <= 180.0:
         raise UserError(f"longitude {lon_deg:g} is not on earth; give -180 (west) to 180 (east)")
-
-
-def metres_per_degree_east(lat_deg: float) -> float:
-    """Metres per degree of longitude at a latitude; never quite zero, so division works at the poles."""
-    return METRES_PER_DEGREE * max(math.cos(math.radians(lat_deg)), 1e-3)
-
-
-def _ring(lon_deg: float, lat_deg: float) -> Iterator[tuple[float, float]]:
-    """Eight points on a circle of two kilometres around a position."""
-    north = NEAR_BORDER_M / METRES_PER_DEGREE
-    east = NEAR_BORDER_M / metres_per_degree_east(lat_deg)
-    for index in range(8):
-        angle = index * math.pi / 4
-        lon = (lon_deg + east * math.sin(angle) + 180.0) % 360.0 - 180.0
-        yield lon, max(-90.0, min(90.0, lat_deg + north * math.cos(angle)))
-
-
-@cache
-def _country_of_zone() -> dict[str, str]:
-    """Time zone -> ISO country code, from the time zone database's ``zone.tab``."""
-    return {zone: country for country, _, zone, *_ in _table("zone.tab")}
 
 
 @cache

@@ -12,7 +12,7 @@ from pyproj import Transformer
 from shapely import LineString, Point, STRtree
 
 from automotive_cosim.contracts import DrivingState, GpsFix, RoadNetwork
-from automotive_cosim.geo.place import METRES_PER_DEGREE, metres_per_degree_east
+from automotive_cosim.geo.earth import METRES_PER_DEGREE, metres_per_degree_east
 
 DRIFT = 0.05
 """Error without a map, as a share of the distance driven; our choice."""

@@ -19,17 +19,17 @@ Action (``Dict``): see ``action_space``; every sample is well formed.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from copy import copy
 from dataclasses import fields
 from functools import cache, lru_cache
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 from gymnasium import spaces
 
-from automotive_cosim.cockpit.actions import FIELDS, SECONDS_LIMIT, TEXT_LIMIT
+from automotive_cosim.cockpit.actions import FIELDS, SECONDS_LIMIT, TEXT_LIMIT, check
 from automotive_cosim.contracts import (
     Action,
     ActionType,
@@ -47,7 +47,10 @@ from automotive_cosim.contracts import (
     Severity,
     VehicleState,
 )
+from automotive_cosim.errors import ActionError
 from automotive_cosim.interface.observe import Channel
+
+T = TypeVar("T")
 
 GOAL_BYTES, FEEDBACK_BYTES, CONTEXT_BYTES = 512, 1024, 8192
 MAX_ELEMENTS, ELEMENT_TEXT_BYTES, RESOURCE_ID_BYTES = 128, 128, 64
@@ -158,8 +161,21 @@ def action_space(width: int, height: int) -> spaces.Dict:
 
 
 def decode_action(value: Mapping[str, Any]) -> Action:
-    """An action of the space as a typed one. ``speed`` counts in steps of 5 km/h, 0 for none in an alert."""
-    kind = tuple(ActionType)[int(value["action_type"])]
+    """An action of the space as a typed one. ``speed`` counts in steps of 5 km/h, 0 for none in an alert.
+
+    Raises:
+        ActionError: it is not one of the space.
+    """
+    try:
+        return check(_decoded(value))
+    except KeyError as error:
+        raise ActionError(f"the action lacks {error}; it has {', '.join(action_space(1, 1))}") from error
+    except (TypeError, ValueError, OverflowError) as error:
+        raise ActionError(f"the action is not one of the action space: {error}") from error
+
+
+def _decoded(value: Mapping[str, Any]) -> Action:
+    kind = _member(ActionType, value, "action_type")
     takes = FIELDS[kind]
     speed_kmh = float(int(value["speed"]) * SPEED_STEP_KMH)
     by_index = int(value["target"]) == 0
@@ -168,14 +184,14 @@ def decode_action(value: Mapping[str, Any]) -> Action:
         "index": index if by_index else None,
         "text": str(value["text"]),
         "clear_text": bool(value["clear_text"]),
-        "direction": tuple(Direction)[int(value["direction"])],
+        "direction": _member(Direction, value, "direction"),
         "distance_px": None,
-        "app_name": APPS[int(value["app"])],
+        "app_name": _member(APPS, value, "app"),
         "seconds": int(value["seconds"]),
-        "goal_status": tuple(GoalStatus)[int(value["goal_status"])],
-        "reason": tuple(Reason)[int(value["reason"])],
-        "kind": tuple(AlertKind)[int(value["alert_kind"])],
-        "severity": tuple(Severity)[int(value["severity"])],
+        "goal_status": _member(GoalStatus, value, "goal_status"),
+        "reason": _member(Reason, value, "reason"),
+        "kind": _member(AlertKind, value, "alert_kind"),
+        "severity": _member(Severity, value, "severity"),
         "speed_kmh": (speed_kmh or None) if kind is ActionType.SHOW_ALERT else speed_kmh,
         "on": bool(value["on"]),
         "destination": str(value["text"]),
@@ -183,6 +199,13 @@ def decode_action(value: Mapping[str, Any]) -> Action:
     target = ({"index": index} if by_index else {"x": x, "y": y}) if takes.target else {}
     taken = {name: offered[name] for name in takes.required + takes.optional}
     return Action(kind, **(target | taken))  # type: ignore[arg-type]
+
+
+def _member(of: Iterable[T], value: Mapping[str, Any], name: str) -> T:
+    members, index = tuple(of), int(value[name])
+    if not 0 <= index < len(members):
+        raise ActionError(f"the action's {name} is {index}; it goes from 0 to {len(members) - 1}")
+    return members[index]
 
 
 def encode(observation: Observation, channels: frozenset[Channel]) -> dict[str, Any]:

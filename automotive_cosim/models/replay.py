@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections import deque
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import ModelError, UserError
+from automotive_cosim.formats.files import parse_json
 from automotive_cosim.models.base import ChatMessage, ModelReply, digest
 
 
@@ -40,7 +40,7 @@ class Replay:
             stages = list(_stages(path))
             answers = [(stage["asked"], ModelReply(**stage["reply"])) for stage in stages if stage["reply"]]
             sees_pictures = any(stage["pictures"] for stage in stages)
-        except (OSError, ValueError, KeyError, TypeError) as error:
+        except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
             raise UserError(
                 f"cannot read a model's answers in {path}: {error}; give an episode's folder"
             ) from error
@@ -69,4 +69,4 @@ class Replay:
 def _stages(path: Path) -> Iterator[Json]:
     with path.open(encoding="utf-8") as lines:
         for line in lines:
-            yield from json.loads(line)["stages"]
+            yield from parse_json(line)["stages"]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from automotive_cosim.contracts import KMH_PER_MPS, LimitSource
 from automotive_cosim.osm.limits import kmh_of
-from automotive_cosim.osm.roads import Road, way_of
+from automotive_cosim.osm.roads import MappedRoad, way_of
 from automotive_cosim.traffic.network import Edge
 
 ROUNDING_KMH = 0.05
@@ -34,7 +34,7 @@ class Difference:
         return f"way {self.way}: {self.what} {mapped} is {built} on edge {self.edge_id}"
 
 
-def differences(edges: Iterable[Edge], roads: Mapping[int, Road]) -> Iterator[Difference]:
+def differences(edges: Iterable[Edge], roads: Mapping[int, MappedRoad]) -> Iterator[Difference]:
     """Every property of every edge that differs from its way's tags. Fewer lanes for cars than the way has are no
     difference: the others are closed to them."""
     for edge in edges:
@@ -57,7 +57,7 @@ def differences(edges: Iterable[Edge], roads: Mapping[int, Road]) -> Iterator[Di
             yield Difference(way, edge.edge_id, "lanes", str(lanes), str(len(edge.lane_ids)))
 
 
-def _mapped_limit(road: Road, edge_id: str) -> tuple[float, LimitSource]:
+def _mapped_limit(road: MappedRoad, edge_id: str) -> tuple[float, LimitSource]:
     source = LimitSource.ASSUMED if road.stated.of(edge_id) is None else LimitSource.POSTED
     return kmh_of(road.limit(edge_id)), source
 

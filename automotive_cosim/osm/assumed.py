@@ -36,8 +36,6 @@ def assumed_sign(tags: Mapping[str, str], atlas: Atlas, place: Place, *, built_u
     there = place if zone is None or zone.place == place.country else _named(zone, atlas, place)
     situation = _situation(tags, zone.name if zone else "", built_up=built_up)
     found = [applied for applied in limits(there, situation) if applied.rule.fixed]
-    if situation.road_class == "living_street":
-        found = [one for one in found if any(test.word == "road_classes" for test in one.rule.tests)]
     if len(found) == 1 and found[0].certain:
         value, unit = found[0].value, found[0].rule.unit
         if value == "none":

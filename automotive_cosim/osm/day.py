@@ -15,14 +15,14 @@ from zoneinfo import ZoneInfo
 from automotive_cosim.contracts import Tell
 from automotive_cosim.errors import CountsError, ScenarioError, UnknownNameError
 from automotive_cosim.formats.checked import checked
-from automotive_cosim.formats.files import opened
+from automotive_cosim.formats.files import opened, read_json
 from automotive_cosim.formats.toml import dotted
 from automotive_cosim.osm import folder
 from automotive_cosim.osm.counts import read_counts
 from automotive_cosim.osm.demand import fastest_ways, write
 from automotive_cosim.osm.fit import HOUR_S, WARM_UP_S, WHOLE_DAY, Hour, fit, make_demand
 from automotive_cosim.scenarios import Scenario, Sumo, load
-from automotive_cosim.traffic.network import Edge, Network, read_network
+from automotive_cosim.traffic.network import Edge, Network, quantity, read_network
 from automotive_cosim.traffic.options import Configuration, read_configuration
 
 STEP_S = 1.0
@@ -101,8 +101,8 @@ def read_day(scenario_folder: Path) -> Day:
     """
     path = scenario_folder / DAY_FILE
     try:
-        table = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError) as error:
+        table = read_json(path)
+    except (OSError, ValueError) as error:
         raise ScenarioError(f"{path} is not what `automotive-cosim scenarios day` writes: {error}") from error
     return checked(Day, table, lambda steps: (f"{path} of `scenarios day`", dotted(steps)), ScenarioError)
 
@@ -191,7 +191,7 @@ def _read_trips(configuration: Configuration, network: Network) -> list[tuple[fl
         with opened(file) as stream:
             found = [
                 (
-                    float(trip.get("depart", "")),
+                    quantity(trip.get("depart", "")),
                     network.edges[trip.get("from", "")],
                     network.edges[trip.get("to", "")],
                 )

@@ -6,6 +6,7 @@ ways (paths, buildings, railways) are removed, because each path that meets a ro
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from importlib import import_module
@@ -13,7 +14,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from automotive_cosim.errors import ImportMapError, SetupError
+from automotive_cosim.formats.xml import scan
 from automotive_cosim.osm.area import Area
+from automotive_cosim.osm.overpass_json import OverpassJson, is_json
 from automotive_cosim.traffic.sumo_programs import INSTALL
 
 LINKED = ("motorway", "trunk", "primary", "secondary", "tertiary")
@@ -29,6 +32,9 @@ ACCESS_KEYS = ("motorcar", "motor_vehicle", "vehicle", "access")
 
 BARRED = frozenset(("no", "private", "agricultural", "forestry", "military", "emergency", "psv", "bus", "delivery"))
 """Values that exclude an ordinary car."""
+
+POSITION = re.compile(r"-?\d{1,3}(\.\d*)?([eE]-?\d{1,2})?")
+"""A latitude or longitude as OpenStreetMap writes it."""
 
 
 class Position(NamedTuple):
@@ -120,19 +126,14 @@ class Extract:
 
 
 def read(source: Path) -> Extract:
-    """Reads the roads of an extract: OSM XML, plain, gzip or bzip2, or PBF, detected by content, not by name.
+    """Reads the roads of an extract: OSM XML, plain, gzip or bzip2, PBF, or JSON of an Overpass server, detected by
+    content, not by name.
 
     Raises:
         ImportMapError: the file is missing, empty, truncated, not OSM data, or without roads.
         SetupError: the osmium package is not installed.
     """
-    file = _open(source)
-    try:
-        ways, restrictions = _read_ways(file)
-        nodes = _read_nodes(file, {ref for way in ways for ref in way.nodes})
-        cameras = _read_cameras(file)
-    except RuntimeError as error:
-        raise ImportMapError(_explain(source, str(error))) from error
+    ways, restrictions, nodes, cameras = _read_json(source) if is_json(_head(source)) else _read_osm(source)
     complete = tuple(piece for way in ways for piece in _known_pieces(way, nodes))
     if not complete:
         raise ImportMapError(
@@ -142,6 +143,38 @@ def read(source: Path) -> Extract:
     return Extract(complete, nodes, restrictions, cameras)
 
 
+_Read = tuple[list[OsmWay], tuple[TurnRestriction, ...], dict[int, Node], tuple[Position, ...]]
+"""Ways open to cars, turn restrictions, the nodes of those ways, and speed cameras."""
+
+
+def _read_osm(source: Path) -> _Read:
+    kind = _format(source, _head(source))
+    if kind != "pbf":
+        _check_positions(source)
+    file = _osmium().io.File(str(source), kind)
+    try:
+        ways, restrictions = _read_ways(file)
+        nodes = _read_nodes(file, {ref for way in ways for ref in way.nodes})
+        return ways, restrictions, nodes, _read_cameras(file)
+    except (RuntimeError, ValueError, ArithmeticError, MemoryError) as error:
+        raise ImportMapError(_explain(source, str(error))) from error
+
+
+def _read_json(source: Path) -> _Read:
+    read = OverpassJson(source)
+    ways = [OsmWay(way_id, tags, nodes) for way_id, tags, nodes in read.ways() if _is_road(tags)]
+    turns = tuple(TurnRestriction(*relation) for relation in read.relations() if "restriction" in relation[1])
+    wanted = {ref for way in ways for ref in way.nodes}
+    nodes: dict[int, Node] = {}
+    cameras: list[Position] = []
+    for node_id, tags, place in read.nodes():
+        if node_id in wanted:
+            nodes[node_id] = Node(Position(*place), tags)
+        if tags.get("highway") == "speed_camera":
+            cameras.append(Position(*place))
+    return ways, turns, dict(sorted(nodes.items())), tuple(cameras)
+
+
 def _osmium() -> Any:
     try:
         return import_module("osmium")
@@ -149,13 +182,32 @@ def _osmium() -> Any:
         raise SetupError(f"importing maps requires the osmium package: {INSTALL}") from error
 
 
-def _open(source: Path) -> Any:
+def _head(source: Path) -> bytes:
     try:
         with source.open("rb") as stream:
-            head = stream.read(64)
+            return stream.read(4096)
     except OSError as error:
         raise ImportMapError(f"{source}: {error.strerror}; give the path of an OSM extract") from error
-    return _osmium().io.File(str(source), _format(source, head))
+
+
+class _UnreadableError(ImportMapError):
+    """XML that osmium's own words describe better."""
+
+
+def _check_positions(source: Path) -> None:
+    """Refuses positions that libosmium would misread (1e300 becomes 0), and an archive of more than is read."""
+
+    def start(name: str, attributes: dict[str, str], line: int) -> None:
+        for key, most in (("lat", 90), ("lon", 180)) if name == "node" else ():
+            text = attributes.get(key, "0")
+            if not POSITION.fullmatch(text) or abs(float(text)) > most:
+                raise ImportMapError(f"{source} line {line}: {key} is {text[:40]!r}; it is from {-most} to {most}")
+
+    try:
+        scan(source, start, error=_UnreadableError)
+    except _UnreadableError as error:
+        if isinstance(error.__cause__, OSError):
+            raise ImportMapError(f"{source} is truncated or damaged ({error.__cause__})") from error
 
 
 def _format(source: Path, head: bytes) -> str:
@@ -170,7 +222,7 @@ def _format(source: Path, head: bytes) -> str:
     if head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<"):
         return "osm"
     kind = "a zip archive; unpack it and" if head.startswith(b"PK\x03\x04") else "not OSM data;"
-    raise ImportMapError(f"{source} is {kind} give OSM XML (plain, .gz or .bz2) or .osm.pbf")
+    raise ImportMapError(f"{source} is {kind} give OSM XML (plain, .gz or .bz2), .osm.pbf or Overpass JSON")
 
 
 def _explain(source: Path, error: str) -> str:
@@ -191,12 +243,16 @@ def _read_ways(file: Any) -> tuple[list[OsmWay], tuple[TurnRestriction, ...]]:
     for item in osmium.FileProcessor(file, osmium.osm.WAY | osmium.osm.RELATION).with_filter(wanted):
         tags = {tag.k: tag.v for tag in item.tags}
         if item.is_way():
-            if tags.get("highway") in ROAD_CLASSES and tags.get("area") != "yes" and _cars_may(tags):
+            if _is_road(tags):
                 ways.append(OsmWay(item.id, tags, tuple(node.ref for node in item.nodes)))
         elif "restriction" in tags:
             members = tuple((member.type, member.ref, member.role) for member in item.members)
             restrictions.append(TurnRestriction(item.id, tags, members))
     return ways, tuple(restrictions)
+
+
+def _is_road(tags: Mapping[str, str]) -> bool:
+    return tags.get("highway") in ROAD_CLASSES and tags.get("area") != "yes" and _cars_may(tags)
 
 
 def _cars_may(tags: Mapping[str, str]) -> bool:

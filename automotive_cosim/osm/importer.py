@@ -61,7 +61,7 @@ class ImportOptions:
 
 def scenario_name(source: Path) -> str:
     """A scenario's name from its extract's file name: lower case, without suffixes."""
-    return trips.slug(re.sub(r"(\.(osm|pbf|xml|gz|bz2))+$", "", source.name)).replace("-", "_") or "map"
+    return trips.slug(re.sub(r"(\.(osm|pbf|xml|json|gz|bz2))+$", "", source.name)).replace("-", "_") or "map"
 
 
 def import_map(
@@ -72,7 +72,7 @@ def import_map(
     The same extract, options and SUMO give the same files.
 
     Args:
-        source: ``.osm``, ``.osm.gz``, ``.osm.bz2`` or ``.osm.pbf``, whatever it is called.
+        source: ``.osm``, ``.osm.gz``, ``.osm.bz2``, ``.osm.pbf`` or Overpass JSON, whatever it is called.
         out: the folder to create, completely or not at all.
         options: the user's options.
         on_progress: called with the current activity.

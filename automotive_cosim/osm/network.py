@@ -15,7 +15,8 @@ import shapely
 from automotive_cosim.errors import ImportMapError
 from automotive_cosim.osm.country import LEFT_HAND
 from automotive_cosim.osm.extract import Extract, Position
-from automotive_cosim.osm.roads import Road, way_of
+from automotive_cosim.osm.repair import open_traps
+from automotive_cosim.osm.roads import MappedRoad, way_of
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.network import Edge, Network, read_network
 from automotive_cosim.traffic.sumo_programs import first_error, home, run
@@ -55,6 +56,8 @@ class Built:
     network: Network
     signals: int
     roundabouts: int
+    opened: tuple[str, ...] = ()
+    """Edges with a lane that was opened to cars, so that none is trapped beside it."""
 
     @property
     def edges(self) -> tuple[Edge, ...]:
@@ -83,11 +86,11 @@ def _neighbours(pairs: Iterable[tuple[str, str]]) -> dict[str, set[str]]:
     return found
 
 
-def convert(extract: Extract, roads: Mapping[int, Road], target: Path, country: str, scratch: Path) -> Built:
+def convert(extract: Extract, roads: Mapping[int, MappedRoad], target: Path, country: str, scratch: Path) -> Built:
     """Builds ``target`` (a ``.net.xml.gz``) with netconvert and reads it back.
 
     The same input gives the same bytes: netconvert's header with its date and paths is removed. Each edge gets the
-    parameters of its road (``Road.parameters``), and the positions of its speed cameras.
+    parameters of its road (``MappedRoad.parameters``), and the positions of its speed cameras.
 
     Args:
         extract: the map.
@@ -124,6 +127,7 @@ def convert(extract: Extract, roads: Mapping[int, Road], target: Path, country: 
         )
     text = re.sub(r"<!-- generated on .*?-->\s*", "", text, count=1, flags=re.DOTALL)
     text = _ESCAPED_TWICE.sub(r"&\1;", text)
+    text, opened = open_traps(text)
     text = _with_parameters(text, lambda edge_id: roads[way_of(edge_id)].parameters(edge_id))
     signals, roundabouts = text.count("<tlLogic "), text.count("<roundabout ")
     _write(text, target)
@@ -132,11 +136,11 @@ def convert(extract: Extract, roads: Mapping[int, Road], target: Path, country: 
     if watched:
         _write(_with_parameters(text, lambda edge_id: _cameras(watched.get(edge_id, ()))), target)
         network = read_network(target)
-    return Built(network, signals, roundabouts)
+    return Built(network, signals, roundabouts, opened)
 
 
-def write_osm(extract: Extract, roads: Mapping[int, Road], target: Path) -> None:
-    """Writes the roads as OSM XML for netconvert (``Road.for_netconvert``)."""
+def write_osm(extract: Extract, roads: Mapping[int, MappedRoad], target: Path) -> None:
+    """Writes the roads as OSM XML for netconvert (``MappedRoad.for_netconvert``)."""
     osmium = import_module("osmium")
     mutable = osmium.osm.mutable
     with osmium.SimpleWriter(osmium.io.File(str(target), "osm"), overwrite=True) as writer:

@@ -16,7 +16,7 @@ from automotive_cosim.osm.extract import Extract
 from automotive_cosim.osm.folder import ATTRIBUTION
 from automotive_cosim.osm.limits import NO_UNIT, doubts
 from automotive_cosim.osm.network import Built
-from automotive_cosim.osm.roads import Road
+from automotive_cosim.osm.roads import MappedRoad, way_of
 from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.posted import timed_limits
 from automotive_cosim.traffic.stability import Stability
@@ -82,7 +82,7 @@ class ImportReport:
 def make_report(
     source: Path,
     extract: Extract,
-    roads: Mapping[int, Road],
+    roads: Mapping[int, MappedRoad],
     built: Built,
     stability: Stability,
     *,
@@ -166,6 +166,9 @@ def _guesses(extract: Extract, built: Built, country: str, assumed_km: float) ->
     unread = {part for way in extract.ways for part in timed_limits(way.tags.get("maxspeed:conditional", ""))[1]}
     if unread:
         yield f"limits under conditions other than times, left out: {', '.join(sorted(unread))}"
+    if built.opened:
+        ways = sorted({way_of(edge_id) for edge_id in built.opened})
+        yield f"lanes for buses or taxis that part the lanes for cars, opened to cars: {_ways_in_words(ways)}"
     yield "lanes and right of way that the map does not state: by road class"
     yield "traffic: random trips, half of them across the map's edge"
     yield "date, weather and ego trips: to be changed in scenario.toml"

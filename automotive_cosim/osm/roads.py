@@ -62,7 +62,7 @@ def way_of(edge_id: str) -> int:
 
 
 @dataclass(frozen=True, slots=True)
-class Road:
+class MappedRoad:
     """A way of the map, with what was read from its tags and from what surrounds it."""
 
     tags: Mapping[str, str]
@@ -134,7 +134,7 @@ class Road:
         return dict(sorted(kept.items()))
 
 
-def describe(extract: Extract, atlas: Atlas, country: str) -> dict[int, Road]:
+def describe(extract: Extract, atlas: Atlas, country: str) -> dict[int, MappedRoad]:
     """The roads of a map, by OSM way.
 
     Args:
@@ -144,13 +144,13 @@ def describe(extract: Extract, atlas: Atlas, country: str) -> dict[int, Road]:
             that a wrong position near a border changes nothing.
     """
     towns = town_cells(extract)
-    roads: dict[int, Road] = {}
+    roads: dict[int, MappedRoad] = {}
     for way in extract.ways:
         place = _place_of(way, extract, atlas, country)
         built_up, dense = built_up_of(way.tags), is_dense(way, extract.nodes, towns)
         in_town = dense if built_up is None else built_up
         assumed = assumed_sign(way.tags, atlas, place, built_up=in_town)
-        roads[way.way_id] = Road(way.tags, country, stated_limits(way.tags), assumed, built_up, dense)
+        roads[way.way_id] = MappedRoad(way.tags, country, stated_limits(way.tags), assumed, built_up, dense)
     return roads
 
 

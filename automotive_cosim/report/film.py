@@ -18,8 +18,9 @@ from automotive_cosim.cockpit.theme import NIGHT, Colour, Type
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.report.filmplot import speed_plot
-from automotive_cosim.report.filmroad import draw_road
+from automotive_cosim.report.filmroad import RoadPainter
 from automotive_cosim.run.episode import EpisodeResult, Shot, Watcher
+from automotive_cosim.run.road import EMPTY, NAME, read_record
 from automotive_cosim.run.timeline import Sample
 from automotive_cosim.run.words import action_in_words, is_over
 
@@ -52,7 +53,11 @@ class Film(Watcher):
     """Collects frames while an episode runs and writes the film when it is over."""
 
     def __init__(self, folder: Path) -> None:
-        """``folder`` is the record's folder; nothing is written before the end."""
+        """Nothing is written before the end.
+
+        Args:
+            folder: the record's; if its road has been recorded by then, the film shows the other vehicles.
+        """
         self._path = folder / "episode.webp"
         self._before: deque[FilmFrame] = deque(maxlen=BEFORE_FRAMES)
         self._steps: list[FilmFrame] = []
@@ -91,7 +96,9 @@ class Film(Watcher):
             return
         frames = [*self._before, *self._steps, *self._after]
         frames[-1] = replace(frames[-1], milliseconds=LAST_MS, title=_outcome(result), words=_why(result))
-        pictures = [self._compose(frame, result) for frame in frames]
+        road = self._path.with_name(NAME)
+        painter = RoadPainter(read_record(road) if road.is_file() else EMPTY, self._map)
+        pictures = [self._compose(frame, result, painter) for frame in frames]
         draft = self._path.with_name(f".{self._path.name}.part")
         pictures[0].save(
             draft,
@@ -105,15 +112,14 @@ class Film(Watcher):
         )
         draft.replace(self._path)
 
-    def _compose(self, frame: FilmFrame, result: EpisodeResult) -> Image.Image:
-        assert self._map is not None
+    def _compose(self, frame: FilmFrame, result: EpisodeResult, painter: RoadPainter) -> Image.Image:
         at_s = frame.time_s - self._hand_over_s
         past = [sample for sample in result.path if sample.at_s <= at_s + 0.05]
         here = past[-1]
         canvas = Canvas.plain(round(WIDTH * SCALE), round(HEIGHT * SCALE), SCALE, NIGHT.background)
         canvas.box(COCKPIT.inset(-3), NIGHT.pressed, 17)
         canvas.picture(COCKPIT, frame.cockpit, 14)
-        draw_road(canvas, ROAD, self._map, past, (SIGN,))
+        painter.draw(canvas, ROAD, past, (SIGN,))
         _road_sign(canvas, here)
         canvas.picture(PLOT, speed_plot(result.path, len(past), *_pixels(PLOT), SCALE), 14)
         _info(canvas, frame, here, at_s)

@@ -1,93 +1,269 @@
-"""The road from above, heading up, with a trail of the route driven so far."""
+"""The road from above, heading up: lanes, traffic lights and every vehicle, with a trail of the drive so far."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 
+import numpy as np
 from PIL import Image, ImageDraw
+from shapely import LineString, Polygon, STRtree
 
 from automotive_cosim.cockpit.drawing import Canvas
 from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.map import EGO_DOWN, Camera, RoadMap
-from automotive_cosim.cockpit.mapdraw import MapScene, draw
-from automotive_cosim.cockpit.theme import NIGHT, Type
+from automotive_cosim.cockpit.map import EGO_DOWN, Camera, RoadMap, View
+from automotive_cosim.cockpit.theme import NIGHT, Colour, Type
+from automotive_cosim.contracts import SeenVehicle, SumoSignal
+from automotive_cosim.geo.sun import SUNSET_DEG
+from automotive_cosim.run.road import RoadRecord, Second
 from automotive_cosim.run.timeline import Sample
 from automotive_cosim.run.words import is_over
 
-METRES_PER_PIXEL = 1.1
+METRES_PER_PIXEL = 0.3
 RADIUS = 14
-FINE = 2
-"""Oversampling of the trail."""
-TRAIL, ARROW = 6, 20
-"""Width of the trail, and how short of the ego's middle it stops: pixels of the film's layout."""
+FINE = 3
+"""Oversampling."""
+TRAIL_M = 0.7
+GAP_M = 0.25
+"""Widths of the trail, and of the line between two lanes."""
+LEAST_PX = 5.0
+"""No vehicle is drawn shorter than this."""
+WIDE_PX, WIDE_M = 132, 1100.0
+"""Side of the inset that shows the streets around, in pixels of the layout and in metres."""
+EGO = "ego"
 
 
-def draw_road(
-    canvas: Canvas, area: Rect, road_map: RoadMap, past: Sequence[Sample], avoid: tuple[Rect, ...]
-) -> None:
-    """Draws the roads around the last sample.
+@dataclass(frozen=True, slots=True)
+class Colours:
+    """The colours of a road by day or by night."""
 
-    Args:
-        canvas: the frame.
-        area: where to draw on it.
-        road_map: the network.
-        past: the drive so far, oldest first; red where it was above the limit.
-        avoid: boxes without street names.
-    """
-    here = past[-1]
-    camera = Camera(here.x_m, here.y_m, here.heading_deg, METRES_PER_PIXEL)
-    width, height = round(area.width * canvas.scale), round(area.height * canvas.scale)
-    scene = MapScene(camera, (here.x_m, here.y_m, here.heading_deg))
-    picture = draw(road_map, scene, width, height, canvas.scale, night=True)
-    trail = _Trail(camera, area, canvas.scale * FINE)
-    trail.drive(past)
-    picture.paste(NIGHT.good, (0, 0), trail.within.resize(picture.size, Image.Resampling.BOX))
-    picture.paste(NIGHT.critical, (0, 0), trail.above.resize(picture.size, Image.Resampling.BOX))
-    canvas.picture(area, picture, RADIUS)
-    for name in road_map.names_in_sight(area, camera, avoid):
-        if name.text == here.road:
-            continue
-        canvas.box(name.rect, NIGHT.land, 8)
-        canvas.text(name.rect, name.text, Type.SMALL, NIGHT.text, "centre")
+    land: Colour
+    line: Colour
+    road: Colour
+    bus: Colour
+    path: Colour
+    """Lanes for bicycles and people on foot, and rails."""
+    vehicle: Colour
+    heavy: Colour
+    edge: Colour
+    """Around a vehicle."""
 
 
-class _Trail:
-    """Masks of the trail, within the limit and above it."""
+NIGHTLY = Colours(
+    (16, 21, 28),
+    (88, 99, 115),
+    (43, 51, 63),
+    (62, 50, 54),
+    (32, 40, 48),
+    (176, 188, 203),
+    (214, 189, 128),
+    (10, 13, 18),
+)
+DAILY = Colours(
+    (214, 221, 214),
+    (240, 243, 246),
+    (128, 137, 148),
+    (148, 118, 118),
+    (176, 182, 180),
+    (44, 54, 68),
+    (122, 82, 26),
+    (240, 243, 246),
+)
+LIGHTS: dict[str, Colour] = {"G": (46, 204, 113), "g": (46, 204, 113), "y": (255, 180, 46), "r": (229, 72, 77)}
+BRAKE: Colour = (255, 40, 48)
+INDICATOR: Colour = (255, 170, 30)
+BLUE: Colour = (60, 120, 255)
+HEAVY = frozenset({"bus", "coach", "truck", "trailer", "delivery", "tram", "rail", "rail_urban"})
 
-    def __init__(self, camera: Camera, area: Rect, scale: float) -> None:
-        self._camera = camera
-        self._area = area
-        self._scale = scale
-        size = round(area.width * scale), round(area.height * scale)
-        self.within, self.above = Image.new("L", size), Image.new("L", size)
-        self._ego = (area.width / 2, area.height * EGO_DOWN)
 
-    def drive(self, past: Sequence[Sample]) -> None:
+class RoadPainter:
+    """Draws a recorded road at any instant."""
+
+    def __init__(self, record: RoadRecord, road_map: RoadMap) -> None:
+        """Indexes the lanes; ``road_map`` has the names of the streets."""
+        self._record = record
+        self._map = road_map
+        shapes = record.shapes
+        self._lanes = STRtree([LineString(lane.line_m) for lane in shapes.lanes])
+        self._junctions = STRtree([Polygon(outline) for outline in shapes.junctions])
+
+    def draw(self, canvas: Canvas, area: Rect, past: Sequence[Sample], avoid: tuple[Rect, ...]) -> None:
+        """Draws the road around the last sample.
+
+        Args:
+            canvas: the frame.
+            area: where to draw on it.
+            past: the drive so far, oldest first; the trail is red where it was above the limit.
+            avoid: boxes without street names.
+        """
+        here = past[-1]
+        second = self._record.at(here.at_s)
+        camera = Camera(here.x_m, here.y_m, here.heading_deg, METRES_PER_PIXEL)
+        dark = second is None or second.sun_deg is None or second.sun_deg < SUNSET_DEG
+        width, height = _pixels(area, canvas.scale)
+        picture = Image.new("RGB", (width, height), (NIGHTLY if dark else DAILY).land)
+        view = View(camera, canvas.scale * FINE / METRES_PER_PIXEL, width / 2, height * EGO_DOWN)
+        pen = _Pen(ImageDraw.Draw(picture), view, NIGHTLY if dark else DAILY, FINE * canvas.scale)
+        self._ground(pen, view.sight(width, height), second)
+        pen.trail(past)
+        if second is not None:
+            for kind, x_m, y_m in second.incidents:
+                pen.incident(kind, x_m, y_m)
+            for vehicle in sorted(second.vehicles, key=lambda vehicle: vehicle.vehicle_id == EGO):
+                pen.vehicle(vehicle)
+        if second is None or not second.vehicles:
+            pen.vehicle(SeenVehicle(EGO, "passenger", 4.5, 1.8, here.x_m, here.y_m, here.heading_deg, 0.0, 0))
+        canvas.picture(area, picture.reduce(FINE), RADIUS)
+        inset = Rect(area.x + 10, area.bottom - WIDE_PX - 10, WIDE_PX, WIDE_PX)
+        if second is not None:
+            canvas.box(inset.inset(-2), NIGHT.pressed, RADIUS - 2)
+            canvas.picture(
+                inset,
+                self._around(here, second, pen.colours, canvas.scale, _pixels(inset, canvas.scale)),
+                RADIUS - 4,
+            )
+            avoid = (*avoid, inset)
+        for name in self._map.names_in_sight(area, camera, avoid):
+            if name.text != here.road:
+                canvas.box(name.rect, NIGHT.land, 8)
+                canvas.text(name.rect, name.text, Type.SMALL, NIGHT.text, "centre")
+
+    def _around(
+        self, here: Sample, second: Second, colours: Colours, scale: float, size: tuple[int, int]
+    ) -> Image.Image:
+        """The streets around with a dot for each vehicle, the same way up."""
+        picture = Image.new("RGB", size, colours.land)
+        camera = Camera(here.x_m, here.y_m, here.heading_deg, WIDE_M / WIDE_PX, 0.5)
+        view = View(camera, size[0] / WIDE_M, size[0] / 2, size[1] / 2)
+        pen = _Pen(ImageDraw.Draw(picture), view, colours, FINE * scale)
+        for lane in self._record.shapes.lanes:
+            pen.band(lane.line_m, 9.0, colours.road)
+        for vehicle in sorted(second.vehicles, key=lambda vehicle: vehicle.vehicle_id == EGO):
+            pen.dot(vehicle)
+        return picture.reduce(FINE)
+
+    def _ground(self, pen: _Pen, sight: Polygon, second: Second | None) -> None:
+        shapes = self._record.shapes
+        lanes = [shapes.lanes[number] for number in np.sort(self._lanes.query(sight.buffer(10.0))).tolist()]
+        junctions = [shapes.junctions[number] for number in np.sort(self._junctions.query(sight)).tolist()]
+        colours = pen.colours
+        for lane in lanes:
+            pen.band(lane.line_m, lane.width_m + GAP_M, colours.line)
+        for outline in junctions:
+            pen.area(outline, colours.road)
+        for lane in lanes:
+            of_kind = {"road": colours.road, "bus": colours.bus}.get(lane.kind, colours.path)
+            pen.band(lane.line_m, lane.width_m - GAP_M, of_kind)
+        if second is not None:
+            for lane in lanes:
+                states = [second.lights[light][place] for light, place in lane.links if light in second.lights]
+                if states:
+                    pen.stop_line(lane.line_m, lane.width_m, _brightest(states))
+
+
+def _pixels(area: Rect, scale: float) -> tuple[int, int]:
+    """Fine pixels of a picture that fills the area."""
+    left, top, right, bottom = area.edges(scale)
+    return (right - left) * FINE, (bottom - top) * FINE
+
+
+def _brightest(states: Iterable[str]) -> str:
+    """The letter that decides what a lane's stop line shows: it is green as soon as one way is open."""
+    found = set(states)
+    return next((letter for letter in "Ggy" if letter in found), "r" if found & set("ru") else "o")
+
+
+@dataclass(frozen=True, slots=True)
+class _Pen:
+    brush: ImageDraw.ImageDraw
+    view: View
+    colours: Colours
+    unit: float
+    """Fine pixels per pixel of the layout."""
+
+    def band(self, line_m: Sequence[tuple[float, float]], width_m: float, colour: Colour) -> None:
+        points = self._points(line_m)
+        self.brush.line(points, colour, max(1, round(width_m * self.view.per_metre)), joint="curve")
+
+    def area(self, outline_m: Sequence[tuple[float, float]], colour: Colour) -> None:
+        self.brush.polygon(self._points(outline_m), colour)
+
+    def stop_line(self, line_m: Sequence[tuple[float, float]], width_m: float, letter: str) -> None:
+        """Across the end of a lane."""
+        (x0, y0), (x1, y1) = line_m[-2:]
+        length_m = math.hypot(x1 - x0, y1 - y0) or 1.0
+        along, half = ((x1 - x0) / length_m, (y1 - y0) / length_m), width_m / 2 - GAP_M
+        ends = [(x1 - side * along[1] * half, y1 + side * along[0] * half) for side in (-1, 1)]
+        self.brush.line(self._points(ends), LIGHTS.get(letter, self.colours.line), max(1, round(4 * self.unit)))
+
+    def trail(self, past: Sequence[Sample]) -> None:
+        width = max(1, round(TRAIL_M * self.view.per_metre))
         for before, after in pairwise(past):
-            start, end = self._point(before), self._point(after)
-            if math.dist(end, self._ego) < ARROW:
-                end = self._short_of_ego(start)
-            mask = self.above if is_over(after.speed_kmh, after.limit_kmh) else self.within
-            brush = ImageDraw.Draw(mask)
-            fine = [(x * self._scale, y * self._scale) for x, y in (start, end)]
-            brush.line(fine, 255, round(TRAIL * self._scale))
-            r = TRAIL * self._scale / 2 - 0.5
-            for x, y in fine:
-                brush.ellipse((x - r, y - r, x + r, y + r), 255)
+            colour = NIGHT.critical if is_over(after.speed_kmh, after.limit_kmh) else NIGHT.good
+            self.brush.line(self._points([(before.x_m, before.y_m), (after.x_m, after.y_m)]), colour, width)
 
-    def _point(self, sample: Sample) -> tuple[float, float]:
-        """Position of a sample in the area, in pixels of the layout."""
-        camera = self._camera
-        turn = math.radians(camera.heading_deg)
-        dx = (sample.x_m - camera.x_m) / camera.metres_per_pixel
-        dy = (sample.y_m - camera.y_m) / camera.metres_per_pixel
-        right = dx * math.cos(turn) - dy * math.sin(turn)
-        ahead = dx * math.sin(turn) + dy * math.cos(turn)
-        return self._ego[0] + right, self._ego[1] - ahead
+    def incident(self, kind: str, x_m: float, y_m: float) -> None:
+        """A warning triangle."""
+        x, y = self.view.pixel(x_m, y_m)
+        size = 11 * self.unit
+        self.brush.polygon([(x, y - size), (x + size, y + 0.8 * size), (x - size, y + 0.8 * size)], NIGHT.warning)
+        self.brush.line((x, y - 0.4 * size, x, y + 0.2 * size), NIGHT.background, max(1, round(2.5 * self.unit)))
 
-    def _short_of_ego(self, start: tuple[float, float]) -> tuple[float, float]:
-        away = math.dist(start, self._ego)
-        share = max(0.0, 1 - ARROW / away) if away else 0.0
-        return start[0] + share * (self._ego[0] - start[0]), start[1] + share * (self._ego[1] - start[1])
+    def dot(self, vehicle: SeenVehicle) -> None:
+        """A vehicle from far above."""
+        is_ego = vehicle.vehicle_id == EGO
+        x, y = self.view.pixel(vehicle.x_m, vehicle.y_m)
+        r = (4.0 if is_ego else 2.4) * self.unit
+        if is_ego:
+            self.brush.ellipse((x - 1.5 * r, y - 1.5 * r, x + 1.5 * r, y + 1.5 * r), (255, 255, 255))
+        self.brush.ellipse((x - r, y - r, x + r, y + r), NIGHT.accent if is_ego else self.colours.vehicle)
+
+    def vehicle(self, vehicle: SeenVehicle) -> None:
+        """Its outline from above with its lights, nose forward."""
+        is_ego = vehicle.vehicle_id == EGO
+        fill = NIGHT.accent if is_ego else self.colours.heavy if vehicle.kind in HEAVY else self.colours.vehicle
+        if vehicle.kind == "emergency":
+            fill = BLUE if vehicle.signals & SumoSignal.BLUE else (235, 235, 240)
+        least_m = LEAST_PX * self.unit / self.view.per_metre
+        body = _Body(vehicle, max(vehicle.length_m, least_m), max(vehicle.width_m, least_m / 2))
+        margin_m = (1.8 if is_ego else 1.0) * self.unit / self.view.per_metre
+        self.brush.polygon(self._points(body.outline(margin_m)), (255, 255, 255) if is_ego else self.colours.edge)
+        self.brush.polygon(self._points(body.outline(0.0)), fill)
+        signals = vehicle.signals
+        if signals & SumoSignal.BRAKE:
+            self._lamps(body, ((-1.0, -0.62), (-1.0, 0.62)), BRAKE)
+        for bits, side in (
+            (SumoSignal.LEFT | SumoSignal.HAZARD, -0.9),
+            (SumoSignal.RIGHT | SumoSignal.HAZARD, 0.9),
+        ):
+            if signals & bits:
+                self._lamps(body, ((-0.94, side), (-0.06, side)), INDICATOR)
+
+    def _lamps(self, body: _Body, places: Iterable[tuple[float, float]], colour: Colour) -> None:
+        r = max(1.2 * self.unit, 0.33 * self.view.per_metre)
+        for x, y in self._points([body.at(*place) for place in places]):
+            self.brush.ellipse((x - r, y - r, x + r, y + r), colour)
+
+    def _points(self, points_m: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+        return [self.view.pixel(x_m, y_m) for x_m, y_m in points_m]
+
+
+@dataclass(frozen=True, slots=True)
+class _Body:
+    vehicle: SeenVehicle
+    length_m: float
+    width_m: float
+
+    def at(self, ahead: float, right: float, margin_m: float = 0.0) -> tuple[float, float]:
+        """A point of the body: 0 to -1 from the front bumper to the rear, -1 to 1 from left to right."""
+        turn = math.radians(self.vehicle.heading_deg)
+        forth = ahead * (self.length_m + 2 * margin_m) + margin_m
+        across = right * (self.width_m / 2 + margin_m)
+        east, north = math.sin(turn), math.cos(turn)
+        return self.vehicle.x_m + forth * east + across * north, self.vehicle.y_m + forth * north - across * east
+
+    def outline(self, margin_m: float) -> list[tuple[float, float]]:
+        corners = ((0.0, -0.5), (0.0, 0.5), (-0.16, 1.0), (-1.0, 1.0), (-1.0, -1.0), (-0.16, -1.0))
+        return [self.at(ahead, right, margin_m) for ahead, right in corners]

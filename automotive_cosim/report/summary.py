@@ -29,7 +29,7 @@ RATES = (
     "not: they stand beside, with the rate if all of them had failed and if all had succeeded."
 )
 
-Outcome = Callable[[EpisodeRow], bool | None]
+SuccessOf = Callable[[EpisodeRow], bool | None]
 """What of an episode counts as a success."""
 
 
@@ -283,14 +283,14 @@ def errors(results: Results) -> Table:
     return Table("errors", "Infrastructure errors", ("Episode", "Kind", "Attempts", "What"), rows, note, heads=4)
 
 
-def rate_of(rows: Iterable[EpisodeRow], of: Outcome = lambda row: row.success) -> Rate:
+def rate_of(rows: Iterable[EpisodeRow], of: SuccessOf = lambda row: row.success) -> Rate:
     """A rate over episodes; those that have run without a verdict count as errors."""
     listed = list(rows)
     outcomes = ((row.task, None if row.success is None else of(row)) for row in listed if row.has_run)
     return rate(outcomes, not_run=sum(not row.has_run for row in listed))
 
 
-def rate_cell(rows: Iterable[EpisodeRow], of: Outcome = lambda row: row.success) -> Cell:
+def rate_cell(rows: Iterable[EpisodeRow], of: SuccessOf = lambda row: row.success) -> Cell:
     """A rate as text, with its episodes."""
     listed = list(rows)
     return Cell(rate_in_words(rate_of(listed, of)), tuple(row.id for row in listed))

@@ -17,7 +17,7 @@ from annotated_types import Ge
 from automotive_cosim import geo
 from automotive_cosim.agents import Agent, Learner, Privileged, Stage, StageName, Thinker
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.contracts import Element, Json
+from automotive_cosim.contracts import Element, Json, RoadSnapshot
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.listener import Listener
@@ -330,6 +330,8 @@ class _All(Listener):
 
     def __init__(self, watchers: Sequence[Watcher]) -> None:
         self._watchers = watchers
+        self._lookers = tuple(watcher for watcher in watchers if watcher.looks)
+        self.looks = bool(self._lookers)
 
     def loading(self, scenario: Scenario) -> None:
         for watcher in self._watchers:
@@ -338,6 +340,10 @@ class _All(Listener):
     def warming(self, scenario: str, done_s: float, total_s: float) -> None:
         for watcher in self._watchers:
             watcher.warming(scenario, done_s, total_s)
+
+    def looked(self, snapshot: RoadSnapshot) -> None:
+        for watcher in self._lookers:
+            watcher.looked(snapshot)
 
     def moved(self, moment: Moment, cockpit: Cockpit) -> None:
         for watcher in self._watchers:

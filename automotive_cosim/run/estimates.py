@@ -9,7 +9,7 @@ from itertools import pairwise
 from automotive_cosim.cockpit.actions import position
 from automotive_cosim.contracts import ActionType
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.geo.place import METRES_PER_DEGREE, metres_per_degree_east
+from automotive_cosim.geo.earth import METRES_PER_DEGREE, metres_per_degree_east
 from automotive_cosim.geo.reckoning import reckon
 from automotive_cosim.interface.trace import Step
 

@@ -28,6 +28,7 @@ from zoneinfo import ZoneInfo
 from automotive_cosim.contracts import GoalStatus, Json, Reason
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats.files import read_json
 from automotive_cosim.geo.locate import Geo
 
 PACKAGE = "automotive_cosim."
@@ -94,11 +95,11 @@ def read_judged(folder: Path, episode: str) -> Judged:
     """
     path = judged_file(folder, episode)
     try:
-        whole: Json = json.loads(lzma.decompress(path.read_bytes()))
+        whole: Json = read_json(path)
         judged = _Reader(whole["classes"], whole["pool"]).value(whole["value"])
     except FileNotFoundError as error:
         raise UserError(f"{path} does not exist; only judged episodes have one") from error
-    except (OSError, EOFError, lzma.LZMAError, ValueError, LookupError, TypeError, AttributeError) as error:
+    except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError, ImportError) as error:
         raise UserError(f"cannot read {path}: {error}; judge it with the version that wrote it") from error
     if not isinstance(judged, Judged):
         raise UserError(f"{path} has no moments")

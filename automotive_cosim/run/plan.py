@@ -42,7 +42,7 @@ def most_steps(mode: Mode, steps: int = MAX_STEPS) -> int:
 class Limits:
     """Limits of one episode."""
 
-    steps: Annotated[int, Ge(1)] = MAX_STEPS
+    steps: Annotated[int, Ge(1), Le(100_000)] = MAX_STEPS
     """Number of actions, including unreadable ones."""
     sim_s: Annotated[float, Gt(0)] = 600.0
     """Simulated seconds from the hand-over, after which the episode is judged as it is."""
@@ -77,7 +77,7 @@ class Plan:
     """Whether the seconds that a model takes to answer pass on the road (``model``) or not (``fixed``)."""
     latency: Annotated[tuple[Annotated[float, Ge(0), Le(600)], ...], MinLen(1)] = (0.0,)
     """Simulated seconds that each answer takes besides, before its action."""
-    repeats: Annotated[int, Ge(1)] = 1
+    repeats: Annotated[int, Ge(1), Le(1000)] = 1
     """Runs of each episode, for models that do not answer the same twice."""
     held_out: bool = False
     """Whether to use only each task's held-out phrasing; otherwise any phrasing is drawn."""

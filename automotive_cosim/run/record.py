@@ -3,6 +3,7 @@
     episode.json    verdict, timeline, manifest, the drive once a second
     steps.jsonl     one line per step (trace.Step.as_json), written step by step, so that they survive a kill
     screenshots/    step_000.png, ...: the cockpit after each step
+    road.jsonl.gz   the road with every vehicle, second by second (format: ``run.road``)
 
 The folder is created at the hand-over; an earlier failure leaves none.
 """
@@ -26,7 +27,7 @@ from automotive_cosim.episode.episode import Episode
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, Shot, Watcher
 
-OURS = ("episode.json", "steps.jsonl", "screenshots", "episode.webp", "summary.html")
+OURS = ("episode.json", "steps.jsonl", "screenshots", "road.jsonl.gz", "episode.webp", "summary.html")
 """The content of a record; ``force`` removes these and nothing else."""
 STAMPED = ("automotive-cosim", "libsumo", "gymnasium", "numpy", "pillow")
 

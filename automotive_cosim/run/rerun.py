@@ -12,7 +12,7 @@ from automotive_cosim.agents import AgentSettings, make_agent
 from automotive_cosim.agents.settings import geo_input
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import Action, Json, Observation
-from automotive_cosim.errors import ActionError, InfrastructureError, OutOfBudgetError, UnknownNameError
+from automotive_cosim.errors import ActionError, InfrastructureError, OutOfBudgetError, UnknownNameError, UserError
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.interface.trace import HASHED, canonical
 from automotive_cosim.run.collect import Collector, Pictures
@@ -53,7 +53,11 @@ def rerun(folder: Path, episode: str) -> list[Compared]:
     if len(matching) != 1:
         raise UnknownNameError(f"one episode in {folder}", episode, rows)
     plan = make_plan(manifest["plan"])
-    job = next(job for job in plan.jobs() if job.id == matching[0])
+    job = next((job for job in plan.jobs() if job.id == matching[0]), None)
+    if job is None:
+        raise UserError(
+            f"the plan in {folder / 'manifest.json'} has no episode {matching[0]}; it was changed since"
+        )
     stored = [line for line in read_trace(folder, job.id) if "step" in line]
     settings = AgentSettings(geo_input(job.setup.geo), seed=job.setup.seed)
     channels = frozenset(make_agent(job.setup.agent, job.model, settings).channels)

@@ -25,6 +25,7 @@ from typing import IO, Generic
 import automotive_cosim
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats import files
 from automotive_cosim.run.record import STAMPED, write_whole
 from automotive_cosim.run.row import R, as_json, from_line
 
@@ -136,7 +137,7 @@ def read_manifest(folder: Path) -> Json:
     """
     path = folder / "manifest.json"
     try:
-        manifest: Json = json.loads(path.read_text(encoding="utf-8"))
+        manifest: Json = files.read_json(path)
     except FileNotFoundError as error:
         raise UserError(
             f"{folder} is not an evaluation: it has no manifest.json; `automotive-cosim eval` creates one"
@@ -148,6 +149,8 @@ def read_manifest(folder: Path) -> Json:
         raise UserError(
             f"{path} has format {found!r}, and this version reads {FORMAT}; read it with the version that wrote it"
         )
+    if not isinstance(manifest.get("plan"), dict):
+        raise UserError(f"{path} has no plan; give a results folder as `automotive-cosim eval` wrote it")
     return manifest
 
 
@@ -186,10 +189,14 @@ def read_trace(folder: Path, episode: str) -> list[Json]:
     """
     path = trace_file(folder, episode)
     try:
-        return [json.loads(line) for line in gzip.decompress(path.read_bytes()).decode().splitlines()]
+        with files.opened(path) as file:
+            lines = [files.parse_json(line) for line in file]
+        if not lines or not all(isinstance(line, dict) for line in lines):
+            raise ValueError("it has no steps")
+        return lines
     except FileNotFoundError as error:
         raise UserError(f"there is no trace of episode {episode!r} in {folder}") from error
-    except (OSError, EOFError, ValueError) as error:
+    except (OSError, ValueError) as error:
         raise UserError(f"cannot read {path}: {error}") from error
 
 

@@ -16,8 +16,12 @@ from annotated_types import MinLen
 from automotive_cosim.contracts import Weather
 from automotive_cosim.errors import ScenarioError, UnknownNameError, UserError
 from automotive_cosim.formats.annotations import Called, Form
+from automotive_cosim.formats.files import is_file
 from automotive_cosim.formats.toml import Document, read_toml
 from automotive_cosim.scenarios.model import Described, LinkAt, Scenario, WeatherAt
+
+YEARS = 1970, 2199
+"""Those that sun, clocks and calendars are computed for."""
 
 
 def shipped() -> tuple[str, ...]:
@@ -60,6 +64,13 @@ def _zone(name: str) -> ZoneInfo:
         raise ValueError("there is no such time zone; give an IANA name such as Europe/Paris") from error
 
 
+def _local(text: str) -> datetime:
+    time = datetime.fromisoformat(text)
+    if not YEARS[0] <= time.year <= YEARS[1]:
+        raise ValueError(f"the year must be from {YEARS[0]} to {YEARS[1]}")
+    return time
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WeatherEntry(Weather):
     """``[[weather]]``: the weather from ``at_s`` on, held until the next."""
@@ -82,7 +93,7 @@ class ScenarioFile(Described):
         Form(
             r"^\d{4}-\d\d-\d\d([T ]\d\d:\d\d(:\d\d(\.\d+)?)?)?$",
             "2026-03-10T08:30:00",
-            datetime.fromisoformat,
+            _local,
         ),
     ]
     """Local date and time at which the ego departs, after the warm-up."""
@@ -106,7 +117,7 @@ def _contradictions(file: ScenarioFile, document: Document) -> Iterator[UserErro
             yield document.refused(("weather", 0, "at_s"), f"is {file.weather[0].at_s:g}; the first entry's is 0")
         yield from _disorder("weather", file.weather, document)
     yield from _disorder("connectivity", file.connectivity, document)
-    if not (document.path.parent / file.sumo.config).is_file():
+    if not is_file(document.path.parent / file.sumo.config):
         yield document.refused(
             ("sumo", "config"), f"is {file.sumo.config!r}; {document.path.parent} has no such file"
         )

@@ -105,7 +105,7 @@ def _sumo(configuration: Configuration, random_per_km_h: float) -> Sumo:
         step_length_s=step_s,
         action_step_length_s=configuration.number("default.action-step-length", action_s),
         warm_up_s=WARM_UP_S,
-        scale=configuration.number("scale", 1.0),
+        scale=configuration.number("scale", 1.0, 100),
         background_rerouting=max(0.0, configuration.number("device.rerouting.probability", 0.0)),
         random_traffic_per_km_h=random_per_km_h,
     )

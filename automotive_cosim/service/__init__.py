@@ -1,6 +1,6 @@
 """Many episodes at once, for agents that come from outside: start, observe, act, finish.
 
-    start(spec) -> Turn      act(id, action) -> Turn ... until turn.end      finish(id) -> Outcome
+    start(spec) -> EpisodeTurn      act(id, action) -> EpisodeTurn ... until turn.end      finish(id) -> Outcome
 
 episodes   the service: ids, a lock per episode, limits, expiry of idle ones
 turn       what an agent is told after each step, and the outcome at the end; as JSON
@@ -8,7 +8,7 @@ turn       what an agent is told after each step, and the outcome at the end; as
 There is no transport in it; ``doors`` adapts it to protocols.
 """
 
-from automotive_cosim.service.episodes import EpisodeService, Limits
-from automotive_cosim.service.turn import Outcome, Turn
+from automotive_cosim.service.episodes import EpisodeService, ServiceLimits
+from automotive_cosim.service.turn import EpisodeTurn, Outcome
 
-__all__ = ["EpisodeService", "Limits", "Outcome", "Turn"]
+__all__ = ["EpisodeService", "EpisodeTurn", "Outcome", "ServiceLimits"]

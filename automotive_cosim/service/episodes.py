@@ -18,7 +18,7 @@ from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import End, EpisodeSpec, SeedSource
 from automotive_cosim.errors import ActionError, InfrastructureError, UserError
 from automotive_cosim.interface.observe import ALL, Channel
-from automotive_cosim.service.turn import Outcome, Turn
+from automotive_cosim.service.turn import EpisodeTurn, Outcome
 from automotive_cosim.tasking import verdict
 from automotive_cosim.traffic.fork import Simulations
 
@@ -27,7 +27,7 @@ SWEEP_S = 10.0
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class ServiceLimits:
     """The service's limits."""
 
     episodes: int = 16
@@ -59,7 +59,7 @@ class EpisodeService:
     def __init__(
         self,
         simulations: Simulations | None = None,
-        limits: Limits = Limits(),
+        limits: ServiceLimits = ServiceLimits(),
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         """Begins without episodes.
@@ -81,7 +81,7 @@ class EpisodeService:
 
     def start(
         self, spec: EpisodeSpec, channels: frozenset[Channel] = ALL, listener: Listener | None = None
-    ) -> Turn:
+    ) -> EpisodeTurn:
         """Drives to a task's hand-over and returns the first turn, with the episode's id.
 
         Args:
@@ -109,7 +109,7 @@ class EpisodeService:
                 self._drop(episode_id)
         return _turn(episode_id, episode)
 
-    def observe(self, episode_id: str) -> Turn:
+    def observe(self, episode_id: str) -> EpisodeTurn:
         """The present turn; no time passes.
 
         Raises:
@@ -118,7 +118,7 @@ class EpisodeService:
         with self._held(episode_id) as running:
             return _turn(episode_id, running.episode)
 
-    def act(self, episode_id: str, action: Action | Json | str) -> Turn:
+    def act(self, episode_id: str, action: Action | Json | str) -> EpisodeTurn:
         """Performs one action and lets its time pass. One that cannot be read counts as a step, as in any episode.
 
         Raises:
@@ -221,8 +221,8 @@ class EpisodeService:
             running.episode.close()
 
 
-def _turn(episode_id: str, episode: Episode) -> Turn:
-    return Turn(episode_id, len(episode.steps) - 1, episode.observation, episode.end)
+def _turn(episode_id: str, episode: Episode) -> EpisodeTurn:
+    return EpisodeTurn(episode_id, len(episode.steps) - 1, episode.observation, episode.end)
 
 
 def _outcome(episode_id: str, running: _Running) -> Outcome:

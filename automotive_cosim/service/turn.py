@@ -12,7 +12,7 @@ from automotive_cosim.interface.trace import plain
 
 
 @dataclass(frozen=True, slots=True)
-class Turn:
+class EpisodeTurn:
     """An episode as its agent sees it. Nothing in it comes from the task's checks."""
 
     episode_id: str

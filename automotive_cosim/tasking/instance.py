@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -26,11 +26,14 @@ class Instance:
     """Whether its phrasing is the task's last, which is held out from the rule model."""
     trigger_after_s: float = 0.0
     """Seconds from the hand-over to the trigger; for the oracle only."""
+    rule: str = ""
+    """The sign or law that it rests on in another network than its own (``binding``); empty in its own."""
 
     @cached_property
     def half(self) -> Half:
         """The half, with the parameters filled in."""
-        return bind(self.task.half(self.half_name), self.parameters)
+        half = bind(self.task.half(self.half_name), self.parameters)
+        return replace(half, rule=self.rule) if self.rule else half
 
     @property
     def moves(self) -> tuple[Move, ...]:

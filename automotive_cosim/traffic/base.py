@@ -13,7 +13,15 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Protocol
 
-from automotive_cosim.contracts import Answer, DrivingState, RoadNetwork, RoadRequest, RouteOption
+from automotive_cosim.contracts import (
+    Answer,
+    DrivingState,
+    RoadNetwork,
+    RoadRequest,
+    RoadShapes,
+    RoadSnapshot,
+    RouteOption,
+)
 from automotive_cosim.scenarios import Trip, WeatherAt
 
 WarmUpProgress = Callable[[float, float], None]
@@ -104,6 +112,22 @@ class Traffic(Protocol):
 
         Args:
             age_s: how long ago those five minutes ended, at most ``congestion.OLDEST_NEWS_S``.
+
+        Raises:
+            TrafficError: the simulation failed.
+        """
+        ...
+
+    def look(self) -> RoadSnapshot:
+        """Every vehicle around the ego now, and the traffic lights. It has no side effects on the simulation.
+
+        Raises:
+            TrafficError: the simulation failed.
+        """
+        ...
+
+    def shapes(self) -> RoadShapes:
+        """The lanes and junctions of the network.
 
         Raises:
             TrafficError: the simulation failed.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Protocol
 
-from automotive_cosim.contracts import Answer, DrivingState, RoadRequest, RouteOption
+from automotive_cosim.contracts import Answer, DrivingState, RoadRequest, RoadShapes, RoadSnapshot, RouteOption
 from automotive_cosim.traffic.base import Advance, Event
 from automotive_cosim.traffic.ego import Driver
 from automotive_cosim.traffic.instant import Instant
@@ -25,6 +25,14 @@ class Stepper(Protocol):
 
     def alternatives(self, age_s: float) -> tuple[RouteOption, ...]:
         """See ``Traffic.alternatives``."""
+        ...
+
+    def look(self) -> RoadSnapshot:
+        """See ``Traffic.look``."""
+        ...
+
+    def shapes(self) -> RoadShapes:
+        """See ``Traffic.shapes``."""
         ...
 
 
@@ -68,6 +76,14 @@ class EgoDrive:
     def alternatives(self, age_s: float) -> tuple[RouteOption, ...]:
         """See ``Traffic.alternatives``."""
         return () if self._now.end is not None else self._road.alternatives(age_s)
+
+    def look(self) -> RoadSnapshot:
+        """See ``Traffic.look``."""
+        return RoadSnapshot(self.state.time_s, (), ()) if self._now.end is not None else self._road.look()
+
+    def shapes(self) -> RoadShapes:
+        """See ``Traffic.shapes``."""
+        return self._road.shapes()
 
     def replay(self, calls: Sequence[Call], beat: Callable[[], None] | None = None) -> None:
         """Repeats the calls of an equal drive."""

@@ -17,7 +17,15 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from automotive_cosim.contracts import Answer, DrivingState, RoadNetwork, RoadRequest, RouteOption
+from automotive_cosim.contracts import (
+    Answer,
+    DrivingState,
+    RoadNetwork,
+    RoadRequest,
+    RoadShapes,
+    RoadSnapshot,
+    RouteOption,
+)
 from automotive_cosim.errors import SetupError, TrafficError
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.accounts import Pulse, Settled
@@ -26,7 +34,7 @@ from automotive_cosim.traffic.drive import Call
 from automotive_cosim.traffic.options import Setup
 from automotive_cosim.traffic.profiles import profile
 from automotive_cosim.traffic.remote import TIMEOUT_S, RemoteProcess
-from automotive_cosim.traffic.wire import Packed, pack_state, unpack_advance, unpack_state
+from automotive_cosim.traffic.wire import Packed, pack_state, unpack_advance, unpack_snapshot, unpack_state
 
 CAN_FORK = sys.platform == "linux"
 """Files are reopened through /proc, which only Linux has."""
@@ -167,6 +175,16 @@ class RemoteTraffic:
         options: tuple[RouteOption, ...] = self._process.call("alternatives", age_s)
         return options
 
+    def look(self) -> RoadSnapshot:
+        """See ``Traffic.look``."""
+        return unpack_snapshot(self._process.call("look"))
+
+    def shapes(self) -> RoadShapes:
+        """See ``Traffic.shapes``; read once for all drives in the same traffic."""
+        shapes: RoadShapes = self._source.shapes or self._process.call("shapes")
+        self._source.shapes = shapes
+        return shapes
+
     def own_choice(self) -> tuple[str, ...]:
         """The route that SUMO's rerouting device would take now, from the present edge."""
         with closing(self.branch()) as copy:
@@ -224,6 +242,7 @@ class _Source:
         self._setup = setup
         self._timeout_s = timeout_s
         self._drives = 0
+        self.shapes: RoadShapes | None = None
         self._lock = threading.Lock()
         """Lock for copying the warm process: threads may depart at the same time."""
         self._warm: RemoteProcess | None

@@ -2,7 +2,15 @@
 
 from __future__ import annotations
 
-from automotive_cosim.contracts import Answer, DrivingState, RoadNetwork, RoadRequest, RouteOption
+from automotive_cosim.contracts import (
+    Answer,
+    DrivingState,
+    RoadNetwork,
+    RoadRequest,
+    RoadShapes,
+    RoadSnapshot,
+    RouteOption,
+)
 from automotive_cosim.errors import TrafficError
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.base import Advance, EgoPlan, Traffic, WarmUpProgress
@@ -128,6 +136,16 @@ class InProcessTraffic:
         """See ``Traffic.alternatives``."""
         self._check()
         return self._drive.alternatives(age_s)
+
+    def look(self) -> RoadSnapshot:
+        """See ``Traffic.look``."""
+        self._check()
+        return self._drive.look()
+
+    def shapes(self) -> RoadShapes:
+        """See ``Traffic.shapes``."""
+        self._check()
+        return self._drive.shapes()
 
     def branch(self) -> Traffic:
         """A copy in a process of its own, which replays the drive so far."""

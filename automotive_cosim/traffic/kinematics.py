@@ -11,10 +11,15 @@ from automotive_cosim.contracts import (
     Around,
     DrivingState,
     EgoEnd,
+    LaneShape,
     OtherVehicle,
     Reroute,
     RoadHere,
+    RoadShapes,
+    RoadSnapshot,
     RouteOption,
+    SeenVehicle,
+    SumoSignal,
 )
 from automotive_cosim.traffic.base import Event
 from automotive_cosim.traffic.ego import EASING_MPS2, RefusedError
@@ -23,6 +28,11 @@ from automotive_cosim.traffic.profiles import DriverProfile
 from automotive_cosim.traffic.road_weather import G_MPS2
 from automotive_cosim.traffic.steering import STOPPING_MPS2, STOPPING_RESERVE_M
 from automotive_cosim.traffic.stretches import Layout, Stretch
+
+CAR_M, CAR_WIDTH_M, LANE_M = 4.5, 1.8, 3.2
+"""Size of every car, and width of every lane."""
+BRAKE_LIGHT_MPS2 = 0.5
+"""Deceleration from which the brake lights are on: less comes from releasing the accelerator."""
 
 
 class ScriptedCar:
@@ -83,6 +93,25 @@ class ScriptedCar:
     def alternatives(self, age_s: float) -> tuple[RouteOption, ...]:
         """Empty: there is only one route."""
         return ()
+
+    def look(self) -> RoadSnapshot:
+        """See ``drive.Stepper``."""
+        stretch, state = self._layout.stretches[self._index], self.now.state
+        braking = SumoSignal.BRAKE if self._acceleration_mps2 < -BRAKE_LIGHT_MPS2 else 0
+        hazards = SumoSignal.HAZARD if state.hazard_lights else 0
+        seen = [self._seen("ego", self._along_m, self._speed_mps, signals=braking | hazards)]
+        if stretch.leader is not None:
+            seen.append(self._seen("leader", self._leader_m + CAR_M, stretch.leader.speed_kmh / KMH_PER_MPS))
+        if stretch.oncoming_gap_m is not None:
+            seen.append(
+                self._seen("oncoming", self._along_m + stretch.oncoming_gap_m, stretch.free_mps, towards=True)
+            )
+        return RoadSnapshot(state.time_s, tuple(seen), ())
+
+    def shapes(self) -> RoadShapes:
+        """See ``drive.Stepper``."""
+        edges = self._layout.network.edges.values()
+        return RoadShapes(tuple(LaneShape(edge.lane_ids[0], "road", LANE_M, edge.shape_m) for edge in edges), ())
 
     # --- pedals -------------------------------------------------------------------------------------------
 
@@ -166,6 +195,19 @@ class ScriptedCar:
         leader_mps = leader.speed_kmh / KMH_PER_MPS
         braking = hardest * headway_s
         return -braking + math.sqrt(braking**2 + leader_mps**2 + 2 * hardest * gap_m)
+
+    def _seen(
+        self, name: str, along_m: float, speed_mps: float, *, signals: int = 0, towards: bool = False
+    ) -> SeenVehicle:
+        """A car with its front bumper there; one that comes towards the ego drives in the next lane."""
+        x_m, y_m = self._layout.position(along_m)
+        heading_deg = self._layout.heading_deg
+        if towards:
+            turn = math.radians(heading_deg)
+            x_m, y_m = x_m - LANE_M * math.cos(turn), y_m + LANE_M * math.sin(turn)
+            heading_deg += 180.0
+        heading_deg %= 360.0
+        return SeenVehicle(name, "passenger", CAR_M, CAR_WIDTH_M, x_m, y_m, heading_deg, speed_mps, signals)
 
     # --- sensing ------------------------------------------------------------------------------------------
 

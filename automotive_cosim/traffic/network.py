@@ -44,6 +44,25 @@ BUILT_UP = {"urban": True, "rural": False, "motorway": False}
 
 Shape = tuple[tuple[float, float], ...]
 
+LARGEST = 1e9
+"""No length or coordinate of a network is beyond it: the earth's circumference is 4e7 m."""
+
+
+SLOWEST_MPS = 0.01
+"""On a slower lane nobody arrives."""
+
+
+def quantity(text: str, least: float = -LARGEST) -> float:
+    """A number of a network.
+
+    Raises:
+        ValueError: it is no number, not finite, below ``least`` or impossibly large.
+    """
+    number = float(text)
+    if not least <= number <= LARGEST:
+        raise ValueError(f"{text[:80]!r} is no number of a network")
+    return number
+
 
 @dataclass(frozen=True, slots=True)
 class Edge:
@@ -215,7 +234,7 @@ def _take_edge(element: ET.Element, reading: _Reading) -> None:
     if element.get("function") == "internal":
         for lane in lanes:
             reading.inner_lanes[lane.attrib["id"]] = Crossing(
-                float(lane.attrib["length"]), float(lane.attrib["speed"])
+                quantity(lane.attrib["length"], 0.0), quantity(lane.attrib["speed"], SLOWEST_MPS)
             )
     elif lanes and "function" not in element.attrib:
         reading.edges[element.attrib["id"]] = _edge(element, lanes)
@@ -223,7 +242,7 @@ def _take_edge(element: ET.Element, reading: _Reading) -> None:
 
 def _edge(element: ET.Element, lanes: list[ET.Element]) -> Edge:
     params = {param.get("key", ""): param.get("value", "") for param in element.iterfind("param")}
-    speed_mps = max(float(lane.attrib["speed"]) for lane in lanes)
+    speed_mps = max(quantity(lane.attrib["speed"], SLOWEST_MPS) for lane in lanes)
     unlimited = speed_mps >= NO_LIMIT_FROM_MPS and "none" in (
         params.get("maxspeed"),
         params.get("maxspeed:assumed"),
@@ -236,7 +255,7 @@ def _edge(element: ET.Element, lanes: list[ET.Element]) -> Edge:
         name=element.get("name", ""),
         road_class=_road_class(element.get("type", "")),
         lane_ids=tuple(lane.attrib["id"] for lane in lanes),
-        length_m=float(lanes[0].attrib["length"]),
+        length_m=quantity(lanes[0].attrib["length"], 0.0),
         speed_mps=speed_mps,
         limit_mps=None if unlimited else speed_mps,
         limit_source=LimitSource.POSTED if params.get("maxspeed") else LimitSource.ASSUMED,
@@ -247,7 +266,7 @@ def _edge(element: ET.Element, lanes: list[ET.Element]) -> Edge:
         centre_line={"yes": True, "no": False}.get(params.get("lane_markings", "")),
         shape_m=_shape(element.get("shape") or middle.attrib["shape"]),
         bus_lane=any(_for_buses(lane) for lane in element.iterfind("lane")),
-        cameras_m=tuple(float(place_m) for place_m in params.get("speed_camera", "").split()),
+        cameras_m=tuple(quantity(place_m) for place_m in params.get("speed_camera", "").split()),
         school_zone=params.get("hazard") == "school_zone",
         timed_limits=timed_limits(params.get("maxspeed:conditional", ""))[0],
     )
@@ -277,7 +296,7 @@ def _road_class(edge_type: str) -> str:
 
 def _shape(text: str) -> Shape:
     points = (point.split(",") for point in text.split())
-    return tuple((float(point[0]), float(point[1])) for point in points)
+    return tuple((quantity(point[0]), quantity(point[1])) for point in points)
 
 
 def _take_connection(element: ET.Element, reading: _Reading) -> None:
@@ -320,8 +339,8 @@ def _opposite(edges: Iterable[Edge]) -> dict[str, str]:
 
 
 def _map(reading: _Reading) -> RoadNetwork:
-    bounds = tuple(float(number) for number in reading.location.get("convBoundary", "").split(",") if number)
-    offset = tuple(float(number) for number in reading.location.get("netOffset", "0,0").split(","))
+    bounds = tuple(quantity(number) for number in reading.location.get("convBoundary", "").split(",") if number)
+    offset = tuple(quantity(number) for number in reading.location.get("netOffset", "0,0").split(","))
     projection = reading.location.get("projParameter", "!")
     return RoadNetwork(
         roads=tuple(road_of(edge) for edge in reading.edges.values()),

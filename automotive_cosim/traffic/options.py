@@ -79,11 +79,11 @@ class Configuration:
         """
         return self.number("begin", 0.0)
 
-    def number(self, option: str, otherwise: float) -> float:
+    def number(self, option: str, otherwise: float, most: float = 1e9) -> float:
         """The value of an option; times may be written ``[days:]hours:minutes:seconds``.
 
         Raises:
-            ScenarioError: it is not a number.
+            ScenarioError: it is not a number, or beyond ``most`` either way.
         """
         text = self.options.get(option, "")
         try:
@@ -91,9 +91,12 @@ class Configuration:
         except ValueError:
             parts = [math.nan]
         if not all(map(math.isfinite, parts)) or len(parts) not in (1, 3, 4):
-            raise ScenarioError(f"{self.path}: {option} = {text!r} is not a number")
+            raise ScenarioError(f"{self.path}: {option} = {text[:80]!r} is not a number")
         weights = (86_400.0, 3_600.0, 60.0, 1.0)
-        return sum(part * weight for part, weight in zip(parts, weights[-len(parts) :], strict=True))
+        value = sum(part * weight for part, weight in zip(parts, weights[-len(parts) :], strict=True))
+        if abs(value) > most:
+            raise ScenarioError(f"{self.path}: {option} = {text[:80]!r} is beyond {most:g}")
+        return value
 
 
 def read_configuration(path: Path) -> Configuration:

@@ -22,7 +22,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from automotive_cosim.contracts import Answer, RoadNetwork, RoadRequest, RouteOption
+from automotive_cosim.contracts import Answer, RoadNetwork, RoadRequest, RoadShapes, RouteOption
 from automotive_cosim.errors import CosimError, TrafficError
 from automotive_cosim.traffic.accounts import Pulse, Settled
 from automotive_cosim.traffic.base import EgoPlan
@@ -31,7 +31,7 @@ from automotive_cosim.traffic.drive import Call, EgoDrive
 from automotive_cosim.traffic.ledger import Ledger, nudge, own_choice, settle
 from automotive_cosim.traffic.options import OUTPUTS, Setup
 from automotive_cosim.traffic.sumo import load_library
-from automotive_cosim.traffic.wire import Packed, pack_advance, pack_state
+from automotive_cosim.traffic.wire import Packed, pack_advance, pack_snapshot, pack_state
 from automotive_cosim.traffic.world import World
 
 if sys.platform != "win32":
@@ -135,6 +135,16 @@ class Server:
         """Finds alternative routes by news of that age."""
         assert self._drive is not None
         return self._drive.alternatives(age_s)
+
+    def do_look(self) -> Packed:
+        """Looks at everything around the ego."""
+        assert self._drive is not None
+        return pack_snapshot(self._drive.look())
+
+    def do_shapes(self) -> RoadShapes:
+        """Reads the lanes and junctions."""
+        assert self._drive is not None
+        return self._drive.shapes()
 
     def do_replay(self, calls: Sequence[Call]) -> Packed:
         """Repeats the calls of a drive; returns the state it ends in."""

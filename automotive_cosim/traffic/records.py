@@ -10,7 +10,15 @@ from __future__ import annotations
 from dataclasses import fields, make_dataclass
 from typing import Any, TypeVar, cast
 
-from automotive_cosim.contracts import Around, DrivingState, OtherVehicle, RoadAhead, RoadHere, TrafficLight
+from automotive_cosim.contracts import (
+    Around,
+    DrivingState,
+    OtherVehicle,
+    RoadAhead,
+    RoadHere,
+    SeenVehicle,
+    TrafficLight,
+)
 
 Noun = TypeVar("Noun")
 
@@ -32,3 +40,4 @@ def maker(kind: type[Noun]) -> type[Noun]:
 
 make_state, make_road, make_ahead = maker(DrivingState), maker(RoadHere), maker(RoadAhead)
 make_around, make_other, make_light = maker(Around), maker(OtherVehicle), maker(TrafficLight)
+make_seen = maker(SeenVehicle)

@@ -9,7 +9,16 @@ import copy
 import math
 from collections.abc import Sequence
 
-from automotive_cosim.contracts import KMH_PER_MPS, Answer, DrivingState, RoadNetwork, RoadRequest, RouteOption
+from automotive_cosim.contracts import (
+    KMH_PER_MPS,
+    Answer,
+    DrivingState,
+    RoadNetwork,
+    RoadRequest,
+    RoadShapes,
+    RoadSnapshot,
+    RouteOption,
+)
 from automotive_cosim.errors import ScenarioError, TrafficError
 from automotive_cosim.traffic.base import Advance, EgoPlan
 from automotive_cosim.traffic.drive import EgoDrive
@@ -107,6 +116,14 @@ class ScriptedTraffic:
     def alternatives(self, age_s: float = 0.0) -> tuple[RouteOption, ...]:
         """See ``Traffic.alternatives``."""
         return self._open().alternatives(age_s)
+
+    def look(self) -> RoadSnapshot:
+        """See ``Traffic.look``."""
+        return self._open().look()
+
+    def shapes(self) -> RoadShapes:
+        """See ``Traffic.shapes``."""
+        return self._open().shapes()
 
     def branch(self) -> ScriptedTraffic:
         """See ``Traffic.branch``."""

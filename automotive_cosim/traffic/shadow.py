@@ -15,7 +15,15 @@ from __future__ import annotations
 from collections import deque
 from weakref import WeakSet
 
-from automotive_cosim.contracts import Answer, DrivingState, RoadNetwork, RoadRequest, RouteOption
+from automotive_cosim.contracts import (
+    Answer,
+    DrivingState,
+    RoadNetwork,
+    RoadRequest,
+    RoadShapes,
+    RoadSnapshot,
+    RouteOption,
+)
 from automotive_cosim.traffic.base import Advance, Event, Traffic
 
 
@@ -66,6 +74,14 @@ class SharedTraffic:
         for shadow in self._shadows:
             shadow.hear(self.state.time_s, age_s, options)
         return options
+
+    def look(self) -> RoadSnapshot:
+        """See ``Traffic.look``."""
+        return self._traffic.look()
+
+    def shapes(self) -> RoadShapes:
+        """See ``Traffic.shapes``."""
+        return self._traffic.shapes()
 
     def branch(self) -> SharedTraffic:
         """See ``Traffic.branch``; it has no shadows."""
@@ -147,6 +163,18 @@ class Shadow:
         if self._own is None and not self._ahead:
             return self._shared.alternatives(age_s)
         return self._now().alternatives(age_s)
+
+    def look(self) -> RoadSnapshot:
+        """See ``Traffic.look``.
+
+        Raises:
+            RuntimeError: the other is ahead already.
+        """
+        return self._now().look()
+
+    def shapes(self) -> RoadShapes:
+        """See ``Traffic.shapes``."""
+        return self._shared.shapes()
 
     def branch(self) -> Traffic:
         """See ``Traffic.branch``.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from itertools import pairwise
 
-from automotive_cosim.contracts import DrivingState, Reroute, RouteOption
+from automotive_cosim.contracts import DrivingState, Reroute, RouteOption, lon_lat
 from automotive_cosim.traffic.ego import RefusedError
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.network import Network
@@ -232,7 +232,11 @@ class SumoPedals:
             return (self._sensor.route.edge_ids[-1],)
         if destination in edges:
             return (destination,)
-        if position := _lon_lat(destination):
+        try:
+            position = lon_lat(destination)
+        except ValueError as error:
+            raise RefusedError(str(error)) from error
+        if position is not None:
             if state.lon_deg is None:
                 raise RefusedError("this network has no place on earth")
             if self._network.moved:
@@ -244,12 +248,3 @@ class SumoPedals:
             raise RefusedError(f"there is no street or edge named {destination!r}")
         named.sort(key=lambda edge: math.dist(edge.shape_m[0], (state.x_m, state.y_m)))
         return tuple(edge.edge_id for edge in named[:STREET_CANDIDATES])
-
-
-def _lon_lat(text: str) -> tuple[float, float] | None:
-    """``"2.295,48.874"`` -> (lon, lat); None if it is something else."""
-    try:
-        lon_deg, lat_deg = (float(part) for part in text.split(","))
-    except ValueError:
-        return None
-    return (lon_deg, lat_deg) if abs(lon_deg) <= 180 and abs(lat_deg) <= 90 else None

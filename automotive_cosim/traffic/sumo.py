@@ -89,6 +89,19 @@ class LibSumo:
         self.lane: Any = lane
         self.person: Any = library.person
         self.simulation: Any = simulation
+        self.light_ids: Callable[[], Sequence[str]] = library.trafficlight.getIDList
+        self.controlled_links: Callable[[str], Sequence[Sequence[tuple[str, str, str]]]] = (
+            library.trafficlight.getControlledLinks
+        )
+        self.junction: Any = library.junction
+        self._around = library.CMD_GET_VEHICLE_VARIABLE
+        self._looks = (
+            library.VAR_TYPE,
+            library.VAR_POSITION,
+            library.VAR_ANGLE,
+            library.VAR_SPEED,
+            library.VAR_SIGNALS,
+        )
         self.light_state: Callable[[str], str] = compiled("trafficlight_getRedYellowGreenState")
         self.friction: Callable[[str], float] = lane.getFriction
         self.lane_speed: Callable[[str], float] = lane.getMaxSpeed
@@ -103,6 +116,20 @@ class LibSumo:
         for vehicle in self.vehicle_ids():
             if lane := lane_of(vehicle):
                 yield lane.rpartition("_")[0], speed(vehicle)
+
+    def vehicles_around(
+        self, vehicle: str, radius_m: float
+    ) -> Sequence[tuple[str, str, tuple[float, float], float, float, int]]:
+        """The vehicles in and beside lanes within a radius of one, which is among them, sorted by id: id, type,
+        position, angle, speed, signals.
+
+        Raises:
+            one of ``refusals``: it is not on the road.
+        """
+        self.vehicle.subscribeContext(vehicle, self._around, radius_m, self._looks)
+        found = self.vehicle.getContextSubscriptionResults(vehicle)
+        self.vehicle.unsubscribeContext(vehicle, self._around, radius_m)
+        return [(each, *(values[look] for look in self._looks)) for each, values in sorted(found.items())]
 
 
 def _compiled(library: Any) -> Callable[[str], Any]:

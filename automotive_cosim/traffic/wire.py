@@ -6,7 +6,16 @@ from dataclasses import fields
 from operator import attrgetter
 from typing import Any, TypeAlias
 
-from automotive_cosim.contracts import Around, DrivingState, OtherVehicle, RoadAhead, RoadHere, TrafficLight
+from automotive_cosim.contracts import (
+    Around,
+    DrivingState,
+    OtherVehicle,
+    RoadAhead,
+    RoadHere,
+    RoadSnapshot,
+    SeenVehicle,
+    TrafficLight,
+)
 from automotive_cosim.traffic.base import Advance, Event
 from automotive_cosim.traffic.records import (
     make_ahead,
@@ -14,6 +23,7 @@ from automotive_cosim.traffic.records import (
     make_light,
     make_other,
     make_road,
+    make_seen,
     make_state,
 )
 
@@ -25,7 +35,7 @@ def _getter(kind: type) -> attrgetter[Packed]:
 
 
 _STATE, _ROAD, _AHEAD, _AROUND = (_getter(kind) for kind in (DrivingState, RoadHere, RoadAhead, Around))
-_OTHER, _LIGHT, _EVENT = (_getter(kind) for kind in (OtherVehicle, TrafficLight, Event))
+_OTHER, _LIGHT, _EVENT, _SEEN = (_getter(kind) for kind in (OtherVehicle, TrafficLight, Event, SeenVehicle))
 _ROAD_AT, _AHEAD_AT, _AROUND_AT = (
     [f.name for f in fields(DrivingState)].index(n) for n in ("road", "ahead", "around")
 )
@@ -66,3 +76,14 @@ def unpack_advance(packed: Packed) -> Advance:
     """The advance that was packed."""
     states, events = packed
     return Advance(tuple(map(unpack_state, states)), tuple(Event(*event) for event in events))
+
+
+def pack_snapshot(snapshot: RoadSnapshot) -> Packed:
+    """A snapshot as nested tuples."""
+    return snapshot.time_s, tuple(map(_SEEN, snapshot.vehicles)), snapshot.lights
+
+
+def unpack_snapshot(packed: Packed) -> RoadSnapshot:
+    """The snapshot that was packed."""
+    time_s, vehicles, lights = packed
+    return RoadSnapshot(time_s, tuple(make_seen(*vehicle) for vehicle in vehicles), lights)

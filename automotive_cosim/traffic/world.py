@@ -10,7 +10,7 @@ from difflib import get_close_matches
 from itertools import pairwise
 from pathlib import Path
 
-from automotive_cosim.contracts import EgoEnd, RoadIncident, RouteOption
+from automotive_cosim.contracts import EgoEnd, RoadIncident, RoadShapes, RoadSnapshot, RouteOption
 from automotive_cosim.errors import NoRoomError, ScenarioError, TrafficError
 from automotive_cosim.scenarios import Trip
 from automotive_cosim.traffic.base import EgoPlan, Event, WarmUpProgress
@@ -19,6 +19,7 @@ from automotive_cosim.traffic.congestion import MEMORY_S, SAMPLE_PERIOD_S, WINDO
 from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.ego import FOR_GOOD_S, Driver
 from automotive_cosim.traffic.instant import Instant, KnownInstant
+from automotive_cosim.traffic.lookout import Lookout, read_shapes
 from automotive_cosim.traffic.network import read_network
 from automotive_cosim.traffic.options import Setup, command_line, read_configuration, run_options
 from automotive_cosim.traffic.profiles import DriverProfile, profile
@@ -248,6 +249,7 @@ class EgoRoad:
         self._pedals = pedals
         self.step_s = world.step_s
         self._conflicts = Conflicts(sumo, EGO)
+        self._lookout = Lookout(sumo, EGO)
         self._look_steps = max(1, round(LOOK_S / self.step_s))
         self._steps = 0
         self.now: Instant = KnownInstant(sensor.read(hazard_lights=False, vehicle_count=world.vehicle_count).state)
@@ -276,6 +278,14 @@ class EgoRoad:
     def alternatives(self, age_s: float) -> tuple[RouteOption, ...]:
         """See ``drive.Road``."""
         return self._pedals.alternatives(age_s)
+
+    def look(self) -> RoadSnapshot:
+        """See ``drive.Stepper``."""
+        return self._lookout.look()
+
+    def shapes(self) -> RoadShapes:
+        """See ``drive.Stepper``."""
+        return read_shapes(self._sumo)
 
     def _mishaps(self) -> tuple[EgoEnd | None, tuple[Event, ...]]:
         """Why the ego's drive ended in this step, if it did, and events of other vehicles."""

@@ -9,8 +9,8 @@ from automotive_cosim.agents import AgentSettings, ModelAgent, make_agent
 from automotive_cosim.agents.settings import ASURADA, T3A
 from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.errors import ModelError
+from automotive_cosim.geo.earth import METRES_PER_DEGREE
 from automotive_cosim.geo.gps import Gps
-from automotive_cosim.geo.place import METRES_PER_DEGREE
 from automotive_cosim.interface import trace
 from automotive_cosim.models import ModelReply, make_model
 from automotive_cosim.run.episode import End, EpisodeSetup, run_episode

@@ -45,6 +45,19 @@ def test_a_wrong_argument_is_one_line(cli, tmp_path, arguments, words):
     assert not list(tmp_path.iterdir())
 
 
+def test_a_row_of_an_episode_that_was_not_planned_is_not_replayed(cli, tmp_path):
+    manifest = {"format": 1, "plan": {"agents": ["oracle"], "tasks": ["hvac_fan_max"]}, "starts": []}
+    row = dict(id="own-1", task="hvac_fan_max", half="first", pair="", dimension="explicit_control", module="hvac",
+               scenario="grid", agent="oracle", model="none", geo="full", seed=0, repeat=0)  # fmt: skip
+    (tmp_path / "manifest.json").write_text(json.dumps(manifest))
+    (tmp_path / "episodes.jsonl").write_text(json.dumps(row) + "\n")
+    _assert_refused(cli("replay", ".", "own"), "manifest.json has no episode own-1")
+    for command in (["report", "."], ["compare", ".", "."], ["regrade", "."]):
+        for text in ("{}", '{"format": 1}', '{"format": 1, "plan": 3}', "[" * 10_000):
+            (tmp_path / "manifest.json").write_text(text)
+            _assert_refused(cli(*command))
+
+
 @pytest.mark.parametrize("arguments", [["rnu"], ["--verson"], ["tasks", "show", "hvac_fan_mix"], ["tasks", "lst"]])
 def test_so_is_a_wrong_command(cli, arguments):
     _assert_refused(cli(*arguments))

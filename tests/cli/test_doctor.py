@@ -57,7 +57,7 @@ def _no_spec(missing):
 def test_links_that_git_left_as_text_are_found(monkeypatch):
     monkeypatch.setattr(doctor, "find_spec", _no_spec(lambda name: name == "automotive_cosim.tasks"))
     found = doctor._folders()
-    assert found.state is doctor.State.MISSING
+    assert found.state is doctor.Health.MISSING
     assert "core.symlinks" in found.fix
 
 
@@ -65,19 +65,19 @@ def test_missing_fonts_are_found(monkeypatch):
     monkeypatch.setattr(theme, "find_spec", _no_spec(lambda name: name == "font_roboto"))
     theme.font.cache_clear()
     found = doctor._fonts()
-    assert found.state is doctor.State.MISSING
+    assert found.state is doctor.Health.MISSING
     assert "font_roboto" in found.found
 
 
 def test_a_system_without_fork_is_limited_not_refused(monkeypatch):
     monkeypatch.delattr(os, "fork")
-    assert doctor._processes().state is doctor.State.LIMITED
+    assert doctor._processes().state is doctor.Health.LIMITED
 
 
 def test_little_memory_and_little_disk_are_limits(monkeypatch):
     monkeypatch.setattr(doctor, "MEMORY_MB", 10**9)
     monkeypatch.setattr(doctor, "DISK_MB", 10**9)
-    assert {doctor._memory().state, doctor._disk().state} == {doctor.State.LIMITED}
+    assert {doctor._memory().state, doctor._disk().state} == {doctor.Health.LIMITED}
 
 
 def test_a_machine_that_lets_nothing_listen_is_limited(monkeypatch):
@@ -86,12 +86,12 @@ def test_a_machine_that_lets_nothing_listen_is_limited(monkeypatch):
 
     monkeypatch.setattr(socket, "create_server", refuse)
     found = doctor._ports()
-    assert found.state is doctor.State.LIMITED
+    assert found.state is doctor.Health.LIMITED
     assert "not permitted" in found.found
 
 
 def test_each_extra_of_the_package_is_known():
     from importlib.metadata import metadata
 
-    declared = set(metadata("automotive-cosim").get_all("Provides-Extra")) - {"test", "dev"}
+    declared = set(metadata("automotive-cosim").get_all("Provides-Extra")) - {"test", "dev", "docs"}
     assert declared == set(doctor.EXTRAS)

@@ -109,19 +109,20 @@ def test_other_ends_have_codes_of_their_own(cli, monkeypatch, error, code):
     assert len(ran.err.splitlines()) == 1
 
 
-FILES = {
+OTHERS = {
+    ("mcp",), ("serve",),
     ("report",), ("playback",), ("screens",), ("schema",), ("study", "report"), ("tasks", "export"),
     ("signals", "export"), ("scenarios", "render"), ("scenarios", "import"), ("scenarios", "day"),
     ("scenarios", "download"),
 }  # fmt: skip
-"""Commands whose result is a file."""
+"""Commands whose result is a file, or a server."""
 
 
 @pytest.mark.parametrize("command", list(every_command()), ids=" ".join)
 def test_every_command_that_lists_or_reports_does_so_as_json(cli, command):
     told = cli(*command, "--help").out
     is_group = "COMMAND" in told.split("Options")[0]
-    assert ("--json" in told) is (command not in FILES and not is_group)
+    assert ("--json" in told) is (command not in OTHERS and not is_group)
 
 
 @pytest.mark.parametrize(

@@ -32,7 +32,7 @@ def test_json_prints_one_object_and_the_record_has_a_film_of_every_step(cli, tmp
     folder = tmp_path / told["out"]
     assert folder.parent == tmp_path / "runs"
     left = {path.name for path in folder.iterdir()}
-    assert left == {"episode.json", "steps.jsonl", "screenshots", "episode.webp", "summary.html"}
+    assert left == {"episode.json", "steps.jsonl", "screenshots", "road.jsonl.gz", "episode.webp", "summary.html"}
     film = folder / "episode.webp"
     assert film.stat().st_size < 5e6
     with Image.open(film) as image:

@@ -6,8 +6,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from automotive_cosim.cockpit.actions import FIELDS, check, grammar, parse, to_json
-from automotive_cosim.contracts import Action, ActionType, AlertKind, Direction, GoalStatus, Severity
+from automotive_cosim.cockpit.actions import FIELDS, check, grammar, parse, perform, to_json
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.contracts import Action, ActionType, AlertKind, Direction, FeedbackCode, GoalStatus, Severity
 from automotive_cosim.errors import ActionError
 
 SAMPLES = {
@@ -93,6 +94,8 @@ def test_target_is_an_index_or_a_point_never_both(kind: ActionType):
         ({"action_type": "request_slow_down", "speed_kmh": -1}, "0 to 300"),
         ({"action_type": "status", "goal_status": "done"}, "complete"),
         ("[" * 100_000, "not JSON"),
+        ('{"action_type": "click", "x": 1e999, "y": 3}', "int"),
+        ('{"action_type": "click", "x": 1' + "0" * 400 + ', "y": 3}', "-2147483647 to 2147483647"),
     ],
 )
 def test_what_is_wrong_is_said(sent: object, said: str):
@@ -128,3 +131,13 @@ def test_anything_is_an_action_or_an_action_error(value: object):
         assert str(error)
     else:
         assert check(action) is action
+
+
+@pytest.mark.parametrize("destination", ["nan,nan", "inf,0", "181,0", "0,-90.5", "1e300,1e300"])
+def test_a_route_to_no_place_on_earth_is_refused(cockpit: Cockpit, destination: str):
+    asked = perform(Action(ActionType.REQUEST_REROUTE, destination=destination), cockpit, ())
+    assert asked.code is FeedbackCode.REFUSED
+    assert "no place on earth" in asked.text
+    assert (
+        perform(Action(ActionType.REQUEST_REROUTE, destination="2.35,48.85"), cockpit, ()).code is FeedbackCode.OK
+    )

@@ -15,7 +15,7 @@ from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import Json
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
 from automotive_cosim.run.script import ScriptedAgent
-from automotive_cosim.service import EpisodeService, Limits
+from automotive_cosim.service import EpisodeService, ServiceLimits
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
 
@@ -52,7 +52,7 @@ def trace(simulations: Simulations) -> str:
 
 @pytest.fixture
 def service(simulations: Simulations) -> Iterator[EpisodeService]:
-    with closing(EpisodeService(simulations, Limits(episodes=2))) as made:
+    with closing(EpisodeService(simulations, ServiceLimits(episodes=2))) as made:
         yield made
 
 

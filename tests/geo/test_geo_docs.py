@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Callable
 from datetime import datetime
 from pathlib import Path
@@ -59,6 +60,14 @@ def test_the_refusal_is_the_one_shown(folder: Path) -> None:
     with pytest.raises(GeoDataError) as error:
         CliRunner().invoke(APP, arguments, catch_exceptions=False)
     assert f"error: {error.value}\n" == _block("text", 1)
+
+
+def test_the_rules_of_each_status_are_counted() -> None:
+    atlas = Geo().atlas
+    entries = [entry for code in {name[:2] for name in atlas.codes()} for entry in atlas.country(code)]
+    counts = Counter(str(rule.status) for entry in entries for rule in entry.rules)
+    told = re.findall(r"^\| `(\w+)` \| [^|]* \| (\d+) \|$", DOC, re.MULTILINE)
+    assert {status: int(count) for status, count in told} == counts
 
 
 @pytest.mark.parametrize("line", re.findall(r"^    automotive-cosim context (.*)$", DOC, re.MULTILINE))

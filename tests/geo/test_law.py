@@ -8,8 +8,10 @@ from zoneinfo import ZoneInfo
 
 import pytest
 
+from automotive_cosim.geo.applied import OWN_LAW, limits
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.locate import Geo
+from automotive_cosim.geo.place import Place
 from automotive_cosim.geo.rules import Rule, Status
 from automotive_cosim.geo.situation import Situation
 
@@ -51,6 +53,10 @@ STATEMENTS: list[tuple[str, str, Mapping[str, object], object]] = [
     ("FR.limit.two_lanes.rain", "R413-2", {"lanes": 2} | RAIN, 80),
     ("FR.limit.rural", "R413-2", {}, 80),
     ("FR.limit.built_up", "R413-3", TOWN, 50),
+    ("FR.limit.living_street", "R110-2", TOWN | {"road_class": "living_street"}, 20),
+    ("FR.limit.living_street", "R110-2", TOWN, None),
+    ("CH.limit.living_street", "22b", TOWN | {"road_class": "living_street"}, 20),
+    ("CH.limit.living_street", "22b", TOWN, None),
     ("FR.limit.peripherique", "R413-3", {"street": "Boulevard Périphérique Extérieur"}, 70),
     (
         "FR.limit.peripherique",
@@ -320,6 +326,48 @@ def test_the_innermost_layer_with_a_limit_for_this_road_wins(
     found = locate(*place, **changes).default_limit
     assert found is not None
     assert (found.rule.id, found.value, found.rule.unit) == (rule_id, value, unit)
+
+
+ZURICH, MUNICH, OSLO, ROME = (47.375, 8.54), (48.14, 11.57), (59.91, 10.75), (41.90, 12.50)
+
+
+@pytest.mark.parametrize(
+    ("place", "kmh", "status"),
+    [
+        (PARIS, 20, Status.VERIFIED),
+        (BEAUCE, 20, Status.VERIFIED),
+        (ZURICH, 20, Status.VERIFIED),
+        (MUNICH, 7, Status.SECONDARY),
+        (OSLO, 7, Status.KNOWLEDGE),
+    ],
+)
+def test_a_living_street_has_the_limit_of_its_own_sign(
+    locate: Callable[..., GeoContext], place: tuple[float, float], kmh: float, status: Status
+) -> None:
+    """Before that of its country's towns, and before that of its city."""
+    (found,) = locate(*place, road_class="living_street").default_limits
+    assert (found.value, found.rule.status, found.certain) == (kmh, status, True)
+
+
+@pytest.mark.parametrize("code", [code for code in Geo().atlas.codes() if len(code) == 2])
+def test_no_general_rule_is_certain_of_a_street_with_a_law_of_its_own(
+    geo: Geo, situation: Callable[..., Situation], code: str
+) -> None:
+    place = Place(country=code, layers=tuple(e for e in geo.atlas.country(code) if e.kind == "country"))
+    for road_class in OWN_LAW:
+        for found in limits(place, situation(road_class=road_class, built_up=True)):
+            classes = [test.argument for test in found.rule.tests if test.word == "road_classes"]
+            assert found.certain is any(road_class in named for named in classes) or not found.rule.fixed
+
+
+def test_rain_slows_an_italian_dual_carriageway_and_a_town_a_spanish_motorway(
+    rules: dict[str, Rule], situation: Callable[..., Situation]
+) -> None:
+    wet = situation(dual_carriageway=True, **RAIN)
+    assert rules["IT.limit.dual.rain"].answer(wet) == (90, True)
+    assert rules["IT.limit.dual.rain"].answer(situation(dual_carriageway=True))[0] is None
+    urban = situation(**(MOTORWAY | TOWN))
+    assert rules["ES.limit.motorway.built_up"].answer(urban) == (80, True)
 
 
 def test_where_the_network_does_not_tell_every_possible_limit_stands(locate: Callable[..., GeoContext]) -> None:

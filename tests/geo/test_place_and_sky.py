@@ -8,6 +8,8 @@ from datetime import UTC, datetime, timedelta
 from zoneinfo import ZoneInfo
 
 import pytest
+import shapely
+import tzfpy
 
 from automotive_cosim.contracts import Weather
 from automotive_cosim.errors import UserError
@@ -73,6 +75,40 @@ def test_the_border_is_flagged_on_both_sides_and_not_inland(atlas: Atlas) -> Non
     assert (strasbourg.country, strasbourg.near_border_to) == ("FR", ("DE",))
     assert (kehl.country, kehl.near_border_to) == ("DE", ("FR",))
     assert atlas.place(1.8, 48.2).near_border_to == ()
+
+
+@pytest.mark.parametrize(
+    ("lat", "lon", "country", "near"),
+    [
+        (51.4436, 4.9296, "NL", ("BE",)),
+        (51.4474, 4.9316, "NL", ("BE",)),
+        (51.40, 4.95, "BE", ("NL",)),
+        (43.735, 7.418, "MC", ("FR",)),
+        (41.903, 12.453, "VA", ("IT",)),
+        (41.92, 12.46, "IT", ("VA",)),
+        (47.697, 8.689, "DE", ("CH",)),
+    ],
+)
+def test_an_enclave_is_near_however_small(
+    atlas: Atlas, lat: float, lon: float, country: str, near: tuple[str, ...]
+) -> None:
+    """Among them Baarle-Nassau, whose Belgian parcels begin 140 m away, the Vatican and Büsingen."""
+    place = atlas.place(lon, lat)
+    assert (place.country, place.near_border_to) == (country, near)
+
+
+def test_the_border_is_near_all_along(atlas: Atlas) -> None:
+    """On both sides of corners of Luxembourg's polygon, a kilometre off."""
+    outline = shapely.from_geojson(tzfpy.get_tz_polygon_geojson("Europe/Luxembourg"))
+    corners = shapely.get_coordinates(outline)
+    seen = set()
+    for lon, lat in corners[:: len(corners) // 25]:
+        for east in (-0.012, 0.012):
+            place = atlas.place(lon + east, lat)
+            seen.add(place.country)
+            assert place.country == "LU" or "LU" in place.near_border_to
+            assert place.country != "LU" or place.near_border_to
+    assert {"LU", "DE"} <= seen
 
 
 def test_the_border_of_a_region_is_flagged(atlas: Atlas) -> None:

@@ -11,6 +11,7 @@ import pytest
 
 from automotive_cosim.contracts import DrivingState, GpsFix
 from automotive_cosim.geo.connectivity import ATTACH_S, Modem
+from automotive_cosim.geo.earth import METRES_PER_DEGREE
 from automotive_cosim.geo.gps import (
     BUILT_UP_SIGMA_M,
     CANYON_SIGMA_M,
@@ -19,7 +20,6 @@ from automotive_cosim.geo.gps import (
     REACQUIRE_S,
     Gps,
 )
-from automotive_cosim.geo.place import METRES_PER_DEGREE
 
 Drive = Callable[..., DrivingState]
 

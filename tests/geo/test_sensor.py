@@ -16,9 +16,9 @@ from hypothesis import strategies as st
 from automotive_cosim.contracts import Connectivity, DrivingState, GpsFix, LimitSource, OtherVehicle, Weather
 from automotive_cosim.geo import sensor
 from automotive_cosim.geo.context import GeoContext
+from automotive_cosim.geo.earth import METRES_PER_DEGREE, metres_per_degree_east
 from automotive_cosim.geo.gps import Gps
 from automotive_cosim.geo.locate import Geo
-from automotive_cosim.geo.place import METRES_PER_DEGREE, metres_per_degree_east
 from automotive_cosim.geo.reckoning import reckon
 from automotive_cosim.geo.sensor import ask
 

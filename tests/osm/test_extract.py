@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import gzip
+import json
 from collections.abc import Callable
 from pathlib import Path
 
@@ -25,6 +27,36 @@ def test_the_content_decides_and_not_the_name(formats: dict[str, Path], tmp_path
         renamed = tmp_path / f"download{ending.replace('.', '-')}"
         renamed.write_bytes(path.read_bytes())
         assert extract.read(renamed) == extract.read(formats[""])
+
+
+def _as_json(path: Path, *, with_positions: bool) -> bytes:
+    """The file as an Overpass server answers ``[out:json]``, the nodes apart or (``out geom``) with the ways."""
+    import osmium
+
+    positions: dict[int, dict[str, float]] = {}
+    elements: list[dict[str, object]] = []
+    for item in osmium.FileProcessor(str(path)):
+        tags = {tag.k: tag.v for tag in item.tags}
+        if item.is_node():
+            positions[item.id] = {"lat": item.location.lat, "lon": item.location.lon}
+            if tags or not with_positions:
+                elements.append({"type": "node", "id": item.id, "tags": tags} | positions[item.id])
+        elif item.is_way():
+            refs = [node.ref for node in item.nodes]
+            way: dict[str, object] = {"type": "way", "id": item.id, "tags": tags, "nodes": refs}
+            elements.append(way | ({"geometry": [positions[ref] for ref in refs]} if with_positions else {}))
+    return json.dumps({"version": 0.6, "generator": "Overpass API", "elements": elements}).encode()
+
+
+@pytest.mark.parametrize("with_positions", [False, True])
+@pytest.mark.parametrize("packed", [False, True])
+def test_the_json_of_a_server_gives_the_same_roads(
+    with_positions: bool, packed: bool, formats: dict[str, Path], tmp_path: Path
+) -> None:
+    data = _as_json(formats[""], with_positions=with_positions)
+    file = tmp_path / "answer"
+    file.write_bytes(gzip.compress(data) if packed else data)
+    assert extract.read(file) == extract.read(formats[""])
 
 
 def test_only_roads_that_cars_may_use_are_read(formats: dict[str, Path]) -> None:
@@ -75,9 +107,18 @@ def test_a_way_clipped_by_the_extract_keeps_its_longest_stretch(tmp_path: Path) 
         (b"once upon a time", "not OSM data"),
         (b'<?xml version="1.0"?><net version="1.20"><edge id="a"/></net>', "not OSM"),
         (b"<!DOCTYPE html><html><body>429 Too Many Requests</body></html>", "not OSM"),
-        (b'{"version": 0.6, "elements": []}', "not OSM data"),
+        (b'{"version": 0.6, "elements": []}', "no roads for cars"),
+        (b'{"version": 0.6}', "no OSM elements"),
+        (b'{"version": 0.6, "elements": [', "truncated"),
+        (b'[{"type": "Feature"}]', "no OSM elements"),
+        (b'{"elements": [{"type": "way", "id": 1, "tags": {"highway": "primary"}}]}', "without its nodes"),
+        (b'{"elements": [{"type": "node", "id": 1, "lat": 99, "lon": 2}]}', "without a position"),
         (OSM % b"", "no roads for cars"),
         (OSM % b'<node id="1" lat="48" lon="2"/>', "no roads for cars"),
+        (OSM % b'<node id="1" lat="nan" lon="2"/>', "lat is 'nan'; it is from -90 to 90"),
+        (OSM % b'<node id="1" lat="1e300" lon="2"/>', "lat is '1e300'; it is from -90 to 90"),
+        (OSM % b'<node id="1" lat="48" lon="-180.1"/>', "lon is '-180.1'; it is from -180 to 180"),
+        (OSM % b'<node id="99999999999999999999" lat="48" lon="2"/><way id="1"><nd ref="1"/></way>', "id"),
         (OSM % b'<way id="1"><nd ref="1"/><nd ref="2"/><tag k="highway" v="primary"/></way>', "no roads for cars"),
     ],
 )

@@ -7,7 +7,7 @@ import re
 import string
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from automotive_cosim.geo.place import Atlas, Place, shipped
@@ -15,7 +15,7 @@ from automotive_cosim.osm.assumed import assumed_sign
 from automotive_cosim.osm.country import LEFT_HAND, LIMITS, WORLD, assumed_limit_kmh
 from automotive_cosim.osm.extract import ROAD_CLASSES
 from automotive_cosim.osm.limits import CAR_KEYS, NO_UNIT, ZONE_KEYS, built_up_of, doubts, kmh_of, stated_limits
-from automotive_cosim.osm.roads import Road
+from automotive_cosim.osm.roads import MappedRoad
 
 NETCONVERT_READS = re.compile(r"none|\d+(\.\d+)?( mph)?")
 
@@ -41,15 +41,16 @@ TAGS = st.dictionaries(
 )
 
 
-def read(tags: dict[str, str], country: str = "FR", road_class: str = "tertiary") -> Road:
+def read(tags: dict[str, str], country: str = "FR", road_class: str = "tertiary") -> MappedRoad:
     """A road outside towns."""
     tags = {"highway": road_class} | tags
     place = Place(country=country, layers=tuple(e for e in shipped().country(country) if e.kind == "country"))
     built_up = built_up_of(tags)
     assumed = assumed_sign(tags, shipped(), place, built_up=bool(built_up))
-    return Road(tags, country, stated_limits(tags), assumed, built_up, is_dense=False)
+    return MappedRoad(tags, country, stated_limits(tags), assumed, built_up, is_dense=False)
 
 
+@settings(deadline=None)
 @given(TAGS, st.sampled_from(sorted(ROAD_CLASSES)), st.sampled_from([*LIMITS, "", "XX"]))
 def test_every_road_gets_one_limit_for_each_direction(tags: dict[str, str], road_class: str, country: str) -> None:
     road = read(tags, country, road_class)
@@ -62,6 +63,7 @@ def test_every_road_gets_one_limit_for_each_direction(tags: dict[str, str], road
         assert ("zone:traffic:assumed" in road.parameters(edge)) == (road.built_up is None)
 
 
+@settings(deadline=None)
 @given(TAGS, st.sampled_from(ZONES), st.sampled_from([*ZONE_KEYS, "zone:traffic"]))
 def test_no_zone_overrides_a_sign(tags: dict[str, str], zone: str, key: str) -> None:
     """Whatever else is said: adding or changing a zone leaves the limit of a road with a number as it is."""

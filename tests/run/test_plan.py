@@ -134,7 +134,7 @@ def test_a_file_says_what_the_options_say(tmp_path):
         ({"seeds": ["0"]}, "it must be a whole number"),
         ({"seeds": [-1]}, "it must be a whole number from 0 to 2147483647"),
         ({"seeds": []}, "seeds is empty"),
-        ({"repeats": 0}, "repeats is 0; it must be a whole number of at least 1"),
+        ({"repeats": 0}, "repeats is 0; it must be a whole number from 1 to 1000"),
         ({"repeats": 1.5}, "whole number"),
         ({"modes": "monitoring"}, "it must be a list of any of 'prompted', 'monitoring', not empty"),
         ({"held_out": "yes"}, "held_out is 'yes'; it must be true or false"),

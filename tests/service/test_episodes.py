@@ -20,7 +20,7 @@ from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import End, EpisodeSpec, SeedSource
 from automotive_cosim.errors import TrafficError, UnknownNameError, UserError
 from automotive_cosim.interface.observe import ALL, Channel
-from automotive_cosim.service import EpisodeService, Limits
+from automotive_cosim.service import EpisodeService, ServiceLimits
 from automotive_cosim.traffic.fork import Simulations
 
 SPEC = EpisodeSpec("hvac_fan_max", scenario="grid")
@@ -47,7 +47,7 @@ def serve(simulations: Simulations, clock: Clock) -> Iterator[Callable[..., Epis
     made: list[EpisodeService] = []
 
     def serve_(**limits: float) -> EpisodeService:
-        made.append(EpisodeService(simulations, Limits(**limits), clock))  # type: ignore[arg-type]
+        made.append(EpisodeService(simulations, ServiceLimits(**limits), clock))  # type: ignore[arg-type]
         return made[-1]
 
     yield serve_
@@ -231,4 +231,4 @@ def test_closing_ends_every_episode(serve):
 @pytest.mark.parametrize("limits", [{"episodes": 0}, {"idle_s": 0}, {"idle_s": float("nan")}])
 def test_limits_are_above_zero(limits):
     with pytest.raises(UserError, match="above 0"):
-        Limits(**limits)
+        ServiceLimits(**limits)

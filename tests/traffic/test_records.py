@@ -7,11 +7,21 @@ from dataclasses import FrozenInstanceError, fields, replace
 
 import pytest
 
-from automotive_cosim.contracts import Around, DrivingState, OtherVehicle, RoadAhead, RoadHere, TrafficLight
+from automotive_cosim.contracts import (
+    Around,
+    DrivingState,
+    OtherVehicle,
+    RoadAhead,
+    RoadHere,
+    SeenVehicle,
+    TrafficLight,
+)
 from automotive_cosim.traffic.records import maker
 
 
-@pytest.mark.parametrize("kind", [Around, DrivingState, OtherVehicle, RoadAhead, RoadHere, TrafficLight])
+@pytest.mark.parametrize(
+    "kind", [Around, DrivingState, OtherVehicle, RoadAhead, RoadHere, SeenVehicle, TrafficLight]
+)
 def test_a_quick_record_is_the_class_itself(kind: type) -> None:
     values = tuple(f"value {number}" for number in range(len(fields(kind))))
     quick, usual = maker(kind)(*values), kind(*values)

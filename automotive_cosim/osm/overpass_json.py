@@ -1,0 +1,99 @@
+"""Reads the JSON of an Overpass server (``[out:json]``), also as OSMnx caches it, plain or gzipped.
+
+Ways name their nodes, which follow as elements of their own (``out body; >; out skel;``), or carry them along with
+their positions (``out geom;``).
+"""
+
+from __future__ import annotations
+
+import gzip
+import json
+import zlib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from automotive_cosim.errors import ImportMapError
+
+Tags = Mapping[str, str]
+
+
+def is_json(head: bytes) -> bool:
+    """Whether a file that begins with these bytes is JSON, also gzipped."""
+    if head.startswith(b"\x1f\x8b"):
+        try:
+            head = zlib.decompressobj(wbits=31).decompress(head, 64)
+        except zlib.error:
+            return False
+    return head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith((b"{", b"["))
+
+
+class OverpassJson:
+    """The elements of one answer."""
+
+    def __init__(self, source: Path) -> None:
+        """Reads a file.
+
+        Raises:
+            ImportMapError: it is truncated, or not the JSON of an Overpass server.
+        """
+        try:
+            data = source.read_bytes()
+            read = json.loads(gzip.decompress(data) if data.startswith(b"\x1f\x8b") else data)
+        except (OSError, EOFError, zlib.error, ValueError, RecursionError) as error:
+            raise ImportMapError(f"{source} is truncated or not JSON ({error}); download it again") from error
+        elements = read.get("elements") if isinstance(read, dict) else None
+        if not isinstance(elements, list) or not all(isinstance(element, dict) for element in elements):
+            raise ImportMapError(
+                f"{source} is JSON but has no OSM elements; give the answer of an Overpass server ([out:json])"
+            )
+        self._source = source
+        self._elements: list[dict[str, Any]] = elements
+
+    def ways(self) -> Iterator[tuple[int, Tags, tuple[int, ...]]]:
+        """Id, tags and nodes of each way."""
+        for way in self._of("way"):
+            yield self._number(way, "id"), _tags(way), tuple(self._refs(way))
+
+    def nodes(self) -> Iterator[tuple[int, Tags, tuple[float, float]]]:
+        """Id, tags, longitude and latitude of each node, those that ways carry along first."""
+        for way in self._of("way"):
+            for ref, place in zip(self._refs(way), way.get("geometry") or (), strict=False):
+                if isinstance(place, dict):
+                    yield ref, {}, self._position(place)
+        for node in self._of("node"):
+            yield self._number(node, "id"), _tags(node), self._position(node)
+
+    def relations(self) -> Iterator[tuple[int, Tags, tuple[tuple[str, int, str], ...]]]:
+        """Id, tags and members of each relation."""
+        for relation in self._of("relation"):
+            members = relation.get("members") or ()
+            rows = tuple((str(m.get("type"))[:1], self._number(m, "ref"), str(m.get("role", ""))) for m in members)
+            yield self._number(relation, "id"), _tags(relation), rows
+
+    def _of(self, kind: str) -> Iterator[dict[str, Any]]:
+        return (element for element in self._elements if element.get("type") == kind)
+
+    def _refs(self, way: Mapping[str, Any]) -> list[int]:
+        refs = way.get("nodes")
+        if not isinstance(refs, list) or not all(isinstance(ref, int) for ref in refs):
+            raise ImportMapError(
+                f"{self._source} has way {way.get('id')} without its nodes; ask for them: out body; >; out skel;"
+            )
+        return refs
+
+    def _number(self, element: Mapping[str, Any], key: str) -> int:
+        value = element.get(key)
+        if not isinstance(value, int):
+            raise ImportMapError(f"{self._source} has an element whose {key} is {value!r}; download it again")
+        return value
+
+    def _position(self, element: Mapping[str, Any]) -> tuple[float, float]:
+        lon, lat = element.get("lon"), element.get("lat")
+        if not isinstance(lon, int | float) or not isinstance(lat, int | float) or abs(lon) > 180 or abs(lat) > 90:
+            raise ImportMapError(f"{self._source} has node {element.get('id')} without a position on earth")
+        return float(lon), float(lat)
+
+
+def _tags(element: Mapping[str, Any]) -> Tags:
+    return {str(key): str(value) for key, value in (element.get("tags") or {}).items()}

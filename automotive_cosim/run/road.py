@@ -1,0 +1,128 @@
+"""``road.jsonl.gz``: the road of a recorded drive, with every vehicle around the car once a simulated second.
+
+It is a gzipped text with one JSON object per line. Lengths are in metres in the network's coordinates (x to the
+east, y to the north), angles in degrees clockwise from north, and times in seconds since the hand-over. The first
+line says ``format``; every other line has one of these keys:
+
+    lanes      [[kind, width, [x, y, x, y, …], [[light, place], …]], …]   as they come into sight, each once
+    junctions  [[x, y, x, y, …], …]                                       outlines, with the lanes
+    vehicles   [[number, id, class, length, width], …]                    before a vehicle is first seen
+    at_s       one second of the drive:
+               seen       [[number, x, y, heading, speed in m/s, signals], …]; x and y of the front bumper; the car
+                          under test is ``ego``; signals are the bits of ``contracts.SumoSignal``
+               lights     {light: state} of those that have changed; a lane's ``place`` is that of its letter
+               speed_kmh, limit_kmh, road, local_time, sun_deg (elevation; null without a place), weather_code (WMO)
+               incidents  [[kind, x, y], …]
+               events     [text, …]
+
+The file is written while the drive goes on; what a kill leaves is readable up to the last whole line.
+"""
+
+from __future__ import annotations
+
+import gzip
+import json
+import zlib
+from bisect import bisect_right
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from automotive_cosim.contracts import Json, LaneShape, RoadShapes, SeenVehicle
+from automotive_cosim.errors import UserError
+
+FORMAT = 1
+NAME = "road.jsonl.gz"
+
+GroundLine = tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Second:
+    """The road at one second of a drive."""
+
+    at_s: float
+    vehicles: tuple[SeenVehicle, ...]
+    lights: dict[str, str]
+    """The state of every light in sight."""
+    sun_deg: float | None
+    incidents: tuple[tuple[str, float, float], ...]
+    """Kind, x and y."""
+
+
+@dataclass(frozen=True)
+class RoadRecord:
+    """A whole file."""
+
+    shapes: RoadShapes
+    seconds: tuple[Second, ...]
+
+    def at(self, at_s: float) -> Second | None:
+        """The last second up to then, or the first; None if there is none."""
+        index = bisect_right(self._times, at_s + 0.05) - 1
+        return self.seconds[max(0, index)] if self.seconds else None
+
+    @cached_property
+    def _times(self) -> list[float]:
+        return [second.at_s for second in self.seconds]
+
+
+EMPTY = RoadRecord(RoadShapes((), ()), ())
+"""Of a drive at which nobody looked."""
+
+
+def read_record(path: Path) -> RoadRecord:
+    """A whole file, up to where a kill cut it off.
+
+    Raises:
+        UserError: it cannot be read, or has another format.
+    """
+    lanes: list[LaneShape] = []
+    junctions: list[GroundLine] = []
+    names: dict[int, tuple[str, str, float, float]] = {}
+    lights: dict[str, str] = {}
+    seconds: list[Second] = []
+    for entry in read_road(path):
+        for kind, width_m, line, links in entry.get("lanes", ()):
+            lanes.append(LaneShape("", kind, width_m, _points(line), tuple((light, at) for light, at in links)))
+        junctions += map(_points, entry.get("junctions", ()))
+        names |= {number: (name, *rest) for number, name, *rest in entry.get("vehicles", ())}
+        if "at_s" in entry:
+            lights = lights | entry["lights"]
+            seen = tuple(SeenVehicle(*names[number], *rest) for number, *rest in entry["seen"])
+            incidents = tuple((kind, x_m, y_m) for kind, x_m, y_m in entry["incidents"])
+            seconds.append(Second(entry["at_s"], seen, lights, entry["sun_deg"], incidents))
+    return RoadRecord(RoadShapes(tuple(lanes), tuple(junctions)), tuple(seconds))
+
+
+def read_road(path: Path) -> Iterator[Json]:
+    """The lines of a file, up to where a kill cut it off.
+
+    Raises:
+        UserError: it cannot be read, or has another format.
+    """
+    try:
+        with gzip.open(path, "rb") as file:
+            begun = False
+            for line in _whole_lines(file):
+                entry = json.loads(line)
+                if not begun and entry.get("format") != FORMAT:
+                    raise UserError(f"{path} has format {entry.get('format')!r}; this version reads {FORMAT}")
+                begun = True
+                yield entry
+    except (OSError, zlib.error, ValueError, AttributeError) as error:
+        raise UserError(f"cannot read {path}: {error}") from error
+
+
+def _whole_lines(file: gzip.GzipFile) -> Iterator[bytes]:
+    try:
+        for line in file:
+            if line.endswith(b"\n"):
+                yield line
+    except EOFError:
+        return
+
+
+def _points(flat: Sequence[float]) -> GroundLine:
+    return tuple(zip(flat[::2], flat[1::2], strict=True))

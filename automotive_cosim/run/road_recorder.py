@@ -1,0 +1,247 @@
+"""Writes ``road.jsonl.gz`` while an episode runs; ``road`` describes the format and reads it."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import math
+import sys
+from collections.abc import Sequence
+from contextlib import suppress
+from itertools import pairwise
+from pathlib import Path
+from typing import IO
+
+from shapely import LineString, Point, Polygon, STRtree
+
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.contracts import KMH_PER_MPS, Json, LaneShape, RoadShapes, RoadSnapshot
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.episode.episode import Episode
+from automotive_cosim.geo.sun import elevation_deg
+from automotive_cosim.run.episode import EpisodeResult, Shot, Watcher
+from automotive_cosim.run.road import FORMAT, NAME
+from automotive_cosim.run.words import limit_kmh
+from automotive_cosim.traffic.lookout import LOOK_RADIUS_M
+
+if sys.platform != "win32":
+    import fcntl
+
+AHEAD_M = 200.0
+"""Lanes come into sight this much before they can have a vehicle on them; new ones are sought as often."""
+
+
+class RoadRecorder(Watcher):
+    """Writes the road of an episode into its record's folder while it runs."""
+
+    looks = True
+
+    def __init__(self, folder: Path) -> None:
+        """Nothing is written before the hand-over, when another watcher has made the folder."""
+        self._path = folder / NAME
+        self._looked: dict[float, RoadSnapshot] = {}
+        """Snapshots whose second has not been reported yet."""
+        self._before: list[tuple[Moment, RoadSnapshot]] = []
+        self._writer: _Writer | None = None
+
+    def looked(self, snapshot: RoadSnapshot) -> None:
+        """Keeps it until its second is reported."""
+        self._looked[snapshot.time_s] = snapshot
+
+    def moved(self, moment: Moment, cockpit: Cockpit) -> None:
+        """Writes a second of the drive, or keeps it until the hand-over."""
+        snapshot = self._looked.pop(moment.time_s)
+        if self._writer is not None:
+            self._writer.second(moment, snapshot)
+            return
+        while self._before and self._before[-1][0].time_s >= moment.time_s:
+            self._before.pop()  # an earlier departure, at which the situation did not arise
+        self._before.append((moment, snapshot))
+
+    def handed_over(self, episode: Episode, shot: Shot) -> None:
+        """Begins the file with the drive so far."""
+        departed_s, now_s = episode.drive[0].time_s, shot.step.moment.time_s
+        self._writer = _Writer(self._path, episode, now_s)
+        for moment, snapshot in self._before:
+            if moment.time_s > departed_s:
+                self._writer.second(moment, snapshot)
+        self._before = []
+
+    def finished(self, result: EpisodeResult) -> None:
+        """Completes the file."""
+        if self._writer is not None:
+            self._writer.close()
+
+
+class _Writer:
+    """The file, and what it has told already."""
+
+    def __init__(self, path: Path, episode: Episode, hand_over_s: float) -> None:
+        self._raw = path.open("wb")
+        mark_as_written(self._raw)
+        self._file = gzip.GzipFile(fileobj=self._raw, mode="wb", compresslevel=6, filename="", mtime=0)
+        self._hand_over_s = hand_over_s
+        self._index = ShapeIndex(episode.world.traffic.shapes())
+        self._roads = {road.edge_id: road.shape_m for road in episode.network.roads}
+        self._lanes: set[int] = set()
+        self._junctions: set[int] = set()
+        self._sought_at: tuple[float, float] | None = None
+        self._in_sight: set[str] = set()
+        """Lights at the end of the lanes so far."""
+        self._lights: dict[str, str] = {}
+        self._numbers: dict[str, int] = {}
+        self._line(
+            {
+                "format": FORMAT,
+                "radius_m": LOOK_RADIUS_M,
+                "left_hand": episode.network.left_hand,
+                "has_place": episode.network.projection is not None,
+            }
+        )
+
+    def second(self, moment: Moment, snapshot: RoadSnapshot) -> None:
+        """One second of the drive, after what is new in it."""
+        driving = moment.driving
+        self._seek(driving.x_m, driving.y_m)
+        new = [each for each in snapshot.vehicles if each.vehicle_id not in self._numbers]
+        if new:
+            for each in new:
+                self._numbers[each.vehicle_id] = len(self._numbers)
+            self._line(
+                {
+                    "vehicles": [
+                        [self._numbers[each.vehicle_id], each.vehicle_id, each.kind, each.length_m, each.width_m]
+                        for each in new
+                    ]
+                }
+            )
+        lights = {
+            light: state
+            for light, state in snapshot.lights
+            if light in self._in_sight and self._lights.get(light) != state
+        }
+        self._lights |= lights
+        lat_deg, lon_deg = driving.lat_deg, driving.lon_deg
+        self._line(
+            {
+                "at_s": round(moment.time_s - self._hand_over_s, 2),
+                "seen": [
+                    [
+                        self._numbers[each.vehicle_id],
+                        round(each.x_m, 2),
+                        round(each.y_m, 2),
+                        round(each.heading_deg, 1) % 360,
+                        round(each.speed_mps, 2),
+                        each.signals,
+                    ]
+                    for each in snapshot.vehicles
+                ],
+                "lights": lights,
+                "speed_kmh": round(driving.speed_mps * KMH_PER_MPS, 1),
+                "limit_kmh": limit_kmh(driving.road),
+                "road": driving.road.name,
+                "local_time": moment.local_time.isoformat(timespec="seconds"),
+                "sun_deg": None
+                if lat_deg is None or lon_deg is None
+                else round(elevation_deg(lat_deg, lon_deg, moment.local_time), 1),
+                "weather_code": moment.weather.weather_code,
+                "incidents": [
+                    [incident.kind, *(round(part, 1) for part in along(shape, incident.position_m))]
+                    for incident in driving.ahead.incidents
+                    if (shape := self._roads.get(incident.edge_id))
+                ],
+                "events": [event.text for event in moment.events],
+            }
+        )
+        self._file.flush()
+        self._raw.flush()
+
+    def close(self) -> None:
+        self._file.close()
+        self._raw.close()
+
+    def _seek(self, x_m: float, y_m: float) -> None:
+        """Tells the lanes and junctions that have come into sight."""
+        if self._sought_at is not None and math.dist(self._sought_at, (x_m, y_m)) < AHEAD_M:
+            return
+        self._sought_at = x_m, y_m
+        lanes, junctions = self._index.near(x_m, y_m, LOOK_RADIUS_M + AHEAD_M)
+        new = [number for number in lanes if number not in self._lanes]
+        outlines = [number for number in junctions if number not in self._junctions]
+        self._lanes.update(new)
+        self._junctions.update(outlines)
+        shapes = self._index.shapes
+        for number in new:
+            self._in_sight.update(light for light, _ in shapes.lanes[number].links)
+        if new or outlines:
+            self._line(
+                {
+                    "lanes": [_lane(shapes.lanes[number]) for number in new],
+                    "junctions": [_flat(shapes.junctions[number]) for number in outlines],
+                }
+            )
+
+    def _line(self, entry: Json) -> None:
+        self._file.write(json.dumps(entry, ensure_ascii=False, separators=(",", ":")).encode() + b"\n")
+
+
+class ShapeIndex:
+    """The lanes and junctions of a network by place."""
+
+    def __init__(self, shapes: RoadShapes) -> None:
+        """Indexes them: 10 ms for three thousand lanes."""
+        self.shapes = shapes
+        self._lanes = STRtree([LineString(lane.line_m) for lane in shapes.lanes])
+        self._junctions = STRtree([Polygon(outline) for outline in shapes.junctions])
+
+    def near(self, x_m: float, y_m: float, radius_m: float) -> tuple[list[int], list[int]]:
+        """The numbers of the lanes and of the junctions within that distance, in order."""
+        here = Point(x_m, y_m)
+        lanes, junctions = (
+            sorted(tree.query(here, predicate="dwithin", distance=radius_m).tolist())
+            for tree in (self._lanes, self._junctions)
+        )
+        return lanes, junctions
+
+
+def is_being_written(path: Path) -> bool:
+    """Whether a running program is writing that file; the system knows, however the program ends.
+
+    Always false on Windows.
+    """
+    if sys.platform == "win32":
+        return False
+    try:
+        with path.open("rb") as file:
+            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    except OSError:
+        return False
+    return False
+
+
+def mark_as_written(file: IO[bytes]) -> None:
+    """Marks a file as being written, until it is closed or the program ends."""
+    if sys.platform != "win32":
+        with suppress(OSError):  # some file systems have no locks; then it only looks finished
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+
+def along(line: Sequence[tuple[float, float]], position_m: float) -> tuple[float, float]:
+    """The point of a line at a distance from its start, or its end if it is shorter."""
+    for before, after in pairwise(line):
+        length_m = math.dist(before, after)
+        if position_m <= length_m and length_m > 0:
+            share = max(0.0, position_m) / length_m
+            return before[0] + share * (after[0] - before[0]), before[1] + share * (after[1] - before[1])
+        position_m -= length_m
+    return line[-1]
+
+
+def _lane(lane: LaneShape) -> list[object]:
+    return [lane.kind, round(lane.width_m, 2), _flat(lane.line_m), [list(link) for link in lane.links]]
+
+
+def _flat(points: Sequence[tuple[float, float]]) -> list[float]:
+    return [round(part, 1) for point in points for part in point]

@@ -1,0 +1,8 @@
+"""``automotive-cosim serve``: runs, results, tasks and scenarios as pages in a browser.
+
+shelf      finds recorded episodes and evaluations in the folders given, and reads nothing outside them
+content    what the pages show of them, as plain values
+catalogue  the same of tasks and scenarios
+server     answers a browser: token, host and origin checked, a fixed table of routes, read-only
+static/    one page, one stylesheet, small scripts without a library; texts are only ever set as text
+"""

@@ -1,0 +1,314 @@
+"""The web server: a fixed table of routes that only read.
+
+Whoever has the address with its token gets in; the token is then swapped for a cookie that other sites cannot use.
+The standard library's server suffices: a page asks for a second of road or a picture at a time, and every answer is
+made in a few milliseconds.
+"""
+
+from __future__ import annotations
+
+import gzip
+import hmac
+import ipaddress
+import json
+import mimetypes
+import re
+import secrets
+import socket
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from http import HTTPStatus
+from http.cookies import CookieError, SimpleCookie
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from importlib.resources import files
+from pathlib import Path
+from urllib.parse import parse_qs, unquote, urlsplit
+
+from automotive_cosim import __version__
+from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.serve import catalogue
+from automotive_cosim.serve.content import Content
+from automotive_cosim.serve.shelf import NotHereError, Shelf
+
+SECURITY = {
+    "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; "
+    "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cross-Origin-Opener-Policy": "same-origin",
+}
+SMALL_BYTES = 1000
+"""Shorter answers are not worth compressing."""
+
+
+@dataclass(frozen=True, slots=True)
+class WebAnswer:
+    """What goes back to the browser."""
+
+    body: bytes
+    kind: str = "application/json"
+    keep_s: int = 0
+    """How long the browser may use it again without asking."""
+
+
+class RefusedRequestError(Exception):
+    """A request that is not answered, and why."""
+
+    def __init__(self, status: HTTPStatus, why: str) -> None:
+        super().__init__(why)
+        self.status = status
+
+
+WebRoute = Callable[[Mapping[str, str], Mapping[str, str]], WebAnswer]
+"""Parts of the path and of the query, to an answer."""
+
+
+class Site:
+    """The routes, and what is behind them."""
+
+    def __init__(self, folders: list[Path]) -> None:
+        """Reads the static files.
+
+        Raises:
+            UserError: a folder does not exist.
+        """
+        self._content = Content(Shelf(folders))
+        static = Path(str(files("automotive_cosim.serve") / "static"))
+        self._static = {path.name: path.read_bytes() for path in static.iterdir() if path.is_file()}
+        run, episode = r"(?P<run>[0-9a-f]{12})", r"(?:/episodes/(?P<episode>[\w.+-]+))?"
+        content = self._content
+        self._routes: list[tuple[re.Pattern[str], WebRoute]] = [
+            (re.compile(pattern), route)
+            for pattern, route in (
+                (r"/", lambda _, __: self._file("index.html")),
+                (r"/static/(?P<name>[\w.-]+)", lambda path, _: self._file(path["name"])),
+                (r"/api/about", lambda _, __: _json({"version": __version__})),
+                (r"/api/runs", lambda _, __: _json(content.runs())),
+                (rf"/api/runs/{run}{episode}", lambda path, _: _json(content.run(path["run"], path["episode"]))),
+                (
+                    rf"/api/runs/{run}{episode}/steps",
+                    lambda path, query: _json(content.steps(path["run"], path["episode"], _number(query))),
+                ),
+                (
+                    rf"/api/runs/{run}{episode}/road",
+                    lambda path, query: _json(
+                        {"lines": list(content.road(path["run"], path["episode"], _number(query)))}
+                    ),
+                ),
+                (rf"/api/runs/{run}{episode}/pictures/(?P<step>\d{{1,6}})", self._picture),
+                (rf"/api/evaluations/{run}", lambda path, _: _json(content.evaluation(path["run"]))),
+                (r"/api/tasks", lambda _, __: _json(catalogue.tasks())),
+                (r"/api/tasks/(?P<name>[\w-]+)", lambda path, _: _json(catalogue.task(path["name"]))),
+                (r"/api/scenarios", lambda _, __: _json(catalogue.all_scenarios())),
+                (r"/api/scenarios/(?P<name>[\w-]+)/map", _map),
+            )
+        ]
+
+    def answer(self, path: str, query: Mapping[str, str]) -> WebAnswer:
+        """The answer to a path.
+
+        Raises:
+            RefusedRequestError: there is no such page, or it cannot be made.
+        """
+        for pattern, route in self._routes:
+            found = pattern.fullmatch(path)
+            if found:
+                try:
+                    return route(found.groupdict(), query)
+                except (NotHereError, UnknownNameError) as error:
+                    raise RefusedRequestError(HTTPStatus.NOT_FOUND, str(error)) from error
+                except (UserError, OSError, ValueError, LookupError, TypeError, AttributeError) as error:
+                    why = f"this record cannot be read: {error}"
+                    raise RefusedRequestError(HTTPStatus.UNPROCESSABLE_ENTITY, why) from error
+        raise RefusedRequestError(HTTPStatus.NOT_FOUND, "there is no such page")
+
+    def _file(self, name: str) -> WebAnswer:
+        if name not in self._static:
+            raise NotHereError("there is no such file")
+        return WebAnswer(self._static[name], mimetypes.guess_type(name)[0] or "application/octet-stream")
+
+    def _picture(self, path: Mapping[str, str], query: Mapping[str, str]) -> WebAnswer:
+        shelf = self._content.shelf
+        picture, kind = shelf.picture(shelf.entry(path["run"]), path["episode"], int(path["step"]))
+        return WebAnswer(picture.read_bytes(), kind, 60)
+
+
+class WebServer(ThreadingHTTPServer):
+    """Serves a site to whoever has its token."""
+
+    daemon_threads = True
+
+    def __init__(self, folders: list[Path], host: str = "127.0.0.1", port: int = 0) -> None:
+        """Binds the address.
+
+        Args:
+            folders: what to show.
+            host: address to listen on.
+            port: port to listen on; 0 takes a free one.
+
+        Raises:
+            UserError: a folder does not exist, or the address cannot be used.
+        """
+        self.site = Site(folders)
+        self.token = secrets.token_urlsafe(24)
+        self.host = host
+        if ":" in host:
+            self.address_family = socket.AF_INET6
+        try:
+            super().__init__((host, port), RequestHandler)
+        except (OSError, OverflowError) as error:
+            why = getattr(error, "strerror", None) or str(error)
+            raise UserError(f"cannot listen on {host} port {port}: {why}; give another --host or --port") from error
+        self.names = _own_names(host)
+
+    @property
+    def address(self) -> str:
+        """What to open in a browser, token included."""
+        host = socket.gethostname() if self.host in ("0.0.0.0", "::") else self.host
+        return f"http://{f'[{host}]' if ':' in host else host}:{self.server_port}/?token={self.token}"
+
+    def handle_error(self, request: object, client_address: object) -> None:
+        """Says nothing: a browser that goes away is no error."""
+
+
+class RequestHandler(BaseHTTPRequestHandler):
+    """One request."""
+
+    protocol_version = "HTTP/1.1"
+    server_version, sys_version = "automotive-cosim", ""
+    timeout = 60
+
+    def do_GET(self) -> None:
+        """Answers, or says why not."""
+        try:
+            path, query = self._request()
+            if query.get("token"):
+                self._welcome(path)
+                return
+            self._send(HTTPStatus.OK, self._web.site.answer(path, query))
+        except RefusedRequestError as refusal:
+            is_data = self.path.startswith("/api/")
+            why = _json({"error": str(refusal)}) if is_data else WebAnswer(f"{refusal}\n".encode(), "text/plain")
+            self._send(refusal.status, why)
+
+    def do_HEAD(self) -> None:
+        """The same without a body."""
+        self.do_GET()
+
+    def do_POST(self) -> None:
+        """Refused: nothing here can be changed."""
+        self.close_connection = True
+        self._send(HTTPStatus.METHOD_NOT_ALLOWED, _json({"error": "these pages only read"}))
+
+    def log_message(self, format: str, *args: object) -> None:  # noqa: A002 (its name in the base class)
+        """Says nothing."""
+
+    @property
+    def _web(self) -> WebServer:
+        assert isinstance(self.server, WebServer)
+        return self.server
+
+    def _request(self) -> tuple[str, dict[str, str]]:
+        """The path and the query of a request that may be answered.
+
+        Raises:
+            RefusedRequestError: it comes from elsewhere, or without the token.
+        """
+        host = self.headers.get("Host", "")
+        if not self._is_own(host):
+            raise RefusedRequestError(
+                HTTPStatus.BAD_REQUEST, "this server has another name; open the address it printed"
+            )
+        origin = self.headers.get("Origin")
+        if origin is not None and origin != f"http://{host}":
+            raise RefusedRequestError(HTTPStatus.FORBIDDEN, "another site may not read this")
+        parts = urlsplit(self.path)
+        query = {name: values[-1] for name, values in parse_qs(parts.query).items()}
+        given = query.get("token") or self._cookie()
+        if not hmac.compare_digest(given.encode(), self._web.token.encode()):
+            raise RefusedRequestError(
+                HTTPStatus.FORBIDDEN, "the token is missing or wrong; open the address that the server printed"
+            )
+        return unquote(parts.path), query
+
+    def _is_own(self, host: str) -> bool:
+        """Whether a request names this server: a foreign name that resolves to it would get around the browser."""
+        name, _, port = host.rpartition(":")
+        if not port.isdigit() or int(port) != self._web.server_port:
+            return False
+        name = name.strip("[]").lower()
+        return name in self._web.names or (not self._web.names.isdisjoint(ANY) and _is_address(name))
+
+    def _cookie(self) -> str:
+        try:
+            found = SimpleCookie(self.headers.get("Cookie", "")).get(self._cookie_name)
+        except CookieError:
+            return ""
+        return found.value if found else ""
+
+    @property
+    def _cookie_name(self) -> str:
+        return f"automotive_cosim_{self._web.server_port}"
+
+    def _welcome(self, path: str) -> None:
+        """Swaps the token in the address for a cookie."""
+        self.send_response(HTTPStatus.SEE_OTHER)
+        self.send_header("Location", path if path.startswith("/") and not path.startswith("//") else "/")
+        cookie = f"{self._cookie_name}={self._web.token}; HttpOnly; SameSite=Strict; Path=/"
+        self.send_header("Set-Cookie", cookie)
+        self._end(b"")
+
+    def _send(self, status: HTTPStatus, answer: WebAnswer) -> None:
+        body = answer.body
+        self.send_response(status)
+        self.send_header("Content-Type", answer.kind + ("; charset=utf-8" if "image" not in answer.kind else ""))
+        self.send_header("Cache-Control", f"private, max-age={answer.keep_s}" if answer.keep_s else "no-store")
+        text = not answer.kind.startswith("image/")
+        if text and len(body) > SMALL_BYTES and "gzip" in self.headers.get("Accept-Encoding", ""):
+            body = gzip.compress(body, compresslevel=4, mtime=0)
+            self.send_header("Content-Encoding", "gzip")
+        self._end(body)
+
+    def _end(self, body: bytes) -> None:
+        for name, value in SECURITY.items():
+            self.send_header(name, value)
+        self.send_header("Content-Length", str(len(body)))
+        self.end_headers()
+        if self.command != "HEAD":
+            self.wfile.write(body)
+
+
+ANY = frozenset(("0.0.0.0", "::"))
+"""Addresses that listen everywhere."""
+
+
+def _own_names(host: str) -> frozenset[str]:
+    """The names under which a browser may reach the server."""
+    loopback = {"127.0.0.1", "localhost", "::1"}
+    if host in loopback:
+        return frozenset(loopback)
+    return frozenset({host.lower(), socket.gethostname().lower(), *(loopback if host in ANY else ())})
+
+
+def _is_address(name: str) -> bool:
+    try:
+        ipaddress.ip_address(name)
+    except ValueError:
+        return False
+    return True
+
+
+def _number(query: Mapping[str, str]) -> int:
+    text = query.get("skip", "0")
+    if not text.isdecimal() or len(text) > 9:
+        raise NotHereError(f"skip={text!r} is not a whole number from 0")
+    return int(text)
+
+
+def _map(path: Mapping[str, str], query: Mapping[str, str]) -> WebAnswer:
+    return WebAnswer(catalogue.scenario_map(path["name"]).read_bytes(), "image/webp", 3600)
+
+
+def _json(value: object) -> WebAnswer:
+    return WebAnswer(json.dumps(value, ensure_ascii=False, separators=(",", ":")).encode("utf-8", "replace"))

@@ -1,0 +1,137 @@
+"""Finds recorded episodes and evaluations; the only module that turns what a browser asks for into files.
+
+A browser names a record by an id from a table, never by a path. A file is read only if it really lies, links
+resolved, in one of the folders given.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from automotive_cosim.errors import UserError
+from automotive_cosim.run.road import NAME as ROAD
+from automotive_cosim.run.road_recorder import is_being_written
+
+DEPTH = 3
+"""How deep records are sought below a folder given."""
+MOST = 2000
+"""Records that are listed at most."""
+PICTURES = {"png": "image/png", "jpg": "image/jpeg"}
+
+
+class NotHereError(UserError):
+    """There is no such record, or it has no such file."""
+
+
+@dataclass(frozen=True, slots=True)
+class ShelfEntry:
+    """One recorded episode, or one evaluation."""
+
+    id: str
+    folder: Path
+    is_evaluation: bool
+
+    @property
+    def is_running(self) -> bool:
+        """Whether an episode is being recorded here now."""
+        return not self.is_evaluation and is_being_written(self.folder / ROAD)
+
+
+class Shelf:
+    """The records below some folders."""
+
+    def __init__(self, folders: Sequence[Path]) -> None:
+        """Keeps the folders, which may still be empty.
+
+        Raises:
+            UserError: one of them is not a folder.
+        """
+        for folder in folders:
+            if not folder.is_dir():
+                raise UserError(
+                    f"{folder} is not a folder; give folders of `run` or `eval`, or one that holds them"
+                )
+        self._folders = [folder.resolve() for folder in folders]
+        self._known: dict[str, ShelfEntry] = {}
+
+    def entries(self) -> list[ShelfEntry]:
+        """All records there are now, the newest first."""
+        found = {entry.id: entry for folder in self._folders for entry in _seek(folder, DEPTH)}
+        self._known = found
+        return sorted(found.values(), key=lambda entry: _changed_s(entry.folder), reverse=True)[:MOST]
+
+    def entry(self, name: str) -> ShelfEntry:
+        """The record of that id.
+
+        Raises:
+            NotHereError: there is none.
+        """
+        if name not in self._known:
+            self.entries()
+        found = self._known.get(name)
+        if found is None or not found.folder.is_dir():
+            raise NotHereError(f"there is no record {name!r} in the folders given")
+        return found
+
+    def file(self, entry: ShelfEntry, *parts: str) -> Path:
+        """A file of a record.
+
+        Args:
+            entry: the record.
+            parts: names below its folder, of which none may lead elsewhere.
+
+        Raises:
+            NotHereError: there is no such file, or it lies outside the folders given.
+        """
+        if any(part in ("", ".", "..") or "/" in part or "\\" in part or "\0" in part for part in parts):
+            raise NotHereError("no such file")
+        path = entry.folder.joinpath(*parts)
+        real = path.resolve()
+        if not path.is_file() or not any(real.is_relative_to(folder) for folder in self._folders):
+            raise NotHereError(f"this record has no {'/'.join(parts)}")
+        return path
+
+    def picture(self, entry: ShelfEntry, episode: str | None, step: int) -> tuple[Path, str]:
+        """The screenshot after a step, and its media type.
+
+        Args:
+            entry: the record.
+            episode: id of the episode in an evaluation; None for a recorded episode.
+            step: number of the step.
+
+        Raises:
+            NotHereError: there is none.
+        """
+        folder = ("screenshots",) if episode is None else ("pictures", episode)
+        kind = "png" if episode is None else "jpg"
+        return self.file(entry, *folder, f"step_{step:03d}.{kind}"), PICTURES[kind]
+
+
+def _seek(folder: Path, depth: int) -> Iterator[ShelfEntry]:
+    if (folder / "steps.jsonl").is_file():
+        yield ShelfEntry(_id(folder), folder, is_evaluation=False)
+    elif (folder / "manifest.json").is_file() and (folder / "episodes.jsonl").is_file():
+        yield ShelfEntry(_id(folder), folder, is_evaluation=True)
+    elif depth:
+        try:
+            inner = sorted(path for path in folder.iterdir() if path.is_dir() and not path.is_symlink())
+        except OSError:
+            return
+        for path in inner:
+            yield from _seek(path, depth - 1)
+
+
+def _id(folder: Path) -> str:
+    """The same for the same folder, so that links outlive the server."""
+    return hashlib.sha256(str(folder).encode(sys.getfilesystemencoding(), "surrogateescape")).hexdigest()[:12]
+
+
+def _changed_s(folder: Path) -> float:
+    try:
+        return folder.stat().st_mtime
+    except OSError:
+        return 0.0

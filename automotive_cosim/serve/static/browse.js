@@ -1,0 +1,67 @@
+// The catalogue of tasks, one task, and the scenarios.
+
+import { ask, counted, h, plain } from "./dom.js";
+
+export async function tasksPage(query) {
+  const { tasks } = await ask("/api/tasks");
+  const list = h("ul", { class: "records" });
+  const count = h("p", { class: "muted", role: "status" });
+  const search = h("input", { type: "search", "aria-label": "Search the tasks", placeholder: "Search ids and words", value: query.get("q") ?? "" });
+  const choices = [["module", "Module"], ["dimension", "Dimension"], ["difficulty", "Difficulty"]].map(([name, label]) =>
+    h("select", { name, "aria-label": label }, h("option", { value: "" }, `${label}: all`),
+      [...new Set(tasks.map((task) => task[name]))].sort().map((value) => h("option", { value, selected: value === query.get(name) }, plain(value)))));
+  const fill = () => {
+    const wanted = search.value.toLowerCase();
+    const kept = tasks.filter((task) => choices.every((choice) => !choice.value || task[choice.name] === choice.value)
+      && [task.id, ...task.goal_templates].join(" ").toLowerCase().includes(wanted));
+    count.textContent = `${kept.length} of ${tasks.length} tasks`;
+    list.replaceChildren(...kept.map((task) => h("li", { class: "card" },
+      h("div", {}, h("a", { href: `#/tasks/${task.id}` }, task.id), h("p", {}, `“${task.goal_templates[0]}”`),
+        h("p", { class: "muted" }, [task.module, plain(task.dimension), task.difficulty, counted(task.optimal_steps, "step")].join(" · "))),
+      task.pair ? h("span", { class: "pill" }, "Pair") : null)));
+    const parameters = new URLSearchParams();
+    choices.forEach((choice) => choice.value && parameters.set(choice.name, choice.value));
+    if (search.value) parameters.set("q", search.value);
+    const text = parameters.toString();
+    history.replaceState(null, "", `#/tasks${text ? `?${text}` : ""}`);
+  };
+  search.addEventListener("input", fill);
+  choices.forEach((choice) => choice.addEventListener("change", fill));
+  return { title: "Tasks", content: [h("h1", {}, "Tasks"), h("div", { class: "filters" }, search, choices), count, list], ready: fill };
+}
+
+export async function taskPage(query, id) {
+  const task = await ask(`/api/tasks/${id}`);
+  const values = Object.entries(task.values).map(([name, said]) => h("li", {}, h("code", {}, `{${name}}`), ` ${said}`));
+  return {
+    title: task.id,
+    content: [
+      h("h1", {}, task.id),
+      h("p", { class: "muted" }, [task.module, plain(task.dimension), task.difficulty, counted(task.optimal_steps, "step"), `runs in ${task.scenarios.join(", ")}`].join(" · ")),
+      h("h2", {}, "What the driver says"),
+      h("ul", { class: "card words" }, task.goal_templates.map((words) => h("li", {}, `“${words}”`))),
+      values.length > 0 && h("ul", { class: "muted" }, values),
+      task.difference && h("h2", {}, "The one difference between the halves"),
+      task.difference && h("p", { class: "card" }, task.difference),
+      h("div", { class: "halves" }, task.halves.map((half) => h("section", { class: "card" },
+        h("h2", {}, task.halves.length > 1 ? `The ${half.name} half` : "The situation"),
+        h("dl", {}, half.words.map(([label, said]) => [h("dt", {}, label), h("dd", {}, said)])),
+        half.laws.map((law) => h("blockquote", {}, h("p", {}, law.text), h("footer", { class: "muted" }, `${law.law}, as of ${law.as_of} (${law.status})`)))))),
+    ].filter(Boolean),
+  };
+}
+
+export async function scenariosPage() {
+  const { scenarios } = await ask("/api/scenarios");
+  return {
+    title: "Scenarios",
+    content: [h("h1", {}, "Scenarios"), h("div", { class: "maps" }, scenarios.map((scenario) => h("article", { class: "card" },
+      scenario.has_map && h("a", { href: `/api/scenarios/${scenario.name}/map`, target: "_blank" }, h("img", { src: `/api/scenarios/${scenario.name}/map`, alt: `Map of ${scenario.title}`, loading: "lazy" })),
+      h("h2", {}, scenario.title),
+      h("p", { class: "muted" }, [scenario.name, scenario.country, scenario.starts].filter(Boolean).join(" · ")),
+      h("p", {}, scenario.about),
+      h("details", {}, h("summary", {}, `${counted(scenario.trips.length, "trip")}, ${counted(scenario.tasks.length, "task")}`),
+        h("ul", {}, scenario.trips.map(([name, about]) => h("li", {}, h("b", {}, name), `: ${about}`))),
+        h("p", {}, scenario.tasks.flatMap((id) => [h("a", { href: `#/tasks/${id}` }, id), " "]))))))],
+  };
+}

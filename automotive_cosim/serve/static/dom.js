@@ -1,0 +1,55 @@
+// Builds elements. Whatever a record holds is only ever set as text, never as markup.
+
+export function h(tag, properties = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(properties)) {
+    if (value === undefined || value === null || value === false) continue;
+    if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
+    else if (name === "class") element.className = value;
+    else element.setAttribute(name, value === true ? "" : String(value));
+  }
+  element.append(...children.flat(Infinity).filter((child) => child !== null && child !== undefined && child !== false));
+  return element;
+}
+
+const SVG = "http://www.w3.org/2000/svg";
+
+export function svg(tag, properties = {}, ...children) {
+  const element = document.createElementNS(SVG, tag);
+  for (const [name, value] of Object.entries(properties)) element.setAttribute(name, String(value));
+  element.append(...children);
+  return element;
+}
+
+export const plain = (name) => String(name ?? "").replaceAll("_", " ");
+
+export const counted = (count, name) => `${count} ${name}${count === 1 ? "" : "s"}`;
+
+export function seconds(value) {
+  const rounded = Math.round(value * 10) / 10;
+  return `${rounded < 0 ? "−" : "+"}${Math.abs(rounded).toFixed(rounded % 1 ? 1 : 0)} s`;
+}
+
+export function outcome(record) {
+  if (record.running) return h("span", { class: "pill live" }, "Running");
+  if (record.success === true) return h("span", { class: "pill good" }, "Success");
+  if (record.success === false) return h("span", { class: "pill bad" }, "Not solved");
+  return h("span", { class: "pill" }, record.error ? "Error" : plain(record.end) || "No verdict");
+}
+
+export async function ask(path) {
+  let answer;
+  try {
+    answer = await fetch(path, { credentials: "same-origin" });
+  } catch {
+    throw new Error("The server does not answer. Start `automotive-cosim serve` again.");
+  }
+  let body;
+  try {
+    body = await answer.json();
+  } catch {
+    throw new Error(`The server's answer cannot be read (${answer.status}).`);
+  }
+  if (!answer.ok) throw new Error(body.error || `The server refuses (${answer.status}).`);
+  return body;
+}

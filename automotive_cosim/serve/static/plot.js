@@ -1,0 +1,40 @@
+// Speed and posted limit over time; a click jumps there.
+
+import { svg } from "./dom.js";
+
+const [WIDE, HIGH, LEFT, BOTTOM, TOP] = [560, 200, 36, 24, 10];
+
+export function speedPlot(path, jump) {
+  const root = svg("svg", { viewBox: `0 0 ${WIDE} ${HIGH}`, role: "img", "aria-label": "Speed and posted limit over time" });
+  if (path.length < 2) return root;
+  const [from, to] = [path[0].at_s, path.at(-1).at_s];
+  const most = 20 * (Math.floor(Math.max(...path.map((one) => Math.max(one.speed_kmh, one.limit_kmh ?? 0))) / 20) + 1);
+  const x = (at) => LEFT + (at - from) / (to - from || 1) * (WIDE - LEFT - 8);
+  const y = (kmh) => HIGH - BOTTOM - kmh / most * (HIGH - BOTTOM - TOP);
+  const text = (at, high, words, anchor) => {
+    const label = svg("text", { x: at, y: high, "text-anchor": anchor, class: "tick" });
+    label.textContent = words;
+    return label;
+  };
+  const step = most > 100 ? 40 : 20;
+  for (let kmh = 0; kmh <= most; kmh += step) {
+    root.append(svg("line", { x1: LEFT, x2: WIDE - 8, y1: y(kmh), y2: y(kmh), class: "grid" }), text(LEFT - 6, y(kmh) + 4, String(kmh), "end"));
+  }
+  root.append(text(WIDE - 8, HIGH - 4, `+${Math.round(to)} s`, "end"), text(LEFT, HIGH - 4, `${from < 0 ? "−" : "+"}${Math.abs(Math.round(from))} s`, "start"));
+  if (from < 0 && to > 0) root.append(svg("line", { x1: x(0), x2: x(0), y1: TOP, y2: HIGH - BOTTOM, class: "mark" }), text(x(0), HIGH - 4, "hand-over", x(0) > WIDE - 110 ? "end" : "middle"));
+  let limit = "";
+  path.forEach((one, index) => {
+    if (one.limit_kmh === null) return;
+    const next = path[index + 1] ?? one;
+    limit += `M${x(one.at_s)} ${y(one.limit_kmh)}H${x(next.at_s)}`;
+  });
+  root.append(svg("path", { d: limit, class: "limit" }), svg("polyline", { points: path.map((one) => `${x(one.at_s)},${y(one.speed_kmh)}`).join(" "), class: "speed" }));
+  const cursor = svg("line", { y1: TOP, y2: HIGH - BOTTOM, class: "cursor" });
+  root.append(cursor);
+  root.mark = (at) => { for (const name of ["x1", "x2"]) cursor.setAttribute(name, x(Math.min(to, Math.max(from, at)))); };
+  root.addEventListener("click", (event) => {
+    const box = root.getBoundingClientRect();
+    jump(from + ((event.clientX - box.left) / box.width * WIDE - LEFT) / (WIDE - LEFT - 8) * (to - from));
+  });
+  return root;
+}

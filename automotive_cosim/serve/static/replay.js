@@ -1,0 +1,273 @@
+// One recorded episode, or one that is running: screen, road, steps and verdict on one time cursor.
+
+import { ask, counted, h, outcome, plain, seconds } from "./dom.js";
+import { RoadRecord, RoadView, signals } from "./road.js";
+import { speedPlot } from "./plot.js";
+
+const POLL_MS = 1000;
+const SPEEDS = [0.25, 0.5, 1, 2, 4, 8];
+
+export async function replayPage(query, id, episode) {
+  const base = `/api/runs/${id}${episode ? `/episodes/${encodeURIComponent(episode)}` : ""}`;
+  let run = await ask(base);
+  const road = new RoadRecord();
+  const steps = [];
+  const poll = async () => {
+    const [more, lines] = await Promise.all([ask(`${base}/steps?skip=${steps.length}`), ask(`${base}/road?skip=${road.lines}`)]);
+    steps.push(...more.steps);
+    road.add(lines.lines);
+    return more.running;
+  };
+  let running = await poll();
+
+  const screen = h("img", { class: "screen", alt: "" });
+  const target = h("div", { class: "target", hidden: true });
+  const noScreen = h("p", { class: "muted empty" }, "No picture of this screen was kept.");
+  const canvas = h("canvas", { tabindex: 0, role: "img", "aria-label": "The road from above" });
+  const about = h("p", { class: "about" });
+  const slider = h("input", { type: "range", min: 0, max: 0, step: 0.1, value: 0, "aria-label": "Time in the drive" });
+  const marks = h("div", { class: "marks", "aria-hidden": "true" });
+  const clock = h("output", { class: "clock" });
+  const play = h("button", { type: "button", class: "main" }, "Play");
+  const speed = h("select", { "aria-label": "Speed of the replay" }, SPEEDS.map((value) => h("option", { value, selected: value === 1 }, `${value}×`)));
+  const live = h("button", { type: "button", "aria-pressed": "true", hidden: true }, "Follow live");
+  const list = h("ol", { class: "steps" });
+  const events = h("ol", { class: "events" });
+  const detail = h("div", { class: "card" });
+  const vehicle = h("div", { class: "card vehicle", hidden: true });
+  const verdict = h("section", {});
+  const plot = h("div", { class: "card" });
+  const heading = h("div", { class: "head" });
+  const note = h("p", { class: "warning", hidden: true, role: "status" });
+
+  let at = 0;
+  let playing = false;
+  let following = running && !query.has("at");
+  let picked = null;
+  let shownStep = null;
+  let last = 0;
+  let frame = 0;
+  let timer = 0;
+  let saved = 0;
+
+  const view = new RoadView(canvas, road, (found) => { picked = found?.id ?? null; show(); });
+
+  const begin = () => Math.min(road.seconds.length ? road.begin : 0, 0);
+  const end = () => Math.max(road.end, steps.at(-1)?.at_s ?? 0);
+  const step = () => steps.findLastIndex((each) => each.at_s <= at + 1e-6);
+
+  function head() {
+    const told = [run.half && `${run.half} half`, run.scenario, run.agent, run.model, run.seed !== null && `seed ${run.seed}`];
+    heading.replaceChildren(
+      h("div", {}, h("h1", {}, run.task), run.goal && h("p", { class: "said" }, `“${run.goal}”`), h("p", { class: "muted" }, told.filter(Boolean).join(" · "))),
+      outcome({ ...run, running }));
+    live.hidden = !running;
+    const parts = Object.entries(run.verdict?.parts ?? {});
+    verdict.replaceChildren(...(parts.length ? [h("h2", {}, "Verdict"), h("ol", { class: "card parts" },
+      parts.map(([name, part]) => h("li", {}, h("b", { class: part.ok ? "yes" : "no" }, `${part.ok ? "✓" : "✗"} ${run.parts[name] ?? plain(name)}`), h("span", {}, part.why)))),
+      h("p", { class: "muted" }, `Basis: ${run.verdict.basis}${run.verdict.rule ? `, ${run.verdict.rule}` : ""}`)] : []),
+      ...(run.error ? [h("h2", {}, "Error"), h("p", { class: "warning" }, run.error)] : []));
+  }
+
+  function lists() {
+    list.replaceChildren(...steps.map((each, index) => h("li", {}, h("button", { type: "button", onclick: () => jump(each.at_s), "data-step": index },
+      h("span", { class: "time" }, seconds(each.at_s)), h("span", {}, `${each.number ? `${each.number}  ` : ""}${each.words}`)))));
+    const told = run.timeline.length ? run.timeline : road.seconds.flatMap((second) => second.events.map((text) => ({ at_s: second.at_s, kind: "road", text })));
+    events.replaceChildren(...told.map((event) => h("li", {}, h("button", { type: "button", class: `k-${event.kind}`, onclick: () => jump(event.at_s) },
+      h("span", { class: "time" }, seconds(event.at_s)), h("span", {}, event.text)))));
+    [slider.min, slider.max] = [begin(), end()];
+    const span = end() - begin() || 1;
+    marks.replaceChildren(...told.filter(({ kind }) => kind !== "departure").map((event) => {
+      const mark = h("i", { class: `k-${event.kind}` });
+      mark.style.left = `${100 * (event.at_s - begin()) / span}%`;
+      return mark;
+    }));
+    const path = run.path.length ? run.path : road.seconds;
+    plot.replaceChildren(speedPlot(path, jump));
+    plot.hidden = path.length < 2;
+    shownStep = null;
+  }
+
+  function show() {
+    slider.value = at;
+    slider.setAttribute("aria-valuetext", `${seconds(at)} from the hand-over`);
+    clock.textContent = seconds(at);
+    view.draw(at);
+    const second = road.second(at);
+    if (second) {
+      const others = second.seen.size - ([...second.seen.keys()].some((number) => road.vehicles.get(number)?.id === "ego") ? 1 : 0);
+      const limit = second.limit_kmh === null ? "no limit posted" : `${Math.round(second.limit_kmh)} posted`;
+      about.replaceChildren(h("b", { class: second.limit_kmh !== null && second.speed_kmh > second.limit_kmh + 1 ? "over" : "" }, `${Math.round(second.speed_kmh)} km/h`),
+        ` ${limit} · ${second.road || "a road without a name"}${second.local_time ? ` · ${second.local_time.slice(11, 16)}` : ""} · `,
+        road.alone ? "other vehicles were not recorded" : `${counted(others, "other vehicle")} in sight`);
+      canvas.setAttribute("aria-label", `The road from above. ${about.textContent}`);
+    }
+    plot.firstElementChild?.mark?.(at);
+    showVehicle();
+    const index = step();
+    if (index !== shownStep) showStep(index);
+  }
+
+  function showVehicle() {
+    const found = picked && view.drawn.find(({ id }) => id === picked);
+    vehicle.hidden = !found;
+    if (!found) return;
+    vehicle.replaceChildren(h("b", {}, found.id === "ego" ? "The car under test" : found.id),
+      h("span", { class: "muted" }, [plain(found.kind), `${found.length} m long`, `${Math.round(found.speed * 3.6)} km/h`, signals(found.signals)].filter(Boolean).join(" · ")),
+      h("button", { type: "button", onclick: () => view.follow(found.id) }, "Follow"));
+  }
+
+  function showStep(index) {
+    shownStep = index;
+    for (const button of list.querySelectorAll("button")) {
+      if (Number(button.dataset.step) === index) {
+        button.setAttribute("aria-current", "step");
+        list.scrollTop = button.offsetTop - list.offsetTop - list.clientHeight / 2;
+      } else button.removeAttribute("aria-current");
+    }
+    const now = steps[index];
+    const pictured = now?.has_picture ? now : null;
+    screen.hidden = !pictured;
+    noScreen.hidden = Boolean(pictured);
+    noScreen.textContent = index < 0 ? "Before the hand-over: nobody acts yet." : "No picture of this screen was kept.";
+    if (pictured) {
+      screen.src = `${base}/pictures/${pictured.number}`;
+      screen.alt = `The cockpit's screen after step ${pictured.number}: ${pictured.words}`;
+    }
+    const next = steps[index + 1];
+    target.hidden = !(pictured && next?.target);
+    if (!target.hidden) {
+      const [left, top, right, bottom] = next.target;
+      Object.assign(target.style, { left: `${left / 12.8}%`, top: `${top / 7.2}%`, width: `${(right - left) / 12.8}%`, height: `${(bottom - top) / 7.2}%` });
+    }
+    detail.replaceChildren(...(now ? told(now) : [h("h3", {}, "The drive up to the hand-over"), h("p", { class: "muted" }, "Nobody acts yet.")]));
+  }
+
+  function told(now) {
+    return [
+      h("h3", {}, now.number ? `Step ${now.number}: ${now.words}` : "Hand-over"),
+      now.thought && h("p", { class: "thought" }, now.thought),
+      now.feedback.text && h("p", { class: "muted" }, `${plain(now.feedback.code)}: ${now.feedback.text}`),
+      now.action && h("p", {}, h("code", {}, JSON.stringify(now.action))),
+      now.stages.map((stage) => h("details", { open: stage.text.length < 600 },
+        h("summary", {}, plain(stage.name), stage.tokens_in ? ` · ${stage.tokens_in} + ${stage.tokens_out} tokens${stage.seconds ? `, ${stage.seconds.toFixed(1)} s` : ""}` : ""), h("pre", {}, stage.text))),
+      now.context && h("details", {}, h("summary", {}, "context of the place"), h("pre", {}, now.context)),
+    ].flat().filter(Boolean);
+  }
+
+  function jump(to, keep = false) {
+    if (!keep) following = false;
+    live.setAttribute("aria-pressed", String(following));
+    at = Math.min(end(), Math.max(begin(), to));
+    show();
+    clearTimeout(saved);
+    if (!keep) saved = setTimeout(() => history.replaceState(null, "", link()), 150);
+  }
+
+  const link = () => `#/run/${id}${episode ? `/${encodeURIComponent(episode)}` : ""}?at=${Math.round(at * 10) / 10}`;
+
+  function run_(on) {
+    playing = on;
+    play.textContent = on ? "Pause" : "Play";
+    if (on && at >= end() - 0.05 && !running) at = begin();
+    last = performance.now();
+    cancelAnimationFrame(frame);
+    if (on) frame = requestAnimationFrame(tick);
+    else jump(at, following);
+  }
+
+  function tick(now) {
+    const passed = Math.min(0.25, (now - last) / 1000);
+    last = now;
+    at += passed * Number(speed.value);
+    if (following) at += (end() - 1 - at) * Math.min(1, passed * 2);
+    if (at >= end()) {
+      at = end();
+      if (!running) { show(); run_(false); return; }
+    }
+    show();
+    frame = requestAnimationFrame(tick);
+  }
+
+  const hop = (by) => {
+    const index = Math.max(0, Math.min(steps.length - 1, by > 0 ? step() + 1 : steps.findLastIndex((each) => each.at_s < at - 0.05)));
+    if (steps[index]) jump(steps[index].at_s);
+  };
+
+  const button = (label, action, title) => h("button", { type: "button", onclick: action, title }, label);
+  const turn = h("button", { type: "button", onclick: () => view.turn(!view.turns), title: "Heading or north at the top (H)" }, "Heading up");
+  const ego = h("button", { type: "button", onclick: () => view.follow("ego"), title: "Follow the car (F)" }, "Follow the car");
+  view.changed = () => {
+    turn.setAttribute("aria-pressed", String(view.turns));
+    ego.setAttribute("aria-pressed", String(view.follows === "ego"));
+  };
+  view.changed();
+
+  play.addEventListener("click", () => run_(!playing));
+  slider.addEventListener("input", () => jump(Number(slider.value)));
+  live.addEventListener("click", () => { following = !following; live.setAttribute("aria-pressed", String(following)); if (following) run_(true); });
+  const keys = (event) => {
+    if (event.target.closest?.("input, select, button, summary, a") && event.key === " ") return;
+    if (event.target.closest?.("input[type=search], select, textarea") || event.ctrlKey || event.metaKey || event.altKey) return;
+    const known = { " ": () => run_(!playing), ",": () => hop(-1), ".": () => hop(1) };
+    if (known[event.key]) { event.preventDefault(); known[event.key](); }
+  };
+  document.addEventListener("keydown", keys);
+
+  async function again() {
+    try {
+      const had = steps.length;
+      running = await poll();
+      note.hidden = true;
+      if (!running) run = await ask(base);
+      if (!running || steps.length !== had) head();
+      lists();
+      show();
+    } catch (error) {
+      note.textContent = `${error.message} Trying again.`;
+      note.hidden = false;
+    }
+    if (running) timer = setTimeout(again, POLL_MS);
+  }
+
+  const copied = h("span", { class: "muted", role: "status" });
+  const copy = button("Copy the link", async () => {
+    history.replaceState(null, "", link());
+    try { await navigator.clipboard.writeText(location.href); copied.textContent = "copied"; }
+    catch { copied.textContent = "it is in the address bar"; }
+  }, "A link to this instant");
+
+  head();
+  lists();
+  return {
+    title: run.task,
+    content: [heading, note,
+      h("div", { class: "stage" },
+        h("figure", { class: "cockpit card" }, h("div", { class: "frame" }, screen, target, noScreen)),
+        h("figure", { class: "card map" }, canvas,
+          h("div", { class: "tools" }, button("+", () => view.zoom(1.4), "Closer (+)"), button("−", () => view.zoom(1 / 1.4), "Further away (−)"), ego, turn, button("All roads", () => view.whole(), "All recorded roads (0)")),
+          h("figcaption", {}, about, vehicle))),
+      h("div", { class: "card transport" },
+        play, button("‹ Step", () => hop(-1), "Step before (,)"), button("Step ›", () => hop(1), "Next step (.)"), live,
+        h("div", { class: "time-line" }, slider, marks), clock, speed, copy, copied),
+      h("div", { class: "columns" },
+        h("section", {}, h("h2", {}, "Steps"), h("div", { class: "card" }, list)),
+        h("section", {}, h("h2", {}, "This step"), detail)),
+      verdict,
+      h("div", { class: "columns even" },
+        h("section", {}, h("h2", {}, "Events"), h("div", { class: "card" }, events)),
+        h("section", {}, h("h2", {}, "Speed and posted limit"), plot)),
+      h("p", { class: "muted hash" }, run.trace_sha256 ? `Trace ${run.trace_sha256}` : "")],
+    ready: () => {
+      jump(query.has("at") && Number.isFinite(Number(query.get("at"))) ? Number(query.get("at")) : running ? end() : 0, true);
+      if (running) { run_(true); timer = setTimeout(again, POLL_MS); }
+    },
+    leave: () => {
+      clearTimeout(timer);
+      clearTimeout(saved);
+      cancelAnimationFrame(frame);
+      document.removeEventListener("keydown", keys);
+      view.leave();
+    },
+  };
+}

@@ -1,0 +1,105 @@
+// The list of records, and the table of an evaluation's episodes.
+
+import { ask, counted, h, outcome, plain, seconds } from "./dom.js";
+
+const EVERY_MS = 3000;
+
+export async function runsPage() {
+  const list = h("ul", { class: "records" });
+  const note = h("p", { class: "muted" });
+  const fill = async () => {
+    const { records } = await ask("/api/runs");
+    list.replaceChildren(...records.filter((record) => record.kind !== "other").map(line));
+    note.textContent = records.length ? "" : "Nothing recorded yet. `automotive-cosim run` records an episode.";
+  };
+  await fill();
+  const timer = setInterval(() => fill().catch((error) => { note.textContent = error.message; }), EVERY_MS);
+  return { title: "Runs", content: [h("h1", {}, "Runs"), note, list], leave: () => clearInterval(timer) };
+}
+
+function line(record) {
+  if (record.kind === "unreadable") {
+    return h("li", { class: "card" }, h("div", {}, h("b", {}, record.name), h("p", { class: "muted" }, record.error)),
+      h("span", { class: "pill bad" }, "Unreadable"));
+  }
+  if (record.kind === "evaluation") {
+    const done = record.planned ? `${record.done} of ${record.planned} episodes` : counted(record.done, "episode");
+    return h("li", { class: "card" },
+      h("div", {}, h("a", { href: `#/results/${record.id}` }, record.name), h("p", { class: "muted" }, `Evaluation · ${done} · ${when(record.started)}`)),
+      h("span", { class: "pill" }, "Results"));
+  }
+  const about = [record.half && `${record.half} half`, record.scenario, record.agent, record.model, record.seed !== null && `seed ${record.seed}`, when(record.started)];
+  return h("li", { class: "card" },
+    h("div", {}, h("a", { href: `#/run/${record.id}` }, record.task),
+      record.goal && h("p", {}, `“${record.goal}”`),
+      h("p", { class: "muted" }, about.filter(Boolean).join(" · "))),
+    outcome(record));
+}
+
+const when = (text) => (text ? text.slice(0, 16).replace("T", " ") : "");
+
+const FILTERS = [["agent", "Agent"], ["scenario", "Scenario"], ["module", "Module"], ["half", "Half"], ["missing", "Part not held"], ["outcome", "Outcome"]];
+const MOST = 400;
+
+export async function resultsPage(query, id) {
+  let results = await ask(`/api/evaluations/${id}`);
+  const heading = h("p", { class: "muted" });
+  const table = h("tbody");
+  const count = h("p", { class: "muted", role: "status" });
+  const search = h("input", { type: "search", "aria-label": "Search for a task or an episode", placeholder: "Search tasks", value: query.get("q") ?? "" });
+  const choices = FILTERS.map(([name, label]) => h("select", { name, "aria-label": label }));
+
+  const values = (row, name) => {
+    if (name === "missing") return row.missing.map(plain);
+    if (name === "outcome") return [row.success === true ? "success" : row.success === false ? "not solved" : "error"];
+    return [String(row[name])];
+  };
+  const options = () => FILTERS.forEach(([name, label], index) => {
+    const chosen = choices[index].value || query.get(name) || "";
+    const found = [...new Set(results.rows.flatMap((row) => values(row, name)))].sort();
+    choices[index].replaceChildren(h("option", { value: "" }, `${label}: all`), ...found.map((value) => h("option", { value, selected: value === chosen }, value)));
+  });
+  const fill = () => {
+    const kept = results.rows.filter((row) =>
+      FILTERS.every(([name], index) => !choices[index].value || values(row, name).includes(choices[index].value))
+      && `${row.task} ${row.id}`.toLowerCase().includes(search.value.toLowerCase()));
+    const judged = kept.filter((row) => row.success !== null);
+    const won = judged.filter((row) => row.success).length;
+    count.textContent = `${counted(kept.length, "episode")}, ${won} of ${judged.length} judged succeeded`
+      + (kept.length > MOST ? `; the first ${MOST} are listed` : "");
+    table.replaceChildren(...kept.slice(0, MOST).map((row) => episode(id, row)));
+    heading.textContent = results.planned ? `${results.rows.length} of ${results.planned} episodes are done` : counted(results.rows.length, "episode");
+    const parameters = new URLSearchParams();
+    FILTERS.forEach(([name], index) => choices[index].value && parameters.set(name, choices[index].value));
+    if (search.value) parameters.set("q", search.value);
+    const text = parameters.toString();
+    history.replaceState(null, "", `#/results/${id}${text ? `?${text}` : ""}`);
+  };
+  options();
+  search.addEventListener("input", fill);
+  choices.forEach((choice) => choice.addEventListener("change", fill));
+  const again = async () => {
+    const done = results.rows.length;
+    if (results.planned && done >= results.planned) return;
+    results = await ask(`/api/evaluations/${id}`);
+    if (results.rows.length !== done) { options(); fill(); }
+  };
+  const timer = setInterval(() => again().catch(() => {}), EVERY_MS);
+  const head = ["Task", "Half", "Scenario", "Agent", "Seed", "Steps", "Outcome", "Not held"].map((name) => h("th", { scope: "col" }, name));
+  return {
+    title: results.name,
+    content: [h("h1", {}, results.name), heading, h("div", { class: "filters" }, search, choices), count,
+      h("div", { class: "card scroll", tabindex: 0, role: "region", "aria-label": "Episodes" }, h("table", {}, h("thead", {}, h("tr", {}, head)), table))],
+    leave: () => clearInterval(timer),
+    ready: fill,
+  };
+}
+
+function episode(id, row) {
+  const name = row.has_trace ? h("a", { href: `#/run/${id}/${encodeURIComponent(row.id)}` }, row.task) : row.task;
+  const agent = row.model === "none" || row.model === "rules" ? row.agent : `${row.agent} (${row.model})`;
+  const why = row.error ? h("span", { class: "muted" }, `${row.error_kind}: ${row.error}`) : row.missing.map(plain).join(", ");
+  return h("tr", {}, h("td", {}, name), h("td", {}, row.half), h("td", {}, row.scenario),
+    h("td", {}, agent + (row.geo === "full" ? "" : `, geo ${row.geo}`)), h("td", {}, String(row.seed)),
+    h("td", { title: seconds(row.sim_seconds) }, String(row.steps)), h("td", {}, outcome(row)), h("td", {}, why));
+}

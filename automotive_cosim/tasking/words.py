@@ -1,0 +1,55 @@
+"""A task in words, for lists and pages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from automotive_cosim.tasking.binding import needs
+from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil, TypeText, Warn
+from automotive_cosim.tasking.parameters import Choices, FromCockpit
+from automotive_cosim.tasking.task import Half
+
+
+def choices_in_words(choices: Choices) -> str:
+    """The values that a parameter may take."""
+    if isinstance(choices, FromCockpit):
+        return f"one of the cockpit's {choices.kind}"
+    return ", ".join(map(str, choices))
+
+
+def half_in_words(half: Half) -> Iterable[tuple[str, str]]:
+    """What each part of a half is called, and what it says."""
+    start = half.start
+    yield "where", f"{start.scenario}, trip {start.trip}" + (", parked" if start.parked else "")
+    if start.origin:
+        yield "at", f"{start.origin[0]:g}, {start.origin[1]:g} (longitude, latitude)"
+    if start.start:
+        yield "when", start.start
+    yield "trigger", f"{half.trigger.condition}, for {half.trigger.for_s:g} s"
+    yield "goal", f"{half.goal}, then declare {half.declares}"
+    if half.may_write:
+        yield "allowed", f"{', '.join(sorted(half.may_write))} may be commanded besides"
+    for number, way in enumerate((half.moves, *half.ways)):
+        yield "solution", f"{'or ' if number else ''}{', '.join(map(_move, way)) or 'declare at once'}"
+    yield "deadline", f"{half.deadline.seconds:g} s: {half.deadline.reason}"
+    yield "basis", f"{half.basis}: {half.rule}" if half.rule else str(half.basis)
+    for need in needs(half):
+        yield "elsewhere", need
+
+
+def _move(move: object) -> str:
+    match move:
+        case Open(name):
+            return f"open {name}"
+        case Tap(resource_id, times, text):
+            return f"tap {resource_id or repr(text)}" + (f" x{times}" if times != 1 else "")
+        case TapUntil(resource_id, shown, text):
+            return f"tap {resource_id} until {shown} reads {text!r}"
+        case Slide(resource_id, value):
+            return f"slide {resource_id} to {value}"
+        case TypeText(resource_id, text):
+            return f"type {text!r} into {resource_id}"
+        case Warn(kind):
+            return f"alert {kind}"
+        case _:
+            return str(getattr(getattr(move, "action", move), "action_type", move))

@@ -1,0 +1,77 @@
+"""The recorded road of an episode."""
+
+from __future__ import annotations
+
+import gzip
+import json
+from types import SimpleNamespace
+
+import pytest
+
+from automotive_cosim.agents import make_agent
+from automotive_cosim.contracts import RoadSnapshot
+from automotive_cosim.errors import UserError
+from automotive_cosim.run.episode import EpisodeSetup, run_episode
+from automotive_cosim.run.road import NAME, read_record, read_road
+from automotive_cosim.run.road_recorder import RoadRecorder, along
+
+
+@pytest.mark.sumo
+def test_the_road_is_recorded_and_nothing_else_changes(tmp_path, simulations):
+    setup = EpisodeSetup(task="hvac_fan_max", scenario="grid", agent="oracle", model="none")
+    blind = run_episode(setup, make_agent("oracle"), simulations=simulations)
+    seeing = run_episode(setup, make_agent("oracle"), [RoadRecorder(tmp_path)], simulations=simulations)
+    assert seeing == blind, "the trace's hash included"
+    record = read_record(tmp_path / NAME)
+    assert [second.at_s for second in record.seconds] == [sample.at_s for sample in blind.path[1:]]
+    for sample, second in zip(blind.path[1:], record.seconds, strict=True):
+        (ego,) = (each for each in second.vehicles if each.vehicle_id == "ego")
+        assert (ego.x_m, ego.y_m) == pytest.approx((sample.x_m, sample.y_m), abs=0.006)
+        assert (ego.heading_deg - sample.heading_deg) % 360 == pytest.approx(0.0, abs=0.06)
+        assert ego.speed_mps * 3.6 == pytest.approx(sample.speed_kmh, abs=0.02)
+    lights = {light for lane in record.shapes.lanes for light, _ in lane.links}
+    assert lights
+    assert lights == record.seconds[-1].lights.keys()
+    assert max(len(second.vehicles) for second in record.seconds) > 1
+
+    path = tmp_path / NAME
+    whole = path.read_bytes()
+    path.write_bytes(whole[: len(whole) * 2 // 3])
+    cut = read_record(path)
+    assert 0 < len(cut.seconds) < len(record.seconds)
+    assert cut.seconds == record.seconds[: len(cut.seconds)]
+
+
+@pytest.mark.parametrize("content", [b"", b"not gzip", gzip.compress(b'{"format":2}\n'), gzip.compress(b"[]\n")])
+def test_another_file_is_refused_in_one_line(tmp_path, content):
+    path = tmp_path / NAME
+    path.write_bytes(content)
+    if not content:
+        assert read_record(path).seconds == ()
+        return
+    with pytest.raises(UserError, match=r"road\.jsonl\.gz"):
+        read_record(path)
+
+
+def test_a_line_that_is_not_json_is_refused(tmp_path):
+    path = tmp_path / NAME
+    path.write_bytes(gzip.compress(json.dumps({"format": 1}).encode() + b"\n{\n"))
+    with pytest.raises(UserError, match="cannot read"):
+        list(read_road(path))
+
+
+def test_of_several_departures_only_the_last_is_kept(tmp_path):
+    recorder = RoadRecorder(tmp_path)
+    drives = [[(1.0, "first"), (2.0, "first"), (3.0, "first")], [(2.0, "second"), (3.0, "second")]]
+    for drive in drives:
+        for time_s, name in drive:
+            recorder.looked(RoadSnapshot(time_s, (), ()))
+            recorder.moved(SimpleNamespace(time_s=time_s, name=name), None)
+    assert [moment.name for moment, _ in recorder._before] == ["first", "second", "second"]
+
+
+def test_a_place_along_a_line():
+    line = [(0.0, 0.0), (10.0, 0.0), (10.0, 5.0)]
+    assert [along(line, at_m) for at_m in (-1.0, 4.0, 10.0, 12.0, 99.0)] == [
+        (0.0, 0.0), (4.0, 0.0), (10.0, 0.0), (10.0, 2.0), (10.0, 5.0)
+    ]  # fmt: skip

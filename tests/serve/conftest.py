@@ -1,0 +1,179 @@
+"""Records made by hand, and a server that shows them: nothing here starts SUMO."""
+
+from __future__ import annotations
+
+import gzip
+import http.client
+import json
+import threading
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+from PIL import Image
+
+from automotive_cosim.interface.controls import GeoInput
+from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
+from automotive_cosim.run.row import as_json
+from automotive_cosim.serve.server import WebServer
+from automotive_cosim.tasking.task import Dimension, Module
+
+HOSTILE = "<img src=x onerror=\"document.title='broken in'\">"
+BUTTON = {
+    "text": "Warn driver",
+    "content_description": "",
+    "class_name": "Button",
+    "bbox_pixels": {"x_min": 640, "y_min": 360, "x_max": 960, "y_max": 480},
+    "resource_id": "safety.warn",
+    "package_name": "automotive",
+    "is_clickable": True,
+}
+
+
+def step(number: int, thought: str = "") -> dict[str, Any]:
+    action = {"action_type": "click", "index": 0} if number else None
+    return {
+        "step": number,
+        "time_s": 100.0 + 2 * number,
+        "local_time": "2026-11-17T08:16:00+01:00",
+        "traffic": {"speed_mps": 20.0},
+        "signals": {},
+        "elements": [BUTTON],
+        "action": action,
+        "feedback": {"code": "ok", "text": thought},
+        "context": "Place: Paris",
+        "thought": thought,
+        "stages": [{"stage": "interpret", "text": thought, "reply": None}],
+    }
+
+
+def result(**changes: Any) -> dict[str, Any]:
+    made = {
+        "task": "road_speed_80_in_50", "half": "first", "scenario": "grid", "agent": "oracle", "model": "none",
+        "seed": 0, "goal": "Watch my speed.", "success": True, "reward": 1.0, "steps": 3, "sim_seconds": 6.0,
+        "trace_sha256": "0" * 64, "end": "declared", "error": None,
+        "verdict": {"parts": {"goal": {"ok": True, "why": "reached"}}, "basis": "wish", "rule": ""},
+        "timeline": [{"at_s": 2.0, "kind": "action", "text": "taps “Warn driver”"}],
+        "path": [
+            {"at_s": float(s), "speed_kmh": 72.0, "limit_kmh": 50.0, "road": "Rue", "x_m": 20.0 * s, "y_m": 0.0,
+             "heading_deg": 90.0}
+            for s in range(-2, 8)
+        ],
+        "violations": [],
+        "manifest": {"started": "2026-11-22T21:59:42+00:00"},
+    }  # fmt: skip
+    return made | changes
+
+
+def road(seconds: range = range(-2, 8)) -> list[dict[str, Any]]:
+    lane = ["road", 3.2, [-500.0, 0.0, 500.0, 0.0], [["light", 0]]]
+    head: list[dict[str, Any]] = [
+        {"format": 1, "radius_m": 800.0, "left_hand": False, "has_place": True},
+        {"lanes": [lane], "junctions": [[500, -5, 510, -5, 510, 5]]},
+        {"vehicles": [[0, "ego", "passenger", 4.5, 1.8], [1, HOSTILE, "bus", 12.0, 2.5]]},
+    ]
+    return head + [
+        {
+            "at_s": float(s), "seen": [[0, 20.0 * s, 0.0, 90.0, 20.0, 8], [1, 30.0, 5.0, 270.0, 0.0, 4]],
+            "lights": {"light": "r"}, "speed_kmh": 72.0, "limit_kmh": 50.0, "road": "Rue",
+            "local_time": "2026-11-17T08:16:00+01:00", "sun_deg": 20.0, "weather_code": 0,
+            "incidents": [], "events": [],
+        }
+        for s in seconds
+    ]  # fmt: skip
+
+
+def packed(lines: list[dict[str, Any]]) -> bytes:
+    return gzip.compress("".join(json.dumps(line) + "\n" for line in lines).encode())
+
+
+def write_record(folder: Path, steps: int = 4, *, finished: bool = True, **changes: Any) -> Path:
+    """A record of ``run``, as it is or as a killed run leaves it."""
+    (folder / "screenshots").mkdir(parents=True)
+    lines = [step(number, changes.get("goal", "")) for number in range(steps)]
+    (folder / "steps.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines), encoding="utf-8")
+    for number in range(steps):
+        Image.new("RGB", (1280, 720), (40 * number, 90, 160)).save(
+            folder / "screenshots" / f"step_{number:03d}.png"
+        )
+    (folder / "road.jsonl.gz").write_bytes(packed(road()))
+    if finished:
+        (folder / "episode.json").write_text(json.dumps(result(**changes)), encoding="utf-8")
+    return folder
+
+
+def write_evaluation(folder: Path) -> Path:
+    (folder / "traces").mkdir(parents=True)
+    (folder / "pictures" / "one").mkdir(parents=True)
+    plan = {
+        "format": 1,
+        "plan": {"agents": ["oracle"]},
+        "episodes": 2,
+        "starts": [{"started": "2026-11-22T18:00:00"}],
+    }
+    (folder / "manifest.json").write_text(json.dumps(plan), encoding="utf-8")
+    rows = [
+        EpisodeRow(
+            id=name, task="road_speed_80_in_50", half="first", pair="", dimension=Dimension.DRIVING_ALIGNMENT,
+            module=Module.ROAD, scenario="grid", agent="oracle", model="none", geo=GeoInput("full"),
+            seed=0, repeat=0, success=won, steps=3, sim_seconds=6.0, parts=PartsHeld(won, True, True, True, True),
+        )
+        for name, won in (("one", True), ("two", False))
+    ]  # fmt: skip
+    text = "".join(json.dumps(as_json(row)) + "\n" for row in rows)
+    (folder / "episodes.jsonl").write_text(text, encoding="utf-8")
+    trace = [*map(step, range(4)), {"result": result()}]
+    (folder / "traces" / "one.jsonl.gz").write_bytes(packed(trace))
+    Image.new("RGB", (1280, 720)).save(folder / "pictures" / "one" / "step_000.jpg")
+    return folder
+
+
+@dataclass
+class Reply:
+    status: int
+    headers: http.client.HTTPMessage
+    body: bytes
+
+    @property
+    def json(self) -> Any:
+        return json.loads(self.body)
+
+
+@dataclass
+class Browser:
+    """Asks a server as somebody who has opened its address."""
+
+    server: WebServer
+
+    def __call__(self, path: str, method: str = "GET", *, token: str | None = None, **headers: str) -> Reply:
+        """``token`` replaces the cookie's; an underscore in a header's name is a hyphen."""
+        connection = http.client.HTTPConnection("127.0.0.1", self.server.server_port, timeout=10)
+        port = self.server.server_port
+        cookie = self.server.token if token is None else token
+        sent = {"Host": f"127.0.0.1:{port}", "Cookie": f"automotive_cosim_{port}={cookie}"}
+        sent |= {name.replace("_", "-"): value for name, value in headers.items()}
+        connection.request(method, path, headers=sent)
+        answer = connection.getresponse()
+        body = answer.read()
+        connection.close()
+        return Reply(answer.status, answer.headers, body)
+
+
+@pytest.fixture
+def serving() -> Iterator[Callable[..., Browser]]:
+    servers: list[tuple[WebServer, threading.Thread]] = []
+
+    def start(*folders: Path, host: str = "127.0.0.1") -> Browser:
+        server = WebServer(list(folders), host)
+        thread = threading.Thread(target=server.serve_forever, args=(0.01,))
+        thread.start()
+        servers.append((server, thread))
+        return Browser(server)
+
+    yield start
+    for server, thread in servers:
+        server.shutdown()
+        thread.join()
+        server.server_close()

@@ -1,0 +1,107 @@
+"""What the pages are given: live records from where a reader was, every task and scenario, texts only as text."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import re
+from collections.abc import Callable
+from importlib.resources import files
+from pathlib import Path
+
+import pytest
+
+from automotive_cosim.run.road_recorder import is_being_written, mark_as_written
+from automotive_cosim.scenarios import shipped
+from automotive_cosim.serve import catalogue
+from automotive_cosim.tasking.task import Basis
+from automotive_cosim.tasks import CATALOGUE
+
+from .conftest import HOSTILE, Browser, road, step, write_record
+
+Serving = Callable[..., Browser]
+STATIC = sorted(Path(str(files("automotive_cosim.serve") / "static")).iterdir())
+
+
+def test_a_running_record_is_read_from_where_the_reader_was(serving: Serving, tmp_path: Path) -> None:
+    run = write_record(tmp_path / "run", steps=2, finished=False)
+    browser = serving(tmp_path)
+    raw = (run / "road.jsonl.gz").open("wb")
+    mark_as_written(raw)
+    file = gzip.GzipFile(fileobj=raw, mode="wb")
+
+    def write(seconds: range) -> None:
+        lines = road(seconds)
+        for line in lines if seconds.start < 0 else lines[3:]:
+            file.write(json.dumps(line).encode() + b"\n")
+        file.flush()
+        raw.flush()
+
+    write(range(-2, 3))
+    (record,) = browser("/api/runs").json["records"]
+    assert record["running"] is True
+    base = f"/api/runs/{record['id']}"
+    seen = browser(f"{base}/road").json["lines"]
+    assert len(seen) == 3 + 5
+    steps = browser(f"{base}/steps").json
+    assert (len(steps["steps"]), steps["running"]) == (2, True)
+
+    write(range(3, 5))
+    with (run / "steps.jsonl").open("a", encoding="utf-8") as more:
+        more.write(json.dumps(step(2)) + "\n" + json.dumps(step(3))[:50])
+    more_lines = browser(f"{base}/road?skip={len(seen)}").json["lines"]
+    assert [line["at_s"] for line in more_lines] == [3.0, 4.0]
+    assert [each["number"] for each in browser(f"{base}/steps?skip=2").json["steps"]] == [2], "no half line"
+
+    file.close()
+    raw.close()
+    assert not is_being_written(run / "road.jsonl.gz")
+    assert browser(f"{base}/steps?skip=3").json == {"steps": [], "running": False}
+
+
+def test_hostile_names_stay_text(serving: Serving, tmp_path: Path) -> None:
+    write_record(tmp_path / "run", goal=HOSTILE, task=HOSTILE)
+    browser = serving(tmp_path)
+    answer = browser("/api/runs")
+    assert answer.headers["Content-Type"] == "application/json; charset=utf-8"
+    assert answer.json["records"][0]["goal"] == HOSTILE
+
+
+@pytest.mark.parametrize("path", STATIC, ids=lambda path: path.name)
+def test_no_script_makes_markup_from_text_and_no_page_has_a_script_or_style_inside(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    if path.suffix == ".js":
+        assert not re.search(
+            r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|\beval\(|new Function|srcdoc|javascript:", text
+        )
+        assert not re.search(r"https?://(?!www\.w3\.org/2000/svg)", text), "nothing is fetched from elsewhere"
+    if path.suffix == ".html":
+        assert not re.search(r"<style|\son\w+=|style=|<script(?![^>]*src=\"/static/)", text)
+
+
+def test_every_script_that_is_imported_exists() -> None:
+    names = {path.name for path in STATIC}
+    for path in STATIC:
+        if path.suffix in (".js", ".html"):
+            named = re.findall(r'from "\./([\w.]+)"|/static/([\w.]+)"', path.read_text(encoding="utf-8"))
+            assert {one or other for one, other in named} <= names
+
+
+def test_every_task_has_a_page_with_its_law() -> None:
+    assert [each["id"] for each in catalogue.tasks()["tasks"]] == list(CATALOGUE)
+    for task in CATALOGUE.values():
+        page = catalogue.task(task.id)
+        assert [half["name"] for half in page["halves"]] == list(task.halves)
+        for half in page["halves"]:
+            lawful = task.half(half["name"]).basis is Basis.LAW
+            assert bool(half["laws"]) == lawful, f"{task.id} names a rule that exists"
+        json.dumps(page)
+
+
+def test_every_scenario_has_a_page() -> None:
+    found = catalogue.all_scenarios()["scenarios"]
+    assert [each["name"] for each in found] == list(shipped())
+    for each in found:
+        assert each["trips"]
+        if each["has_map"]:
+            assert catalogue.scenario_map(each["name"]).is_file()

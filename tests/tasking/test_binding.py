@@ -1,0 +1,130 @@
+"""A safety task in another network rests on what is in force there, or says what is missing."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from zoneinfo import ZoneInfo
+
+import pytest
+
+from automotive_cosim.contracts import (
+    Around,
+    DrivingState,
+    GpsFix,
+    LimitSource,
+    RoadAhead,
+    RoadHere,
+    Weather,
+)
+from automotive_cosim.geo.context import GeoContext
+from automotive_cosim.geo.locate import Geo
+from automotive_cosim.tasking.binding import UnmetNeedError, bound, needs
+from automotive_cosim.tasking.task import Basis, Half
+from automotive_cosim.tasks import CATALOGUE
+
+INGOLSTADT, LYON, CHARTRES, BERLIN, SEATTLE = (
+    (11.42, 48.76),
+    (4.85, 45.75),
+    (1.5, 48.4),
+    (13.4, 52.4),
+    (-122.3, 47.6),
+)
+FOG = Weather(6.0, 99.0, 0.0, 45, 100.0, 120.0, 3.0)
+PAIRS = [
+    pytest.param(CATALOGUE[name].half(half), id=f"{name}-{half}")
+    for name in CATALOGUE
+    if CATALOGUE[name].is_safety
+    for half in CATALOGUE[name].halves
+]
+
+
+def context(
+    place: tuple[float, float],
+    *,
+    limit_kmh: float | None = 50.0,
+    source: LimitSource = LimitSource.POSTED,
+    built_up: bool | None = True,
+    weather: Weather = FOG,
+) -> GeoContext:
+    limit_mps = None if limit_kmh is None else limit_kmh / 3.6
+    road = RoadHere(
+        "e", "e_0", 0, 1, 10.0, "Ringstraße", "primary", limit_mps, source, False, None, built_up, None, 1.0
+    )
+    driving = DrivingState(
+        time_s=0.0,
+        x_m=0.0,
+        y_m=0.0,
+        lon_deg=place[0],
+        lat_deg=place[1],
+        heading_deg=90.0,
+        speed_mps=22.0,
+        acceleration_mps2=0.0,
+        standing_s=0.0,
+        distance_m=0.0,
+        road=road,
+        ahead=RoadAhead(1000.0, 100.0, 0.0, 1.0, None, 0.0, None, None, None, None, None),
+        around=Around(None, None, None, None, 1.0),
+        hazard_lights=False,
+        vehicle_count=1,
+    )
+    noon = datetime(2026, 10, 5, 12, tzinfo=ZoneInfo("Europe/Paris"))
+    return Geo().locate(driving, GpsFix(True, *place, 3.0, 0.0, 90.0), weather, noon)
+
+
+def half(task: str, name: str = "first") -> Half:
+    return CATALOGUE[task].half(name)
+
+
+def test_a_sign_is_the_one_that_stands_there() -> None:
+    assert bound(half("road_speed_80_in_50"), context(INGOLSTADT)) == "sign, 50 km/h on Ringstraße; DE"
+    assert bound(half("road_twenty_miles"), context((-1.5, 52.2), limit_kmh=32.19)).startswith("sign, 20 mph")
+
+
+@pytest.mark.parametrize("limit_kmh", [50.0, None])
+def test_an_assumed_limit_is_no_sign(limit_kmh: float | None) -> None:
+    there = context(INGOLSTADT, limit_kmh=limit_kmh, source=LimitSource.ASSUMED)
+    with pytest.raises(UnmetNeedError, match="only assumes"):
+        bound(half("road_speed_80_in_50"), there)
+
+
+def test_the_law_is_that_of_the_place() -> None:
+    french = half("phenomenon_rear_fog_in_mist")
+    assert french.rule == "FR.rear_fog"
+    assert bound(french, context(LYON)).startswith("FR.rear_fog (verified")
+    with pytest.raises(UnmetNeedError, match=r"Germany answers differently than FR\.rear_fog.*DE\.rear_fog"):
+        bound(french, context(BERLIN))
+    german = half("phenomenon_rear_fog_in_mist", "second")
+    assert bound(german, context(INGOLSTADT)).startswith("DE.rear_fog (verified")
+
+
+def test_no_verdict_rests_on_a_rule_that_was_not_read_or_a_place_without_law() -> None:
+    with pytest.raises(UnmetNeedError, match="is not verified but"):
+        bound(half("road_headway"), context((-0.1, 51.9)))
+    with pytest.raises(UnmetNeedError, match="no law known there"):
+        bound(half("road_headway"), context((-30.0, 40.0)))
+
+
+def test_a_limit_of_the_law_must_be_certain_and_as_high() -> None:
+    german = half("road_unsigned_town", "second")
+    assert german.rule == "DE.limit.built_up"
+    unposted = LimitSource.ASSUMED
+    assert bound(german, context(INGOLSTADT, source=unposted)).startswith("DE.limit.built_up (verified")
+    assert bound(german, context(CHARTRES, source=unposted)).startswith("FR.limit.built_up (verified")
+    with pytest.raises(UnmetNeedError, match="differently"):
+        bound(german, context((-3.2, 51.5), source=unposted))
+    with pytest.raises(UnmetNeedError, match="nothing certain"):
+        bound(german, context(INGOLSTADT, source=unposted, built_up=None))
+    with pytest.raises(UnmetNeedError, match="nothing certain"):
+        bound(german, context(SEATTLE, source=unposted))
+
+
+@pytest.mark.parametrize("each", PAIRS)
+def test_every_half_of_a_pair_says_what_it_needs(each: Half) -> None:
+    """And nothing that is judged by law comes through at sea."""
+    if each.basis is Basis.LAW:
+        assert all(need.startswith("a verified rule") for need in needs(each))
+        assert len(needs(each)) == 1 + each.rule.count(",")
+        with pytest.raises(UnmetNeedError):
+            bound(each, context((-30.0, 40.0), limit_kmh=None, source=LimitSource.ASSUMED))
+    if each.basis in (Basis.PHYSICS, Basis.WISH):
+        assert bound(each, context((-30.0, 40.0))) == each.rule
