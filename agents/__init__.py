@@ -39,6 +39,7 @@ __all__ = [
     "Stage",
     "StageName",
     "Thinker",
+    "chosen",
     "make_agent",
 ]
 
