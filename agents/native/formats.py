@@ -170,6 +170,9 @@ _FUNCTIONS = (car_function(),)
 
 FORMATS: Mapping[str, Format] = {
     "anthropic": Format(Calls(), Pixels(), _ANTHROPIC, Anthropic(_FUNCTIONS)),
+    "anthropic-2025-11": Format(
+        Calls(), Pixels(), _ANTHROPIC, Anthropic(_FUNCTIONS, "computer_20251124", "computer-use-2025-11-24")
+    ),
     "gemini": Format(Calls(), Share(1000), _GEMINI, Gemini(_FUNCTIONS)),
     "gui-owl": Format(
         ToolCalls(preamble="<thinking>\n{thought}\n</thinking>\n<conclusion>\n{thought}\n</conclusion>\n"),

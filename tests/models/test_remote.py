@@ -392,7 +392,7 @@ def body_of(form: str, text: str) -> bytes:
         message = {"type": "message", "content": [{"type": "output_text", "text": say}]}
         whole = {"output": [{"type": "reasoning"}, message, *actions]}
         whole["usage"] = {"input_tokens": 7, "output_tokens": 3}
-    elif form == "anthropic":
+    elif form.startswith("anthropic"):
         uses = [
             {"type": "tool_use", "name": "computer", "input": {"action": name, **given}} for name, given in calls
         ]
@@ -405,7 +405,12 @@ def body_of(form: str, text: str) -> bytes:
     return json.dumps(whole).encode()
 
 
-ASKS = {"openai": "/responses", "anthropic": "/messages", "gemini": "/models/some-model:generateContent"}
+ASKS = {
+    "openai": "/responses",
+    "anthropic": "/messages",
+    "anthropic-2025-11": "/messages",
+    "gemini": "/models/some-model:generateContent",
+}
 
 
 @pytest.mark.slow
@@ -434,7 +439,7 @@ def test_a_model_at_an_endpoint_works_the_car_in_its_own_format(
         assert asked["path"] == "/v1" + ASKS.get(form, "/chat/completions")
         assert len(re.findall("iVBORw0KGgo", json.dumps(asked))) == 1  # one picture, a PNG
         assert ("car" in json.dumps(asked.get("tools", ()))) == (chosen.wire is not None)
-        own = {"anthropic": "x-api-key", "gemini": "x-goog-api-key"}.get(form)
+        own = {"anthropic": "x-api-key", "gemini": "x-goog-api-key"}.get(form.partition("-")[0])
         assert headers.get(own or "authorization") == (KEY if own else f"Bearer {KEY}")
         assert ("authorization" in headers) == (own is None)
     again = make_agent("native", f"replay/{tmp_path / 'out'}?format={form}")
