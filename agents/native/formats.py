@@ -170,6 +170,9 @@ _FUNCTIONS = (car_function(),)
 
 FORMATS: Mapping[str, Format] = {
     "anthropic": Format(Calls(), Pixels(), _ANTHROPIC, Anthropic(_FUNCTIONS)),
+    "anthropic-2025-01": Format(
+        Calls(), Pixels(), _ANTHROPIC, Anthropic(_FUNCTIONS, "computer_20250124", "computer-use-2025-01-24")
+    ),
     "anthropic-2025-11": Format(
         Calls(), Pixels(), _ANTHROPIC, Anthropic(_FUNCTIONS, "computer_20251124", "computer-use-2025-11-24")
     ),

@@ -2,7 +2,7 @@
 
 ``chat``        OpenAI's chat completions, which most servers speak
 ``openai``      OpenAI's responses with its tool ``computer``
-``anthropic``   Anthropic's messages with its tool ``computer``
+``anthropic``   Anthropic's messages with its toolset or its earlier tools for a computer
 ``gemini``      Gemini's ``generateContent`` with its tool ``computer_use``
 
 The last three answer with calls. Their text is a JSON object, ``{"say": text, "calls": [{"name", "arguments"}]}``,
@@ -140,13 +140,22 @@ class OpenAI:
         return _reply(say, calls, usage.get("input_tokens"), usage.get("output_tokens"), cut)
 
 
+TOOLSET = "computer_toolset_20260801"
+"""Its members are tools of their own, and it needs no size of the display."""
+NO_MEMBERS = (
+    "cursor_position", "hold_key", "left_mouse_down", "left_mouse_up", "middle_click", "mouse_move", "right_click", "zoom",
+)  # fmt: skip
+"""Those that a touch screen does not have."""
+
+
 @dataclass(frozen=True, slots=True)
 class Anthropic:
-    """Anthropic's messages with its computer tool."""
+    """Anthropic's messages with its tools for a computer."""
 
     functions: tuple[Json, ...] = ()
-    tool: str = "computer_20250124"
-    beta: str = "computer-use-2025-01-24"
+    tool: str = TOOLSET
+    beta: str = ""
+    """The beta header that the earlier tools require."""
 
     def path(self, model: str) -> str:
         """See ``Wire``."""
@@ -154,7 +163,8 @@ class Anthropic:
 
     def headers(self, key: str) -> Mapping[str, str]:
         """See ``Wire``."""
-        return {"x-api-key": key, "anthropic-version": "2023-06-01", "anthropic-beta": self.beta}
+        named = {"x-api-key": key, "anthropic-version": "2023-06-01"}
+        return named | ({"anthropic-beta": self.beta} if self.beta else {})
 
     def body(self, model: str, messages: Sequence[ChatMessage], limits: Json) -> Json:
         """See ``Wire``."""
@@ -174,13 +184,12 @@ class Anthropic:
             }
             for message in messages
         ]
-        width, height = _size(messages)
-        computer = {
-            "type": self.tool,
-            "name": "computer",
-            "display_width_px": width,
-            "display_height_px": height,
-        }
+        computer: Json = {"type": self.tool}
+        if self.tool == TOOLSET:
+            computer["configs"] = {member: {"enabled": False} for member in NO_MEMBERS}
+        else:
+            width, height = _size(messages)
+            computer |= {"name": "computer", "display_width_px": width, "display_height_px": height}
         functions = [
             {"name": each["name"], "description": each["description"], "input_schema": each["parameters"]}
             for each in self.functions

@@ -394,7 +394,10 @@ def body_of(form: str, text: str) -> bytes:
         whole["usage"] = {"input_tokens": 7, "output_tokens": 3}
     elif form.startswith("anthropic"):
         uses = [
-            {"type": "tool_use", "name": "computer", "input": {"action": name, **given}} for name, given in calls
+            {"type": "tool_use", "toolset_name": "computer", "name": name, "input": given}
+            if form == "anthropic"
+            else {"type": "tool_use", "name": "computer", "input": {"action": name, **given}}
+            for name, given in calls
         ]
         whole = {"content": [{"type": "text", "text": say}, *uses]}
         whole["usage"] = {"input_tokens": 7, "output_tokens": 3}
@@ -408,6 +411,7 @@ def body_of(form: str, text: str) -> bytes:
 ASKS = {
     "openai": "/responses",
     "anthropic": "/messages",
+    "anthropic-2025-01": "/messages",
     "anthropic-2025-11": "/messages",
     "gemini": "/models/some-model:generateContent",
 }
