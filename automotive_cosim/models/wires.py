@@ -271,8 +271,11 @@ class Gemini:
 
 def _reply(say: str, calls: Iterable[Json], tokens_in: object, tokens_out: object, cut: bool) -> ModelReply:
     text = json.dumps({"say": say, "calls": list(calls)}, ensure_ascii=False)
-    counts = [each if isinstance(each, int) else 0 for each in (tokens_in, tokens_out)]
-    return ModelReply(text, *counts, finish="length" if cut else "stop")
+    return ModelReply(text, _count(tokens_in), _count(tokens_out), finish="length" if cut else "stop")
+
+
+def _count(tokens: object) -> int:
+    return tokens if isinstance(tokens, int) else 0
 
 
 def _text(content: object) -> str:
