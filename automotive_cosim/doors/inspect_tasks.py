@@ -21,8 +21,6 @@ from inspect_ai.model import ChatMessageSystem, ChatMessageUser, ContentImage, C
 from inspect_ai.scorer import Metric, SampleScore, Score, Scorer, Target, mean, metric, scorer
 from inspect_ai.solver import Generate, Solver, TaskState, solver
 from inspect_ai.tool import ToolDef, ToolError
-from inspect_ai.util import StoreModel
-from pydantic import Field
 
 from automotive_cosim.agents.settings import geo_input
 from automotive_cosim.cockpit.actions import grammar
@@ -32,7 +30,9 @@ from automotive_cosim.errors import InfrastructureError, UserError
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.report.stats import Interval, wilson
 from automotive_cosim.run.plan import choose, most_steps
-from automotive_cosim.service import EpisodeService, Limits, Turn
+from automotive_cosim.service import EpisodeService
+from automotive_cosim.service.episodes import Limits
+from automotive_cosim.service.turn import Turn
 from automotive_cosim.tasks import CATALOGUE
 
 INSTRUCTIONS = """\
@@ -41,14 +41,10 @@ Act with the tool `act`, one action at a time; every action takes time while the
 the driver; touch nothing else. End with a `status` action: `complete` when it is done, `not_needed` when the right
 thing is to do nothing, `infeasible` when it must not or cannot be done."""
 PARTS = ("goal", "clean", "safe", "in_time", "declared")
+OUTCOME = "automotive_cosim/outcome"
+"""Key of an episode's outcome in its sample's store."""
 LIMITS = Limits(episodes=1000, idle_s=86_400.0)
 """Inspect itself limits its samples and ends every episode."""
-
-
-class Judged(StoreModel):
-    """What came of an episode, in its sample's store."""
-
-    outcome: dict[str, Any] = Field(default_factory=dict)
 
 
 @cache
@@ -108,10 +104,10 @@ def _driver(pictures: bool = True) -> Solver:
         except InfrastructureError:
             raise
         except BaseException:  # a limit of Inspect's, or the user's Ctrl-C: nothing may be awaited here
-            state.store_as(Judged).outcome = service.finish(turn.episode_id).as_json()
+            state.store.set(OUTCOME, service.finish(turn.episode_id).as_json())
             raise
         outcome = await asyncio.to_thread(service.finish, turn.episode_id)
-        state.store_as(Judged).outcome = outcome.as_json()
+        state.store.set(OUTCOME, outcome.as_json())
         return state
 
     return solve
@@ -165,8 +161,8 @@ def _verdict() -> Scorer:
     """The verdict and its parts, each 0 or 1."""
 
     async def score(state: TaskState, target: Target) -> Score:
-        outcome: Json = state.store_as(Judged).outcome
-        if not outcome:
+        outcome: Json | None = state.store.get(OUTCOME)
+        if outcome is None:
             raise InfrastructureError("the episode was not judged")
         parts = outcome["verdict"]["parts"]
         return Score(
