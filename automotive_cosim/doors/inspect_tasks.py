@@ -31,8 +31,8 @@ from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.report.stats import Interval, wilson
 from automotive_cosim.run.plan import choose, most_steps
 from automotive_cosim.service import EpisodeService
-from automotive_cosim.service.episodes import Limits
-from automotive_cosim.service.turn import Turn
+from automotive_cosim.service.episodes import ServiceLimits
+from automotive_cosim.service.turn import EpisodeTurn
 from automotive_cosim.tasks import CATALOGUE
 
 INSTRUCTIONS = """\
@@ -43,7 +43,7 @@ thing is to do nothing, `infeasible` when it must not or cannot be done."""
 PARTS = ("goal", "clean", "safe", "in_time", "declared")
 OUTCOME = "automotive_cosim/outcome"
 """Key of an episode's outcome in its sample's store."""
-LIMITS = Limits(episodes=1000, idle_s=86_400.0)
+LIMITS = ServiceLimits(episodes=1000, idle_s=86_400.0)
 """Inspect itself limits its samples and ends every episode."""
 
 
@@ -126,7 +126,7 @@ def _act(service: EpisodeService, episode_id: str) -> Any:
     return ToolDef(act, name="act", description=about, parameters=described, max_output=0).as_tool()
 
 
-def _content(turn: Turn) -> list[ContentText | ContentImage]:
+def _content(turn: EpisodeTurn) -> list[ContentText | ContentImage]:
     found: list[ContentText | ContentImage] = [ContentText(text=json.dumps(turn.as_json(), ensure_ascii=False))]
     picture = turn.picture
     if picture is not None:
