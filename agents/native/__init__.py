@@ -6,7 +6,7 @@ syntax    a format's texts, and the calls in them
 formats   the table of formats
 agent     the agent ``native``
 
-    text  <- syntax ->  Call(name, arguments)  <- verbs, grid ->  Action
+    text  <- syntax ->  GuiCall(name, arguments)  <- verbs, grid ->  Action
 """
 
 from automotive_cosim.agents.native.agent import NativeAgent

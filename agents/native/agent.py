@@ -9,8 +9,8 @@ from automotive_cosim.agents.asking import Asking
 from automotive_cosim.agents.base import StageName
 from automotive_cosim.agents.marks import png
 from automotive_cosim.agents.native.formats import Format
-from automotive_cosim.agents.native.grid import Screen
-from automotive_cosim.agents.native.verbs import Call, Hand, actions
+from automotive_cosim.agents.native.grid import GuiScreen
+from automotive_cosim.agents.native.verbs import GuiCall, Hand, actions
 from automotive_cosim.agents.settings import AgentSettings
 from automotive_cosim.contracts import Action, Observation
 from automotive_cosim.errors import ActionError, UserError
@@ -59,7 +59,7 @@ class NativeAgent:
         """Forgets the previous episode."""
         self._asking.reset()
         self._history: list[str] = []
-        self._left: deque[tuple[Action, Call]] = deque()
+        self._left: deque[tuple[Action, GuiCall]] = deque()
         self._last: tuple[int, int] | None = None
         self._problem = ""
 
@@ -76,7 +76,7 @@ class NativeAgent:
             return self._next(observation)
         assert observation.screenshot is not None
         height, width = observation.screenshot.shape[:2]
-        screen = Screen(width, height, self._form.grid)
+        screen = GuiScreen(width, height, self._form.grid)
         text = self._question(observation, screen)
         self._asking.note(StageName.PERCEIVE, observation, text)
         reply, asked = self._asking.ask(text, (png(observation.screenshot),))
@@ -104,7 +104,7 @@ class NativeAgent:
         self._asking.note(StageName.ACT, seen, prompt.action_words(action, seen))
         return action
 
-    def _question(self, seen: Observation, screen: Screen) -> str:
+    def _question(self, seen: Observation, screen: GuiScreen) -> str:
         span = self._form.grid.span(screen.width, screen.height)
         return prompt.fill(
             "native",

@@ -65,7 +65,7 @@ class Resized:
 
 
 @dataclass(frozen=True, slots=True)
-class Screen:
+class GuiScreen:
     """A screen's size in pixels, and the coordinates in which it is spoken of."""
 
     width: int

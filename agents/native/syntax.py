@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from automotive_cosim.agents import answer
-from automotive_cosim.agents.native.verbs import CAR, CAR_ACTIONS, Call, Meaning, Verb
+from automotive_cosim.agents.native.verbs import CAR, CAR_ACTIONS, GuiCall, Meaning, Verb
 from automotive_cosim.cockpit.actions import grammar, to_json
 from automotive_cosim.contracts import ActionType, Json
 from automotive_cosim.errors import ActionError
@@ -23,7 +23,7 @@ Verbs = Mapping[str, Verb]
 class Syntax(Protocol):
     """How a format writes calls."""
 
-    def read(self, text: str, verbs: Verbs) -> list[Call]:
+    def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
         """The calls in an answer, in order.
 
         Raises:
@@ -31,7 +31,7 @@ class Syntax(Protocol):
         """
         ...
 
-    def write(self, thought: str, calls: Sequence[Call], verbs: Verbs) -> str:
+    def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str:
         """An answer with these calls."""
         ...
 
@@ -61,18 +61,18 @@ class Labelled:
     point: str
     """Form of a point, with ``{x}`` and ``{y}``."""
 
-    def read(self, text: str, verbs: Verbs) -> list[Call]:
+    def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
         """See ``Syntax``."""
         tail = text[-LONGEST:].rpartition("Action:")[2].strip()
         calls = [
-            Call(found[1], _keywords(found[2]))
+            GuiCall(found[1], _keywords(found[2]))
             for found in re.finditer(r"^[ \t]*([a-z_]+)\((.*?)\)[ \t]*$", tail, re.MULTILINE | re.DOTALL)
         ]
         if not calls:
             raise ActionError("the answer has no action; end it with `Action: name(argument='...')`")
         return calls
 
-    def write(self, thought: str, calls: Sequence[Call], verbs: Verbs) -> str:
+    def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str:
         """See ``Syntax``."""
         lines = "\n\n".join(self._call(call, verbs[call.name]) for call in calls)
         return f"Thought: {thought}\nAction: {lines}"
@@ -89,7 +89,7 @@ class Labelled:
             return self.point.format(x="x", y="y")
         return _sample(name, verb)
 
-    def _call(self, call: Call, verb: Verb) -> str:
+    def _call(self, call: GuiCall, verb: Verb) -> str:
         texts = []
         for name, value in call.arguments.items():
             said = self.point.format(x=value[0], y=value[1]) if name in verb.at + verb.to else str(value)
@@ -119,7 +119,7 @@ class ToolCalls:
     preamble: str = "Thought: {thought}\nAction: {thought}\n"
     """What stands before the calls, with ``{thought}``."""
 
-    def read(self, text: str, verbs: Verbs) -> list[Call]:
+    def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
         """See ``Syntax``."""
         calls = []
         for value in _objects(text[-LONGEST:]):
@@ -127,16 +127,16 @@ class ToolCalls:
             if not isinstance(given, dict):
                 continue
             if value.get("name") == CAR:
-                calls.append(Call(CAR, given))
+                calls.append(GuiCall(CAR, given))
             elif "action" in given:
                 calls.append(
-                    Call(str(given["action"]), {key: each for key, each in given.items() if key != "action"})
+                    GuiCall(str(given["action"]), {key: each for key, each in given.items() if key != "action"})
                 )
         if not calls:
             raise ActionError('the answer has no <tool_call>{"name": ..., "arguments": {...}}</tool_call>')
         return calls
 
-    def write(self, thought: str, calls: Sequence[Call], verbs: Verbs) -> str:
+    def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str:
         """See ``Syntax``."""
         values = [
             {"name": CAR, "arguments": dict(call.arguments)}
@@ -233,7 +233,7 @@ _ORDER: Mapping[str, tuple[str, ...]] = {
 class Code:
     """``## Action``, ``## Code`` with lines of pyautogui: OpenCUA."""
 
-    def read(self, text: str, verbs: Verbs) -> list[Call]:
+    def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
         """See ``Syntax``."""
         blocks = re.findall(r"```(?:python|code)?\s*\n(.*?)```", text[-LONGEST:], re.DOTALL)
         try:
@@ -247,7 +247,7 @@ class Code:
             raise ActionError("the answer has no code; end it with a block of pyautogui calls")
         return calls
 
-    def write(self, thought: str, calls: Sequence[Call], verbs: Verbs) -> str:
+    def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str:
         """See ``Syntax``."""
         lines = "\n".join(line for call in calls for line in _lines(call))
         return f"## Action:\n{thought}\n\n## Code:\n```python\n{lines}\n```"
@@ -257,7 +257,7 @@ class Code:
         lines = (
             line
             for name, verb in verbs.items()
-            for line in _lines(Call(name, {each: _Word(each) for each in verb.arguments()}))
+            for line in _lines(GuiCall(name, {each: _Word(each) for each in verb.arguments()}))
         )
         return "\n".join(lines)
 
@@ -271,7 +271,7 @@ class _Word(str):
         return str(self)
 
 
-def _python(statement: ast.stmt) -> Call:
+def _python(statement: ast.stmt) -> GuiCall:
     """The call in a line such as ``pyautogui.click(x=1, y=2)``."""
     match statement:
         case ast.Expr(ast.Call(ast.Attribute(ast.Name("pyautogui" | "computer" | "time"), name), given, words)):
@@ -282,11 +282,11 @@ def _python(statement: ast.stmt) -> Call:
             if len(values) > len(names):
                 raise ValueError(f"{name} has too many arguments")
             found = dict(zip(names, values, strict=False))
-            return Call(name, found | {word.arg: ast.literal_eval(word.value) for word in words if word.arg})
+            return GuiCall(name, found | {word.arg: ast.literal_eval(word.value) for word in words if word.arg})
     raise ValueError(f"{ast.unparse(statement)[:60]!r} is no call of pyautogui")
 
 
-def _joined(calls: Iterator[Call]) -> Iterator[Call]:
+def _joined(calls: Iterator[GuiCall]) -> Iterator[GuiCall]:
     """Calls with the meaning that pyautogui gives them by sign and by order: scroll's direction, a drag's start."""
     start: Json | None = None
     for call in calls:
@@ -298,20 +298,20 @@ def _joined(calls: Iterator[Call]) -> Iterator[Call]:
             clicks = given.pop("clicks", 0)
             ways = ("up", "down") if call.name == "scroll" else ("right", "left")
             given["direction"] = ways[0] if isinstance(clicks, int | float) and clicks > 0 else ways[1]
-            yield Call("scroll", given)
+            yield GuiCall("scroll", given)
         elif call.name == "dragTo":
             from_x, from_y = (start or {}).get("x"), (start or {}).get("y")
-            yield Call("dragTo", {"from_x": from_x, "from_y": from_y, "x": given.get("x"), "y": given.get("y")})
+            yield GuiCall("dragTo", {"from_x": from_x, "from_y": from_y, "x": given.get("x"), "y": given.get("y")})
         elif call.name == "click" and start is not None and not given:
-            yield Call("click", start)
+            yield GuiCall("click", start)
         else:
-            yield Call(call.name, given)
+            yield GuiCall(call.name, given)
         start = None
     if start is not None:
         raise ValueError("moving the pointer does nothing on a touch screen")
 
 
-def _lines(call: Call) -> Iterator[str]:
+def _lines(call: GuiCall) -> Iterator[str]:
     given = dict(call.arguments)
     module = {"terminate": "computer", "triple_click": "computer", "sleep": "time"}.get(call.name, "pyautogui")
     name = call.name
@@ -333,7 +333,7 @@ def _lines(call: Call) -> Iterator[str]:
 class Calls:
     """Calls that came over a wire of their own: OpenAI, Anthropic, Gemini (``models.wires``)."""
 
-    def read(self, text: str, verbs: Verbs) -> list[Call]:
+    def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
         """See ``Syntax``. An answer in words alone ends the episode: that is how these models end it."""
         try:
             told = json.loads(text)
@@ -343,9 +343,9 @@ class Calls:
             raise ActionError(f"the answer is no list of calls: {error}") from error
         if not calls and not said:
             raise ActionError("the answer is empty; call a function, or say that you are done")
-        return calls or [Call(END, {})]
+        return calls or [GuiCall(END, {})]
 
-    def write(self, thought: str, calls: Sequence[Call], verbs: Verbs) -> str:
+    def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str:
         """See ``Syntax``."""
         told = [{"name": call.name, "arguments": dict(call.arguments)} for call in calls if call.name != END]
         return json.dumps({"say": thought, "calls": told}, ensure_ascii=False)
@@ -359,22 +359,22 @@ END = "end"
 """The word for an answer without a call."""
 
 
-def _plainly(name: str, given: Json) -> Call:
+def _plainly(name: str, given: Json) -> GuiCall:
     """A call with its arguments as the table names them."""
     if name == "drag" and "path" in given:  # OpenAI
         path = [[point["x"], point["y"]] for point in given["path"]]
-        return Call(name, {"from": path[0], "to": path[-1]})
+        return GuiCall(name, {"from": path[0], "to": path[-1]})
     if name == "scroll" and "scroll_y" in given:  # OpenAI: a wheel's distance, down and right above zero
         across, down = given.pop("scroll_x", 0), given.pop("scroll_y")
         by_row = ("down" if down > 0 else "up") if abs(down) >= abs(across) else ("right" if across > 0 else "left")
-        return Call(name, given | {"direction": by_row})
+        return GuiCall(name, given | {"direction": by_row})
     if name == "type_text_at":  # Gemini presses enter unless told otherwise
         enter = "\n" if given.pop("press_enter", True) else ""
         given.pop("clear_before_typing", None)
-        return Call(name, given | {"text": f"{given.get('text', '')}{enter}"})
+        return GuiCall(name, given | {"text": f"{given.get('text', '')}{enter}"})
     if name == "wait_5_seconds":
-        return Call(name, {"seconds": 5})
-    return Call(name, given)
+        return GuiCall(name, {"seconds": 5})
+    return GuiCall(name, given)
 
 
 # --- this project's own JSON --------------------------------------------------------------------------------
@@ -384,12 +384,12 @@ def _plainly(name: str, given: Json) -> Call:
 class Plain:
     """``Situation``, ``Plan``, ``Action: {"action_type": ...}``: as this project's other agents answer."""
 
-    def read(self, text: str, verbs: Verbs) -> list[Call]:
+    def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
         """See ``Syntax``."""
         action = answer.read(text).action
-        return [Call(str(action.action_type), to_json(action))]
+        return [GuiCall(str(action.action_type), to_json(action))]
 
-    def write(self, thought: str, calls: Sequence[Call], verbs: Verbs) -> str:
+    def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str:
         """See ``Syntax``."""
         lines = "\n".join(f"Action: {json.dumps(dict(call.arguments), ensure_ascii=False)}" for call in calls)
         return f"Situation: {thought}\nPlan: none\n{lines}"

@@ -9,7 +9,7 @@ from enum import StrEnum
 from math import isfinite
 from typing import Any
 
-from automotive_cosim.agents.native.grid import Screen
+from automotive_cosim.agents.native.grid import GuiScreen
 from automotive_cosim.cockpit.actions import SECONDS_LIMIT, check, parse, to_json
 from automotive_cosim.contracts import Action, ActionType, Direction, Element, GoalStatus, Json
 from automotive_cosim.errors import ActionError, UnknownNameError
@@ -38,7 +38,7 @@ STATUSES: Mapping[str, GoalStatus] = {
 
 
 @dataclass(frozen=True, slots=True)
-class Call:
+class GuiCall:
     """One call in a model's answer: a name and arguments, as the format has them."""
 
     name: str
@@ -100,13 +100,13 @@ class Verb:
 class Hand:
     """What the device knows and the model need not say: where texts go, and which list lies under a point."""
 
-    screen: Screen
+    screen: GuiScreen
     elements: Sequence[Element] = ()
     last: tuple[int, int] | None = None
     """The pixel that was touched last."""
 
 
-def actions(verbs: Mapping[str, Verb], call: Call, hand: Hand) -> list[Action]:
+def actions(verbs: Mapping[str, Verb], call: GuiCall, hand: Hand) -> list[Action]:
     """The actions that a call asks for, one after the other.
 
     Raises:
@@ -118,7 +118,7 @@ def actions(verbs: Mapping[str, Verb], call: Call, hand: Hand) -> list[Action]:
     return [check(action) for action in _actions(verb, call, hand)]
 
 
-def _actions(verb: Verb, call: Call, hand: Hand) -> list[Action]:
+def _actions(verb: Verb, call: GuiCall, hand: Hand) -> list[Action]:
     text = _text(verb, call)
     match verb.meaning:
         case Meaning.TAP | Meaning.DOUBLE_TAP | Meaning.HOLD:
@@ -151,7 +151,7 @@ def _actions(verb: Verb, call: Call, hand: Hand) -> list[Action]:
             return [parse(dict(call.arguments))]
 
 
-def call_for(verbs: Mapping[str, Verb], action: Action, screen: Screen) -> Call | None:
+def call_for(verbs: Mapping[str, Verb], action: Action, screen: GuiScreen) -> GuiCall | None:
     """The call that asks for an action; None if the format has no word for it.
 
     A text is typed into the field that has the focus, so its target is not said.
@@ -159,10 +159,10 @@ def call_for(verbs: Mapping[str, Verb], action: Action, screen: Screen) -> Call 
     return next((call for name, verb in verbs.items() if (call := _call(name, verb, action, screen))), None)
 
 
-def _call(name: str, verb: Verb, action: Action, screen: Screen) -> Call | None:
+def _call(name: str, verb: Verb, action: Action, screen: GuiScreen) -> GuiCall | None:
     kind = action.action_type
     if verb.meaning is Meaning.CAR:
-        return Call(name, to_json(action)) if name == kind or (name == CAR and kind in CAR_ACTIONS) else None
+        return GuiCall(name, to_json(action)) if name == kind or (name == CAR and kind in CAR_ACTIONS) else None
     said = _said(verb, action)
     if said is None or (verb.means and said != verb.means):
         return None
@@ -177,7 +177,7 @@ def _call(name: str, verb: Verb, action: Action, screen: Screen) -> Call | None:
         found[verb.direction] = str(action.direction)
     if verb.seconds and action.seconds is not None:
         found[verb.seconds] = action.seconds
-    return Call(name, found)
+    return GuiCall(name, found)
 
 
 def _said(verb: Verb, action: Action) -> str | None:
@@ -228,7 +228,7 @@ CAR_ACTIONS = frozenset(
 # --- arguments ------------------------------------------------------------------------------------------------
 
 
-def _text(verb: Verb, call: Call) -> str:
+def _text(verb: Verb, call: GuiCall) -> str:
     if not verb.text or verb.text not in call.arguments:
         return verb.means
     value = call.arguments[verb.text]
@@ -239,11 +239,11 @@ def _text(verb: Verb, call: Call) -> str:
     return value
 
 
-def _has_point(verb: Verb, call: Call) -> bool:
+def _has_point(verb: Verb, call: GuiCall) -> bool:
     return all(call.arguments.get(name) is not None for name in verb.at)
 
 
-def _point(names: tuple[str, ...], call: Call, screen: Screen) -> tuple[int, int]:
+def _point(names: tuple[str, ...], call: GuiCall, screen: GuiScreen) -> tuple[int, int]:
     values = [call.arguments.get(name) for name in names]
     numbers = [number for value in values for number in _numbers(value)]
     if len(numbers) == 4 and len(names) == 1:  # a box: its middle
@@ -270,7 +270,7 @@ def _spread(names: tuple[str, ...], point: tuple[int, int]) -> Json:
     return {names[0]: list(point)} if len(names) == 1 else dict(zip(names, point, strict=True))
 
 
-def _direction(verb: Verb, call: Call) -> Direction:
+def _direction(verb: Verb, call: GuiCall) -> Direction:
     value = str(call.arguments.get(verb.direction, "")).casefold()
     if value not in set(Direction):
         raise ActionError(str(UnknownNameError("direction", value[:40], Direction)))
@@ -289,7 +289,7 @@ def _key(name: str) -> ActionType:
     return key
 
 
-def _typed(text: str, verb: Verb, call: Call, hand: Hand) -> Action:
+def _typed(text: str, verb: Verb, call: GuiCall, hand: Hand) -> Action:
     if _has_point(verb, call) and verb.at:
         x, y = _point(verb.at, call, hand.screen)
         return Action(ActionType.INPUT_TEXT, x=x, y=y, text=text)
@@ -311,7 +311,7 @@ def typed(text: str, elements: Sequence[Element], last: tuple[int, int] | None, 
     return Action(ActionType.INPUT_TEXT, x=last[0], y=last[1], text=text, clear_text=cleared)
 
 
-def _list(verb: Verb, call: Call, hand: Hand) -> int | None:
+def _list(verb: Verb, call: GuiCall, hand: Hand) -> int | None:
     """The list under the point, if one is given: the smallest that can be scrolled."""
     if not verb.at or not _has_point(verb, call):
         return None
@@ -325,7 +325,7 @@ def _list(verb: Verb, call: Call, hand: Hand) -> int | None:
     return min(under)[1] if under else None
 
 
-def _middle(screen: Screen) -> tuple[int, int]:
+def _middle(screen: GuiScreen) -> tuple[int, int]:
     return screen.width // 2, screen.height // 2
 
 

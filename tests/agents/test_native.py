@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from automotive_cosim.agents import AgentSettings, NativeAgent, make_agent
 from automotive_cosim.agents.native.formats import FORMATS, chosen
-from automotive_cosim.agents.native.grid import Resized, Screen
+from automotive_cosim.agents.native.grid import GuiScreen, Resized
 from automotive_cosim.agents.native.verbs import Hand, actions, call_for
 from automotive_cosim.contracts import (
     Action,
@@ -38,7 +38,7 @@ SHOWN = (LIST, FIELD)
 
 def read(form: str, text: str, elements: Sequence[Element] = SHOWN) -> list[Action]:
     chosen_form = FORMATS[form]
-    hand = Hand(Screen(1280, 720, chosen_form.grid), elements)
+    hand = Hand(GuiScreen(1280, 720, chosen_form.grid), elements)
     calls = chosen_form.syntax.read(text, chosen_form.verbs)
     return [action for call in calls for action in actions(chosen_form.verbs, call, hand)]
 
@@ -61,7 +61,7 @@ def code(*lines: str) -> str:
 
 @pytest.mark.parametrize(("form", "size"), list(product(FORMATS, SIZES)))
 def test_every_pixel_comes_back_within_one(form: str, size: tuple[int, int]) -> None:
-    screen = Screen(*size, FORMATS[form].grid)
+    screen = GuiScreen(*size, FORMATS[form].grid)
     for x, y in [*((x, 0) for x in range(size[0])), *((0, y) for y in range(size[1]))]:
         back = screen.pixel(*screen.point(x, y))
         assert max(abs(back[0] - x), abs(back[1] - y)) <= 1
@@ -82,7 +82,7 @@ def test_pictures_are_resized_as_the_models_do(grid: Resized, size: tuple[int, i
 
 
 def test_a_point_beyond_the_screen_is_at_its_edge() -> None:
-    screen = Screen(1280, 720, FORMATS["qwen3-vl"].grid)
+    screen = GuiScreen(1280, 720, FORMATS["qwen3-vl"].grid)
     assert screen.pixel(5000, -3) == (1279, 0)
     assert screen.pixel(999, 999) == (1279, 719)
 
@@ -114,7 +114,7 @@ SAMPLES: tuple[Action, ...] = (
 @pytest.mark.parametrize("form", FORMATS)
 def test_what_a_format_can_say_is_read_as_it_was_meant(form: str) -> None:
     chosen_form = FORMATS[form]
-    screen = Screen(1280, 720, chosen_form.grid)
+    screen = GuiScreen(1280, 720, chosen_form.grid)
     said = {action: call for action in SAMPLES if (call := call_for(chosen_form.verbs, action, screen))}
     assert {CLICK, TYPE, ActionType.STATUS, ActionType.WAIT} <= {action.action_type for action in said}
     for action, call in said.items():
@@ -139,7 +139,7 @@ def test_the_prompt_names_every_word_of_the_format_and_it_says_what_it_lacks(for
     told = chosen_form.syntax.describe(chosen_form.verbs, 1280, 720)
     for name in chosen_form.verbs if chosen_form.wire is None else ():
         assert name in told
-    screen = Screen(9, 9, chosen_form.grid)
+    screen = GuiScreen(9, 9, chosen_form.grid)
     sayable = {action.action_type for action in SAMPLES if call_for(chosen_form.verbs, action, screen)}
     assert not {str(kind) for kind in sayable} & set(chosen_form.lacks)
     assert {"query", "estimate_position"} <= set(chosen_form.lacks)
@@ -324,7 +324,7 @@ def test_what_cannot_be_done_is_told(form: str, text: str, said: str) -> None:
 def test_a_text_goes_to_the_field_with_the_focus_or_to_the_last_touch() -> None:
     form = FORMATS["qwen3-vl"]
     [call] = form.syntax.read(tool(action="type", text="Ulm"), form.verbs)
-    screen = Screen(1280, 720, form.grid)
+    screen = GuiScreen(1280, 720, form.grid)
     assert actions(form.verbs, call, Hand(screen, SHOWN, (5, 6))) == [Action(TYPE, index=1, text="Ulm")]
     assert actions(form.verbs, call, Hand(screen, (), (5, 6))) == [Action(TYPE, x=5, y=6, text="Ulm")]
     with pytest.raises(ActionError, match="tap one first"):

@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 from automotive_cosim.agents import FORMATS, ModelAgent, make_agent
-from automotive_cosim.agents.native.grid import Screen
+from automotive_cosim.agents.native.grid import GuiScreen
 from automotive_cosim.agents.native.verbs import call_for
 from automotive_cosim.agents.settings import T3A
 from automotive_cosim.contracts import Action, ActionType
@@ -423,7 +423,7 @@ def test_a_model_at_an_endpoint_works_the_car_in_its_own_format(
     server: Server, touches: list[Action], simulations: Simulations, tmp_path: Path, form: str
 ) -> None:
     chosen = FORMATS[form]
-    screen = Screen(1280, 720, chosen.grid)
+    screen = GuiScreen(1280, 720, chosen.grid)
     calls = [call_for(chosen.verbs, action, screen) for action in touches]
     assert all(calls)
     texts = [chosen.syntax.write("I see.", [call], chosen.verbs) for call in calls if call]
