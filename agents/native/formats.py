@@ -12,7 +12,16 @@ from dataclasses import dataclass
 from urllib.parse import parse_qsl, urlencode
 
 from automotive_cosim.agents.native.grid import Grid, Pixels, Resized, Share
-from automotive_cosim.agents.native.syntax import END, Calls, Code, Labelled, Plain, Syntax, ToolCalls, car_function
+from automotive_cosim.agents.native.syntax import (
+    END,
+    Calls,
+    Code,
+    JsonSyntax,
+    Labelled,
+    Syntax,
+    ToolCalls,
+    car_function,
+)
 from automotive_cosim.agents.native.verbs import CAR, CAR_ACTIONS, KEYS, Meaning, Verb
 from automotive_cosim.contracts import ActionType, GoalStatus
 from automotive_cosim.errors import UnknownNameError, UserError
@@ -185,7 +194,7 @@ FORMATS: Mapping[str, Format] = {
     "gui-owl-1.5": Format(
         ToolCalls(), Share(1000), _QWEN25 | _ANSWER | {"interact": Verb(Meaning.SAY, text="text")}
     ),
-    "json": Format(Plain(), Pixels(), _PLAIN),
+    "json": Format(JsonSyntax(), Pixels(), _PLAIN),
     "mai-ui": Format(ToolCalls(preamble="<thinking>\n{thought}\n</thinking>\n"), Share(999), _MAI_UI),
     "openai": Format(Calls(), Pixels(), _OPENAI, OpenAI(_FUNCTIONS)),
     "opencua": Format(Code(), Resized(28, 3136, 12_845_056), _OPENCUA),

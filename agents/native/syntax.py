@@ -381,7 +381,7 @@ def _plainly(name: str, given: Json) -> GuiCall:
 
 
 @dataclass(frozen=True, slots=True)
-class Plain:
+class JsonSyntax:
     """``Situation``, ``Plan``, ``Action: {"action_type": ...}``: as this project's other agents answer."""
 
     def read(self, text: str, verbs: Verbs) -> list[GuiCall]:

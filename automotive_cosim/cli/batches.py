@@ -13,8 +13,7 @@ from automotive_cosim.cli.options import whole_number
 from automotive_cosim.errors import UnknownNameError, UserError
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
+    from automotive_cosim.cli.console import Console
     from automotive_cosim.run.batch import Progress
     from automotive_cosim.run.executor import Executor
     from automotive_cosim.run.row import JobRow

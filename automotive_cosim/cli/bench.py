@@ -26,8 +26,7 @@ def bench(
     as_json: AsJson = False,
 ) -> None:
     """Time bare SUMO, a libsumo loop and the environment side by side; also resets and memory."""
-    from rich.console import Console
-
+    from automotive_cosim.cli.console import Console
     from automotive_cosim.run.measure import measure
 
     progress = Console(stderr=True, quiet=as_json, highlight=False)

@@ -26,8 +26,7 @@ from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.errors import InfrastructureError
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
+    from automotive_cosim.cli.console import Console
     from automotive_cosim.run.batch import Progress
     from automotive_cosim.run.episode_row import EpisodeRow
     from automotive_cosim.run.plan import Plan
@@ -127,8 +126,7 @@ def evaluate(
     as_json: AsJson = False,
 ) -> None:
     """Run agents over tasks, scenarios and seeds. Rerun the command to resume."""
-    from rich.console import Console
-
+    from automotive_cosim.cli.console import Console
     from automotive_cosim.errors import UnknownNameError
     from automotive_cosim.report.results import read_results, standings
     from automotive_cosim.run.batch import run_plan

@@ -36,6 +36,7 @@ from automotive_cosim.cli import (
     tasks,
     validate,
 )
+from automotive_cosim.cli.terminal import plain_streams
 from automotive_cosim.errors import InfrastructureError, UserError
 
 INTERRUPTED = 130
@@ -97,6 +98,7 @@ def main() -> None:
     terminations: list[int] = []
 
     def terminate(number: int, frame: object) -> None:
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)  # another one must not interrupt the clearing up
         terminations.append(number)
         raise KeyboardInterrupt  # ends as after Ctrl-C, which may be ignored from the start (nohup)
 
@@ -104,21 +106,27 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # a street's name must not end a run under an ASCII locale
             stream.reconfigure(errors="replace")
+    with plain_streams():
+        code = _run()
+        if code == INTERRUPTED:
+            print("error: interrupted", file=sys.stderr)
+            code = TERMINATED if terminations else INTERRUPTED
+    sys.exit(code)
+
+
+def _run() -> int:
+    """Runs a command; returns the exit code."""
     try:
-        code = app(standalone_mode=False) or 0
+        return app(standalone_mode=False) or 0
     except (UserError, InfrastructureError, typer.TyperException) as error:
         if os.environ.get("AUTOMOTIVE_COSIM_DEBUG"):
             raise
         problems = [error.format_message()] if isinstance(error, typer.TyperException) else error.args
         for problem in filter(None, map(str, problems)):  # none: the help for a missing command has been printed
             print("error: " + " ".join(problem.split()), file=sys.stderr)
-        code = 3 if isinstance(error, InfrastructureError) else 2
+        return 3 if isinstance(error, InfrastructureError) else 2
     except OSError as error:
         if os.environ.get("AUTOMOTIVE_COSIM_DEBUG"):
             raise
         print(f"error: {error.strerror or error}: {error.filename or 'standard output'}", file=sys.stderr)
-        code = 2
-    if code == INTERRUPTED:
-        print("error: interrupted", file=sys.stderr)
-        code = TERMINATED if terminations else INTERRUPTED
-    sys.exit(code)
+        return 2

@@ -12,6 +12,7 @@ from typing import Annotated, ParamSpec
 
 import typer
 
+from automotive_cosim.cli.terminal import escaped
 from automotive_cosim.errors import UserError
 
 P = ParamSpec("P")
@@ -58,7 +59,7 @@ AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object and 
 
 def print_json(values: object) -> None:
     """Prints the one JSON object of ``--json``."""
-    typer.echo(json.dumps(values, ensure_ascii=False))
+    typer.echo(escaped(json.dumps(values, ensure_ascii=False)))
 
 
 def whole_number(least: int, most: int) -> Callable[[str], int]:

@@ -128,10 +128,9 @@ def run(
 
     Without options, a car drives 80 km/h where 50 is posted in Paris, and the agent has been asked to warn of that.
     """
-    from rich.console import Console
-
     from automotive_cosim.agents import AgentSettings, make_agent
     from automotive_cosim.agents.settings import geo_input, parts
+    from automotive_cosim.cli.console import Console
     from automotive_cosim.cli.live import Live, Notes
     from automotive_cosim.episode.specification import clock_of, mode_of
     from automotive_cosim.report.film import Film

@@ -32,8 +32,9 @@ app = typer.Typer(help="List, check, draw and import scenarios.", no_args_is_hel
 @app.command("list")
 def list_scenarios(as_json: AsJson = False) -> None:
     """List the scenarios that come with the package."""
-    from rich.console import Console
     from rich.table import Table
+
+    from automotive_cosim.cli.console import Console
 
     if as_json:
         print_json({"scenarios": [_shown(scenarios.load(name)) for name in scenarios.shipped()]})
@@ -141,9 +142,10 @@ def check_scenarios(
 
 
 def _print_proof(proof: ScenarioProof) -> None:
-    from rich.console import Console
     from rich.table import Table
     from rich.text import Text
+
+    from automotive_cosim.cli.console import Console
 
     table = Table(box=None, show_header=False, pad_edge=False)
     for item in proof.items:
@@ -334,9 +336,9 @@ def download_map(
 
 
 def _print_day(day: Day, folder: Path, page: Path) -> None:
-    from rich.console import Console
     from rich.table import Table
 
+    from automotive_cosim.cli.console import Console
     from automotive_cosim.osm.day import NO_CALIBRATION
     from automotive_cosim.report.day import findings
 
@@ -371,8 +373,9 @@ def _print_day(day: Day, folder: Path, page: Path) -> None:
 @contextmanager
 def _progress() -> Iterator[Tell]:
     """A line on stderr with the current activity; only its last state if stderr is not a terminal."""
-    from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    from automotive_cosim.cli.console import Console
 
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
@@ -392,8 +395,9 @@ def _agreement(report: ImportReport) -> str:
 
 
 def _print_report(report: ImportReport, folder: Path, took_s: float) -> None:
-    from rich.console import Console
     from rich.table import Table
+
+    from automotive_cosim.cli.console import Console
 
     size_mb = sum(path.stat().st_size for path in folder.iterdir()) / 1e6
     flow = report.stability

@@ -26,8 +26,7 @@ from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import InfrastructureError, UserError
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
+    from automotive_cosim.cli.console import Console
     from automotive_cosim.run.batch import Progress
     from automotive_cosim.studies.plan import StudyPlan
     from automotive_cosim.studies.results import Study
@@ -118,8 +117,7 @@ def reroute(
 
     Rerun the command to resume a stopped study.
     """
-    from rich.console import Console
-
+    from automotive_cosim.cli.console import Console
     from automotive_cosim.run.store import read_rows
     from automotive_cosim.studies.batch import run_study
     from automotive_cosim.studies.page import write_study

@@ -64,8 +64,7 @@ def validate(
 
     Exit code 1 if a gate fails, else 3 if a proof could not be completed. With --out, rerun the command to resume.
     """
-    from rich.console import Console
-
+    from automotive_cosim.cli.console import Console
     from automotive_cosim.proof.batch import prove
     from automotive_cosim.proof.prover import GATES, changed_traces, read_traces
     from automotive_cosim.proof.prover import as_json as json_of
@@ -76,7 +75,7 @@ def validate(
     task_ids = choose(asked)
     numbers = tuple(range(first_seed, first_seed + seeds))
     before = None if against is None else read_traces(against)
-    console = Console(stderr=True)
+    console = Console(stderr=True, markup=True)
 
     def tell(proof: Proof, done: int, planned: int) -> None:
         faults = [f"{gate}: {why}" for gate, found in proof.wrong.items() for why in found]
@@ -99,7 +98,7 @@ def validate(
     if as_json:
         typer.echo(json.dumps(result))
     else:
-        shown = Console()
+        shown = Console(markup=True)
         shown.print(_table(proofs, chosen), width=None if shown.is_terminal else TABLE_WIDTH, no_wrap=True)
         failed = sum(bool(entry["failed"]) for entry in result["gates"].values())
         typer.echo(

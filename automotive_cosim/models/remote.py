@@ -6,6 +6,7 @@ log or record: every text about an endpoint passes ``_Endpoint.clean``.
 
 from __future__ import annotations
 
+import base64
 import json
 import os
 import re
@@ -13,9 +14,10 @@ import time
 from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
+from functools import cache
 from types import NoneType
 from typing import TYPE_CHECKING, Any, get_args, get_type_hints
-from urllib.parse import parse_qsl
+from urllib.parse import parse_qsl, quote
 
 from automotive_cosim.errors import ModelError, SetupError, UnknownNameError, UserError
 from automotive_cosim.models.base import ChatMessage, ModelReply
@@ -114,8 +116,10 @@ class _Endpoint:
     key: str = field(repr=False)
 
     def clean(self, text: str) -> str:
-        """The text without the key, wherever it came from."""
-        return text.replace(self.key, "***") if len(self.key) >= SHORTEST_KEY else text
+        """The text without the key, wherever it came from, as it is or encoded."""
+        for form in forms(self.key) if len(self.key) >= SHORTEST_KEY else ():
+            text = text.replace(form, "***")
+        return text
 
     def client(self, timeout_s: float) -> openai.OpenAI:
         try:
@@ -124,7 +128,23 @@ class _Endpoint:
             raise SetupError(
                 "the openai package is missing; install it with `pip install 'automotive-cosim[llm]'`"
             ) from error
-        return openai.OpenAI(api_key=self.key, base_url=self.base_url, timeout=timeout_s, max_retries=0)
+        http = openai.DefaultHttpx2Client(follow_redirects=False)  # to whom the question and the key would go
+        return openai.OpenAI(
+            api_key=self.key, base_url=self.base_url, timeout=timeout_s, max_retries=0, http_client=http
+        )
+
+
+@cache
+def forms(key: str) -> tuple[str, ...]:
+    """How a key may be written: as it is, in base64 at any place of a longer text, in hexadecimal, in a URL, in
+    JSON, backwards."""
+    data = key.encode()
+    found = [key, data.hex(), data.hex().upper(), quote(key, safe=""), json.dumps(key)[1:-1], key[::-1]]
+    for before in range(3):
+        whole = base64.b64encode(b"\0" * before + data).decode()
+        sure = whole[-(-before * 8 // 6) : (before + len(data)) * 8 // 6]  # what only the key determines
+        found += [sure, sure.translate(str.maketrans("+/", "-_"))]
+    return tuple(dict.fromkeys(found))
 
 
 class _PassingError(Exception):
@@ -213,6 +233,9 @@ class Remote:
             why = f"status {error.status_code}: {error.message[:300]}"
             if error.status_code in (408, 409, 429) or error.status_code >= 500:
                 raise _PassingError(why, _pause(error.response.headers.get("retry-after"))) from None
+            if 300 <= error.status_code < 400:
+                where = error.response.headers.get("location", "somewhere")
+                why += f"; it sends to {where[:200]}, and nothing is sent on: if that is right, make it the address"
             raise self._error(f"refused: {why}") from None
         except (openai.APIError, httpx2.HTTPError, httpx2.StreamError) as error:
             raise _PassingError(f"{type(error).__name__}: {error}") from None

@@ -43,19 +43,22 @@ def appearing(out: Path, *, replaces: bool) -> Iterator[Path]:
         raise ImportMapError(f"{out} exists; choose another --out, or --force to replace the scenario in it")
     if out.exists() and not (out / "scenario.toml").is_file():
         raise ImportMapError(f"{out} is not a scenario's folder, so it is not replaced; choose another --out")
+    scratch: Path | None = None
     try:
         scratch = Path(tempfile.mkdtemp(prefix=f".{out.name}-", dir=out.absolute().parent))
-    except OSError as error:
-        raise ImportMapError(f"{out} cannot be created ({error.strerror}); choose another --out") from error
-    try:
         building = scratch / "scenario"
         building.mkdir()
         yield building
         _put_in_place(building, out, scratch / "replaced")
     except OSError as error:
-        raise ImportMapError(f"{out} cannot be written ({error.strerror}); choose another --out") from error
+        done = "created" if scratch is None else "written"
+        raise ImportMapError(f"{out} cannot be {done} ({error.strerror}); choose another --out") from error
     finally:
-        shutil.rmtree(scratch, ignore_errors=True)
+        if scratch is not None:
+            try:
+                shutil.rmtree(scratch, ignore_errors=True)
+            finally:  # where a signal interrupted that
+                shutil.rmtree(scratch, ignore_errors=True)
 
 
 def _put_in_place(building: Path, out: Path, replaced: Path) -> None:

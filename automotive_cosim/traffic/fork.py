@@ -245,6 +245,7 @@ class _Source:
         self.shapes: RoadShapes | None = None
         self._lock = threading.Lock()
         """Lock for copying the warm process: threads may depart at the same time."""
+        self._warm_calls: list[tuple[str, tuple[object, ...]]] = []
         self._warm: RemoteProcess | None
         self._warm, self.network = RemoteProcess.start(
             self._writing("drive-1" if by_replay else "warm"), progress, timeout_s
@@ -268,9 +269,11 @@ class _Source:
         return RemoteTraffic(self, process.fork(self._next_outputs()), plan, (), pack_state(state))
 
     def warm_call(self, name: str, *arguments: object) -> Any:
-        """Calls the warm process itself."""
+        """Calls the warm process itself, and any that takes its place."""
         assert self._warm is not None
-        return self._warm.call(name, *arguments)
+        answer = self._warm.call(name, *arguments)
+        self._warm_calls.append((name, arguments))
+        return answer
 
     def close(self) -> None:
         """Ends the warm process."""
@@ -280,9 +283,12 @@ class _Source:
 
     def memory_bytes(self) -> int:
         """Memory of the warm process."""
-        if self._warm is None or not Path("/proc/self/statm").exists():
+        if self._warm is None:
             return 0
-        pages = Path(f"/proc/{self._warm.pid}/statm").read_text(encoding="ascii").split()[1]
+        try:
+            pages = Path(f"/proc/{self._warm.pid}/statm").read_text(encoding="ascii").split()[1]
+        except OSError:  # it has died, or the platform does not say
+            return 0
         return int(pages) * os.sysconf("SC_PAGE_SIZE")
 
     def _ready(self) -> RemoteProcess:
@@ -291,6 +297,8 @@ class _Source:
             self.close()
             name = f"drive-{self._drives + 1}" if self.by_replay else "warm"
             self._warm, _ = RemoteProcess.start(self._writing(name), None, self._timeout_s)
+            for call, arguments in self._warm_calls:
+                self._warm.call(call, *arguments)
         return self._warm
 
     def _writing(self, name: str) -> Setup:

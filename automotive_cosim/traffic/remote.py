@@ -108,7 +108,7 @@ class RemoteProcess:
     @property
     def is_broken(self) -> bool:
         """Whether it died, hung or was interrupted, so every further call fails."""
-        return bool(self._broken)
+        return bool(self._broken) or (self._popen is not None and self._popen.poll() is not None)
 
     def call(
         self,

@@ -14,6 +14,8 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from automotive_cosim.agents import FORMATS, ModelAgent, make_agent
 from automotive_cosim.agents.native.grid import GuiScreen
@@ -22,6 +24,7 @@ from automotive_cosim.agents.settings import T3A
 from automotive_cosim.contracts import Action, ActionType
 from automotive_cosim.errors import ModelError, SetupError, UserError
 from automotive_cosim.models import ChatMessage, make_model
+from automotive_cosim.models.remote import _Endpoint
 from automotive_cosim.run.episode import EpisodeSetup, Shot, Watcher, run_episode
 from automotive_cosim.run.record import Recorder
 from automotive_cosim.traffic.fork import Simulations
@@ -448,3 +451,31 @@ def test_a_model_at_an_endpoint_works_the_car_in_its_own_format(
         assert ("authorization" in headers) == (own is None)
     again = make_agent("native", f"replay/{tmp_path / 'out'}?format={form}")
     assert run_episode(setup, again, simulations=simulations).trace_sha256 == result.trace_sha256
+
+
+# --- what is sent, and to whom -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("status", [301, 302, 303, 307, 308])
+def test_a_question_is_not_sent_on(server, monkeypatch, status):
+    other = Server()
+    server.behaviours = [lambda handler: send(handler, status, b"", Location=f"{other.url}/chat/completions")]
+    with pytest.raises(ModelError, match=rf"refused: status {status}.*it sends to {other.url}") as caught:
+        make_model("local/m?retries=2").chat([ChatMessage("user", "where is the car?")])
+    other.close()
+    assert "\n" not in str(caught.value)
+    assert len(server.asked) == 1
+    assert other.asked == other.keys == []
+
+
+@given(before=st.binary(max_size=7), after=st.binary(max_size=7))
+def test_no_encoding_of_a_key_gets_into_a_record(before, after):
+    clean = _Endpoint("local", None, KEY).clean
+    whole = before + KEY.encode() + after
+    for encoded in (base64.b64encode(whole), base64.urlsafe_b64encode(whole), whole.hex().encode()):
+        left = clean(f"it is {encoded.decode()}, is it not?")
+        assert "***" in left
+        assert len(left) < len(f"it is , is it not? {encoded.decode()}") - len(KEY)
+    for text in (KEY, KEY.encode().hex().upper(), KEY[::-1]):
+        assert clean(f"<{text}>") == "<***>"
+    assert clean("nothing of it") == "nothing of it"

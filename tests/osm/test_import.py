@@ -2,6 +2,9 @@ from __future__ import annotations
 
 import gzip
 import json
+import signal
+import sys
+import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -229,6 +232,25 @@ def test_a_failed_import_leaves_nothing_and_harms_nothing(
             import_map(formats[""], target, options)
     assert _contents(out) == before
     assert [path.name for path in tmp_path.iterdir()] == ["village"]
+
+
+@pytest.mark.sumo
+@pytest.mark.slow
+@pytest.mark.parametrize("later_s", [0.0, 0.3, 1.0])
+def test_however_often_it_is_terminated_an_import_leaves_nothing(
+    later_s: float, formats: dict[str, Path], tmp_path: Path, program, until
+) -> None:
+    code = "from automotive_cosim.cli.main import main; main()"
+    importing = program(
+        sys.executable, "-c", code, "scenarios", "import", formats[""], "--out", tmp_path / "village"
+    )
+    until(lambda: importing.poll() is not None or list(tmp_path.glob(".village-*")))
+    time.sleep(later_s)
+    while importing.poll() is None:
+        importing.send_signal(signal.SIGTERM)
+        time.sleep(0.001)
+    assert importing.returncode == 143
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_place_that_cannot_be_written_is_refused(formats: dict[str, Path], tmp_path: Path) -> None:

@@ -70,6 +70,39 @@ def test_a_killed_drive_is_named_and_the_next_departs(forked: Forked, hurried: E
 
 
 @linux
+@pytest.mark.parametrize("by_replay", [False, True])
+def test_a_warm_process_that_died_between_drives_costs_a_reload(
+    grid: Scenario, hurried: EgoPlan, by_replay: bool
+) -> None:
+    short = replace(grid, sumo=replace(grid.sumo, warm_up_s=10.0))
+    with closing(Forked(short, seed=1, by_replay=by_replay)) as simulation:
+        with closing(simulation.depart(hurried)) as traffic:
+            expected = traffic.advance(5.0)
+        for _ in range(2):
+            if simulation._source._warm is None:  # by replay, a drive takes it
+                simulation._source._warm = simulation._source._ready()
+            os.kill(simulation._source._warm.pid, signal.SIGKILL)
+            assert gone([simulation._source._warm.pid])
+            assert simulation.memory_bytes == 0
+            with closing(simulation.depart(hurried)) as traffic:
+                assert traffic.advance(5.0) == expected
+
+
+@linux
+def test_what_was_asked_of_a_warm_process_is_asked_of_the_next(grid: Scenario, hurried: EgoPlan) -> None:
+    short = replace(grid, sumo=replace(grid.sumo, warm_up_s=10.0))
+    with closing(Forked(short, seed=1)) as simulation:
+        simulation.watch()
+        simulation.run_on(20.0)
+        with closing(simulation.depart(hurried)) as traffic:
+            expected = traffic.state, traffic.others()
+        os.kill(simulation._source._warm.pid, signal.SIGKILL)
+        assert gone([simulation._source._warm.pid])
+        with closing(simulation.depart(hurried)) as traffic:
+            assert (traffic.state, traffic.others()) == expected
+
+
+@linux
 def test_a_hung_drive_is_ended_in_time(grid: Scenario, hurried: EgoPlan) -> None:
     simulation = Forked(grid, seed=1, timeout_s=1.0)
     traffic = simulation.depart(hurried)

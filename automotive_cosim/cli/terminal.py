@@ -1,0 +1,63 @@
+"""What reaches a terminal: plain text. Names of streets, answers of models and messages of SUMO come from others,
+and a terminal obeys control characters: it moves the cursor, sets its title, hides a line.
+
+    print, typer.echo -> Plain -> the stream
+    rich -> console.Console -> the stream, with rich's own controls
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from typing import Any, TextIO, cast
+
+SHOWN_AS = "\N{REPLACEMENT CHARACTER}"
+OBEYED = (
+    *range(0x20),
+    *range(0x7F, 0xA0),  # delete, and the second set of controls
+    *range(0x202A, 0x202F),  # turn the direction of writing
+    *range(0x2066, 0x206A),
+)
+_PLAIN = dict.fromkeys(set(OBEYED) - {ord("\n"), ord("\t")}, SHOWN_AS)
+
+
+def plain(text: str) -> str:
+    """The text with a replacement character for each control character, except line ends and tabs."""
+    return text if text.isprintable() else text.translate(_PLAIN)
+
+
+def escaped(text: str) -> str:
+    """A text of JSON with its control characters in JSON's notation."""
+    return "".join(f"\\u{ord(each):04x}" if ord(each) in _PLAIN else each for each in text)
+
+
+class Plain:
+    """A stream to which only plain text is written."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+        self.rich_proxied_file = stream
+        """Where rich's consoles write: they take this attribute of a stream that stands for another."""
+
+    def write(self, text: str) -> int:
+        """Writes the text as plain text."""
+        return self._stream.write(plain(text))
+
+    def writelines(self, lines: Iterable[str]) -> None:
+        """Writes the lines as plain text."""
+        self._stream.writelines(map(plain, lines))
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
+
+
+@contextmanager
+def plain_streams() -> Iterator[None]:
+    """In the block, the standard output and the standard error take plain text only."""
+    kept = sys.stdout, sys.stderr
+    sys.stdout, sys.stderr = (cast(TextIO, Plain(stream)) for stream in kept)
+    try:
+        yield
+    finally:
+        sys.stdout, sys.stderr = kept

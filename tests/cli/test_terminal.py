@@ -1,0 +1,93 @@
+"""No control character of others reaches a terminal."""
+
+from __future__ import annotations
+
+import ast
+import io
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from rich.panel import Panel
+from rich.table import Table
+from rich.text import Text
+
+import automotive_cosim.cli
+from automotive_cosim import scenarios
+from automotive_cosim.cli.console import Console
+from automotive_cosim.cli.terminal import Plain, escaped, plain
+
+EVIL = "\x1b[2J\x1b]0;owned\x07\x9b1A\r\x08\u202e"
+
+
+def _controls(text: str) -> list[str]:
+    return [each for each in text if each not in "\n\t" and plain(each) != each]
+
+
+@given(st.text())
+def test_a_plain_text_keeps_everything_else(text: str) -> None:
+    assert _controls(plain(text)) == []
+    assert len(plain(text)) == len(text)
+    assert plain(plain(text)) == plain(text)
+    if text.isprintable():
+        assert plain(text) == text
+
+
+@given(st.text())
+def test_json_says_the_same_without_them(text: str) -> None:
+    told = escaped(json.dumps({text: text}, ensure_ascii=False))
+    assert _controls(told) == []
+    assert json.loads(told) == {text: text}
+
+
+@pytest.mark.parametrize("terminal", [False, True])
+def test_rich_writes_its_own_controls_alone(terminal: bool) -> None:
+    def written(name: str) -> str:
+        stream = io.StringIO()
+        colours = "standard" if terminal else None
+        console = Console(file=stream, force_terminal=terminal, width=90, color_system=colours, highlight=False)
+        table = Table(name, title=name)
+        table.add_row(name, Text(name, style="bold red"))
+        for what in (name, Text(name), Panel(name, title=name), table, f"[link={name}]x[/link] [/nothing]"):
+            console.print(what)
+        return stream.getvalue()
+
+    evil = written(EVIL)
+    assert "owned" in evil
+    assert "[2J" in evil
+    assert "\x1b[2J" not in evil
+    assert not set(EVIL[-5:]) & {"\x07", "\x9b", "\r", "\x08", "\u202e"} & set(evil)
+    assert ("\x1b" in evil) is terminal
+    assert written("x").count("\x1b") == evil.count("\x1b")
+
+
+def test_rich_finds_the_stream_behind_a_plain_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    stream = io.StringIO()
+    monkeypatch.setattr("sys.stdout", Plain(stream))
+    Console(force_terminal=True, color_system="standard").print(Text(EVIL, style="red"))
+    print(EVIL)
+    assert "\x1b[31m" in stream.getvalue()
+    assert stream.getvalue().splitlines()[-1].startswith("\ufffd[2J")
+
+
+def test_names_and_errors_are_shown_plain(cli, tmp_path: Path) -> None:
+    shutil.copytree(scenarios.load("grid").folder, tmp_path / "town")
+    toml = tmp_path / "town" / "scenario.toml"
+    toml.write_text(toml.read_text().replace('title = "', 'title = "\\u001b[2J\\u0007'))
+    shown = cli("scenarios", "show", "town")
+    assert shown.code == 0
+    assert "\ufffdGrid" in shown.out
+    assert _controls(shown.out) == []
+    refused = cli("scenarios", "show", f"x{EVIL}y")
+    assert refused.code == 2
+    assert _controls(refused.err) == []
+
+
+def test_every_command_writes_through_our_console() -> None:
+    for path in Path(automotive_cosim.cli.__file__).parent.glob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.ImportFrom) and node.module == "rich.console" and path.name != "console.py":
+                assert "Console" not in [name.name for name in node.names], path.name
