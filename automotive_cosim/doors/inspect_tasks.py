@@ -56,8 +56,8 @@ def shared_service() -> EpisodeService:
 
 
 def _cockpit(
-    tasks: str = "all",
-    seeds: int | str = 0,
+    tasks: str | list[str] = "all",
+    seeds: int | str | list[int] = 0,
     scenario: str | None = None,
     geo: str = "full",
     mode: str = "prompted",
@@ -73,7 +73,9 @@ def _cockpit(
         mode: ``prompted`` or ``monitoring``, for safety tasks.
         pictures: whether it sees the screen.
     """
-    called = mode_of(mode)
+    called, numbers = mode_of(mode), _words(seeds)
+    if not all(number.isdecimal() for number in numbers):
+        raise UserError(f"seeds are {', '.join(numbers)}; give whole numbers from 0, separated by commas")
     named = {"scenario": scenario, "geo": str(geo_input(geo)), "mode": str(called)}
     samples = [
         Sample(
@@ -81,11 +83,17 @@ def _cockpit(
             input="The driver speaks when the situation arises.",
             metadata={"task": each, "half": half, "seed": int(seed), "max_steps": most_steps(called), **named},
         )
-        for each in choose(word.strip() for word in tasks.split(","))
+        for each in choose(_words(tasks))
         for half in CATALOGUE[each].halves
-        for seed in str(seeds).split(",")
+        for seed in numbers
     ]
     return Task(dataset=MemoryDataset(samples), solver=driver(pictures), scorer=verdict())
+
+
+def _words(given: object) -> list[str]:
+    """Words separated by commas; Inspect's command line makes a list of them."""
+    parts = given if isinstance(given, list) else str(given).split(",")
+    return [str(part).strip() for part in parts]
 
 
 def _driver(pictures: bool = True) -> Solver:

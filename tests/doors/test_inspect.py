@@ -10,9 +10,10 @@ import pytest
 from automotive_cosim.agents import make_agent
 from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import Json
-from automotive_cosim.errors import TrafficError
+from automotive_cosim.errors import TrafficError, UserError
 from automotive_cosim.run.episode import EpisodeSetup, Shot, Watcher, run_episode
 from automotive_cosim.service import EpisodeService
+from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
 
 pytest.importorskip("inspect_ai", reason="the extra inspect is not installed")
@@ -103,3 +104,21 @@ def test_what_the_road_breaks_is_an_error_of_the_sample(inspect, service, monkey
     log = inspect([{"action_type": "wait"}])
     assert log.status == "error"
     assert "the simulation died" in log.samples[0].error.message
+
+
+@pytest.mark.parametrize(
+    ("tasks", "seeds"), [("hvac_fan_max,road_speed_80_in_50", "0,1"), (["hvac_*"], 3), ("road_fog_limit", [0, 2])]
+)
+def test_samples_are_tasks_halves_and_seeds(tasks, seeds) -> None:
+    dataset = inspect_tasks.cockpit(tasks=tasks, seeds=seeds).dataset
+    ids = [sample.id for sample in dataset]
+    assert len(ids) == len(set(ids)) > 0
+    for sample in dataset:
+        assert sample.metadata["half"] in CATALOGUE[sample.metadata["task"]].halves
+        assert "goal" not in sample.metadata
+
+
+def test_what_is_wrong_is_told() -> None:
+    for wrong in ({"tasks": "no_such_task"}, {"mode": "promted"}, {"geo": "moon"}, {"seeds": "one"}):
+        with pytest.raises(UserError):
+            inspect_tasks.cockpit(**wrong)
