@@ -75,7 +75,10 @@ def test_the_reference_solution_wins_with_the_command_lines_trace(inspect, oracl
     score = sample.scores["verdict"]
     assert score.value == dict.fromkeys(("success", *inspect_tasks.PARTS), 1)
     assert (score.metadata["trace_sha256"], score.metadata["end"]) == (trace, "declared")
-    found = {each.name: {name: entry.value for name, entry in each.metrics.items()} for each in log.results.scores}
+    found = {
+        each.name: {name.rpartition("/")[2]: entry.value for name, entry in each.metrics.items()}
+        for each in log.results.scores
+    }
     assert found["success"]["mean"] == 1.0
     assert 0 < found["success"]["low"] < found["success"]["high"] <= 1
     kinds = [content.type for content in sample.messages[1].content]
