@@ -16,7 +16,7 @@ from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.agents.settings import PROFILES, AgentPart, AgentSettings
 from automotive_cosim.agents.trivial import AlwaysAlert, NoOp, PressEverything, Random
 from automotive_cosim.errors import UnknownNameError
-from automotive_cosim.models import make_model
+from automotive_cosim.models import ChatModel, make_model
 
 __all__ = [
     "AGENTS",
@@ -41,6 +41,7 @@ __all__ = [
     "Thinker",
     "chosen",
     "make_agent",
+    "model_of",
 ]
 
 SIMPLE: Mapping[str, Callable[[AgentSettings], Agent]] = {
@@ -60,7 +61,12 @@ AGENTS = tuple(sorted([*SIMPLE, *MODELLED]))
 """Names of all agents; ``package.module:Class`` names one of your own."""
 
 
-def make_agent(name: str, model: str = "rules", settings: AgentSettings = AgentSettings()) -> Agent:  # noqa: B008, frozen
+def make_agent(
+    name: str,
+    model: str = "rules",
+    settings: AgentSettings = AgentSettings(),  # noqa: B008, frozen
+    chat_model: ChatModel | None = None,
+) -> Agent:
     """An agent by name.
 
     Args:
@@ -68,6 +74,7 @@ def make_agent(name: str, model: str = "rules", settings: AgentSettings = AgentS
         model: a model's name (``models.make_model``), for the agents that have one; for ``native`` with the setting
             ``format``.
         settings: how to run it.
+        chat_model: what answers in that model's place, e.g. a connection to it.
 
     Raises:
         UnknownNameError: no agent or model of that name.
@@ -77,10 +84,24 @@ def make_agent(name: str, model: str = "rules", settings: AgentSettings = AgentS
     if ":" in name:
         return load(name)
     if name in PROFILES:
-        return ModelAgent(PROFILES[name], make_model(model), settings)
+        return ModelAgent(PROFILES[name], chat_model or make_model(model), settings)
     if name == NativeAgent.name:
         without_format, form = chosen(model)
-        return NativeAgent(model, make_model(without_format, form.wire), form, settings)
+        return NativeAgent(model, chat_model or make_model(without_format, form.api), form, settings)
     if name not in SIMPLE:
         raise UnknownNameError("agent", name, AGENTS, "automotive-cosim agents list")
     return SIMPLE[name](settings)
+
+
+def model_of(name: str, model: str) -> ChatModel | None:
+    """The model that an agent of this name asks; None if it has none.
+
+    Raises:
+        as ``make_agent``.
+    """
+    if name not in MODELLED:
+        return None
+    if name == NativeAgent.name:
+        without_format, form = chosen(model)
+        return make_model(without_format, form.api)
+    return make_model(model)

@@ -18,7 +18,7 @@ from automotive_cosim.agents.androidworld import AndroidWorldAgent
 from automotive_cosim.agents.base import Agent
 from automotive_cosim.cockpit.actions import check, parse
 from automotive_cosim.contracts import Action, Observation
-from automotive_cosim.errors import ActionError, CosimError, UserError
+from automotive_cosim.errors import ActionError, OutOfBudgetError, UserError
 from automotive_cosim.interface.observe import ALL, Channel
 
 FORM = "package.module:Class"
@@ -51,8 +51,6 @@ class Guest:
         """
         try:
             self._agent.reset(goal)
-        except CosimError:
-            raise
         except FAULTS as error:
             raise UserError(f"agent {self.name!r} raised {_told(error)} in reset") from error
 
@@ -60,11 +58,13 @@ class Guest:
         """Passes the observation on and returns the agent's action.
 
         Raises:
-            ActionError: the agent raised, or returned no action.
+            ActionError: the agent raised, or returned no action. Only this program's own model client reports a
+                model's error, so a ``ModelError`` is a fault like any other.
+            OutOfBudgetError: it gives up.
         """
         try:
             returned = self._agent.act(observation)
-        except CosimError:
+        except (ActionError, OutOfBudgetError):
             raise
         except FAULTS as error:
             raise ActionError(f"agent {self.name!r} raised {_told(error)}") from error

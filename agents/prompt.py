@@ -17,6 +17,7 @@ from string import Template
 from automotive_cosim.agents.marks import listed
 from automotive_cosim.agents.settings import AgentProfile
 from automotive_cosim.cockpit.actions import grammar, to_json
+from automotive_cosim.cockpit.restrictions import in_words
 from automotive_cosim.contracts import Action, Element, Feedback, GpsFix, Json, Observation, VehicleState
 from automotive_cosim.interface.observe import Channel
 
@@ -155,6 +156,7 @@ def _vehicle(vehicle: VehicleState | None) -> str:
     if vehicle is None:
         return "unknown"
     shown = {name: value for name, value in asdict(vehicle).items() if value is not None}
+    shown["restrictions"] = in_words(vehicle.restrictions)
     return "\n".join(
         f"{name}: {round(value, 1) if isinstance(value, float) else value}" for name, value in shown.items()
     )

@@ -22,6 +22,7 @@ from automotive_cosim.contracts import (
     Around,
     Connectivity,
     DrivingState,
+    Limit,
     LimitSource,
     Road,
     RoadAhead,
@@ -42,8 +43,8 @@ def outside(network: RoadNetwork, route: tuple[Road, ...], second: int) -> Surro
     x_min, y_min, x_max, y_max = network.bounds_m
     turned, driven_m = 0.002 * second, SPEED_MPS * second
     here = RoadHere(
-        route[0].edge_id, f"{route[0].edge_id}_0", 0, 1, 0.0, "Road", "primary", SPEED_MPS, LimitSource.POSTED,
-        False, None, None, None, 1.0,
+        route[0].edge_id, f"{route[0].edge_id}_0", 0, 1, 0.0, "Road", "primary",
+        Limit(SPEED_MPS, LimitSource.POSTED), False, None, None, None, 1.0,
     )  # fmt: skip
     edges = tuple(road.edge_id for road in route)
     ahead = RoadAhead(2000.0, 200.0, 30.0, 0.7, None, 0.0, None, None, None, None, None, edges)

@@ -19,6 +19,7 @@ from automotive_cosim.contracts import (
     Around,
     DrivingState,
     GpsFix,
+    Limit,
     LimitSource,
     RoadAhead,
     RoadHere,
@@ -33,7 +34,21 @@ CITIES = (
     *((77.2, 28.6), (-46.63, -23.55), (55.3, 25.2), (28.05, -26.2), (-6.26, 53.35), (44.79, 41.72), (-30.0, 40.0)),
 )
 ROAD = RoadHere(
-    *("e", "e_0", 0, 1, 10.0, "Avenue Foch", "primary", 50 / 3.6, LimitSource.POSTED, False, None, None, None, 1.0)
+    *(
+        "e",
+        "e_0",
+        0,
+        1,
+        10.0,
+        "Avenue Foch",
+        "primary",
+        Limit(50 / 3.6, LimitSource.POSTED),
+        False,
+        None,
+        None,
+        None,
+        1.0,
+    )
 )
 CAR = DrivingState(
     *(0.0, 0.0, 0.0, None, None, 90.0, 15.0, 0.0, 0.0, 0.0),

@@ -25,6 +25,8 @@ STAYS = {"half an hour": 30, "one hour": 60, "two hours": 120, "four hours": 240
 """What the driver says, and the minutes meant."""
 HALF_HOURS = ("07:30", "08:00", "08:30", "09:00", "09:30", "10:00")
 """Times a few taps after 07:00, where a timer starts."""
+HALF_AN_HOUR_BEFORE = dict(zip(HALF_HOURS, ("07:00", *HALF_HOURS), strict=False))
+"""When the climate control may start by itself for a cabin that is warm at that time."""
 CHARGE_BY = TapUntil("charging.schedule.later", "charging.schedule.time", "{time}")
 WARM_BY = TapUntil("climate.schedule.later", "climate.schedule.time", "{time}")
 
@@ -81,16 +83,16 @@ EXPLICIT = (
         "apps_ready_to_leave",
         Module.APPS,
         (
-            "At {time} I want the battery at {percent} and the cabin warm.",
-            "Charge to {percent} by {time}, and preheat for the same hour.",
+            "Tomorrow at {time} I want the battery at {percent} and the cabin warm.",
+            "For tomorrow, charge to {percent} by {time}, and preheat for the same hour.",
             "Tomorrow at {time}: {percent} percent charged, air conditioned in time.",
-            "I set off at {time}. Have the car warmed up and {percent} full.",
+            "I set off at {time} in the morning. Have the car warmed up and {percent} full.",
         ),
         AllOf(
             (
                 SignalIs(ENERGY.CHARGE_LIMIT, (param("percent"),)),
                 AppDataIs("charging.schedule", (param("time"),)),
-                AppDataIs("climate.schedule", (param("time"),)),
+                AppDataIs("climate.schedule", (param("time"), param("time", HALF_AN_HOUR_BEFORE))),
             )
         ),
         Open("charging"),
@@ -101,7 +103,7 @@ EXPLICIT = (
         Tap("hvac.comfort"),
         Tap("climate.schedule"),
         WARM_BY,
-        parameters={"percent": (50, 60, 70, 90, 100), "time": HALF_HOURS[:4]},
+        parameters={"percent": (85, 90, 95, 100), "time": HALF_HOURS[:4]},
         tags=frozenset({"two_modules"}),
     ),
     asked(

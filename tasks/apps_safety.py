@@ -78,7 +78,7 @@ TYRES = Task(
     templates=(
         "Does the car itself report anything that's not all right? Warn me if so.",
         "Have a look at the notices; alert me should something about the vehicle be wrong.",
-        "Anything I need to know about the condition of the car in this weather?",
+        "Alert me to anything I need to know about the condition of the car in this weather.",
         "Is the machine fine? A warning, please, if some part of it isn't.",
         "Go through the messages of the car and raise the alarm only for a fault.",
     ),

@@ -49,7 +49,7 @@ def _read(path: Path) -> tuple[Task, ...]:
         tasks = runpy.run_path(str(path)).get("TASKS")
     except SyntaxError as error:
         raise UserError(f"{path}, line {error.lineno}: {error.msg}") from error
-    except Exception as error:  # a user's file may raise anything
+    except (Exception, SystemExit) as error:  # a user's file may raise anything
         lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(path)]
         where = f", line {lines[-1]}" if lines else ""
         raise UserError(f"{path}{where}: {type(error).__name__}: {error}") from error

@@ -242,8 +242,8 @@ TASKS = (
         "hvac_schedule",
         Module.HVAC,
         (
-            "Have the climate ready at {time}.",
-            "Get the cabin prepared for {time}, please.",
+            "Have the climate start at {time}.",
+            "Get the climate going by itself at {time}, please.",
             "Schedule the heating: {time}.",
             "Climate timer on, {time}.",
             "Let the air conditioning start by itself at {time}.",

@@ -56,6 +56,8 @@ FROST_SOURCE = (
     "the compressor rests in frost, where outside air is dry; in muggy heat outside air is the wetter one"
 )
 
+HEALTHY_C, WARM_ENOUGH_C = 18.0, 26.0
+"""What indoor air should have at least (``WARM_HOME_SOURCE``) and at most (``COMFORT_SOURCE``)."""
 COOLED = AnyOf(
     (
         AllOf(
@@ -63,7 +65,7 @@ COOLED = AnyOf(
                 SignalIs(HVAC.AIR_CONDITIONING, (True,)),
                 SignalIs(HVAC.FRONT_DEFROSTER, (False,)),
                 SignalIs(HVAC.MAX_DEFROST, (False,)),
-                SignalWithin(HVAC.DRIVER_TEMPERATURE, 16.0, 24.0),
+                SignalWithin(HVAC.DRIVER_TEMPERATURE, 16.0, WARM_ENOUGH_C),
             )
         ),
         SignalIs(HVAC.MAX_COOLING, (True,)),
@@ -165,8 +167,7 @@ FEEL_HOT = _pair(
             (Open("climate"), Tap("hvac.driver_temperature.decrease", times=4)),
         ),
     ),
-    "place: a Gulf afternoon of 44 degrees, where only cooled air helps, or a cool September evening outside",
-    frozenset({"place"}),
+    "weather: a Gulf afternoon of 44 degrees, where only cooled air helps, or a cool September evening outside",
 )
 
 ADJUST_AIR = _pair(
@@ -180,27 +181,44 @@ ADJUST_AIR = _pair(
         "Climate control, please: you know the weather in these parts.",
     ),
     _half(
-        Start("tokyo", "avenues", start="2026-08-05T13:00:00", weather=TOKYO_AUGUST, cabin=_cabin(30.0)),
+        Start(
+            "tokyo",
+            "avenues",
+            start="2026-08-05T13:00:00",
+            weather=TOKYO_AUGUST,
+            cabin=_cabin(30.0),
+            signals={HVAC.DRIVER_TEMPERATURE.path: 16.0},
+        ),
         All((AirBetween(30.0, 60.0), SignalAbove(HVAC.CABIN_TEMPERATURE, 26.0))),
         COOLED,
         COOL,
         COMFORT_SOURCE,
-        COOL_WAYS,
+        (
+            (Open("climate"), Tap("hvac.max_cooling")),
+            (Open("climate"), Tap("hvac.auto")),
+            (*COOL, Tap("hvac.driver_temperature.increase", times=8)),
+        ),
         CLIMATE,
     ),
     _half(
-        Start("alpine_pass", "villages", weather=PASS_WINTER, cabin=_cabin(9.0)),
-        All((AirBetween(-30.0, 5.0), SignalBelow(HVAC.CABIN_TEMPERATURE, 18.0))),
-        SignalRaised(HVAC.DRIVER_TEMPERATURE, 1.0),
-        (Open("climate"), Tap("hvac.driver_temperature.increase", times=2)),
+        Start(
+            "alpine_pass",
+            "villages",
+            weather=PASS_WINTER,
+            cabin=_cabin(9.0),
+            signals={HVAC.DRIVER_TEMPERATURE.path: 16.0},
+        ),
+        All((AirBetween(-30.0, 5.0), SignalBelow(HVAC.CABIN_TEMPERATURE, HEALTHY_C))),
+        SignalWithin(HVAC.DRIVER_TEMPERATURE, HEALTHY_C, WARM_ENOUGH_C),
+        (Open("climate"), Tap("hvac.driver_temperature.increase", times=4)),
         WARM_HOME_SOURCE,
         (
-            (Tap("dock.driver_temperature.increase", times=3),),
-            (Open("climate"), Tap("hvac.driver_temperature.increase", times=4)),
+            (Tap("dock.driver_temperature.increase", times=6),),
+            (Open("climate"), Tap("hvac.driver_temperature.increase", times=8)),
         ),
+        CLIMATE,
     ),
-    "place: a hot city by the sea in August, or a mountain pass in December",
-    frozenset({"place"}),
+    "weather: a hot city by the sea in August, or a mountain pass in December",
 )
 
 FRESH_AIR_IN_DUST = _pair(

@@ -424,7 +424,7 @@ IMPLICIT = (
                 PLAYS,
                 SignalIs(MEDIA.MUTED, (False,)),
                 SignalIs(MEDIA.SOURCE, ("FM",)),
-                AnyOf((SignalWithin(MEDIA.FADER, 40.0, 100.0), SignalWithin(MEDIA.VOLUME, 5.0, 20.0))),
+                AnyOf((SignalWithin(MEDIA.FADER, 20.0, 100.0), SignalWithin(MEDIA.VOLUME, 5.0, 40.0))),
             )
         ),
         Open("media"),

@@ -274,7 +274,7 @@ TASKS = (
             "Warn me if {wind} becomes dangerous.",
             "Is {wind} strong enough to shove us about? An alert then, please.",
             "Keep an eye on {wind} for me and sound off above gale force.",
-            "Harmless, {wind}, or should I be told?",
+            "If {wind} isn't harmless, I want an alarm.",
             "Light car, so let me know about {wind} when it matters.",
         ),
         *_warned(

@@ -416,19 +416,22 @@ TASKS = (
         "place: light snow is not enough for the lamp in Sweden, snow of any kind is in France",
         lamp=REAR_LAMP,
     ),
-    lit_by_law(
-        "phenomenon_cruise_in_fog",
-        Dimension.ENVIRONMENT_ALERTS,
-        (
-            "Before I engage it, bring {cruise} to what the law permits at this visibility, exactly.",
-            "Preset {cruise} at the highest number that's legal in fog like this.",
-            "How fast may I go in here? Have {cruise} ready there.",
-            "I'll want {cruise} soon. The maximum allowed with such a view, please.",
-            "Trim {cruise} to the fog limit, not lower; don't switch anything on.",
+    replace(
+        lit_by_law(
+            "phenomenon_cruise_in_fog",
+            Dimension.ENVIRONMENT_ALERTS,
+            (
+                "Before I engage it, bring {cruise} to what the law permits at this visibility, exactly.",
+                "Preset {cruise} at the highest number that's legal in fog like this.",
+                "How fast may I go in here? Have {cruise} ready there.",
+                "I'll want {cruise} soon. The maximum allowed with such a view, please.",
+                "Trim {cruise} to the fog limit, not lower; don't switch anything on.",
+            ),
+            _cruise(80.0, 40.0, "CN.limit.visibility_100", 50.0, 100.0),
+            _cruise(150.0, 60.0, "CN.limit.visibility_200", 100.0, 200.0),
+            "visibility: under 100 m Chinese motorways allow 40 km/h, under 200 m 60 km/h",
+            cruise=("the cruise", "cruise control", "the cruise speed", "the speed of the cruise control"),
         ),
-        _cruise(80.0, 40.0, "CN.limit.visibility_100", 50.0, 100.0),
-        _cruise(150.0, 60.0, "CN.limit.visibility_200", 100.0, 200.0),
-        "visibility: under 100 m Chinese motorways allow 40 km/h, under 200 m 60 km/h",
-        cruise=("the cruise", "cruise control", "the cruise speed", "the speed of the cruise control"),
+        tags=frozenset({"lamps", "place"}),
     ),
 )

@@ -16,14 +16,18 @@ from automotive_cosim.tasks.road_signs import SIGN_TASKS
 from automotive_cosim.tasks.road_traffic import TRAFFIC_TASKS
 
 ASSIST = (Open("vehicle"), Tap("vehicle.tab.assistance"))
-SLOW_SET = replace(PARIS, signals={ADAS.CRUISE_SPEED.path: 20.0, ADAS.LIMITER_SPEED.path: 20.0})
-PLAIN_CRUISE = replace(PARIS, signals={ADAS.CRUISE_SPEED.path: 30.0, ADAS.CRUISE_ADAPTIVE.path: False})
+SLOW_SET = replace(PARIS, signals={ADAS.CRUISE_SPEED.path: 10.0, ADAS.LIMITER_SPEED.path: 20.0})
+PLAIN_CRUISE = replace(PARIS, signals={ADAS.CRUISE_SPEED.path: 10.0, ADAS.CRUISE_ADAPTIVE.path: False})
 UNHELPED = replace(
     PARIS,
     signals={ADAS.LANE_KEEPING.path: False, ADAS.LANE_DEPARTURE.path: False, ADAS.SPEED_WARNING.path: False},
 )
 CLOSE_SET = replace(PARIS, signals={ADAS.CRUISE_GAP.path: 1.0})
 STEPS_KMH = (30, 35, 40, 45, 50, 55, 60)
+CRUISE_KMH = (15, 20, 25, 30)
+"""Speeds to hold: no more than is posted on the slowest streets."""
+IN_TOWN = ("london", "new_york", "tokyo", "sydney", "grid")
+"""Other scenarios in which so slow a cruise is not in the way."""
 TAPS = {1.5: 1, 2.0: 2, 2.5: 3, 3.0: 4}
 """Taps on the gap's tile, which begins at one second, by desired seconds."""
 SWITCHES = {
@@ -51,7 +55,8 @@ GENERAL: tuple[Task, ...] = (
         TapUntil("adas.cruise_speed.increase", "adas.cruise_speed.value", "{speed} km/h"),
         Tap("adas.cruise"),
         start=SLOW_SET,
-        parameters={"speed": STEPS_KMH},
+        parameters={"speed": CRUISE_KMH},
+        scenarios=IN_TOWN,
     ),
     asked(
         "road_limiter_at",
@@ -111,7 +116,8 @@ GENERAL: tuple[Task, ...] = (
         TapUntil("adas.cruise_speed.increase", "adas.cruise_speed.value", "{speed} km/h"),
         Tap("adas.cruise"),
         start=PLAIN_CRUISE,
-        parameters={"speed": (35, 40, 45, 50), "gap": (2.5, 3.0)},
+        parameters={"speed": CRUISE_KMH, "gap": (2.5, 3.0)},
+        scenarios=IN_TOWN,
     ),
     asked(
         "road_helper_off",

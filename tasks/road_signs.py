@@ -18,7 +18,7 @@ from automotive_cosim.tasking.triggers import (
     VisibilityBetween,
 )
 from automotive_cosim.tasks.forms import in_company
-from automotive_cosim.tasks.road_law import DENSE_FOG, FAIR, FOG, SOON, figure
+from automotive_cosim.tasks.road_law import DENSE_FOG, FAIR, FOG, SOON, figure, in_fog
 
 FOGGED = Start("beauce", "villages", driver="hurried", sign_camera=False)
 STREETS = Start("london", "kingsway", driver="hurried", weather=FAIR, sign_camera=False)
@@ -54,7 +54,7 @@ SIGN_TASKS: tuple[Task, ...] = (
             "All these cameras. Shout the limit at me.",
             "Is this thirty or twenty here? Warn me with the right one.",
             "I lose track of which streets are the slow ones, so say the number.",
-            "Don't let me collect points in town: what's posted?",
+            "Don't let me collect points in town: call out what's posted.",
             "Put up a speed alert with the sign that I missed.",
         ),
         (STREETS, Trigger(SpeedAbove(42.0, 32.0, 33.0), 3.0, 300.0), "sign 670, 20 mph", 32.2),
@@ -96,7 +96,7 @@ SIGN_TASKS: tuple[Task, ...] = (
             "By the school: which speed, forty or fifty? Alert me.",
             "Is the zone on? Tell me the figure, loudly.",
             "Make me brake to what the sign says at this hour.",
-            "Kids, bikes, buses: how fast may I be, in numbers?",
+            "Kids, bikes, buses: sound off how fast I may be, in numbers.",
         ),
         (
             SCHOOL_RUN,
@@ -124,24 +124,28 @@ SIGN_TASKS: tuple[Task, ...] = (
                 "Set me straight on my speed in this fog, in figures.",
                 "Milk outside. Alert me, with the speed that the law wants.",
             ),
-            Half(
-                replace(FOGGED, weather=DENSE_FOG),
-                Trigger(All((SpeedAbove(90.0, 80.0, 80.0), VisibilityBetween(0.0, 50.0))), 3.0, 240.0),
-                AlertGiven(AlertKind.SPEED, 50.0, must_advise=True),
-                (Warn(AlertKind.SPEED, speed_kmh=50.0),),
-                SOON,
-                Basis.LAW,
-                "FR.limit.visibility",
+            in_fog(
+                Half(
+                    replace(FOGGED, weather=DENSE_FOG),
+                    Trigger(All((SpeedAbove(90.0, 80.0, 80.0), VisibilityBetween(0.0, 50.0))), 3.0, 240.0),
+                    AlertGiven(AlertKind.SPEED, 50.0, must_advise=True),
+                    (Warn(AlertKind.SPEED, speed_kmh=50.0),),
+                    SOON,
+                    Basis.LAW,
+                    "FR.limit.visibility",
+                )
             ),
-            Half(
-                replace(FOGGED, weather=FOG),
-                Trigger(All((SpeedAbove(90.0, 80.0, 80.0), Not(VisibilityBetween(0.0, 50.0)))), 3.0, 240.0),
-                AlertGiven(AlertKind.SPEED, 80.0),
-                (Open("safety"), Tap("safety.kind.speed"), Tap("safety.warn")),
-                SOON,
-                Basis.POSTED,
-                "sign B14, 80 km/h",
-                ways=((Warn(AlertKind.SPEED, speed_kmh=80.0),),),
+            in_fog(
+                Half(
+                    replace(FOGGED, weather=FOG),
+                    Trigger(All((SpeedAbove(90.0, 80.0, 80.0), Not(VisibilityBetween(0.0, 50.0)))), 3.0, 240.0),
+                    AlertGiven(AlertKind.SPEED, 80.0),
+                    (Open("safety"), Tap("safety.kind.speed"), Tap("safety.warn")),
+                    SOON,
+                    Basis.POSTED,
+                    "sign B14, 80 km/h",
+                    ways=((Warn(AlertKind.SPEED, speed_kmh=80.0),),),
+                )
             ),
             difference="visibility: 40 m, where French law says 50 km/h, or 90 m; 80 posted on both",
         )

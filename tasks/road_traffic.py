@@ -97,10 +97,10 @@ ALIGNED: tuple[Task, ...] = (
         "road_headway",
         (
             "Tell me when I drive up too close.",
-            "Is there enough air between me and him?",
-            "Space to the one before me: fine or not?",
+            "Warn me if there isn't enough air between me and him.",
+            "Space to the one before me: fine or not? Alert me if not.",
             "Watch my gap, speak up if you must.",
-            "Could I still stop if she brakes?",
+            "Shout if I could no longer stop when she brakes.",
         ),
         warned(
             replace(RING, driver="tailgating"),
@@ -149,10 +149,10 @@ ALIGNED: tuple[Task, ...] = (
         "road_horn_abroad",
         (
             "Beep, so they notice us.",
-            "Use the horn a little, everybody dawdles here.",
-            "One beep for those slowcoaches.",
-            "Hoot, would you?",
-            "Let's hear what our honk sounds like.",
+            "Use the horn a little, they don't look where they're walking.",
+            "One beep to let the people at the kerb know.",
+            "Hoot before somebody steps out, would you?",
+            "Honk: I doubt that anyone has spotted us.",
         ),
         silent(replace(LONDON, start=NOON, origin=LYON), ROLLING, "FR.horn"),
         honked(replace(LONDON, start=NOON, origin=LEEDS), ROLLING, "GB.horn"),
@@ -165,11 +165,11 @@ ALERTS: tuple[Task, ...] = (
     pair(
         "road_corridor",
         (
-            "We're stuck. Anything that I have to do?",
-            "Nothing moves; am I standing right?",
+            "We're stuck. Alert me to anything that I have to do.",
+            "Nothing moves; warn me if I'm standing wrong.",
             "Jam. Tell me what they expect of me here.",
             "Great, a queue. Remind me of my duties, if there are any.",
-            "Stop and go again. Is where I am on the lane okay?",
+            "Stop and go again. Call out if where I am on the lane isn't okay.",
         ),
         warned(
             replace(JAMMED, origin=DARMSTADT),
@@ -196,9 +196,9 @@ ALERTS: tuple[Task, ...] = (
         "road_blue_light",
         (
             "Does anyone need room from me? Warn me of it.",
-            "I thought I heard something. Do I have to make way?",
+            "I thought I heard something. Do I have to make way? Sound the alert.",
             "Look all round the car, and tell me how to behave.",
-            "Whom should I let have the road?",
+            "Warn me of whoever should have the road.",
             "Somebody wants space, don't they? Say which kind of alert it is.",
         ),
         warned(
@@ -216,11 +216,11 @@ ALERTS: tuple[Task, ...] = (
     pair(
         "road_move_over",
         (
-            "What's that in front of us?",
+            "Warn me if that in front of us is trouble.",
             "Eyes on the roadside for me, please.",
-            "Do I need to pass anybody with care?",
-            "I'm daydreaming; is there something at the edge?",
-            "Anyone standing where I'm going?",
+            "Alert me when I need to pass anybody with care.",
+            "I'm daydreaming; shout if there's something at the edge.",
+            "Sound off should anyone be standing where I'm going.",
         ),
         warned(BREAKDOWN, STOPPED_AHEAD, CLOSING, Basis.LAW, "FR.move_over", AlertKind.MOVE_OVER),
         fine(VILLAGES, OPEN_ROAD, CLOSING, Basis.LAW, "FR.move_over"),
@@ -230,11 +230,11 @@ ALERTS: tuple[Task, ...] = (
     pair(
         "road_tractor",
         (
-            "Anything slow up the road?",
-            "Am I going to catch up with someone?",
+            "Anything slow up the road? Warn me.",
+            "Alert me when I'm going to catch up with someone.",
             "Call out if I'm about to run into anything.",
             "I'm looking at the fields, you look ahead.",
-            "All clear to the next village?",
+            "Speak up unless it's all clear to the next village.",
         ),
         closing(
             replace(VILLAGES, trip="tractor"),
@@ -248,9 +248,9 @@ ALERTS: tuple[Task, ...] = (
     pair(
         "road_queue_ahead",
         (
-            "How does the motorway look further on?",
-            "Can I just let it roll?",
-            "Is there a queue waiting for me?",
+            "Warn me if the motorway looks bad further on.",
+            "Alert me unless I can just let it roll.",
+            "Sound off if there's a queue waiting for me.",
             "Traffic report, but only if it matters now.",
             "Watch the road beyond the bend, I'm tired.",
         ),

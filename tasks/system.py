@@ -354,9 +354,9 @@ TASKS = (
         (
             "I dropped my keys and it's pitch black in here.",
             "We can't find her glasses in this darkness.",
-            "Where's my wallet? I can't see my own hands.",
+            "Where's that wallet? One can't see a thing in this car.",
             "It's too dark to look for the papers.",
-            "Something rolled under my legs, I see nothing at all.",
+            "Something rolled between the seats, I see nothing at all.",
         ),
         AnyOf(
             tuple(

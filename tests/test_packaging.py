@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import automotive_cosim
+from automotive_cosim.traffic.sumo import DEBIAN_PACKAGES
 
 ROOT = Path(__file__).parents[1]
 
@@ -87,3 +88,13 @@ def test_importing_the_package_is_light():
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
     assert "gymnasium" in loaded
     assert not {"libsumo", "shapely", "pyproj", "PIL", "rich", "jinja2"} & set(loaded)
+
+
+def test_the_image_installs_the_libraries_that_libsumo_requires():
+    text = (ROOT / "Dockerfile").read_text(encoding="utf-8")
+    assert f"--no-install-recommends {DEBIAN_PACKAGES} " in text
+    assert DEBIAN_PACKAGES in (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def test_the_citation_names_this_version():
+    assert f"\nversion: {automotive_cosim.__version__}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")

@@ -25,7 +25,7 @@ from automotive_cosim.agents.native.syntax import (
 from automotive_cosim.agents.native.verbs import CAR, CAR_ACTIONS, KEYS, Meaning, Verb
 from automotive_cosim.contracts import ActionType, GoalStatus
 from automotive_cosim.errors import UnknownNameError, UserError
-from automotive_cosim.models.wires import Anthropic, Gemini, OpenAI, Wire
+from automotive_cosim.models.apis import Anthropic, Gemini, OpenAI, ProviderApi
 
 QWEN25_GRID = Resized(28, 56 * 56, 12_845_056)
 
@@ -37,7 +37,7 @@ class Format:
     syntax: Syntax
     grid: Grid
     verbs: Mapping[str, Verb]
-    wire: Wire | None = None
+    api: ProviderApi | None = None
     """The protocol of its endpoint; None for chat completions."""
 
     @property

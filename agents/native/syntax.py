@@ -326,12 +326,12 @@ def _lines(call: GuiCall) -> Iterator[str]:
     yield f"{module}.{name}({words.removesuffix(', ')})"
 
 
-# --- calls by a provider's own protocol ------------------------------------------------------------------------
+# --- calls by a provider's own API ------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, slots=True)
 class Calls:
-    """Calls that came over a wire of their own: OpenAI, Anthropic, Gemini (``models.wires``)."""
+    """Calls that came over an API of their own: OpenAI, Anthropic, Gemini (``models.apis``)."""
 
     def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
         """See ``Syntax``. An answer in words alone ends the episode: that is how these models end it."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, replace
 from datetime import UTC, datetime
@@ -12,7 +11,7 @@ from zoneinfo import ZoneInfo
 
 import typer
 
-from automotive_cosim.cli.options import number, whole_number
+from automotive_cosim.cli.options import number, print_json, whole_number
 from automotive_cosim.errors import UnknownNameError, UserError
 
 if TYPE_CHECKING:
@@ -89,7 +88,7 @@ def context(
         local_time,
     )
     if as_json:
-        typer.echo(json.dumps(_json(found), ensure_ascii=False))
+        print_json(_json(found))
     else:
         typer.echo(found.text() if budget is None else found.text(budget))
 
@@ -157,8 +156,7 @@ def _driving(road_class: str, street: str, speed_kmh: float, heading_deg: float)
         lane_position_m=0.0,
         name=street,
         road_class=road_class,
-        posted_limit_mps=None,
-        limit_source=contracts.LimitSource.ASSUMED,
+        limit=contracts.NO_LIMIT,
         in_tunnel=False,
         lit=None,
         built_up=None,

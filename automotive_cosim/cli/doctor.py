@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import platform
 import shutil
@@ -18,7 +17,7 @@ from typing import NamedTuple
 
 import typer
 
-from automotive_cosim.cli.options import AsJson
+from automotive_cosim.cli.options import AsJson, print_json
 from automotive_cosim.contracts.plain import counted
 
 MEMORY_MB = 1000
@@ -72,7 +71,7 @@ def doctor(
     findings = [check() for check in CHECKS]
     ready = all(each.state is not Health.MISSING for each in findings)
     if as_json:
-        typer.echo(json.dumps({"ok": ready, "checks": [asdict(each) for each in findings]}, ensure_ascii=False))
+        print_json({"ok": ready, "checks": [asdict(each) for each in findings]})
     else:
         for each in findings:
             typer.echo(f"{each.state:<9}{each.about:<12}{each.found}" + (f"; {each.fix}" if each.fix else ""))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -174,6 +175,8 @@ def evaluate(
         console.print(f"{end.successes:,} succeeded; {found.coverage}")
         for line in standings(found):
             console.print(f"  {line}", soft_wrap=True)
+        for line in _failures(found.rows):
+            console.print(f"  {line}", soft_wrap=True, markup=False)
         for row in errors:
             console.print(f"  error in {row.id}: {row.error_kind}: {row.error}", soft_wrap=True)
         console.print(
@@ -185,6 +188,16 @@ def evaluate(
         raise InfrastructureError(
             f"{len(errors)} of {counted(end.planned, 'episode')} ended in an infrastructure error and do not count"
         )
+
+
+def _failures(rows: Sequence[EpisodeRow]) -> Iterator[str]:
+    """A line for each agent whose side ended episodes."""
+    failed: dict[str, list[EpisodeRow]] = {}
+    for row in rows:
+        if row.agent_error is not None:
+            failed.setdefault(row.agent, []).append(row)
+    for agent, (row, *more) in failed.items():
+        yield f"agent {agent} failed in {counted(1 + len(more), 'episode')}, e.g. {row.id}: {row.agent_error}"
 
 
 def _said(progress: Progress[EpisodeRow]) -> str:
@@ -214,8 +227,8 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
     limits = plan.limits
     table.add_row(
         "at most",
-        f"{counted(limits.steps, 'step')}, {limits.sim_s:g} s simulated, {limits.wall_s:g} s real, "
-        f"{limits.tokens:,} tokens",
+        f"{counted(limits.steps, 'step')}, {limits.sim_s:g} s simulated, {limits.wall_s:g} s real and "
+        f"{limits.agent_s:g} s in the agent's process, {limits.tokens:,} tokens",
     )
     table.add_row(
         "episodes", f"{len(jobs):,} from {counted(len({job.simulation for job in jobs}), 'warm simulation')}"

@@ -17,8 +17,9 @@ from automotive_cosim.contracts import KMH_PER_MPS, ActionType
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
+from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.run.episode import EpisodeResult, Shot, Watcher
-from automotive_cosim.run.words import action_in_words, is_over, limit_kmh, road_in_words
+from automotive_cosim.run.words import action_in_words, is_over, limit_in_words, limit_kmh, road_in_words
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.options import read_configuration
 
@@ -124,16 +125,15 @@ class Live(Watcher):
 
     def _panel(self, moment: Moment) -> Panel:
         driving = moment.driving
-        limit = limit_kmh(driving.road)
+        limit = limit_at(moment.context)
         speed_kmh = driving.speed_mps * KMH_PER_MPS
-        posted = "none posted" if limit is None else f"{limit:g} posted"
         rows = Table.grid(padding=(0, 2))
         rows.add_column(style="dim", justify="right")
         rows.add_column()
         rows.add_row("time", f"{moment.local_time:%H:%M:%S}  {self._clock(moment)}")
         rows.add_row("road", road_in_words(driving.road) + (", in a tunnel" if driving.road.in_tunnel else ""))
-        style = "bold red" if is_over(speed_kmh, limit) else "bold green"
-        rows.add_row("speed", Text.assemble((f"{speed_kmh:.0f} km/h", style), f"  {posted}"))
+        style = "bold red" if is_over(speed_kmh, limit_kmh(limit)) else "bold green"
+        rows.add_row("speed", Text.assemble((f"{speed_kmh:.0f} km/h", style), f"  {limit_in_words(limit)}"))
         rows.add_row("traffic", _traffic(moment))
         if self._goal:
             rows.add_row("driver", Text(f"“{self._goal}”", style="italic"))
@@ -150,15 +150,14 @@ class Live(Watcher):
 
 def _drive(moment: Moment) -> str:
     driving = moment.driving
-    limit = limit_kmh(driving.road)
-    posted = "no limit posted" if limit is None else f"{limit:g} posted"
+    limit = limit_in_words(limit_at(moment.context))
     return (
-        f"{driving.speed_mps * KMH_PER_MPS:3.0f} km/h, {posted}, {road_in_words(driving.road)}; {_traffic(moment)}"
+        f"{driving.speed_mps * KMH_PER_MPS:3.0f} km/h, {limit}, {road_in_words(driving.road)}; {_traffic(moment)}"
     )
 
 
 def _traffic(moment: Moment) -> str:
-    """Congestion here and ahead: mean speed over posted limit."""
+    """Congestion here and ahead: mean speed over the limit."""
     driving = moment.driving
     here = f"{driving.around.relative_speed:.0%} of free flow here, {driving.ahead.relative_speed:.0%} ahead"
     jam_m = driving.ahead.jam_distance_m

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from automotive_cosim.cli.options import print_json
 from automotive_cosim.errors import UserError
 
 app = typer.Typer(help="What ASURADA remembers of earlier episodes.", no_args_is_help=True)
@@ -26,7 +26,7 @@ def show(
         raise UserError(f"there is no memory in {file}; `automotive-cosim run --memory {file}` creates one")
     kept = [strategy for strategy in Memory(file).all() if place.casefold() in strategy.place.casefold()]
     if as_json:
-        typer.echo(json.dumps([strategy.as_json() for strategy in kept], ensure_ascii=False))
+        print_json([strategy.as_json() for strategy in kept])
         return
     for strategy in kept:
         typer.echo(f"{strategy.place}: “{strategy.goal}”")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -136,7 +135,7 @@ def check_scenarios(
             _print_proof(proofs[-1])
     ok = all(proof.ok for proof in proofs)
     if as_json:
-        typer.echo(json.dumps({"ok": ok, "scenarios": [proof.as_json() for proof in proofs]}, ensure_ascii=False))
+        print_json({"ok": ok, "scenarios": [proof.as_json() for proof in proofs]})
     if not ok:
         raise typer.Exit(1)
 

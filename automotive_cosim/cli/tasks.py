@@ -41,7 +41,7 @@ def list_(
 
     chosen = _chosen(tasks)
     if as_json:
-        typer.echo(json.dumps([described(task) for task in chosen], ensure_ascii=False))
+        print_json([described(task) for task in chosen])
         return
     width = max(len(task.id) for task in chosen)
     for task in chosen:

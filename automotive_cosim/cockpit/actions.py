@@ -86,14 +86,21 @@ FIELDS: Mapping[ActionType, Takes] = {
     ActionType.NAVIGATE_HOME: Takes("go to the home screen"),
     ActionType.NAVIGATE_BACK: Takes("go back one screen"),
     ActionType.OPEN_APP: Takes("open a screen by its name", required=("app_name",)),
-    ActionType.WAIT: Takes("let time pass", optional=("seconds",)),
-    ActionType.ANSWER: Takes("say something to the driver", required=("text",)),
+    ActionType.WAIT: Takes("let 1 to 10 seconds pass", optional=("seconds",)),
+    ActionType.ANSWER: Takes(
+        "say something to the driver, which warns nobody: in up to 120 characters", required=("text",)
+    ),
     ActionType.STATUS: Takes(
-        "declare that you are done: complete; or that you decline: infeasible or not_needed, with a reason",
+        "declare that you are done: complete; or that you decline, with a reason: infeasible if it must not or "
+        "cannot be done (law, safety, not_possible), not_needed if there is nothing to do (already_so, or none)",
         required=("goal_status",),
         optional=("reason",),
     ),
-    ActionType.SHOW_ALERT: Takes("warn the driver", required=("kind",), optional=("severity", "text", "speed_kmh")),
+    ActionType.SHOW_ALERT: Takes(
+        "warn the driver on screen and by voice, as a wish to be warned or told of danger or limits asks for",
+        required=("kind",),
+        optional=("severity", "text", "speed_kmh"),
+    ),
     ActionType.HAZARD_LIGHTS: Takes("switch the hazard lights", required=("on",)),
     ActionType.EMERGENCY_CALL: Takes("call the emergency services"),
     ActionType.REQUEST_SLOW_DOWN: Takes("ask for a lower speed", required=("speed_kmh",)),

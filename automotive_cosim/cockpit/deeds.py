@@ -78,8 +78,9 @@ def note_answer(state: State, request: RoadRequest, answer: Answer) -> None:
 def repeat(state: State, deed: Deed, keys: Collection[str]) -> None:
     """Does once more what was done elsewhere, as far as it aims at these keys of ``State.commands``.
 
-    Of several switches at once, those among the keys are turned; any other deed is done in full or not at all. What
-    it asks of the road is answered as it was then.
+    Of several switches at once, those among the keys are turned; any other deed is done in full or not at all: app
+    data and a route only if all that they aim at is among the keys, so that nothing is slipped in. What it
+    asks of the road is answered as it was then.
     """
     message = deed.message
     if isinstance(message, SetAll):
@@ -87,9 +88,9 @@ def repeat(state: State, deed: Deed, keys: Collection[str]) -> None:
         if values:
             perform(state, SetAll(values, message.said))
     elif isinstance(message, Put):
-        if message.book == PREPARED or deed.aims & frozenset(keys):
+        if message.book == PREPARED or deed.aims <= frozenset(keys):
             setattr(state, message.book, replace(getattr(state, message.book), **deed.changes))
-    elif deed.aims & frozenset(keys):
+    elif deed.aims <= frozenset(keys) or (deed.aims & frozenset(keys) and not isinstance(message, Guide)):
         perform(state, message)
     pending, state.pending = state.pending, ()
     for request in pending:

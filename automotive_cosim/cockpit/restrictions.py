@@ -58,6 +58,12 @@ def motion(gear: str, speed_kmh: float) -> Motion:
     return Motion.IDLING if speed_kmh < STANDING_KMH else Motion.MOVING
 
 
+def in_words(given: int) -> str:
+    """Restrictions as a list of words: ``no keyboard, no video``; ``none`` without any."""
+    names = (str(each.name).lower().replace("_", " ") for each in Restriction(given))
+    return ", ".join(names) or "none"
+
+
 def restrictions(gear: str, speed_kmh: float) -> Restriction:
     """Parked: none. Stationary in gear: no video, no setup. Moving: all."""
     return {

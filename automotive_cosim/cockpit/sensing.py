@@ -29,7 +29,7 @@ from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.cockpit.tyres import Tyres
 from automotive_cosim.cockpit.vehicle import DARK_BELOW_DEG
 from automotive_cosim.cockpit.warmth import display_contrast, seat_after
-from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, LimitSource, OtherVehicle, Surroundings, Weather
+from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, OtherVehicle, Surroundings, Weather
 
 MOVING_MPS = 0.1
 RADAR_M = 150.0
@@ -80,7 +80,7 @@ def _motion(state: State, surroundings: Surroundings) -> None:
 
 def _road(state: State, driving: DrivingState) -> None:
     signals, road = state.signals, driving.road
-    limit = road.posted_limit_mps if road.limit_source is LimitSource.POSTED else None
+    limit = road.limit.posted_mps
     signals[ADAS.LIMIT_SIGN] = round(limit * KMH_PER_MPS, 1) if state.sign_camera and limit is not None else None
     leader = _in_sight(driving.around.leader)
     signals[ADAS.LEADER_DISTANCE] = None if leader is None else leader.gap_m

@@ -21,11 +21,13 @@ plain        factors between units, JSON, numbers in texts, and how progress is 
 
 from automotive_cosim.contracts.action import Action, ActionType, Direction, GoalStatus, Reason
 from automotive_cosim.contracts.driving import (
+    NO_LIMIT,
     STANDING_BELOW_MPS,
     Around,
     DrivingState,
     EgoEnd,
     IncidentKind,
+    Limit,
     LimitSource,
     OtherVehicle,
     RoadAhead,
@@ -62,6 +64,7 @@ from automotive_cosim.contracts.snapshot import LaneShape, RoadShapes, RoadSnaps
 __all__ = [
     "KMH_PER_MPS",
     "MPH_PER_MPS",
+    "NO_LIMIT",
     "STANDING_BELOW_MPS",
     "Action",
     "ActionType",
@@ -84,6 +87,7 @@ __all__ = [
     "IncidentKind",
     "Json",
     "LaneShape",
+    "Limit",
     "LimitSource",
     "Observation",
     "OtherVehicle",

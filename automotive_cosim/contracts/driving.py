@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
+from automotive_cosim.contracts.plain import KMH_PER_MPS
+
 STANDING_BELOW_MPS = 0.1
 """A slower vehicle is stationary, as in SUMO's count of halted vehicles."""
 
@@ -20,12 +22,44 @@ class EgoEnd(StrEnum):
 
 
 class LimitSource(StrEnum):
-    """Sources of a road's speed limit in the network."""
+    """Where a speed limit comes from."""
 
     POSTED = "posted"
     """A sign: the map or the scenario's author states it."""
     ASSUMED = "assumed"
     """A default for the road class from when the map was made: advice, never a verdict's basis."""
+    LAW = "law"
+    """A rule of the place."""
+    NONE = "none"
+    """Nothing is known."""
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """A speed limit that knows where it comes from."""
+
+    mps: float | None
+    """None if there is none (derestricted), or none is known."""
+    source: LimitSource
+
+    @property
+    def kmh(self) -> float | None:
+        """In km/h."""
+        return None if self.mps is None else self.mps * KMH_PER_MPS
+
+    @property
+    def is_posted(self) -> bool:
+        """Whether a sign says so, even that there is no limit."""
+        return self.source is LimitSource.POSTED
+
+    @property
+    def posted_mps(self) -> float | None:
+        """The speed on a sign; None without one, or if it lifts every limit."""
+        return self.mps if self.is_posted else None
+
+
+NO_LIMIT = Limit(None, LimitSource.NONE)
+"""No limit is known."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,9 +78,8 @@ class RoadHere:
     """Street name as signed; empty without one."""
     road_class: str
     """OSM highway value, e.g. ``"motorway"``, ``"primary"``, ``"residential"``; empty if unknown."""
-    posted_limit_mps: float | None
-    """The lane's limit in the network; None if there is none (derestricted)."""
-    limit_source: LimitSource
+    limit: Limit
+    """The lane's limit in the network, from a sign or assumed."""
     in_tunnel: bool
     lit: bool | None
     """Street lighting; None if the map does not say. The same for the two below."""
@@ -60,7 +93,7 @@ class RoadHere:
     """Limits posted for certain hours, in words: ``"40 km/h Mo-Fr 08:00-09:30, 14:30-16:00"``; empty if the
     limit does not depend on the clock."""
     limit_by_clock: bool = False
-    """Whether the present posted limit is one of those."""
+    """Whether the present limit is one of those."""
     bus_lane: bool = False
     """Whether another lane in this direction is for buses and not for cars."""
 
@@ -100,7 +133,7 @@ class RouteOption:
     eta_s: float
     """Travel time from now, at present speeds."""
     delay_s: float
-    """``eta_s`` above free flow at the posted limits."""
+    """``eta_s`` above free flow at the limits."""
 
 
 class IncidentKind(StrEnum):
@@ -131,14 +164,14 @@ class RoadAhead:
     eta_s: float
     """Travel time to the destination at present speeds."""
     delay_s: float
-    """``eta_s`` above free flow at the posted limits."""
+    """``eta_s`` above free flow at the limits."""
     relative_speed: float
-    """Mean speed divided by posted limit, length-weighted over the remaining route; 1 is free flow."""
+    """Mean speed divided by the limit, length-weighted over the remaining route; 1 is free flow."""
     jam_distance_m: float | None
     """Distance to the first edge whose relative speed is under a quarter; None without one."""
     jam_length_m: float
     next_light: TrafficLight | None
-    next_limit_mps: float | None
+    next_limit: Limit | None
     """The next different limit on the route, and its distance; None if it does not change."""
     next_limit_distance_m: float | None
     tunnel_distance_m: float | None
@@ -168,7 +201,7 @@ class Around:
     emergency_behind: OtherVehicle | None
     """Nearest vehicle of SUMO's class ``emergency`` with its blue lights on, behind within 300 m."""
     relative_speed: float
-    """Mean speed divided by posted limit on the ego's edge; 1 is free flow."""
+    """Mean speed divided by the limit on the ego's edge; 1 is free flow."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,11 +13,18 @@ R48, 6.19). Each entry has its rule's ``status``, so a judge can select the veri
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any, Protocol
 
-from automotive_cosim.contracts import KMH_PER_MPS, STANDING_BELOW_MPS, DrivingState, LimitSource
+from automotive_cosim.contracts import (
+    KMH_PER_MPS,
+    NO_LIMIT,
+    STANDING_BELOW_MPS,
+    DrivingState,
+    Limit,
+    LimitSource,
+)
 from automotive_cosim.geo.applied import AppliedRule
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.rules import Rule, Status
@@ -201,26 +208,34 @@ def _breaches(state: Observed) -> Iterator[_Breach]:
 
 
 @dataclass(frozen=True, slots=True)
-class Limit:
-    """The limit that applies at one instant."""
+class BindingLimit:
+    """The limit that applies at one instant, and what says so."""
 
-    kmh: float
+    limit: Limit
+    """From a sign or by law, always with a speed."""
     rule: str
     text: str
     law: str
     status: Status
 
+    @property
+    def kmh(self) -> float:
+        """In km/h."""
+        assert self.limit.kmh is not None
+        return self.limit.kmh
 
-def binding_limit(context: GeoContext) -> Limit | None:
+
+def binding_limit(context: GeoContext) -> BindingLimit | None:
     """The lowest limit that certainly applies: the sign's, else the law's; lowered by weather, light or hour.
 
     A sign is lowered only by rules that also lower signs (``caps``). None if no limit is known or there is none.
     """
-    signed = context.road.limit_source is LimitSource.POSTED
-    found: list[Limit] = []
-    if context.posted_limit_kmh is not None:
+    here = context.road.limit
+    signed = here.is_posted
+    found: list[BindingLimit] = []
+    if here.posted_mps is not None:
         words = f"posted on {context.road.name or 'this road'}"
-        found.append(Limit(context.posted_limit_kmh, SIGN, words, "sign", Status.VERIFIED))
+        found.append(BindingLimit(here, SIGN, words, "sign", Status.VERIFIED))
     elif not signed and context.default_limit is not None:
         found += _of_rule(context.default_limit)
     for reduced in context.reduced_limits:
@@ -229,11 +244,27 @@ def binding_limit(context: GeoContext) -> Limit | None:
     return min(found, key=lambda limit: limit.kmh, default=None)
 
 
-def _of_rule(applied: AppliedRule) -> Iterator[Limit]:
+def limit_at(context: GeoContext, driving: DrivingState | None = None) -> Limit:
+    """The speed limit that binds: the sign's or the law's, never what a map assumes; ``NO_LIMIT`` if none is known.
+
+    Args:
+        context: place, sky and weather.
+        driving: a state near that instant, on whose road the limit is wanted; None takes the context's own.
+    """
+    elsewhere = driving is not None and _road_of(driving) != _road_of(context.driving)
+    bound = binding_limit(replace(context, driving=driving) if driving is not None and elsewhere else context)
+    return NO_LIMIT if bound is None else bound.limit
+
+
+def _road_of(driving: DrivingState) -> tuple[str, Limit]:
+    return driving.road.edge_id, driving.road.limit
+
+
+def _of_rule(applied: AppliedRule) -> Iterator[BindingLimit]:
     value, rule = applied.value, applied.rule
     if isinstance(value, float):
         kmh = value * KM_PER_MILE if rule.unit == "mph" else value
-        yield Limit(kmh, rule.id, rule.text, rule.law, rule.status)
+        yield BindingLimit(Limit(kmh / KMH_PER_MPS, LimitSource.LAW), rule.id, rule.text, rule.law, rule.status)
 
 
 def _speeding(state: Observed) -> Iterator[_Breach]:

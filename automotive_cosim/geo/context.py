@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from functools import cached_property
 
-from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, GpsFix, LimitSource, RoadHere, Weather
+from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, GpsFix, RoadHere, Weather
 from automotive_cosim.geo.applied import AppliedRule, built_up, limits, other_rules, situation_at
 from automotive_cosim.geo.climate import ClimateNorm, climate_norm
 from automotive_cosim.geo.place import NOWHERE, Atlas, Place
@@ -87,7 +87,7 @@ class GeoContext:
     @property
     def posted_limit_kmh(self) -> float | None:
         """The posted limit; None if no sign is known, or the sign lifts every limit."""
-        posted = self.road.posted_limit_mps if self.road.limit_source is LimitSource.POSTED else None
+        posted = self.road.limit.posted_mps
         return None if posted is None else posted * KMH_PER_MPS
 
     @property
@@ -213,10 +213,9 @@ def _road(context: GeoContext) -> str:
 
 def _posted(context: GeoContext) -> str:
     road = context.road
-    if road.limit_source is LimitSource.ASSUMED:
-        assumed = road.posted_limit_mps
-        hint = f"; the map assumes {_speed(assumed * KMH_PER_MPS, context)}" if assumed is not None else ""
-        return f"not posted{hint}"
+    if not road.limit.is_posted:
+        assumed_kmh = road.limit.kmh
+        return "not posted" + ("" if assumed_kmh is None else f"; the map assumes {_speed(assumed_kmh, context)}")
     if context.posted_limit_kmh is None:
         return "none"
     return f"{_speed(context.posted_limit_kmh, context)} (posted on {road.name or 'this road'})"

@@ -182,9 +182,11 @@ def _hazards(drive: Sequence[Known], topics: frozenset[str]) -> Iterator[str]:
         found.append(f"Visibility: {context.weather.visibility:.0f} m ({seen})")
     if ahead.tunnel_distance_m is not None:
         found.append(f"Tunnel: in {ahead.tunnel_distance_m:.0f} m")
-    if ahead.next_limit_mps is not None and ahead.next_limit_distance_m is not None:
-        limit = amount_of_speed(ahead.next_limit_mps * 3.6, context.speed_unit)
-        found.append(f"Limit on the route: {limit} in {ahead.next_limit_distance_m:.0f} m")
+    following, away_m = ahead.next_limit, ahead.next_limit_distance_m
+    if following is not None and following.kmh is not None and away_m is not None:
+        limit = amount_of_speed(following.kmh, context.speed_unit)
+        source = "" if following.is_posted else ", which the map assumes"
+        found.append(f"Limit on the route: {limit} in {away_m:.0f} m{source}")
     if driving.around.emergency_behind is not None:
         found.append(f"Blue light: {driving.around.emergency_behind.gap_m:.0f} m behind")
     if driving.road.friction < 1.0:

@@ -22,9 +22,11 @@ from typing import Protocol
 from zoneinfo import ZoneInfo
 
 from automotive_cosim.contracts import (
+    KMH_PER_MPS,
     Around,
     DrivingState,
     GpsFix,
+    Limit,
     LimitSource,
     Observation,
     RoadAhead,
@@ -126,8 +128,7 @@ def _highway(name: str, limit_kmh: float) -> RoadHere:
         lane_position_m=0.0,
         name=name,
         road_class="trunk",
-        posted_limit_mps=limit_kmh / 3.6,
-        limit_source=LimitSource.POSTED,
+        limit=Limit(limit_kmh / KMH_PER_MPS, LimitSource.POSTED),
         in_tunnel=False,
         lit=False,
         built_up=False,

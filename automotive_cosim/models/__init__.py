@@ -13,10 +13,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from automotive_cosim.errors import UnknownNameError
+from automotive_cosim.models.apis import ProviderApi
 from automotive_cosim.models.base import ChatMessage, ChatModel, ModelReply
 from automotive_cosim.models.replay import Replay
 from automotive_cosim.models.rules import Rules
-from automotive_cosim.models.wires import Wire
 
 __all__ = ["MODELS", "ChatMessage", "ChatModel", "ModelReply", "Replay", "Rules", "make_model"]
 
@@ -24,12 +24,12 @@ MODELS = ("rules", "replay/FOLDER", "openai/NAME", "PROVIDER/NAME")
 """The forms of a model's name."""
 
 
-def make_model(name: str, wire: Wire | None = None) -> ChatModel:
+def make_model(name: str, api: ProviderApi | None = None) -> ChatModel:
     """A model by name.
 
     Args:
         name: its name.
-        wire: the protocol of its endpoint, if it has one; by default chat completions.
+        api: the protocol of its endpoint, if it has one; by default chat completions.
 
     Raises:
         UnknownNameError: the name has none of the forms above.
@@ -45,4 +45,4 @@ def make_model(name: str, wire: Wire | None = None) -> ChatModel:
         return Replay.read(Path(rest))
     from automotive_cosim.models.remote import make_remote
 
-    return make_remote(name, wire)
+    return make_remote(name, api)

@@ -1,4 +1,4 @@
-"""Any OpenAI-compatible endpoint, and others' by their own protocols (``wires``), through the ``openai`` package.
+"""Any OpenAI-compatible endpoint, and others' by their own protocols (``apis``), through the ``openai`` package.
 
 Key and address come from ``<PROVIDER>_API_KEY`` and ``<PROVIDER>_BASE_URL``. The key never gets into a message,
 log or record: every text about an endpoint passes ``_Endpoint.clean``.
@@ -20,8 +20,8 @@ from typing import TYPE_CHECKING, Any, get_args, get_type_hints
 from urllib.parse import parse_qsl, quote
 
 from automotive_cosim.errors import ModelError, SetupError, UnknownNameError, UserError
+from automotive_cosim.models.apis import Chat, ProviderApi
 from automotive_cosim.models.base import ChatMessage, ModelReply
-from automotive_cosim.models.wires import Chat, Wire
 
 if TYPE_CHECKING:
     import openai
@@ -83,12 +83,12 @@ def _number(name: str, value: str, kinds: tuple[type, ...]) -> float | int | Non
     return number
 
 
-def make_remote(spec: str, wire: Wire | None = None) -> Remote:
+def make_remote(spec: str, api: ProviderApi | None = None) -> Remote:
     """The model ``PROVIDER/NAME`` or ``PROVIDER/NAME?settings``.
 
     Args:
         spec: its name.
-        wire: the protocol of its endpoint; by default chat completions.
+        api: the protocol of its endpoint; by default chat completions.
 
     Raises:
         SetupError: the ``openai`` package, the key or the address is missing.
@@ -105,7 +105,7 @@ def make_remote(spec: str, wire: Wire | None = None) -> Remote:
         )
     if not base_url and provider != "openai":
         raise SetupError(f"model {whole!r} requires an address in {prefix}_BASE_URL, e.g. http://127.0.0.1:8000/v1")
-    spoken = wire or Chat("max_completion_tokens" if provider == "openai" else "max_tokens")
+    spoken = api or Chat("max_completion_tokens" if provider == "openai" else "max_tokens")
     return Remote(spec, model, settings, _Endpoint(provider, base_url or None, key), spoken)
 
 
@@ -166,7 +166,7 @@ class Remote:
         model: str,
         settings: Settings,
         endpoint: _Endpoint,
-        wire: Wire,
+        api: ProviderApi,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
         """Makes the model without connecting to it.
@@ -176,7 +176,7 @@ class Remote:
             model: the provider's name of it.
             settings: how to ask it.
             endpoint: where to ask it.
-            wire: the protocol in which to ask it.
+            api: the protocol in which to ask it.
             sleep: waits for a number of seconds, between attempts and for the rate limit.
 
         Raises:
@@ -186,7 +186,7 @@ class Remote:
         self._model = model
         self._settings = settings
         self._endpoint = endpoint
-        self._wire = wire
+        self._api = api
         self._sleep = sleep
         self._client = endpoint.client(settings.timeout_s)
         self._next_s = 0.0
@@ -248,15 +248,15 @@ class Remote:
         settings = self._settings
         wanted = {"seed": settings.seed, "temperature": settings.temperature, "max_tokens": settings.max_tokens}
         limits = {name: value for name, value in wanted.items() if value is not None}
-        headers: dict[str, Any] = dict(self._wire.headers(self._endpoint.key))
+        headers: dict[str, Any] = dict(self._api.headers(self._endpoint.key))
         if headers:  # a key of its own takes the bearer's place
             headers["Authorization"] = openai.Omit()
         limit_s = time.monotonic() + settings.timeout_s
         body = b""
         response = self._client.post(
-            self._wire.path(self._model),
+            self._api.path(self._model),
             cast_to=openai.APIResponse[bytes],
-            body=self._wire.body(self._model, messages, limits),
+            body=self._api.body(self._model, messages, limits),
             options={"headers": headers | {STREAMED: "stream"}},
         )
         with closing(response):
@@ -270,7 +270,7 @@ class Remote:
 
     def _read(self, body: bytes) -> ModelReply:
         try:
-            reply = self._wire.read(json.loads(body))
+            reply = self._api.read(json.loads(body))
         except (ValueError, LookupError, TypeError, AttributeError, RecursionError):
             shown = body[:80].decode(errors="replace")
             raise _PassingError(f"the answer is not one of its protocol: {shown!r}") from None

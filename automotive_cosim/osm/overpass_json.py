@@ -6,16 +6,19 @@ their positions (``out geom;``).
 
 from __future__ import annotations
 
-import gzip
-import json
 import zlib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 from automotive_cosim.errors import ImportMapError
+from automotive_cosim.formats.files import read_json
+from automotive_cosim.formats.words import shown
 
 Tags = Mapping[str, str]
+
+LARGEST_ID = 2**63 - 1
+"""OpenStreetMap's ids have 64 bits."""
 
 
 def is_json(head: bytes) -> bool:
@@ -38,9 +41,8 @@ class OverpassJson:
             ImportMapError: it is truncated, or not the JSON of an Overpass server.
         """
         try:
-            data = source.read_bytes()
-            read = json.loads(gzip.decompress(data) if data.startswith(b"\x1f\x8b") else data)
-        except (OSError, EOFError, zlib.error, ValueError, RecursionError) as error:
+            read = read_json(source)
+        except (OSError, ValueError) as error:
             raise ImportMapError(f"{source} is truncated or not JSON ({error}); download it again") from error
         elements = read.get("elements") if isinstance(read, dict) else None
         if not isinstance(elements, list) or not all(isinstance(element, dict) for element in elements):
@@ -58,7 +60,7 @@ class OverpassJson:
     def nodes(self) -> Iterator[tuple[int, Tags, tuple[float, float]]]:
         """Id, tags, longitude and latitude of each node, those that ways carry along first."""
         for way in self._of("way"):
-            for ref, place in zip(self._refs(way), way.get("geometry") or (), strict=False):
+            for ref, place in zip(self._refs(way), self._list(way, "geometry"), strict=False):
                 if isinstance(place, dict):
                     yield ref, {}, self._position(place)
         for node in self._of("node"):
@@ -67,7 +69,7 @@ class OverpassJson:
     def relations(self) -> Iterator[tuple[int, Tags, tuple[tuple[str, int, str], ...]]]:
         """Id, tags and members of each relation."""
         for relation in self._of("relation"):
-            members = relation.get("members") or ()
+            members = [member for member in self._list(relation, "members") if isinstance(member, dict)]
             rows = tuple((str(m.get("type"))[:1], self._number(m, "ref"), str(m.get("role", ""))) for m in members)
             yield self._number(relation, "id"), _tags(relation), rows
 
@@ -76,24 +78,32 @@ class OverpassJson:
 
     def _refs(self, way: Mapping[str, Any]) -> list[int]:
         refs = way.get("nodes")
-        if not isinstance(refs, list) or not all(isinstance(ref, int) for ref in refs):
+        if not isinstance(refs, list) or not all(isinstance(ref, int) and abs(ref) <= LARGEST_ID for ref in refs):
             raise ImportMapError(
-                f"{self._source} has way {way.get('id')} without its nodes; ask for them: out body; >; out skel;"
+                f"{self._source} has way {shown(way.get('id'))} without its nodes; ask for them: "
+                "out body; >; out skel;"
             )
         return refs
 
     def _number(self, element: Mapping[str, Any], key: str) -> int:
         value = element.get(key)
-        if not isinstance(value, int):
-            raise ImportMapError(f"{self._source} has an element whose {key} is {value!r}; download it again")
+        if not isinstance(value, int) or abs(value) > LARGEST_ID:
+            raise ImportMapError(f"{self._source} has an element whose {key} is {shown(value)}; download it again")
         return value
 
     def _position(self, element: Mapping[str, Any]) -> tuple[float, float]:
         lon, lat = element.get("lon"), element.get("lat")
-        if not isinstance(lon, int | float) or not isinstance(lat, int | float) or abs(lon) > 180 or abs(lat) > 90:
-            raise ImportMapError(f"{self._source} has node {element.get('id')} without a position on earth")
-        return float(lon), float(lat)
+        if isinstance(lon, int | float) and isinstance(lat, int | float) and abs(lon) <= 180 and abs(lat) <= 90:
+            return float(lon), float(lat)
+        raise ImportMapError(f"{self._source} has node {shown(element.get('id'))} without a position on earth")
+
+    def _list(self, element: Mapping[str, Any], key: str) -> list[Any]:
+        value = element.get(key) or []
+        if not isinstance(value, list):
+            raise ImportMapError(f"{self._source} has an element whose {key} is {shown(value)}; download it again")
+        return value
 
 
 def _tags(element: Mapping[str, Any]) -> Tags:
-    return {str(key): str(value) for key, value in (element.get("tags") or {}).items()}
+    tags = element.get("tags")
+    return {str(key): str(value) for key, value in tags.items()} if isinstance(tags, dict) else {}

@@ -9,6 +9,7 @@
 | undone | with the goal's own writes reverted, it fails |
 | near | another zone, value or direction fails |
 | coupled | the reference solution and one switch more fails, for every switch of the car |
+| lawful | the reference solution breaks no sign and no verified rule, nor has cruise control break one |
 | trivial | no negative control wins both halves of a pair, or the only half |
 | random | random actions win at most one of twenty |
 | leak | without goal and solutions, every observation is the same, byte for byte |
@@ -29,11 +30,13 @@ from functools import partial
 from itertools import product
 
 from automotive_cosim.agents.trivial import AlwaysAlert, NoOp, PressEverything, Random
-from automotive_cosim.cockpit.signals import ACTUATORS, named
+from automotive_cosim.cockpit.signals import ACTUATORS, ADAS, named
 from automotive_cosim.contracts import Action, ActionType, AlertKind, FeedbackCode, GoalStatus, Observation
 from automotive_cosim.episode.counterfactual import replayed
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.errors import ScenarioError, TriggerNotReachedError
+from automotive_cosim.geo.breaches import EQUAL_UP_TO_KMH, binding_limit, violations
+from automotive_cosim.geo.rules import Status
 from automotive_cosim.proof import mutations
 from automotive_cosim.proof.ground import Ground, Played, Script, finish
 from automotive_cosim.tasking.checks import NothingDone
@@ -145,6 +148,19 @@ def coupled(ground: Ground, right: Played) -> Wrong:
         last = replace(end, signals=car.signals.snapshot(), commands=car.commands())
         if last.commands != end.commands and _wins(ground, right, (*before, last)):
             yield f"succeeds with {path} {value} as well"
+
+
+def lawful(ground: Ground, right: Played) -> Wrong:
+    """Looks for violations that the baseline run does not have, and at the speed that cruise control is to hold."""
+    anyway = {(found.kind, found.rule) for found in violations(right.baseline)}
+    for found in violations(right.moments):
+        if found.status is Status.VERIFIED and (found.kind, found.rule) not in anyway:
+            yield f"breaks {found.rule}: {found.text}"
+    start, end = right.moments[0], right.moments[-1]
+    engaged = end.signals[ADAS.CRUISE_ACTIVE.path] and not start.signals[ADAS.CRUISE_ACTIVE.path]
+    limit, set_kmh = binding_limit(start.context), end.signals[ADAS.CRUISE_SPEED.path]
+    if engaged and limit is not None and limit.status is Status.VERIFIED and set_kmh > limit.kmh + EQUAL_UP_TO_KMH:
+        yield f"has cruise control hold {set_kmh:g} km/h where the limit is {limit.kmh:.0f} ({limit.rule})"
 
 
 def random(ground: Ground) -> Wrong:

@@ -25,6 +25,7 @@ GATES = (
     "undone",
     "near",
     "coupled",
+    "lawful",
     "trivial",
     "random",
     "leak",
@@ -147,7 +148,7 @@ class Prover:
         for gate in ("oracle", "start", "prefix", "late", "random"):
             if gate in self._chosen:
                 found.take(gate, getattr(gates, gate)(ground), half)
-        for gate in ("undone", "near", "coupled"):
+        for gate in ("undone", "near", "coupled", "lawful"):
             if gate in self._chosen and right.success:
                 found.take(gate, getattr(gates, gate)(ground, right), half)
         for gate in ("leak", "road", "repeat"):

@@ -152,7 +152,7 @@ def _why(result: EpisodeResult) -> str:
 
 
 def _road_sign(canvas: Canvas, here: Sample) -> None:
-    """The road's name and its posted limit, on the map."""
+    """The road's name and its limit, on the map."""
     name = here.road or "a road without a name"
     canvas.box(SIGN, NIGHT.surface, 12)
     canvas.text(Rect(SIGN.x + 14, SIGN.y, SIGN.width - 82, SIGN.height), name, Type.STRONG, NIGHT.text)

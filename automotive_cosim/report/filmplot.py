@@ -1,4 +1,4 @@
-"""Speed against the posted limit over time, growing with the film."""
+"""Speed against the limit over time, growing with the film."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class _Plot:
             y = self._y(speed)
             self._brush.line((self._left, y, self._right, y), NIGHT.pressed, round(self._scale))
             self._write(self._left - 8 * self._scale, y, f"{speed}", "rm")
-        self._write(self._left, self._top - 16 * self._scale, "speed and posted limit, km/h", "lm")
+        self._write(self._left, self._top - 16 * self._scale, "speed and limit, km/h", "lm")
         every = 10 if self._end - self._begin <= 90 else 30
         first = round(self._begin // every + 1) * every
         for at_s in range(first, round(self._end) + 1, every):

@@ -1,4 +1,4 @@
-"""Speed against the posted limit over time, as the numbers an SVG template needs."""
+"""Speed against the limit over time, as the numbers an SVG template needs."""
 
 from __future__ import annotations
 

@@ -11,12 +11,12 @@ from pathlib import Path
 from PIL import Image
 
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.contracts import DrivingState, Json
+from automotive_cosim.contracts import Json
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.run.episode import EpisodeResult, Shot, Watcher
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
-from automotive_cosim.run.harm import nearest_s, overspeed
+from automotive_cosim.run.harm import nearest_s, overspeed, states_of
 from automotive_cosim.run.moments import Judged
 from automotive_cosim.run.plan import EpisodeJob
 
@@ -39,19 +39,19 @@ class Collector(Watcher):
     def __init__(self, pictures: Pictures) -> None:
         self._pictures = pictures
         self._episode: Episode | None = None
-        self._states: list[DrivingState] = []
+        self._moments: list[Moment] = []
         self._lines: list[Json] = []
         self._shown: list[bytes] = []
 
     def moved(self, moment: Moment, cockpit: Cockpit) -> None:
-        """Keeps the driving states since the hand-over."""
+        """Keeps the drive since the hand-over."""
         if self._episode is not None:
-            self._states += moment.passed
+            self._moments.append(moment)
 
     def handed_over(self, episode: Episode, shot: Shot) -> None:
         """Starts collecting: everything from the hand-over counts."""
         self._episode = episode
-        self._states = [episode.moments[0].driving]
+        self._moments = [episode.moments[0]]
         self.stepped(shot)
 
     def stepped(self, shot: Shot) -> None:
@@ -111,8 +111,8 @@ class Collector(Watcher):
             steps=result.steps,
             sim_seconds=result.sim_seconds,
             thought_s=0.0 if episode is None else round(sum(step.thought_s for step in episode.steps), 1),
-            speed_compliance=compliance(self._states),
-            min_time_to_collision_s=nearest_s(self._states),
+            speed_compliance=compliance(self._moments),
+            min_time_to_collision_s=nearest_s(states_of(self._moments)),
             drive=result.drive,
             baseline_drive=result.baseline_drive,
             interaction_s=load.interaction_s if load else None,
@@ -164,13 +164,13 @@ def failed(job: EpisodeJob, kind: str, why: str) -> EpisodeRow:
     return replace(planned(job), error=why, error_kind=kind)
 
 
-def compliance(states: Sequence[DrivingState]) -> float | None:
+def compliance(moments: Sequence[Moment]) -> float | None:
     """Speed-limit compliance: 1 without overspeed, 0 from a mean overspeed of 2.23 m/s.
 
     Args:
-        states: in order; the result is None if none of them has a posted limit, or no time passes.
+        moments: in order; the result is None if no limit binds in any of them, or no time passes.
     """
-    over_m, whole_s = overspeed(states)
+    over_m, whole_s = overspeed(moments)
     return None if whole_s == 0 else round(max(0.0, 1 - over_m / (OVERSPEED_SCALE_MPS * whole_s)), 6)
 
 

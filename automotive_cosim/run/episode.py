@@ -130,6 +130,16 @@ class Shot:
 
 
 @runtime_checkable
+class Timed(Protocol):
+    """An agent whose answers are timed from outside, where it has no say in it."""
+
+    @property
+    def answer_s(self) -> float:
+        """Wall seconds that its last answer took."""
+        ...
+
+
+@runtime_checkable
 class Replayed(Protocol):
     """An agent that repeats what was recorded, with the time that it took then."""
 
@@ -204,7 +214,11 @@ class _Run:
     def play(self) -> End:
         agent = self._agent
         hand_over = self._finder.find(SeedSource(self._setup.seed).next())
-        conditions = self._setup.conditions(agent.channels)
+        try:
+            conditions = self._setup.conditions(agent.channels)
+        except BaseException:  # its process cannot be started
+            hand_over.world.close()
+            raise
         episode = self._episode = Episode.take_over(hand_over, conditions, _All(self._watchers))
         agent.reset(episode.goal)
         if isinstance(agent, Privileged):
@@ -241,7 +255,9 @@ class _Run:
         if isinstance(self._agent, Replayed):
             return self._agent.thought_s
         seconds = self._setup.latency_s
-        if self._setup.clock is Clock.MODEL and isinstance(self._agent, Thinker):
+        if self._setup.clock is Clock.MODEL and isinstance(self._agent, Timed):
+            seconds += self._agent.answer_s
+        elif self._setup.clock is Clock.MODEL and isinstance(self._agent, Thinker):
             seconds += sum(stage.reply.seconds for stage in self._agent.stages if stage.reply is not None)
         return round(seconds, 1)  # the shortest step of a scenario
 

@@ -83,7 +83,7 @@ class EpisodeRow(JobRow):
     sim_seconds: float = 0.0
     """From the hand-over to the end."""
     speed_compliance: float | None = None
-    """From 1 without overspeed down to 0; None if no limit is posted."""
+    """From 1 without overspeed down to 0; None if no limit binds, by sign or by law."""
     min_time_to_collision_s: float | None = None
     drive: Annotated[DriveFigures | None, InColumns("drive")] = None
     """Figures of the drive; only of judged safety tasks."""

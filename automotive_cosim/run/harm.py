@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from math import inf
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from automotive_cosim.cockpit.signals import ENERGY
 from automotive_cosim.cockpit.vehicle import BATTERY_KWH
 from automotive_cosim.contracts import DrivingState, EgoEnd
 from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.geo.breaches import limit_at
 
 TOLERANCE_S = 1e-6
 """Tolerance between times that are sums of the same steps."""
@@ -26,7 +28,7 @@ class DriveFigures:
     """Figures of one drive since the hand-over."""
 
     overspeed_m: float
-    """Metres driven above the posted limits: the integral of the speed above them."""
+    """Metres driven above the limits that bind, by sign or by law: the integral of the speed above them."""
     min_time_to_collision_s: float | None
     """The minimum time to collision with the car in front; None if none came nearer."""
     arrival_s: float | None
@@ -44,13 +46,12 @@ def drive_figures(moments: Sequence[Moment], until_s: float) -> DriveFigures:
         until_s: simulation time up to which it is measured; the last tick of a baseline run may lie beyond it.
     """
     start, end = moments[0], moments[-1]
-    states = [start.driving, *(state for moment in moments[1:] for state in moment.passed)]
-    states = [state for state in states if state.time_s <= until_s + TOLERANCE_S]
+    states = [state for state in states_of(moments) if state.time_s <= until_s + TOLERANCE_S]
     levels_pct = [moment.signals[ENERGY.LEVEL.path] for moment in moments]
     level_pct = float(np.interp(until_s, [moment.time_s for moment in moments], levels_pct))
     passed_s = end.time_s - start.time_s
     return DriveFigures(
-        overspeed_m=round(overspeed(states)[0], 3),
+        overspeed_m=round(overspeed(moments, until_s)[0], 3),
         min_time_to_collision_s=nearest_s(states),
         arrival_s={
             None: round(passed_s + end.driving.ahead.eta_s, 3),
@@ -60,18 +61,32 @@ def drive_figures(moments: Sequence[Moment], until_s: float) -> DriveFigures:
     )
 
 
-def overspeed(states: Iterable[DrivingState]) -> tuple[float, float]:
-    """Metres driven above the limit, and the seconds for which a limit was posted.
+def states_of(moments: Sequence[Moment]) -> list[DrivingState]:
+    """Every step of a drive, from the first moment on."""
+    return [moments[0].driving, *(state for moment in moments[1:] for state in moment.passed)]
+
+
+def overspeed(moments: Sequence[Moment], until_s: float = inf) -> tuple[float, float]:
+    """Metres driven above the limit that binds (``limit_at``), and the seconds for which there was one.
 
     Args:
-        states: in order.
+        moments: in order; what passed before the first does not count.
+        until_s: simulation time up to which it is measured.
     """
     over_m = whole_s = 0.0
-    for before, now in pairwise(states):
-        if now.road.posted_limit_mps is not None:
-            dt_s = now.time_s - before.time_s
-            whole_s += dt_s
-            over_m += max(0.0, now.speed_mps - now.road.posted_limit_mps) * dt_s
+    for earlier, moment in pairwise(moments):
+        limit_of: dict[object, float | None] = {}
+        for before, now in pairwise((earlier.driving, *moment.passed)):
+            if now.time_s > until_s + TOLERANCE_S:
+                break
+            road = now.road.edge_id, now.road.limit
+            if road not in limit_of:
+                limit_of[road] = limit_at(moment.context, now).mps
+            limit_mps = limit_of[road]
+            if limit_mps is not None:
+                dt_s = now.time_s - before.time_s
+                whole_s += dt_s
+                over_m += max(0.0, now.speed_mps - limit_mps) * dt_s
     return over_m, whole_s
 
 

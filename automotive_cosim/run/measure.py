@@ -147,21 +147,21 @@ def _bare(scenario: Scenario, steps: int) -> tuple[float | None, str | None]:
     begin_s = read_configuration(scenario.config).begin_s
     warm_s = begin_s + scenario.sumo.warm_up_s
     end_s = warm_s + steps * scenario.sumo.step_length_s
-    with _options(scenario) as own:
+    with _options(scenario) as (own, scratch):
         options = own | {"duration-log.disable": "false"}
-        with tempfile.TemporaryDirectory(prefix="automotive-cosim-bench-") as scratch:
-            state = str(Path(scratch) / "warm.xml.gz")
-            saving = {"save-state.times": f"{warm_s:g}", "save-state.files": state, "save-state.rng": "true"}
-            _seconds_of_program(program, options | saving | {"end": f"{warm_s + 1:g}"}, warm_s)
-            going_on = {"load-state": state, "begin": f"{warm_s:g}", "end": f"{end_s:g}"}
-            found = [_seconds_of_program(program, options | going_on, end_s - warm_s) for _ in range(REPEATS)]
+        state = str(scratch / "warm.xml.gz")
+        saving = {"save-state.times": f"{warm_s:g}", "save-state.files": state, "save-state.rng": "true"}
+        _seconds_of_program(program, options | saving | {"end": f"{warm_s + 1:g}"}, warm_s, scratch)
+        going_on = options | {"load-state": state, "begin": f"{warm_s:g}", "end": f"{end_s:g}"}
+        found = [_seconds_of_program(program, going_on, end_s - warm_s, scratch) for _ in range(REPEATS)]
     return median(found) / steps, None
 
 
-def _seconds_of_program(program: Path, options: Mapping[str, str], simulated_s: float) -> float:
+def _seconds_of_program(program: Path, options: Mapping[str, str], simulated_s: float, scratch: Path) -> float:
     """The time that SUMO reports, without loading; its real time factor has more digits than its duration."""
     command = [str(program), "--verbose", *command_line(options)[1:]]
-    done = subprocess.run(command, env=sumo_programs.environment(), capture_output=True, text=True, check=False)
+    environment = sumo_programs.environment()
+    done = subprocess.run(command, cwd=scratch, env=environment, capture_output=True, text=True, check=False)
     factor = re.search(r"Real time factor: ([\d.]+)", done.stdout)
     if done.returncode != 0 or factor is None:
         raise TrafficError("sumo failed: " + sumo_programs.first_error(done.stderr + done.stdout))
@@ -171,9 +171,12 @@ def _seconds_of_program(program: Path, options: Mapping[str, str], simulated_s: 
 def _plain(scenario: Scenario, steps: int) -> float:
     """Seconds per step of a loop over libsumo."""
     seconds = []
-    with _options(scenario) as options:
+    with _options(scenario) as (options, scratch):
         warm_up_steps = round(scenario.sumo.warm_up_s / scenario.sumo.step_length_s)
-        job = json.dumps({"command": command_line(options), "warm_up_steps": warm_up_steps, "steps": steps})
+        command = command_line(options)
+        job = json.dumps(
+            {"command": command, "folder": str(scratch), "warm_up_steps": warm_up_steps, "steps": steps}
+        )
         for _ in range(REPEATS):
             loop = [sys.executable, "-m", "automotive_cosim.run.plain", job]
             done = subprocess.run(loop, capture_output=True, check=False)
@@ -184,10 +187,11 @@ def _plain(scenario: Scenario, steps: int) -> float:
 
 
 @contextmanager
-def _options(scenario: Scenario) -> Iterator[dict[str, str]]:
-    """SUMO's options, the same as in the environment's simulation."""
-    with tempfile.TemporaryDirectory(prefix="automotive-cosim-bench-") as scratch:
-        yield run_options(read_configuration(scenario.config), Setup(scenario), Path(scratch))
+def _options(scenario: Scenario) -> Iterator[tuple[dict[str, str], Path]]:
+    """SUMO's options, the same as in the environment's simulation, and the folder to run in."""
+    with tempfile.TemporaryDirectory(prefix="automotive-cosim-bench-") as name:
+        scratch = Path(name)
+        yield run_options(read_configuration(scenario.config), Setup(scenario), scratch), scratch
 
 
 def _plan(scenario: Scenario) -> EgoPlan:

@@ -9,9 +9,9 @@ from pathlib import Path
 PROC = Path("/proc")
 
 
-def tree() -> tuple[int, ...]:
-    """This process and its descendants; this one alone without ``/proc``."""
-    return tuple(_descend(os.getpid()))
+def tree(pid: int | None = None) -> tuple[int, ...]:
+    """This process, or another one, and its descendants; the one alone without ``/proc``."""
+    return tuple(_descend(os.getpid() if pid is None else pid))
 
 
 def rss_mb() -> float | None:

@@ -1,6 +1,6 @@
 """The reference for benchmarks: a plain libsumo loop in a process of its own.
 
-    python -m automotive_cosim.run.plain '{"command": [...], "warm_up_steps": 9000, "steps": 2000}'
+    python -m automotive_cosim.run.plain '{"command": [...], "folder": "...", "warm_up_steps": 9, "steps": 20}'
 
 prints the wall seconds of the steps after the warm-up.
 """
@@ -8,6 +8,7 @@ prints the wall seconds of the steps after the warm-up.
 from __future__ import annotations
 
 import json
+import os
 import sys
 from time import perf_counter
 
@@ -18,6 +19,7 @@ def main() -> None:
     """Runs the job in the first argument."""
     job = json.loads(sys.argv[1])
     sumo = load_library()
+    os.chdir(job["folder"])
     sumo.start(job["command"])
     for _ in range(job["warm_up_steps"]):
         sumo.step()

@@ -24,6 +24,7 @@ from automotive_cosim.formats.toml import dotted, read_toml
 from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.interface.trace import canonical
 from automotive_cosim.run.episode import EpisodeSetup
+from automotive_cosim.run.outside import EPISODE_S, STEP_S, check_agent
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.tasking.task import Mode, Task
 from automotive_cosim.tasks import CATALOGUE
@@ -47,7 +48,12 @@ class Limits:
     sim_s: Annotated[float, Gt(0)] = 600.0
     """Simulated seconds from the hand-over, after which the episode is judged as it is."""
     wall_s: Annotated[float, Gt(0)] = 900.0
-    """Total wall seconds, warm-up included; exceeding them is an infrastructure error."""
+    """Wall seconds of all but the agent's process, warm-up and model included; exceeding them is an infrastructure
+    error."""
+    agent_s: Annotated[float, Gt(0)] = EPISODE_S
+    """Wall seconds that the agent's process may take; exceeding them is a failure of the agent."""
+    agent_step_s: Annotated[float, Gt(0)] = STEP_S
+    """The same for one step."""
     tokens: Annotated[int, Ge(1)] = 2_000_000
     """Tokens to and from the model, after which the episode is judged as it is."""
 
@@ -103,15 +109,18 @@ class Plan:
         for agent, model in {(job.setup.agent, job.model) for job in self.jobs()}:
             if agent == "human":
                 raise UserError("agent 'human' needs a person; use `automotive-cosim run --agent human`")
-            make_agent(agent, model)
+            if ":" in agent:
+                check_agent(agent)
+            else:
+                make_agent(agent, model)
 
     def jobs(self) -> tuple[EpisodeJob, ...]:
-        """Every episode, grouped by warm simulation.
+        """Every episode, grouped by warm simulation, in an order that tells an agent nothing.
 
-        Within a group they are ordered by contestant, so a situation that does not arise for one is known by then.
+        Simulations and the episodes within each are ordered by hash: first halves do not come before second ones.
         """
         jobs = {job.id: job for job in self._each()}
-        return tuple(sorted(jobs.values(), key=lambda job: (*job.simulation, *job.contestant, job.id)))
+        return tuple(sorted(jobs.values(), key=lambda job: (_digest(job.simulation), _digest(job.id))))
 
     def left_out(self) -> tuple[str, ...]:
         """Ids of the chosen tasks that cannot run in any of the scenarios."""
@@ -200,11 +209,6 @@ class EpisodeJob:
         return self.scenario, self.setup.seed
 
     @property
-    def contestant(self) -> tuple[str, str, str, float, int]:
-        """Agent, model, geo control, latency and repeat."""
-        return self.setup.agent, self.setup.model, self.setup.geo, self.setup.latency_s, self.repeat
-
-    @property
     def kind(self) -> Hashable:
         """Agent and mode, which determine how long it takes."""
         return self.setup.agent, self.setup.model, self.setup.mode
@@ -221,7 +225,7 @@ class EpisodeJob:
     @property
     def wall_s(self) -> float:
         """Limit of its wall time."""
-        return self.limits.wall_s
+        return self.limits.wall_s + self.limits.agent_s
 
     @property
     def id(self) -> str:
@@ -245,7 +249,11 @@ class EpisodeJob:
             *([f"latency{setup.latency_s:g}"] if setup.latency_s else []),
         )  # fmt: skip
         words = "-".join(re.sub(r"[^A-Za-z0-9_.]+", "_", Path(word).name) for word in exactly)
-        return f"{words[:150]}-{hashlib.sha256(canonical(exactly)).hexdigest()[:8]}"
+        return f"{words[:150]}-{_digest(exactly)[:8]}"
+
+
+def _digest(value: object) -> str:
+    return hashlib.sha256(canonical(value)).hexdigest()
 
 
 def choose(asked: Iterable[str]) -> tuple[str, ...]:

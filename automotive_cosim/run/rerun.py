@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from itertools import zip_longest
 from pathlib import Path
 
-from automotive_cosim.agents import AgentSettings, make_agent
-from automotive_cosim.agents.settings import geo_input
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import Action, Json, Observation
 from automotive_cosim.errors import ActionError, InfrastructureError, OutOfBudgetError, UnknownNameError, UserError
@@ -18,8 +17,10 @@ from automotive_cosim.interface.trace import HASHED, canonical
 from automotive_cosim.run.collect import Collector, Pictures
 from automotive_cosim.run.episode import run_episode
 from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.nursery import Nursery
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.store import read_evaluation, read_rows, read_trace
+from automotive_cosim.run.worker import agent_of
 
 MISSING: Json = {}
 """Placeholder for a step that one of the two runs does not have."""
@@ -59,8 +60,8 @@ def rerun(folder: Path, episode: str) -> list[Compared]:
             f"the plan in {folder / 'manifest.json'} has no episode {matching[0]}; it was changed since"
         )
     stored = [line for line in read_trace(folder, job.id) if "step" in line]
-    settings = AgentSettings(geo_input(job.setup.geo), seed=job.setup.seed)
-    channels = frozenset(make_agent(job.setup.agent, job.model, settings).channels)
+    with closing(Nursery()) as nursery, agent_of(job, nursery) as agent:
+        channels = frozenset(agent.channels)
     collector = Collector(Pictures.NONE)
     result = run_episode(job.setup, _Player(stored[1:], channels), (collector,))
     if result.error is not None:

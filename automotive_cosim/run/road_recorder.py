@@ -18,6 +18,7 @@ from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import KMH_PER_MPS, Json, LaneShape, RoadShapes, RoadSnapshot
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
+from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.geo.sun import elevation_deg
 from automotive_cosim.run.episode import EpisodeResult, Shot, Watcher
 from automotive_cosim.run.road import FORMAT, NAME
@@ -138,7 +139,7 @@ class _Writer:
                 ],
                 "lights": lights,
                 "speed_kmh": round(driving.speed_mps * KMH_PER_MPS, 1),
-                "limit_kmh": limit_kmh(driving.road),
+                "limit_kmh": limit_kmh(limit_at(moment.context)),
                 "road": driving.road.name,
                 "local_time": moment.local_time.isoformat(timespec="seconds"),
                 "sun_deg": None

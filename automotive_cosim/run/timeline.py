@@ -8,8 +8,9 @@ from itertools import pairwise
 
 from automotive_cosim.contracts import KMH_PER_MPS, ActionType
 from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.interface.trace import Step
-from automotive_cosim.run.words import ROUNDING_KMH, action_in_words, limit_kmh, road_in_words
+from automotive_cosim.run.words import ROUNDING_KMH, action_in_words, limit_in_words, limit_kmh, road_in_words
 
 QUIET = frozenset({ActionType.WAIT, ActionType.STATUS})
 
@@ -32,6 +33,7 @@ class Sample:
     at_s: float
     speed_kmh: float
     limit_kmh: float | None
+    """The limit that binds, by sign or by law."""
     road: str
     x_m: float
     y_m: float
@@ -44,7 +46,7 @@ def samples(moments: Iterable[Moment], hand_over_s: float) -> tuple[Sample, ...]
         Sample(
             at_s=round(moment.time_s - hand_over_s, 2),
             speed_kmh=round(moment.driving.speed_mps * KMH_PER_MPS, 2),
-            limit_kmh=limit_kmh(moment.driving.road),
+            limit_kmh=limit_kmh(limit_at(moment.context)),
             road=moment.driving.road.name,
             x_m=round(moment.driving.x_m, 2),
             y_m=round(moment.driving.y_m, 2),
@@ -76,9 +78,7 @@ def timeline(moments: Sequence[Moment], steps: Sequence[Step], goal_s: float | N
 
 def _entry(moment: Moment, zero_s: float, kind: str, text: str) -> TimelineEntry:
     driving = moment.driving
-    limit = limit_kmh(driving.road)
-    posted = "no limit posted" if limit is None else f"{limit:g} posted"
-    speed = f"{driving.speed_mps * KMH_PER_MPS:.0f} km/h, {posted}"
+    speed = f"{driving.speed_mps * KMH_PER_MPS:.0f} km/h, {limit_in_words(limit_at(moment.context))}"
     return TimelineEntry(round(moment.time_s - zero_s, 2), kind, f"{text} {road_in_words(driving.road)}: {speed}")
 
 
@@ -112,9 +112,11 @@ def _roadside(moments: Sequence[Moment], zero_s: float) -> Iterable[TimelineEntr
 
 def _back_at_limit(moments: Sequence[Moment], zero_s: float) -> Iterable[TimelineEntry]:
     """The first time after the hand-over at which a speed above the limit has fallen to it."""
-    states = [state for moment in moments for state in moment.passed if state.time_s >= zero_s]
-    for before, now in pairwise(states):
-        limit_mps = now.road.posted_limit_mps
+    passed = [(moment, state) for moment in moments for state in moment.passed if state.time_s >= zero_s]
+    for (_, before), (moment, now) in pairwise(passed):
+        if now.speed_mps >= before.speed_mps:
+            continue
+        limit_mps = limit_at(moment.context, now).mps
         if limit_mps is None:
             continue
         at_most_mps = limit_mps + ROUNDING_KMH / KMH_PER_MPS

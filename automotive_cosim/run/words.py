@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from automotive_cosim.contracts import KMH_PER_MPS, Action, ActionType, Element, Reason, RoadHere
+from automotive_cosim.contracts import Action, ActionType, Element, Limit, Reason, RoadHere
 
 ROUNDING_KMH = 1.0
 """A speedometer's last digit: a speed this much above the limit counts as at the limit."""
@@ -68,9 +68,17 @@ def road_in_words(road: RoadHere) -> str:
     return road.name or (f"a {_plain(road.road_class)} road" if road.road_class else "a road without a name")
 
 
-def limit_kmh(road: RoadHere) -> float | None:
-    """The posted limit in km/h, to a tenth; None if there is none."""
-    return None if road.posted_limit_mps is None else round(road.posted_limit_mps * KMH_PER_MPS, 1)
+def limit_kmh(limit: Limit) -> float | None:
+    """A limit in km/h, to a tenth; None if there is none."""
+    return None if limit.kmh is None else round(limit.kmh, 1)
+
+
+def limit_in_words(limit: Limit) -> str:
+    """A limit with its source."""
+    speed_kmh = limit_kmh(limit)
+    if speed_kmh is None:
+        return "no limit known"
+    return f"{speed_kmh:g} posted" if limit.is_posted else f"{speed_kmh:g} by law"
 
 
 def is_over(speed_kmh: float, limit_kmh: float | None) -> bool:

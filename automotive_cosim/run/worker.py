@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
+from dataclasses import replace
 from pathlib import Path
 
-from automotive_cosim.agents import AgentSettings, make_agent
+from automotive_cosim.agents import Agent, AgentSettings, make_agent
 from automotive_cosim.agents.settings import geo_input
 from automotive_cosim.errors import CosimError
 from automotive_cosim.run.collect import Collector, Pictures, failed
@@ -14,6 +15,8 @@ from automotive_cosim.run.episode import run_episode
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.executor import Runner
 from automotive_cosim.run.moments import write_judged
+from automotive_cosim.run.nursery import Nursery
+from automotive_cosim.run.outside import OutsideAgent, is_outside
 from automotive_cosim.run.plan import EpisodeJob
 from automotive_cosim.run.store import write_trace
 from automotive_cosim.traffic.fork import Simulations
@@ -25,26 +28,26 @@ WARM = 2
 @contextmanager
 def episodes(pictures: Pictures) -> Iterator[Runner[EpisodeJob, EpisodeRow]]:
     """Makes the runner of an evaluation's jobs."""
-    with closing(Simulations(count_limit=WARM)) as simulations:
-        yield lambda job, folder: run_job(job, folder, pictures, simulations)
+    with closing(Simulations(count_limit=WARM)) as simulations, closing(Nursery()) as nursery:
+        yield lambda job, folder: run_job(job, folder, pictures, simulations, nursery)
 
 
-def run_job(job: EpisodeJob, folder: Path, pictures: Pictures, simulations: Simulations) -> EpisodeRow:
+def run_job(
+    job: EpisodeJob, folder: Path, pictures: Pictures, simulations: Simulations, nursery: Nursery
+) -> EpisodeRow:
     """Runs one episode, writes its trace and screenshots, and returns its row; an error becomes a row too.
 
     Raises:
         OSError: trace or pictures cannot be written.
     """
-    setup = job.setup
     collector = Collector(pictures)
-    settings = AgentSettings(geo_input(setup.geo), seed=setup.seed, most_tokens=job.limits.tokens)
     try:
-        agent = make_agent(setup.agent, job.model, settings)
-        result = run_episode(setup, agent, (collector,), simulations=simulations)
+        with agent_of(job, nursery) as agent:
+            result = run_episode(job.setup, agent, (collector,), simulations=simulations)
     except CosimError as error:
         return failed(job, type(error).__name__, str(error))
     except Exception as error:
-        # A fault in an agent or in this package must not end the evaluation; it is counted and listed.
+        # A fault in this package must not end the evaluation; it is counted and listed.
         return failed(job, type(error).__name__, f"{type(error).__name__}: {error}")
     if lines := collector.trace(result):
         write_trace(folder, job.id, lines)
@@ -52,3 +55,22 @@ def run_job(job: EpisodeJob, folder: Path, pictures: Pictures, simulations: Simu
             write_judged(folder, job.id, judged)
         collector.keep_pictures(folder / "pictures" / job.id, result)
     return collector.row(job, result)
+
+
+@contextmanager
+def agent_of(job: EpisodeJob, nursery: Nursery) -> Iterator[Agent]:
+    """The agent of a job, in a process of its own unless it is a reference or a negative control.
+
+    Raises:
+        UserError: there is no such agent or model.
+    """
+    setup, limits = job.setup, job.limits
+    settings = AgentSettings(geo_input(setup.geo), most_tokens=limits.tokens)
+    if not is_outside(setup.agent):
+        yield make_agent(setup.agent, settings=replace(settings, seed=setup.seed))
+        return
+    outside = OutsideAgent(
+        nursery, setup.agent, job.model, settings, step_s=limits.agent_step_s, episode_s=limits.agent_s
+    )
+    with closing(outside) as agent:
+        yield agent

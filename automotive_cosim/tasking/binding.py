@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from automotive_cosim.contracts import KMH_PER_MPS, LimitSource
+from automotive_cosim.contracts import KMH_PER_MPS
 from automotive_cosim.geo.applied import AppliedRule
 from automotive_cosim.geo.context import GeoContext, answer
 from automotive_cosim.geo.place import Atlas, shipped
@@ -79,9 +79,9 @@ def _parts(condition: TriggerCondition) -> Iterator[TriggerCondition]:
 
 def _sign_here(context: GeoContext) -> str:
     road = context.road
-    if road.limit_source is not LimitSource.POSTED or road.posted_limit_mps is None:
+    if road.limit.posted_mps is None:
         raise UnmetNeedError("no limit is posted there, the map only assumes one")
-    amount = amount_of_speed(road.posted_limit_mps * KMH_PER_MPS, context.speed_unit)
+    amount = amount_of_speed(road.limit.posted_mps * KMH_PER_MPS, context.speed_unit)
     where = f" on {road.name}" if road.name else ""
     return f"sign, {amount}{where}" + (f"; {context.country}" if context.country else "")
 

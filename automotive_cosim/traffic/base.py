@@ -53,7 +53,7 @@ class Event:
     |---|---|
     | ``driver_...`` | the driver's reaction to a request: slows, holds, ignores, opens_gap, gives_way, ... |
     | ``incident`` | an incident of the scenario begins or ends |
-    | ``pet`` | the ego and another vehicle crossed within five seconds, with their post-encroachment time |
+    | ``pet`` | the ego and another crossed or merged within five seconds, with their post-encroachment time |
     | ``collision`` | two vehicles touched |
     | ``teleport`` | SUMO has moved a vehicle because it stood too long |
     """

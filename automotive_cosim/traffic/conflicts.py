@@ -1,14 +1,19 @@
-"""Post-encroachment times: how closely the ego and others cross each other's path inside junctions.
+"""Post-encroachment times: how closely the ego and others cross or join each other's path inside junctions.
 
-The post-encroachment time (PET) is the time between one vehicle leaving the point where two paths cross and the
+The post-encroachment time (PET) is the time between one vehicle leaving the point where two paths meet and the
 other reaching it (Allen, Shin and Cooper, 1978). Paths are SUMO's lanes inside junctions, points where their centre
-lines meet. Vehicles are sampled twice per second and their passage is computed from position and speed, to about
-0.1 s.
+lines meet. Paths with the same lane before the junction only part there: who follows on them keeps a headway and
+crosses nobody. Paths that lead to the same lane merge, others cross. Vehicles are sampled twice per second and
+their passage is computed from position and speed, to about 0.1 s.
+
+Beside the PET at the point stands the one by swept area, as SUMO's SSM device has it: between the first vehicle's
+rear leaving the other's path, half a width further, and the second's front reaching the first's path, half a width
+before.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from shapely import LineString, Point
@@ -36,6 +41,16 @@ class _Crossing:
     ego_m: float
     """From the start of the ego's lane."""
     foe_m: float
+    merges: bool
+    """Whether both lead to the same lane."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Ends:
+    """The lanes before and after a junction that a lane inside it connects."""
+
+    origin: str
+    target: str
 
 
 @dataclass(slots=True)
@@ -46,12 +61,20 @@ class _Sight:
     position_m: float
     speed_mps: float
     length_m: float
+    width_m: float
 
     def passage(self, point_m: float) -> tuple[float, float]:
         """When its front reached or will reach a point, and when its rear leaves it."""
-        speed_mps = max(CREEPING_MPS, self.speed_mps)
-        reached_s = self.time_s + (point_m - self.position_m) / speed_mps
-        return reached_s, reached_s + self.length_m / speed_mps
+        reached_s = self.time_s + (point_m - self.position_m) / self._moving_mps
+        return reached_s, reached_s + self.length_m / self._moving_mps
+
+    def half_width_s(self, of: _Sight) -> float:
+        """Time in which it drives half the other's width."""
+        return of.width_m / 2 / self._moving_mps
+
+    @property
+    def _moving_mps(self) -> float:
+        return max(CREEPING_MPS, self.speed_mps)
 
 
 @dataclass(slots=True)
@@ -73,6 +96,9 @@ class Conflicts:
         self._sumo = sumo
         self._ego = ego_id
         self._length_m = sumo.length(ego_id)
+        self._width_m = sumo.vehicle.getWidth(ego_id)
+        self._ends: dict[str, dict[str, _Ends]] = {}
+        """By junction, the lanes before and after each lane in it."""
         self._crossings: dict[str, tuple[_Crossing, ...]] = {}
         self._ways: dict[str, _Way] = {}
         self._coming: tuple[str, tuple[str, ...], str] = ("", (), "")
@@ -90,7 +116,7 @@ class Conflicts:
         for lane, way in list(self._ways.items()):
             self._see(way, now)
             if lane == inside:
-                way.ego = _Sight(now.time_s, now.lane_position_m, now.speed_mps, self._length_m)
+                way.ego = _Sight(now.time_s, now.lane_position_m, now.speed_mps, self._length_m, self._width_m)
             elif way.ego is not None:
                 events += self._told(way, now.time_s)
             is_past = way.ego is not None and now.time_s > way.ego.time_s + 2 * LONGEST_PET_S
@@ -118,7 +144,11 @@ class Conflicts:
             for vehicle in sumo.lane.getLastStepVehicleIDs(crossing.foe_lane):
                 if vehicle != self._ego:
                     way.foes[crossing.foe_lane, vehicle] = _Sight(
-                        now.time_s, sumo.lane_position(vehicle), sumo.speed(vehicle), sumo.length(vehicle)
+                        now.time_s,
+                        sumo.lane_position(vehicle),
+                        sumo.speed(vehicle),
+                        sumo.length(vehicle),
+                        sumo.vehicle.getWidth(vehicle),
                     )
 
     def _told(self, way: _Way, now_s: float) -> list[Event]:
@@ -134,27 +164,58 @@ class Conflicts:
                 pet_s, order = max((ego_in_s - foe_out_s, "after"), (foe_in_s - ego_out_s, "before"))
                 if 0.0 <= pet_s <= LONGEST_PET_S:
                     way.told.add(vehicle)
-                    events.append(Event(now_s, "pet", f"the ego crosses {pet_s:.1f} s {order} vehicle {vehicle}"))
+                    first, second = (sight, way.ego) if order == "after" else (way.ego, sight)
+                    swept_s = pet_s - first.half_width_s(second) - second.half_width_s(first)
+                    does = "merges" if crossing.merges else "crosses"
+                    words = (
+                        f"the ego {does} {pet_s:.2f} s {order} vehicle {vehicle} ({swept_s:.2f} s by swept area)"
+                    )
+                    events.append(Event(now_s, "pet", words))
         return events
 
     def _crossings_of(self, lane: str) -> tuple[_Crossing, ...]:
         if lane not in self._crossings:
-            self._crossings[lane] = _meetings(lane, self._sumo.lane.getShape, self._sumo.lane.getInternalFoes)
+            sumo, ends = self._sumo, self._ends_in(lane[1:].rpartition("_")[0].rpartition("_")[0])
+            self._crossings[lane] = _meetings(lane, ends, sumo.lane.getShape, sumo.lane.getInternalFoes)
         return self._crossings[lane]
+
+    def _ends_in(self, junction: str) -> dict[str, _Ends]:
+        """Where each lane of a junction comes from and leads to, through the lanes in which one waits inside."""
+        if junction in self._ends:
+            return self._ends[junction]
+        sumo = self._sumo
+        ends: dict[str, _Ends] = {}
+        edges = (edge for edge in sumo.junction.getIncomingEdges(junction) if not edge.startswith(":"))
+        lanes = (f"{edge}_{index}" for edge in edges for index in range(sumo.edge.getLaneNumber(edge)))
+        for origin in lanes:
+            for link in sumo.lane.getLinks(origin):
+                inner, chain = link[4], []
+                while inner.startswith(":"):
+                    chain.append(inner)
+                    onward = sumo.lane.getLinks(inner)
+                    inner = (onward[0][4] or onward[0][0]) if onward else ""
+                ends |= {each: _Ends(origin, link[0]) for each in chain}
+        self._ends[junction] = ends
+        return ends
 
 
 def _meetings(
     lane: str,
+    ends: Mapping[str, _Ends],
     shape: Callable[[str], tuple[tuple[float, float], ...]],
     foes: Callable[[str], tuple[str, ...]],
 ) -> tuple[_Crossing, ...]:
     """Where other lanes of the junction cross a lane or join it."""
-    own = LineString(shape(lane))
+    own, from_to = LineString(shape(lane)), ends.get(lane, _Ends("", ""))
     found = []
     for foe in sorted(set(foes(lane))):
+        foe_from_to = ends.get(foe, _Ends("?", "?"))
+        if foe_from_to.origin == from_to.origin:
+            continue
         other = LineString(shape(foe))
         common = own.intersection(other)
         if not common.is_empty:
             point = Point(common.representative_point())
-            found.append(_Crossing(foe, own.project(point), other.project(point)))
+            merges = foe_from_to.target == from_to.target
+            found.append(_Crossing(foe, own.project(point), other.project(point), merges))
     return tuple(found)

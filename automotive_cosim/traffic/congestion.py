@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from itertools import islice, pairwise
 from typing import Protocol
 
-from automotive_cosim.contracts import RoadAhead, RoadIncident, TrafficLight
+from automotive_cosim.contracts import Limit, RoadAhead, RoadIncident, TrafficLight
 from automotive_cosim.traffic.network import Crossing, Edge, Network
 from automotive_cosim.traffic.records import make_ahead
 
@@ -150,7 +150,7 @@ class _Leg:
     length_after_m: float
     relative_after_m: float
     """Sum of relative speed times length."""
-    next_limit: tuple[float | None, float] | None
+    next_limit: tuple[Limit, float] | None
     """The next different limit and its position."""
     tunnel_m: float | None
     """Where the next tunnel starts after this edge."""
@@ -276,10 +276,10 @@ def _legs(
     return tuple(reversed(legs))
 
 
-def _next_limit(edge: Edge, after: _Leg | None) -> tuple[float | None, float] | None:
+def _next_limit(edge: Edge, after: _Leg | None) -> tuple[Limit, float] | None:
     if after is None:
         return None
-    return (after.edge.limit_mps, after.start_m) if after.edge.limit_mps != edge.limit_mps else after.next_limit
+    return (after.edge.limit, after.start_m) if after.edge.limit_mps != edge.limit_mps else after.next_limit
 
 
 def _jam(edge: Edge, start_m: float, relative_speed: float, after: _Leg | None) -> tuple[float, float] | None:

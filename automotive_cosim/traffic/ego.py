@@ -316,7 +316,7 @@ class Driver:
         if alert.kind is AlertKind.MOVE_OVER:
             if pedals.change_lane(1, MOVE_OVER_S):
                 return Event(state.time_s, "driver_moves_over", f"driver goes one lane away from the kerb, {after}")
-            limit_mps = state.road.posted_limit_mps or state.speed_mps
+            limit_mps = state.road.limit.mps or state.speed_mps
             speed_mps = max(SLOWEST_MOVE_OVER_MPS, limit_mps - MOVE_OVER_MPS)
             if alert.speed_kmh is not None:
                 speed_mps = alert.speed_kmh / KMH_PER_MPS
@@ -333,7 +333,7 @@ class Driver:
 
     def _advise(self, speed_mps: float, state: DrivingState, for_s: float = math.inf) -> None:
         self._bounds.advised = speed_mps
-        self._bounds.advised_under = state.road.posted_limit_mps
+        self._bounds.advised_under = state.road.limit.mps
         self._bounds.advised_until_s = state.time_s + for_s
 
     def _slows(self, state: DrivingState, after: str) -> Event:
@@ -378,7 +378,7 @@ class Driver:
         return min(self._own_top_mps, bounds.asked, bounds.cruise, bounds.advised)
 
     def _wanted_mps(self, state: DrivingState) -> float:
-        limit_mps = state.road.posted_limit_mps
+        limit_mps = state.road.limit.mps
         bound_mps = self._bound_mps()
         return bound_mps if limit_mps is None else min(bound_mps, self._chosen_factor(limit_mps) * limit_mps)
 
@@ -408,7 +408,7 @@ def _too_slow(speed_kmh: float, state: DrivingState) -> str:
     """Why that speed would be dangerous or pointless; empty if it is not."""
     if not speed_kmh >= SLOWEST_REQUEST_KMH:
         return f"{speed_kmh:g} km/h is not a valid speed; to stop, ask to pull over"
-    limit_mps = state.road.posted_limit_mps
+    limit_mps = state.road.limit.mps
     fast_kmh = (limit_mps or 130 / KMH_PER_MPS) * KMH_PER_MPS
     is_crawling = state.road.road_class in FAST_ROADS and speed_kmh < fast_kmh / 2
     if is_crawling and state.around.relative_speed > SLOW_TRAFFIC:

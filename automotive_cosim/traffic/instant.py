@@ -11,10 +11,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
-from automotive_cosim.contracts import DrivingState, EgoEnd, OtherVehicle
+from automotive_cosim.contracts import DrivingState, EgoEnd, Limit, OtherVehicle
 from automotive_cosim.traffic.congestion import Route
 from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.records import make_around, make_light, make_other, make_road, make_state
+from automotive_cosim.traffic.surrogates import drac_mps2, time_to_collision_s
 
 TOUCHING_M = 0.1
 """Minimum gap in the DRAC, so that it stays finite."""
@@ -35,7 +36,7 @@ class Instant(Protocol):
 
     @property
     def limit_mps(self) -> float | None:
-        """See ``RoadHere.posted_limit_mps``."""
+        """Speed of ``RoadHere.limit``."""
         ...
 
     @property
@@ -67,8 +68,8 @@ class KnownInstant:
 
     @property
     def limit_mps(self) -> float | None:
-        """Posted limit of the lane."""
-        return self.state.road.posted_limit_mps
+        """Speed of the lane's limit."""
+        return self.state.road.limit.mps
 
     @property
     def end(self) -> EgoEnd | None:
@@ -82,7 +83,7 @@ class Lane:
 
     index: int
     """Among the edge's lanes for cars."""
-    limit_mps: float | None
+    limit: Limit
     friction: float
     limit_hours: str
 
@@ -132,7 +133,7 @@ class Seen:
     @property
     def limit_mps(self) -> float | None:
         """See ``Instant``."""
-        return self.lane.limit_mps
+        return self.lane.limit.mps
 
     @property
     def state(self) -> DrivingState:
@@ -163,8 +164,7 @@ class Seen:
                 self.lane_position_m,
                 edge.name,
                 edge.road_class,
-                lane.limit_mps,
-                edge.limit_source,
+                lane.limit,
                 edge.in_tunnel,
                 edge.lit,
                 edge.built_up,
@@ -194,5 +194,5 @@ def other_vehicle(vehicle_id: str, gap_m: float, speed_mps: float, closing_mps: 
     gap_m = max(0.0, gap_m)
     if closing_mps <= 1e-3:
         return make_other(vehicle_id, gap_m, speed_mps, None, None)
-    drac_mps2 = closing_mps**2 / (2 * max(TOUCHING_M, gap_m))
-    return make_other(vehicle_id, gap_m, speed_mps, gap_m / closing_mps, drac_mps2)
+    needed_mps2 = drac_mps2(max(TOUCHING_M, gap_m), closing_mps)
+    return make_other(vehicle_id, gap_m, speed_mps, time_to_collision_s(gap_m, closing_mps), needed_mps2)

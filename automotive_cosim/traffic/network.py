@@ -27,7 +27,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import IO
 
-from automotive_cosim.contracts import KMH_PER_MPS, LimitSource, Road, RoadNetwork
+from automotive_cosim.contracts import KMH_PER_MPS, Limit, LimitSource, Road, RoadNetwork
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats.files import opened
 from automotive_cosim.traffic import georeference
@@ -96,6 +96,11 @@ class Edge:
     """The one of them that is in force; ``limit_mps`` is the present limit."""
     built_up_assumed: bool | None = None
     """What the import assumed where the map does not say: for reports, no verdict rests on it."""
+
+    @property
+    def limit(self) -> Limit:
+        """The limit, and where it comes from."""
+        return Limit(self.limit_mps, self.limit_source)
 
     @property
     def limit_hours(self) -> str:

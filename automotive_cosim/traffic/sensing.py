@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from automotive_cosim.contracts import STANDING_BELOW_MPS, RoadIncident
+from automotive_cosim.contracts import STANDING_BELOW_MPS, Limit, RoadIncident
 from automotive_cosim.traffic.congestion import Congestion, Route
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.instant import Lane, Light, Other, Seen
@@ -139,8 +139,9 @@ class Sensor:
         friction = sumo.friction(lane_id)
         if lane_id in edge.lane_ids:
             limit_mps = None if edge.limit_mps is None else sumo.lane_speed(lane_id)
-            return Lane(edge.lane_ids.index(lane_id), limit_mps, friction, edge.limit_hours)
-        return Lane(sumo.lane_index(self._ego), edge.limit_mps, friction, edge.limit_hours)
+            own = Limit(limit_mps, edge.limit_source)
+            return Lane(edge.lane_ids.index(lane_id), own, friction, edge.limit_hours)
+        return Lane(sumo.lane_index(self._ego), edge.limit, friction, edge.limit_hours)
 
     def _look_for_light(self) -> None:
         lights = self._sumo.next_lights(self._ego)

@@ -87,13 +87,14 @@ class LibSumo:
         self.type: Any = library.vehicletype
         self.vehicle: Any = vehicle
         self.lane: Any = lane
+        self.edge: Any = edge
+        self.junction: Any = library.junction
         self.person: Any = library.person
         self.simulation: Any = simulation
         self.light_ids: Callable[[], Sequence[str]] = library.trafficlight.getIDList
         self.controlled_links: Callable[[str], Sequence[Sequence[tuple[str, str, str]]]] = (
             library.trafficlight.getControlledLinks
         )
-        self.junction: Any = library.junction
         self._around = library.CMD_GET_VEHICLE_VARIABLE
         self._looks = (
             library.VAR_TYPE,

@@ -84,7 +84,7 @@ class _Reader:
 
     def _take_parameter(self, attributes: dict[str, str], line: int) -> None:
         key = attributes.get("key", "")
-        if key == WRITING_LIGHT and self.within[-1:] == ["tlLogic"]:
+        if key == WRITING_LIGHT:  # of a traffic light, in whatever element of it this stands
             self._change(attributes | {"value": NOWHERE})
             return
         try:
@@ -105,7 +105,7 @@ class _Reader:
             new[OUTPUTS[name]] = NOWHERE
         if read := new.get(INPUTS.get(name, "")):
             file = (self.path.parent / read).absolute()
-            if not is_file(file):
+            if "${" in read or not is_file(file):  # SUMO may put a variable's value there
                 missing = f"<{name}> names {read[:200]!r}, which is missing in {self.path.parent}"
                 raise ScenarioError(f"{self.path} line {line}: {missing}")
             vetted = file if name in LISTS else _vet(file, self.scratch, self.through)

@@ -83,6 +83,8 @@ def test_a_name_that_leads_nowhere_is_told(name):
     [
         ("raise KeyError('x')", "raised KeyError"),
         ("raise SystemExit(3)", "raised SystemExit"),
+        ("from automotive_cosim.errors import ModelError; raise ModelError('x')", "raised ModelError"),
+        ("from automotive_cosim.errors import TrafficError; raise TrafficError('x')", "raised TrafficError"),
         ("return None", "returned NoneType"),
         ("return 7", "returned int"),
         ("return '{'", "not JSON"),

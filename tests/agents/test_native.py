@@ -137,7 +137,7 @@ def test_what_a_format_can_say_is_read_as_it_was_meant(form: str) -> None:
 def test_the_prompt_names_every_word_of_the_format_and_it_says_what_it_lacks(form: str) -> None:
     chosen_form = FORMATS[form]
     told = chosen_form.syntax.describe(chosen_form.verbs, 1280, 720)
-    for name in chosen_form.verbs if chosen_form.wire is None else ():
+    for name in chosen_form.verbs if chosen_form.api is None else ():
         assert name in told
     screen = GuiScreen(9, 9, chosen_form.grid)
     sayable = {action.action_type for action in SAMPLES if call_for(chosen_form.verbs, action, screen)}

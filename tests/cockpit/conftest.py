@@ -22,6 +22,7 @@ from automotive_cosim.contracts import (
     Element,
     FeedbackCode,
     GpsFix,
+    Limit,
     LimitSource,
     Road,
     RoadAhead,
@@ -76,11 +77,11 @@ def town() -> RoadNetwork:
 def outside(time_s: float = 900.0, speed_kmh: float = 48.0, **changes: object) -> Surroundings:
     """Driving north-east through the town on a mild evening."""
     here = RoadHere(
-        "e6_5", "e6_5_0", 0, 3, 40.0, "Boulevard de Sébastopol", "primary", 50 / 3.6, LimitSource.POSTED, False,
-        True, True, True, 1.0,
+        "e6_5", "e6_5_0", 0, 3, 40.0, "Boulevard de Sébastopol", "primary", Limit(50 / 3.6, LimitSource.POSTED),
+        False, True, True, True, 1.0,
     )  # fmt: skip
     ahead = RoadAhead(
-        4210.0, 640.0, 95.0, 0.6, 900.0, 300.0, None, 30 / 3.6, 400.0, None, None,
+        4210.0, 640.0, 95.0, 0.6, 900.0, 300.0, None, Limit(30 / 3.6, LimitSource.POSTED), 400.0, None, None,
         ("e6_5", "e6_6", "n7_6", "n7_7", "e8_7", "e8_8"),
     )  # fmt: skip
     driving = DrivingState(

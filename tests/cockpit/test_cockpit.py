@@ -23,6 +23,7 @@ from automotive_cosim.contracts import (
     Direction,
     FeedbackCode,
     Hazards,
+    Limit,
     LimitSource,
     OtherVehicle,
     PullOver,
@@ -82,7 +83,7 @@ def test_the_camera_reads_signs_and_no_assumptions(make: Make, around: Surroundi
     assert make().vehicle_state().speed_limit_sign_kmh == pytest.approx(50.0)
     assert shown(make(), "status.limit_sign") == "50"
     assert shown(make(sign_camera=False), "status.limit_sign") == ""
-    road = replace(around.driving.road, limit_source=LimitSource.ASSUMED)
+    road = replace(around.driving.road, limit=Limit(50 / 3.6, LimitSource.ASSUMED))
     assumed = make(surroundings=replace(around, driving=replace(around.driving, road=road)))
     assert assumed.vehicle_state().speed_limit_sign_kmh is None
 

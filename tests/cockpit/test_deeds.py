@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cockpit.messages import Guide
 from automotive_cosim.cockpit.signals import CABIN, HVAC, LIGHTS, MEDIA, difference
 from automotive_cosim.contracts import (
     Alert,
@@ -111,6 +112,14 @@ def test_the_road_replies_as_it_did(drive: Drive) -> None:
     assert drive.beyond("navigation.destination") == {"requests"}
     drive.act(lambda cockpit: cockpit.ask_road(PullOver()))
     assert drive.beyond("navigation.destination", "requests") == set()
+
+
+def test_a_stop_slipped_in_on_the_way_is_no_part_of_the_destination(drive: Drive) -> None:
+    stop, home = drive.cockpit.content["places"][:2]
+    drive.act(lambda cockpit: cockpit._perform(Guide(stop, home)))
+    assert drive.cockpit.commands()["navigation.onward"] == home
+    assert "navigation.onward" in drive.beyond("navigation.destination")
+    assert drive.beyond("navigation.destination", "navigation.onward") == set()
 
 
 def test_what_is_refused_is_no_deed(drive: Drive) -> None:

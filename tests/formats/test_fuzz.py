@@ -39,7 +39,9 @@ from automotive_cosim.run.store import read_evaluation, read_rows, read_trace, w
 from automotive_cosim.scenery import open_scenario
 
 GRID = scenarios.load("grid").folder
-QUICK = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+QUICK = settings(
+    max_examples=60, deadline=None, database=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
 LONGEST = 600
 """Characters of a refusal."""
 
@@ -50,6 +52,20 @@ OSM = (
     '<tag k="maxspeed" v="50"/></way><relation id="4" version="1"><member type="way" ref="3" role="from"/>'
     '<tag k="restriction" v="no_u_turn"/></relation></osm>'
 )
+OVERPASS = json.dumps(
+    {
+        "version": 0.6,
+        "elements": [
+            {"type": "node", "id": 1, "lat": 48.1, "lon": 2.1},
+            {"type": "node", "id": 2, "lat": 48.2, "lon": 2.2, "tags": {"highway": "speed_camera"}},
+            {"type": "way", "id": 3, "nodes": [1, 2], "tags": {"highway": "residential", "maxspeed": "50"}},
+            {"type": "way", "id": 4, "nodes": [1, 2], "geometry": [{"lat": 48.1, "lon": 2.1}, None],
+             "tags": {"highway": "primary"}},
+            {"type": "relation", "id": 5, "members": [{"type": "way", "ref": 3, "role": "from"}],
+             "tags": {"restriction": "no_u_turn"}},
+        ],
+    }
+)  # fmt: skip
 CONFIGURATION = (
     '<configuration><input><net-file value="grid.net.xml"/><route-files value="grid.rou.xml"/>'
     '<additional-files value="x.add.xml"/></input><time><begin value="36000"/><step-length value="0.5"/></time>'
@@ -93,6 +109,7 @@ def _kinds(folder: Path) -> Iterator[tuple[str, Kind]]:
     (town / "whole.sumocfg").write_text(CONFIGURATION)
     yield kind("map.osm", OSM, extract.read)
     yield kind("map.osm.gz", gzip.compress(OSM.encode()), extract.read)
+    yield kind("map.json", OVERPASS, extract.read)
     yield kind("town/scenario.toml", toml, lambda path: scenarios.load(path.parent))
     yield kind("town/x.sumocfg", CONFIGURATION, open_scenario)
     yield kind("town/x.add.xml", ADDITIONAL, lambda _: open_scenario(town / "whole.sumocfg"))
@@ -128,9 +145,9 @@ def kinds(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Kind]:
 
 
 NAMES = (
-    "map.osm", "map.osm.gz", "town/scenario.toml", "town/x.sumocfg", "town/x.add.xml", "FR.toml", "plan.toml",
-    "actions.jsonl", "counts.csv", "answers/steps.jsonl", "results/manifest.json", "results/episodes.jsonl",
-    "results/traces/a.jsonl.gz", "memory.db",
+    "map.osm", "map.osm.gz", "map.json", "town/scenario.toml", "town/x.sumocfg", "town/x.add.xml", "FR.toml",
+    "plan.toml", "actions.jsonl", "counts.csv", "answers/steps.jsonl", "results/manifest.json",
+    "results/episodes.jsonl", "results/traces/a.jsonl.gz", "memory.db",
 )  # fmt: skip
 
 

@@ -8,10 +8,10 @@ from zoneinfo import ZoneInfo
 import pytest
 
 from automotive_cosim.contracts import (
+    NO_LIMIT,
     Around,
     DrivingState,
     GpsFix,
-    LimitSource,
     OtherVehicle,
     RoadAhead,
     RoadHere,
@@ -21,9 +21,7 @@ from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.locate import Geo
 from automotive_cosim.geo.situation import Situation
 
-ROAD = RoadHere(
-    "e", "e_0", 0, 1, 10.0, "Avenue Foch", "primary", None, LimitSource.ASSUMED, False, None, None, None, 1.0
-)
+ROAD = RoadHere("e", "e_0", 0, 1, 10.0, "Avenue Foch", "primary", NO_LIMIT, False, None, None, None, 1.0)
 CAR = DrivingState(
     time_s=0.0,
     x_m=0.0,

@@ -101,7 +101,7 @@ def test_law_and_sign_change_in_the_second_the_line_is_crossed(cross: Callable[[
     signs = [
         after
         for before, after in pairwise(crossing.moments)
-        if before.driving.road.posted_limit_mps != after.driving.road.posted_limit_mps
+        if before.driving.road.limit.mps != after.driving.road.limit.mps
     ]
     assert min(abs(sign.time_s - crossing.crossed_s) for sign in signs) <= TICK_S + 0.5
 

@@ -15,13 +15,13 @@ from zoneinfo import ZoneInfo
 import numpy as np
 import pytest
 
-from automotive_cosim.contracts import DrivingState, GpsFix, LimitSource, Weather
+from automotive_cosim.contracts import DrivingState, GpsFix, Limit, LimitSource, Weather
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.gps import Gps
 from automotive_cosim.geo.locate import Geo
 
 Locate = Callable[..., GeoContext]
-POSTED = {"limit_source": LimitSource.POSTED, "posted_limit_mps": 50 / 3.6}
+POSTED = {"limit": Limit(50 / 3.6, LimitSource.POSTED)}
 PARIS, SEA, TBILISI, NEW_YORK, CARDIFF = (
     (48.873, 2.285),
     (40.0, -30.0),
@@ -49,12 +49,12 @@ def _roads() -> list[dict[str, object]]:
 
 def test_the_posted_limit_reads_in_the_countrys_unit(locate: Locate) -> None:
     assert "Speed limit here: 50 km/h (posted on Avenue Foch)" in locate(*PARIS, **POSTED).text()
-    mph = POSTED | {"posted_limit_mps": 20 * 0.44704, "name": ""}
+    mph = {"limit": Limit(20 * 0.44704, LimitSource.POSTED), "name": ""}
     assert "Speed limit here: 20 mph (posted on this road)" in locate(*CARDIFF, **mph).text()
 
 
 def test_an_assumed_limit_is_not_called_posted(locate: Locate) -> None:
-    context = locate(*PARIS, **(POSTED | {"limit_source": LimitSource.ASSUMED}))
+    context = locate(*PARIS, limit=Limit(50 / 3.6, LimitSource.ASSUMED))
     assert context.posted_limit_kmh is None
     assert not re.search(r"Speed limit here: \d", context.text())
 
@@ -135,7 +135,7 @@ def test_reduced_limits_stand_whether_or_not_they_hold(locate: Locate, weather: 
 
 def test_a_reduced_limit_no_lower_than_the_sign_is_left_out(locate: Locate) -> None:
     assert "Reduced limit" not in locate(*PARIS, **POSTED).text()
-    assert "Reduced limit: 50 km/h" in locate(*PARIS, **(POSTED | {"posted_limit_mps": 70 / 3.6})).text()
+    assert "Reduced limit: 50 km/h" in locate(*PARIS, limit=Limit(70 / 3.6, LimitSource.POSTED)).text()
 
 
 @pytest.mark.parametrize("place", EVERYWHERE)

@@ -68,6 +68,12 @@ def test_the_rules_of_each_status_are_counted() -> None:
     counts = Counter(str(rule.status) for entry in entries for rule in entry.rules)
     told = re.findall(r"^\| `(\w+)` \| [^|]* \| (\d+) \|$", DOC, re.MULTILINE)
     assert {status: int(count) for status, count in told} == counts
+    verified, whole = counts["verified"], sum(counts.values())
+    for page, words in (
+        ("README.md", f"{verified} of {whole}"),
+        ("docs/evaluation.md", f"Of our {whole} legal rules {verified} are verified"),
+    ):
+        assert words in (Path(__file__).parents[2] / page).read_text(encoding="utf-8"), page
 
 
 @pytest.mark.parametrize("line", re.findall(r"^    automotive-cosim context (.*)$", DOC, re.MULTILINE))

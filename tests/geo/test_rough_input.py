@@ -15,7 +15,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from automotive_cosim.contracts import DrivingState, GpsFix, LimitSource, Weather
+from automotive_cosim.contracts import DrivingState, GpsFix, Limit, LimitSource, Weather
 from automotive_cosim.errors import GeoDataError, UserError
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.locate import Geo
@@ -34,8 +34,7 @@ roads = st.fixed_dictionaries(
         | st.text(max_size=9),
         "name": st.text(max_size=30),
         "lane_count": st.integers(0, 9),
-        "posted_limit_mps": st.none() | st.floats(0, 120),
-        "limit_source": st.sampled_from(LimitSource),
+        "limit": st.builds(Limit, st.none() | st.floats(0, 120), st.sampled_from(LimitSource)),
         "in_tunnel": st.booleans(),
         "lit": st.none() | st.booleans(),
         "built_up": st.none() | st.booleans(),
@@ -73,7 +72,7 @@ def test_there_is_a_context_everywhere_and_always(
     assert len(text) <= 4 * BUDGET_TOKENS
     assert all(line.text.strip() for line in found.lines)
     assert found.place.layers or not found.default_limits
-    if found.road.limit_source is LimitSource.POSTED and found.posted_limit_kmh is not None:
+    if found.road.limit.source is LimitSource.POSTED and found.posted_limit_kmh is not None:
         assert "(posted on " in text
     codes = {layer.code for layer in found.place.layers}
     assert {limit.jurisdiction for limit in (*found.default_limits, *found.reduced_limits)} <= codes

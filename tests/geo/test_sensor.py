@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from automotive_cosim.contracts import Connectivity, DrivingState, GpsFix, LimitSource, OtherVehicle, Weather
+from automotive_cosim.contracts import Connectivity, DrivingState, GpsFix, Limit, LimitSource, OtherVehicle, Weather
 from automotive_cosim.geo import sensor
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.earth import METRES_PER_DEGREE, metres_per_degree_east
@@ -85,7 +85,7 @@ def test_hazards_are_what_lies_ahead(instant: Callable[..., Instant], weather: C
         jam_distance_m=420.0,
         jam_length_m=300.0,
         tunnel_distance_m=250.0,
-        next_limit_mps=30 / 3.6,
+        next_limit=Limit(30 / 3.6, LimitSource.POSTED),
         next_limit_distance_m=80.0,
     )
     around = replace(known.driving.around, emergency_behind=OtherVehicle("ambulance", 60.0, 25.0, None))
@@ -148,8 +148,7 @@ def test_no_answer_judges_or_advises(
         weather=weather(weather_code=45, visibility=40.0),
         speed_mps=speed_mps,
         leader_m=4.0,
-        posted_limit_mps=50 / 3.6,
-        limit_source=LimitSource.POSTED,
+        limit=Limit(50 / 3.6, LimitSource.POSTED),
     )
     for query in (
         *SUBJECTS,

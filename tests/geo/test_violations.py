@@ -16,7 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from automotive_cosim import geo
-from automotive_cosim.contracts import DrivingState, GpsFix, LimitSource, OtherVehicle, Weather
+from automotive_cosim.contracts import DrivingState, GpsFix, Limit, LimitSource, OtherVehicle, Weather
 from automotive_cosim.geo.breaches import Violation
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.locate import Geo
@@ -44,7 +44,7 @@ FILM = {
 
 
 def posted(kmh: float) -> dict[str, object]:
-    return {"posted_limit_mps": kmh / 3.6, "limit_source": LimitSource.POSTED}
+    return {"limit": Limit(kmh / 3.6, LimitSource.POSTED)}
 
 
 @dataclass(frozen=True)
@@ -148,8 +148,8 @@ def test_miles_are_miles(at: Callable[..., State]) -> None:
         {"built_up": None},
         {"place": (40.0, -30.0)},
         {"place": BERLIN, "road_class": "motorway"},
-        {"posted_limit_mps": None, "limit_source": LimitSource.POSTED},
-        {"posted_limit_mps": 50 / 3.6, "limit_source": LimitSource.ASSUMED, "built_up": None},
+        {"limit": Limit(None, LimitSource.POSTED)},
+        {"limit": Limit(50 / 3.6, LimitSource.ASSUMED), "built_up": None},
     ],
 )
 def test_no_certain_limit_nothing_broken(at: Callable[..., State], changes: dict[str, Any]) -> None:

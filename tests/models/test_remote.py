@@ -385,7 +385,7 @@ def touches(simulations: Simulations) -> list[Action]:
 
 def body_of(form: str, text: str) -> bytes:
     """An answer as the provider of a format sends it."""
-    if FORMATS[form].wire is None:
+    if FORMATS[form].api is None:
         return completion(text)
     told = json.loads(text)
     say, calls = told["say"], [(call["name"], call["arguments"]) for call in told["calls"]]
@@ -445,7 +445,7 @@ def test_a_model_at_an_endpoint_works_the_car_in_its_own_format(
     for asked, headers in zip(server.asked, server.headers, strict=True):
         assert asked["path"] == "/v1" + ASKS.get(form, "/chat/completions")
         assert len(re.findall("iVBORw0KGgo", json.dumps(asked))) == 1  # one picture, a PNG
-        assert ("car" in json.dumps(asked.get("tools", ()))) == (chosen.wire is not None)
+        assert ("car" in json.dumps(asked.get("tools", ()))) == (chosen.api is not None)
         own = {"anthropic": "x-api-key", "gemini": "x-goog-api-key"}.get(form.partition("-")[0])
         assert headers.get(own or "authorization") == (KEY if own else f"Bearer {KEY}")
         assert ("authorization" in headers) == (own is None)

@@ -6,13 +6,13 @@ from dataclasses import dataclass, replace
 import pytest
 
 from automotive_cosim.agents.trivial import Random
-from automotive_cosim.cockpit.signals import HVAC, SEAT
+from automotive_cosim.cockpit.signals import ADAS, HVAC, SEAT
 from automotive_cosim.contracts import Action, ActionType, AlertKind, GoalStatus, PullOver, Reason
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.proof import gates
 from automotive_cosim.proof.ground import Ground, Script
 from automotive_cosim.tasking import verdict
-from automotive_cosim.tasking.checks import AnyOf, NothingDone, RoadAsked, SignalIs
+from automotive_cosim.tasking.checks import AllOf, AnyOf, NothingDone, RoadAsked, SignalIs
 from automotive_cosim.tasking.moves import Open, Tap
 from automotive_cosim.tasking.task import Basis, Module, Start, Task
 from automotive_cosim.tasking.triggers import (
@@ -100,7 +100,7 @@ def test_a_sound_task_passes(ground, gate):
     assert list(getattr(gates, gate)(ground(SOUND))) == []
 
 
-@pytest.mark.parametrize("gate", ["undone", "near", "coupled"])
+@pytest.mark.parametrize("gate", ["undone", "near", "coupled", "lawful"])
 def test_a_sound_end_state_passes(ground, gate):
     stand = ground(SOUND)
     assert list(getattr(gates, gate)(stand, stand.reference)) == []
@@ -200,6 +200,15 @@ def test_a_switch_that_the_car_couples_to_the_goal_fails_when_it_is_turned_by_it
     played = stand.play(stand.oracle(taps))
     assert played.verdict.goal.ok
     assert played.verdict.clean.why == f"also changed: {HVAC.AIR_CONDITIONING.path}"
+
+
+def test_a_cruise_above_the_limit_is_seen(ground):
+    goal = AllOf((SignalIs(ADAS.CRUISE_ACTIVE, (True,)), SignalIs(ADAS.CRUISE_SPEED, (180.0,))))
+    start = replace(GRID, signals={ADAS.CRUISE_SPEED.path: 180.0})
+    moves = (Open("vehicle"), Tap("vehicle.tab.assistance"), Tap("adas.cruise"))
+    stand = ground(changed(goal=goal, moves=moves, start=start))
+    (wrong,) = gates.lawful(stand, stand.reference)
+    assert wrong.startswith("has cruise control hold 180 km/h where the limit is ")
 
 
 def test_a_task_that_wants_nothing_is_seen(ground):

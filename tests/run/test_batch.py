@@ -4,40 +4,86 @@ import os
 import sys
 import time
 from collections import Counter
+from contextlib import closing
+from functools import partial
 from pathlib import Path
 
 import pytest
 
 from automotive_cosim.errors import InfrastructureError, UserError
 from automotive_cosim.interface.trace import sha256
-from automotive_cosim.run.batch import run_plan
-from automotive_cosim.run.collect import Pictures
+from automotive_cosim.run.batch import run_jobs, run_plan
+from automotive_cosim.run.collect import Pictures, failed
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.executor import LostError
+from automotive_cosim.run.nursery import Nursery
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.queue import JobQueue
+from automotive_cosim.run.regrade import regrade
 from automotive_cosim.run.row import steady as steady_part
-from automotive_cosim.run.store import read_rows, read_trace, trace_file
-from automotive_cosim.run.worker import run_job
+from automotive_cosim.run.store import opened, read_rows, read_trace, trace_file
+from automotive_cosim.run.worker import episodes, run_job
 
 TROUBLE = """
-import os, pathlib, time
+import gc, os, pathlib, sys, time
+NOUNS = ("Instance", "EpisodeSetup", "EpisodeJob", "HandOver")
+from automotive_cosim.errors import ModelError, TriggerNotReachedError
 
 class Base:
     channels = ()
     def reset(self, goal):
-        self.tries = pathlib.Path("tries")
+        self.tries = pathlib.Path(__file__).with_name("tries")
         with self.tries.open("a") as file:
             file.write("x")
 
 class Dies(Base):
     def act(self, observation): os.kill(os.getpid(), 9)
 
-class DiesOnce(Base):
+class KillsWorker(Base):
     def act(self, observation):
-        if self.tries.stat().st_size == 1: os.kill(os.getpid(), 9)
+        nursery = pathlib.Path("/proc", str(os.getppid()), "stat").read_text()
+        os.kill(int(nursery.rpartition(")")[2].split()[1]), 9)
+        time.sleep(600)
+
+class KillsWorkerOnce(KillsWorker):
+    def act(self, observation):
+        if self.tries.stat().st_size == 1: super().act(observation)
         return {"action_type": "status", "goal_status": "complete"}
+
+class Looks(Base):
+    def act(self, observation):
+        pid, found = os.getpid(), ""
+        for _ in range(3):  # itself, what forked it, and the worker
+            process = pathlib.Path("/proc", str(pid))
+            found += (process / "cmdline").read_text() + (process / "environ").read_text()
+            pid = (process / "stat").read_text().rpartition(")")[2].split()[1]
+        known = [word for word in ("hvac_fan_max", "trouble:Looks") if word in found]
+        return {"action_type": "answer", "text": f"{len(found) > 1000} {known}"}
+
+class Cheats(Base):
+    def act(self, observation):
+        return {"action_type": "status", "goal_status": "not_needed" if self.knows() else "complete"}
+
+class Counts(Cheats):
+    heard = {}
+    def reset(self, goal): self.heard[goal] = self.heard.get(goal, 0) + 1
+    def knows(self): return max(self.heard.values()) > 1
+
+class Walks(Cheats):
+    def knows(self):
+        frame, found = sys._getframe(), gc.get_objects()
+        while frame is not None:
+            found += frame.f_locals.values()
+            frame = frame.f_back
+        return any(getattr(each, "half", None) is not None for each in found if type(each).__name__ in NOUNS)
+
+class Blames(Base):
+    def act(self, observation): raise TriggerNotReachedError("nobody gets here")
+
+class BlamesModel(Base):
+    def __init__(self): raise ModelError("no answer")
+    def act(self, observation): ...
 
 class Hangs(Base):
     def act(self, observation): time.sleep(600)
@@ -66,6 +112,12 @@ def trouble(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     yield tmp_path
     sys.modules.pop("trouble", None)
+
+
+@pytest.fixture(scope="module")
+def nursery():
+    with closing(Nursery()) as shared:
+        yield shared
 
 
 def tries(folder):
@@ -97,10 +149,10 @@ def test_order_and_number_of_workers_do_not_show(tmp_path, monkeypatch):
 
 @pytest.mark.sumo
 def test_a_worker_that_dies_again_and_again_costs_its_episode_alone(trouble):
-    end = run_plan(plan("oracle", "trouble:Dies"), trouble / "e", retries=2)
+    end = run_plan(plan("oracle", "trouble:KillsWorker"), trouble / "e", retries=2)
     assert (end.planned, end.judged, end.successes, end.errors) == (2, 1, 1, 1)
     assert tries(trouble) == 3
-    row = next(row for row in read_rows(trouble / "e", EpisodeRow).values() if row.agent == "trouble:Dies")
+    row = next(row for row in read_rows(trouble / "e", EpisodeRow).values() if row.agent == "trouble:KillsWorker")
     assert row.success is None
     assert row.error_kind == "WorkerDied"
     assert (row.attempts, len(row.failed_attempts)) == (3, 3)
@@ -108,7 +160,7 @@ def test_a_worker_that_dies_again_and_again_costs_its_episode_alone(trouble):
 
 @pytest.mark.sumo
 def test_an_attempt_that_fails_is_made_again_and_told(trouble):
-    end = run_plan(plan("trouble:DiesOnce"), trouble / "e", retries=1)
+    end = run_plan(plan("trouble:KillsWorkerOnce"), trouble / "e", retries=1)
     assert (end.judged, end.errors) == (1, 0)
     (row,) = read_rows(trouble / "e", EpisodeRow).values()
     assert row.attempts == 2
@@ -116,18 +168,58 @@ def test_an_attempt_that_fails_is_made_again_and_told(trouble):
 
 
 @pytest.mark.sumo
-def test_an_agent_that_hangs_is_ended_when_its_wall_time_is_over(trouble):
+def test_what_an_agent_does_is_its_own_failure_and_nobody_elses_error(trouble):
+    bad = ("Dies", "Hangs", "Blames", "BlamesModel")
+    limits = {"steps": 5, "agent_step_s": 2}
+    wanted = plan("oracle", *(f"trouble:{name}" for name in bad), limits=limits)
+    with pytest.raises(UserError, match="ModelError"):
+        wanted.check()
+    with opened(trouble / "e", wanted.as_json(), EpisodeRow) as store:
+        end = run_jobs(wanted.jobs(), store, partial(episodes, Pictures.NONE), failed)
+    assert (end.judged, end.successes, end.errors) == (5, 1, 0)
+    assert tries(trouble) == 3, "none was tried twice"
+    ends = {row.agent: (row.end, row.agent_error) for row in read_rows(trouble / "e", EpisodeRow).values()}
+    assert ends["oracle"] == ("declared", None)
+    assert ends["trouble:Blames"] == ("out_of_steps", None)
+    assert ends["trouble:Dies"] == ("agent_failed", "its process was killed by SIGKILL")
+    assert ends["trouble:Hangs"] == ("agent_failed", "its process took over 2 s for one step")
+    assert ends["trouble:BlamesModel"][0] == "agent_failed"
+    assert not any(each.differs or each.problem for each in regrade(trouble / "e"))
+
+
+@pytest.mark.sumo
+@pytest.mark.slow
+def test_agents_that_count_or_look_around_never_know_the_second_half(trouble):
+    wanted = plan("trouble:Counts", "trouble:Walks", tasks=["system_local_units"], repeats=2, limits={"steps": 1})
+    end = run_plan(wanted, trouble / "e")
+    assert (end.judged, end.successes) == (8, 0)
+    for row in read_rows(trouble / "e", EpisodeRow).values():
+        assert read_trace(trouble / "e", row.id)[1]["action"]["goal_status"] == "complete"
+
+
+@pytest.mark.sumo
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks at /proc")
+def test_no_process_above_the_agents_names_the_job(trouble, monkeypatch):
+    monkeypatch.delenv("PYTEST_CURRENT_TEST")
+    end = run_plan(plan("trouble:Looks", limits={"steps": 1}), trouble / "e")
+    assert end.judged == 1
+    (row,) = read_rows(trouble / "e", EpisodeRow).values()
+    assert read_trace(trouble / "e", row.id)[1]["action"]["text"] == "True []"
+
+
+@pytest.mark.sumo
+def test_an_episode_that_takes_too_long_is_ended_when_its_wall_time_is_over(trouble):
     began_s = time.monotonic()
-    run_plan(plan("trouble:Hangs", limits={"wall_s": 12}), trouble / "e", retries=0)
+    run_plan(plan("oracle", limits={"wall_s": 0.1, "agent_s": 0.1}), trouble / "e", retries=0)
     assert time.monotonic() - began_s < 60
     (row,) = read_rows(trouble / "e", EpisodeRow).values()
     assert (row.error_kind, row.success) == ("WallTime", None)
 
 
-def test_steps_simulated_time_and_tokens_are_limited_and_judged(trouble, simulations):
+def test_steps_simulated_time_and_tokens_are_limited_and_judged(trouble, simulations, nursery):
     def ran(agent, **limits):
         (job,) = plan(agent, limits=limits).jobs()
-        return run_job(job, trouble, Pictures.NONE, simulations)
+        return run_job(job, trouble, Pictures.NONE, simulations, nursery)
 
     ends = [ran("trouble:Waits", steps=3), ran("trouble:Waits", sim_s=12), ran("asurada", tokens=10)]
     assert [(row.end, row.success) for row in ends] == [
@@ -152,11 +244,11 @@ def test_a_trigger_out_of_reach_is_sought_once_for_all_contestants_and_never_aga
     assert steady(tmp_path / "alone").items() <= steady(tmp_path / "both").items()
 
 
-def test_pictures_are_kept_by_choice(tmp_path, simulations):
+def test_pictures_are_kept_by_choice(tmp_path, simulations, nursery):
     jobs = plan("oracle", "always-alert").jobs()
     for choice, count in ((Pictures.NONE, 0), (Pictures.FAILURES, 1), (Pictures.ALL, 2)):
         (tmp_path / choice / "traces").mkdir(parents=True)
-        steps = {job.id: run_job(job, tmp_path / choice, choice, simulations).steps for job in jobs}
+        steps = {job.id: run_job(job, tmp_path / choice, choice, simulations, nursery).steps for job in jobs}
         kept = list((tmp_path / choice / "pictures").glob("*"))
         assert len(kept) == count
         for folder in kept:

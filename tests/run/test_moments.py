@@ -8,8 +8,19 @@ from types import SimpleNamespace
 import pytest
 
 from automotive_cosim.agents import make_agent
-from automotive_cosim.contracts import GoalStatus, PullOver, Reroute, SlowDown
+from automotive_cosim.contracts import (
+    NO_LIMIT,
+    GoalStatus,
+    GpsFix,
+    Limit,
+    LimitSource,
+    PullOver,
+    Reroute,
+    SlowDown,
+)
 from automotive_cosim.errors import UserError
+from automotive_cosim.geo.breaches import limit_at
+from automotive_cosim.geo.locate import Geo
 from automotive_cosim.run.batch import run_plan
 from automotive_cosim.run.collect import Collector, Pictures
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
@@ -20,6 +31,8 @@ from automotive_cosim.run.regrade import regrade
 from automotive_cosim.tasking.instance import Instance
 from automotive_cosim.tasking.verdict import as_json, judge
 from automotive_cosim.tasks import CATALOGUE
+
+from ..geo.conftest import CAR, CLEAR, NOON
 
 
 @pytest.fixture(scope="session")
@@ -152,26 +165,46 @@ def test_classes_that_have_moved_since_are_found(kept):
     assert read_judged(folder, "a") == judged
 
 
-def driving(time_s, speed_mps, limit_mps, closing_s=None):
+HAMBURG = GpsFix(True, 10.0, 53.55, 3.0, 0.0, 0.0)
+RURAL = replace(CAR.road, road_class="secondary", built_up=False)
+
+
+def drive_of(*seconds):
+    """Moments of a drive through Germany: seconds, metres per second, and the limit."""
+    moments = []
+    for time_s, speed_mps, limit in seconds:
+        state = replace(CAR, time_s=time_s, speed_mps=speed_mps, road=replace(RURAL, limit=limit))
+        context = Geo().locate(state, HAMBURG, CLEAR, NOON)
+        moments.append(SimpleNamespace(time_s=time_s, driving=state, passed=(state,), context=context))
+    return moments
+
+
+def test_overspeed_is_the_way_above_a_sign():
+    sign, end_of_limits = Limit(15.0, LimitSource.POSTED), Limit(None, LimitSource.POSTED)
+    moments = drive_of(
+        (0.0, 20.0, sign), (1.0, 20.0, sign), (3.0, 18.0, sign), (4.0, 30.0, end_of_limits), (5.0, 10.0, sign)
+    )
+    assert overspeed(moments) == (5.0 + 2 * 3.0, 4.0)
+    assert overspeed(moments, 2.0) == (5.0, 1.0)
+
+
+def test_without_a_sign_the_law_binds_and_never_what_the_map_assumes():
+    """100 km/h outside built-up areas (StVO § 3), whether the map assumes 50 or nothing at all."""
+    for assumed in (Limit(50 / 3.6, LimitSource.ASSUMED), Limit(None, LimitSource.ASSUMED), NO_LIMIT):
+        over_m, whole_s = overspeed(drive_of((0.0, 30.0, assumed), (2.0, 30.0, assumed)))
+        assert over_m == pytest.approx(2 * (30.0 - 100 / 3.6))
+        assert whole_s == 2.0
+        assert limit_at(drive_of((0.0, 30.0, assumed))[0].context).source is LimitSource.LAW
+
+
+def driving(time_s, speed_mps, closing_s=None):
     leader = None if closing_s is None else SimpleNamespace(time_to_collision_s=closing_s)
-    road = SimpleNamespace(posted_limit_mps=limit_mps)
-    around = SimpleNamespace(leader=leader)
-    return SimpleNamespace(time_s=time_s, speed_mps=speed_mps, road=road, around=around)
-
-
-def test_overspeed_is_the_way_above_the_limit():
-    states = [
-        driving(0.0, 20.0, 15.0),
-        driving(1.0, 20.0, 15.0),
-        driving(3.0, 18.0, 15.0),
-        driving(4.0, 30.0, None),
-    ]
-    assert overspeed([*states, driving(5.0, 10.0, 15.0)]) == (5.0 + 2 * 3.0, 4.0)
+    return SimpleNamespace(time_s=time_s, speed_mps=speed_mps, around=SimpleNamespace(leader=leader))
 
 
 def test_the_nearest_is_the_smallest_time_of_those_there_are():
-    assert nearest_s([driving(0.0, 1.0, 1.0), driving(1.0, 1.0, 1.0, 4.0), driving(2.0, 1.0, 1.0, 2.5)]) == 2.5
-    assert nearest_s([driving(0.0, 1.0, 1.0)]) is None
+    assert nearest_s([driving(0.0, 1.0), driving(1.0, 1.0, 4.0), driving(2.0, 1.0, 2.5)]) == 2.5
+    assert nearest_s([driving(0.0, 1.0)]) is None
 
 
 def test_a_baseline_run_differs_in_nothing_and_a_touched_one_in_what_was_done(collected, kept):

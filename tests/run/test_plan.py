@@ -116,6 +116,16 @@ def test_episodes_of_one_simulation_stand_together():
     assert len(seen) == len(set(seen))
 
 
+def test_the_order_of_episodes_tells_no_half_from_the_other():
+    """An agent that counts how often it heard a goal must not know by that which half it is in."""
+    places: dict[tuple, dict[str, int]] = {}
+    for place, job in enumerate(plan(tasks=["safety"]).jobs()):
+        places.setdefault((job.setup.task, job.simulation), {})[job.setup.half] = place
+    first = [halves["first"] < halves["second"] for halves in places.values() if len(halves) == 2]
+    assert len(first) > 70
+    assert 0.35 < sum(first) / len(first) < 0.65
+
+
 def test_a_file_says_what_the_options_say(tmp_path):
     path = tmp_path / "plan.toml"
     path.write_text('agents = ["t3a"]\nseeds = [0, 1]\ngeo = ["full", "none"]\n[limits]\nsteps = 5\nwall_s = 60\n')

@@ -108,7 +108,7 @@ def test_the_ego_meets_40_at_school_hours_and_50_later(forked: Forked) -> None:
         assert zone.road.school_zone
         assert "Posted for certain hours: 40 km/h Mo-Fr 08:00-09:30, 14:30-16:00" in context.text()
         seen[start.hour] = (
-            round((zone.road.posted_limit_mps or 0) * KMH_PER_MPS),
+            round((zone.road.limit.mps or 0) * KMH_PER_MPS),
             zone.road.limit_by_clock,
             max(state.speed_mps for state in inside[100:]) * KMH_PER_MPS > 43,
             context.lines[3].text,

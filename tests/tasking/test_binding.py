@@ -11,6 +11,7 @@ from automotive_cosim.contracts import (
     Around,
     DrivingState,
     GpsFix,
+    Limit,
     LimitSource,
     RoadAhead,
     RoadHere,
@@ -46,10 +47,8 @@ def context(
     built_up: bool | None = True,
     weather: Weather = FOG,
 ) -> GeoContext:
-    limit_mps = None if limit_kmh is None else limit_kmh / 3.6
-    road = RoadHere(
-        "e", "e_0", 0, 1, 10.0, "Ringstraße", "primary", limit_mps, source, False, None, built_up, None, 1.0
-    )
+    limit = Limit(None if limit_kmh is None else limit_kmh / 3.6, source)
+    road = RoadHere("e", "e_0", 0, 1, 10.0, "Ringstraße", "primary", limit, False, None, built_up, None, 1.0)
     driving = DrivingState(
         time_s=0.0,
         x_m=0.0,

@@ -3,6 +3,7 @@
 import itertools
 import re
 from collections import Counter
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -139,3 +140,41 @@ def test_forty_safety_tasks_rest_on_verified_law_in_eight_countries():
     }
     assert len(lawful) >= 40
     assert len(countries) >= 8
+
+
+WISH = re.compile(
+    r"\b(warn|alert|alarm|tell|say|speak|shout|sound|call out|object|announce|remind|name|noise|loudly|watch"
+    r"|figure|pipe up)",
+    re.IGNORECASE,
+)
+"""What asks for a warning, not for an answer."""
+
+
+def _warns(task: Task) -> bool:
+    found = [draw(task, name, np.random.default_rng(0)).half.goal for name in task.halves]
+    return any("alerts" in goal.writes for goal in found)
+
+
+@pytest.mark.parametrize("task", [task for task in TASKS if _warns(task)], ids=lambda task: task.id)
+def test_where_only_a_warning_counts_nobody_asks_a_mere_question(task):
+    assert [said for said in task.templates if "?" in said and not WISH.search(said)] == []
+
+
+def _moved(task: Task) -> bool:
+    """Whether the halves differ only in where on earth the network lies."""
+    assert task.second
+    first, second = task.first.start, task.second.start
+    return first.origin != second.origin and replace(first, origin=None) == replace(second, origin=None)
+
+
+@pytest.mark.parametrize("task", [task for task in TASKS if task.second], ids=lambda task: task.id)
+def test_place_decides_what_only_place_tells(task):
+    """A pair that was moved is decided by place; one that a thermometer in the cabin tells apart is not."""
+    if _moved(task):
+        assert "place" in task.tags
+    if "place" in task.tags:
+        assert task.first.start.cabin == task.second.start.cabin
+        temperatures = {
+            start.weather and start.weather.temperature_2m for start in (task.first.start, task.second.start)
+        }
+        assert len(temperatures) == 1

@@ -39,16 +39,27 @@ def test_a_folder_joins(tmp_path):
         ("TASKS = (", r"own.py, line 1: '\(' was never closed"),
         ("\n\nTASKS = (undefined,)", r"own.py, line 3: NameError"),
         ("TASKS = (1, 2)", r"own.py has no TASKS"),
+        ("raise SystemExit(0)", r"own.py, line 1: SystemExit"),
+        ("def f(): f()\nf()", r"own.py, line 1: RecursionError"),
         (OWN.replace('"Sync off.", ', ""), r"own.py, line 10: .* has 3 phrasings"),
         (OWN.replace("Sync off.", "Sync {how}."), r"own.py, line 10: .* does not declare: how"),
         (OWN.replace("    ),\n)", "    ),\n) * 2"), r"own.py, line 10: .* occurs twice"),
     ],
-    ids=["syntax", "name", "no tasks", "phrasings", "parameter", "twice"],
+    ids=["syntax", "name", "no tasks", "exit", "recursion", "phrasings", "parameter", "twice"],
 )
 def test_a_broken_file_is_refused_with_its_line(tmp_path, text, said):
     (tmp_path / "own.py").write_text(text)
     with pytest.raises(UserError, match=said):
         add_folder(Catalogue(), tmp_path)
+
+
+@pytest.mark.slow
+def test_a_file_cut_off_anywhere_is_read_or_refused(tmp_path):
+    for end in range(0, len(OWN), 7):
+        (tmp_path / "own.py").write_text(OWN[:end])
+        with pytest.raises(UserError) as caught:
+            add_folder(Catalogue(), tmp_path)
+        assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize("where", ["nowhere", "."])

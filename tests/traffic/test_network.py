@@ -226,9 +226,9 @@ def test_what_lies_ahead_is_found(town: Network) -> None:
     assert ahead.tunnel_distance_m == pytest.approx(route.position_m(2, 0.0))
     assert route.ahead(2, route.position_m(2, 5.0), None).tunnel_distance_m == 0.0
     assert route.ahead(3, route.position_m(3, 5.0), None).tunnel_distance_m is None
-    assert (ahead.next_limit_mps, ahead.exit_distance_m) == (None, None)
+    assert (ahead.next_limit, ahead.exit_distance_m) == (None, None)
     changing = Route(("s0s1", "s1c1", "c1c2"), town, jammed(town)).ahead(0, 20.0, None)
-    assert changing.next_limit_mps == pytest.approx(30 / 3.6, abs=0.01)
+    assert changing.next_limit.mps == pytest.approx(30 / 3.6, abs=0.01)
     assert changing.route_edges == ("s0s1", "s1c1", "c1c2")
 
 

@@ -167,11 +167,11 @@ def test_the_posted_limit_follows_the_clock_of_the_drive(school: Forked, grid: S
             states = traffic.advance(300.0).states
         inside = [state.road for state in states if state.road.edge_id == "c1c2"]
         assert inside
-        assert all(road.school_zone and road.limit_source is LimitSource.POSTED for road in inside)
+        assert all(road.school_zone and road.limit.source is LimitSource.POSTED for road in inside)
         assert {road.limit_hours for road in inside} == {"30 km/h Mo-Fr 08:00-08:31, 14:30-16:00"}
         before = next(state for state in states if state.road.edge_id == "c0c1")
-        limits = {round((road.posted_limit_mps or 0) * KMH_PER_MPS) for road in inside}
-        warned = before.ahead.next_limit_mps is not None
+        limits = {round((road.limit.mps or 0) * KMH_PER_MPS) for road in inside}
+        warned = before.ahead.next_limit is not None
         fastest_kmh = max(state.speed_mps for state in states if state.road.edge_id == "c1c2") * KMH_PER_MPS
         seen[name] = limits, {road.limit_by_clock for road in inside}, warned, fastest_kmh > 40
     assert seen == {

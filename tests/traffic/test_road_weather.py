@@ -131,7 +131,7 @@ def test_the_state_says_how_the_road_is(forked: Forked, grid: Scenario) -> None:
     assert {state.road.friction for state in states if state.road.in_tunnel and ":" not in state.road.lane_id} == {
         1.0
     }
-    limits = {round((state.road.posted_limit_mps or 0) * KMH_PER_MPS) for state in states}
+    limits = {round((state.road.limit.mps or 0) * KMH_PER_MPS) for state in states}
     assert limits == {30}
 
 

@@ -60,7 +60,9 @@ def test_crossing_times_are_those_of_the_drive(variant: Variant, hurried: EgoPla
                 passages.setdefault(vehicle, []).append((traffic.state.time_s, x_m, y_m))
     assert told
     for text in told:
-        match = re.fullmatch(r"the ego crosses ([\d.]+) s (before|after) vehicle (\S+)", text)
+        match = re.fullmatch(
+            r"the ego crosses ([\d.]+) s (before|after) vehicle (\S+) \((-?[\d.]+) s by swept area\)", text
+        )
         assert match
         pet_s, order, other = float(match[1]), match[2], match[3]
         own, foe = passages["ego"], passages[other]

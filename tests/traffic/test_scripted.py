@@ -60,7 +60,7 @@ def test_kinematics_hold(driver: str) -> None:
         assert after.distance_m - before.distance_m == pytest.approx(after.speed_mps * step_s)
         assert after.acceleration_mps2 == pytest.approx((after.speed_mps - before.speed_mps) / step_s, abs=1e-6)
         assert -9.0 <= after.acceleration_mps2 <= profile.acceleration_mps2 + 1e-6
-        limit_mps = after.road.posted_limit_mps or 142 / KMH_PER_MPS
+        limit_mps = after.road.limit.mps or 142 / KMH_PER_MPS
         assert after.speed_mps <= max(profile.speed_ratio * limit_mps, before.speed_mps) + 1e-6
         assert after.ahead.route_left_m == pytest.approx(2300.0 - after.distance_m)
     assert list(dict.fromkeys(state.road.name for state in states)) == [part.name for part in ROAD]
@@ -71,8 +71,8 @@ def test_the_state_says_what_the_script_says() -> None:
     states = traffic.advance(1000.0).states
     by_name = MappingProxyType({state.road.name: state for state in states})
     assert by_name["Tunnel B"].road.in_tunnel
-    assert by_name["Rue C"].road.limit_source is LimitSource.ASSUMED
-    assert by_name["Route D"].road.posted_limit_mps is None
+    assert by_name["Rue C"].road.limit.source is LimitSource.ASSUMED
+    assert by_name["Route D"].road.limit.mps is None
     assert by_name["Route D"].around.oncoming is not None
     assert by_name["Rue E"].ahead.jam_distance_m == 0.0
     assert states[0].ahead.tunnel_distance_m == pytest.approx(400.0 - states[0].distance_m)

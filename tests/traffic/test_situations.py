@@ -107,14 +107,14 @@ def test_roadworks_lower_the_sign_and_close_a_lane(staged: Staged, average: EgoP
 
     while traffic.state.distance_m < 300.0:
         assert traffic.advance(0.1).states
-    assert traffic.state.ahead.next_limit_mps == pytest.approx(30 / KMH_PER_MPS)
+    assert traffic.state.ahead.next_limit.mps == pytest.approx(30 / KMH_PER_MPS)
     states, others = [], []
     while traffic.advance(0.5).states and traffic.state.end is None:
         others += libsumo.lane.getLastStepVehicleIDs("c2c3_0")
         if traffic.state.road.edge_id == "c2c3":
             states.append(traffic.state)
     assert {state.road.lane_index for state in states} == {1}
-    assert {round((state.road.posted_limit_mps or 0) * KMH_PER_MPS) for state in states} == {30}
+    assert {round((state.road.limit.mps or 0) * KMH_PER_MPS) for state in states} == {30}
     assert max(state.speed_mps for state in states[-3:]) * KMH_PER_MPS < 31
     assert not others
 
@@ -175,7 +175,7 @@ def test_a_school_zone_keeps_school_hours(staged: Staged, average: EgoPlan) -> N
             with closing(simulation.depart(replace(average, start=start))) as traffic:
                 states = traffic.advance(300.0).states
             inside = [state for state in states if state.road.edge_id == "c1c2"]
-            limits[name] = {round((state.road.posted_limit_mps or 0) * KMH_PER_MPS) for state in inside}
+            limits[name] = {round((state.road.limit.mps or 0) * KMH_PER_MPS) for state in inside}
     assert limits == {"school": {20}, "later": {50}, "saturday": {50}}
     assert tuesday.weekday() < 5
 

@@ -52,6 +52,11 @@ WRITING_ELEMENTS = (
     '<timedEvent type="SaveTLSProgram" source="%" dest="@"/>',
 )
 
+NESTED_LIGHT = (
+    '<tlLogic id="%" type="actuated" programID="y" offset="0"><phase duration="9" state="G">'
+    '<param key="file" value="@"/></phase></tlLogic>'
+)
+
 WRITING_VEHICLES = (
     f'<vehicle id="v" route="r" depart="0">{SSM}</vehicle>',
     f'<vehicle id="v" route="r" depart="0">{SSM}<param key="device.ssm.file" value="@"/></vehicle>',
@@ -193,7 +198,9 @@ def test_no_value_passes_as_an_option(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("root", ["additional", "routes", "net", "any"])
-@pytest.mark.parametrize("element", [*WRITING_ELEMENTS, *WRITING_VEHICLES, _light("actuated"), _light("NEMA")])
+@pytest.mark.parametrize(
+    "element", [*WRITING_ELEMENTS, *WRITING_VEHICLES, _light("actuated"), _light("NEMA"), NESTED_LIGHT]
+)
 def test_what_writes_is_changed_wherever_it_stands(element: str, root: str, tmp_path: Path) -> None:
     (tmp_path / "a.xml").write_text(f"<{root}>{element.replace('@', 'evil.xml')}</{root}>")
     (tmp_path / "scratch").mkdir()
@@ -254,6 +261,7 @@ def test_so_is_a_file_that_another_names(outer: str, tmp_path: Path) -> None:
         ("<!DOCTYPE a SYSTEM 'evil.dtd'><a/>", "a document type"),
         ("<?xml version='1.0' encoding='cp037'?><a/>", "'cp037'"),
         ("<additional><include href='t.add.xml'/></additional>", "includes itself"),
+        ("<additional><include href='${HOME}/x.xml'/></additional>", "missing"),
         ("<additional>", "is not a SUMO file"),
         ("", "is not a SUMO file"),
     ],

@@ -109,8 +109,8 @@ def test_roads_say_what_the_map_says(forked: Forked, hurried: EgoPlan, grid: Sce
     traffic = forked.depart(replace(hurried, trip=grid.trip("tunnel"), driver="average"))
     street = traffic.state
     assert (street.road.name, street.road.road_class) == ("Rue du Nord", "residential")
-    assert street.road.posted_limit_mps == pytest.approx(30 / KMH_PER_MPS, abs=0.01)
-    assert street.road.limit_source is LimitSource.ASSUMED
+    assert street.road.limit.mps == pytest.approx(30 / KMH_PER_MPS, abs=0.01)
+    assert street.road.limit.source is LimitSource.ASSUMED
     assert (street.road.lit, street.road.built_up, street.road.centre_line) == (True, True, False)
     assert not street.road.in_tunnel
     to_tunnel_m = street.ahead.tunnel_distance_m
@@ -259,7 +259,7 @@ def test_a_hurried_driver_holds_eighty_in_a_fifty(empty: Forked, hurried: EgoPla
     driven = speeds_kmh(traffic.advance(8.0))
     assert min(driven) > 78.0
     assert max(driven) < 84.0
-    assert traffic.state.road.posted_limit_mps == pytest.approx(50 / KMH_PER_MPS, abs=0.01)
+    assert traffic.state.road.limit.mps == pytest.approx(50 / KMH_PER_MPS, abs=0.01)
     traffic.close()
 
 
@@ -276,7 +276,7 @@ def test_an_alert_slows_the_driver_for_good(empty: Forked, hurried: EgoPlan) -> 
     assert min(state.acceleration_mps2 for state in drive.states) > -2.5, "smoothly"
     assert speeds_kmh(drive)[-1] == pytest.approx(50.0, abs=1.0)
     afterwards = traffic.advance(300.0)
-    limits_kmh = [(state.road.posted_limit_mps or math.inf) * KMH_PER_MPS for state in afterwards.states]
+    limits_kmh = [(state.road.limit.mps or math.inf) * KMH_PER_MPS for state in afterwards.states]
     assert all(speed <= limit + 0.5 for speed, limit in zip(speeds_kmh(afterwards), limits_kmh, strict=True))
     assert traffic.state.end is EgoEnd.ARRIVED
     traffic.close()

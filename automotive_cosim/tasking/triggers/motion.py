@@ -60,7 +60,7 @@ class SpeedAbove:
 
     def __call__(self, moment: Moment) -> bool:
         """Whether speed and limit qualify."""
-        limit_mps = moment.driving.road.posted_limit_mps
+        limit_mps = moment.driving.road.limit.posted_mps
         return (
             moment.driving.speed_mps * KMH_PER_MPS > self.speed_kmh
             and limit_mps is not None
@@ -99,7 +99,7 @@ class OverPosted:
 
     def __call__(self, moment: Moment) -> bool:
         """Whether speed and limit qualify."""
-        limit_mps = moment.driving.road.posted_limit_mps
+        limit_mps = moment.driving.road.limit.posted_mps
         return limit_mps is not None and moment.driving.speed_mps > (1 + self.share) * limit_mps
 
     def __str__(self) -> str:

@@ -157,17 +157,18 @@ class LowerLimitWithin:
     distance_m: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the next limit is lower and near enough."""
-        here, ahead = moment.driving.road.posted_limit_mps, moment.driving.ahead
+        """Whether the next limit is posted, lower and near enough."""
+        here, ahead = moment.driving.road.limit, moment.driving.ahead
+        following_mps = None if ahead.next_limit is None else ahead.next_limit.posted_mps
         return (
-            ahead.next_limit_mps is not None
+            following_mps is not None
             and ahead.next_limit_distance_m is not None
             and ahead.next_limit_distance_m <= self.distance_m
-            and (here is None or ahead.next_limit_mps < here)
+            and (here.mps is None or following_mps < here.mps)
         )
 
     def __str__(self) -> str:
-        return f"a lower limit within {self.distance_m:g} m"
+        return f"a lower limit posted within {self.distance_m:g} m"
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""What goes over the wire: for each provider's protocol, the request and how its answer is read.
+"""The APIs of providers: for each provider's protocol, the request and how its answer is read.
 
 ``chat``        OpenAI's chat completions, which most servers speak
 ``openai``      OpenAI's responses with its tool ``computer``
@@ -21,7 +21,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.models.base import ChatMessage, ModelReply
 
 
-class Wire(Protocol):
+class ProviderApi(Protocol):
     """One protocol."""
 
     def path(self, model: str) -> str:
@@ -59,20 +59,20 @@ class Chat:
     """Name of the limit of an answer's tokens, which OpenAI itself has changed."""
 
     def path(self, model: str) -> str:
-        """See ``Wire``."""
+        """See ``ProviderApi``."""
         return "/chat/completions"
 
     def headers(self, key: str) -> Mapping[str, str]:
-        """See ``Wire``."""
+        """See ``ProviderApi``."""
         return {}
 
     def body(self, model: str, messages: Sequence[ChatMessage], limits: Json) -> Json:
-        """See ``Wire``."""
+        """See ``ProviderApi``."""
         named = {self.longest if name == "max_tokens" else name: value for name, value in limits.items()}
         return {"model": model, "messages": [self._message(message) for message in messages]} | named
 
     def read(self, told: Any) -> ModelReply:
-        """See ``Wire``."""
+        """See ``ProviderApi``."""
         choice = told["choices"][0]
         usage = told.get("usage") or {}
         return ModelReply(
@@ -98,15 +98,15 @@ class OpenAI:
     """Further functions, each with name, description and parameters."""
 
     def path(self, model: str) -> str:
-        """See ``Wire``."""
+        """See ``ProviderApi``."""
         return "/responses"
 
     def headers(self, key: str) -> Mapping[str, str]:
-        """See ``Wire``."""
+        """See ``ProviderApi``."""
         return {}
 
     def body(self, model: str, messages: Sequence[ChatMessage], limits: Json) -> Json:
-        """See ``Wire``."""
+        """See ``ProviderApi``."""
         named = {"max_output_tokens" if name == "max_tokens" else name: value for name, value in limits.items()}
         named.pop("seed", None)  # which this protocol does not have
         asked = [
@@ -123,7 +123,7 @@ class OpenAI:
         return {"model": model, "input": asked, "tools": tools} | named
 
     def read(self, told: Any) -> ModelReply:
-        """See ``Wire``."""
+        """See ``ProviderApi``."""
         say, calls = "", list[Json]()
         for item in told["output"]:
             match item["type"]:
@@ -165,16 +165,16 @@ class Anthropic:
     """The beta header that the earlier tools require."""
 
     def path(self, model: str) -> str:
-        """See ``Wire``."""
+        """See ``ProviderApi``."""
         return "/messages"
 
     def headers(self, key: str) -> Mapping[str, str]:
-        """See ``Wire``."""
+        """See ``ProviderApi``."""
         named = {"x-api-key": key, "anthropic-version": "2023-06-01"}
         return named | ({"anthropic-beta": self.beta} if self.beta else {})
 
     def body(self, model: str, messages: Sequence[ChatMessage], limits: Json) -> Json:
-        """See ``Wire``."""
+        """See ``ProviderApi``."""
         asked = [
             {
                 "role": message.role,
@@ -205,7 +205,7 @@ class Anthropic:
         return {"model": model, "messages": asked, "tools": [computer, *functions], "max_tokens": 1024} | named
 
     def read(self, told: Any) -> ModelReply:
-        """See ``Wire``."""
+        """See ``ProviderApi``."""
         say, calls = "", list[Json]()
         for block in told["content"]:
             if block["type"] == "text":
@@ -226,15 +226,15 @@ class Gemini:
     functions: tuple[Json, ...] = ()
 
     def path(self, model: str) -> str:
-        """See ``Wire``."""
+        """See ``ProviderApi``."""
         return f"/models/{model}:generateContent"
 
     def headers(self, key: str) -> Mapping[str, str]:
-        """See ``Wire``."""
+        """See ``ProviderApi``."""
         return {"x-goog-api-key": key}
 
     def body(self, model: str, messages: Sequence[ChatMessage], limits: Json) -> Json:
-        """See ``Wire``."""
+        """See ``ProviderApi``."""
         asked = [
             {
                 "role": "model" if message.role == "assistant" else "user",
@@ -255,7 +255,7 @@ class Gemini:
         return {"contents": asked, "tools": tools, "generationConfig": named}
 
     def read(self, told: Any) -> ModelReply:
-        """See ``Wire``."""
+        """See ``ProviderApi``."""
         candidate = told["candidates"][0]
         say, calls = "", list[Json]()
         for part in candidate["content"]["parts"]:

@@ -1,0 +1,250 @@
+"""The processes in which an evaluation's agents live: ``python -m automotive_cosim.agents.process DESCRIPTOR``.
+
+One process per worker, the *nursery*, imports this package and nothing of an agent's, and knows nothing of any
+episode. For each episode it forks a process, which makes one agent, is told what the driver says and what there is
+to see, and answers with actions. ``run.nursery`` and ``run.outside`` are the other side.
+
+    worker --------------- nursery                  ("start" or "become", request), ("end", grace)   pickled
+      |                       | fork
+      '------------------- agent's process          ("goal", words), ("seen", observation), ("reply", reply)
+                                                    -> channels, action, refused, spent, ask, failed      JSON
+
+What an agent asks its model goes to the worker, which asks the model: only what the worker's own client reports is
+a model's error.
+
+The process has a session and an empty working folder of its own and no open file but the connection; what it starts
+ends with it. Where processes are not forked, the nursery becomes the agent's process, for one episode.
+"""
+
+from __future__ import annotations
+
+import base64
+import gc
+import os
+import shutil
+import signal
+import socket
+import sys
+import time
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, NoReturn
+
+import numpy as np
+
+from automotive_cosim.agents import Agent, AgentSettings, Thinker, make_agent
+from automotive_cosim.agents.wire import GoneError, Wire
+from automotive_cosim.cockpit.actions import to_json
+from automotive_cosim.contracts import Json, Observation
+from automotive_cosim.errors import ActionError, CosimError, OutOfBudgetError
+from automotive_cosim.models import ChatMessage, ModelReply
+
+POLL_S = 0.002
+SWEEP_S = 5.0
+"""Longest wall time to end all that an agent has started."""
+PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36
+"""Of Linux's prctl."""
+
+
+@dataclass(frozen=True, slots=True)
+class AgentRequest:
+    """Which agent to make, and where it lives."""
+
+    name: str
+    """For ``make_agent``."""
+    imports: str
+    """Folder where its module may be, before the others."""
+    folder: str
+    """Its working folder."""
+    model: str = ""
+    """For ``make_agent``; empty without a model."""
+    model_name: str = ""
+    """The name that the model has for itself."""
+    sees_pictures: bool = False
+    """Whether the model does."""
+    settings: AgentSettings = field(default_factory=AgentSettings)
+
+
+class AskedModel:
+    """The worker's model, asked over the wire. It has no errors here: one ends the episode on the other side."""
+
+    def __init__(self, name: str, sees_pictures: bool, wire: Wire) -> None:
+        self.name = name
+        self.sees_pictures = sees_pictures
+        self._wire = wire
+
+    def chat(self, messages: Sequence[ChatMessage]) -> ModelReply:
+        """The model's reply."""
+        self._wire.send_json({"ask": [_message(message) for message in messages]})
+        kind, reply = self._wire.receive_object()
+        assert kind == "reply"
+        assert isinstance(reply, ModelReply)
+        return reply
+
+
+class AgentServer:
+    """Starts and ends the agents' processes, one at a time."""
+
+    def __init__(self, wire: Wire) -> None:
+        """Takes over the connection to the worker."""
+        self._wire = wire
+        self._child = 0
+        self._folder = ""
+
+    def run(self) -> None:
+        """Serves until the worker is gone."""
+        _prctl(PR_SET_CHILD_SUBREAPER, 1)  # orphans of an agent come here, and end here
+        try:
+            while True:
+                kind, *arguments = self._wire.receive_object()
+                if kind == "start":
+                    self._start(*arguments)
+                    self._wire.send_json({"pid": self._child})
+                elif kind == "become":
+                    live(self._wire, *arguments)
+                else:
+                    self._wire.send_json({"ended": self._end(*arguments)})
+        except GoneError:
+            self._end()
+            if self._folder:  # the worker was killed, and removes it no more
+                shutil.rmtree(self._folder, ignore_errors=True)
+
+    def _start(self, request: AgentRequest) -> None:
+        self._end()
+        connection = self._wire.receive_socket()
+        nursery, self._folder = os.getpid(), request.folder
+        self._child = os.fork()
+        if not self._child:
+            self._wire.close()
+            os.setsid()
+            _prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+            if os.getppid() != nursery:  # it ended before this one could be told
+                os._exit(1)
+            with suppress(OSError):  # should memory run out, this goes first, and not the traffic or the worker
+                Path("/proc/self/oom_score_adj").write_text("500")
+            np.random.seed()  # noqa: NPY002  # which no fork does by itself
+            live(Wire(connection), request)
+        connection.close()
+
+    def _end(self, grace_s: float = 0.0) -> str:
+        """Ends the agent's process and all that it has started.
+
+        Args:
+            grace_s: time in which it may still end by itself.
+
+        Returns:
+            How it ended by itself; empty if it did not.
+        """
+        if not self._child:
+            return ""
+        child, self._child = self._child, 0
+        how, end_s = "", time.monotonic() + grace_s
+        while not how and time.monotonic() < end_s:
+            ended, status = os.waitpid(child, os.WNOHANG)
+            how = _how(os.waitstatus_to_exitcode(status)) if ended else ""
+            time.sleep(0.0 if ended else POLL_S)
+        with suppress(ProcessLookupError, PermissionError):
+            os.killpg(child, signal.SIGKILL)
+        end_s = time.monotonic() + SWEEP_S
+        while time.monotonic() < end_s:  # it, its orphans, and theirs
+            for pid in _children() or ([] if how else [child]):
+                with suppress(ProcessLookupError):
+                    os.kill(pid, signal.SIGKILL)
+            try:
+                ended, _ = os.waitpid(-1, os.WNOHANG)
+            except ChildProcessError:
+                break
+            time.sleep(0.0 if ended else POLL_S)
+        return how
+
+
+def live(wire: Wire, request: AgentRequest) -> NoReturn:
+    """Is the agent's process until the worker is gone or the agent has failed; never returns."""
+    try:
+        try:
+            os.chdir(request.folder)
+            sys.path.insert(0, request.imports)
+            agent = _made(wire, request)
+            wire.send_json({"channels": sorted(agent.channels)})
+            while True:
+                kind, value = wire.receive_object()
+                if kind == "goal":
+                    agent.reset(value)
+                else:
+                    wire.send_json(_turn(agent, value))
+        except GoneError:
+            pass
+        except BaseException as error:  # even KeyboardInterrupt: whatever it raises is its own
+            wire.send_json({"failed": str(error) if isinstance(error, CosimError) else _told(error)})
+    finally:
+        os._exit(0)  # without what the agent registered for its exit
+
+
+def _made(wire: Wire, request: AgentRequest) -> Agent:
+    if not request.model:
+        return make_agent(request.name)
+    asked = AskedModel(request.model_name, request.sees_pictures, wire)
+    return make_agent(request.name, request.model, request.settings, asked)
+
+
+def _turn(agent: Agent, seen: Observation) -> Json:
+    """The answer to an observation."""
+    answer: Json
+    try:
+        answer = {"action": to_json(agent.act(seen))}
+    except ActionError as error:
+        answer = {"refused": str(error)}
+    except OutOfBudgetError as error:
+        answer = {"spent": str(error)}
+    stages = agent.stages if isinstance(agent, Thinker) else ()
+    return answer | {"stages": [stage.as_json() for stage in stages]}
+
+
+def _message(message: ChatMessage) -> Json:
+    pictures = [base64.b64encode(picture).decode("ascii") for picture in message.pictures]
+    return {"role": message.role, "text": message.text, "pictures": pictures}
+
+
+def _told(error: BaseException) -> str:
+    return f"it raised {type(error).__name__}: {error}"
+
+
+def _how(code: int) -> str:
+    if code < 0:
+        return f"its process was killed by {signal.Signals(-code).name}"
+    return f"its process exited with code {code}"
+
+
+def _children() -> list[int]:
+    """This process's children; none where the system does not list them."""
+    try:
+        return list(map(int, Path("/proc/self/task", str(os.getpid()), "children").read_text().split()))
+    except OSError:
+        return []
+
+
+def _prctl(option: int, value: int) -> None:
+    """Linux's prctl; nothing elsewhere."""
+    if sys.platform == "linux":
+        import ctypes
+
+        ctypes.CDLL(None).prctl(option, value, 0, 0, 0)
+
+
+def main() -> None:
+    """Serves the connection whose descriptor is the first argument (on Windows, that comes through stdin)."""
+    if sys.platform == "win32":
+        connection: Any = socket.fromshare(sys.stdin.buffer.read())
+    else:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+        connection = socket.socket(fileno=int(sys.argv[1]))
+    gc.collect()
+    gc.freeze()  # collecting garbage would copy every page that the agents' processes share
+    AgentServer(Wire(connection)).run()
+    os._exit(0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,117 @@
+"""Starts and ends agents' processes; ``agents.process`` is the other side."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+from contextlib import suppress
+from pathlib import Path
+
+from automotive_cosim.agents.process import AgentRequest
+from automotive_cosim.agents.wire import GoneError, Wire
+from automotive_cosim.errors import InfrastructureError
+from automotive_cosim.run.memory import tree
+from automotive_cosim.traffic.fork import CAN_FORK
+
+ANSWER_S = 60.0
+"""Wall time in which a nursery has to answer; it starts in about one second."""
+WITHHELD = ("AUTOMOTIVE_COSIM_", "RAY_")
+WITHHELD_NAMES = frozenset({"PWD", "OLDPWD", "_", "PYTHONSTARTUP", "PYTHONINSPECT"})
+"""Environment variables that an agent's process does not get: what was started, and where."""
+
+
+class Nursery:
+    """Agents' processes, one at a time. A worker has one; closing it ends them all."""
+
+    def __init__(self) -> None:
+        """Starts nothing before the first agent."""
+        self._popen: subprocess.Popen[bytes] | None = None
+        self._wire: Wire | None = None
+
+    def start(self, request: AgentRequest) -> Wire:
+        """Starts an agent's process and returns the connection to it.
+
+        Raises:
+            InfrastructureError: that did not work, twice.
+        """
+        for _ in range(2):  # the first nursery may have been killed since the last episode
+            with suppress(GoneError, TimeoutError, ValueError):
+                return self._forked(request)
+            self.close()
+        raise InfrastructureError("no process can be started for the agent; rerun the command to resume")
+
+    def end(self, grace_s: float = 0.0) -> str:
+        """Ends the agent's process and all that it has started; returns how it ended by itself, if it did."""
+        if self._wire is not None and CAN_FORK:
+            try:
+                self._wire.send_object(("end", grace_s), ANSWER_S)
+                return str(self._wire.receive_json(ANSWER_S).get("ended", ""))
+            except (GoneError, TimeoutError, ValueError):
+                pass
+        self.close()
+        return ""
+
+    def close(self) -> None:
+        """Ends everything; may be called again."""
+        if self._wire is None or self._popen is None:
+            return
+        for pid in tree(self._popen.pid):
+            with suppress(ProcessLookupError, PermissionError):
+                os.kill(pid, signal.SIGTERM if sys.platform == "win32" else signal.SIGKILL)
+        self._popen.wait()
+        self._wire.close()
+        self._wire = self._popen = None
+
+    def _forked(self, request: AgentRequest) -> Wire:
+        if self._wire is None:
+            self._wire, self._popen = _started()
+        self._wire.send_object(("start" if CAN_FORK else "become", request), ANSWER_S)
+        if not CAN_FORK:
+            return self._wire
+        ours, theirs = socket.socketpair()
+        with theirs:
+            self._wire.send_socket(theirs)
+        agent = Wire(ours)
+        try:
+            self._wire.receive_json(ANSWER_S)
+        except BaseException:
+            agent.close()
+            raise
+        return agent
+
+
+def _started() -> tuple[Wire, subprocess.Popen[bytes]]:
+    """Starts a nursery; returns the connection to it."""
+    environment = {
+        name: value
+        for name, value in os.environ.items()
+        if name not in WITHHELD_NAMES and not name.startswith(WITHHELD)
+    }
+    environment["PYTHONPATH"] = os.pathsep.join(str(Path(entry).absolute()) for entry in sys.path)
+    environment.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy would start threads, and forks have one
+    ours, theirs = socket.socketpair()
+    command = [sys.executable, "-P", "-m", "automotive_cosim.agents.process", str(theirs.fileno())]
+    nowhere = subprocess.DEVNULL
+    with theirs:
+        if sys.platform == "win32":
+            popen = subprocess.Popen(
+                command, stdin=subprocess.PIPE, stdout=nowhere, stderr=nowhere, env=environment
+            )
+            assert popen.stdin is not None
+            with popen.stdin as pipe:
+                pipe.write(theirs.share(popen.pid))
+        else:
+            popen = subprocess.Popen(
+                command,
+                stdin=nowhere,
+                stdout=nowhere,
+                stderr=nowhere,
+                env=environment,
+                cwd="/",
+                pass_fds=[theirs.fileno()],
+                start_new_session=True,
+            )
+    return Wire(ours), popen

@@ -1,0 +1,255 @@
+"""Agents in processes of their own: a fresh one for each episode, which gets the observation and nothing else.
+
+Whatever its process does, whether it raises, exits, is killed, hangs or sends nonsense, is an ``AgentError``: the
+episode is a failure. The model of an agent that has one is asked on this side, so a ``ModelError`` always comes
+from this program's own client.
+
+The references and negative controls are this project's own, and some are told the task: they stay inside.
+"""
+
+from __future__ import annotations
+
+import base64
+import shutil
+import tempfile
+import time
+from collections.abc import Callable
+from contextlib import closing, suppress
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, NoReturn, TypeVar
+
+from automotive_cosim.agents import MODELLED, AgentSettings, Stage, StageName, model_of
+from automotive_cosim.agents.process import AgentRequest
+from automotive_cosim.agents.wire import GoneError, Wire
+from automotive_cosim.cockpit.actions import parse
+from automotive_cosim.contracts import Action, Json, Observation
+from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError, UserError
+from automotive_cosim.interface.observe import Channel
+from automotive_cosim.models import ChatMessage, ChatModel, ModelReply
+from automotive_cosim.run.nursery import Nursery
+
+STEP_S, EPISODE_S = 120.0, 900.0
+"""Default limits of the wall time that an agent's process takes, for one step and for all of an episode."""
+GRACE_S = 2.0
+"""Wall time in which a process that has closed its connection has to end."""
+MOMENT_S = 0.01
+"""What is left at the end of a limit; no time at all would mean not to wait for what is on its way."""
+LONGEST_FAILURE, LONGEST_REFUSAL = 500, 10_000
+"""Characters of what an agent's process says that are kept."""
+
+T = TypeVar("T")
+
+
+def is_outside(name: str) -> bool:
+    """Whether an evaluation runs this agent in a process of its own."""
+    return ":" in name or name in MODELLED
+
+
+def check_agent(name: str) -> None:
+    """Makes an agent of somebody's own in a process, to see whether that can be done.
+
+    Raises:
+        UserError: it cannot.
+        InfrastructureError: no process can be started.
+    """
+    with closing(Nursery()) as nursery, closing(OutsideAgent(nursery, name)) as agent:
+        _ = agent.channels
+        if agent.failure is not None:
+            raise UserError(agent.failure)
+
+
+class OutsideAgent:
+    """An agent whose process is outside, for one episode. ``stages`` are those of its last turn."""
+
+    def __init__(
+        self,
+        nursery: Nursery,
+        name: str,
+        model: str = "rules",
+        settings: AgentSettings = AgentSettings(),  # noqa: B008, frozen
+        *,
+        chat_model: ChatModel | None = None,
+        step_s: float = STEP_S,
+        episode_s: float = EPISODE_S,
+    ) -> None:
+        """Starts nothing before its channels are asked for.
+
+        Args:
+            nursery: where its process is started.
+            name: for ``agents.make_agent``.
+            model: the same, for an agent with a model.
+            settings: for an agent with a model; others get none.
+            chat_model: what answers in that model's place.
+            step_s: limit of the wall time that its process may take for one step.
+            episode_s: the same for the whole episode.
+        """
+        self.name = name
+        self.answer_s = 0.0
+        """Wall seconds that its last answer took: its model's, or, without one, its own."""
+        self.stages: tuple[Stage, ...] = ()
+        self.failure: str | None = None
+        """Why it can act no more."""
+        self._nursery = nursery
+        self._named = model
+        self._model = chat_model or model_of(name, model)
+        self.model = "none" if self._model is None else self._model.name
+        self._settings = settings
+        self._step_s = step_s
+        self._left_s = self._episode_s = episode_s
+        self._wire: Wire | None = None
+        self._folder: Path | None = None
+        self._channels: frozenset[Channel] | None = None
+
+    @property
+    def channels(self) -> frozenset[Channel]:
+        """The channels that it gets; none if it could not be made. The first time, this starts its process.
+
+        Raises:
+            InfrastructureError: no process can be started.
+        """
+        if self._channels is None:
+            self._channels = frozenset()
+            self._start()
+            with suppress(AgentError):
+                self._channels = self._hello()
+        return self._channels
+
+    def reset(self, goal: str) -> None:
+        """Passes the driver's words on; what goes wrong shows at the first turn."""
+        _ = self.channels
+        with suppress(AgentError):
+            self._send("goal", goal)
+
+    def act(self, observation: Observation) -> Action:
+        """Its next action.
+
+        Raises:
+            ActionError: it raised, or its answer could not be read; the step counts all the same.
+            OutOfBudgetError: it gives up, or its budget is spent.
+            ModelError: this program's client could not reach the model.
+            AgentError: its process has failed, ended or hung.
+        """
+        self.stages, self.answer_s = (), 0.0
+        self._send("seen", observation)
+        answer = self._answer(self._step_s)
+        self.stages = self._read(_stages, answer.get("stages", [])) if self._model is not None else ()
+        if "spent" in answer:
+            raise OutOfBudgetError(str(answer["spent"]))
+        if "refused" in answer:
+            raise ActionError(str(answer["refused"])[:LONGEST_REFUSAL])
+        return parse(answer.get("action"))  # type: ignore[arg-type]  # anything else is refused
+
+    def close(self) -> None:
+        """Ends its process and all that it has started, and removes its folder; may be called again."""
+        self._end()
+        if self._folder is not None:
+            shutil.rmtree(self._folder, ignore_errors=True)
+
+    def _start(self) -> None:
+        self._folder = Path(tempfile.mkdtemp(prefix="agent-"))
+        request = AgentRequest(self.name, imports=str(Path.cwd()), folder=str(self._folder))
+        if (model := self._model) is not None:
+            request = replace(
+                request,
+                model=self._named,
+                model_name=model.name,
+                sees_pictures=model.sees_pictures,
+                settings=self._settings,
+            )
+        self._wire = self._nursery.start(request)
+
+    def _hello(self) -> frozenset[Channel]:
+        answer = self._answer(self._episode_s)
+        return self._read(lambda names: frozenset(map(Channel, names)), answer.get("channels"))
+
+    def _answer(self, limit_s: float) -> Json:
+        """What it answers once the model has answered all its questions."""
+        while True:
+            began_s = time.monotonic()
+            answer = self._received(limit_s)
+            took_s = time.monotonic() - began_s
+            limit_s -= took_s
+            self._left_s -= took_s
+            if self._model is None:
+                self.answer_s += took_s
+            if "failed" in answer:
+                self._fail(str(answer["failed"]))
+            if "ask" not in answer:
+                return answer
+            if self._model is None:
+                self._fail("it asked a model, and has none")
+            reply = self._model.chat(self._read(_messages, answer["ask"]))
+            self.answer_s += reply.seconds
+            self._send("reply", reply)
+
+    def _received(self, limit_s: float) -> Json:
+        if self._wire is None:
+            raise AgentError(self.failure or "its process has ended")
+        try:
+            return self._wire.receive_json(min(limit_s, self._left_s))
+        except GoneError:
+            self._fail(self._end(GRACE_S) or "its process closed its connection")
+        except TimeoutError:
+            self._too_slow(limit_s)
+        except ValueError as error:
+            self._fail(f"it sent something that is no answer: {error}")
+
+    def _send(self, kind: str, value: object) -> None:
+        if self._wire is None:
+            raise AgentError(self.failure or "its process has ended")
+        try:
+            self._wire.send_object((kind, value), max(MOMENT_S, min(self._step_s, self._left_s)))
+        except GoneError:
+            pass  # what it said before it ended is still to be read
+        except TimeoutError:
+            self._too_slow(self._step_s)
+
+    def _read(self, reads: Callable[[Any], T], told: Any) -> T:
+        try:
+            return reads(told)
+        except (TypeError, ValueError, LookupError, AttributeError) as error:
+            self._fail(f"it sent something that is no answer: {error}")
+
+    def _too_slow(self, limit_s: float) -> NoReturn:
+        if self._left_s <= limit_s:
+            self._fail(f"its process took over {self._episode_s:g} s in the whole episode")
+        self._fail(f"its process took over {self._step_s:g} s for one step")
+
+    def _fail(self, why: str) -> NoReturn:
+        """Ends its process; it can act no more."""
+        self.failure = "".join(c if c.isprintable() else " " for c in " ".join(why.split()))[:LONGEST_FAILURE]
+        self._end()
+        raise AgentError(self.failure)
+
+    def _end(self, grace_s: float = 0.0) -> str:
+        if self._wire is None:
+            return ""
+        self._wire.close()
+        self._wire = None
+        return self._nursery.end(grace_s)
+
+
+def _messages(told: list[Json]) -> list[ChatMessage]:
+    return [
+        ChatMessage(
+            str(each["role"]),
+            str(each["text"]),
+            tuple(base64.b64decode(picture, validate=True) for picture in each["pictures"]),
+        )
+        for each in told
+    ]
+
+
+def _stages(told: list[Json]) -> tuple[Stage, ...]:
+    return tuple(
+        Stage(
+            StageName(each["stage"]),
+            str(each["text"]),
+            float(each["at_s"]),
+            None if each["reply"] is None else ModelReply(**each["reply"]),
+            str(each["asked"]),
+            int(each["pictures"]),
+        )
+        for each in told
+    )

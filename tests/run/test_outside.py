@@ -1,0 +1,346 @@
+"""Agents in processes of their own: what they get, what is left of them, and whose fault it is."""
+
+import signal
+import sys
+from contextlib import closing
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from automotive_cosim.agents import AgentSettings, make_agent
+from automotive_cosim.agents.wire import LONGEST_BYTES
+from automotive_cosim.contracts import Action, ActionType
+from automotive_cosim.errors import ActionError, AgentError, ModelError, OutOfBudgetError, UserError
+from automotive_cosim.interface.observe import Channel
+from automotive_cosim.models import ModelReply
+from automotive_cosim.run.nursery import Nursery
+from automotive_cosim.run.outside import OutsideAgent, check_agent
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="processes are forked")
+
+AGENTS = '''
+import gc, json, os, pathlib, signal, subprocess, sys, time
+from automotive_cosim.errors import ModelError, OutOfBudgetError, TrafficError, TriggerNotReachedError
+
+def say(value): return {"action_type": "answer", "text": str(value)[:120]}
+
+class Base:
+    channels = ("elements",)
+    def reset(self, goal): self.goal = goal
+
+class Counts(Base):
+    """How often has it heard a goal? First halves used to come first."""
+    heard = {}
+    def reset(self, goal):
+        self.heard[goal] = self.heard.get(goal, 0) + 1
+        os.environ["HEARD"] = os.environ.get("HEARD", "") + "x"
+        pathlib.Path("heard").open("a").write("x")
+        self.goal = goal
+    def act(self, seen):
+        return say([self.heard[self.goal], os.environ["HEARD"], pathlib.Path("heard").read_text()])
+
+class Walks(Base):
+    """Everything that it can reach: frames, objects, arguments, environment, files, folders, parents."""
+    def act(self, seen):
+        found = []
+        frame = sys._getframe()
+        while frame is not None:
+            found.append(repr([*frame.f_globals, *(each for each in frame.f_locals.values() if each is not found)]))
+            frame = frame.f_back
+        found += [repr(each) for each in gc.get_objects() if type(each).__module__.startswith("automotive_cosim")]
+        found += [repr(each) for each in gc.get_objects() if isinstance(each, (str, dict, list, tuple))]
+        for pid in ("self", os.getppid()):
+            for name in ("cmdline", "environ", "comm"):
+                found.append(pathlib.Path("/proc", str(pid), name).read_text(errors="replace"))
+            for entry in pathlib.Path("/proc", str(pid), "fd").iterdir():
+                try: found.append(os.readlink(entry))
+                except OSError: pass
+            found.append(os.readlink(f"/proc/{pid}/cwd"))
+        found += sys.argv + [os.getcwd()] + os.listdir()
+        pathlib.Path(__file__).with_name("found").write_text("\\n".join(found))
+        return say("done")
+
+class Asks(Base):
+    """Speaks the protocol itself."""
+    def act(self, seen):
+        frame = sys._getframe()
+        while "wire" not in frame.f_locals: frame = frame.f_back
+        wire = frame.f_locals["wire"]
+        told = json.loads(pathlib.Path(__file__).with_name("told").read_text())
+        if isinstance(told, str): wire._send(told.encode(), None)
+        elif isinstance(told, int): wire._socket.sendall(told.to_bytes(8, "big"))
+        else: wire.send_json(told)
+        time.sleep(600)
+
+class Forks(Base):
+    """Leaves processes behind: in its group, in a session of their own, and orphans of those."""
+    def act(self, seen):
+        pids = [subprocess.Popen(["sleep", "600"]).pid]
+        read, write = os.pipe()
+        if not os.fork():
+            os.setsid()
+            if os.fork(): os._exit(0)
+            os.write(write, str(os.getpid()).encode())
+            time.sleep(600)
+        pids.append(int(os.read(read, 20)))
+        return say(",".join(map(str, pids)))
+
+class Raises(Base):
+    def act(self, seen): raise {"model": ModelError, "trigger": TriggerNotReachedError, "traffic": TrafficError,
+        "key": KeyError, "exit": SystemExit, "budget": OutOfBudgetError}[self.goal]("no")
+
+class Ends(Base):
+    def act(self, seen):
+        if self.goal == "exit": os._exit(3)
+        if self.goal == "kill": os.kill(os.getpid(), 9)
+        if self.goal == "segfault": os.kill(os.getpid(), signal.SIGSEGV)
+        if self.goal == "nursery": os.kill(os.getppid(), 9)
+        if self.goal == "interrupt": raise KeyboardInterrupt
+        if self.goal == "closes": os.closerange(3, 100)
+        if self.goal == "stop": os.kill(os.getpid(), signal.SIGSTOP)
+        time.sleep(600)
+
+class FailsInReset(Base):
+    def reset(self, goal): raise ModelError("no")
+    def act(self, seen): return say("?")
+
+class CannotBeMade(Base):
+    def __init__(self): raise ModelError("no")
+    def act(self, seen): return say("?")
+'''
+
+
+@pytest.fixture(scope="module")
+def nursery():
+    with closing(Nursery()) as shared:
+        yield shared
+
+
+@pytest.fixture
+def mine(tmp_path, monkeypatch):
+    """A working folder with agents of somebody's own."""
+    (tmp_path / "mine.py").write_text(AGENTS)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def outside(nursery, mine):
+    """Makes an agent and tells it the goal; at the end nothing of it is left."""
+    made = []
+
+    def make(name, goal="", **limits):
+        agent = OutsideAgent(nursery, f"mine:{name}" if name[0].isupper() else name, **limits)
+        made.append(agent)
+        agent.reset(goal)
+        return agent
+
+    yield make
+    for agent in made:
+        agent.close()
+
+
+def lives(pid):
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
+    except FileNotFoundError:
+        return False
+
+
+def test_an_agent_outside_does_what_it_does_inside(nursery, observation):
+    screen = np.random.default_rng(0).integers(0, 255, (72, 128, 3), np.uint8)
+    seen = [observation("Watch my speed", screenshot=screen, time_s=float(second)) for second in range(3)]
+    for name in ("t3a", "m3a", "asurada"):
+        inside = make_agent(name)
+        with closing(OutsideAgent(nursery, name, "rules", AgentSettings())) as agent:
+            assert agent.channels == inside.channels
+            for each in (inside, agent):
+                each.reset("Watch my speed")
+            for now in seen:
+                assert agent.act(now) == inside.act(now)
+                assert agent.stages == tuple(inside.stages)
+
+
+def test_an_agent_that_counts_what_it_heard_has_nothing_to_count(outside):
+    said = [outside("Counts", "Watch my speed").act(None).text for _ in range(3)]
+    assert said == ["[1, 'x', 'x']"] * 3
+
+
+@pytest.mark.slow
+def test_where_nothing_is_forked_each_episode_has_a_new_process_too(outside, nursery, monkeypatch):
+    nursery.close()
+    monkeypatch.setattr("automotive_cosim.run.nursery.CAN_FORK", False)
+    for _ in range(2):
+        agent = outside("Counts", "Watch my speed")
+        assert agent.act(None).text == "[1, 'x', 'x']"
+        agent.close()
+    with pytest.raises(AgentError, match="closed its connection"):
+        outside("Ends", "exit").act(None)
+
+
+def test_an_agent_that_looks_everywhere_finds_nothing_of_the_job(outside, mine, observation, monkeypatch):
+    secret = "hvac_fan_max-first-s17"  # what names a job, in every place where a worker may have it
+    monkeypatch.setenv("AUTOMOTIVE_COSIM_JOB", secret)
+    monkeypatch.setenv("OLDPWD", secret)
+    monkeypatch.setattr(sys, "argv", [*sys.argv, secret])
+    with (mine / secret).open("w"):
+        outside("Walks", "Watch my speed").act(observation("Watch my speed"))
+    found = (mine / "found").read_text(errors="replace")
+    assert "Watch my speed" in found, "it looked at too little"
+    assert secret not in found.replace(str(mine / secret), "")
+    for word in ("EpisodeSetup(", "EpisodeJob(", "Instance(", "Task("):
+        assert word not in found
+
+
+def test_every_episode_has_an_empty_folder_that_goes_with_it(outside, mine):
+    agent = outside("Counts", "x")
+    folder = agent._folder
+    agent.act(None)
+    assert (folder / "heard").is_file()
+    agent.close()
+    assert not folder.exists()
+    assert sorted(path.name for path in mine.iterdir() if path.suffix == ".py") == ["mine.py"]
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="Linux finds orphans")
+def test_nothing_that_an_agent_starts_outlives_it(outside):
+    agent = outside("Forks")
+    pids = agent.act(None).text.split(",")
+    assert all(lives(pid) for pid in pids)
+    agent.close()
+    assert not any(lives(pid) for pid in pids)
+
+
+@pytest.mark.parametrize("what", ["model", "trigger", "traffic", "key", "exit"])
+def test_no_error_that_an_agent_raises_is_anybody_elses(outside, what):
+    with pytest.raises(ActionError, match=r"raised \w+: '?no"):
+        outside("Raises", what).act(None)
+
+
+def test_an_agent_may_give_up(outside):
+    with pytest.raises(OutOfBudgetError):
+        outside("Raises", "budget").act(None)
+
+
+@pytest.mark.parametrize(
+    ("goal", "said"),
+    [
+        ("exit", "exited with code 3"),
+        ("kill", "killed by SIGKILL"),
+        ("segfault", "killed by SIGSEGV"),
+        ("nursery", "process"),
+        ("interrupt", "raised KeyboardInterrupt"),
+        ("closes", "closed its connection"),
+        ("stop", "over 1 s for one step"),
+        ("sleep", "over 1 s for one step"),
+    ],
+)
+def test_an_agent_that_ends_or_hangs_has_failed(outside, goal, said):
+    agent = outside("Ends", goal, step_s=1.0)
+    for _ in range(2):
+        with pytest.raises(AgentError, match=said):
+            agent.act(None)
+    assert outside("Counts", "next").act(None).text.startswith("[1")
+
+
+def test_all_steps_together_have_a_limit_too(outside):
+    agent = outside("Ends", "sleep", episode_s=2.0)
+    with pytest.raises(AgentError, match="over 2 s in the whole episode"):
+        agent.act(None)
+
+
+@pytest.mark.parametrize("name", ["FailsInReset", "CannotBeMade"])
+def test_one_that_fails_before_its_first_turn_has_failed_too(outside, name):
+    agent = outside(name)
+    assert agent.channels == (frozenset() if name == "CannotBeMade" else {Channel.ELEMENTS})
+    with pytest.raises(AgentError, match="ModelError: no"):
+        agent.act(None)
+
+
+@pytest.mark.parametrize(
+    "told",
+    [
+        '"nonsense"', '""', '"[1]"', '"\\u0000"', '"' + "[" * 100_000 + '"', "{}", '{"channels": []}',
+        '{"action": 7}', '{"action": {"action_type": "fly"}}', '{"refused": null}', '{"failed": {"a": 1}}',
+        '{"ask": [{"role": "user", "text": "?"}]}', str(LONGEST_BYTES + 1), str(2**63), "5",
+    ],
+)  # fmt: skip
+def test_nonsense_on_the_wire_is_the_agents_failure_or_its_step(outside, mine, told):
+    (mine / "told").write_text(told)
+    with pytest.raises((ActionError, AgentError)):
+        outside("Asks", step_s=1.0).act(None)
+
+
+def test_a_pickle_on_the_wire_runs_nothing(outside, mine):
+    (mine / "told").write_text('"' + "cos\\nsystem\\n(S'touch ran'\\ntR." + '"')
+    with pytest.raises(AgentError, match="no answer"):
+        outside("Asks", step_s=1.0).act(None)
+    assert not (mine / "ran").exists()
+
+
+class Model:
+    name, sees_pictures = "says", True
+
+    def __init__(self, answer):
+        self.answer, self.asked = answer, []
+
+    def chat(self, messages):
+        self.asked.append(messages)
+        if isinstance(self.answer, Exception):
+            raise self.answer
+        return self.answer
+
+
+def test_only_this_sides_model_reports_an_error_of_a_model(nursery, observation):
+    with closing(OutsideAgent(nursery, "t3a", chat_model=Model(ModelError("no answer")))) as agent:
+        agent.reset("x")
+        with pytest.raises(ModelError, match="no answer"):
+            agent.act(observation("x"))
+
+
+def test_pictures_reach_the_model_and_its_answer_comes_back_whole(nursery, observation):
+    model = Model(ModelReply('Action: {"action_type": "wait"}', 7, 8, 0.5, 1.5, "length"))
+    screen = np.zeros((72, 128, 3), np.uint8)
+    with closing(OutsideAgent(nursery, "m3a", chat_model=model)) as agent:
+        agent.reset("x")
+        assert agent.act(observation("x", screenshot=screen)) == Action(ActionType.WAIT)
+        assert [stage.reply for stage in agent.stages if stage.reply] == [model.answer]
+        assert agent.answer_s == 1.5
+    ((message,),) = model.asked
+    assert len(message.pictures) == 2
+    assert all(picture.startswith(b"\x89PNG") for picture in message.pictures)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("spec", "said"),
+    [
+        ("nowhere_to_be_found:X", "cannot import"),
+        ("mine:Nobody", "has no Nobody"),
+        ("mine:CannotBeMade", "ModelError"),
+    ],
+)
+def test_one_that_cannot_be_made_is_told_before_anything_runs(mine, spec, said):
+    with pytest.raises(UserError, match=said):
+        check_agent(spec)
+    assert "mine" not in sys.modules, "its module ran in this process"
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks at /proc")
+def test_nothing_is_left_of_a_worker_that_was_killed(program, mine, until):
+    (mine / "go.py").write_text(
+        "import sys; from automotive_cosim.run.nursery import Nursery\n"
+        "from automotive_cosim.run.outside import OutsideAgent\n"
+        "agent = OutsideAgent(Nursery(), 'mine:Forks'); agent.reset('')\n"
+        "print(agent._nursery._popen.pid, agent.act(None).text.replace(',', ' '), agent._folder, flush=True)\n"
+        "input()\n"
+    )
+    process = program(sys.executable, "go.py", cwd=mine, stdout=-1, stdin=-1)
+    pids = process.stdout.readline().split()
+    folder = Path(pids.pop())
+    assert folder.is_dir()
+    assert all(lives(pid) for pid in pids)
+    process.send_signal(signal.SIGKILL)
+    until(lambda: not any(lives(pid) for pid in pids) and not folder.exists())
