@@ -87,7 +87,7 @@ class ProgressView(Generic[R]):
         self._console = console
         self._what = what
         self._words = said
-        columns = (BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[said]}"))
+        columns = (BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[said]}", markup=False))
         self._bar = Bar(*columns, console=console) if console.is_terminal else None
         self._task = self._bar.add_task("", total=None, said="") if self._bar else None
         self._said_s = -self.EVERY_S

@@ -115,7 +115,9 @@ def evaluate(
             parser=whole_number(0, 100),
         ),
     ] = 2,
-    pictures: Annotated[str, typer.Option(help="Keep the screenshots of: none, failures or all.")] = "none",
+    pictures: Annotated[
+        str, typer.Option(help="Keep the screenshots, and the road with its vehicles, of: none, failures or all.")
+    ] = "none",
     out: Annotated[
         Path | None,
         typer.Option(

@@ -60,7 +60,7 @@ class Live(Watcher):
         if self._console.is_terminal:
             row = Table.grid(padding=(0, 2))
             row.add_row(what, ProgressBar(width=40, pulse=True))
-            self._show(Panel(row, title=scenario.title, title_align="left"))
+            self._show(Panel(row, title=Text(scenario.title), title_align="left"))
         else:
             self._console.print(f"{scenario.title}: {what}", soft_wrap=True)
 
@@ -70,7 +70,7 @@ class Live(Watcher):
             bar = ProgressBar(total=total_s, completed=done_s, width=40)
             row = Table.grid(padding=(0, 2))
             row.add_row("warming up traffic", bar, f"{done_s:.0f} of {total_s:.0f} s")
-            self._show(Panel(row, title=scenario, title_align="left"))
+            self._show(Panel(row, title=Text(scenario), title_align="left"))
         elif done_s in (0, total_s):
             self._console.print(f"{scenario}: {done_s:.0f} of {total_s:.0f} s of traffic warmed up")
 

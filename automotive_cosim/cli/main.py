@@ -25,6 +25,7 @@ from automotive_cosim.cli import (
     mcp,
     memory,
     playback,
+    publish,
     results,
     run,
     scenarios,
@@ -58,6 +59,9 @@ app.command()(results.report)
 app.command()(compare.compare)
 app.command()(results.replay)
 app.command()(results.regrade)
+app.command()(publish.bundle)
+app.command()(publish.verify)
+app.command()(publish.leaderboard)
 app.command()(bench.bench)
 app.command()(playback.playback)
 app.command()(serve.serve)

@@ -64,10 +64,13 @@ def regrade(folder: Folder, tasks_from: TasksFrom = None, as_json: AsJson = Fals
     from automotive_cosim.run.regrade import regrade as judged_again
     from automotive_cosim.run.store import read_evaluation, read_rows
 
+    found = coverage(read_evaluation(folder), read_rows(folder, EpisodeRow))
     if as_json:
         judged = list(judged_again(folder))
         print_json(
             {
+                "planned": found.planned,
+                "not_run": len(found.not_run),
                 "changed": sum(each.differs for each in judged),
                 "not_judged": sum(bool(each.problem) for each in judged),
                 "episodes": [asdict(each) for each in judged],
@@ -87,5 +90,4 @@ def regrade(folder: Folder, tasks_from: TasksFrom = None, as_json: AsJson = Fals
             for change in each.changes:
                 typer.echo(f"    {change.part.replace('_', ' ')} {'yes' if change.now else 'no'}: {change.why}")
     told = f", {missing} could not be judged" if missing else ""
-    found = coverage(read_evaluation(folder), read_rows(folder, EpisodeRow))
     typer.echo(f"{differing} of {count} verdicts change{told}; {found}")

@@ -170,7 +170,7 @@ def run(
     recorder = Recorder(folder, setup, {"actions": str(actions) if actions else None, "out": str(folder)})
     # A panel that redraws itself would interfere with a person who types.
     view = Live(Console(force_terminal=False, highlight=False)) if player.name == "human" else Live()
-    watchers = [recorder, RoadRecorder(folder), Film(folder), Notes() if as_json else view]
+    watchers = [recorder, RoadRecorder(folder, setup), Film(folder), Notes() if as_json else view]
     try:
         result = run_episode(setup, player, watchers)
     except KeyboardInterrupt:

@@ -21,7 +21,7 @@ from automotive_cosim.cli.batches import (
     time_left,
     words,
 )
-from automotive_cosim.cli.options import AsJson, whole_number
+from automotive_cosim.cli.options import AsJson, reads_results, whole_number
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import InfrastructureError, UserError
 
@@ -174,6 +174,7 @@ def reroute(
 
 
 @app.command()
+@reads_results
 def report(folder: Annotated[Path, typer.Argument(help="Results folder of a study.", show_default=False)]) -> None:
     """Write report.html, choices.csv, tables and plots into a study's folder."""
     from automotive_cosim.studies.page import write_study

@@ -52,7 +52,10 @@ def read_json(path: Path) -> Any:
         ValueError: it is not JSON.
     """
     with opened(path) as file:
-        return parse_json(file.read())
+        data = file.read(MOST_UNPACKED_BYTES + 1)
+    if len(data) > MOST_UNPACKED_BYTES:
+        raise ValueError("it is larger than 1 GB")
+    return parse_json(data)
 
 
 def parse_json(text: str | bytes) -> Any:

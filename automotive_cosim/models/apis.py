@@ -46,7 +46,7 @@ class ProviderApi(Protocol):
         """Text, tokens and end of an answer.
 
         Raises:
-            LookupError, TypeError, AttributeError, ValueError: it is no answer of this protocol.
+            LookupError, TypeError, AttributeError, ValueError, ArithmeticError: it is no answer of this protocol.
         """
         ...
 
@@ -77,8 +77,8 @@ class Chat:
         usage = told.get("usage") or {}
         return ModelReply(
             _text(choice["message"].get("content")),
-            int(usage.get("prompt_tokens") or 0),
-            int(usage.get("completion_tokens") or 0),
+            _count(usage.get("prompt_tokens")),
+            _count(usage.get("completion_tokens")),
             finish=str(choice.get("finish_reason") or "stop"),
         )
 
@@ -269,13 +269,13 @@ class Gemini:
         return _reply(say, calls, usage.get("promptTokenCount"), usage.get("candidatesTokenCount"), cut)
 
 
-def _reply(say: str, calls: Iterable[Json], tokens_in: object, tokens_out: object, cut: bool) -> ModelReply:
+def _reply(say: str, calls: Iterable[Json], tokens_in: Any, tokens_out: Any, cut: bool) -> ModelReply:
     text = json.dumps({"say": say, "calls": list(calls)}, ensure_ascii=False)
     return ModelReply(text, _count(tokens_in), _count(tokens_out), finish="length" if cut else "stop")
 
 
-def _count(tokens: object) -> int:
-    return tokens if isinstance(tokens, int) else 0
+def _count(tokens: Any) -> int:
+    return int(tokens or 0)
 
 
 def _text(content: object) -> str:

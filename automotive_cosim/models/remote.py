@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 
 BODY_LIMIT_BYTES = 4_000_000
 """Longest body to read; an answer of a few thousand tokens has some tens of kilobytes."""
+MOST_TOKENS = 10**9
+LONGEST_FINISH = 40
+"""Characters of the reason why an answer ends."""
 LONGEST_PAUSE_S = 60.0
 FIRST_PAUSE_S = 0.5
 STREAMED = "X-Stainless-Raw-Response"
@@ -230,12 +233,12 @@ class Remote:
         try:
             body = self._post(messages)
         except openai.APIStatusError as error:
-            why = f"status {error.status_code}: {error.message[:300]}"
+            why = f"status {error.status_code}: {self._endpoint.clean(error.message)[:300]}"
             if error.status_code in (408, 409, 429) or error.status_code >= 500:
                 raise _PassingError(why, _pause(error.response.headers.get("retry-after"))) from None
             if 300 <= error.status_code < 400:
-                where = error.response.headers.get("location", "somewhere")
-                why += f"; it sends to {where[:200]}, and nothing is sent on: if that is right, make it the address"
+                where = self._endpoint.clean(error.response.headers.get("location", "somewhere"))[:200]
+                why += f"; it sends to {where}, and nothing is sent on: if that is right, make it the address"
             raise self._error(f"refused: {why}") from None
         except (openai.APIError, httpx2.HTTPError, httpx2.StreamError) as error:
             raise _PassingError(f"{type(error).__name__}: {error}") from None
@@ -271,14 +274,18 @@ class Remote:
     def _read(self, body: bytes) -> ModelReply:
         try:
             reply = self._api.read(json.loads(body))
-        except (ValueError, LookupError, TypeError, AttributeError, RecursionError):
-            shown = body[:80].decode(errors="replace")
+            if not (0 <= reply.tokens_in <= MOST_TOKENS and 0 <= reply.tokens_out <= MOST_TOKENS):
+                raise ValueError("no number of tokens")
+        except (ArithmeticError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
+            shown = self._endpoint.clean(body.decode(errors="replace"))[:80]  # cut first, half a key would pass
             raise _PassingError(f"the answer is not one of its protocol: {shown!r}") from None
         settings = self._settings
         dollars = reply.tokens_in * settings.usd_per_million_in + reply.tokens_out * settings.usd_per_million_out
         # Half a surrogate pair is valid JSON but not valid text: it could not be written into a record.
-        text = self._endpoint.clean(reply.text).encode("utf-8", "replace").decode()
-        return replace(reply, text=text, cost_usd=dollars / 1e6)
+        text, finish = (
+            self._endpoint.clean(each).encode("utf-8", "replace").decode() for each in (reply.text, reply.finish)
+        )
+        return replace(reply, text=text, finish=finish[:LONGEST_FINISH], cost_usd=dollars / 1e6)
 
 
 def _pause(header: str | None) -> float | None:

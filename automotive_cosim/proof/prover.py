@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
@@ -11,6 +10,7 @@ from pathlib import Path
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import TrafficError, TriggerNotReachedError, UserError
+from automotive_cosim.formats.files import read_json
 from automotive_cosim.proof import gates
 from automotive_cosim.proof.ground import Ground
 from automotive_cosim.run.row import JobRow, Volatile
@@ -184,7 +184,7 @@ def read_traces(path: Path) -> Mapping[str, str]:
         UserError: the file cannot be read, or has none.
     """
     try:
-        traces = json.loads(path.read_text(encoding="utf-8"))["traces"]
+        traces = read_json(path)["traces"]
     except (OSError, ValueError, LookupError, TypeError) as error:
         raise UserError(
             f"cannot read traces from {path}: {error}; give the output of `automotive-cosim validate --json`"

@@ -84,10 +84,12 @@ class Collector(Watcher):
             episode.counterfactual,
         )
 
-    def keep_pictures(self, folder: Path, result: EpisodeResult) -> None:
-        """Writes the screenshots, if this episode's are to be kept."""
-        if not self._shown or (self._pictures is Pictures.FAILURES and result.success):
-            return
+    def keeps_pictures_of(self, result: EpisodeResult) -> bool:
+        """Whether this episode's pictures are to be kept."""
+        return bool(self._shown) and not (self._pictures is Pictures.FAILURES and result.success)
+
+    def keep_pictures(self, folder: Path) -> None:
+        """Writes the screenshots."""
         folder.mkdir(parents=True, exist_ok=True)
         for number, data in enumerate(self._shown):
             (folder / f"step_{number:03d}.jpg").write_bytes(data)
@@ -107,7 +109,7 @@ class Collector(Watcher):
             parts=PartsHeld(**{name: part["ok"] for name, part in judged["parts"].items()}) if judged else None,
             goal_s=judged["goal_s"] if judged else None,
             reason_fits=judged["reason_fits"] if judged else None,
-            alerts=None if episode is None else _alerts(episode),
+            alerts=None if episode is None else alerts(episode.moments[0], episode.moments[-1]),
             steps=result.steps,
             sim_seconds=result.sim_seconds,
             thought_s=0.0 if episode is None else round(sum(step.thought_s for step in episode.steps), 1),
@@ -174,6 +176,6 @@ def compliance(moments: Sequence[Moment]) -> float | None:
     return None if whole_s == 0 else round(max(0.0, 1 - over_m / (OVERSPEED_SCALE_MPS * whole_s)), 6)
 
 
-def _alerts(episode: Episode) -> int:
-    """Alerts that the agent gave."""
-    return len(episode.moments[-1].commands["alerts"]) - len(episode.moments[0].commands["alerts"])
+def alerts(start: Moment, end: Moment) -> int:
+    """Alerts that the agent gave between two moments of its drive."""
+    return len(end.commands["alerts"]) - len(start.commands["alerts"])

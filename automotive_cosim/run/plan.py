@@ -8,6 +8,7 @@ from collections.abc import Hashable, Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from fnmatch import fnmatchcase
 from itertools import product
+from math import prod
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -30,6 +31,8 @@ from automotive_cosim.tasking.task import Mode, Task
 from automotive_cosim.tasks import CATALOGUE
 
 NO_MODEL = "none"
+MOST_RUNS = 10_000_000
+"""At a second each, four months."""
 WATCH_STEPS = 60
 """Additional steps in monitoring mode, which begins up to a minute before the trigger."""
 
@@ -118,7 +121,15 @@ class Plan:
         """Every episode, grouped by warm simulation, in an order that tells an agent nothing.
 
         Simulations and the episodes within each are ordered by hash: first halves do not come before second ones.
+
+        Raises:
+            UserError: they are more than can ever be run.
         """
+        lists = (self.agents, self.models, self._placed(), self.seeds, self.geo, self.modes, self.latency)
+        if (most := prod(map(len, lists)) * self.repeats) > MOST_RUNS:
+            raise UserError(
+                f"the plan has {most:,} runs of tasks; give fewer seeds or repeats, at most {MOST_RUNS:,}"
+            )
         jobs = {job.id: job for job in self._each()}
         return tuple(sorted(jobs.values(), key=lambda job: (_digest(job.simulation), _digest(job.id))))
 

@@ -11,16 +11,25 @@ from pathlib import Path
 
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import Action, Json, Observation
-from automotive_cosim.errors import ActionError, InfrastructureError, OutOfBudgetError, UnknownNameError, UserError
+from automotive_cosim.errors import (
+    ActionError,
+    AgentError,
+    InfrastructureError,
+    OutOfBudgetError,
+    UnknownNameError,
+    UserError,
+)
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.interface.trace import HASHED, canonical
 from automotive_cosim.run.collect import Collector, Pictures
 from automotive_cosim.run.episode import run_episode
 from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.moments import Judged
 from automotive_cosim.run.nursery import Nursery
-from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.plan import EpisodeJob, make_plan
 from automotive_cosim.run.store import read_evaluation, read_rows, read_trace
 from automotive_cosim.run.worker import agent_of
+from automotive_cosim.traffic.fork import Simulations
 
 MISSING: Json = {}
 """Placeholder for a step that one of the two runs does not have."""
@@ -62,11 +71,47 @@ def rerun(folder: Path, episode: str) -> list[Compared]:
     stored = [line for line in read_trace(folder, job.id) if "step" in line]
     with closing(Nursery()) as nursery, agent_of(job, nursery) as agent:
         channels = frozenset(agent.channels)
+    again = played(job, stored, channels, rows[job.id].agent_error)
+    return compare(stored, [line for line in again.lines if "step" in line])
+
+
+@dataclass(frozen=True, slots=True)
+class Played:
+    """What an evaluation would have kept of an episode that was played again."""
+
+    lines: list[Json]
+    """Its trace, the result at the end."""
+    row: EpisodeRow
+    judged: Judged | None
+
+
+def played(
+    job: EpisodeJob,
+    stored: Sequence[Json],
+    channels: frozenset[Channel],
+    failure: str | None = None,
+    *,
+    simulations: Simulations | None = None,
+) -> Played:
+    """Plays the actions of a stored episode in the same setup.
+
+    Args:
+        job: the episode.
+        stored: the steps of its trace.
+        channels: those of its agent, on which the answers to queries depend.
+        failure: how the agent's side failed after them, if it did.
+        simulations: warm simulations to use; by default its own.
+
+    Raises:
+        UserError: something in the setup does not exist.
+        InfrastructureError: the simulation failed.
+    """
     collector = Collector(Pictures.NONE)
-    result = run_episode(job.setup, _Player(stored[1:], channels), (collector,))
+    player = _Player(stored[1:], channels, failure)
+    result = run_episode(job.setup, player, (collector,), simulations=simulations)
     if result.error is not None:
         raise InfrastructureError(result.error)
-    return compare(stored, [line for line in collector.trace(result) if "step" in line])
+    return Played(collector.trace(result), collector.row(job, result), collector.judged())
 
 
 def compare(stored: Sequence[Json], again: Sequence[Json]) -> list[Compared]:
@@ -88,8 +133,9 @@ class _Player:
 
     name, model = "replay", "none"
 
-    def __init__(self, steps: Sequence[Json], channels: frozenset[Channel]) -> None:
+    def __init__(self, steps: Sequence[Json], channels: frozenset[Channel], failure: str | None) -> None:
         self.channels = channels
+        self._failure = failure
         self._steps = iter(steps)
         self.thought_s = 0.0
 
@@ -99,6 +145,8 @@ class _Player:
     def act(self, observation: Observation) -> Action:
         """The next recorded action."""
         step = next(self._steps, None)
+        if step is None and self._failure is not None:
+            raise AgentError(self._failure)
         if step is None:
             raise OutOfBudgetError("the recording ends here")
         self.thought_s = step.get("thought_s", 0.0)

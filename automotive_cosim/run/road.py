@@ -2,7 +2,7 @@
 
 It is a gzipped text with one JSON object per line. Lengths are in metres in the network's coordinates (x to the
 east, y to the north), angles in degrees clockwise from north, and times in seconds since the hand-over. The first
-line says ``format``; every other line has one of these keys:
+line says ``format`` and what is run; every other line has one of these keys:
 
     lanes      [[kind, width, [x, y, x, y, …], [[light, place], …]], …]   as they come into sight, each once
     junctions  [[x, y, x, y, …], …]                                       outlines, with the lanes

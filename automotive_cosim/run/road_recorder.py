@@ -20,7 +20,7 @@ from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.geo.sun import elevation_deg
-from automotive_cosim.run.episode import EpisodeResult, Shot, Watcher
+from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, Shot, Watcher
 from automotive_cosim.run.road import FORMAT, NAME
 from automotive_cosim.run.words import limit_kmh
 from automotive_cosim.traffic.lookout import LOOK_RADIUS_M
@@ -37,9 +37,15 @@ class RoadRecorder(Watcher):
 
     looks = True
 
-    def __init__(self, folder: Path) -> None:
-        """Nothing is written before the hand-over, when another watcher has made the folder."""
+    def __init__(self, folder: Path, setup: EpisodeSetup) -> None:
+        """Nothing is written before the hand-over.
+
+        Args:
+            folder: where the file goes; a watcher that empties it comes first.
+            setup: what is run.
+        """
         self._path = folder / NAME
+        self._setup = setup
         self._looked: dict[float, RoadSnapshot] = {}
         """Snapshots whose second has not been reported yet."""
         self._before: list[tuple[Moment, RoadSnapshot]] = []
@@ -62,7 +68,8 @@ class RoadRecorder(Watcher):
     def handed_over(self, episode: Episode, shot: Shot) -> None:
         """Begins the file with the drive so far."""
         departed_s, now_s = episode.drive[0].time_s, shot.step.moment.time_s
-        self._writer = _Writer(self._path, episode, now_s)
+        self._path.parent.mkdir(parents=True, exist_ok=True)
+        self._writer = _Writer(self._path, episode, self._setup, now_s)
         for moment, snapshot in self._before:
             if moment.time_s > departed_s:
                 self._writer.second(moment, snapshot)
@@ -70,14 +77,25 @@ class RoadRecorder(Watcher):
 
     def finished(self, result: EpisodeResult) -> None:
         """Completes the file."""
+        self.close()
+
+    def close(self) -> None:
+        """Completes the file, also if the episode broke off; may be called again."""
         if self._writer is not None:
             self._writer.close()
+
+    def discard(self) -> None:
+        """Removes the file, and its folder if nothing else is in it."""
+        self.close()
+        self._path.unlink(missing_ok=True)
+        with suppress(OSError):
+            self._path.parent.rmdir()
 
 
 class _Writer:
     """The file, and what it has told already."""
 
-    def __init__(self, path: Path, episode: Episode, hand_over_s: float) -> None:
+    def __init__(self, path: Path, episode: Episode, setup: EpisodeSetup, hand_over_s: float) -> None:
         self._raw = path.open("wb")
         mark_as_written(self._raw)
         self._file = gzip.GzipFile(fileobj=self._raw, mode="wb", compresslevel=6, filename="", mtime=0)
@@ -91,9 +109,17 @@ class _Writer:
         """Lights at the end of the lanes so far."""
         self._lights: dict[str, str] = {}
         self._numbers: dict[str, int] = {}
+        instance = episode.instance
         self._line(
             {
                 "format": FORMAT,
+                "task": instance.task.id,
+                "half": setup.half,
+                "scenario": setup.scenario or instance.half.start.scenario,
+                "agent": setup.agent,
+                "model": setup.model,
+                "seed": setup.seed,
+                "goal": episode.goal,
                 "radius_m": LOOK_RADIUS_M,
                 "left_hand": episode.network.left_hand,
                 "has_place": episode.network.projection is not None,

@@ -3,7 +3,8 @@
 manifest.json     plan and its number of episodes, versions, state of the code, one entry per start
 episodes.jsonl    one line per episode, appended and synced as it ends; of several lines of one id the last counts
 traces/           <id>.jsonl.gz: one line per step, as ``run`` writes them, and one with the whole result
-pictures/         <id>/step_000.jpg, ...: the cockpit after each step, of the selected episodes
+pictures/         <id>/step_000.jpg, ...: the cockpit after each step, and road.jsonl.gz, of the selected
+                  episodes
 lock              held while an evaluation writes here
 """
 
@@ -255,7 +256,13 @@ def _manifest(folder: Path, plan: Json, planned: int | None) -> None:
     else:
         manifest = read_manifest(folder)
         _same("plan", manifest["plan"], plan, folder)
-        _same("versions", manifest["starts"][0]["versions"], now["versions"], folder)
+        try:
+            before = dict(manifest["starts"][0]["versions"])
+        except (LookupError, TypeError, ValueError) as error:
+            raise UserError(
+                f"{folder / 'manifest.json'} does not say its versions; give --out another folder"
+            ) from error
+        _same("versions", before, now["versions"], folder)
         manifest["starts"].append(now)
     write_whole(folder / "manifest.json", json.dumps(manifest, indent=1))
 

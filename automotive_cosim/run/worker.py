@@ -18,6 +18,7 @@ from automotive_cosim.run.moments import write_judged
 from automotive_cosim.run.nursery import Nursery
 from automotive_cosim.run.outside import OutsideAgent, is_outside
 from automotive_cosim.run.plan import EpisodeJob
+from automotive_cosim.run.road_recorder import RoadRecorder
 from automotive_cosim.run.store import write_trace
 from automotive_cosim.traffic.fork import Simulations
 
@@ -35,15 +36,17 @@ def episodes(pictures: Pictures) -> Iterator[Runner[EpisodeJob, EpisodeRow]]:
 def run_job(
     job: EpisodeJob, folder: Path, pictures: Pictures, simulations: Simulations, nursery: Nursery
 ) -> EpisodeRow:
-    """Runs one episode, writes its trace and screenshots, and returns its row; an error becomes a row too.
+    """Runs one episode, writes its trace, screenshots and road, and returns its row; an error becomes a row too.
 
     Raises:
         OSError: trace or pictures cannot be written.
     """
     collector = Collector(pictures)
+    road = RoadRecorder(folder / "pictures" / job.id, job.setup)
+    watchers = (collector,) if pictures is Pictures.NONE else (collector, road)
     try:
-        with agent_of(job, nursery) as agent:
-            result = run_episode(job.setup, agent, (collector,), simulations=simulations)
+        with closing(road), agent_of(job, nursery) as agent:
+            result = run_episode(job.setup, agent, watchers, simulations=simulations)
     except CosimError as error:
         return failed(job, type(error).__name__, str(error))
     except Exception as error:
@@ -53,7 +56,10 @@ def run_job(
         write_trace(folder, job.id, lines)
         if judged := collector.judged():
             write_judged(folder, job.id, judged)
-        collector.keep_pictures(folder / "pictures" / job.id, result)
+        if collector.keeps_pictures_of(result):
+            collector.keep_pictures(folder / "pictures" / job.id)
+        else:
+            road.discard()
     return collector.row(job, result)
 
 

@@ -1,4 +1,4 @@
-"""JSON Schemas of what users write, as shipped; ``make`` renews them from the types that read it."""
+"""JSON Schemas of what users write and of bundles, as shipped; ``make`` renews them from the types that read it."""
 
 from __future__ import annotations
 

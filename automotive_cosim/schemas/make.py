@@ -10,6 +10,7 @@ from automotive_cosim.cockpit import actions
 from automotive_cosim.contracts import Json
 from automotive_cosim.formats.schema import documented
 from automotive_cosim.geo.rulefile import RuleFile
+from automotive_cosim.publish.contents import Contents
 from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.plan import Plan
 from automotive_cosim.scenarios.reader import ScenarioFile
@@ -18,6 +19,7 @@ from automotive_cosim.schemas import SUFFIX
 DIALECT = {"$schema": "http://json-schema.org/draft-07/schema#"}
 FORMATS: Mapping[str, tuple[str, Callable[[], Json]]] = {
     "action": ("one action of an agent, a line of `run --actions`", actions.json_schema),
+    "bundle": ("bundle.json, what a bundle of an evaluation holds", lambda: documented(Contents)),
     "episode": ("what one episode runs, `setup` in an episode.json", lambda: documented(EpisodeSetup, null=True)),
     "plan": ("plan.toml, what `eval --plan` runs", lambda: documented(Plan)),
     "rules": ("traffic rules of a place, a file in `context --rules FOLDER`", lambda: documented(RuleFile)),

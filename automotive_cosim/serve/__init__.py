@@ -3,6 +3,7 @@
 shelf      finds recorded episodes and evaluations in the folders given, and reads nothing outside them
 content    what the pages show of them, as plain values
 catalogue  the same of tasks and scenarios
-server     answers a browser: token, host and origin checked, a fixed table of routes, read-only
+play       lets a person work the cockpit in real time
+server     answers a browser: token, host and origin checked, a fixed table of routes
 static/    one page, one stylesheet, small scripts without a library; texts are only ever set as text
 """

@@ -15,6 +15,7 @@ from automotive_cosim.report.page import PARTS, element
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.road import FORMAT, read_road
 from automotive_cosim.run.road import NAME as ROAD
+from automotive_cosim.run.road_recorder import is_being_written
 from automotive_cosim.run.store import read_manifest, read_rows, read_trace
 from automotive_cosim.run.words import action_in_words
 from automotive_cosim.serve.shelf import NotHereError, Shelf, ShelfEntry
@@ -50,12 +51,12 @@ class Content:
         """
         entry = self.shelf.entry(name)
         result = self._result(entry, episode)
-        head = _head(result) if result else self._unfinished(entry)
+        head = _head(result) if result else self._unfinished(entry, episode)
         return {
             "id": entry.id,
             "episode": episode,
             "name": entry.folder.name,
-            "running": entry.is_running,
+            "running": self._is_running(entry, episode),
             "parts": dict(PARTS),
             **head,
             "verdict": result.get("verdict") if result else None,
@@ -74,7 +75,8 @@ class Content:
         """
         entry = self.shelf.entry(name)
         lines = self._lines(entry, episode)
-        return {"steps": _steps(entry, self.shelf, episode, lines)[skip:], "running": entry.is_running}
+        steps = _steps(entry, self.shelf, episode, lines)
+        return {"steps": steps[skip:], "running": self._is_running(entry, episode)}
 
     def road(self, name: str, episode: str | None, skip: int) -> Iterable[Json]:
         """The lines of the recorded road from number ``skip`` on; without a recording, a road with the ego alone.
@@ -83,9 +85,8 @@ class Content:
             UserError: it is not here, or cannot be read.
         """
         entry = self.shelf.entry(name)
-        folder = () if episode is None else ("pictures", episode)
         try:
-            path = self.shelf.file(entry, *folder, ROAD)
+            path = self._road(entry, episode)
         except NotHereError:
             result = self._result(entry, episode)
             return list(_alone(result) if result else ())[skip:]
@@ -109,6 +110,9 @@ class Content:
             "name": entry.folder.name,
             "plan": manifest["plan"],
             "planned": manifest.get("episodes"),
+            "running": sorted(
+                path.parent.name for path in entry.folder.glob(f"pictures/*/{ROAD}") if is_being_written(path)
+            ),
             "rows": [
                 {name: getattr(row, name) for name in SHOWN}
                 | {"missing": row.missing, "has_trace": (entry.folder / "traces" / f"{row.id}.jsonl.gz").is_file()}
@@ -128,17 +132,23 @@ class Content:
             return {**shared, "kind": kind, "done": done, "planned": manifest.get("episodes"), "started": started}
         path = entry.folder / "episode.json"
         head = _head_of(self.shelf.file(entry, path.name), *_stamp(path)) if path.is_file() else None
-        return {**shared, "kind": "run", "running": entry.is_running, **(head or self._unfinished(entry))}
+        return {
+            **shared,
+            "kind": "run",
+            "running": self._is_running(entry, None),
+            **(head or self._unfinished(entry, None)),
+        }
 
     def _result(self, entry: ShelfEntry, episode: str | None) -> Json | None:
         """The whole result; None while it runs, or if it was killed."""
-        if episode is not None:
-            return dict(self._trace(entry, episode)[-1]["result"])
         try:
-            path = self.shelf.file(entry, "episode.json")
+            if episode is not None:
+                return dict(self._trace(entry, episode)[-1]["result"])
+            return _object(self.shelf.file(entry, "episode.json"))
         except NotHereError:
+            if episode is not None:
+                self._road(entry, episode)
             return None
-        return _object(path)
 
     def _trace(self, entry: ShelfEntry, episode: str) -> list[Json]:
         self.shelf.file(entry, "traces", f"{episode}.jsonl.gz")
@@ -146,15 +156,29 @@ class Content:
 
     def _lines(self, entry: ShelfEntry, episode: str | None) -> list[Json]:
         if episode is not None:
-            return self._trace(entry, episode)[:-1]
+            return self._trace(entry, episode)[:-1] if self._result(entry, episode) else []
         path = self.shelf.file(entry, "steps.jsonl")
         return _json_lines(path, *_stamp(path))
 
-    def _unfinished(self, entry: ShelfEntry) -> Json:
+    def _road(self, entry: ShelfEntry, episode: str | None) -> Path:
+        return self.shelf.file(entry, *(() if episode is None else ("pictures", episode)), ROAD)
+
+    def _is_running(self, entry: ShelfEntry, episode: str | None) -> bool:
+        """Whether the episode is being recorded now."""
+        try:
+            return is_being_written(self._road(entry, episode))
+        except NotHereError:
+            return False
+
+    def _unfinished(self, entry: ShelfEntry, episode: str | None) -> Json:
         """What is known of an episode that runs or was killed."""
-        return dict.fromkeys(HEAD) | {
-            "task": entry.folder.name,
-            "end": "running" if entry.is_running else "stopped before its end",
+        try:
+            begun = next(iter(read_road(self._road(entry, episode))), {})
+        except NotHereError:
+            begun = {}
+        return {name: begun.get(name) for name in HEAD} | {
+            "task": begun.get("task") or episode or entry.folder.name,
+            "end": "running" if self._is_running(entry, episode) else "stopped before its end",
         }
 
 

@@ -1,4 +1,4 @@
-"""The web server: a fixed table of routes that only read.
+"""The web server: a fixed table of routes; all of them only read, but for those of playing.
 
 Whoever has the address with its token gets in; the token is then swapped for a cookie that other sites cannot use.
 The standard library's server suffices: a page asks for a second of road or a picture at a time, and every answer is
@@ -28,6 +28,7 @@ from automotive_cosim import __version__
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.serve import catalogue
 from automotive_cosim.serve.content import Content
+from automotive_cosim.serve.play import Game
 from automotive_cosim.serve.shelf import NotHereError, Shelf
 
 SECURITY = {
@@ -38,6 +39,10 @@ SECURITY = {
     "Cross-Origin-Resource-Policy": "same-origin",
     "Cross-Origin-Opener-Policy": "same-origin",
 }
+MOST_BYTES = 10_000
+"""Longest request."""
+WAIT_S = 1.0
+"""How long an answer waits for something to happen in a game."""
 SMALL_BYTES = 1000
 """Shorter answers are not worth compressing."""
 
@@ -67,12 +72,17 @@ WebRoute = Callable[[Mapping[str, str], Mapping[str, str]], WebAnswer]
 class Site:
     """The routes, and what is behind them."""
 
-    def __init__(self, folders: list[Path]) -> None:
+    def __init__(self, folders: list[Path], game: Game | None = None) -> None:
         """Reads the static files.
+
+        Args:
+            folders: what to show.
+            game: lets a person play; None if nobody may.
 
         Raises:
             UserError: a folder does not exist.
         """
+        self._game = game
         self._content = Content(Shelf(folders))
         static = Path(str(files("automotive_cosim.serve") / "static"))
         self._static = {path.name: path.read_bytes() for path in static.iterdir() if path.is_file()}
@@ -83,7 +93,9 @@ class Site:
             for pattern, route in (
                 (r"/", lambda _, __: self._file("index.html")),
                 (r"/static/(?P<name>[\w.-]+)", lambda path, _: self._file(path["name"])),
-                (r"/api/about", lambda _, __: _json({"version": __version__})),
+                (r"/api/about", lambda _, __: _json({"version": __version__, "plays": game is not None})),
+                (r"/api/play", self._scene),
+                (r"/api/play/screen", self._screen),
                 (r"/api/runs", lambda _, __: _json(content.runs())),
                 (rf"/api/runs/{run}{episode}", lambda path, _: _json(content.run(path["run"], path["episode"]))),
                 (
@@ -123,6 +135,55 @@ class Site:
                     raise RefusedRequestError(HTTPStatus.UNPROCESSABLE_ENTITY, why) from error
         raise RefusedRequestError(HTTPStatus.NOT_FOUND, "there is no such page")
 
+    def change(self, path: str, body: bytes) -> WebAnswer:
+        """Lets the person who plays do something.
+
+        Raises:
+            RefusedRequestError: there is no such thing to do, or it cannot be done now.
+        """
+        game = self._game
+        if game is None or path not in ("/api/play/start", "/api/play/act", "/api/play/leave"):
+            raise RefusedRequestError(HTTPStatus.METHOD_NOT_ALLOWED, "these pages only read")
+        try:
+            asked = json.loads(body or b"{}")
+            if not isinstance(asked, dict):
+                raise UserError("give a JSON object")
+            if path == "/api/play/start":
+                given = {name: asked.get(name, "") for name in ("task", "half", "name")}
+                seed = asked.get("seed", 0)
+                if not all(isinstance(value, str) for value in given.values()) or type(seed) is not int:
+                    raise UserError("task, half and name are texts, and seed is a whole number")
+                if not 0 <= seed < 2**31:
+                    raise UserError(f"seed {seed} is not a whole number from 0 to {2**31 - 1}")
+                game.start(given["task"], given["half"], seed, given["name"])
+            elif path == "/api/play/act":
+                game.act(asked)
+            else:
+                game.leave()
+        except (UserError, ValueError) as error:
+            raise RefusedRequestError(HTTPStatus.UNPROCESSABLE_ENTITY, str(error)) from error
+        return _json({})
+
+    def close(self) -> None:
+        """Ends the game."""
+        if self._game is not None:
+            self._game.close()
+
+    def _scene(self, path: Mapping[str, str], query: Mapping[str, str]) -> WebAnswer:
+        """The newest scene, or after a while the same if nothing happens."""
+        if self._game is None:
+            raise NotHereError("nobody can play here; start `automotive-cosim serve --play`")
+        scene = self._game.scene(_number(query), WAIT_S) if query else self._game.scene()
+        record = None if scene.folder is None else self._content.shelf.of(scene.folder).id
+        shown = {"version": scene.version, "state": scene.state, "progress": scene.progress, "error": scene.error}
+        return _json({**shown, "told": scene.told, "record": record, "has_screen": bool(scene.screen)})
+
+    def _screen(self, path: Mapping[str, str], query: Mapping[str, str]) -> WebAnswer:
+        screen = b"" if self._game is None else self._game.scene().screen
+        if not screen:
+            raise NotHereError("there is no screen now")
+        return WebAnswer(screen, "image/jpeg")
+
     def _file(self, name: str) -> WebAnswer:
         if name not in self._static:
             raise NotHereError("there is no such file")
@@ -139,18 +200,21 @@ class WebServer(ThreadingHTTPServer):
 
     daemon_threads = True
 
-    def __init__(self, folders: list[Path], host: str = "127.0.0.1", port: int = 0) -> None:
+    def __init__(
+        self, folders: list[Path], host: str = "127.0.0.1", port: int = 0, game: Game | None = None
+    ) -> None:
         """Binds the address.
 
         Args:
             folders: what to show.
+            game: lets a person play; None if nobody may. The server closes it.
             host: address to listen on.
             port: port to listen on; 0 takes a free one.
 
         Raises:
             UserError: a folder does not exist, or the address cannot be used.
         """
-        self.site = Site(folders)
+        self.site = Site(folders, game)
         self.token = secrets.token_urlsafe(24)
         self.host = host
         if ":" in host:
@@ -167,6 +231,11 @@ class WebServer(ThreadingHTTPServer):
         """What to open in a browser, token included."""
         host = socket.gethostname() if self.host in ("0.0.0.0", "::") else self.host
         return f"http://{f'[{host}]' if ':' in host else host}:{self.server_port}/?token={self.token}"
+
+    def server_close(self) -> None:
+        """Frees the port and ends a game."""
+        super().server_close()
+        self.site.close()
 
     def handle_error(self, request: object, client_address: object) -> None:
         """Says nothing: a browser that goes away is no error."""
@@ -197,9 +266,18 @@ class RequestHandler(BaseHTTPRequestHandler):
         self.do_GET()
 
     def do_POST(self) -> None:
-        """Refused: nothing here can be changed."""
-        self.close_connection = True
-        self._send(HTTPStatus.METHOD_NOT_ALLOWED, _json({"error": "these pages only read"}))
+        """Does something in a game; nothing else here can be changed."""
+        try:
+            path, _ = self._request()
+            if self.headers.get("Origin") is None:
+                raise RefusedRequestError(HTTPStatus.FORBIDDEN, "only the pages themselves may do this")
+            length = self.headers.get("Content-Length", "")
+            if not length.isdecimal() or int(length) > MOST_BYTES:
+                raise RefusedRequestError(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"give at most {MOST_BYTES} bytes")
+            self._send(HTTPStatus.OK, self._web.site.change(path, self.rfile.read(int(length))))
+        except RefusedRequestError as refusal:
+            self.close_connection = True  # what it sent has perhaps not been read
+            self._send(refusal.status, _json({"error": str(refusal)}))
 
     def log_message(self, format: str, *args: object) -> None:  # noqa: A002 (its name in the base class)
         """Says nothing."""
@@ -300,7 +378,7 @@ def _is_address(name: str) -> bool:
 
 
 def _number(query: Mapping[str, str]) -> int:
-    text = query.get("skip", "0")
+    text = query.get("skip", query.get("seen", "0"))
     if not text.isdecimal() or len(text) > 9:
         raise NotHereError(f"skip={text!r} is not a whole number from 0")
     return int(text)

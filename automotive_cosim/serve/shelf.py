@@ -13,8 +13,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from automotive_cosim.errors import UserError
-from automotive_cosim.run.road import NAME as ROAD
-from automotive_cosim.run.road_recorder import is_being_written
 
 DEPTH = 3
 """How deep records are sought below a folder given."""
@@ -34,11 +32,6 @@ class ShelfEntry:
     id: str
     folder: Path
     is_evaluation: bool
-
-    @property
-    def is_running(self) -> bool:
-        """Whether an episode is being recorded here now."""
-        return not self.is_evaluation and is_being_written(self.folder / ROAD)
 
 
 class Shelf:
@@ -76,6 +69,14 @@ class Shelf:
         if found is None or not found.folder.is_dir():
             raise NotHereError(f"there is no record {name!r} in the folders given")
         return found
+
+    def of(self, folder: Path) -> ShelfEntry:
+        """The recorded episode in a folder.
+
+        Raises:
+            NotHereError: it is not below the folders given.
+        """
+        return self.entry(_id(folder.resolve()))
 
     def file(self, entry: ShelfEntry, *parts: str) -> Path:
         """A file of a record.

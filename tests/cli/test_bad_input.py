@@ -52,7 +52,7 @@ def test_a_row_of_an_episode_that_was_not_planned_is_not_replayed(cli, tmp_path)
     (tmp_path / "manifest.json").write_text(json.dumps(manifest))
     (tmp_path / "episodes.jsonl").write_text(json.dumps(row) + "\n")
     _assert_refused(cli("replay", ".", "own"), "manifest.json has no episode own-1")
-    for command in (["report", "."], ["compare", ".", "."], ["regrade", "."]):
+    for command in (["report", "."], ["compare", ".", "."], ["regrade", "."], ["study", "report", "."]):
         for text in ("{}", '{"format": 1}', '{"format": 1, "plan": 3}', "[" * 10_000):
             (tmp_path / "manifest.json").write_text(text)
             _assert_refused(cli(*command))

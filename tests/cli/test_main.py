@@ -113,7 +113,7 @@ OTHERS = {
     ("mcp",), ("serve",),
     ("report",), ("playback",), ("screens",), ("schema",), ("study", "report"), ("tasks", "export"),
     ("signals", "export"), ("scenarios", "render"), ("scenarios", "import"), ("scenarios", "day"),
-    ("scenarios", "download"),
+    ("scenarios", "download"), ("bundle",), ("leaderboard",),
 }  # fmt: skip
 """Commands whose result is a file, or a server."""
 

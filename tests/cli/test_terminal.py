@@ -6,6 +6,7 @@ import ast
 import io
 import json
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -18,6 +19,7 @@ from rich.text import Text
 import automotive_cosim.cli
 from automotive_cosim import scenarios
 from automotive_cosim.cli.console import Console
+from automotive_cosim.cli.live import Live
 from automotive_cosim.cli.terminal import Plain, escaped, plain
 
 EVIL = "\x1b[2J\x1b]0;owned\x07\x9b1A\r\x08\u202e"
@@ -62,6 +64,15 @@ def test_rich_writes_its_own_controls_alone(terminal: bool) -> None:
     assert not set(EVIL[-5:]) & {"\x07", "\x9b", "\r", "\x08", "\u202e"} & set(evil)
     assert ("\x1b" in evil) is terminal
     assert written("x").count("\x1b") == evil.count("\x1b")
+
+
+def test_a_name_is_no_markup() -> None:
+    stream = io.StringIO()
+    live = Live(Console(file=stream, force_terminal=True, width=90))
+    name = "[/x] [bold]"
+    live.loading(replace(scenarios.load("grid"), title=name, notes=(name,)))
+    live.warming(name, 1.0, 2.0)
+    assert stream.getvalue().count(name) >= 3
 
 
 def test_rich_finds_the_stream_behind_a_plain_one(monkeypatch: pytest.MonkeyPatch) -> None:

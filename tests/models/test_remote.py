@@ -223,8 +223,9 @@ def test_slow_and_broken_connections_are_tried_again(server, behave):
     [
         b"", b"{", b"null", b"[]", b"<html>busy</html>", b'{"choices": []}', b'{"choices": [{}]}',
         b'{"choices": [{"message": null}]}', b"\xff\xfe", b"[" * 100_000,
+        *(completion("hi").replace(b"7", tokens) for tokens in (b"-1", b"Infinity", b"NaN", b"1e300", b"9" * 400)),
     ],
-    ids=lambda body: body[:20].decode(errors="replace") or "empty",
+    ids=lambda body: body[-20:].decode(errors="replace") or "empty",
 )  # fmt: skip
 def test_a_malformed_answer_is_tried_again(server, body):
     server.behaviours.insert(0, lambda handler: send(handler, 200, body))
@@ -479,3 +480,16 @@ def test_no_encoding_of_a_key_gets_into_a_record(before, after):
     for text in (KEY, KEY.encode().hex().upper(), KEY[::-1]):
         assert clean(f"<{text}>") == "<***>"
     assert clean("nothing of it") == "nothing of it"
+
+
+def test_no_part_of_a_key_is_left_where_a_text_is_cut(server):
+    refusal = json.dumps({"error": {"message": "x" * 290 + KEY}}).encode()
+    for body, status in ((b"x" * 70 + KEY.encode(), 200), (refusal, 400)):
+        server.behaviours = [lambda handler, body=body, status=status: send(handler, status, body)]
+        with pytest.raises(ModelError) as caught:
+            model("local/m?retries=0").chat(ASK)
+        assert KEY[:6] not in str(caught.value)
+    server.behaviours = [lambda handler: send(handler, 200, completion("hi", finish=KEY + "\ud800" + "y" * 99))]
+    finish = model().chat(ASK).finish
+    assert finish.startswith("***?y")
+    assert len(finish) == 40

@@ -21,6 +21,7 @@ from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.queue import JobQueue
 from automotive_cosim.run.regrade import regrade
+from automotive_cosim.run.road import read_record
 from automotive_cosim.run.row import steady as steady_part
 from automotive_cosim.run.store import opened, read_rows, read_trace, trace_file
 from automotive_cosim.run.worker import episodes, run_job
@@ -253,6 +254,7 @@ def test_pictures_are_kept_by_choice(tmp_path, simulations, nursery):
         assert len(kept) == count
         for folder in kept:
             assert len(list(folder.glob("step_*.jpg"))) == steps[folder.name] + 1
+            assert read_record(folder / "road.jsonl.gz").seconds[-1].at_s >= steps[folder.name]
 
 
 @pytest.mark.sumo

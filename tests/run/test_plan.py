@@ -174,3 +174,9 @@ def test_a_broken_file_is_told(tmp_path):
     (tmp_path / "plan.toml").write_text("agents = [")
     with pytest.raises(UserError, match=r"plan\.toml"):
         read_plan(tmp_path / "plan.toml")
+
+
+def test_a_plan_of_more_than_can_be_run_is_refused_at_once():
+    plan = make_plan({"agents": ["oracle"], "seeds": list(range(1000)), "repeats": 1000})
+    with pytest.raises(UserError, match="000,000 runs of tasks; give fewer seeds"):
+        plan.jobs()

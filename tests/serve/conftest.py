@@ -17,6 +17,7 @@ from PIL import Image
 from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.row import as_json
+from automotive_cosim.serve.play import Game
 from automotive_cosim.serve.server import WebServer
 from automotive_cosim.tasking.task import Dimension, Module
 
@@ -147,26 +148,28 @@ class Browser:
 
     server: WebServer
 
-    def __call__(self, path: str, method: str = "GET", *, token: str | None = None, **headers: str) -> Reply:
+    def __call__(
+        self, path: str, method: str = "GET", *, token: str | None = None, body: str | None = None, **headers: str
+    ) -> Reply:
         """``token`` replaces the cookie's; an underscore in a header's name is a hyphen."""
         connection = http.client.HTTPConnection("127.0.0.1", self.server.server_port, timeout=10)
         port = self.server.server_port
         cookie = self.server.token if token is None else token
         sent = {"Host": f"127.0.0.1:{port}", "Cookie": f"automotive_cosim_{port}={cookie}"}
         sent |= {name.replace("_", "-"): value for name, value in headers.items()}
-        connection.request(method, path, headers=sent)
+        connection.request(method, path, body, headers=sent)
         answer = connection.getresponse()
-        body = answer.read()
+        reply = Reply(answer.status, answer.headers, answer.read())
         connection.close()
-        return Reply(answer.status, answer.headers, body)
+        return reply
 
 
 @pytest.fixture
 def serving() -> Iterator[Callable[..., Browser]]:
     servers: list[tuple[WebServer, threading.Thread]] = []
 
-    def start(*folders: Path, host: str = "127.0.0.1") -> Browser:
-        server = WebServer(list(folders), host)
+    def start(*folders: Path, host: str = "127.0.0.1", game: Game | None = None) -> Browser:
+        server = WebServer(list(folders), host, game=game)
         thread = threading.Thread(target=server.serve_forever, args=(0.01,))
         thread.start()
         servers.append((server, thread))

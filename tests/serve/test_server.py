@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from automotive_cosim.cli.serve import serve
+from automotive_cosim.errors import UserError
 from automotive_cosim.serve.server import SECURITY
 
 from .conftest import Browser, write_evaluation, write_record
@@ -68,7 +70,8 @@ def test_another_site_is_refused(serving: Serving, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("method", ["POST", "PUT", "DELETE", "PATCH", "OPTIONS"])
 def test_it_only_reads(serving: Serving, tmp_path: Path, method: str) -> None:
-    assert serving(tmp_path)("/api/runs", method).status in (405, 501)
+    refused = serving(tmp_path)("/api/runs", method)
+    assert refused.status in (403, 405, 501)
 
 
 def test_every_answer_forbids_foreign_content(serving: Serving, tmp_path: Path) -> None:
@@ -184,3 +187,17 @@ def test_a_step_without_an_action_is_shown(serving: Serving, tmp_path: Path) -> 
     shown = browser(f"/api/runs/{ids(browser)[0]}/steps").json["steps"][2]
     assert shown["words"] == "gives an answer that cannot be read"
     assert shown["target"] is None
+
+
+def test_the_command_refuses_in_one_line(tmp_path: Path, serving: Serving) -> None:
+    taken = serving(tmp_path).server.server_port
+    record = write_record(tmp_path / "run")
+    for folders, port, play, why in (
+        ([tmp_path / "nowhere"], 0, False, "is not a folder"),
+        ([tmp_path], taken, False, "cannot listen"),
+        ([record], 0, True, "a folder that holds records"),
+    ):
+        with pytest.raises(UserError, match=why):
+            serve(folders, "127.0.0.1", port, play)
+    with pytest.raises(UserError, match="cannot listen"):
+        serve([tmp_path], "no.such.host.invalid")

@@ -3,6 +3,7 @@
 import { h } from "./dom.js";
 import { runsPage, resultsPage } from "./runs.js";
 import { replayPage } from "./replay.js";
+import { playPage } from "./play.js";
 import { scenariosPage, taskPage, tasksPage } from "./browse.js";
 
 const PAGES = [
@@ -12,6 +13,7 @@ const PAGES = [
   [/^\/tasks$/, tasksPage],
   [/^\/tasks\/([\w-]+)$/, taskPage],
   [/^\/scenarios$/, scenariosPage],
+  [/^\/play$/, playPage],
 ];
 
 let leave = null;
@@ -43,9 +45,9 @@ async function show() {
 }
 
 function mark(path) {
-  const top = path.startsWith("/tasks") ? "#/tasks" : path.startsWith("/scenarios") ? "#/scenarios" : "#/";
+  const top = ["/tasks", "/scenarios", "/play"].find((page) => path.startsWith(page)) ?? "/";
   for (const link of document.querySelectorAll("nav a")) {
-    if (link.getAttribute("href") === top) link.setAttribute("aria-current", "page");
+    if (link.getAttribute("href") === `#${top}`) link.setAttribute("aria-current", "page");
     else link.removeAttribute("aria-current");
   }
 }

@@ -38,9 +38,17 @@ export function outcome(record) {
 }
 
 export async function ask(path) {
+  return answered(path, { credentials: "same-origin" });
+}
+
+export async function send(path, value) {
+  return answered(path, { method: "POST", credentials: "same-origin", body: JSON.stringify(value) });
+}
+
+async function answered(path, request) {
   let answer;
   try {
-    answer = await fetch(path, { credentials: "same-origin" });
+    answer = await fetch(path, request);
   } catch {
     throw new Error("The server does not answer. Start `automotive-cosim serve` again.");
   }

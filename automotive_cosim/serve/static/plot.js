@@ -1,11 +1,11 @@
-// Speed and posted limit over time; a click jumps there.
+// Speed and limit over time; a click jumps there.
 
 import { svg } from "./dom.js";
 
 const [WIDE, HIGH, LEFT, BOTTOM, TOP] = [560, 200, 36, 24, 10];
 
 export function speedPlot(path, jump) {
-  const root = svg("svg", { viewBox: `0 0 ${WIDE} ${HIGH}`, role: "img", "aria-label": "Speed and posted limit over time" });
+  const root = svg("svg", { viewBox: `0 0 ${WIDE} ${HIGH}`, role: "img", "aria-label": "Speed and limit over time" });
   if (path.length < 2) return root;
   const [from, to] = [path[0].at_s, path.at(-1).at_s];
   const most = 20 * (Math.floor(Math.max(...path.map((one) => Math.max(one.speed_kmh, one.limit_kmh ?? 0))) / 20) + 1);

@@ -96,7 +96,7 @@ export async function replayPage(query, id, episode) {
     const second = road.second(at);
     if (second) {
       const others = second.seen.size - ([...second.seen.keys()].some((number) => road.vehicles.get(number)?.id === "ego") ? 1 : 0);
-      const limit = second.limit_kmh === null ? "no limit posted" : `${Math.round(second.limit_kmh)} posted`;
+      const limit = second.limit_kmh === null ? "no limit known" : `limit ${Math.round(second.limit_kmh)}`;
       about.replaceChildren(h("b", { class: second.limit_kmh !== null && second.speed_kmh > second.limit_kmh + 1 ? "over" : "" }, `${Math.round(second.speed_kmh)} km/h`),
         ` ${limit} · ${second.road || "a road without a name"}${second.local_time ? ` · ${second.local_time.slice(11, 16)}` : ""} · `,
         road.alone ? "other vehicles were not recorded" : `${counted(others, "other vehicle")} in sight`);
@@ -207,7 +207,7 @@ export async function replayPage(query, id, episode) {
   slider.addEventListener("input", () => jump(Number(slider.value)));
   live.addEventListener("click", () => { following = !following; live.setAttribute("aria-pressed", String(following)); if (following) run_(true); });
   const keys = (event) => {
-    if (event.target.closest?.("input, select, button, summary, a") && event.key === " ") return;
+    if (event.target.closest?.("input:not([type=range]), select, button, summary, a") && event.key === " ") return;
     if (event.target.closest?.("input[type=search], select, textarea") || event.ctrlKey || event.metaKey || event.altKey) return;
     const known = { " ": () => run_(!playing), ",": () => hop(-1), ".": () => hop(1) };
     if (known[event.key]) { event.preventDefault(); known[event.key](); }
@@ -256,7 +256,7 @@ export async function replayPage(query, id, episode) {
       verdict,
       h("div", { class: "columns even" },
         h("section", {}, h("h2", {}, "Events"), h("div", { class: "card" }, events)),
-        h("section", {}, h("h2", {}, "Speed and posted limit"), plot)),
+        h("section", {}, h("h2", {}, "Speed and limit"), plot)),
       h("p", { class: "muted hash" }, run.trace_sha256 ? `Trace ${run.trace_sha256}` : "")],
     ready: () => {
       jump(query.has("at") && Number.isFinite(Number(query.get("at"))) ? Number(query.get("at")) : running ? end() : 0, true);

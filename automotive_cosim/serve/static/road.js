@@ -3,6 +3,7 @@
 const TELEPORT_M = 50;
 const GAP_M = 0.25;
 const LEAST_PX = 7;
+const TILE_M = 300;
 const INSET = { side: 150, metres: 1100, margin: 12 };
 const SIGNAL = { right: 1, left: 2, hazard: 4, brake: 8, blue: 2048 };
 const HEAVY = new Set(["bus", "coach", "truck", "trailer", "delivery", "tram", "rail", "rail_urban"]);
@@ -14,8 +15,7 @@ const LIGHTS = { G: "#2ecc71", g: "#2ecc71", y: "#ffb42e", Y: "#ffb42e", r: "#e5
 export class RoadRecord {
   constructor() {
     this.lines = 0;
-    this.lanes = [];
-    this.junctions = [];
+    this.laneCount = 0;
     this.vehicles = new Map();
     this.seconds = [];
     this.alone = false;
@@ -44,14 +44,21 @@ export class RoadRecord {
     }
   }
 
+  // Lanes of a kind and a place share one path, which is drawn only if its box is in sight.
   addLane([kind, width, line, links]) {
-    const key = `${kind} ${width}`;
-    if (!this.bands.has(key)) this.bands.set(key, { kind, width, path: new Path2D() });
-    const { path } = this.bands.get(key);
-    path.moveTo(line[0], line[1]);
+    this.laneCount += 1;
+    const key = `${kind} ${width} ${Math.floor(line[0] / TILE_M)} ${Math.floor(line[1] / TILE_M)}`;
+    if (!this.bands.has(key)) this.bands.set(key, { kind, width, path: new Path2D(), bounds: [Infinity, Infinity, -Infinity, -Infinity] });
+    const band = this.bands.get(key);
+    band.path.moveTo(line[0], line[1]);
     for (let i = 0; i < line.length; i += 2) {
-      if (i) path.lineTo(line[i], line[i + 1]);
-      this.bounds = [Math.min(this.bounds[0], line[i]), Math.min(this.bounds[1], line[i + 1]), Math.max(this.bounds[2], line[i]), Math.max(this.bounds[3], line[i + 1])];
+      if (i) band.path.lineTo(line[i], line[i + 1]);
+      for (const bounds of [this.bounds, band.bounds]) {
+        bounds[0] = Math.min(bounds[0], line[i]);
+        bounds[1] = Math.min(bounds[1], line[i + 1]);
+        bounds[2] = Math.max(bounds[2], line[i]);
+        bounds[3] = Math.max(bounds[3], line[i + 1]);
+      }
     }
     if (links.length && line.length >= 4) {
       const [x0, y0, x1, y1] = line.slice(-4);
@@ -273,13 +280,21 @@ export class RoadView {
     // metres, y to the north, to pixels
     context.setTransform(cos, -sin, -sin, -cos, left - camera.x * cos + camera.y * sin, down + camera.x * sin + camera.y * cos);
     this.pixel = 1 / camera.scale;
+    const corners = [[0, 0], [canvas.clientWidth, 0], [0, canvas.clientHeight], [canvas.clientWidth, canvas.clientHeight]].map((corner) => this.metres(...corner));
+    const [xs, ys] = [corners.map(([x]) => x), corners.map(([, y]) => y)];
+    this.sight = [Math.min(...xs) - 20, Math.min(...ys) - 20, Math.max(...xs) + 20, Math.max(...ys) + 20];
     context.lineJoin = "round";
     this.ground(context, colours, second);
     for (const [kind, x, y] of second?.incidents ?? []) this.incident(context, kind, x, y);
-    for (const vehicle of this.drawn) if (vehicle.id !== "ego") this.vehicle(context, vehicle, colours);
+    for (const vehicle of this.drawn) if (vehicle.id !== "ego" && this.sees(vehicle.x, vehicle.y)) this.vehicle(context, vehicle, colours);
     const ego = this.drawn.find(({ id }) => id === "ego");
     if (ego) this.vehicle(context, ego, colours);
     if (camera.scale > 1 && width > 3 * INSET.side * ratio) this.inset(context, colours, ratio);
+  }
+
+  sees(x, y) {
+    const [left, bottom, right, top] = this.sight;
+    return x > left && x < right && y > bottom && y < top;
   }
 
   // The streets around, with a dot for each vehicle, the same way up.
@@ -302,9 +317,13 @@ export class RoadView {
     const [cos, sin] = [Math.cos(angle) * scale, Math.sin(angle) * scale];
     const [x, y] = [left + side / 2, top + side / 2];
     context.setTransform(cos, -sin, -sin, -cos, x - camera.x * cos + camera.y * sin, y + camera.x * sin + camera.y * cos);
-    context.strokeStyle = colours.road;
-    context.lineWidth = 9;
-    for (const { path } of this.record.bands.values()) context.stroke(path);
+    const map = this.surroundings(colours, scale);
+    // the bitmap's rows go south, metres go north
+    context.save();
+    context.translate(map.x, map.y);
+    context.scale(1, -1);
+    context.drawImage(map.bitmap, -map.metres / 2, -map.metres / 2, map.metres, map.metres);
+    context.restore();
     for (const vehicle of [...this.drawn].sort((a) => (a.id === "ego" ? 1 : -1))) {
       const isEgo = vehicle.id === "ego";
       const r = (isEgo ? 5 : 2.6) * ratio / scale;
@@ -319,8 +338,26 @@ export class RoadView {
     context.restore();
   }
 
+  // A picture of the roads around, north up, kept until the camera has left its middle.
+  surroundings(colours, scale) {
+    const metres = 2 * INSET.metres;
+    const { x, y } = this.camera;
+    const kept = this.map;
+    if (kept && kept.colours === colours && kept.scale === scale && kept.lines === this.record.laneCount && Math.hypot(kept.x - x, kept.y - y) < INSET.metres / 4) return kept;
+    const bitmap = new OffscreenCanvas(Math.ceil(metres * scale * 2), Math.ceil(metres * scale * 2));
+    const context = bitmap.getContext("2d");
+    const fine = bitmap.width / metres;
+    context.setTransform(fine, 0, 0, -fine, bitmap.width / 2 - x * fine, bitmap.height / 2 + y * fine);
+    context.strokeStyle = colours.road;
+    context.lineWidth = 9;
+    for (const { path } of this.record.bands.values()) context.stroke(path);
+    this.map = { bitmap, metres, x, y, colours, scale, lines: this.record.laneCount };
+    return this.map;
+  }
+
   ground(context, colours, second) {
-    const bands = [...this.record.bands.values()];
+    const [left, bottom, right, top] = this.sight;
+    const bands = [...this.record.bands.values()].filter(({ bounds }) => bounds[0] < right && bounds[2] > left && bounds[1] < top && bounds[3] > bottom);
     context.strokeStyle = colours.line;
     if (this.pixel < 1) {
       for (const { width, path } of bands) {
@@ -337,14 +374,19 @@ export class RoadView {
     }
     if (!second || this.pixel > 1.2) return;
     context.lineWidth = Math.max(0.7, 2 * this.pixel);
+    const lines = new Map();
     for (const { links, from, to } of this.record.stops) {
+      if (!this.sees(...from)) continue;
       const letters = links.map(([light, place]) => second.lights[light]?.[place]).filter(Boolean);
       if (!letters.length) continue;
-      context.strokeStyle = LIGHTS[[..."GgyYru"].find((letter) => letters.includes(letter))] ?? colours.line;
-      context.beginPath();
-      context.moveTo(...from);
-      context.lineTo(...to);
-      context.stroke();
+      const colour = LIGHTS[[..."GgyYru"].find((letter) => letters.includes(letter))] ?? colours.line;
+      if (!lines.has(colour)) lines.set(colour, new Path2D());
+      lines.get(colour).moveTo(...from);
+      lines.get(colour).lineTo(...to);
+    }
+    for (const [colour, path] of lines) {
+      context.strokeStyle = colour;
+      context.stroke(path);
     }
   }
 

@@ -44,6 +44,7 @@ const MOST = 400;
 export async function resultsPage(query, id) {
   let results = await ask(`/api/evaluations/${id}`);
   const heading = h("p", { class: "muted" });
+  const now = h("p");
   const table = h("tbody");
   const count = h("p", { class: "muted", role: "status" });
   const search = h("input", { type: "search", "aria-label": "Search for a task or an episode", placeholder: "Search tasks", value: query.get("q") ?? "" });
@@ -69,6 +70,7 @@ export async function resultsPage(query, id) {
       + (kept.length > MOST ? `; the first ${MOST} are listed` : "");
     table.replaceChildren(...kept.slice(0, MOST).map((row) => episode(id, row)));
     heading.textContent = results.planned ? `${results.rows.length} of ${results.planned} episodes are done` : counted(results.rows.length, "episode");
+    now.replaceChildren(...(results.running.length ? ["Running now: ", ...results.running.flatMap((one) => [h("a", { href: `#/run/${id}/${encodeURIComponent(one)}` }, one), " "])] : []));
     const parameters = new URLSearchParams();
     FILTERS.forEach(([name], index) => choices[index].value && parameters.set(name, choices[index].value));
     if (search.value) parameters.set("q", search.value);
@@ -79,16 +81,16 @@ export async function resultsPage(query, id) {
   search.addEventListener("input", fill);
   choices.forEach((choice) => choice.addEventListener("change", fill));
   const again = async () => {
-    const done = results.rows.length;
-    if (results.planned && done >= results.planned) return;
+    if (results.planned && results.rows.length >= results.planned) return;
     results = await ask(`/api/evaluations/${id}`);
-    if (results.rows.length !== done) { options(); fill(); }
+    options();
+    fill();
   };
   const timer = setInterval(() => again().catch(() => {}), EVERY_MS);
   const head = ["Task", "Half", "Scenario", "Agent", "Seed", "Steps", "Outcome", "Not held"].map((name) => h("th", { scope: "col" }, name));
   return {
     title: results.name,
-    content: [h("h1", {}, results.name), heading, h("div", { class: "filters" }, search, choices), count,
+    content: [h("h1", {}, results.name), heading, now, h("div", { class: "filters" }, search, choices), count,
       h("div", { class: "card scroll", tabindex: 0, role: "region", "aria-label": "Episodes" }, h("table", {}, h("thead", {}, h("tr", {}, head)), table))],
     leave: () => clearInterval(timer),
     ready: fill,

@@ -1,0 +1,99 @@
+"""``automotive-cosim bundle``, ``verify`` and ``leaderboard``: evaluations for others."""
+
+from __future__ import annotations
+
+import secrets
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from automotive_cosim.cli.batches import Workers
+from automotive_cosim.cli.options import AsJson, TasksFrom, print_json, whole_number
+from automotive_cosim.contracts.plain import counted
+
+MOST_LISTED = 50
+"""How many problems are printed."""
+
+
+def bundle(
+    folder: Annotated[Path, typer.Argument(help="Results folder of `eval`.", show_default=False)],
+    out: Annotated[Path, typer.Option(help="File to write.", show_default=False)],
+    tasks_from: TasksFrom = None,
+) -> None:
+    """Make one file of an evaluation for publication, with a hash of everything in it."""
+    from automotive_cosim.publish.bundle import write_bundle
+
+    made = write_bundle(folder, out)
+    counts = made.counts
+    typer.echo(
+        f"{out} written: {counted(len(made.files), 'file')}; {counts.judged} of "
+        f"{counted(counts.planned, 'planned episode')} judged, {counted(counts.errors, 'error')}, "
+        f"{counts.not_run} not run"
+    )
+    typer.echo(f"sha256 of its bundle.json: {made.sha256}")
+
+
+def verify(
+    path: Annotated[Path, typer.Argument(help="Results folder of `eval`, or a bundle.", show_default=False)],
+    replays: Annotated[
+        int,
+        typer.Option(
+            "--replay",
+            help="How many drives to replay and compare bit for bit.",
+            metavar="N",
+            parser=whole_number(0, 10**6),
+        ),
+    ] = 3,
+    seed: Annotated[
+        int | None,
+        typer.Option(
+            "--replay-seed",
+            help="Draws the drives to replay.",
+            metavar="N",
+            parser=whole_number(0, 2**31 - 1),
+            show_default="another one each time",
+        ),
+    ] = None,
+    workers: Workers = None,
+    tasks_from: TasksFrom = None,
+    as_json: AsJson = False,
+) -> None:
+    """Check an evaluation or a bundle; exit code 1 if something does not fit."""
+    from automotive_cosim.publish.verify import verify as verified
+
+    drawn_with = secrets.randbelow(2**31) if seed is None else seed
+    found = verified(path, replays=replays, seed=drawn_with, workers=workers or 1)
+    if as_json:
+        problems = [asdict(problem) for problem in found.problems]
+        print_json({"ok": not problems, "facts": found.facts, "problems": problems, "unknown": found.unknown})
+        raise typer.Exit(bool(problems))
+    for fact in found.facts:
+        typer.echo(fact)
+    for problem in found.problems[:MOST_LISTED]:
+        typer.echo(f"PROBLEM {problem}")
+    if len(found.problems) > MOST_LISTED:
+        typer.echo(f"and {len(found.problems) - MOST_LISTED} more")
+    typer.echo("cannot be known from this:")
+    for line in found.unknown:
+        typer.echo(f"  {line}")
+    if found.problems:
+        typer.echo(f"{counted(len(found.problems), 'problem')} found")
+        raise typer.Exit(1)
+    typer.echo("no problem found")
+
+
+def leaderboard(
+    folder: Annotated[Path, typer.Argument(help="Folder of bundles.", show_default=False)],
+    out: Annotated[Path, typer.Option(help="Page to write.", show_default=False)],
+    workers: Workers = None,
+    tasks_from: TasksFrom = None,
+) -> None:
+    """Check every bundle in a folder and write a page that sets them side by side."""
+    from automotive_cosim.publish.leaderboard import write_leaderboard
+
+    left_out = write_leaderboard(folder, out, workers=workers or 1)
+    for line in left_out:
+        typer.echo(f"left out: {line}")
+    typer.echo(f"{out} written")

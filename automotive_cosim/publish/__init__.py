@@ -1,0 +1,1 @@
+"""Evaluations for others: one file to publish, its check, and a page of many."""

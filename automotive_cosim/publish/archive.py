@@ -1,0 +1,95 @@
+"""A bundle as an archive: a zip without compression, of which the same files give the same bytes.
+
+bundle.json                      what is in it (``contents``)
+manifest.json                    the plan; versions, platform and state of the code at each start
+episodes.jsonl                   one line per episode, by id
+traces/ID.jsonl.gz               the steps of an episode and its result
+traces/ID.judged.json.xz         the input of its verdict
+"""
+
+from __future__ import annotations
+
+import re
+import tempfile
+import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from automotive_cosim.errors import UserError
+from automotive_cosim.publish.contents import NAME
+
+MEMBER = re.compile(
+    r"bundle\.json|manifest\.json|episodes\.jsonl|traces/[\w.-]{1,200}\.(?:jsonl\.gz|judged\.json\.xz)"
+)
+"""What may be in a bundle."""
+MOST_BYTES = 8 * 2**30
+"""Largest bundle that is unpacked."""
+_LONG_AGO = (1980, 1, 1, 0, 0, 0)
+"""A zip's earliest time, for every file."""
+_CHUNK_BYTES = 2**20
+
+
+def members(folder: Path) -> list[str]:
+    """The paths of the files in an unpacked bundle, in their order in the archive."""
+    found = [path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()]
+    return sorted(found, key=lambda name: (name != NAME, name))
+
+
+def pack(folder: Path, out: Path) -> None:
+    """Packs the files of a folder, whole or not at all.
+
+    Raises:
+        UserError: the archive cannot be written.
+    """
+    draft = out.with_name(f".{out.name}.part")
+    try:
+        out.parent.mkdir(parents=True, exist_ok=True)
+        with zipfile.ZipFile(draft, "w") as archive:
+            for name in members(folder):
+                entry = zipfile.ZipInfo(name, _LONG_AGO)
+                entry.create_system, entry.external_attr = 3, 0o644 << 16
+                entry.file_size = (folder / name).stat().st_size
+                with archive.open(entry, "w") as target, (folder / name).open("rb") as source:
+                    while chunk := source.read(_CHUNK_BYTES):
+                        target.write(chunk)
+        draft.replace(out)
+    except OSError as error:
+        draft.unlink(missing_ok=True)
+        raise UserError(f"cannot write {out}: {error.strerror or error}; give --out another file") from error
+
+
+@contextmanager
+def unpacked(bundle: Path) -> Iterator[Path]:
+    """A bundle's files in a folder that is removed afterwards.
+
+    Raises:
+        UserError: it is not a bundle, or has something that does not belong there.
+    """
+    with tempfile.TemporaryDirectory(prefix="automotive-cosim-bundle-") as name:
+        folder = Path(name)
+        (folder / "traces").mkdir()
+        try:
+            with zipfile.ZipFile(bundle) as archive:
+                _unpack(bundle, archive, folder)
+        except (zipfile.BadZipFile, NotImplementedError, OSError, EOFError, ValueError, RuntimeError) as error:
+            raise UserError(f"{bundle} is not a bundle: {error}; `automotive-cosim bundle` makes one") from error
+        yield folder
+
+
+def _unpack(bundle: Path, archive: zipfile.ZipFile, folder: Path) -> None:
+    left = MOST_BYTES
+    for entry in archive.infolist():
+        path = folder / entry.filename
+        left -= entry.file_size
+        if not MEMBER.fullmatch(entry.filename) or path.exists():
+            raise UserError(
+                f"{bundle} has {entry.filename[:100]!r}, which does not belong in a bundle or is there twice"
+            )
+        if entry.compress_type != zipfile.ZIP_STORED or left < 0:
+            raise UserError(f"{bundle} is compressed or larger than {MOST_BYTES >> 30} GB; a bundle is neither")
+        with archive.open(entry) as source, path.open("wb") as target:
+            while chunk := source.read(_CHUNK_BYTES):
+                target.write(chunk)
+    if not (folder / NAME).is_file():
+        raise UserError(f"{bundle} is not a bundle: it has no {NAME}; `automotive-cosim bundle` makes one")

@@ -1,0 +1,125 @@
+"""Makes a bundle of an evaluation: everything that a check needs, and nothing that is nobody's business.
+
+The newest line of each episode, with error texts cleaned of this machine's folders, and the traces of judged
+episodes; no screenshots. What still has a key of the environment or somebody's home folder in it is refused.
+"""
+
+from __future__ import annotations
+
+import gzip
+import json
+import lzma
+import os
+import re
+import shutil
+import tempfile
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path, PurePosixPath, PureWindowsPath
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.errors import UserError
+from automotive_cosim.publish import archive
+from automotive_cosim.publish.contents import FORMAT, NAME, Contents, counts, file_sha256
+from automotive_cosim.run.coverage import coverage
+from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.moments import judged_file
+from automotive_cosim.run.row import as_json
+from automotive_cosim.run.store import read_evaluation, read_rows, read_trace, trace_file, write_trace
+
+SHORTEST_KEY = 12
+"""A shorter value of a variable that is named like a key is a dummy, and may occur anywhere."""
+_PATH = re.compile(r"""(?<![\w.:/\\<])(?:[A-Za-z]:)?[/\\](?=[\w.~])[^\s'"<>|,;()\[\]]+""")
+"""An absolute path in a text."""
+_HOME = re.compile(rb"/home/\w|/Users/\w|/root/|[A-Za-z]:\\{1,2}Users\\{1,2}\w")
+
+
+def write_bundle(folder: Path, out: Path) -> Contents:
+    """Writes the bundle of an evaluation; the same folder gives the same bytes.
+
+    Raises:
+        UserError: the folder is not an evaluation's, is damaged, has no episodes, or holds what must not be
+            published; or the file cannot be written.
+    """
+    manifest, rows = read_evaluation(folder), read_rows(folder, EpisodeRow)
+    found = coverage(manifest, rows)
+    manifest["episodes"] = found.planned  # which older evaluations do not tell
+    if not rows:
+        raise UserError(f"{folder} has no episodes yet ({found}); rerun its `eval` command")
+    if found.problem:
+        raise UserError(f"{folder} cannot be bundled: {found.problem}; give --tasks-from what it was run with")
+    for name in (*manifest["plan"]["scenarios"], *manifest["plan"]["agents"]):
+        if PurePosixPath(name).is_absolute() or PureWindowsPath(name).is_absolute():
+            raise UserError(f"the plan of {folder} names {name!r} by an absolute path; run it with a relative one")
+    with tempfile.TemporaryDirectory(prefix="automotive-cosim-bundle-") as name:
+        staged = Path(name)
+        kept = [_stage(folder, rows[name], staged) for name in sorted(rows)]
+        (staged / "manifest.json").write_text(json.dumps(manifest, indent=1), encoding="utf-8", newline="\n")
+        lines = "".join(json.dumps(as_json(row), ensure_ascii=False) + "\n" for row in kept)
+        (staged / "episodes.jsonl").write_text(lines, encoding="utf-8", newline="\n")
+        _refuse_secrets(staged, os.environ)
+        made = Contents(
+            FORMAT,
+            str(manifest["starts"][0]["versions"]["automotive-cosim"]),
+            counts(found, sum(row.has_succeeded for row in kept)),
+            {name: file_sha256(staged / name) for name in archive.members(staged)},
+        )
+        (staged / NAME).write_text(made.text(), encoding="utf-8", newline="\n")
+        archive.pack(staged, out)
+    return made
+
+
+def cleaned(text: str) -> str:
+    """A text with the last names of absolute paths instead of the whole."""
+    home = Path.home()
+    text = text.replace(str(home), "~") if len(home.parts) > 1 else text
+    return _PATH.sub(lambda found: re.split(r"[/\\]", found[0].rstrip("/\\"))[-1], text)
+
+
+def _stage(folder: Path, row: EpisodeRow, staged: Path) -> EpisodeRow:
+    """Copies the files of a judged episode; returns its row as it is published."""
+    clean = replace(
+        row,
+        error=None if row.error is None else cleaned(row.error),
+        agent_error=None if row.agent_error is None else cleaned(row.agent_error),
+        failed_attempts=tuple(map(cleaned, row.failed_attempts)),
+    )
+    if row.success is not None:
+        for path in (trace_file(folder, row.id), judged_file(folder, row.id)):
+            if path.is_file():
+                target = staged / "traces" / path.name
+                target.parent.mkdir(exist_ok=True)
+                shutil.copyfile(path, target)
+        if clean.agent_error != row.agent_error and trace_file(staged, row.id).is_file():
+            *steps, last = read_trace(staged, row.id)
+            write_trace(staged, row.id, [*steps, _cleaned_result(last)])
+    return clean
+
+
+def _cleaned_result(line: Json) -> Json:
+    """The result of an episode that the agent's side ended, without the folders in its reason."""
+    result = json.loads(json.dumps(line["result"]))
+    declared = result["verdict"]["parts"]["declared"]
+    result["agent_error"], declared["why"] = cleaned(result["agent_error"]), cleaned(declared["why"])
+    return {"result": result}
+
+
+def _refuse_secrets(staged: Path, environment: Mapping[str, str]) -> None:
+    """
+    Raises:
+        UserError: a file has a key of the environment or a home folder in it.
+    """
+    secrets = {
+        value.encode(): name
+        for name, value in environment.items()
+        if re.search(r"KEY|TOKEN|SECRET|PASSWORD", name) and len(value) >= SHORTEST_KEY
+    }
+    for name in archive.members(staged):
+        data = (staged / name).read_bytes()
+        data = {".gz": gzip.decompress, ".xz": lzma.decompress}.get(Path(name).suffix, bytes)(data)
+        for secret, variable in secrets.items():
+            if secret in data:
+                raise UserError(f"{name} has the value of {variable} in it; remove it from the evaluation first")
+        if found := _HOME.search(data):
+            told = data[found.start() : found.end() + 20].decode(errors="replace")
+            raise UserError(f"{name} has a home folder in it: {told!r}; remove it from the evaluation first")

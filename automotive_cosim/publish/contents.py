@@ -1,0 +1,98 @@
+"""``bundle.json``: what a bundle holds, with a hash of every file."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Annotated, Literal
+
+from annotated_types import Ge
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.errors import UserError
+from automotive_cosim.formats.annotations import Form
+from automotive_cosim.formats.checked import checked
+from automotive_cosim.formats.toml import dotted
+from automotive_cosim.run.coverage import Coverage
+
+NAME = "bundle.json"
+FORMAT: Literal[1] = 1
+
+Sha256 = Annotated[str, Form("^[0-9a-f]{64}$", "64 hexadecimal digits")]
+
+
+@dataclass(frozen=True, slots=True)
+class Counts:
+    """What has become of the planned episodes."""
+
+    planned: Annotated[int, Ge(0)]
+    """All of them."""
+    judged: Annotated[int, Ge(0)]
+    """With a verdict."""
+    successes: Annotated[int, Ge(0)]
+    """Judged a success."""
+    errors: Annotated[int, Ge(0)]
+    """Ended in an infrastructure error."""
+    not_run: Annotated[int, Ge(0)]
+    """Planned and never run."""
+
+
+@dataclass(frozen=True, slots=True)
+class Contents:
+    """The file ``bundle.json``, the first in a bundle."""
+
+    format: Literal[1]
+    """Of the bundle; any other is refused."""
+    suite: str
+    """Version of automotive-cosim that ran the evaluation."""
+    counts: Counts
+    """What has become of the planned episodes."""
+    files: Mapping[str, Sha256]
+    """SHA-256 of every other file, by its path in the bundle."""
+
+    def text(self) -> str:
+        """The file's only form."""
+        return json.dumps(asdict(self), indent=1, sort_keys=True) + "\n"
+
+    @property
+    def sha256(self) -> str:
+        """Hash of the file, and with it of the whole bundle: publish it where the bundle cannot be changed."""
+        return hashlib.sha256(self.text().encode()).hexdigest()
+
+
+def counts(found: Coverage, successes: int) -> Counts:
+    """The counts of an evaluation.
+
+    Args:
+        found: how much of its plan has been run.
+        successes: the number of successes.
+    """
+    return Counts(found.planned, found.judged, successes, found.errors, len(found.not_run))
+
+
+def file_sha256(path: Path) -> str:
+    """The hash of a file."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def read_contents(folder: Path) -> Contents:
+    """The file of an unpacked bundle.
+
+    Raises:
+        UserError: it cannot be read, is of another format or does not fit its schema.
+    """
+    path = folder / NAME
+    try:
+        values: Json = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError) as error:
+        raise UserError(f"cannot read {NAME}: {error}") from error
+    found = values.get("format") if isinstance(values, dict) else None
+    if found != FORMAT:
+        raise UserError(
+            f"{NAME} has format {found!r}, and this version reads {FORMAT}; read it with the version that wrote it"
+        )
+    return checked(Contents, values, lambda steps: (NAME, dotted(steps)))

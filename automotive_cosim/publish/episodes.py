@@ -1,0 +1,235 @@
+"""Checks one stored episode: its row against the plan, its trace, and the verdict on its stored moments."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from functools import cache
+from pathlib import Path
+
+from automotive_cosim.cockpit.actions import parse
+from automotive_cosim.contracts import Feedback, FeedbackCode, Json
+from automotive_cosim.episode.specification import ROUNDING_S, End
+from automotive_cosim.errors import CosimError
+from automotive_cosim.interface.trace import Step, plain, sha256
+from automotive_cosim.publish.problems import Problem, differences
+from automotive_cosim.report.page import element
+from automotive_cosim.run.collect import alerts, planned
+from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.harm import nearest_s
+from automotive_cosim.run.load import driver_load
+from automotive_cosim.run.moments import Judged, judged_file, read_judged
+from automotive_cosim.run.plan import EpisodeJob
+from automotive_cosim.run.row import as_json
+from automotive_cosim.run.store import read_trace, trace_file
+from automotive_cosim.scenarios import shipped
+from automotive_cosim.tasking import verdict as verdicts
+from automotive_cosim.tasking.instance import Instance
+from automotive_cosim.tasking.task import Mode
+
+ROWS = "episodes.jsonl"
+PLANNED = (
+    "task", "half", "pair", "dimension", "module", "basis", "tags", "skills", "declines", "agent", "model", "geo",
+    "seed", "repeat", "mode", "clock", "latency_s",
+)  # fmt: skip
+"""Fields of a row that the plan and the catalogue determine."""
+ALSO_IN_RESULT = (
+    "task", "half", "scenario", "agent", "model", "geo", "seed", "success", "reward", "steps", "sim_seconds", "end",
+    "error", "error_kind", "agent_error", "held_out", "trace_sha256", "tokens_in", "tokens_out", "model_seconds",
+    "cost_usd", "drive", "baseline_drive",
+)  # fmt: skip
+"""Fields of a row that the result at the end of the trace has too."""
+FROM_MOMENTS = (
+    "local_time", "traffic", "signals", "weather", "gps", "connectivity", "context", "events",
+)  # fmt: skip
+"""Fields of a step that follow from the stored moments."""
+STEP = frozenset(
+    {"step", "time_s", *FROM_MOMENTS, "elements", "action", "feedback", "thought_s", "thought", "stages"}
+)
+UNJUDGED = ("success", "reward", "parts", "goal_s", "reason_fits")
+"""Fields of a row that an episode without a verdict leaves at their defaults."""
+BY_REPLAY = frozenset(
+    {
+        f"{ROWS} speed_compliance", f"{ROWS} min_time_to_collision_s",
+        "result path", "result timeline", "result violations", "result estimates", "result notes",
+        "step feedback",
+    }
+)  # fmt: skip
+"""What only a replay can check."""
+ON_TRUST = frozenset(
+    {
+        f"{ROWS} wall_seconds", f"{ROWS} failed_attempts", "result without", "step thought", "step stages",
+    }
+)  # fmt: skip
+"""What nothing in the bundle or a replay can check."""
+
+
+def check_episode(folder: Path, job: EpisodeJob, row: EpisodeRow) -> tuple[Problem, ...]:
+    """Everything that is wrong with an episode.
+
+    Args:
+        folder: an evaluation's or an unpacked bundle's.
+        job: the episode in the plan.
+        row: its row.
+    """
+    try:
+        return tuple(_problems(folder, job, row))
+    except (
+        CosimError, OSError, LookupError, TypeError, ValueError, AttributeError, ArithmeticError, RecursionError,
+    ) as error:  # fmt: skip
+        why = str(error) if isinstance(error, CosimError) else f"{type(error).__name__}: {error}"
+        return (Problem(f"traces/{row.id}", "", f"cannot be checked: {why}"),)
+
+
+def _problems(folder: Path, job: EpisodeJob, row: EpisodeRow) -> Iterator[Problem]:
+    told = as_json(row)
+    yield from differences(ROWS, row.id, told, as_json(planned(job)), PLANNED, "the plan")
+    tried = len(row.failed_attempts) + (row.error is None)
+    if row.attempts != tried:
+        yield Problem(ROWS, f"{row.id} attempts", f"is {row.attempts}, but {tried} by failed_attempts")
+    if row.wall_seconds < 0 or row.model_seconds < 0:
+        yield Problem(ROWS, f"{row.id} wall_seconds, model_seconds", "are below zero")
+    if job.scenario in _shipped() and row.scenario != job.scenario:
+        yield Problem(ROWS, f"{row.id} scenario", f"is {row.scenario!r}, but {job.scenario!r} by the plan")
+    if row.success is None:
+        yield from differences(ROWS, row.id, told, as_json(planned(job)), UNJUDGED, "its error")
+        if row.error is None or row.error_kind is None or row.end is not End.ERROR:
+            yield Problem(ROWS, row.id, "has neither a verdict nor an error")
+    elif row.end is not End.AGENT_FAILED or trace_file(folder, row.id).is_file():
+        yield from _judged_problems(folder, job, row, told)
+    elif row.success or row.agent_error is None:
+        yield Problem(ROWS, row.id, "has a verdict without a trace")
+
+
+def _judged_problems(folder: Path, job: EpisodeJob, row: EpisodeRow, told: Json) -> Iterator[Problem]:
+    *steps, last = read_trace(folder, row.id)
+    judged = read_judged(folder, row.id)
+    assert judged.counterfactual is not None
+    file, result = trace_file(folder, row.id).relative_to(folder).as_posix(), dict(last["result"])
+    if "untouched_drive" in result:  # its name in older traces
+        result["baseline_drive"] = result.pop("untouched_drive")
+    yield from _step_problems(file, steps, judged)
+    source = judged_file(folder, row.id).relative_to(folder).as_posix()
+    instance = Instance(job.task, row.half, judged.goal, judged.parameters)
+    verdict = verdicts.judge(
+        instance,
+        judged.trace,
+        judged.baseline,
+        judged.counterfactual,
+        judged.declared,
+        judged.reason,
+        judged.watched_from_s,
+        row.agent_error,
+    )
+    whole = verdicts.as_json(verdict)
+    start, end = judged.trace[0], judged.trace[-1]
+    prompts = [stage["reply"]["tokens_in"] for step in steps for stage in step["stages"] if stage["reply"]]
+    load = driver_load(_steps(steps, judged))
+    expected: Json = {
+        "success": verdict.success,
+        "reward": float(verdict.success),
+        "parts": {name: part["ok"] for name, part in whole["parts"].items()},
+        "goal_s": whole["goal_s"],
+        "reason_fits": whole["reason_fits"],
+        "parameters": {name: plain(value) for name, value in judged.parameters.items()},
+        "country": start.context.country,
+        "alerts": alerts(start, end),
+        "steps": len(steps) - 1,
+        "sim_seconds": round(end.time_s - start.time_s, 3),
+        "thought_s": round(sum(step["thought_s"] for step in steps), 1),
+        "trace_sha256": sha256(steps),
+        "interaction_s": load.interaction_s,
+        "within_guideline": load.within_guideline,
+        "prompt_tokens": prompts,
+        "error": None,
+        "error_kind": None,
+    }
+    yield from differences(ROWS, row.id, told, expected, expected, "its trace and the verdict on its moments")
+    both = {"verdict": whole, "goal": judged.goal, "load": asdict(load)}
+    yield from differences(file, "result", result, both, both, "the verdict on its moments")
+    yield from differences(file, "result", result, told, ALSO_IN_RESULT, f"its line in {ROWS}")
+    yield from _end_problems(job, row, judged, len(steps) - 1)
+    if row.end not in (End.OUT_OF_BUDGET, End.AGENT_FAILED) and row.tokens_in != sum(prompts):
+        yield Problem(ROWS, f"{row.id} tokens_in", f"is {row.tokens_in}, but {sum(prompts)} by its trace")
+    near = nearest_s(state for moment in judged.trace[1:] for state in moment.passed)
+    if near is not None and (row.min_time_to_collision_s is None or row.min_time_to_collision_s > near):
+        yield Problem(ROWS, f"{row.id} min_time_to_collision_s", f"is above {near} in {source}")
+    if row.drive and row.drive.min_time_to_collision_s != row.min_time_to_collision_s:
+        yield Problem(ROWS, f"{row.id} min_time_to_collision_s", "is not that of its drive")
+    yield from _phrasing_problems(source, job, row, judged)
+
+
+def _step_problems(file: str, steps: Sequence[Json], judged: Judged) -> Iterator[Problem]:
+    """What the steps have that their moments do not."""
+    moments = {moment.time_s: moment for moment in judged.trace}
+    for number, step in enumerate(steps):
+        if step.keys() != STEP or step["step"] != number:
+            yield Problem(file, f"step {number}", "is not there, or has other fields")
+            return
+        moment = moments.get(step["time_s"])
+        if moment is None:
+            yield Problem(file, f"step {number} time_s", "is the time of no stored moment")
+            continue
+        expected = Step(number, moment, (), None, Feedback(FeedbackCode.NONE, "")).as_json()
+        yield from differences(file, f"step {number}", step, expected, FROM_MOMENTS, "its stored moment")
+    if [step["time_s"] for step in steps] != sorted(step["time_s"] for step in steps):
+        yield Problem(file, "time_s", "the steps are not in their order")
+    if steps[0]["time_s"] != judged.trace[0].time_s or steps[0]["action"] is not None:
+        yield Problem(file, "step 0", "is not the hand-over")
+    action = None if steps[-1]["action"] is None else parse(steps[-1]["action"])
+    declared = (action.goal_status, action.reason) if action else (None, None)
+    if declared != (judged.declared, judged.reason):
+        yield Problem(file, f"step {len(steps) - 1} action", "is not the declaration that was judged")
+
+
+def _end_problems(job: EpisodeJob, row: EpisodeRow, judged: Judged, steps: int) -> Iterator[Problem]:
+    """Whether it ended as its moments say."""
+    last = judged.trace[-1]
+    passed_s = last.time_s - judged.trace[0].time_s
+    most_s = job.setup.max_sim_s
+    if last.driving.end is not None:
+        legal = {End.DRIVE_ENDED}
+    elif judged.declared is not None:
+        legal = {End.DECLARED}
+    elif job.setup.mode is Mode.MONITORING:
+        legal = {End.WATCH_OVER, End.OUT_OF_BUDGET, End.AGENT_FAILED}
+    elif steps >= job.setup.max_steps:
+        legal = {End.OUT_OF_STEPS}
+    elif most_s is not None and passed_s >= most_s - ROUNDING_S:
+        legal = {End.OUT_OF_TIME}
+    else:
+        legal = {End.OUT_OF_BUDGET, End.AGENT_FAILED}
+    if row.end not in legal or (row.end is End.AGENT_FAILED) != (row.agent_error is not None):
+        yield Problem(ROWS, f"{row.id} end", f"is {row.end}, but {' or '.join(sorted(legal))} by its moments")
+
+
+def _phrasing_problems(file: str, job: EpisodeJob, row: EpisodeRow, judged: Judged) -> Iterator[Problem]:
+    """Whether what the driver said is a phrasing of the task, and held out or not as the row says."""
+    said = [text.format_map(judged.parameters) for text in job.task.templates]
+    if judged.goal not in said:
+        yield Problem(file, "goal", f"is {judged.goal!r}, which is no phrasing of {row.task}")
+    elif row.held_out is not (judged.goal == said[-1]) or (job.setup.held_out and not row.held_out):
+        yield Problem(
+            ROWS, f"{row.id} held_out", f"is {str(row.held_out).lower()}, but not by what the driver said"
+        )
+
+
+def _steps(steps: Sequence[Json], judged: Judged) -> list[Step]:
+    """The steps as they were while the episode ran, with the texts that the load on the driver depends on."""
+    moments = {moment.time_s: moment for moment in judged.trace}
+    return [
+        Step(
+            step["step"],
+            moments[step["time_s"]],
+            tuple(map(element, step["elements"])),
+            None if step["action"] is None else parse(step["action"]),
+            Feedback(FeedbackCode(step["feedback"]["code"]), step["feedback"]["text"]),
+        )
+        for step in steps
+        if step["time_s"] in moments
+    ]
+
+
+@cache
+def _shipped() -> frozenset[str]:
+    return frozenset(shipped())

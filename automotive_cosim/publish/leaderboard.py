@@ -1,0 +1,184 @@
+"""A static page that sets the evaluations in a folder of bundles side by side, as far as they can be compared.
+
+Only contestants that were to run the same episodes with the same version under the same limits share a table. Every
+bundle is checked first; one with a problem is left out and named.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.contracts.plain import counted
+from automotive_cosim.episode.specification import Clock
+from automotive_cosim.errors import UserError
+from automotive_cosim.publish import archive
+from automotive_cosim.publish.contents import read_contents
+from automotive_cosim.publish.verify import verify
+from automotive_cosim.report.results import Contestant, pairs, read_results
+from automotive_cosim.report.stats import Rate
+from automotive_cosim.report.summary import DIMENSIONS, NONE, RATES, input_of, rate_in_words, rate_of
+from automotive_cosim.report.tables import Table, TableRow
+from automotive_cosim.report.templates import render
+from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.record import write_whole
+from automotive_cosim.run.store import cannot_write
+
+COLUMNS = (
+    "Agent", "Model", "Input", "Geo", "Mode", *DIMENSIONS.values(), "Safety pairs", "All episodes", "Bundle",
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Conditions:
+    """What contestants must share to stand in one table."""
+
+    suite: str
+    tasks: str
+    scenarios: str
+    seeds: str
+    repeats: str
+    phrasings: str
+    limits: str
+    episodes: str
+    """How many a contestant was to run, with a digest of exactly which."""
+
+    def differing(self, other: Conditions) -> list[str]:
+        """The conditions in which another differs, in words."""
+        return [
+            f"{name}: {getattr(self, name)} instead of {getattr(other, name)}"
+            for name in self.__slots__
+            if getattr(self, name) != getattr(other, name)
+        ]
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One contestant of one bundle."""
+
+    bundle: str
+    sha256: str
+    contestant: Contestant
+    conditions: Conditions
+    rates: tuple[Rate, ...]
+    """By dimension, over first halves; of the safety pairs; of all episodes."""
+
+    @property
+    def order(self) -> tuple[float, float, str, str]:
+        """The best pair success first, then the best success, then by name; what was not judged counts as lost, so
+        that leaving episodes out gains nothing."""
+        *_, joined, whole = (rate.bounds.low if rate.bounds else 0.0 for rate in self.rates)
+        return -joined, -whole, self.contestant.label, self.bundle
+
+
+def write_leaderboard(folder: Path, out: Path, *, workers: int = 1) -> list[str]:
+    """Writes the page.
+
+    Args:
+        folder: of bundles.
+        out: file to write.
+        workers: processes that check.
+
+    Returns:
+        What was left out, and why.
+
+    Raises:
+        UserError: there is no bundle without a problem, or the page cannot be written.
+    """
+    if not folder.is_dir():
+        raise UserError(f"{folder} is not a folder; give one with bundles, which `automotive-cosim bundle` makes")
+    entries: list[Entry] = []
+    left_out: list[str] = []
+    for path in sorted(path for path in folder.iterdir() if path.is_file() and path.resolve() != out.resolve()):
+        try:
+            problems = verify(path, workers=workers).problems
+            if problems:
+                left_out.append(f"{path.name}: {counted(len(problems), 'problem')}, such as {problems[0]}")
+            else:
+                entries += read_entries(path)
+        except UserError as error:
+            left_out.append(str(error).replace(str(path), path.name))
+    if not entries:
+        raise UserError(f"{folder} has no bundle without a problem{''.join(f'; {each}' for each in left_out[:3])}")
+    page = render("publish/leaderboard.html", tables=tables(entries), left_out=left_out, rates=RATES)
+    try:
+        write_whole(out, page)
+    except OSError as error:
+        raise cannot_write(out.parent, error) from error
+    return left_out
+
+
+def read_entries(bundle: Path) -> list[Entry]:
+    """The contestants of a bundle.
+
+    Raises:
+        UserError: it cannot be read.
+    """
+    with archive.unpacked(bundle) as folder:
+        contents, results = read_contents(folder), read_results(folder)
+    made = []
+    for each in results.contestants:
+        rows = results.planned_of(each)
+        firsts = [row for row in rows if row.half == "first"]
+        by_dimension = [rate_of(row for row in firsts if row.dimension == name) for name in DIMENSIONS]
+        rates = (*by_dimension, rate_of(pair for pair, _ in pairs(rows)), rate_of(rows))
+        conditions = _conditions(contents.suite, results.manifest["plan"], rows)
+        made.append(Entry(bundle.name, contents.sha256, each, conditions, rates))
+    return made
+
+
+def tables(entries: Sequence[Entry]) -> list[tuple[Table, Conditions, list[str]]]:
+    """A table for each set of conditions, that with the most entries first; with how it differs from the first."""
+    alike: dict[Conditions, list[Entry]] = defaultdict(list)
+    for entry in entries:
+        alike[entry.conditions].append(entry)
+    ordered = sorted(alike.items(), key=lambda each: (-len(each[1]), str(each[0])))
+    first = ordered[0][0]
+    return [
+        (_table(number, found), conditions, conditions.differing(first))
+        for number, (conditions, found) in enumerate(ordered, start=1)
+    ]
+
+
+def _table(number: int, entries: Sequence[Entry]) -> Table:
+    rows: list[TableRow] = []
+    for entry in sorted(entries, key=lambda each: each.order):
+        each = entry.contestant
+        rows.append(
+            (
+                each.method,
+                each.base_model,
+                input_of(Contestant(each.agent, each.model, "full")),
+                each.geo,
+                ", ".join([each.mode, *_speed(each)]),
+                *(rate_in_words(rate) if rate.planned else NONE for rate in entry.rates),
+                f"{entry.bundle}, {entry.sha256[:12]}",
+            )
+        )
+    return Table(f"table_{number}", f"Table {number}", COLUMNS, tuple(rows), heads=5)
+
+
+def _speed(each: Contestant) -> list[str]:
+    """How long its answers took on the road, unless they took no time."""
+    clock = [] if each.clock == Clock.FIXED else [f"{each.clock}'s clock"]
+    return clock + ([f"latency {each.latency_s:g} s"] if each.latency_s else [])
+
+
+def _conditions(suite: str, plan: Json, rows: Sequence[EpisodeRow]) -> Conditions:
+    instances = sorted({(row.task, row.half, row.scenario, row.seed, row.repeat) for row in rows})
+    digest = hashlib.sha256(repr(instances).encode()).hexdigest()[:8]
+    limits = plan["limits"]
+    return Conditions(
+        suite=suite,
+        tasks=counted(len({row.task for row in rows}), "task"),
+        scenarios=", ".join(plan["scenarios"]) or "each task's own",
+        seeds=", ".join(map(str, sorted({row.seed for row in rows}))),
+        repeats=str(plan["repeats"]),
+        phrasings="held out" if plan["held_out"] else "any",
+        limits=f"{limits['steps']} steps, {limits['sim_s']:g} s simulated, {limits['tokens']:,} tokens",
+        episodes=f"{len(instances):,} of each ({digest})",
+    )

@@ -1,0 +1,67 @@
+"""What a check finds wrong: which file, which field, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from automotive_cosim.formats.toml import dotted
+from automotive_cosim.formats.words import shown
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """Something that does not fit the rest."""
+
+    file: str
+    """Path in the bundle or folder."""
+    field: str
+    """Where in the file; empty for the whole."""
+    why: str
+
+    def __str__(self) -> str:
+        return f"{self.file}{', ' if self.field else ''}{self.field}: {self.why}"
+
+
+def differences(
+    file: str, where: str, found: Mapping[str, Any], expected: Mapping[str, Any], names: Iterable[str], source: str
+) -> Iterator[Problem]:
+    """A problem for each named field that differs.
+
+    Args:
+        file: path of the file.
+        where: place of the object in it.
+        found: the object, as JSON.
+        expected: what it should be, as JSON.
+        names: the fields to compare.
+        source: where the expected values come from.
+    """
+    for name in names:
+        steps = _first(found.get(name), expected.get(name), (name,))
+        if steps is not None:
+            told = shown(_at(found, steps)), shown(_at(expected, steps))
+            yield Problem(file, f"{where} {dotted(steps)}".strip(), f"is {told[0]}, but {told[1]} by {source}")
+
+
+def _first(one: Any, other: Any, steps: tuple[str | int, ...]) -> tuple[str | int, ...] | None:
+    """The path to the first value that differs; None if all are the same. 1 and true differ, 1 and 1.0 do not."""
+    if isinstance(one, dict) and isinstance(other, dict) and one.keys() == other.keys():
+        inner = ((one[key], other[key], (*steps, key)) for key in one)
+    elif isinstance(one, list | tuple) and isinstance(other, list | tuple) and len(one) == len(other):
+        inner = (
+            (first, second, (*steps, number)) for number, (first, second) in enumerate(zip(one, other, strict=True))
+        )
+    else:
+        same = one == other and isinstance(one, bool) == isinstance(other, bool)
+        return None if same else steps
+    return next((found for each in inner if (found := _first(*each)) is not None), None)
+
+
+def _at(value: Any, steps: Iterable[str | int]) -> Any:
+    """The value at a path; None where the last step of it is a field that is not there."""
+    for step in steps:
+        if isinstance(value, Mapping) and step not in value:
+            return None
+        value = value[step]
+    return value

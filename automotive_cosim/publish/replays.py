@@ -1,0 +1,81 @@
+"""Drives a stored episode again by its recorded actions and compares everything that follows from them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from automotive_cosim.agents import AgentSettings, make_agent
+from automotive_cosim.agents.settings import geo_input
+from automotive_cosim.contracts import ActionType, Json
+from automotive_cosim.interface.observe import ALL, Channel
+from automotive_cosim.publish.episodes import FROM_MOMENTS, ROWS
+from automotive_cosim.publish.problems import Problem, differences
+from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.moments import judged_file, read_judged
+from automotive_cosim.run.plan import EpisodeJob
+from automotive_cosim.run.rerun import Played, played
+from automotive_cosim.run.row import as_json, steady
+from automotive_cosim.run.store import read_trace, trace_file
+from automotive_cosim.traffic.fork import Simulations
+
+OF_THE_AGENT = frozenset({"prompt_tokens", "tokens_in", "tokens_out", "cost_usd", "end"})
+"""Fields of a row that the actions do not determine."""
+RESULT = (
+    "goal",
+    "verdict",
+    "timeline",
+    "path",
+    "violations",
+    "estimates",
+    "notes",
+    "load",
+    "drive",
+    "baseline_drive",
+)
+"""Fields of the result at the end of a trace that the actions determine."""
+STEP = ("time_s", *FROM_MOMENTS, "elements", "action", "feedback", "thought_s")
+
+
+def replay(folder: Path, job: EpisodeJob, row: EpisodeRow, simulations: Simulations) -> tuple[Problem, ...]:
+    """What differs when the actions of a stored episode are played again, bit for bit.
+
+    Raises:
+        CosimError: it cannot be played.
+    """
+    *steps, last = read_trace(folder, row.id)
+    found: tuple[Problem, ...] = ()
+    for channels in _channels(job, steps):
+        again = played(job, steps, channels, row.agent_error, simulations=simulations)
+        found = tuple(_differences(folder, row, steps, last, again))
+        if not found:
+            break
+    return found
+
+
+def _channels(job: EpisodeJob, steps: Sequence[Json]) -> list[frozenset[Channel]]:
+    """The channels that its agent may have had; no foreign agent is loaded to be asked for them."""
+    setup = job.setup
+    if ":" not in setup.agent:
+        settings = AgentSettings(geo_input(setup.geo), seed=setup.seed)
+        return [frozenset(make_agent(setup.agent, "rules", settings).channels)]  # whatever its model
+    asks = any(step["action"] and step["action"]["action_type"] == ActionType.QUERY for step in steps)
+    return [ALL, ALL - {Channel.GPS}, ALL - {Channel.CONTEXT}] if asks else [ALL]
+
+
+def _differences(
+    folder: Path, row: EpisodeRow, steps: Sequence[Json], last: Json, again: Played
+) -> Iterator[Problem]:
+    *new_steps, new_last = json.loads(json.dumps(again.lines))
+    file = trace_file(folder, row.id).relative_to(folder).as_posix()
+    if len(steps) != len(new_steps):
+        yield Problem(file, "", f"has {len(steps)} steps, and {len(new_steps)} when it is replayed")
+    for number, (step, new) in enumerate(zip(steps, new_steps, strict=False)):
+        yield from differences(file, f"step {number}", step, new, STEP, "its replay")
+    names = [name for name in RESULT if name in last["result"]]
+    yield from differences(file, "result", last["result"], new_last["result"], names, "its replay")
+    names = [name for name in steady(row) if name not in OF_THE_AGENT]
+    yield from differences(ROWS, row.id, as_json(row), as_json(again.row), names, "its replay")
+    if read_judged(folder, row.id) != again.judged:
+        yield Problem(judged_file(folder, row.id).relative_to(folder).as_posix(), "", "differs from its replay")

@@ -1,0 +1,133 @@
+"""A bundle has everything that a check needs, and nothing that is nobody's business."""
+
+import gzip
+import json
+import lzma
+import zipfile
+from importlib.resources import files
+from pathlib import Path
+
+import pytest
+
+from automotive_cosim.errors import UserError
+from automotive_cosim.publish import archive
+from automotive_cosim.publish.bundle import cleaned, write_bundle
+from automotive_cosim.publish.contents import read_contents
+from automotive_cosim.publish.verify import verify
+from automotive_cosim.run.collect import planned
+from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.store import opened, read_rows, read_trace, write_trace
+
+
+def plain_text(bundle):
+    """Everything in it, unpacked."""
+    with zipfile.ZipFile(bundle) as opened_:
+        for name in opened_.namelist():
+            data = opened_.read(name)
+            data = {".gz": gzip.decompress, ".xz": lzma.decompress}.get(Path(name).suffix, bytes)(data)
+            yield name, data.decode()
+
+
+def test_the_same_folder_gives_the_same_bytes(ran, packed, tmp_path):
+    made = write_bundle(ran, tmp_path / "again.bundle")
+    assert (tmp_path / "again.bundle").read_bytes() == packed.read_bytes()
+    with archive.unpacked(packed) as folder:
+        assert read_contents(folder) == made
+    assert (made.counts.planned, made.counts.judged, made.counts.errors, made.counts.not_run) == (6, 5, 1, 0)
+
+
+def test_the_schema_takes_what_a_bundle_says(packed):
+    jsonschema = pytest.importorskip("jsonschema")
+    schema = json.loads((files("automotive_cosim.schemas") / "bundle.schema.json").read_text())
+    told = json.loads(dict(plain_text(packed))["bundle.json"])
+    jsonschema.Draft7Validator(schema).validate(told)
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.Draft7Validator(schema).validate(told | {"format": 2})
+
+
+def test_nothing_in_it_tells_of_the_machine(ran, packed, tmp_path):
+    texts = dict(plain_text(packed))
+    assert "agent.py: gone" in texts["episodes.jsonl"]
+    for name, text in texts.items():
+        for word in ("anna", "/home/", str(Path.home()) + "/", str(tmp_path), str(ran), str(Path.cwd())):
+            assert word not in text, (name, word)
+
+
+def test_paths_are_cleaned_and_other_slashes_stay():
+    rest = "(/srv/z): 50 km/h, http://127.0.0.1:8/v1, a/b, 1 / 2"
+    told = cleaned(f"cannot read '/home/anna/my lab/x.toml' or C:\\Users\\anna\\y.py {rest}")
+    assert "/home/anna" not in told
+    assert "Users" not in told
+    assert "/srv" not in told
+    assert told.endswith("(z): 50 km/h, http://127.0.0.1:8/v1, a/b, 1 / 2")
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("LAB_API_KEY", "sk-0123456789abcdef"), ("HF_TOKEN", "hf_0123456789abc")]
+)
+def test_a_key_in_a_trace_is_refused_by_the_name_of_its_variable(folder, tmp_path, monkeypatch, name, value):
+    monkeypatch.setenv(name, value)
+    write_bundle(folder, tmp_path / "fine.bundle")
+    episode = next(row.id for row in read_rows(folder, EpisodeRow).values() if row.success is not None)
+    lines = read_trace(folder, episode)
+    lines[0]["thought"] = f"my key is {value}"
+    write_trace(folder, episode, lines)
+    with pytest.raises(UserError, match=name) as refused:
+        write_bundle(folder, tmp_path / "b.bundle")
+    assert value not in str(refused.value)
+    assert not (tmp_path / "b.bundle").exists()
+    lines[0]["thought"] = "/home/anna/notes"
+    write_trace(folder, episode, lines)
+    with pytest.raises(UserError, match="home folder"):
+        write_bundle(folder, tmp_path / "b.bundle")
+
+
+def test_a_plan_with_an_absolute_path_and_an_empty_folder_are_refused(tmp_path):
+    plan = make_plan({"agents": ["oracle"], "tasks": ["hvac_fan_max"], "scenarios": ["/srv/my/town"]})
+    with opened(tmp_path / "e", plan.as_json(), EpisodeRow) as store:
+        with pytest.raises(UserError, match="no episodes yet"):
+            write_bundle(tmp_path / "e", tmp_path / "b.bundle")
+        store.append(planned(plan.jobs()[0]))
+    with pytest.raises(UserError, match="absolute path"):
+        write_bundle(tmp_path / "e", tmp_path / "b.bundle")
+
+
+def test_a_stopped_evaluation_can_be_bundled_and_says_so(folder, tmp_path):
+    path = folder / "episodes.jsonl"
+    path.write_text("".join(path.read_text().splitlines(keepends=True)[:2]))
+    made = write_bundle(folder, tmp_path / "b.bundle")
+    assert (made.counts.judged, made.counts.not_run) == (2, 4)
+    found = verify(tmp_path / "b.bundle")
+    assert not found.problems
+    assert "2 of 6 planned episodes judged, 4 not run" in found.facts
+
+
+@pytest.mark.parametrize("member", ["../x", "/x", "traces/../../x", "lock", "traces/a/b.jsonl.gz", "bundle.json/"])
+def test_what_does_not_belong_in_a_bundle_is_refused(packed, tmp_path, member):
+    path = tmp_path / "b.bundle"
+    path.write_bytes(packed.read_bytes())
+    with zipfile.ZipFile(path, "a") as opened_:
+        opened_.writestr(member, "x")
+    with pytest.raises(UserError, match="does not belong"):
+        verify(path)
+
+
+def test_damaged_and_compressed_archives_are_refused_or_found(packed, tmp_path):
+    path = tmp_path / "b.bundle"
+    for data in (b"", b"nothing", packed.read_bytes()[:5000]):
+        path.write_bytes(data)
+        with pytest.raises(UserError, match="is not a bundle"):
+            verify(path)
+    with zipfile.ZipFile(packed) as old, zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as new:
+        for name in old.namelist():
+            new.writestr(name, old.read(name))
+    with pytest.raises(UserError, match="compressed"):
+        verify(path)
+    with zipfile.ZipFile(path, "w") as new:
+        new.writestr("manifest.json", "{}")
+    with pytest.raises(UserError, match=r"no bundle\.json"):
+        verify(path)
+    path.write_bytes(b"before" + packed.read_bytes())
+    (problem,) = verify(path).problems
+    assert "to the byte" in problem.why

@@ -1,0 +1,295 @@
+"""Whatever single field of a bundle is changed is found; what only its hashes show is on a list that says so."""
+
+import gzip
+import json
+import lzma
+import shutil
+from collections.abc import Iterator
+from copy import deepcopy
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from automotive_cosim.errors import UserError
+from automotive_cosim.publish import archive
+from automotive_cosim.publish.contents import NAME, file_sha256, read_contents
+from automotive_cosim.publish.episodes import BY_REPLAY, ON_TRUST, ROWS, check_episode
+from automotive_cosim.publish.replays import replay
+from automotive_cosim.publish.verify import PLAN_ON_TRUST, STARTS_ON_TRUST, hash_problems, verify
+from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.row import from_line
+from automotive_cosim.run.store import read_evaluation, read_rows, read_trace, write_trace
+
+OTHERS = {
+    "half": "second", "dimension": "explicit_control", "module": "media", "basis": "wish", "geo": "none",
+    "mode": "monitoring", "end": "out_of_time", "scenario": "paris_centre", "agent": "t3a", "country": "FR",
+}  # fmt: skip
+"""Legal values, which are harder to find than others."""
+
+
+def leaves(value: Any, steps: tuple = ()) -> Iterator[tuple]:
+    """The path to every value that is not a table or list, or is an empty one."""
+    if isinstance(value, dict | list) and value:
+        for key, inner in value.items() if isinstance(value, dict) else enumerate(value):
+            yield from leaves(inner, (*steps, key))
+    else:
+        yield steps
+
+
+def kinds(value: Any) -> list[tuple]:
+    """One path of each kind: entries of one list are alike, but the first and the last."""
+    found: dict[tuple, tuple] = {}
+    for steps in leaves(value):
+        found[tuple("*" if isinstance(step, int) else step for step in steps)] = steps
+    return list(found.values())
+
+
+def changed(value: Any, steps: tuple) -> Any:
+    """A copy with another value there."""
+    copy = deepcopy(value)
+    inner = copy
+    for step in steps[:-1]:
+        inner = inner[step]
+    old = inner[steps[-1]]
+    match old:
+        case bool():
+            new: Any = not old
+        case int() | float():
+            new = old + 1
+        case str():
+            new = OTHERS[steps[-1]] if steps[-1] in OTHERS and old != OTHERS[steps[-1]] else old + "0"
+        case None:
+            new = 1.0
+        case _:
+            new = ["x"] if isinstance(old, list) else {"x": 1}
+    inner[steps[-1]] = new
+    return copy
+
+
+def documents(path: Path) -> tuple[list[Any], Any]:
+    """The JSON documents in a file, and what writes them into it."""
+    if path.suffix == ".xz":
+        return [json.loads(lzma.decompress(path.read_bytes()))], lambda made: path.write_bytes(
+            lzma.compress(json.dumps(made[0]).encode(), preset=0)
+        )
+    if path.suffix == ".gz":
+        lines = gzip.decompress(path.read_bytes()).decode().splitlines()
+        return list(map(json.loads, lines)), lambda made: write_trace(
+            path.parents[1], path.name.removesuffix(".jsonl.gz"), made
+        )
+    if path.suffix == ".jsonl":
+        return list(map(json.loads, path.read_text().splitlines())), lambda made: path.write_text(
+            "".join(json.dumps(each, ensure_ascii=False) + "\n" for each in made)
+        )
+    return [json.loads(path.read_text())], lambda made: path.write_text(json.dumps(made[0]))
+
+
+def judged(folder: Path, agent: str = "asurada") -> EpisodeRow:
+    rows = read_rows(folder, EpisodeRow).values()
+    return next(row for row in rows if row.agent == agent and row.pair and row.half == "first")
+
+
+def job_of(folder: Path, row: EpisodeRow):
+    return next(job for job in make_plan(read_evaluation(folder)["plan"]).jobs() if job.id == row.id)
+
+
+@pytest.mark.slow
+def test_every_field_of_every_file_is_covered_by_its_hash(unpacked):
+    contents = read_contents(unpacked)
+    assert not hash_problems(unpacked, contents)
+    assert set(contents.files) == set(archive.members(unpacked)) - {NAME}
+    count, row = 0, judged(unpacked)
+    for name in contents.files:
+        if name.startswith("traces/") and row.id not in name:
+            continue  # alike
+        path = unpacked / name
+        whole, (values, write) = path.read_bytes(), documents(path)
+        for steps in kinds(values):
+            if steps[-1] == "*":
+                continue
+            write(changed(values, steps))
+            assert [problem.file for problem in hash_problems(unpacked, contents)] == [name], steps
+            count += 1
+        path.write_bytes(whole)
+    assert count > 500
+
+
+def test_a_bundle_and_its_folder_are_found_in_order_by_several_workers_too(ran, packed):
+    for path in (ran, packed):
+        for workers in (1, 2):
+            found = verify(path, workers=workers)
+            assert found.problems == ()
+            assert "5 of 6 planned episodes judged, 1 error" in found.facts
+            assert "5 verdicts judged again" in found.facts
+
+
+def problems_of_row(folder, job, values):
+    try:
+        row = from_line(EpisodeRow, json.dumps(values).encode())
+    except ValueError:
+        return ["refused"]
+    return check_episode(folder, job, row)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("agent", ["asurada", "no-op"])
+def test_every_field_of_a_row_is_found_by_its_trace_plan_and_verdict_whatever_the_hashes_say(ran, agent):
+    row = judged(ran, agent)
+    job = job_of(ran, row)
+    line = next(text for text in (ran / ROWS).read_text().splitlines() if json.loads(text)["id"] == row.id)
+    values = json.loads(line)
+    assert not problems_of_row(ran, job, values)
+    missed = set()
+    for steps in leaves(values):
+        assert isinstance(problems_of_row(ran, job, lacking(values, steps)), list | tuple)
+        if steps != ("id",) and not problems_of_row(ran, job, changed(values, steps)):
+            missed.add(f"{ROWS} {steps[0]}")
+    assert missed <= BY_REPLAY | ON_TRUST
+    assert f"{ROWS} wall_seconds" in missed
+
+
+@pytest.mark.slow
+def test_every_field_of_a_trace_is_found_or_on_the_list(folder):
+    row = judged(folder)
+    job, lines = job_of(folder, row), read_trace(folder, row.id)
+    missed = set()
+    for steps in kinds(lines):
+        write_trace(folder, row.id, changed(lines, steps))
+        found = check_episode(folder, job, row)
+        assert all(row.id in str(problem) for problem in found)
+        if not found:
+            missed.add(f"result {steps[2]}" if steps[1] == "result" else f"step {steps[1]}")
+    assert missed <= BY_REPLAY | ON_TRUST
+    write_trace(folder, row.id, lines)
+    assert not check_episode(folder, job, row)
+
+
+def renewed(folder: Path, out: Path) -> Path:
+    """A bundle of changed files with hashes that fit."""
+    made = read_contents(folder)
+    hashes = {name: file_sha256(folder / name) for name in archive.members(folder) if name != NAME}
+    (folder / NAME).write_text(replace(made, files=hashes).text())
+    archive.pack(folder, out)
+    return out
+
+
+def lacking(value: Any, steps: tuple) -> Any:
+    """A copy without what is there."""
+    copy = deepcopy(value)
+    inner = copy
+    for step in steps[:-1]:
+        inner = inner[step]
+    del inner[steps[-1]]
+    return copy
+
+
+def is_found(path: Path) -> bool:
+    try:
+        return bool(verify(path).problems)
+    except UserError:
+        return True
+
+
+@pytest.mark.slow
+def test_every_field_of_the_manifest_and_the_contents_is_found_or_on_the_list(unpacked, tmp_path):
+    missed = set()
+    for name in ("manifest.json", NAME):
+        whole = (unpacked / name).read_bytes()
+        values = json.loads(whole)
+        for steps, change in ((steps, change) for steps in leaves(values) for change in (changed, lacking)):
+            other = json.dumps(change(values, steps), indent=1, sort_keys=name == NAME)
+            (unpacked / name).write_text(other + ("\n" if name == NAME else ""))
+            try:
+                if name != NAME:
+                    renewed(unpacked, tmp_path / "b.bundle")
+                else:
+                    archive.pack(unpacked, tmp_path / "b.bundle")
+                if not is_found(tmp_path / "b.bundle"):
+                    missed.add((name, steps[0], next(step for step in steps[1:] if isinstance(step, str))))
+            finally:
+                (unpacked / name).write_bytes(whole)
+    assert not is_found(renewed(unpacked, tmp_path / "b.bundle"))
+    on_trust = {("manifest.json", "plan", field) for field in PLAN_ON_TRUST}
+    on_trust |= {("manifest.json", "starts", field) for field in STARTS_ON_TRUST}
+    assert missed <= on_trust
+
+
+def test_files_and_lines_too_many_or_too_few_are_found(unpacked, tmp_path):
+    lines = (unpacked / ROWS).read_text().splitlines(keepends=True)
+    for other in (
+        lines[:-1],
+        [*lines, lines[0]],
+        lines[::-1],
+        [lines[0].replace('"seed": 0', '"seed": 0, "x": 1'), *lines[1:]],
+    ):
+        (unpacked / ROWS).write_text("".join(other))
+        assert is_found(renewed(unpacked, tmp_path / "b.bundle"))
+    (unpacked / ROWS).write_text("".join(lines))
+    assert not is_found(renewed(unpacked, tmp_path / "b.bundle"))
+    traces = sorted((unpacked / "traces").iterdir())
+    shutil.copy(traces[0], traces[0].with_name("another.jsonl.gz"))
+    assert is_found(renewed(unpacked, tmp_path / "b.bundle"))
+    (unpacked / "traces" / "another.jsonl.gz").unlink()
+    for path in traces:
+        whole = path.read_bytes()
+        path.unlink()
+        assert is_found(renewed(unpacked, tmp_path / "b.bundle"))
+        path.write_bytes(whole)
+
+
+def test_a_verdict_that_was_turned_everywhere_is_found_and_named(unpacked, tmp_path):
+    row = judged(unpacked, "no-op")
+    (unpacked / ROWS).write_text(
+        (unpacked / ROWS).read_text().replace('"success": false, "reward": 0.0', '"success": true, "reward": 1.0')
+    )
+    *steps, last = read_trace(unpacked, row.id)
+    result = last["result"] | {"success": True, "reward": 1.0}
+    write_trace(unpacked, row.id, [*steps, {"result": result}])
+    told = list(map(str, verify(renewed(unpacked, tmp_path / "b.bundle")).problems))
+    assert any(f"{ROWS}, {row.id} success: is true, but false by" in problem for problem in told)
+
+
+def test_a_replay_finds_what_nothing_else_can(ran, simulations):
+    row = judged(ran)
+    job = job_of(ran, row)
+    assert list(replay(ran, job, row, simulations)) == []
+    assert row.speed_compliance is not None
+    forged = replace(row, speed_compliance=row.speed_compliance - 0.5)
+    assert not check_episode(ran, job, forged)
+    (problem,) = replay(ran, job, forged, simulations)
+    assert problem.field == f"{row.id} speed_compliance"
+
+
+@pytest.mark.slow
+def test_a_replay_finds_every_field_that_is_left_to_it(folder, simulations):
+    row = judged(folder)
+    job, lines = job_of(folder, row), read_trace(folder, row.id)
+    left = {
+        steps
+        for steps in kinds(lines)
+        if {f"step {steps[1]}", f"result {steps[-1] if len(steps) < 3 else steps[2]}"} & BY_REPLAY
+    }
+    assert len(left) >= 6
+    for steps in left:
+        write_trace(folder, row.id, changed(lines, steps))
+        assert list(replay(folder, job, row, simulations)), steps
+
+
+@pytest.mark.sumo
+def test_the_commands_tell_by_their_exit_code(packed, tmp_path):
+    from typer.testing import CliRunner
+
+    from automotive_cosim.cli.main import app
+
+    fine = CliRunner().invoke(app, ["verify", str(packed), "--replay", "1"])
+    assert fine.exit_code == 0, fine.output
+    assert "1 drive replayed" in fine.output
+    assert "cannot be known from this" in fine.output
+    data = bytearray(packed.read_bytes())
+    data[data.index(b"wall_seconds") + 16] ^= 1
+    (tmp_path / "b.bundle").write_bytes(data)
+    bad = CliRunner().invoke(app, ["verify", str(tmp_path / "b.bundle"), "--replay", "0"])
+    assert bad.exit_code == 1 or isinstance(bad.exception, UserError)

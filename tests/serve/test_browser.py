@@ -1,0 +1,215 @@
+"""The pages in a real browser: Chromium, without a network. Skipped where Playwright or Chromium is missing."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import os
+import re
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from automotive_cosim.run.road_recorder import mark_as_written
+from automotive_cosim.serve.play import Game
+
+from .conftest import HOSTILE, Browser, result, road, step, write_evaluation, write_record
+
+playwright = pytest.importorskip("playwright.sync_api", reason="pip install 'automotive-cosim[browser]'")
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium: apt-get install chromium"),
+]
+
+Serving = Callable[..., Browser]
+expect = playwright.expect
+PATIENCE_MS = 20_000
+
+
+@pytest.fixture(scope="module")
+def chromium() -> Iterator[Any]:
+    with playwright.sync_playwright() as driver:
+        arguments = ["--no-sandbox"] if hasattr(os, "geteuid") and os.geteuid() == 0 else []
+        browser = driver.chromium.launch(executable_path=CHROMIUM, args=arguments)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def opened(chromium: Any) -> Iterator[Callable[..., Any]]:
+    """Opens a server's address and goes to a page; at the end, nothing may have gone wrong or elsewhere."""
+    contexts, wrong = [], list[str]()
+
+    def open_(browser: Browser, page: str = "#/", **options: Any) -> Any:
+        context = chromium.new_context(**({"viewport": {"width": 1280, "height": 900}} | options))
+        contexts.append(context)
+        tab = context.new_page()
+        tab.set_default_timeout(PATIENCE_MS)
+        tab.on("pageerror", lambda error: wrong.append(str(error)))
+        tab.on("console", lambda said: wrong.append(said.text) if "Content Security" in said.text else None)
+        tab.on("request", lambda asked: None if "//127.0.0.1:" in asked.url else wrong.append(asked.url))
+        tab.goto(browser.server.address)
+        tab.goto(f"http://127.0.0.1:{browser.server.server_port}/{page}")
+        return tab
+
+    yield open_
+    for context in contexts:
+        context.close()
+    assert not wrong
+
+
+def run_page(browser: Browser) -> str:
+    return f"#/run/{browser('/api/runs').json['records'][0]['id']}"
+
+
+def test_replay_by_mouse_and_keyboard_and_a_link_to_an_instant(
+    serving: Serving, opened: Callable[..., Any], tmp_path: Path
+) -> None:
+    write_record(tmp_path / "run")
+    page = opened(serving(tmp_path))
+    page.get_by_role("link", name="road_speed_80_in_50").click()
+    expect(page.get_by_role("heading", level=1)).to_have_text("road_speed_80_in_50")
+    expect(page.get_by_text("✓ Goal")).to_be_visible()
+    page.locator(".steps button").nth(2).click()
+    expect(page.locator(".clock")).to_have_text("+4 s")
+    expect(page.locator(".screen")).to_have_attribute("src", re.compile(r"/pictures/2$"))
+    expect(page.locator(".target")).to_be_visible()
+    expect(page).to_have_url(re.compile(r"\?at=4$"))
+    page.reload()
+    expect(page.locator(".clock")).to_have_text("+4 s")
+    page.locator("body").press(".")
+    expect(page.locator(".clock")).to_have_text("+6 s")
+    expect(page.get_by_role("heading", name="Step 3: taps “Warn driver”")).to_be_visible()
+    expect(page.locator(".about")).to_contain_text("72 km/h limit 50 · Rue")
+    expect(page.locator(".about")).to_contain_text("1 other vehicle in sight")
+    page.get_by_label("Time in the drive").press("Home")
+    expect(page.locator(".clock")).to_have_text("−2 s")
+    page.locator("h1").press(" ")
+    expect(page.get_by_role("button", name="Pause")).to_be_visible()
+    expect(page.locator(".clock")).not_to_have_text("−2 s")
+
+
+def test_a_vehicle_can_be_picked_and_its_name_is_text(
+    serving: Serving, opened: Callable[..., Any], tmp_path: Path
+) -> None:
+    write_record(tmp_path / "run", goal=HOSTILE, task=HOSTILE)
+    browser = serving(tmp_path)
+    page = opened(browser, run_page(browser))
+    expect(page.get_by_role("heading", level=1)).to_have_text(HOSTILE)
+    canvas = page.locator("canvas")
+    box = canvas.bounding_box()
+    middle_of_the_bus = {"x": box["width"] / 2 - 5 * 3.2, "y": box["height"] * 0.66 - 36 * 3.2}
+    canvas.click(position=middle_of_the_bus)
+    expect(page.locator(".vehicle")).to_contain_text(HOSTILE)
+    expect(page.locator(".vehicle")).to_contain_text("hazard lights")
+    page.get_by_role("button", name="Follow", exact=True).click()
+    expect(page.get_by_role("button", name="Follow the car")).to_have_attribute("aria-pressed", "false")
+    canvas.press("f")
+    expect(page.get_by_role("button", name="Follow the car")).to_have_attribute("aria-pressed", "true")
+    assert page.locator("img[onerror]").count() == 0
+    assert "broken" not in page.title().partition(" · ")[2]
+
+
+def test_a_running_episode_grows_and_a_lost_connection_comes_back(
+    serving: Serving, opened: Callable[..., Any], tmp_path: Path
+) -> None:
+    run = write_record(tmp_path / "run", steps=1, finished=False)
+    with (run / "road.jsonl.gz").open("wb") as raw:
+        mark_as_written(raw)
+        with gzip.GzipFile(fileobj=raw, mode="wb") as file:
+
+            def write(lines: list[dict[str, Any]]) -> None:
+                file.write("".join(json.dumps(line) + "\n" for line in lines).encode())
+                file.flush()
+                raw.flush()
+
+            write(road(range(-2, 1)))
+            browser = serving(tmp_path)
+            page = opened(browser, run_page(browser))
+            expect(page.locator(".pill")).to_have_text("Running")
+            expect(page.locator(".steps button")).to_have_count(1)
+            with (run / "steps.jsonl").open("a", encoding="utf-8") as steps:
+                steps.write(json.dumps(step(1)) + "\n")
+            write(road(range(1, 3))[3:])
+            expect(page.locator(".steps button")).to_have_count(2)
+
+            page.context.set_offline(True)
+            expect(page.locator(".warning")).to_contain_text("does not answer")
+            write(road(range(3, 8))[3:])
+            page.context.set_offline(False)
+            expect(page.locator(".warning")).to_be_hidden()
+            expect(page.get_by_label("Time in the drive")).to_have_attribute("max", "7")
+    (run / "episode.json").write_text(json.dumps(result()), encoding="utf-8")
+    expect(page.locator(".pill")).to_have_text("Success")
+    expect(page.get_by_text("✓ Goal")).to_be_visible()
+
+
+def test_results_are_filtered_down_to_a_step(serving: Serving, opened: Callable[..., Any], tmp_path: Path) -> None:
+    page = opened(serving(write_evaluation(tmp_path / "mine")))
+    page.get_by_role("link", name="mine").click()
+    expect(page.locator("tbody tr")).to_have_count(2)
+    page.get_by_label("Part not held").select_option("goal")
+    expect(page.locator("tbody tr")).to_have_count(1)
+    expect(page).to_have_url(re.compile("missing=goal"))
+    page.reload()
+    expect(page.locator("tbody tr")).to_have_count(1)
+    page.get_by_label("Part not held").select_option("")
+    page.locator("tbody a").first.click()
+    expect(page.locator(".about")).to_contain_text("other vehicles were not recorded")
+    page.locator(".steps button").nth(1).click()
+    expect(page.get_by_role("heading", name="Step 1: taps “Warn driver”")).to_be_visible()
+
+
+@pytest.mark.sumo
+def test_a_person_plays_by_keyboard_and_mouse(serving: Serving, opened: Callable[..., Any], tmp_path: Path) -> None:
+    page = opened(serving(tmp_path, game=Game(tmp_path, scenario="grid")), "#/play?task=hvac_fan_max")
+    page.get_by_label("Your code name").fill("blue heron")
+    page.get_by_role("button", name="Begin").click()
+    expect(page.locator(".said")).to_be_visible(timeout=60_000)
+    page.get_by_role("button", name="Climate", exact=True).first.focus()
+    page.keyboard.press("Enter")
+    fan = page.get_by_role("button", name="Max: Fan at full speed")
+    expect(fan).to_have_count(1)
+    box = fan.bounding_box()
+    page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    expect(page.locator(".playing [role=status]")).to_contain_text("FanSpeed is 100")
+    page.get_by_role("button", name="Done").click()
+    page.get_by_role("link", name="See the verdict").click(timeout=60_000)
+    expect(page.locator(".pill")).to_have_text("Success")
+    expect(page.locator(".head")).to_contain_text("human · blue heron")
+
+
+def test_every_page_fits_in_light_and_dark(serving: Serving, opened: Callable[..., Any], tmp_path: Path) -> None:
+    write_record(tmp_path / "run", goal="x" * 300)
+    write_evaluation(tmp_path / "mine")
+    browser = serving(tmp_path)
+    records = browser("/api/runs").json["records"]
+    run, mine = (next(each["id"] for each in records if each["kind"] == kind) for kind in ("run", "evaluation"))
+    pages = (
+        "#/",
+        f"#/run/{run}",
+        f"#/results/{mine}",
+        "#/tasks",
+        "#/tasks/road_horn_abroad",
+        "#/scenarios",
+        "#/play",
+        "#/no",
+    )
+    for width, scheme in ((1400, "light"), (820, "dark"), (360, "light")):
+        page = opened(browser, viewport={"width": width, "height": 900}, color_scheme=scheme)
+        for name in pages:
+            page.goto(f"http://127.0.0.1:{browser.server.server_port}/{name}")
+            expect(page.get_by_role("heading", level=1)).to_have_count(1)
+            expect(page.get_by_text("Loading …")).to_have_count(0)
+            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), f"{name} at {width}"
+            unnamed = page.evaluate(
+                "[...document.querySelectorAll('button, a, input, select, canvas, img')].filter((each) => "
+                "!each.textContent.trim() && !each.getAttribute('aria-label') && each.getAttribute('alt') === null "
+                "&& !each.querySelector('img[alt]'))"
+                ".length"
+            )
+            assert unnamed == 0, f"something on {name} has no name for a screen reader"
