@@ -16,8 +16,9 @@ import tempfile
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path, PurePosixPath, PureWindowsPath
+from typing import Any
 
-from automotive_cosim.contracts import Json
+from automotive_cosim.contracts import FeedbackCode, Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.publish import archive
 from automotive_cosim.publish.contents import FORMAT, NAME, Contents, counts, file_sha256
@@ -31,7 +32,7 @@ SHORTEST_KEY = 12
 """A shorter value of a variable that is named like a key is a dummy, and may occur anywhere."""
 _PATH = re.compile(r"""(?<![\w.:/\\<])(?:[A-Za-z]:)?[/\\](?=[\w.~])[^\s'"<>|,;()\[\]]+""")
 """An absolute path in a text."""
-_HOME = re.compile(rb"/home/\w|/Users/\w|/root/|[A-Za-z]:\\{1,2}Users\\{1,2}\w")
+_HOME = re.compile(r"/home/\w|/Users/\w|/root/|[A-Za-z]:\\{1,2}Users\\{1,2}\w")
 
 
 def write_bundle(folder: Path, out: Path) -> Contents:
@@ -90,18 +91,37 @@ def _stage(folder: Path, row: EpisodeRow, staged: Path) -> EpisodeRow:
                 target = staged / "traces" / path.name
                 target.parent.mkdir(exist_ok=True)
                 shutil.copyfile(path, target)
-        if clean.agent_error != row.agent_error and trace_file(staged, row.id).is_file():
-            *steps, last = read_trace(staged, row.id)
-            write_trace(staged, row.id, [*steps, _cleaned_result(last)])
+        if trace_file(staged, row.id).is_file():
+            lines = read_trace(staged, row.id)
+            if (published := list(map(_cleaned_line, lines))) != lines:
+                write_trace(staged, row.id, published)
     return clean
 
 
-def _cleaned_result(line: Json) -> Json:
-    """The result of an episode that the agent's side ended, without the folders in its reason."""
-    result = json.loads(json.dumps(line["result"]))
-    declared = result["verdict"]["parts"]["declared"]
-    result["agent_error"], declared["why"] = cleaned(result["agent_error"]), cleaned(declared["why"])
-    return {"result": result}
+def _cleaned_line(line: Json) -> Json:
+    """A line of a trace without folders in what an agent's side said; nothing else in it may name one."""
+    if "result" in line:
+        result = _without_homes(line["result"])
+        if result["agent_error"] is not None:
+            declared = result["verdict"]["parts"]["declared"]
+            result["agent_error"], declared["why"] = cleaned(result["agent_error"]), cleaned(declared["why"])
+        return {"result": result}
+    said = {name: _without_homes(line[name]) for name in ("thought", "stages")}
+    if line["feedback"]["code"] == FeedbackCode.MALFORMED:
+        said["feedback"] = line["feedback"] | {"text": cleaned(line["feedback"]["text"])}
+    return line | said
+
+
+def _without_homes(value: Any) -> Any:
+    """A copy of JSON in which texts with a home folder are cleaned."""
+    match value:
+        case str():
+            return cleaned(value) if _HOME.search(value) else value
+        case dict():
+            return {key: _without_homes(inner) for key, inner in value.items()}
+        case list():
+            return list(map(_without_homes, value))
+    return value
 
 
 def _refuse_secrets(staged: Path, environment: Mapping[str, str]) -> None:
@@ -120,6 +140,6 @@ def _refuse_secrets(staged: Path, environment: Mapping[str, str]) -> None:
         for secret, variable in secrets.items():
             if secret in data:
                 raise UserError(f"{name} has the value of {variable} in it; remove it from the evaluation first")
-        if found := _HOME.search(data):
-            told = data[found.start() : found.end() + 20].decode(errors="replace")
+        if found := _HOME.search(text := data.decode(errors="replace")):
+            told = text[found.start() : found.end() + 20]
             raise UserError(f"{name} has a home folder in it: {told!r}; remove it from the evaluation first")

@@ -77,10 +77,23 @@ def test_a_key_in_a_trace_is_refused_by_the_name_of_its_variable(folder, tmp_pat
         write_bundle(folder, tmp_path / "b.bundle")
     assert value not in str(refused.value)
     assert not (tmp_path / "b.bundle").exists()
-    lines[0]["thought"] = "/home/anna/notes"
-    write_trace(folder, episode, lines)
+
+
+def test_what_an_agents_side_says_loses_its_folders_and_other_places_are_refused(folder, tmp_path):
+    row = next(row for row in read_rows(folder, EpisodeRow).values() if row.success is not None)
+    lines = read_trace(folder, row.id)
+    lines[0]["thought"] = "as in /home/anna/notes, at 50 km/h"
+    lines[-1]["result"]["notes"] = ["/Users/anna/x.toml has no date"]
+    write_trace(folder, row.id, lines)
+    write_bundle(folder, tmp_path / "b.bundle")
+    assert "anna" not in "".join(text for _, text in plain_text(tmp_path / "b.bundle"))
+    with archive.unpacked(tmp_path / "b.bundle") as files_:
+        assert read_trace(files_, row.id)[0]["thought"] == "as in notes, at 50 km/h"
+    assert verify(tmp_path / "b.bundle").problems == ()
+    lines[0]["elements"][0]["text"] = "/home/anna/notes"
+    write_trace(folder, row.id, lines)
     with pytest.raises(UserError, match="home folder"):
-        write_bundle(folder, tmp_path / "b.bundle")
+        write_bundle(folder, tmp_path / "c.bundle")
 
 
 def test_a_plan_with_an_absolute_path_and_an_empty_folder_are_refused(tmp_path):

@@ -3,6 +3,7 @@
 import gzip
 import json
 import lzma
+import random
 import shutil
 from collections.abc import Iterator
 from copy import deepcopy
@@ -114,7 +115,7 @@ def test_every_field_of_every_file_is_covered_by_its_hash(unpacked):
             assert [problem.file for problem in hash_problems(unpacked, contents)] == [name], steps
             count += 1
         path.write_bytes(whole)
-    assert count > 500
+    assert count > 400
 
 
 def test_a_bundle_and_its_folder_are_found_in_order_by_several_workers_too(ran, packed):
@@ -238,6 +239,44 @@ def test_files_and_lines_too_many_or_too_few_are_found(unpacked, tmp_path):
         path.unlink()
         assert is_found(renewed(unpacked, tmp_path / "b.bundle"))
         path.write_bytes(whole)
+
+
+@pytest.mark.slow
+def test_cut_and_damaged_files_are_found_or_refused_whatever_the_hashes_say(unpacked, tmp_path):
+    rng = random.Random(0)
+    row = judged(unpacked)
+    files = [f"traces/{row.id}.jsonl.gz", f"traces/{row.id}.judged.json.xz", "manifest.json", ROWS, NAME]
+    for name in files:
+        whole = (unpacked / name).read_bytes()
+        deep = b"[" * 100_000
+        flipped = [bytearray(whole) for _ in range(3)]
+        for data in flipped:
+            data[rng.randrange(len(data) // 2)] ^= 1 << rng.randrange(7)
+        packs = {".gz": gzip.compress, ".xz": lzma.compress}
+        nested = packs.get(Path(name).suffix, bytes)(deep)
+        for data in (b"", whole[: len(whole) // 2], nested, *flipped):
+            (unpacked / name).write_bytes(data)
+            if name == NAME:
+                archive.pack(unpacked, tmp_path / "b.bundle")
+            else:
+                renewed(unpacked, tmp_path / "b.bundle")
+            assert is_found(tmp_path / "b.bundle") or is_on_trust(name, bytes(data), whole)
+        (unpacked / name).write_bytes(whole)
+    assert not is_found(renewed(unpacked, tmp_path / "b.bundle"))
+
+
+def is_on_trust(name: str, data: bytes, whole: bytes) -> bool:
+    """Whether a change hit nothing but what cannot be known."""
+    if name == ROWS:
+        one, other = ([json.loads(line) for line in text.splitlines()] for text in (data, whole))
+        fields = {f"{ROWS} {key}" for a, b in zip(one, other, strict=True) for key in b if a.get(key) != b[key]}
+        return fields <= BY_REPLAY | ON_TRUST
+    if name == "manifest.json":
+        plans = [json.loads(text)["plan"] for text in (data, whole)]
+        return all(plans[0].get(key) == plans[1][key] or key in PLAN_ON_TRUST for key in plans[1])
+    if name.endswith(".gz"):
+        return gzip.decompress(data) == gzip.decompress(whole)
+    return name.endswith(".xz")  # the baseline run and the states between steps: a replay finds them
 
 
 def test_a_verdict_that_was_turned_everywhere_is_found_and_named(unpacked, tmp_path):
