@@ -114,6 +114,8 @@ def test_a_contestant_without_an_episode_yet_is_shown(tmp_path):
     found = read_results(write(tmp_path / "e", mine))
     assert {each.agent for each in found.contestants} == {"asurada", "t3a", "always-alert"}
     assert not found.shared().rows
+    page = write_report(tmp_path / "e").read_text(encoding="utf-8")
+    assert "on the 0 instances that all of them have run" in page
     assert any(
         line.startswith("t3a") and "0 of 0 episodes" in line and "not run" in line for line in standings(found)
     )
