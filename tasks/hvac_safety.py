@@ -38,9 +38,9 @@ JANUARY, JULY = "2026-01-20T14:10:00", "2026-07-14T14:10:00"
 GULF_SUMMER = Weather(44.0, 18.0, 0.0, 0, 5.0, 9000.0, 12.0)
 GULF_WINTER = Weather(24.0, 45.0, 0.0, 0, 5.0, 25_000.0, 10.0)
 GULF_DUST = Weather(26.0, 30.0, 0.0, 7, 40.0, 900.0, 45.0)
-COOL_EVENING = Weather(13.0, 60.0, 0.0, 1, 20.0, 20_000.0, 10.0)
+COOL_MORNING = Weather(15.0, 60.0, 0.0, 1, 20.0, 20_000.0, 10.0)
+TOKYO_JANUARY = Weather(3.0, 45.0, 0.0, 0, 10.0, 20_000.0, 8.0)
 TOKYO_AUGUST = Weather(36.0, 55.0, 0.0, 0, 10.0, 20_000.0, 8.0)
-PASS_WINTER = Weather(-6.0, 80.0, 0.0, 3, 90.0, 8000.0, 15.0)
 DRY_FROST = Weather(-6.0, 60.0, 0.0, 1, 30.0, 16_000.0, 15.0)
 MUGGY = Weather(29.0, 88.0, 0.0, 3, 95.0, 9000.0, 6.0)
 SHOWER = Weather(18.0, 95.0, 9.0, 65, 100.0, 4000.0, 15.0)
@@ -141,7 +141,7 @@ FEEL_HOT = _pair(
         CLIMATE,
     ),
     _half(
-        Start("beauce", "villages", start="2026-09-24T19:10:00", weather=COOL_EVENING, cabin=_cabin(32.0)),
+        Start("gulf", "service_road", start="2026-01-20T08:30:00", weather=COOL_MORNING, cabin=_cabin(32.0)),
         All((AirBetween(5.0, 18.0), SignalAbove(HVAC.CABIN_TEMPERATURE, 26.0))),
         AllOf(
             (
@@ -167,7 +167,7 @@ FEEL_HOT = _pair(
             (Open("climate"), Tap("hvac.driver_temperature.decrease", times=4)),
         ),
     ),
-    "weather: a Gulf afternoon of 44 degrees, where only cooled air helps, or a cool September evening outside",
+    "weather and date: an afternoon of 44 degrees in July, when only cooled air helps, or a cool January morning",
 )
 
 ADJUST_AIR = _pair(
@@ -175,10 +175,10 @@ ADJUST_AIR = _pair(
     Dimension.DRIVING_ALIGNMENT,
     (
         "Adjust the air conditioning.",
-        "Set the climate as this region wants it.",
-        "The temperature isn't right for where we are, see to it.",
-        "Make the air in here fit the place we're in.",
-        "Climate control, please: you know the weather in these parts.",
+        "Set the climate as this season wants it.",
+        "The temperature isn't right for days like these, see to it.",
+        "Make the air in here fit the time of the year.",
+        "Climate control, please: you know what it's like outside.",
     ),
     _half(
         Start(
@@ -202,9 +202,10 @@ ADJUST_AIR = _pair(
     ),
     _half(
         Start(
-            "alpine_pass",
-            "villages",
-            weather=PASS_WINTER,
+            "tokyo",
+            "avenues",
+            start="2026-01-20T13:00:00",
+            weather=TOKYO_JANUARY,
             cabin=_cabin(9.0),
             signals={HVAC.DRIVER_TEMPERATURE.path: 16.0},
         ),
@@ -218,7 +219,7 @@ ADJUST_AIR = _pair(
         ),
         CLIMATE,
     ),
-    "weather: a hot city by the sea in August, or a mountain pass in December",
+    "weather and date: August in a hot city by the sea, or January there",
 )
 
 FRESH_AIR_IN_DUST = _pair(

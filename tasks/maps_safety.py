@@ -40,7 +40,7 @@ AT_THE_SIGN = Deadline(8.0, "250 m at 80 km/h and 1.5 m/s2 to 50 km/h: the braki
 TO_PORTAL = Deadline(8.0, "the time to the portal at the present speed")
 STOPPING = Deadline(10.0, "a driver who wants to stop does so within a few seconds, without help if necessary")
 NO_FUEL = Deadline(30.0, "with a few kilometres short, every minute of driving makes the way back longer")
-NEXT_EXIT = Deadline(20.0, "at the 20 to 36 km/h that such fog allows, an exit 300 m ahead is 30 s away")
+NEXT_EXIT = Deadline(20.0, "at the 20 to 36 km/h that such fog allows, the car covers 200 m in 20 s, unseeing")
 VILLAGES = Start("alpine_pass", "villages", driver="average", weather=FAIR, sign_camera=False)
 QUEUE, QUEUE_FREE = replace(VILLAGES, trip="jam"), VILLAGES
 SCHOOLS = Start("sydney", "school_run", driver="calm", weather=FAIR, sign_camera=False)

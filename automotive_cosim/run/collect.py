@@ -82,6 +82,7 @@ class Collector(Watcher):
             episode.baseline_moments,
             episode.watched_from_s,
             episode.counterfactual,
+            episode.instance.half.allowed_writes,
         )
 
     def keeps_pictures_of(self, result: EpisodeResult) -> bool:

@@ -60,6 +60,8 @@ class Judged:
     counterfactual: Mapping[str, Any] | None = None
     """What would be commanded at the end, had the agent given only the commands that belong to the goal; None in an
     older file, which had none."""
+    allowed_writes: frozenset[str] = frozenset()
+    """The commands that belonged to it (``Half.allowed_writes``)."""
 
 
 def judged_file(folder: Path, episode: str) -> Path:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from automotive_cosim.errors import CosimError
+from automotive_cosim.errors import CosimError, UserError
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.moments import read_judged
 from automotive_cosim.run.store import read_evaluation, read_rows
@@ -62,6 +62,8 @@ def _regraded(folder: Path, row: EpisodeRow, held: PartsHeld) -> Regraded:
         stored = read_judged(folder, row.id)
         assert stored.counterfactual is not None
         instance = Instance(CATALOGUE[row.task], row.half, stored.goal, stored.parameters)
+        if stored.allowed_writes != instance.half.allowed_writes:
+            raise UserError(f"{row.task} now allows other commands than it did, so run {row.id} again")
         verdict = judge(
             instance,
             stored.trace,

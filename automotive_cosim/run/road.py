@@ -21,7 +21,6 @@ The file is written while the drive goes on; what a kill leaves is readable up t
 from __future__ import annotations
 
 import gzip
-import json
 import zlib
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
@@ -31,9 +30,11 @@ from pathlib import Path
 
 from automotive_cosim.contracts import Json, LaneShape, RoadShapes, SeenVehicle
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats.files import MOST_UNPACKED_BYTES, parse_json
 
 FORMAT = 1
 NAME = "road.jsonl.gz"
+LONGEST_LINE_BYTES = 2**26
 
 GroundLine = tuple[tuple[float, float], ...]
 
@@ -78,6 +79,13 @@ def read_record(path: Path) -> RoadRecord:
     Raises:
         UserError: it cannot be read, or has another format.
     """
+    try:
+        return _record(path)
+    except (LookupError, TypeError, ValueError, AttributeError) as error:
+        raise UserError(f"cannot read {path}: {type(error).__name__}: {error}") from error
+
+
+def _record(path: Path) -> RoadRecord:
     lanes: list[LaneShape] = []
     junctions: list[GroundLine] = []
     names: dict[int, tuple[str, str, float, float]] = {}
@@ -106,7 +114,7 @@ def read_road(path: Path) -> Iterator[Json]:
         with gzip.open(path, "rb") as file:
             begun = False
             for line in _whole_lines(file):
-                entry = json.loads(line)
+                entry = parse_json(line)
                 if not begun and entry.get("format") != FORMAT:
                     raise UserError(f"{path} has format {entry.get('format')!r}; this version reads {FORMAT}")
                 begun = True
@@ -116,8 +124,12 @@ def read_road(path: Path) -> Iterator[Json]:
 
 
 def _whole_lines(file: gzip.GzipFile) -> Iterator[bytes]:
+    left = MOST_UNPACKED_BYTES
     try:
-        for line in file:
+        while line := file.readline(LONGEST_LINE_BYTES):
+            left -= len(line)
+            if left < 0:
+                raise ValueError(f"it unpacks to over {MOST_UNPACKED_BYTES // 10**6} MB")
             if line.endswith(b"\n"):
                 yield line
     except EOFError:

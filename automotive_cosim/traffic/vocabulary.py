@@ -257,13 +257,18 @@ INPUTS: Mapping[str, str] = {
 WRITING_LIGHT = "file"
 """The parameter with which a traffic light's detectors write."""
 
+LOGGING_LIGHT = "SWARMLOG"
+"""The parameter with which a traffic light of type ``swarm`` opens a log; ``NUL`` would be a file of that name."""
+
 
 def parameter(key: str) -> bool | None:
-    """Whether a parameter is taken; None if it is left out, since its device would write.
+    """Whether a parameter is taken; None if it is left out, since SUMO would write.
 
     Raises:
         KeyError: it is a device's, and unknown.
     """
+    if key == LOGGING_LIGHT:
+        return None
     if not key.startswith(("device.", "person-device.", "has.")):
         return True
     if key.startswith("has."):

@@ -34,6 +34,7 @@ from automotive_cosim.osm.counts import read_counts
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.moments import judged_file, read_judged
 from automotive_cosim.run.plan import make_plan, read_plan
+from automotive_cosim.run.road import read_record
 from automotive_cosim.run.script import read_script
 from automotive_cosim.run.store import read_evaluation, read_rows, read_trace, write_trace
 from automotive_cosim.scenery import open_scenario
@@ -82,6 +83,13 @@ ROW = {"id": "a", "task": "hvac_fan_max", "half": "first", "pair": "", "dimensio
        "module": "hvac", "scenario": "grid", "agent": "oracle", "model": "none", "geo": "full", "seed": 0,
        "repeat": 0}  # fmt: skip
 ANSWER = {"text": "a", "tokens_in": 1, "tokens_out": 1, "cost_usd": 0.0}
+ROAD = (
+    {"format": 1},
+    {"lanes": [["road", 3.2, [0.0, 1.0, 2.0, 3.0], [["c1", 0]]]]},
+    {"junctions": [[0.0, 1.0, 2.0, 3.0]]},
+    {"vehicles": [[0, "ego", "passenger", 4.5, 1.8]]},
+    {"at_s": 0.0, "seen": [[0, 1.0, 2.0, 90.0, 13.9, 0]], "lights": {"c1": "G"}, "incidents": [], "sun_deg": 30.0},
+)
 STEP = {"stages": [{"asked": "x", "pictures": False, "reply": ANSWER}]}
 
 
@@ -129,6 +137,8 @@ def _kinds(folder: Path) -> Iterator[tuple[str, Kind]]:
         (results / "traces/a.jsonl.gz").read_bytes(),
         lambda _: read_trace(results, "a"),
     )
+    road = "".join(f"{json.dumps(line)}\n" for line in ROAD)
+    yield kind("road.jsonl.gz", gzip.compress(road.encode()), read_record)
     judged_file(results, "a").parent.mkdir(parents=True, exist_ok=True)
     name = str(judged_file(results, "a").relative_to(folder))
     yield kind(
@@ -148,6 +158,7 @@ NAMES = (
     "map.osm", "map.osm.gz", "map.json", "town/scenario.toml", "town/x.sumocfg", "town/x.add.xml", "FR.toml",
     "plan.toml", "actions.jsonl", "counts.csv", "answers/steps.jsonl", "results/manifest.json",
     "results/episodes.jsonl", "results/traces/a.jsonl.gz", "memory.db",
+    "road.jsonl.gz",
 )  # fmt: skip
 
 
@@ -174,6 +185,8 @@ def test_the_good_file_is_read(kinds: dict[str, Kind], name: str) -> None:
 @given(data=st.data())
 def test_a_damaged_file_is_read_or_refused(kinds: dict[str, Kind], name: str, data: st.DataObject) -> None:
     good = kinds[name].good
+    is_inside = name.endswith(".gz") and data.draw(st.booleans())
+    good = gzip.decompress(good) if is_inside else good
     place = st.integers(0, len(good) - 1)
     broken = bytearray(good)
     match data.draw(st.sampled_from(["cut", "flipped", "swapped", "repeated", "other"])):
@@ -190,7 +203,7 @@ def test_a_damaged_file_is_read_or_refused(kinds: dict[str, Kind], name: str, da
             broken = bytearray(good[:last] + good[first:last] * data.draw(st.integers(1, 30)) + good[last:])
         case _:
             broken = bytearray(kinds[data.draw(st.sampled_from(NAMES))].good)
-    _accepted_or_refused(kinds[name], bytes(broken))
+    _accepted_or_refused(kinds[name], gzip.compress(broken, 1) if is_inside else bytes(broken))
 
 
 ROUGH = st.sampled_from(
@@ -202,16 +215,18 @@ NUMBER = re.compile(rb'(?<=[" :=\[,])-?\d+(\.\d+)?(?=["\s,}\]])|(?<=")[^"<>\n]{1
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", [name for name in NAMES if not name.endswith((".gz", ".db"))])
+@pytest.mark.parametrize("name", [name for name in NAMES if not name.endswith(".db")])
 @QUICK
 @given(data=st.data(), rough=ROUGH | st.text(st.characters(codec="utf-8"), max_size=20))
 def test_any_value_anywhere_is_read_or_refused(
     kinds: dict[str, Kind], name: str, data: st.DataObject, rough: str
 ) -> None:
-    good = kinds[name].good
+    is_packed = name.endswith(".gz")
+    good = gzip.decompress(kinds[name].good) if is_packed else kinds[name].good
     spans = [found.span() for found in NUMBER.finditer(good)]
     first, last = data.draw(st.sampled_from(spans))
-    _accepted_or_refused(kinds[name], good[:first] + rough.encode() + good[last:])
+    rough_one = good[:first] + rough.encode() + good[last:]
+    _accepted_or_refused(kinds[name], gzip.compress(rough_one, 1) if is_packed else rough_one)
 
 
 XML = st.recursive(

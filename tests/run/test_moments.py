@@ -244,6 +244,9 @@ def test_stored_episodes_are_judged_again_by_the_present_checks(tmp_path, monkey
     assert not idle.differs
     assert (oracle.before, oracle.now) == (True, False)
     assert [(change.part, change.now) for change in oracle.changes] == [("in_time", False)]
+    wider = replace(task, first=replace(task.first, may_write=frozenset({"horn"})))
+    monkeypatch.setitem(CATALOGUE._tasks, task.id, wider)
+    assert all(each.now is None and "allows other commands" in each.problem for each in regrade(tmp_path / "e"))
     monkeypatch.delitem(CATALOGUE._tasks, task.id)
     assert all(each.now is None and "no task" in each.problem for each in regrade(tmp_path / "e"))
     assert before == {path: path.read_bytes() for path in (tmp_path / "e").rglob("*") if path.is_file()}

@@ -52,6 +52,7 @@ WRITING_ELEMENTS = (
     '<timedEvent type="SaveTLSProgram" source="%" dest="@"/>',
 )
 
+SWARM = '<tlLogic id="%" type="swarm" programID="z" offset="0"><param key="SWARMLOG" value="@"/></tlLogic>'
 NESTED_LIGHT = (
     '<tlLogic id="%" type="actuated" programID="y" offset="0"><phase duration="9" state="G">'
     '<param key="file" value="@"/></phase></tlLogic>'
@@ -199,7 +200,7 @@ def test_no_value_passes_as_an_option(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("root", ["additional", "routes", "net", "any"])
 @pytest.mark.parametrize(
-    "element", [*WRITING_ELEMENTS, *WRITING_VEHICLES, _light("actuated"), _light("NEMA"), NESTED_LIGHT]
+    "element", [*WRITING_ELEMENTS, *WRITING_VEHICLES, _light("actuated"), _light("NEMA"), NESTED_LIGHT, SWARM]
 )
 def test_what_writes_is_changed_wherever_it_stands(element: str, root: str, tmp_path: Path) -> None:
     (tmp_path / "a.xml").write_text(f"<{root}>{element.replace('@', 'evil.xml')}</{root}>")
