@@ -20,11 +20,11 @@ from automotive_cosim.run.harm import nearest_s
 from automotive_cosim.run.load import driver_load
 from automotive_cosim.run.moments import Judged, judged_file, read_judged
 from automotive_cosim.run.plan import EpisodeJob
+from automotive_cosim.run.regrade import judged_again
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.scenarios import shipped
 from automotive_cosim.tasking import verdict as verdicts
-from automotive_cosim.tasking.instance import Instance
 from automotive_cosim.tasking.task import Mode
 
 ROWS = "episodes.jsonl"
@@ -104,23 +104,12 @@ def _problems(folder: Path, job: EpisodeJob, row: EpisodeRow) -> Iterator[Proble
 def _judged_problems(folder: Path, job: EpisodeJob, row: EpisodeRow, told: Json) -> Iterator[Problem]:
     *steps, last = read_trace(folder, row.id)
     judged = read_judged(folder, row.id)
-    assert judged.counterfactual is not None
     file, result = trace_file(folder, row.id).relative_to(folder).as_posix(), dict(last["result"])
     if "untouched_drive" in result:  # its name in older traces
         result["baseline_drive"] = result.pop("untouched_drive")
     yield from _step_problems(file, steps, judged)
     source = judged_file(folder, row.id).relative_to(folder).as_posix()
-    instance = Instance(job.task, row.half, judged.goal, judged.parameters)
-    verdict = verdicts.judge(
-        instance,
-        judged.trace,
-        judged.baseline,
-        judged.counterfactual,
-        judged.declared,
-        judged.reason,
-        judged.watched_from_s,
-        row.agent_error,
-    )
+    verdict = judged_again(row, judged)
     whole = verdicts.as_json(verdict)
     start, end = judged.trace[0], judged.trace[-1]
     prompts = [stage["reply"]["tokens_in"] for step in steps for stage in step["stages"] if stage["reply"]]

@@ -52,8 +52,9 @@ UNKNOWN = (
 )
 """What no check can find out."""
 UNKNOWN_WITHOUT_REPLAY = (
-    "of the drives that were not replayed: that the traffic was SUMO's, the baseline run, the cockpit's answers, "
-    "and what is measured after the end (speed-limit compliance, time to collision, harm, path, violations)"
+    "of the drives that were not replayed: that the traffic was SUMO's, the baseline run, the counterfactual, the "
+    "cockpit's answers, and what is measured after the end (speed-limit compliance, time to collision, harm, path, "
+    "violations)"
 )
 UNKNOWN_WITHOUT_HASHES = "whether files were changed since: a folder has no hashes; a bundle has"
 
