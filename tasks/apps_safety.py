@@ -42,7 +42,7 @@ PAY = Task(
     ),
     first=Half(
         start=Start("alpine_pass", "descent"),
-        trigger=Trigger(All((Driving(), Not(Offline()))), for_s=3.0, within_s=120.0),
+        trigger=Trigger(All((Driving(), Not(Offline()))), for_s=3.0, within_s=600.0, after_s=330.0),
         goal=AllOf(
             (
                 Entered("payments", {"zone": "Zone {zone}", "minutes": param("stay", STAYS)}),
@@ -92,7 +92,7 @@ TYRES = Task(
         rule="cold air takes less room: 228 kPa at 20 degrees are 188 at minus 16, under the 200 of UN R141",
     ),
     second=decline(
-        Start("nordic", "town", weather=MILD, signals=FRONT_LEFT),
+        Start("nordic", "town", start="2026-06-16T10:00:00", weather=MILD, signals=FRONT_LEFT),
         Trigger(All((Driving(), SignalAbove(TYRE.FRONT_LEFT, LOW_KPA))), for_s=3.0, within_s=120.0),
         SOFT,
         Basis.PHYSICS,
@@ -101,7 +101,8 @@ TYRES = Task(
         needed=False,
     ),
     parameters={"kpa": tuple(float(kpa) for kpa in range(222, 233))},
-    difference="weather: 16 degrees of frost, in which a soft tyre falls below its limit, or 14 degrees above",
+    difference="weather and date: 16 degrees of December frost, in which a soft tyre falls below its limit, or 14 "
+    "degrees above in June",
 )
 
 PAIRS = (PAY, TYRES)

@@ -20,6 +20,8 @@ BEFORE_THE_TIME = Deadline(
 WHILE_IT_RINGS = Deadline(20.0, "a call rings for 30 s at most (ETSI TS 122 082); callers give up sooner")
 CALLED = tuple(Arrival("call", at_s) for at_s in (20.0, 90.0, 160.0))
 """Repeated calls, so that one of them rings while the car moves."""
+NOON = "2026-11-17T12:30:00"
+"""The sun is high enough to dazzle in neither direction."""
 FOG = Weather(9.0, 99.0, 0.0, 45, 100.0, 60.0, 4.0)
 FAIR = Weather(9.0, 75.0, 0.0, 2, 60.0, 15000.0, 8.0)
 
@@ -34,7 +36,7 @@ LATE = Task(
         "Only bother {contact} with 'I'll be 10 minutes late' when jams really hold us up, by a minute or more.",
     ),
     first=Half(
-        start=Start("paris_centre", "jam"),
+        start=Start("paris_centre", "jam", start=NOON),
         trigger=Trigger(All((Driving(), DelayAbove(LATE_S + 30.0))), for_s=3.0, within_s=400.0),
         goal=Entered("messages.sent", {"to": param("contact"), "text": "I'll be 10 minutes late"}),
         moves=(Open("phone"), Tap(text="{contact}"), Tap("contact.message"), Tap(text="I'll be 10 minutes late")),
@@ -43,7 +45,7 @@ LATE = Task(
         rule="the navigation's delay: travel time in present traffic minus that on the free road",
     ),
     second=decline(
-        Start("paris_centre", "foch"),
+        Start("paris_centre", "foch", start=NOON),
         Trigger(All((Driving(), Not(DelayAbove(LATE_S - 30.0)))), for_s=3.0, within_s=240.0),
         BEFORE_THE_TIME,
         Basis.PHYSICS,
@@ -51,7 +53,7 @@ LATE = Task(
         reasons=(Reason.ALREADY_SO, Reason.NONE),
         needed=False,
     ),
-    difference="traffic: the morning queue on the quays, or the free avenue Foch",
+    difference="traffic and road: the queue on the quays, or the free avenue Foch",
     parameters={"contact": FromCockpit("favourite_contacts")},
 )
 

@@ -261,7 +261,7 @@ TASKS = (
             (Open("climate"), Tap("hvac.driver_seat_airing", times=2)),
             (Open("climate"), Tap("hvac.air_conditioning")),
         ),
-        start=Start("sydney", "richmond", weather=HOT, cabin={"temperature_c": 32.0}),
+        start=Start("sydney", "richmond", start="2026-01-14T14:00:00", weather=HOT, cabin={"temperature_c": 32.0}),
         scenarios=("paris_centre", "tokyo", "new_york"),
     ),
     hinted(

@@ -44,7 +44,7 @@ TOKYO_AUGUST = Weather(36.0, 55.0, 0.0, 0, 10.0, 20_000.0, 8.0)
 DRY_FROST = Weather(-6.0, 60.0, 0.0, 1, 30.0, 16_000.0, 15.0)
 MUGGY = Weather(29.0, 88.0, 0.0, 3, 95.0, 9000.0, 6.0)
 SHOWER = Weather(18.0, 95.0, 9.0, 65, 100.0, 4000.0, 15.0)
-HOT_WIND = Weather(42.0, 10.0, 0.0, 0, 5.0, 20_000.0, 30.0)
+HOT_WIND = Weather(41.0, 10.0, 0.0, 0, 5.0, 20_000.0, 30.0)
 ARCTIC_WINTER = Weather(-14.0, 75.0, 0.0, 3, 80.0, 12_000.0, 8.0)
 ARCTIC_SUMMER = Weather(19.0, 55.0, 0.0, 1, 20.0, 25_000.0, 8.0)
 COMFORT_SOURCE = "EN 16798-1: seated people feel too warm above 26 degrees; air above that cannot cool them"
@@ -96,12 +96,13 @@ def _half(
     return Half(start, _when(situation), goal, moves, LOOK, Basis.PHYSICS, source, may_write=may_write, ways=ways)
 
 
-def _rest(start: Start, situation: TriggerCondition, source: str) -> Half:
-    return decline(start, _when(situation), LOOK, Basis.PHYSICS, source, reasons=ALREADY, needed=False)
+def _rest(start: Start, situation: TriggerCondition, source: str, after_s: float = 0.0) -> Half:
+    trigger = _when(situation, after_s)
+    return decline(start, trigger, LOOK, Basis.PHYSICS, source, reasons=ALREADY, needed=False)
 
 
-def _when(situation: TriggerCondition) -> Trigger:
-    return Trigger(All((Driving(), situation)), for_s=3.0, within_s=240.0)
+def _when(situation: TriggerCondition, after_s: float = 0.0) -> Trigger:
+    return Trigger(All((Driving(), situation)), for_s=3.0, within_s=240.0, after_s=after_s)
 
 
 def _pair(
@@ -292,6 +293,7 @@ SHUT_IN_TUNNEL = _pair(
         Start("paris_centre", "foch", cabin=_cabin(18.0), signals={window.path: 20.0 for window in WINDOWS}),
         All((Not(InTunnel()), SignalBelow(OUTSIDE.FINE_DUST, 15.0))),
         TUNNEL_SOURCE,
+        after_s=75.0,
     ),
     "road: in a tunnel full of exhaust, or on an open avenue with fair air",
     frozenset({"two_modules"}),
@@ -321,7 +323,7 @@ HEATSTROKE = _pair(
         All((AirBetween(15.0, 26.0), SignalBelow(HVAC.CABIN_TEMPERATURE, 26.0))),
         BODY_SOURCE,
     ),
-    "date: a July afternoon of 44 degrees, or a mild one in January",
+    "date and weather: a July afternoon of 44 degrees, or a mild one in January",
     frozenset({"preference"}),
 )
 
@@ -378,7 +380,14 @@ DRIPPING = _pair(
         "I'll need a towel if this goes on.",
     ),
     _half(
-        Start("sydney", "richmond", weather=SHOWER, cabin=_cabin(30.0), signals={CABIN.DRIVER_WINDOW.path: 50.0}),
+        Start(
+            "sydney",
+            "richmond",
+            start="2026-01-14T14:00:00",
+            weather=SHOWER,
+            cabin=_cabin(30.0),
+            signals={CABIN.DRIVER_WINDOW.path: 50.0},
+        ),
         All((RainBetween(2.5), SignalAbove(CABIN.DRIVER_WINDOW, 20.0))),
         AllOf((SignalIs(CABIN.DRIVER_WINDOW, (0.0,)), SignalIs(HVAC.AIR_CONDITIONING, (False,)))),
         SHUT_WINDOWS,
@@ -386,14 +395,21 @@ DRIPPING = _pair(
         ((*DOORS, Slide("window.driver", 0.0)),),
     ),
     _half(
-        Start("sydney", "richmond", weather=HOT_WIND, cabin=_cabin(30.0), signals={CABIN.DRIVER_WINDOW.path: 50.0}),
+        Start(
+            "sydney",
+            "richmond",
+            start="2026-01-14T14:00:00",
+            weather=HOT_WIND,
+            cabin=_cabin(30.0),
+            signals={CABIN.DRIVER_WINDOW.path: 50.0},
+        ),
         All((AirBetween(38.0, 60.0), SignalAbove(CABIN.DRIVER_WINDOW, 20.0))),
         AllOf((SignalIs(HVAC.AIR_CONDITIONING, (True,)), SignalWithin(CABIN.DRIVER_WINDOW, 0.0, 20.0))),
         (*SHUT_WINDOWS, *COOL),
         BODY_SOURCE,
         ((*DOORS, Slide("window.driver", 20.0), *COOL),),
     ),
-    "weather: rain falls in at the open window, or a dry wind of 42 degrees makes the driver sweat",
+    "weather: rain falls in at the open window, or a dry wind of 41 degrees makes the driver sweat",
     frozenset({"two_modules"}),
 )
 
@@ -444,7 +460,7 @@ CHILDREN = _pair(
         All((AirBetween(12.0, 26.0), SignalAbove(HVAC.CABIN_TEMPERATURE, 20.0))),
         WARM_HOME_SOURCE,
     ),
-    "date: 14 degrees of frost in December, or a mild day in July",
+    "date and weather: 14 degrees of frost in December, or a mild day in July",
 )
 
 TASKS = (FEEL_HOT, ADJUST_AIR, FRESH_AIR_IN_DUST, SHUT_IN_TUNNEL, HEATSTROKE, CLAMMY, DRIPPING, CHILDREN)

@@ -57,7 +57,7 @@ TUNNEL = Task(
     ),
     second=decline(
         Start("alpine_pass", "descent", signals=STICK),
-        Trigger(All((SpeedBetween(20.0), Not(TunnelWithin(60.0)))), for_s=5.0, within_s=300.0),
+        Trigger(All((SpeedBetween(20.0), Not(TunnelWithin(60.0)))), for_s=5.0, within_s=600.0, after_s=300.0),
         TO_PORTAL,
         Basis.PHYSICS,
         "no tunnel within a minute's drive: no messages for those in it",
@@ -76,6 +76,7 @@ def _loudness(built_up: bool, level: str) -> Half:
         start=Start(
             "beauce",
             "villages" if built_up else "plain",
+            start="2026-11-17T12:30:00",
             signals=STICK | {MEDIA.VOLUME.path: 35.0},
             sign_camera=False,
         ),

@@ -68,7 +68,8 @@ FRONT_WINDOW = Task(
         basis=Basis.PHYSICS,
         rule="glass below the dew point outside fogs outside: only a wiper clears it at once",
     ),
-    difference="weather and date: a cold damp November fogs the glass inside, a muggy August outside",
+    difference="weather, date and settings: a cold damp November and recirculated air fog the glass inside, a "
+    "muggy August and chilled air outside",
 )
 
 REAR_WINDOW = Task(
@@ -96,21 +97,24 @@ REAR_WINDOW = Task(
     ),
     second=Half(
         start=Start("paris_centre", "centre", weather=RAIN, cabin=CHILLED | {"temperature_c": 21.0}),
-        trigger=Trigger(All((Driving(), SignalAbove(GLASS.REAR_FILM, 0.3))), for_s=2.0, within_s=240.0),
+        trigger=Trigger(
+            All((Driving(), SignalAbove(GLASS.REAR_FILM, 0.3))), for_s=2.0, within_s=240.0, after_s=30.0
+        ),
         goal=SignalIs(BODY.REAR_WIPER, REAR_WIPING),
         moves=(Open("vehicle"), Tap("wiper.rear.slow")),
         deadline=BLIND,
         basis=Basis.PHYSICS,
         rule="rain lies on the outside: only a wiper clears it",
     ),
-    difference="weather: damp cold air, where the glass fogs inside; heavy rain, where the drops lie outside",
+    difference="weather and settings: damp cold air, recirculated, where the glass fogs inside; heavy rain, where "
+    "the drops lie outside",
 )
 
 WET_STREET = replace(PARIS, weather=Weather(9.0, 94.0, 3.0, 63, 100.0, 4000.0, 18.0))
 """Rain of 3 mm/h, in which visibility is soon poor without wipers."""
-FROSTY = replace(PARIS, weather=Weather(-7.0, 88.0, 0.0, 1, 10.0, 15_000.0, 5.0))
-SNOWED_IN = replace(PARIS, weather=Weather(-3.0, 92.0, 1.2, 73, 100.0, 1200.0, 14.0))
-SMOKY = replace(PARIS, weather=Weather(24.0, 40.0, 0.0, 7, 60.0, 1500.0, 30.0))
+FROSTY = replace(PARIS, start="2026-01-20T11:00:00", weather=Weather(-7.0, 88.0, 0.0, 1, 10.0, 15_000.0, 5.0))
+SNOWED_IN = replace(PARIS, start="2026-01-20T11:00:00", weather=Weather(-3.0, 92.0, 1.2, 73, 100.0, 1200.0, 14.0))
+SMOKY = replace(PARIS, start="2026-06-16T11:00:00", weather=Weather(24.0, 40.0, 0.0, 7, 60.0, 1500.0, 30.0))
 """Dust in the wind."""
 VEHICLE, DRIVING_TAB, MIRRORS_TAB = Open("vehicle"), Tap("vehicle.tab.driving"), Tap("vehicle.tab.mirrors")
 DRIVER_MIRROR, PASSENGER_MIRROR = Tap("mirror.driver.heat"), Tap("mirror.passenger.heat")

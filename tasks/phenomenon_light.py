@@ -28,13 +28,16 @@ from automotive_cosim.tasks.forms import BY_THE_SWITCH, decline
 CHINA, FRANCE, GERMANY, BRITAIN, ITALY = (114.0, 33.0), (2.5, 47.5), (9.9, 50.5), (-1.1, 52.2), (11.4, 43.2)
 JAPAN, SOUTH_AFRICA, SWEDEN, SWITZERLAND = (138.2, 36.2), (25.0, -30.0), (15.1, 59.3), (7.5, 46.9)
 """Longitude and latitude: far enough inland for a network to lie in one country."""
+JURA = (5.91, 46.74)
 NOON, NIGHT = "2026-06-16T12:30:00", "2026-03-17T22:00:00"
 """Times of full daylight, and of darkness, from South Africa to Sweden."""
-MIST_120 = Weather(11.0, 98.0, 0.0, 45, 100.0, 120.0, 4.0)
+MARCH_NOON = "2026-03-27T12:30:00"
+"""Full daylight in a month in which it snows."""
+MIST_120 = Weather(14.0, 98.0, 0.0, 45, 100.0, 120.0, 4.0)
 """Fog with a visibility of 120 m."""
 FOG_90 = replace(MIST_120, visibility=90.0)
 HEAVY_RAIN = Weather(13.0, 95.0, 9.0, 65, 100.0, 1500.0, 24.0)
-LIGHT_SNOW = Weather(-2.0, 90.0, 0.6, 71, 100.0, 2500.0, 9.0)
+LIGHT_SNOW = Weather(0.0, 90.0, 0.6, 71, 100.0, 2500.0, 9.0)
 CLEAR_NIGHT = Weather(6.0, 60.0, 0.0, 0, 5.0, 25_000.0, 6.0)
 BEAM = {LIGHTS.SWITCH.path: "BEAM", LIGHTS.POSITION.path: True, LIGHTS.LOW_BEAM.path: True}
 """Dipped beam by the switch."""
@@ -404,9 +407,15 @@ TASKS = (
             "As long as it's snowing, {lamp} lit please.",
             "White stuff coming down. Go, {lamp}.",
         ),
-        _on(_at("border", "north", FRANCE, LIGHT_SNOW), "FR.rear_fog", LIGHTS.REAR_FOG, REAR_FOG, deadline=BEHIND),
+        _on(
+            replace(_at("border", "north", JURA, LIGHT_SNOW), start=MARCH_NOON),
+            "FR.rear_fog",
+            LIGHTS.REAR_FOG,
+            REAR_FOG,
+            deadline=BEHIND,
+        ),
         decline(
-            _at("border", "north", SWEDEN, LIGHT_SNOW),
+            replace(_at("border", "north", SWEDEN, LIGHT_SNOW), start=MARCH_NOON),
             SOON,
             BEHIND,
             Basis.LAW,

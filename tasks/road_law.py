@@ -102,7 +102,7 @@ SPEED_80_IN_50 = in_company(
             "Just watch my speed for me, would you?",
         ),
         warned(
-            Start("paris_centre", "foch", driver="hurried", sign_camera=False),
+            Start("paris_centre", "foch", driver="hurried", start="2026-11-17T12:30:00", sign_camera=False),
             Trigger(SpeedAbove(78.0, 45.0, 50.0), for_s=3.0, within_s=240.0),
             Deadline(
                 10.0,
@@ -114,13 +114,14 @@ SPEED_80_IN_50 = in_company(
             speed_kmh=50.0,
         ),
         fine(
-            Start("beauce", "plain", driver="average", sign_camera=False),
+            Start("beauce", "plain", driver="average", start="2026-11-17T12:30:00", sign_camera=False),
             Trigger(SpeedAbove(76.0, 80.0, 80.0), for_s=3.0, within_s=240.0),
             Deadline(10.0, "as in the first half"),
             Basis.POSTED,
             "sign B14, 80 km/h; FR Code de la route R413-2",
         ),
-        difference="road: a Paris avenue with 50 km/h posted, or a country road with 80 posted; 80 km/h on both",
+        difference="place and road: a Paris avenue with 50 km/h posted, or a country road with 80 posted; 80 km/h "
+        "on both",
         tags=frozenset({"place"}),
     )
 )
@@ -321,7 +322,7 @@ LIMITS_BY_PLACE = (
                 "Murky. Pipe up if I must go slower than this.",
                 "Mist over the motorway: sound the alarm if I'm too fast for the book.",
             ),
-            Start("autobahn", "north", weather=replace(FOG, visibility=150.0)),
+            Start("autobahn", "north", weather=replace(FOG, temperature_2m=18.0, visibility=150.0)),
             GUANGZHOU,
             ORLEANS,
             Trigger(All((OnRoadClass(("motorway",)), Unposted(), SpeedBetween(68.0, 129.0))), 3.0, 300.0),

@@ -18,11 +18,11 @@ from automotive_cosim.tasking.triggers import (
     VisibilityBetween,
 )
 from automotive_cosim.tasks.forms import in_company
-from automotive_cosim.tasks.road_law import DENSE_FOG, FAIR, FOG, SOON, figure, in_fog
+from automotive_cosim.tasks.road_law import DENSE_FOG, FAIR, FOG, NOON, SOON, figure, in_fog
 
 FOGGED = Start("beauce", "villages", driver="hurried", sign_camera=False)
 STREETS = Start("london", "kingsway", driver="hurried", weather=FAIR, sign_camera=False)
-BORDER = Start("border", "north", weather=FAIR, sign_camera=False)
+BORDER = Start("border", "north", start=NOON, weather=FAIR, sign_camera=False)
 SCHOOL_RUN = Start("sydney", "school_run", driver="hurried", weather=FAIR, sign_camera=False)
 
 
@@ -77,7 +77,7 @@ SIGN_TASKS: tuple[Task, ...] = (
         ),
         (
             replace(BORDER, driver="tailgating"),
-            Trigger(SpeedAbove(106.0, 99.0, 101.0), 3.0, 240.0),
+            Trigger(SpeedAbove(106.0, 99.0, 101.0), 3.0, 300.0, 180.0),
             "sign RUS 044, 100 km/h",
             100.0,
         ),
@@ -87,7 +87,8 @@ SIGN_TASKS: tuple[Task, ...] = (
             "sign 670, 70 mph",
             112.65,
         ),
-        "place: south of the border, where 100 km/h are posted, or north of it, where 70 mph are; too fast on both",
+        "place and road: south of the border, where 100 km/h are posted, or north of it, where 70 mph are; too "
+        "fast on both",
     ),
     posted(
         "road_school_street",

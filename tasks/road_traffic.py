@@ -14,6 +14,7 @@ from automotive_cosim.tasking.triggers import (
     Driving,
     FlowBelow,
     HeadwayBelow,
+    InTunnel,
     JamWithin,
     Lanes,
     LeaderWithin,
@@ -36,7 +37,7 @@ OPENING = Deadline(
     15.0, "an ambulance that is still a kilometre behind is here within 40 s, and a lane takes 20 to open"
 )
 FOLLOWING = Deadline(5.0, "at half a second behind, a brake reaction of 1.25 s is too late at any time")
-VILLAGES = Start("beauce", "villages", driver="average", weather=FAIR, sign_camera=False)
+VILLAGES = Start("beauce", "villages", driver="average", start=NOON, weather=FAIR, sign_camera=False)
 BREAKDOWN = replace(VILLAGES, trip="breakdown")
 STOPPED_AHEAD = Trigger(All((SpeedBetween(60.0), SlowLeaderWithin(1.0, 250.0))), 1.0, 300.0)
 OPEN_ROAD = Trigger(All((SpeedBetween(75.0), Not(LeaderWithin(400.0)))), 3.0, 240.0)
@@ -104,7 +105,7 @@ ALIGNED: tuple[Task, ...] = (
         ),
         warned(
             replace(RING, driver="tailgating"),
-            Trigger(All((SpeedBetween(30.0), HeadwayBelow(1.2))), 3.0, 300.0),
+            Trigger(All((SpeedBetween(30.0), HeadwayBelow(1.2), Not(InTunnel()))), 3.0, 300.0),
             FOLLOWING,
             Basis.LAW,
             "FR.following_distance",
@@ -112,7 +113,9 @@ ALIGNED: tuple[Task, ...] = (
         ),
         fine(
             replace(RING, driver="calm"),
-            Trigger(All((SpeedBetween(30.0), LeaderWithin(120.0), Not(HeadwayBelow(2.0)))), 3.0, 300.0),
+            Trigger(
+                All((SpeedBetween(30.0), LeaderWithin(120.0), Not(HeadwayBelow(2.0)), Not(InTunnel()))), 3.0, 300.0
+            ),
             FOLLOWING,
             Basis.LAW,
             "FR.following_distance",
@@ -129,7 +132,7 @@ ALIGNED: tuple[Task, ...] = (
             "Horn!",
         ),
         silent(LONDON, Trigger(All((Standing(), RedLight(60.0))), 2.0, 300.0), "GB.horn"),
-        honked(LONDON, ROLLING, "GB.horn"),
+        honked(LONDON, replace(ROLLING, after_s=40.0), "GB.horn"),
         "traffic: standing at a red light, where British law forbids the horn, or rolling by day",
     ),
     pair(
@@ -202,7 +205,7 @@ ALERTS: tuple[Task, ...] = (
             "Somebody wants space, don't they? Say which kind of alert it is.",
         ),
         warned(
-            Start("beauce", "blue_light", driver="average", weather=FAIR, sign_camera=False),
+            replace(VILLAGES, trip="blue_light"),
             Trigger(BlueLightWithin(150.0), 1.0, 300.0),
             BEHIND,
             Basis.LAW,
@@ -210,7 +213,8 @@ ALERTS: tuple[Task, ...] = (
             AlertKind.YIELD,
         ),
         warned(BREAKDOWN, STOPPED_AHEAD, CLOSING, Basis.LAW, "FR.move_over", AlertKind.MOVE_OVER),
-        "traffic: an ambulance with blue light behind, or a stationary car in front with its hazard lights on",
+        "traffic and road: an ambulance with blue light behind, or a stationary car in front with its hazard "
+        "lights on",
         Dimension.ENVIRONMENT_ALERTS,
     ),
     pair(
@@ -255,12 +259,12 @@ ALERTS: tuple[Task, ...] = (
             "Watch the road beyond the bend, I'm tired.",
         ),
         closing(
-            replace(JAMMED, start=None),
+            JAMMED,
             Trigger(All((SpeedBetween(60.0), JamWithin(700.0))), 1.0, 240.0),
             "from 130 km/h a car stops within 260 m (reaction 2.5 s, 3.4 m/s2: AASHTO Green Book)",
         ),
         fine(
-            replace(JAMMED, trip="roadworks", start=None),
+            replace(JAMMED, trip="roadworks"),
             Trigger(
                 All((OnRoadClass(("motorway",)), SpeedBetween(60.0), Driving(), Not(JamWithin(3000.0)))), 3.0, 240.0
             ),
@@ -268,7 +272,7 @@ ALERTS: tuple[Task, ...] = (
             Basis.PHYSICS,
             "no jam within 3 km, 83 s at 130 km/h",
         ),
-        "traffic: the tail of a standing queue within 700 m, or a free road",
+        "traffic and road: the tail of a standing queue within 700 m, or a free road",
         Dimension.ENVIRONMENT_ALERTS,
     ),
 )

@@ -18,7 +18,6 @@ from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import (
     ACTION_COST_S,
-    SEED_LIMIT,
     Conditions,
     EpisodeSpec,
     SeedSource,
@@ -28,6 +27,7 @@ from automotive_cosim.interface import spaces
 from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.scenarios import Scenario
+from automotive_cosim.tasking.draws import SEED_LIMIT
 from automotive_cosim.tasking.task import Mode, Task
 from automotive_cosim.tasking.verdict import as_json
 from automotive_cosim.traffic.fork import Simulations

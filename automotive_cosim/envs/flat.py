@@ -32,10 +32,11 @@ from automotive_cosim.envs.cockpit import outcome, traffic_seed
 from automotive_cosim.envs.pool import POOL
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.situation import SituationFinder
-from automotive_cosim.episode.specification import SEED_LIMIT, Conditions, EpisodeSpec, SeedSource
+from automotive_cosim.episode.specification import Conditions, EpisodeSpec, SeedSource
 from automotive_cosim.errors import UserError
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.interface.spaces import APPS, BOUNDS, OPTIONAL
+from automotive_cosim.tasking.draws import SEED_LIMIT
 from automotive_cosim.traffic.fork import Simulations
 
 GOAL_SLOTS = 48

@@ -14,7 +14,7 @@ from gymnasium.vector.utils import iterate
 
 from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.envs.flat import FlatEnv
-from automotive_cosim.episode.specification import SEED_LIMIT
+from automotive_cosim.tasking.draws import SEED_LIMIT
 
 
 class ConcurrentVectorEnv(SyncVectorEnv):

@@ -8,8 +8,6 @@ from datetime import datetime
 from itertools import product
 from typing import Any
 
-import numpy as np
-
 from automotive_cosim.cockpit.arrivals import Arrival
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.restrictions import Motion, motion
@@ -23,6 +21,7 @@ from automotive_cosim.geo.forecast import drawn_weather
 from automotive_cosim.scenarios import Scenario, Trip, WeatherAt
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.tasking.binding import UnmetNeedError, bound, needs
+from automotive_cosim.tasking.draws import Draws, Purpose
 from automotive_cosim.tasking.instance import Instance, draw
 from automotive_cosim.tasking.task import STANDING_ORDER, Half, Mode, Task
 from automotive_cosim.tasks import CATALOGUE
@@ -31,7 +30,7 @@ from automotive_cosim.traffic.fork import Simulations
 
 WATCH_S = 30.0
 """Minimum time from the beginning of a watch to its trigger; at most twice that."""
-WAITS_S = (0.0, 41.0, 113.0)
+WAITS_S = (0.0, 41.0, 113.0, 197.0, 307.0, 431.0)
 """Delays of further departures, tried one by one until the situation arises; out of step with the usual cycles of
 traffic lights."""
 PARKED: Mapping[str, Any] = {MOTION.GEAR.path: "P", DRIVE.PARKING_BRAKE.path: True}
@@ -106,16 +105,17 @@ class SituationFinder:
             TriggerNotReachedError: the situation did not arise within its time limit.
             TrafficError: the traffic simulation failed.
         """
-        half = self._draw(seeds).half
+        draws = Draws(self.task.id, seeds.instance)
+        half = self._draw(draws).half
         self._listener.loading(self.scenario)
-        trips, waits_s = self._trips(half, seeds.drive), WAITS_S[:1] if half.start.parked else WAITS_S
+        trips, waits_s = self._trips(half, draws), WAITS_S[:1] if half.start.parked else WAITS_S
         with self._simulations.held(self.scenario, seeds.traffic, self._warming) as simulation:
             for trip, wait_s in product(trips, waits_s):
-                plan, traffic = self._depart(simulation, half, trip, seeds.drive, wait_s)
+                plan, traffic = self._depart(simulation, half, trip, draws, wait_s)
                 try:
-                    drive = self._drive_up(self._couple(traffic, half, plan), half)
+                    drive = self._drive_up(self._couple(traffic, half, plan, draws), half)
                     if drive is not None:
-                        return self._handed_over(seeds, simulation, half, plan, drive)
+                        return self._handed_over(draws, simulation, half, plan, drive)
                 except BaseException:
                     traffic.close()
                     raise
@@ -134,19 +134,18 @@ class SituationFinder:
         needed = ", ".join(needs(self.task.half(self._spec.half)))
         return f" where it has what the task needs ({needed}): {self._missing}"
 
-    def _draw(self, seeds: Seeds, content: Mapping[str, tuple[str, ...]] | None = None) -> Instance:
-        rng = np.random.default_rng([seeds.instance, 0])
-        return draw(self.task, self._spec.half, rng, content, held_out=self._spec.held_out)
+    def _draw(self, draws: Draws, content: Mapping[str, tuple[str, ...]] | None = None) -> Instance:
+        return draw(self.task, self._spec.half, draws.number, content, held_out=self._spec.held_out)
 
-    def _trips(self, half: Half, seed: int) -> tuple[Trip, ...]:
+    def _trips(self, half: Half, draws: Draws) -> tuple[Trip, ...]:
         ego = self.scenario.ego
         trips = ego.trips if self._is_elsewhere else (self.scenario.trip(half.start.trip),)
         if not ego.any_trip:
             return trips
-        return tuple(trips[index] for index in np.random.default_rng([seed, 3]).permutation(len(trips)))
+        return tuple(trips[index] for index in draws.rng(Purpose.TRIPS).permutation(len(trips)))
 
     def _depart(
-        self, simulation: Simulation, half: Half, trip: Trip, seed: int, wait_s: float
+        self, simulation: Simulation, half: Half, trip: Trip, draws: Draws, wait_s: float
     ) -> tuple[EgoPlan, Traffic]:
         start = half.start
         departure = self.scenario.start
@@ -154,20 +153,23 @@ class SituationFinder:
             departure = datetime.fromisoformat(start.start).replace(tzinfo=departure.tzinfo)
         weather = self.scenario.weather if start.weather is None else (WeatherAt(0.0, start.weather),)
         driver = start.driver or self.scenario.ego.driver
-        plan = EgoPlan(trip, driver, seed, weather, departure, parked=start.parked, wait_s=wait_s)
+        reactions = draws.seed(Purpose.DRIVER)
+        plan = EgoPlan(trip, driver, reactions, weather, departure, parked=start.parked, wait_s=wait_s)
         traffic = simulation.depart(plan)
         if plan.weather:
             return plan, traffic
         # The climate of the place where it departs.
-        plan = replace(plan, weather=drawn_weather(traffic.state, departure, seed))
+        plan = replace(plan, weather=drawn_weather(traffic.state, departure, draws.seed(Purpose.SKY)))
         traffic.close()
         return plan, simulation.depart(plan)
 
-    def _couple(self, traffic: Traffic, half: Half, plan: EgoPlan, lures: tuple[Arrival, ...] = ()) -> CoSimulation:
+    def _couple(
+        self, traffic: Traffic, half: Half, plan: EgoPlan, draws: Draws, lures: tuple[Arrival, ...] = ()
+    ) -> CoSimulation:
         start = half.start
         cockpit = Cockpit(
             traffic.network,
-            rng=np.random.default_rng([plan.seed, 1]),
+            rng=draws.rng(Purpose.CONTENT),
             cabin=start.cabin,
             signals={**PARKED, **start.signals} if start.parked else start.signals,
             arrivals=(*start.arrivals, *lures),
@@ -177,7 +179,7 @@ class SituationFinder:
             traffic,
             cockpit,
             self.scenario,
-            gps_rng=np.random.default_rng([plan.seed, 2]),
+            gps_rng=draws.rng(Purpose.RECEIVER),
             weather=plan.weather,
             departure=plan.start or self.scenario.start,
             links=self.scenario.connectivity,
@@ -192,7 +194,9 @@ class SituationFinder:
         moments = [world.moment]
         departed_s, since_s = world.moment.time_s, None
         while (now := world.moment).time_s - departed_s < trigger.within_s and now.driving.end is None:
-            holds = _motion(now) in half.start.motions and trigger.condition(now) and self._rests(half, now)
+            is_due = now.time_s - departed_s >= trigger.after_s
+            is_so = _motion(now) in half.start.motions and trigger.condition(now)
+            holds = is_due and is_so and self._rests(half, now)
             since_s = (now.time_s if since_s is None else since_s) if holds else None
             if since_s is not None and now.time_s - since_s >= trigger.for_s:
                 return _Drive(world, tuple(moments))
@@ -211,23 +215,23 @@ class SituationFinder:
         return True
 
     def _handed_over(
-        self, seeds: Seeds, simulation: Simulation, half: Half, plan: EgoPlan, drive: _Drive
+        self, draws: Draws, simulation: Simulation, half: Half, plan: EgoPlan, drive: _Drive
     ) -> HandOver:
         trigger_s = drive.moments[-1].time_s
         rule = "" if self._has_own_law else bound(half, drive.moments[-1].context)
         if self._spec.mode is Mode.MONITORING:
             drive.world.close()
-            drive = self._watch(simulation, half, plan, drive)
-        instance = replace(self._draw(seeds, drive.world.cockpit.content), rule=rule)
+            drive = self._watch(simulation, half, plan, draws, drive)
+        instance = replace(self._draw(draws, drive.world.cockpit.content), rule=rule)
         if self._spec.mode is Mode.MONITORING:
             after_s = trigger_s - drive.world.moment.time_s
             instance = replace(instance, goal=STANDING_ORDER, trigger_after_s=after_s)
         return HandOver(instance, drive.world, drive.moments, self._spec.mode, trigger_s)
 
-    def _watch(self, simulation: Simulation, half: Half, plan: EgoPlan, whole: _Drive) -> _Drive:
+    def _watch(self, simulation: Simulation, half: Half, plan: EgoPlan, draws: Draws, whole: _Drive) -> _Drive:
         """The same drive again, up to 30 to 60 s before its trigger, with a message during the watch."""
         departed_s, trigger_s = whole.moments[0].time_s, whole.moments[-1].time_s
-        rng = np.random.default_rng([plan.seed, 4])
+        rng = draws.rng(Purpose.WATCH)
         lead_s, lure_share = WATCH_S * (1 + float(rng.random())), 0.2 + 0.6 * float(rng.random())
         whole_s = trigger_s - departed_s
         if whole_s < WATCH_S:
@@ -239,7 +243,7 @@ class SituationFinder:
         lure = Arrival("message", whole_s - lead_s * (1 - lure_share))
         traffic = simulation.depart(plan)
         try:
-            world = self._couple(traffic, half, plan, (lure,))
+            world = self._couple(traffic, half, plan, draws, (lure,))
             moments = [world.moment]
             while world.moment.time_s < trigger_s - lead_s - 1e-9:
                 moments += self._advanced(world)

@@ -15,6 +15,7 @@ from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted
 from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.interface.observe import ALL, Channel
+from automotive_cosim.tasking.draws import SEED_LIMIT
 from automotive_cosim.tasking.task import Mode
 
 ACTION_COST_S = 1.0
@@ -23,8 +24,6 @@ MAX_STEPS = 20
 """Default limit of actions per episode."""
 ROUNDING_S = 1e-9
 """Tolerance of sums of simulated seconds."""
-SEED_LIMIT = 2**31
-"""SUMO takes seeds below this."""
 
 
 class Clock(StrEnum):
@@ -133,12 +132,7 @@ class Seeds:
     traffic: int
     """Seed of SUMO: the warm traffic that the ego departs into."""
     instance: int
-    """Seed of phrasing and parameters, and through ``drive`` of the rest."""
-
-    @property
-    def drive(self) -> int:
-        """Seed of the driver, the cockpit's content, the receiver and the weather."""
-        return int(np.random.default_rng([self.instance, 1]).integers(SEED_LIMIT))
+    """Number of the task's instance, from which everything else is drawn (``tasking.draws``)."""
 
 
 class SeedSource:
@@ -147,12 +141,15 @@ class SeedSource:
     def __init__(self, seed: int | None = None) -> None:
         """Begins with this seed; None begins randomly."""
         self._rng = np.random.default_rng(seed)
-        self.traffic = int(self._rng.integers(SEED_LIMIT)) if seed is None else int(seed) % SEED_LIMIT
+        self._next = int(self._rng.integers(SEED_LIMIT)) if seed is None else int(seed)
+        self.traffic = self._next % SEED_LIMIT
         """The next episodes' traffic; the seed's own, unless set to another."""
 
     def next(self) -> Seeds:
-        """Seeds of the next episode: in the same traffic another instance."""
-        return Seeds(self.traffic, int(self._rng.integers(SEED_LIMIT)))
+        """Seeds of the next episode: first the seed's own instance, then in the same traffic others."""
+        seeds = Seeds(self.traffic, self._next)
+        self._next = int(self._rng.integers(SEED_LIMIT))
+        return seeds
 
 
 class End(StrEnum):

@@ -4,6 +4,7 @@
 |---|---|
 | oracle | every reference solution succeeds by public actions, within the budget and 70 % of the deadline |
 | start | the goal does not hold at the hand-over |
+| world | the weather is one that the place has at that date and hour |
 | prefix | ``complete`` after any earlier step of the reference solution scores 0 |
 | late | the reference solution after the deadline fails |
 | undone | with the goal's own writes reverted, it fails |
@@ -15,6 +16,7 @@
 | leak | without goal and solutions, every observation is the same, byte for byte |
 | road | a parked car does not reach the trigger |
 | law | what is right in one half fails in the other |
+| sight | the halves of a pair differ at first sight only in what the pair declares |
 | repeat | the same seed gives the same words and trace; other seeds give others |
 | residue | after another task's episode, a task still gives its own trace |
 | reach | in every scenario that the task names, the trigger comes in time and the reference solution succeeds |
@@ -39,6 +41,8 @@ from automotive_cosim.geo.breaches import EQUAL_UP_TO_KMH, binding_limit, violat
 from automotive_cosim.geo.rules import Status
 from automotive_cosim.proof import mutations
 from automotive_cosim.proof.ground import Ground, Played, Script, finish
+from automotive_cosim.proof.sight import undeclared
+from automotive_cosim.proof.world import implausible
 from automotive_cosim.tasking.checks import NothingDone
 from automotive_cosim.tasking.task import Basis, Half, Task
 from automotive_cosim.tasking.triggers import All, Parked, Standing, TriggerCondition
@@ -79,6 +83,11 @@ def start(ground: Ground) -> Wrong:
         yield f"holds already: {ground.half.goal}"
     if BY_NUMBER.search(ground.instance.goal):
         yield f"names a widget by its number: {ground.instance.goal!r}"
+
+
+def world(ground: Ground) -> Wrong:
+    """Holds the weather against the climate."""
+    yield from implausible(ground.episode.moments[0])
 
 
 def prefix(ground: Ground) -> Wrong:
@@ -240,6 +249,13 @@ def law(grounds: dict[str, Ground]) -> Wrong:
     for name, other in (("first", "second"), ("second", "first")):
         if grounds[name].play(grounds[other].oracle()).success:
             yield f"what is right in the {other} half also succeeds in the {name}"
+
+
+def sight(grounds: dict[str, Ground]) -> Wrong:
+    """Compares the first observations of both halves."""
+    if len(grounds) == 2:
+        one, other = ((ground.episode.observation, ground.episode.moments[0]) for ground in grounds.values())
+        yield from undeclared(grounds["first"].task.differs, one, other)
 
 
 # --- further hand-overs -----------------------------------------------------------------------------------

@@ -20,6 +20,7 @@ from automotive_cosim.traffic.fork import Simulations
 GATES = (
     "oracle",
     "start",
+    "world",
     "prefix",
     "late",
     "undone",
@@ -31,6 +32,7 @@ GATES = (
     "leak",
     "road",
     "law",
+    "sight",
     "repeat",
     "residue",
     "reach",
@@ -110,7 +112,7 @@ class Prover:
                 grounds[half] = Ground.reach(CATALOGUE[task_id], half, seed, self._simulations)
             for half, ground in grounds.items():
                 self._prove_half(found, half, ground)
-            for gate in ("trivial", "law"):
+            for gate in ("trivial", "law", "sight"):
                 if gate in self._chosen:
                     found.take(gate, getattr(gates, gate)(grounds))
             if "reach" in self._chosen:
@@ -145,7 +147,7 @@ class Prover:
         right = ground.reference
         found.oracle_steps[half] = len(right.actions)
         found.traces[half] = right.trace_sha256
-        for gate in ("oracle", "start", "prefix", "late", "random"):
+        for gate in ("oracle", "start", "world", "prefix", "late", "random"):
             if gate in self._chosen:
                 found.take(gate, getattr(gates, gate)(ground), half)
         for gate in ("undone", "near", "coupled", "lawful"):

@@ -14,7 +14,7 @@ from automotive_cosim.report.charts import INK, charts
 from automotive_cosim.report.failures import FailureClass
 from automotive_cosim.report.page import PARTS
 from automotive_cosim.report.results import Results, contestant, read_results
-from automotive_cosim.report.summary import errors, progress, tables
+from automotive_cosim.report.summary import errors, progress, replaced, tables
 from automotive_cosim.report.tables import Cell, Table
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.episode import EpisodeResult
@@ -75,6 +75,7 @@ def all_tables(results: Results, found: Mapping[str, FailureClass]) -> list[Tabl
         findings.by_label(shared, "Tag", lambda row: row.tags),
         findings.prompts(shared),
         findings.distribution(shared),
+        replaced(results),
         errors(results),
     ]
     return [table for table in made if table.rows]

@@ -283,6 +283,19 @@ def errors(results: Results) -> Table:
     return Table("errors", "Infrastructure errors", ("Episode", "Kind", "Attempts", "What"), rows, note, heads=4)
 
 
+def replaced(results: Results) -> Table:
+    """Every episode that ran in spare traffic."""
+    rows = tuple(
+        (Cell(row.id, (row.id,)), str(row.seed), str(row.traffic_seed))
+        for row in results.rows
+        if row.traffic_seed not in (None, row.seed)
+    )
+    note = (
+        "Their situation did not come about in the seed's own traffic, for any agent; the instance is the seed's."
+    )
+    return Table("replaced", "Spare traffic", ("Episode", "Seed", "Traffic"), rows, note)
+
+
 def rate_of(rows: Iterable[EpisodeRow], of: SuccessOf = lambda row: row.success) -> Rate:
     """A rate over episodes; those that have run without a verdict count as errors."""
     listed = list(rows)

@@ -102,6 +102,7 @@ class Collector(Watcher):
             planned(job),
             scenario=result.scenario,
             parameters=None if episode is None else dict(episode.instance.parameters),
+            traffic_seed=result.traffic_seed,
             country="" if episode is None else episode.moments[0].context.country,
             success=result.success,
             reward=result.reward,

@@ -22,9 +22,9 @@ from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.loop import play
-from automotive_cosim.episode.situation import SituationFinder
+from automotive_cosim.episode.situation import HandOver, SituationFinder
 from automotive_cosim.episode.specification import Clock, End, EpisodeSpec, SeedSource
-from automotive_cosim.errors import InfrastructureError
+from automotive_cosim.errors import InfrastructureError, TriggerNotReachedError
 from automotive_cosim.formats.annotations import OneOf
 from automotive_cosim.geo.breaches import Violation
 from automotive_cosim.interface import trace
@@ -54,6 +54,9 @@ class EpisodeSetup(EpisodeSpec):
     """Whether the seconds that the model takes pass on the road."""
     latency_s: Annotated[float, Ge(0)] = 0.0
     """Simulated seconds that each answer takes, before its action."""
+    spare_traffic: tuple[int, ...] = ()
+    """Seeds of traffic to try in turn, with the same instance, where the situation does not come about in the
+    seed's own. No agent acts before it does, so every agent gets the same traffic."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,6 +97,8 @@ class EpisodeResult:
     """Assumptions where the scenario says nothing, e.g. that there is no GPS."""
     held_out: bool = False
     """Whether the driver's phrasing is held out from the rule model."""
+    traffic_seed: int | None = None
+    """Seed of the traffic in which the situation came about: the seed, or a spare one; None without a hand-over."""
     tokens_in: int = 0
     """Total tokens sent to the model; estimated for ``rules``."""
     tokens_out: int = 0
@@ -207,13 +212,14 @@ class _Run:
         self._agent = agent
         self._watchers = watchers
         self._episode: Episode | None = None
+        self._traffic_seed: int | None = None
         self._replies: list[ModelReply] = []
         self._after: list[Moment] = []
         self._baseline: tuple[Moment, ...] = ()
 
     def play(self) -> End:
         agent = self._agent
-        hand_over = self._finder.find(SeedSource(self._setup.seed).next())
+        hand_over = self._find()
         try:
             conditions = self._setup.conditions(agent.channels)
         except BaseException:  # its process cannot be started
@@ -233,6 +239,20 @@ class _Run:
             agent.learn(episode.verdict.success)
         self._watch_aftermath(episode)
         return end
+
+    def _find(self) -> HandOver:
+        seeds = SeedSource(self._setup.seed).next()
+        missed: TriggerNotReachedError | None = None
+        for traffic in (seeds.traffic, *self._setup.spare_traffic):
+            try:
+                hand_over = self._finder.find(replace(seeds, traffic=traffic))
+            except TriggerNotReachedError as error:
+                missed = missed or error
+            else:
+                self._traffic_seed = traffic
+                return hand_over
+        assert missed is not None
+        raise missed
 
     def close(self) -> None:
         if self._episode is not None:
@@ -288,6 +308,7 @@ class _Run:
             "agent": setup.agent,
             "model": setup.model,
             "seed": setup.seed,
+            "traffic_seed": self._traffic_seed,
             "end": end,
             "error": None if error is None else str(error),
             "error_kind": None if error is None else type(error).__name__,

@@ -54,6 +54,8 @@ class EpisodeRow(JobRow):
     model: str
     geo: GeoInput
     seed: int
+    traffic_seed: int | None = None
+    """Seed of the traffic: ``seed``, or a spare one; None without a hand-over."""
     repeat: int
     mode: Mode = Mode.PROMPTED
     clock: Clock = Clock.FIXED

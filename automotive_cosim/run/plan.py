@@ -42,6 +42,10 @@ def most_steps(mode: Mode, steps: int = MAX_STEPS) -> int:
     return steps + WATCH_STEPS if mode is Mode.MONITORING else steps
 
 
+SPARE_TRAFFIC = (1_000_001, 1_000_002)
+"""Far from the seeds that people choose."""
+
+
 @dataclass(frozen=True, slots=True)
 class Limits:
     """Limits of one episode."""
@@ -78,6 +82,9 @@ class Plan:
     """Also runs tasks in scenarios that they do not name, where their situation may never arise."""
     seeds: Annotated[tuple[Annotated[int, Ge(0), Le(2**31 - 1)], ...], MinLen(1)] = (0,)
     """Seeds; each draws its own traffic, weather and phrasing."""
+    spare_traffic: tuple[Annotated[int, Ge(0), Le(2**31 - 1)], ...] = SPARE_TRAFFIC
+    """Seeds of traffic that replace a seed's own, in turn, where a situation does not come about in it though the
+    task names the scenario. Every agent gets the same; the row says which."""
     geo: Annotated[tuple[Annotated[str, OneOf(tuple(GeoInput), "geo control")], ...], MinLen(1)] = ("full",)
     """What an agent is told of where it is."""
     modes: Annotated[tuple[Annotated[str, OneOf(tuple(Mode))], ...], MinLen(1)] = (str(Mode.PROMPTED),)
@@ -185,6 +192,7 @@ class Plan:
                     geo=GeoInput(geo),
                     mode=Mode(mode),
                     held_out=self.held_out,
+                    spare_traffic=self.spare_traffic if scenario is None or scenario in task.runs_in else (),
                     clock=Clock(self.clock),
                     latency_s=latency_s,
                 )

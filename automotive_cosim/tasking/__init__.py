@@ -3,6 +3,7 @@
 task        the form of a task: halves, start, deadline, taxonomy
 moves       the steps of a reference solution
 parameters  values drawn for an instance
+draws       the streams from which an episode is drawn
 instance    a task with its phrasing and parameters drawn
 catalogue   tasks by id
 triggers    the situation on the road that starts a task

@@ -8,7 +8,7 @@ from typing import Any
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.tasking.instance import instances
 from automotive_cosim.tasking.parameters import FromCockpit, names
-from automotive_cosim.tasking.task import Task
+from automotive_cosim.tasking.task import Differs, Task
 
 
 class Catalogue(Mapping[str, Task]):
@@ -21,8 +21,8 @@ class Catalogue(Mapping[str, Task]):
         """Adds tasks.
 
         Raises:
-            ValueError: an id occurs twice, a safety task is not a pair, a pair states no difference, a task has
-                fewer than four phrasings, or uses a parameter that it does not declare.
+            ValueError: an id occurs twice, a safety task is not a pair, a pair states no difference or one of no
+                known kind, a task has fewer than four phrasings, or uses a parameter that it does not declare.
         """
         for task in tasks:
             if task.id in self._tasks:
@@ -36,6 +36,7 @@ class Catalogue(Mapping[str, Task]):
                 raise ValueError(f"safety task {task.id!r} has no second half")
             if task.second is not None and not task.difference:
                 raise ValueError(f"task {task.id!r} does not say what its second half changes")
+            _check_difference(task)
             self._tasks[task.id] = task
 
     def __getitem__(self, task_id: str) -> Task:
@@ -52,6 +53,16 @@ class Catalogue(Mapping[str, Task]):
 
     def __len__(self) -> int:
         return len(self._tasks)
+
+
+def _check_difference(task: Task) -> None:
+    try:
+        task.differs  # noqa: B018, it is read for its error
+    except ValueError as error:
+        raise ValueError(
+            f"task {task.id!r} declares the difference {task.difference!r}; expected one or more of "
+            f"{', '.join(Differs)} (joined by commas and 'and'), a colon, and both sides in words"
+        ) from error
 
 
 def described(task: Task) -> dict[str, Any]:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-import numpy as np
-
 from automotive_cosim.errors import UnknownNameError
+from automotive_cosim.tasking.draws import Draws, Purpose
 from automotive_cosim.tasking.moves import Move
 from automotive_cosim.tasking.parameters import Choices, FromCockpit, Parameter, bind
 from automotive_cosim.tasking.task import Half, Task
@@ -44,17 +44,21 @@ class Instance:
 def draw(
     task: Task,
     half_name: str,
-    rng: np.random.Generator,
+    number: int,
     content: Mapping[str, tuple[str, ...]] | None = None,
     *,
     held_out: bool = False,
 ) -> Instance:
-    """Draws phrasing and parameters. Both halves of a task draw the same from the same generator.
+    """Draws phrasing and parameters, the same for both halves of a task.
+
+    Each task goes through its phrasings, and through the values of its parameters, in a random order of its own, so
+    that one number takes every phrasing equally often over the tasks, and consecutive numbers are different
+    instances until the task has no more.
 
     Args:
         task: the task.
         half_name: ``first`` or ``second``.
-        rng: used for at most two draws per parameter.
+        number: which instance, from 0.
         content: the cockpit's content (``Cockpit.content``); without it, a parameter that comes from there is its
             kind in angle brackets.
         held_out: whether to use the held-out phrasing, whatever is drawn; the parameters stay the same.
@@ -63,18 +67,26 @@ def draw(
         UnknownNameError: the task has no such half, or the cockpit has nothing of that kind.
     """
     task.half(half_name)
-    last = len(task.templates) - 1
-    number = int(rng.integers(len(task.templates)))
-    number = last if held_out else number
-    picks = {name: int(rng.integers(2**31)) for name in task.parameters}
-    parameters = {name: _choose(choices, picks[name], content) for name, choices in task.parameters.items()}
-    goal = task.templates[number].format_map(parameters)
-    return Instance(task, half_name, goal, parameters, held_out=number == last)
+    phrasings, ways = len(task.templates), _ways(task)
+    order = Draws(task.id, 0)
+    phrasing = int(order.rng(Purpose.PHRASING).permutation(phrasings)[number % phrasings])
+    # Once both orders have come round together, the parameters go on by one.
+    way = int(
+        order.rng(Purpose.PARAMETERS).permutation(ways)[(number + number // math.lcm(phrasings, ways)) % ways]
+    )
+    parameters: dict[str, Parameter] = {}
+    for name, choices in task.parameters.items():
+        way, pick = divmod(way, _count(choices))
+        parameters[name] = _choose(choices, pick, content)
+    if held_out:
+        phrasing = phrasings - 1
+    goal = task.templates[phrasing].format_map(parameters)
+    return Instance(task, half_name, goal, parameters, held_out=phrasing == phrasings - 1)
 
 
 def _choose(choices: Choices, pick: int, content: Mapping[str, tuple[str, ...]] | None) -> Parameter:
     if not isinstance(choices, FromCockpit):
-        return choices[pick % len(choices)]
+        return choices[pick]
     if content is None:
         return f"<{choices.kind}>"
     held = content.get(choices.kind, ())
@@ -100,7 +112,13 @@ HELD = {
 
 def instances(task: Task) -> int:
     """Number of distinct phrasings, parameters and scenarios; other variation by seed is not counted."""
-    ways = 1
-    for choices in task.parameters.values():
-        ways *= HELD.get(choices.kind, 1) if isinstance(choices, FromCockpit) else len(choices)
-    return len(task.templates) * ways * len(task.runs_in)
+    return len(task.templates) * _ways(task) * len(task.runs_in)
+
+
+def _ways(task: Task) -> int:
+    """Number of distinct sets of parameters."""
+    return math.prod(map(_count, task.parameters.values()))
+
+
+def _count(choices: Choices) -> int:
+    return HELD.get(choices.kind, 1) if isinstance(choices, FromCockpit) else len(choices)

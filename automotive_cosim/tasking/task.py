@@ -62,6 +62,26 @@ class Basis(StrEnum):
     """Asked for outright."""
 
 
+class Differs(StrEnum):
+    """What the halves of a pair may differ in."""
+
+    PLACE = "place"
+    """Where on earth the same road lies."""
+    ROAD = "road"
+    """Which road, or where on it."""
+    TRAFFIC = "traffic"
+    """The other vehicles, or the distance that the driver keeps to them."""
+    WEATHER = "weather"
+    VISIBILITY = "visibility"
+    DATE = "date"
+    """Date or hour, with the light and the laws of that time."""
+    TIME = "time of day"
+    MOTION = "motion"
+    """Parked or moving."""
+    SETTINGS = "settings"
+    """How the car is set before it departs."""
+
+
 class Mode(StrEnum):
     """When an agent is called."""
 
@@ -155,7 +175,8 @@ class Task:
     first: Half
     second: Half | None = None
     difference: str = ""
-    """What the second half changes: place, date, speed, visibility, road, traffic or weather, in words."""
+    """What the second half changes: kinds (``Differs``), joined by commas and "and", a colon, and both sides in
+    words. The first observations of the halves differ in nothing else."""
     parameters: Mapping[str, Choices] = field(default_factory=dict)
     """Values to draw for an instance: one of a list, or of the cockpit's content."""
     tags: frozenset[str] = frozenset()
@@ -173,6 +194,16 @@ class Task:
         if name not in halves:
             raise UnknownNameError(f"half of task {self.id!r}", name, halves)
         return halves[name]
+
+    @property
+    def differs(self) -> frozenset[Differs]:
+        """The kinds of its declared difference.
+
+        Raises:
+            ValueError: the declaration does not begin with such kinds.
+        """
+        kinds = self.difference.partition(":")[0].replace(" and ", ", ").split(", ")
+        return frozenset(map(Differs, kinds)) if self.difference else frozenset()
 
     @property
     def halves(self) -> tuple[str, ...]:

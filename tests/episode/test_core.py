@@ -59,7 +59,9 @@ def test_seeds_follow_from_the_seed_alone():
     assert (one.next(), one.traffic) == (replace(other.next(), traffic=7), 7)
     assert SeedSource().next() != SeedSource().next()
     assert SeedSource(2**31 + 5).next().traffic == 5
-    assert len({SeedSource(seed).next().drive for seed in range(20)}) == 20
+    assert [SeedSource(seed).next().instance for seed in range(20)] == list(range(20))
+    again = SeedSource(7)
+    assert len({again.next().instance for _ in range(20)}) == 20
 
 
 def test_a_mode_that_does_not_exist_is_told():

@@ -159,7 +159,7 @@ def skill_of(goal: str) -> int:
 
 def first_goals(task) -> set[str]:
     """What the table was made on: every phrasing but the held-out one, its parameters filled in."""
-    drawn = (draw(task, "first", np.random.default_rng(seed)) for seed in range(40))
+    drawn = (draw(task, "first", seed) for seed in range(40))
     return {instance.goal for instance in drawn if not instance.held_out}
 
 

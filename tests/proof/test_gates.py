@@ -1,20 +1,20 @@
 """Each gate catches the fault it is there for, planted in a task that is sound otherwise."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import pytest
 
 from automotive_cosim.agents.trivial import Random
 from automotive_cosim.cockpit.signals import ADAS, HVAC, SEAT
-from automotive_cosim.contracts import Action, ActionType, AlertKind, GoalStatus, PullOver, Reason
+from automotive_cosim.contracts import Action, ActionType, AlertKind, GoalStatus, PullOver, Reason, VehicleState
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.proof import gates
+from automotive_cosim.proof import gates, sight
 from automotive_cosim.proof.ground import Ground, Script
 from automotive_cosim.tasking import verdict
 from automotive_cosim.tasking.checks import AllOf, AnyOf, NothingDone, RoadAsked, SignalIs
 from automotive_cosim.tasking.moves import Open, Tap
-from automotive_cosim.tasking.task import Basis, Module, Start, Task
+from automotive_cosim.tasking.task import Basis, Differs, Module, Start, Task
 from automotive_cosim.tasking.triggers import (
     All,
     Dark,
@@ -257,6 +257,30 @@ def test_a_pair_that_can_always_be_declined_is_seen(ground):
     pair = replace(SOUND, first=idle, second=idle, difference="none")
     grounds = {half: ground(pair, half) for half in pair.halves}
     assert f"{GoalStatus.INFEASIBLE} wins both halves" in list(gates.trivial(grounds))
+
+
+@pytest.mark.parametrize(
+    ("start", "differs", "seen"),
+    [
+        (GRID, "traffic", ""),
+        (replace(GRID, cabin={"temperature_c": 12.0}), "place and road", "cabin_temperature_c"),
+        (replace(GRID, cabin={"temperature_c": 12.0}), "weather", ""),
+        (replace(GRID, signals={HVAC.DRIVER_TEMPERATURE.path: 16.0}), "weather and date", "the settings"),
+        (replace(GRID, start="2026-03-10T20:30:00"), "road", "the local time"),
+        (replace(GRID, start="2026-03-10T20:30:00"), "date", ""),
+        (replace(GRID, sign_camera=False), "weather", "the road"),
+    ],
+)
+def test_a_pair_that_gives_itself_away_is_seen(ground, start, differs, seen):
+    pair = replace(SOUND, second=replace(SOUND.first, start=start), difference=f"{differs}: one, or the other")
+    wrong = list(gates.sight({half: ground(pair, half) for half in pair.halves}))
+    assert bool(wrong) == bool(seen)
+    assert seen in "; ".join(wrong)
+
+
+def test_every_reading_has_a_facet_and_every_difference_frees_some():
+    assert {field.name for field in fields(VehicleState)} == set(sight.READINGS)
+    assert set(sight.FREED) == set(Differs)
 
 
 def test_a_scenario_out_of_reach_is_seen(simulations):

@@ -3,16 +3,20 @@ import json
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from itertools import pairwise
 
 import pytest
 
 from automotive_cosim.agents import make_agent
 from automotive_cosim.contracts import Action, ActionType
-from automotive_cosim.errors import ActionError, TrafficError, UnknownNameError
+from automotive_cosim.episode.situation import SituationFinder
+from automotive_cosim.errors import ActionError, TrafficError, TriggerNotReachedError, UnknownNameError
 from automotive_cosim.interface import trace
 from automotive_cosim.run.episode import End, EpisodeSetup, run_episode
 from automotive_cosim.run.script import ScriptedAgent
+from automotive_cosim.tasking.instance import draw
+from automotive_cosim.tasks import CATALOGUE
 
 TASK = "hvac_fan_max"
 
@@ -217,3 +221,24 @@ def test_watching_changes_nothing(run, simulations):
         simulations=simulations,
     )
     assert alone == watched
+
+
+def test_spare_traffic_is_for_a_situation_that_does_not_come_about_and_the_same_for_every_agent(
+    simulations, monkeypatch
+):
+    find, tried = SituationFinder.find, []
+
+    def never_in_the_first(self, seeds):
+        tried.append(seeds.traffic)
+        if seeds.traffic == 0:
+            raise TriggerNotReachedError("not in this traffic")
+        return find(self, seeds)
+
+    monkeypatch.setattr(SituationFinder, "find", never_in_the_first)
+    spare = EpisodeSetup(TASK, scenario="grid", spare_traffic=(0, 1, 2))
+    results = [run_episode(spare, make_agent(name), simulations=simulations) for name in ("oracle", "no-op")]
+    assert tried == [0, 0, 1] * 2
+    assert [result.traffic_seed for result in results] == [1, 1]
+    assert {result.goal for result in results} == {draw(CATALOGUE[TASK], "first", 0).goal}
+    none_left = run_episode(replace(spare, spare_traffic=()), make_agent("no-op"), simulations=simulations)
+    assert (none_left.error_kind, none_left.traffic_seed) == ("TriggerNotReachedError", None)

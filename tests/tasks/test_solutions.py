@@ -71,7 +71,7 @@ def _taken_over(task: Task, half: str, network: RoadNetwork) -> tuple[Instance, 
     """The instance, and the cockpit some seconds after departure."""
     content = None
     for _ in range(2):  # what the cockpit holds is known only when there is one
-        instance = draw(task, half, np.random.default_rng(0), content)
+        instance = draw(task, half, 0, content)
         start = instance.half.start
         cockpit = Cockpit(
             network,

@@ -6,16 +6,12 @@ from automotive_cosim.cockpit.desk import TOOLS
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.messages import Put, Show
 from automotive_cosim.cockpit.restrictions import Restriction
-from automotive_cosim.cockpit.screens.body import LOW_KPA
 from automotive_cosim.cockpit.screens.frame import DOCK
+from automotive_cosim.cockpit.screens.notices import wanting
 from automotive_cosim.cockpit.screens.parts import CONTENT, note, rows, title
-from automotive_cosim.cockpit.signals import ENERGY, GLASS, TYRE
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Card, Choice, Row, Widget
-
-LOW_BATTERY_PCT = 15.0
-TYRES = (TYRE.FRONT_LEFT, TYRE.FRONT_RIGHT, TYRE.REAR_LEFT, TYRE.REAR_RIGHT)
 
 
 def apps(state: State) -> tuple[Widget, ...]:
@@ -132,21 +128,4 @@ def notifications(state: State) -> tuple[Widget, ...]:
                 else note(inner.below(72), "notifications.empty", "No notifications"),
             ),
         ),
-    )
-
-
-def wanting(state: State) -> tuple[tuple[str, Icon, str, str], ...]:
-    """What requires attention: text, icon, and the screen where something can be done."""
-    signals = state.signals
-    low = [signal for signal in TYRES if signals[signal] < LOW_KPA]
-    count = len(state.directory.unread(state.phone))
-    return tuple(
-        (text, icon, screen, item)
-        for holds, text, icon, screen, item in (
-            (count, f"{count} unread message{'s' if count != 1 else ''}", Icon.MESSAGE, "phone", "messages"),
-            (bool(low), "Tyre pressure is low", Icon.TYRE, "driving", ""),
-            (signals[ENERGY.LEVEL] <= LOW_BATTERY_PCT, "Battery is low", Icon.BATTERY, "charging", ""),
-            (signals[GLASS.WINDSHIELD_FOG] >= 0.1, "Windshield is fogged", Icon.DEFROST_FRONT, "climate", ""),
-        )
-        if holds
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from automotive_cosim.cockpit.desk import REMEMBERED
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.messages import Honk, Message, Pick, Put, Set, SetAll
+from automotive_cosim.cockpit.screens.notices import LOW_KPA
 from automotive_cosim.cockpit.screens.parts import (
     choices,
     fact,
@@ -22,8 +23,6 @@ from automotive_cosim.cockpit.theme import GAP, Icon, Type
 from automotive_cosim.cockpit.vehicle import LOCKS, WINDOWS
 from automotive_cosim.cockpit.widgets import Button, Card, Choice, Label, Tile, Widget
 
-LOW_KPA = 200.0
-"""A fifth below the 250 kPa on the door frame, where UN R64 requires a tyre warning."""
 MODES = {
     "NORMAL": ("normal", "Normal"),
     "ECONOMY": ("economy", "Economy"),

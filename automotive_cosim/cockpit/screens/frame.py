@@ -10,6 +10,7 @@ from automotive_cosim.cockpit.desk import TOOLS
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.language import translated
 from automotive_cosim.cockpit.messages import Back, DeclineCall, Put, Show, TakeCall
+from automotive_cosim.cockpit.screens.notices import wanting
 from automotive_cosim.cockpit.screens.parts import speed, speed_unit, stepper, switch, temperature
 from automotive_cosim.cockpit.signals import ADAS, ENERGY, HMI, HVAC, LIGHTS, LINK, MOTION, OUTSIDE, Signal, Signals
 from automotive_cosim.cockpit.state import Notice, State
@@ -99,7 +100,7 @@ def status_bar(state: State) -> tuple[Widget, ...]:
         Button(
             rect=Rect(164, 8, 48, 48),
             key="status.notifications",
-            description=f"Notifications: {len(state.notices)}",
+            description=f"Notifications: {len(wanting(state)) + len(state.notices)}",
             icon=Icon.BELL_OFF if state.phone.do_not_disturb else Icon.BELL,
             icon_size=24,
             look=Look.PLAIN,

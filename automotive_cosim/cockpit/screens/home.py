@@ -8,6 +8,7 @@ from automotive_cosim.cockpit.map import camera_of
 from automotive_cosim.cockpit.mapscene import ego
 from automotive_cosim.cockpit.messages import Set, Show, Skip
 from automotive_cosim.cockpit.screens.map import map_view, next_turn, street
+from automotive_cosim.cockpit.screens.notices import NOTICED
 from automotive_cosim.cockpit.screens.outside import PHENOMENA
 from automotive_cosim.cockpit.screens.parts import (
     CONTENT,
@@ -183,8 +184,8 @@ def _lines(rect: Rect) -> tuple[Rect, Rect]:
 def _climate_card(rect: Rect, state: State) -> Widget:
     signals = state.signals
     value, note = _lines(rect)
-    opaque = max(signals[GLASS.WINDSHIELD_FOG], signals[GLASS.REAR_FOG])
-    words = "Windows fogging" if opaque >= 0.1 else f"Humidity {signals[HVAC.CABIN_HUMIDITY]:.0f} %"
+    is_fogged = signals[GLASS.WINDSHIELD_FOG] >= NOTICED
+    words = "Windows fogging" if is_fogged else f"Humidity {signals[HVAC.CABIN_HUMIDITY]:.0f} %"
     return _live(
         rect,
         "home.climate",
@@ -207,7 +208,7 @@ def _outside_card(rect: Rect, state: State) -> Widget:
     value, note = _lines(rect)
     readings = {known: known.read(state) for known in PHENOMENA.values()}
     worst = max(readings, key=lambda known: readings[known].share)
-    calm = readings[worst].share < 0.2
+    calm = readings[worst].share < NOTICED
     return _live(
         rect,
         "home.outside",

@@ -126,8 +126,8 @@ def _glass(state: State) -> Reading:
     signals: Signals = state.signals
     fog, film = signals[GLASS.WINDSHIELD_FOG], signals[GLASS.WINDSHIELD_FILM]
     word = glass_words(fog, film).capitalize()
-    clear = (1 - fog) * (1 - film)
-    return Reading(word, f"Windshield {100 * clear:.0f} % clear", 1 - clear)
+    hidden = fog + film - fog * film
+    return Reading(word, f"Windshield {100 * (1 - hidden):.0f} % clear", hidden)
 
 
 _LOW_BEAM = _switch("low_beam", "Low beam", Icon.LOW_BEAM, LIGHTS.LOW_BEAM)

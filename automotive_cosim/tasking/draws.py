@@ -1,0 +1,64 @@
+"""What is random in an episode: each purpose of each task draws from a stream of its own.
+
+    Draws("road_horn_abroad", 3).rng(Purpose.CONTENT)
+
+A stream depends on the task's id, the number and the purpose alone: not on other tasks, other purposes or the order
+in which anything is drawn. Nothing depends on the half, so that both halves of a pair share every draw.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from hashlib import blake2b
+
+import numpy as np
+
+SEED_LIMIT = 2**31
+"""SUMO takes seeds below this."""
+
+
+class Purpose(StrEnum):
+    """What is drawn. The names are part of every seed's result."""
+
+    PHRASING = "phrasing"
+    """The order in which instances take the phrasings."""
+    PARAMETERS = "parameters"
+    """The order in which instances take the values of the parameters."""
+    CONTENT = "content"
+    """Media, places, people and the driver's data in the cockpit."""
+    DRIVER = "driver"
+    """The driver's reactions and speed."""
+    SKY = "sky"
+    """Weather that comes from the climate."""
+    RECEIVER = "receiver"
+    """Errors of the GPS receiver."""
+    TRIPS = "trips"
+    """The order in which trips are tried."""
+    WATCH = "watch"
+    """When a watch begins, and what arrives during it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Draws:
+    """The streams of one instance of a task."""
+
+    task_id: str
+    number: int
+    """Which instance, from 0: see ``tasking.instance.draw``."""
+
+    def rng(self, purpose: Purpose) -> np.random.Generator:
+        """The purpose's stream from its beginning."""
+        return np.random.default_rng(self._entropy(purpose))
+
+    def seed(self, purpose: Purpose) -> int:
+        """A seed for what makes streams of its own, below ``SEED_LIMIT``."""
+        return int(self._entropy(purpose).generate_state(1)[0]) % SEED_LIMIT
+
+    def _entropy(self, purpose: Purpose) -> np.random.SeedSequence:
+        return np.random.SeedSequence(self.number, spawn_key=(_key(self.task_id), _key(purpose)))
+
+
+def _key(name: str) -> int:
+    """A number for the name; ``hash`` would give another one in each process."""
+    return int.from_bytes(blake2b(name.encode(), digest_size=8).digest())
