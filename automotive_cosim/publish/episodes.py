@@ -34,9 +34,9 @@ PLANNED = (
 )  # fmt: skip
 """Fields of a row that the plan and the catalogue determine."""
 ALSO_IN_RESULT = (
-    "task", "half", "scenario", "agent", "model", "geo", "seed", "success", "reward", "steps", "sim_seconds", "end",
-    "error", "error_kind", "agent_error", "held_out", "trace_sha256", "tokens_in", "tokens_out", "model_seconds",
-    "cost_usd", "drive", "baseline_drive",
+    "task", "half", "scenario", "agent", "model", "geo", "seed", "traffic_seed", "success", "reward", "steps",
+    "sim_seconds", "end", "error", "error_kind", "agent_error", "held_out", "trace_sha256", "tokens_in", "tokens_out",
+    "model_seconds", "cost_usd", "drive", "baseline_drive",
 )  # fmt: skip
 """Fields of a row that the result at the end of the trace has too."""
 FROM_MOMENTS = (
@@ -91,6 +91,8 @@ def _problems(folder: Path, job: EpisodeJob, row: EpisodeRow) -> Iterator[Proble
         yield Problem(ROWS, f"{row.id} wall_seconds, model_seconds", "are below zero")
     if job.scenario in _shipped() and row.scenario != job.scenario:
         yield Problem(ROWS, f"{row.id} scenario", f"is {row.scenario!r}, but {job.scenario!r} by the plan")
+    if row.traffic_seed not in (None, job.setup.seed, *job.setup.spare_traffic):
+        yield Problem(ROWS, f"{row.id} traffic_seed", f"is {row.traffic_seed}, which the plan does not have")
     if row.success is None:
         yield from differences(ROWS, row.id, told, as_json(planned(job)), UNJUDGED, "its error")
         if row.error is None or row.error_kind is None or row.end is not End.ERROR:

@@ -39,8 +39,8 @@ from automotive_cosim.run.store import read_evaluation, read_rows, trace_file
 from automotive_cosim.traffic.fork import Simulations
 
 MANIFEST = "manifest.json"
-PLAN_ON_TRUST = frozenset({"models", "everywhere", "limits"})
-"""Fields of a plan that need not show in its episodes: models that no agent uses, limits that none reached."""
+PLAN_ON_TRUST = frozenset({"models", "everywhere", "limits", "spare_traffic"})
+"""Fields of a plan that need not show in its episodes: models that no agent uses, limits that none reached, ..."""
 STARTS_ON_TRUST = frozenset({"started", "platform", "git", "versions"})
 """Fields of a start that nothing else tells, but for the version of the suite."""
 UNKNOWN = (
