@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from automotive_cosim.cockpit.signals import LIGHTS
+from automotive_cosim.cockpit.signals import HVAC, LIGHTS
 from automotive_cosim.contracts import Reason, Weather
 from automotive_cosim.tasking.checks import Check, SignalIs
 from automotive_cosim.tasking.moves import Move, Open, Tap
@@ -100,8 +100,9 @@ def when(
     return Trigger(All((Driving(), *conditions)), for_s, within_s, after_s)
 
 
-E10 = replace(night("nordic", "jukkasjarvi", SNOWFALL), cabin={"temperature_c": 17.0})
-"""So cool that the cabin is as warm beyond the lamps as under them."""
+DEFROSTED = DIPPED | {HVAC.FRONT_DEFROSTER.path: True}
+E10 = replace(night("nordic", "jukkasjarvi", SNOWFALL, DEFROSTED), cabin={"temperature_c": 17.0})
+"""With glass as clear, and a cabin as warm, beyond the lamps as under them."""
 A1 = night("border", "south", CLEAR_NIGHT)
 VALLEY = night("nordic", "kurravaara", SNOWFALL)
 PLAIN_FULL = night("beauce", "plain", CLEAR_NIGHT, FULL)

@@ -312,6 +312,14 @@ def test_pictures_reach_the_model_and_its_answer_comes_back_whole(nursery, obser
     assert all(picture.startswith(b"\x89PNG") for picture in message.pictures)
 
 
+def test_an_agent_reads_the_format_of_its_model_from_the_whole_name(nursery, observation):
+    model, screen = Model(ModelReply("Action: press_home()")), np.zeros((720, 1280, 3), np.uint8)
+    named = "local/m?format=ui-tars-1.5"
+    with closing(OutsideAgent(nursery, "native", named, chat_model=model)) as agent:
+        agent.reset("x")
+        assert agent.act(observation("x", screenshot=screen)) == Action(ActionType.NAVIGATE_HOME)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("spec", "said"),
