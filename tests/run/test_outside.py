@@ -17,7 +17,7 @@ from automotive_cosim.models import ModelReply
 from automotive_cosim.run.nursery import Nursery
 from automotive_cosim.run.outside import OutsideAgent, check_agent
 
-pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="processes are forked")
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(sys.platform == "win32", reason="processes are forked")]
 
 AGENTS = '''
 import gc, json, os, pathlib, signal, subprocess, sys, time
