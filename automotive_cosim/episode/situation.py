@@ -20,7 +20,7 @@ from automotive_cosim.errors import TriggerNotReachedError, UserError
 from automotive_cosim.geo.forecast import drawn_weather
 from automotive_cosim.scenarios import Scenario, Trip, WeatherAt
 from automotive_cosim.scenery import open_scenario
-from automotive_cosim.tasking.binding import UnmetNeedError, bound, needs
+from automotive_cosim.tasking.binding import POSTED_LIMIT, UnmetNeedError, bound, needs
 from automotive_cosim.tasking.draws import Draws, Purpose
 from automotive_cosim.tasking.instance import Instance, draw
 from automotive_cosim.tasking.task import STANDING_ORDER, Half, Mode, Task
@@ -93,6 +93,8 @@ class SituationFinder:
         self._has_own_law = not self._is_elsewhere and spec.origin in (None, start.origin)
         self._missing = ""
         """What the place lacked when the situation last arose."""
+        self._has_signs = False
+        """Whether a limit was posted anywhere on the way."""
         self._simulations = simulations
         self._listener = listener or Listener()
 
@@ -129,10 +131,12 @@ class SituationFinder:
         )
 
     def _lacking(self) -> str:
+        needed = needs(self.task.half(self._spec.half))
+        if POSTED_LIMIT in needed and not self._has_signs:
+            return "; no limit is posted anywhere on these trips, and the task needs one"
         if not self._missing:
             return ""
-        needed = ", ".join(needs(self.task.half(self._spec.half)))
-        return f" where it has what the task needs ({needed}): {self._missing}"
+        return f" where it has what the task needs ({', '.join(needed)}): {self._missing}"
 
     def _draw(self, draws: Draws, content: Mapping[str, tuple[str, ...]] | None = None) -> Instance:
         return draw(self.task, self._spec.half, draws.number, content, held_out=self._spec.held_out)
@@ -194,6 +198,7 @@ class SituationFinder:
         moments = [world.moment]
         departed_s, since_s = world.moment.time_s, None
         while (now := world.moment).time_s - departed_s < trigger.within_s and now.driving.end is None:
+            self._has_signs = self._has_signs or now.driving.road.limit.is_posted
             is_due = now.time_s - departed_s >= trigger.after_s
             is_so = _motion(now) in half.start.motions and trigger.condition(now)
             holds = is_due and is_so and self._rests(half, now)

@@ -30,6 +30,10 @@ ABOUT_SIGNS = (SpeedAbove, OverPosted, LowerLimitWithin, InSchoolZone)
 """Conditions on a posted limit."""
 
 
+POSTED_LIMIT = "a posted limit"
+"""The need of a half that is about a sign."""
+
+
 class UnmetNeedError(Exception):
     """A place lacks what a half needs; the text says what."""
 
@@ -39,7 +43,7 @@ def needs(half: Half) -> tuple[str, ...]:
     if half.basis is Basis.LAW:
         return tuple(f"a verified rule: {TOPICS[rule.topic].lower()}, as in {rule.id}" for rule in _rules_of(half))
     if _about_signs(half):
-        return ("a posted limit",)
+        return (POSTED_LIMIT,)
     if half.basis is Basis.POSTED and half.start.origin is not None:
         return (f"signs in {_unit_at_home(half)}",)
     return ()

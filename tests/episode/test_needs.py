@@ -1,0 +1,27 @@
+"""Why a task did not start at another place is said: no sign, or a law that says otherwise."""
+
+from __future__ import annotations
+
+from typing import Any, cast
+
+from automotive_cosim.episode.situation import SituationFinder
+from automotive_cosim.episode.specification import EpisodeSpec
+
+
+def _finder(task: str) -> SituationFinder:
+    return SituationFinder(EpisodeSpec(task, "first", scenario="grid"), cast("Any", None))
+
+
+def test_a_network_without_signs_is_named_as_the_reason() -> None:
+    finder = _finder("road_speed_80_in_50")
+    assert "no limit is posted anywhere" in finder._lacking()
+    finder._has_signs = True
+    assert finder._lacking() == ""
+
+
+def test_a_law_that_says_otherwise_is_named_as_the_reason() -> None:
+    finder = _finder("phenomenon_rear_fog_in_mist")
+    assert finder._lacking() == ""
+    finder._missing = "the law of Germany answers differently"
+    assert "a verified rule: rear fog lamp, as in FR.rear_fog" in finder._lacking()
+    assert "the law of Germany answers differently" in finder._lacking()
