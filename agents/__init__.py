@@ -39,6 +39,7 @@ __all__ = [
     "Stage",
     "StageName",
     "Thinker",
+    "chosen",
     "make_agent",
     "model_of",
 ]
@@ -86,7 +87,7 @@ def make_agent(
         return ModelAgent(PROFILES[name], chat_model or make_model(model), settings)
     if name == NativeAgent.name:
         without_format, form = chosen(model)
-        return NativeAgent(model, chat_model or make_model(without_format), form, settings)
+        return NativeAgent(model, chat_model or make_model(without_format, form.api), form, settings)
     if name not in SIMPLE:
         raise UnknownNameError("agent", name, AGENTS, "automotive-cosim agents list")
     return SIMPLE[name](settings)
@@ -100,4 +101,7 @@ def model_of(name: str, model: str) -> ChatModel | None:
     """
     if name not in MODELLED:
         return None
-    return make_model(chosen(model)[0] if name == NativeAgent.name else model)
+    if name == NativeAgent.name:
+        without_format, form = chosen(model)
+        return make_model(without_format, form.api)
+    return make_model(model)

@@ -1,29 +1,37 @@
-"""Runs AndroidWorld's agents unchanged: ``Class(env)``, ``step(goal)``, and an ``env`` that they read and act on.
+"""Runs AndroidWorld's agents unchanged: ``Class(env)``, ``step(goal)``, and an ``env`` that they read and act on,
+either by ``env.execute_action`` or by ``env.controller`` and adb.
 
 Such an agent calls the environment; here the environment calls the agent. So it runs on a thread of its own, which
 pauses between its actions: ``act`` resumes it until it executes the next one.
 
     agent thread   step(goal) -> env.get_state() ... env.execute_action(action) | waits
     this thread    act(observation) -------------------------------------------> Action
+
+Their fixed pauses are switched off: here, time passes only on the road.
 """
 
 from __future__ import annotations
 
 import queue
+import re
+import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from automotive_cosim.cockpit.actions import FIELDS, parse
+from automotive_cosim.agents.adb import Controller
+from automotive_cosim.agents.native.verbs import typed
+from automotive_cosim.cockpit.actions import FIELDS, check, parse
 from automotive_cosim.contracts import Action, ActionType, BoundingBox, Element, GoalStatus, Observation
 from automotive_cosim.errors import ActionError
 from automotive_cosim.interface.observe import Channel
 
 SCREEN_PX = (1280, 720)
+GOAL_STATUS = re.compile(r"""['"]goal_status['"]\s*:\s*['"](\w+)""")
 
 
 @dataclass(frozen=True)
@@ -93,6 +101,30 @@ class AndroidWorldState:
     auxiliaries: None = None
 
 
+class _Prints:
+    """While any agent acts, what is printed goes to standard error: it is not this program's output."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._acting = 0
+        self._output = sys.stdout
+
+    def __enter__(self) -> None:
+        with self._lock:
+            if not self._acting:
+                self._output, sys.stdout = sys.stdout, sys.stderr
+            self._acting += 1
+
+    def __exit__(self, *_: object) -> None:
+        with self._lock:
+            self._acting -= 1
+            if not self._acting:
+                sys.stdout = self._output
+
+
+_PRINTS = _Prints()
+
+
 class _EpisodeOverError(BaseException):
     """Ends an agent's thread at its next call; no ``except Exception`` of the agent catches it."""
 
@@ -119,10 +151,12 @@ class _Environment:
         self.seen: queue.Queue[Observation | None] = queue.Queue()
         self.done: queue.Queue[Action | _Over | Exception | SystemExit] = queue.Queue()
         self.acted = False
+        self.controller = Controller(self.perform, self.elements, SCREEN_PX)
         self._now: Observation | None = None
 
     def get_state(self, wait_to_stabilize: bool = False) -> AndroidWorldState:
         """The screen as it is now."""
+        self.controller.flush()
         now = self.now()
         pixels = np.zeros((SCREEN_PX[1], SCREEN_PX[0], 3), np.uint8) if now.screenshot is None else now.screenshot
         return AndroidWorldState(np.array(pixels), [_ui_element(element) for element in now.elements or ()])
@@ -132,11 +166,29 @@ class _Environment:
         return self.get_state()
 
     def execute_action(self, action: Any) -> None:
-        """Passes the action on and waits until its time has passed."""
-        known = translated(action)
+        """Passes the action on and waits until its time has passed. A text is typed and entered, as on the device.
+
+        Raises:
+            ActionError: there is no such action here.
+            ValueError: it lacks its target.
+        """
+        self.controller.flush()
+        known = translated(action, self.elements(), self.controller.last)
+        if known.action_type is ActionType.ANSWER:
+            self.interaction_cache = known.text or ""
+        self.controller.touch(known)
+        if known.action_type is ActionType.INPUT_TEXT:
+            self.perform(Action(ActionType.KEYBOARD_ENTER))
+
+    def perform(self, action: Action) -> None:
+        """Hands an action over and waits until its time has passed."""
         self.acted = True
-        self.done.put(known)
+        self.done.put(check(action))
         self.wait()
+
+    def elements(self) -> Sequence[Element]:
+        """The elements on the screen now."""
+        return self.now().elements or ()
 
     def hide_automation_ui(self) -> None:
         """Does nothing."""
@@ -189,7 +241,8 @@ class AndroidWorldAgent:
         """
         assert self._env is not None
         self._env.seen.put(observation)
-        done = self._env.done.get()
+        with _PRINTS:
+            done = self._env.done.get()
         if isinstance(done, Action):
             return done
         if isinstance(done, ActionError):
@@ -208,9 +261,12 @@ class AndroidWorldAgent:
                 env.acted = False
                 outcome: _Over | Exception | SystemExit
                 try:
-                    agent = agent or self._make(env)
+                    agent = agent or _without_pauses(self._make(env))
                     result = agent.step(goal)
                     outcome = _Over(bool(getattr(result, "done", False)), getattr(result, "data", None))
+                    env.controller.flush()
+                    if not (env.acted or outcome.declared):
+                        _catch_up(env, outcome.data)
                 except (Exception, SystemExit) as error:  # without an answer, `act` would wait forever
                     outcome = error
                 handed_over = isinstance(outcome, _Over) and env.acted and not outcome.declared
@@ -221,11 +277,17 @@ class AndroidWorldAgent:
             return
 
 
-def translated(action: Any) -> Action:
+def translated(action: Any, elements: Sequence[Element] = (), last: tuple[int, int] | None = None) -> Action:
     """An AndroidWorld ``JSONAction``, or anything with its attributes, as one of ours.
+
+    Args:
+        action: the action.
+        elements: those on the screen; a text without a target goes to the one with the focus.
+        last: the pixel that was touched last.
 
     Raises:
         ActionError: there is no such action here.
+        ValueError: a touch lacks its target.
     """
     names = {field.name for field in fields(Action)} - {"action_type"}
     given = {name: value for name in names if (value := getattr(action, name, None)) is not None}
@@ -235,21 +297,56 @@ def translated(action: Any) -> Action:
         known = (*takes.required, *takes.optional, *(("index", "x", "y") if takes.target else ()))
         given = {name: value for name, value in given.items() if name in known}
         if takes.target and not {"index", "x", "y"} & set(given):
+            if kind == ActionType.INPUT_TEXT:
+                return check(typed(given.get("text", ""), elements, last, clear=bool(given.get("clear_text"))))
+            if kind != ActionType.SWIPE:
+                raise ValueError(f"Invalid {kind} action: {action}")
             given |= {"x": SCREEN_PX[0] // 2, "y": SCREEN_PX[1] // 2}
+        if kind == ActionType.SWIPE:  # up and down are the finger's directions there, left and right are not
+            given["direction"] = _ACROSS.get(given.get("direction", ""), given.get("direction"))
     for name in ("x", "y", "index"):
         if isinstance(given.get(name), float):
             given[name] = round(given[name])
     return parse({"action_type": kind, **given})
 
 
+_ACROSS = {"left": "right", "right": "left"}
+
+
+def _without_pauses(agent: Any) -> Any:
+    """The agent, waiting no fixed time after its actions."""
+    for name, pause in (("transition_pause", None), ("wait_after_action_seconds", 0.0)):
+        if hasattr(agent, name):
+            setattr(agent, name, pause)
+    return agent
+
+
+def _catch_up(env: _Environment, data: Any) -> None:
+    """Performs what a step says that it did, but the device does by itself: to wait, and to answer."""
+    for value in _values(data).values():
+        if getattr(value, "action_type", None) in (ActionType.WAIT, ActionType.ANSWER):
+            env.execute_action(value)
+            return
+
+
 def _declared(data: Any) -> GoalStatus:
-    """The status in a step's data, where AndroidWorld's agents leave it; ``complete`` without one."""
-    values = list(data.values()) if isinstance(data, dict) else []
-    for value in values:
+    """The status in a step's data, where AndroidWorld's agents leave it, as an action or in the model's answer;
+    ``complete`` without one."""
+    values = _values(data)
+    for value in values.values():
         status = getattr(value, "goal_status", None)
         if status in set(GoalStatus):
             return GoalStatus(status)
+    for name, value in values.items():
+        if isinstance(value, str) and name.endswith(("output", "response")):
+            said = [word for word in GOAL_STATUS.findall(value) if word in set(GoalStatus)]
+            if said:
+                return GoalStatus(said[-1])
     return GoalStatus.COMPLETE
+
+
+def _values(data: Any) -> Mapping[str, Any]:
+    return data if isinstance(data, dict) else {}
 
 
 def _ui_element(element: Element) -> UIElement:

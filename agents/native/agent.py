@@ -10,7 +10,7 @@ from automotive_cosim.agents.base import StageName
 from automotive_cosim.agents.marks import png
 from automotive_cosim.agents.native.formats import Format
 from automotive_cosim.agents.native.grid import GuiScreen
-from automotive_cosim.agents.native.verbs import Hand, actions
+from automotive_cosim.agents.native.verbs import GuiCall, Hand, actions
 from automotive_cosim.agents.settings import AgentSettings
 from automotive_cosim.contracts import Action, Observation
 from automotive_cosim.errors import ActionError, UserError
@@ -20,7 +20,7 @@ from automotive_cosim.models.base import ChatModel
 MOST_ACTIONS = 10
 """Most actions of one answer; each is a step."""
 REMEMBERED = 200
-"""Characters of an action in the history."""
+"""Characters of a step in the history, which is told in the format's own words."""
 
 
 class NativeAgent:
@@ -59,7 +59,7 @@ class NativeAgent:
         """Forgets the previous episode."""
         self._asking.reset()
         self._history: list[str] = []
-        self._left: deque[Action] = deque()
+        self._left: deque[tuple[Action, GuiCall]] = deque()
         self._last: tuple[int, int] | None = None
         self._problem = ""
 
@@ -83,7 +83,7 @@ class NativeAgent:
         hand = Hand(screen, observation.elements or (), self._last)
         try:
             calls = self._form.syntax.read(reply.text, self._form.verbs)
-            found = [action for call in calls for action in actions(self._form.verbs, call, hand)]
+            found = [(action, call) for call in calls for action in actions(self._form.verbs, call, hand)]
             if len(found) > MOST_ACTIONS:
                 raise ActionError(f"the answer has {len(found)} actions; at most {MOST_ACTIONS} are allowed")
         except ActionError as error:
@@ -96,12 +96,12 @@ class NativeAgent:
         return self._next(observation)
 
     def _next(self, seen: Observation) -> Action:
-        action = self._left.popleft()
+        action, call = self._left.popleft()
         if action.x is not None and action.y is not None:
             self._last = action.x, action.y
-        words = prompt.action_words(action, seen)
-        self._history.append(f"Step {len(self._history) + 1}: {words[:REMEMBERED]}")
-        self._asking.note(StageName.ACT, seen, words)
+        said = ", ".join(f"{name}={value!r}" for name, value in call.arguments.items())
+        self._history.append(f"Step {len(self._history) + 1}: {call.name}({said})"[:REMEMBERED])
+        self._asking.note(StageName.ACT, seen, prompt.action_words(action, seen))
         return action
 
     def _question(self, seen: Observation, screen: GuiScreen) -> str:
@@ -109,7 +109,7 @@ class NativeAgent:
         return prompt.fill(
             "native",
             {
-                "grammar": self._form.syntax.describe(self._form.verbs, *span),
+                "grammar": self._form.syntax.describe(self._form.verbs, *span) or None,
                 "goal": prompt.one_line(seen.goal),
                 "history": "\n".join(map(prompt.one_line, self._history)) or "nothing yet",
                 "problem": self._problem or None,

@@ -1,7 +1,8 @@
 """The table of formats: for each model family its words, its coordinates and its form.
 
 Sources: bytedance/UI-TARS ``codes/ui_tars``; QwenLM/Qwen3-VL ``cookbooks``; X-PLUG/MobileAgent; Tongyi-MAI/MAI-UI
-``src/prompt.py``; xlang-ai/OpenCUA. A swipe is the finger's movement; a scroll shows what lies in its direction.
+``src/prompt.py``; xlang-ai/OpenCUA; the providers' own pages on computer use. A swipe is the finger's movement; a
+scroll shows what lies in its direction.
 """
 
 from __future__ import annotations
@@ -11,10 +12,20 @@ from dataclasses import dataclass
 from urllib.parse import parse_qsl, urlencode
 
 from automotive_cosim.agents.native.grid import Grid, Pixels, Resized, Share
-from automotive_cosim.agents.native.syntax import Code, JsonSyntax, Labelled, Syntax, ToolCalls
+from automotive_cosim.agents.native.syntax import (
+    END,
+    Calls,
+    Code,
+    JsonSyntax,
+    Labelled,
+    Syntax,
+    ToolCalls,
+    car_function,
+)
 from automotive_cosim.agents.native.verbs import CAR, CAR_ACTIONS, KEYS, Meaning, Verb
 from automotive_cosim.contracts import ActionType, GoalStatus
 from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.models.apis import Anthropic, Gemini, OpenAI, ProviderApi
 
 QWEN25_GRID = Resized(28, 56 * 56, 12_845_056)
 
@@ -26,6 +37,8 @@ class Format:
     syntax: Syntax
     grid: Grid
     verbs: Mapping[str, Verb]
+    api: ProviderApi | None = None
+    """The protocol of its endpoint; None for chat completions."""
 
     @property
     def actions(self) -> frozenset[ActionType]:
@@ -122,10 +135,57 @@ _OPENCUA: dict[str, Verb] = {
     "wait": Verb(Meaning.WAIT),
     "terminate": Verb(Meaning.END, text="status"),
 }
+_OPENAI: dict[str, Verb] = {
+    "click": Verb(Meaning.TAP, at=("x", "y")),
+    "double_click": Verb(Meaning.DOUBLE_TAP, at=("x", "y")),
+    "drag": Verb(Meaning.DRAG, at=("from",), to=("to",)),
+    "scroll": Verb(Meaning.SCROLL, at=("x", "y"), direction="direction", point_optional=True),
+    "type": Verb(Meaning.TYPE, text="text"),
+    "keypress": Verb(Meaning.KEY, text="keys"),
+    "wait": Verb(Meaning.WAIT),
+    "screenshot": Verb(Meaning.WAIT),
+    END: Verb(Meaning.END, means="success"),
+    CAR: Verb(Meaning.CAR),
+}
+_ANTHROPIC: dict[str, Verb] = {
+    "left_click": Verb(Meaning.TAP, at=("coordinate",)),
+    "double_click": Verb(Meaning.DOUBLE_TAP, at=("coordinate",)),
+    "triple_click": Verb(Meaning.DOUBLE_TAP, at=("coordinate",)),
+    "left_click_drag": Verb(Meaning.DRAG, at=("start_coordinate",), to=("coordinate",)),
+    "scroll": Verb(Meaning.SCROLL, at=("coordinate",), direction="scroll_direction", point_optional=True),
+    "type": Verb(Meaning.TYPE, text="text"),
+    "key": Verb(Meaning.KEY, text="text"),
+    "wait": Verb(Meaning.WAIT, seconds="duration"),
+    "screenshot": Verb(Meaning.WAIT),
+    END: Verb(Meaning.END, means="success"),
+    CAR: Verb(Meaning.CAR),
+}
+_GEMINI: dict[str, Verb] = {
+    "click_at": Verb(Meaning.TAP, at=("x", "y")),
+    "type_text_at": Verb(Meaning.TYPE, at=("x", "y"), text="text"),
+    "scroll_document": Verb(Meaning.SCROLL, direction="direction"),
+    "scroll_at": Verb(Meaning.SCROLL, at=("x", "y"), direction="direction"),
+    "drag_and_drop": Verb(Meaning.DRAG, at=("x", "y"), to=("destination_x", "destination_y")),
+    "key_combination": Verb(Meaning.KEY, text="keys"),
+    "go_back": Verb(Meaning.KEY, means="back"),
+    "wait_5_seconds": Verb(Meaning.WAIT, seconds="seconds"),
+    END: Verb(Meaning.END, means="success"),
+    CAR: Verb(Meaning.CAR),
+}
 _SCREEN_ALONE = frozenset(ActionType) - {ActionType.QUERY, ActionType.ESTIMATE_POSITION}
 _PLAIN: dict[str, Verb] = {str(kind): Verb(Meaning.CAR) for kind in ActionType if kind in _SCREEN_ALONE}
 
+_FUNCTIONS = (car_function(),)
+
 FORMATS: Mapping[str, Format] = {
+    "anthropic": Format(Calls(), Pixels(), _ANTHROPIC, Anthropic(_FUNCTIONS)),
+    "anthropic-2025-01": Format(
+        Calls(), Pixels(), _ANTHROPIC, Anthropic(_FUNCTIONS, "computer_20250124", "computer-use-2025-01-24")
+    ),
+    "anthropic-2025-11": Format(
+        Calls(), Pixels(), _ANTHROPIC, Anthropic(_FUNCTIONS, "computer_20251124", "computer-use-2025-11-24")
+    ),
+    "gemini": Format(Calls(), Share(1000), _GEMINI, Gemini(_FUNCTIONS)),
     "gui-owl": Format(
         ToolCalls(preamble="<thinking>\n{thought}\n</thinking>\n<conclusion>\n{thought}\n</conclusion>\n"),
         QWEN25_GRID,
@@ -136,6 +196,7 @@ FORMATS: Mapping[str, Format] = {
     ),
     "json": Format(JsonSyntax(), Pixels(), _PLAIN),
     "mai-ui": Format(ToolCalls(preamble="<thinking>\n{thought}\n</thinking>\n"), Share(999), _MAI_UI),
+    "openai": Format(Calls(), Pixels(), _OPENAI, OpenAI(_FUNCTIONS)),
     "opencua": Format(Code(), Resized(28, 3136, 12_845_056), _OPENCUA),
     "qwen2.5-vl": Format(ToolCalls(preamble=""), QWEN25_GRID, _QWEN25),
     "qwen3-vl": Format(ToolCalls(), Share(999), _QWEN3),

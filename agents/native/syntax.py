@@ -326,6 +326,57 @@ def _lines(call: GuiCall) -> Iterator[str]:
     yield f"{module}.{name}({words.removesuffix(', ')})"
 
 
+# --- calls by a provider's own API ------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Calls:
+    """Calls that came over an API of their own: OpenAI, Anthropic, Gemini (``models.apis``)."""
+
+    def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
+        """See ``Syntax``. An answer in words alone ends the episode: that is how these models end it."""
+        try:
+            told = json.loads(text)
+            calls = [_plainly(str(call["name"]), dict(call["arguments"])) for call in told["calls"]]
+            said = told["say"]
+        except (ValueError, LookupError, TypeError, RecursionError) as error:
+            raise ActionError(f"the answer is no list of calls: {error}") from error
+        if not calls and not said:
+            raise ActionError("the answer is empty; call a function, or say that you are done")
+        return calls or [GuiCall(END, {})]
+
+    def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str:
+        """See ``Syntax``."""
+        told = [{"name": call.name, "arguments": dict(call.arguments)} for call in calls if call.name != END]
+        return json.dumps({"say": thought, "calls": told}, ensure_ascii=False)
+
+    def describe(self, verbs: Verbs, width: int, height: int) -> str:
+        """See ``Syntax``; the protocol itself describes them."""
+        return ""
+
+
+END = "end"
+"""The word for an answer without a call."""
+
+
+def _plainly(name: str, given: Json) -> GuiCall:
+    """A call with its arguments as the table names them."""
+    if name == "drag" and "path" in given:  # OpenAI
+        path = [[point["x"], point["y"]] for point in given["path"]]
+        return GuiCall(name, {"from": path[0], "to": path[-1]})
+    if name == "scroll" and "scroll_y" in given:  # OpenAI: a wheel's distance, down and right above zero
+        across, down = given.pop("scroll_x", 0), given.pop("scroll_y")
+        by_row = ("down" if down > 0 else "up") if abs(down) >= abs(across) else ("right" if across > 0 else "left")
+        return GuiCall(name, given | {"direction": by_row})
+    if name == "type_text_at":  # Gemini presses enter unless told otherwise
+        enter = "\n" if given.pop("press_enter", True) else ""
+        given.pop("clear_before_typing", None)
+        return GuiCall(name, given | {"text": f"{given.get('text', '')}{enter}"})
+    if name == "wait_5_seconds":
+        return GuiCall(name, {"seconds": 5})
+    return GuiCall(name, given)
+
+
 # --- this project's own JSON --------------------------------------------------------------------------------
 
 

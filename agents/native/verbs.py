@@ -134,7 +134,7 @@ def _actions(verb: Verb, call: GuiCall, hand: Hand) -> list[Action]:
             x, y = _point(verb.at, call, hand.screen) if _has_point(verb, call) else _middle(hand.screen)
             return [Action(ActionType.SWIPE, x=x, y=y, direction=_direction(verb, call))]
         case Meaning.DRAG:
-            return [_drag(_point(verb.at, call, hand.screen), _point(verb.to, call, hand.screen))]
+            return [drag(_point(verb.at, call, hand.screen), _point(verb.to, call, hand.screen))]
         case Meaning.KEY:
             return [Action(_key(text))]
         case Meaning.OPEN:
@@ -293,12 +293,22 @@ def _typed(text: str, verb: Verb, call: GuiCall, hand: Hand) -> Action:
     if _has_point(verb, call) and verb.at:
         x, y = _point(verb.at, call, hand.screen)
         return Action(ActionType.INPUT_TEXT, x=x, y=y, text=text)
-    focused = next((i for i, entry in enumerate(hand.elements) if entry.is_editable and entry.is_focused), None)
+    return typed(text, hand.elements, hand.last)
+
+
+def typed(text: str, elements: Sequence[Element], last: tuple[int, int] | None, *, clear: bool = False) -> Action:
+    """The action that types a text where a device would: into the field with the focus, or else at the last touch.
+
+    Raises:
+        ActionError: there is neither.
+    """
+    cleared = clear or None
+    focused = next((i for i, entry in enumerate(elements) if entry.is_editable and entry.is_focused), None)
     if focused is not None:
-        return Action(ActionType.INPUT_TEXT, index=focused, text=text)
-    if hand.last is None:
-        raise ActionError(f"{call.name}: no text field has the focus; tap one first")
-    return Action(ActionType.INPUT_TEXT, x=hand.last[0], y=hand.last[1], text=text)
+        return Action(ActionType.INPUT_TEXT, index=focused, text=text, clear_text=cleared)
+    if last is None:
+        raise ActionError("no text field has the focus; tap one first")
+    return Action(ActionType.INPUT_TEXT, x=last[0], y=last[1], text=text, clear_text=cleared)
 
 
 def _list(verb: Verb, call: GuiCall, hand: Hand) -> int | None:
@@ -319,8 +329,8 @@ def _middle(screen: GuiScreen) -> tuple[int, int]:
     return screen.width // 2, screen.height // 2
 
 
-def _drag(start: tuple[int, int], end: tuple[int, int]) -> Action:
-    """A swipe along the axis on which the finger moves farther."""
+def drag(start: tuple[int, int], end: tuple[int, int]) -> Action:
+    """The swipe from one pixel to another, along the axis on which the finger moves farther."""
     across, down = end[0] - start[0], end[1] - start[1]
     if abs(across) > abs(down):
         direction = Direction.RIGHT if across > 0 else Direction.LEFT

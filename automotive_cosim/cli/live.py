@@ -18,8 +18,16 @@ from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.geo.breaches import limit_at
+from automotive_cosim.geo.text import amount_of_speed
 from automotive_cosim.run.episode import EpisodeResult, Shot, Watcher
-from automotive_cosim.run.words import action_in_words, is_over, limit_in_words, limit_kmh, road_in_words
+from automotive_cosim.run.words import (
+    action_in_words,
+    is_over,
+    limit_in_words,
+    limit_kmh,
+    road_in_words,
+    speed_in_words,
+)
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.options import read_configuration
 
@@ -127,13 +135,15 @@ class Live(Watcher):
         driving = moment.driving
         limit = limit_at(moment.context)
         speed_kmh = driving.speed_mps * KMH_PER_MPS
+        unit = moment.context.speed_unit
         rows = Table.grid(padding=(0, 2))
         rows.add_column(style="dim", justify="right")
         rows.add_column()
         rows.add_row("time", f"{moment.local_time:%H:%M:%S}  {self._clock(moment)}")
         rows.add_row("road", road_in_words(driving.road) + (", in a tunnel" if driving.road.in_tunnel else ""))
         style = "bold red" if is_over(speed_kmh, limit_kmh(limit)) else "bold green"
-        rows.add_row("speed", Text.assemble((f"{speed_kmh:.0f} km/h", style), f"  {limit_in_words(limit)}"))
+        speed = amount_of_speed(speed_kmh, unit)
+        rows.add_row("speed", Text.assemble((speed, style), f"  {limit_in_words(limit, unit)}"))
         rows.add_row("traffic", _traffic(moment))
         if self._goal:
             rows.add_row("driver", Text(f"“{self._goal}”", style="italic"))
@@ -150,10 +160,8 @@ class Live(Watcher):
 
 def _drive(moment: Moment) -> str:
     driving = moment.driving
-    limit = limit_in_words(limit_at(moment.context))
-    return (
-        f"{driving.speed_mps * KMH_PER_MPS:3.0f} km/h, {limit}, {road_in_words(driving.road)}; {_traffic(moment)}"
-    )
+    speed = speed_in_words(driving.speed_mps, limit_at(moment.context), moment.context.speed_unit)
+    return f"{speed}, {road_in_words(driving.road)}; {_traffic(moment)}"
 
 
 def _traffic(moment: Moment) -> str:

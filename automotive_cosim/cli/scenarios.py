@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -181,8 +182,11 @@ def render(
         raise UserError(f"--out {out} cannot be used here; give {wanted}")
     for scenario in found:
         target = out if out and to_file else (out or Path()) / f"{scenario.name}.webp"
-        save_picture(scenario, target)
+        unwritten = save_picture(scenario, target)
         typer.echo(str(target))
+        if unwritten:
+            left_out = counted(len(unwritten), "street name")
+            typer.echo(f"{left_out} left out, such as {unwritten[0]}: no font here has that script", err=True)
 
 
 @app.command("import")
@@ -204,12 +208,21 @@ def import_scenario(
         int,
         typer.Option(parser=whole_number(0, 2**31 - 2), metavar="N", help="Seed of the traffic and the ego trips."),
     ] = 0,
+    minutes: Annotated[
+        float,
+        typer.Option(
+            parser=number(1, 110), metavar="M", help="Minutes that the traffic must flow after its warm-up."
+        ),
+    ] = 30.0,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Take modest traffic, and try it for ten minutes only.")
+    ] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace the scenario in --out.")] = False,
 ) -> None:
     """Turn an OpenStreetMap extract into a scenario.
 
-    The traffic is scaled down until it flows for an hour after its warm-up. Reading the map, building the network
-    and testing the traffic take one to three minutes for a city district.
+    The traffic is scaled down until it flows for half an hour after its warm-up. Reading the map, building the
+    network and testing the traffic take one to three minutes for a city district.
     """
     from automotive_cosim.osm import Area, ImportOptions, import_map
     from automotive_cosim.osm.importer import scenario_name
@@ -220,6 +233,8 @@ def import_scenario(
         area=Area.parse(bbox) if bbox else None,
         density_per_km=density,
         seed=seed,
+        stable_for_s=60 * minutes,
+        quick=quick,
         replace=force,
     )
     folder = out or Path(name or scenario_name(file))
@@ -369,21 +384,43 @@ def _print_day(day: Day, folder: Path, page: Path) -> None:
         typer.echo(line)
 
 
+SAY_EVERY_S = 10.0
+"""Least wall time between two lines about the same activity in a log."""
+
+
 @contextmanager
 def _progress() -> Iterator[Tell]:
-    """A line on stderr with the current activity; only its last state if stderr is not a terminal."""
+    """The current activity on stderr: one line that changes in a terminal, a line now and then in a log."""
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
     from automotive_cosim.cli.console import Console
 
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield _into_log()
+        return
     columns = (TextColumn("{task.description}", markup=False), BarColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    with Progress(*columns, console=console, transient=True) as bar:
         task = bar.add_task("", total=None)
 
         def tell(stage: str, share: float | None) -> None:
             bar.update(task, description=stage, total=None if share is None else 1.0, completed=share or 0.0)
 
         yield tell
+
+
+def _into_log() -> Tell:
+    said, said_at_s = "", -math.inf
+
+    def tell(stage: str, share: float | None) -> None:
+        nonlocal said, said_at_s
+        now_s, what = time.monotonic(), stage.partition(",")[0]
+        if what == said and now_s - said_at_s < SAY_EVERY_S:
+            return
+        said, said_at_s = what, now_s
+        typer.echo(stage if share is None else f"{stage}: {share:.0%}", err=True)
+
+    return tell
 
 
 def _agreement(report: ImportReport) -> str:

@@ -35,6 +35,9 @@ def escaped(text: str) -> str:
 class Plain:
     """A stream to which only plain text is written."""
 
+    encoding = "utf-8"
+    """What it takes; of a stream that says ``ascii``, click would take the bytes below instead."""
+
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
         self.rich_proxied_file = stream

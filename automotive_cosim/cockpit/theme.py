@@ -189,6 +189,9 @@ EAST_ASIAN_FROM = "\u2e80"
 _HOMES = {Weight.ICON: ("fonticon_mdi7", "fonts"), Weight.EAST_ASIAN: ("noto_cjk_sans_jp_regular", "")}
 """Package and folder of the fonts; of the others, Roboto's."""
 
+MISSING = "\uffff"
+"""No character, so a font draws its sign for a letter that it lacks."""
+
 CAP_HEIGHT = 0.711
 """Height of Roboto's capitals, in em."""
 
@@ -212,6 +215,15 @@ def face(text: str, weight: Weight, size: int) -> ImageFont.FreeTypeFont:
     """The face for a text; one with any East Asian letter is set in that font completely."""
     foreign = not text.isascii() and weight is not Weight.ICON and max(text) >= EAST_ASIAN_FROM
     return font(Weight.EAST_ASIAN if foreign else weight, size)
+
+
+def can_set(text: str, weight: Weight, size: int) -> bool:
+    """Whether the fonts have every letter of a text; they lack Arabic, Hebrew and the scripts of India."""
+    if text.isascii():
+        return True
+    letters = face(text, weight, size)
+    missing = bytes(letters.getmask(MISSING))
+    return all(char.isspace() or bytes(letters.getmask(char)) != missing for char in set(text))
 
 
 class Icon(StrEnum):

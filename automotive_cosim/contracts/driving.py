@@ -209,7 +209,8 @@ class DrivingState:
     """The ego's state on the road at one instant: all that the cockpit and the geo-context learn about it."""
 
     time_s: float
-    """SUMO simulation time."""
+    """SUMO simulation time at the end of the step. SUMO's FCD output gives the same state the time of its
+    beginning: one step less."""
     x_m: float
     y_m: float
     """Position of the front bumper in the network's coordinates."""
@@ -223,7 +224,7 @@ class DrivingState:
     standing_s: float
     """How long it has been stationary (under 0.1 m/s)."""
     distance_m: float
-    """Distance driven since departure."""
+    """Distance driven since departure, by SUMO's odometer, which counts a step once the next one begins."""
     road: RoadHere
     ahead: RoadAhead
     around: Around

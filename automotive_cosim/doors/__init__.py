@@ -1,4 +1,5 @@
 """Doors: what other programs speak, each as a thin adapter of the service of episodes.
 
-mcp      a server of the Model Context Protocol (extra ``mcp``)
+mcp            a server of the Model Context Protocol (extra ``mcp``)
+inspect_tasks  tasks for Inspect (extra ``inspect``)
 """

@@ -17,6 +17,10 @@ from automotive_cosim.geo.borders import countries_near, country_of_zone, is_nea
 from automotive_cosim.geo.rulefile import read_jurisdiction
 from automotive_cosim.geo.rules import Jurisdiction
 
+LAW_OF = {"GF": "FR", "GP": "FR", "MQ": "FR", "RE": "FR", "YT": "FR"}
+"""Parts of a country with an ISO code of their own in which its traffic code applies: overseas France (art. 73 of
+the constitution). Territories with a law of their own, as those of the United States, are not among them."""
+
 
 @dataclass(frozen=True, slots=True)
 class Place:
@@ -81,8 +85,8 @@ class Atlas:
         lon_deg = (lon_deg + 180.0) % 360.0 - 180.0
         zone = tzfpy.get_tz(lon_deg, lat_deg)
         country = country_of_zone().get(zone, "")
-        layers = tuple(self._layers(country, lon_deg, lat_deg))
-        inner = {layer.kind: layer.name for layer in layers}
+        layers = tuple(self._layers(LAW_OF.get(country, country), lon_deg, lat_deg))
+        inner = {layer.kind: layer.name for layer in layers if country not in LAW_OF}
         return Place(
             country=country,
             country_name=inner.get("country", _country_names().get(country, "")),

@@ -13,6 +13,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from automotive_cosim.errors import UnknownNameError
+from automotive_cosim.models.apis import ProviderApi
 from automotive_cosim.models.base import ChatMessage, ChatModel, ModelReply
 from automotive_cosim.models.replay import Replay
 from automotive_cosim.models.rules import Rules
@@ -23,8 +24,12 @@ MODELS = ("rules", "replay/FOLDER", "openai/NAME", "PROVIDER/NAME")
 """The forms of a model's name."""
 
 
-def make_model(name: str) -> ChatModel:
+def make_model(name: str, api: ProviderApi | None = None) -> ChatModel:
     """A model by name.
+
+    Args:
+        name: its name.
+        api: the protocol of its endpoint, if it has one; by default chat completions.
 
     Raises:
         UnknownNameError: the name has none of the forms above.
@@ -40,4 +45,4 @@ def make_model(name: str) -> ChatModel:
         return Replay.read(Path(rest))
     from automotive_cosim.models.remote import make_remote
 
-    return make_remote(name)
+    return make_remote(name, api)

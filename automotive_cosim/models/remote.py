@@ -1,4 +1,4 @@
-"""Any OpenAI-compatible endpoint, through the ``openai`` package.
+"""Any OpenAI-compatible endpoint, and others' by their own protocols (``apis``), through the ``openai`` package.
 
 Key and address come from ``<PROVIDER>_API_KEY`` and ``<PROVIDER>_BASE_URL``. The key never gets into a message,
 log or record: every text about an endpoint passes ``_Endpoint.clean``.
@@ -12,6 +12,7 @@ import os
 import re
 import time
 from collections.abc import Callable, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field, replace
 from functools import cache
 from types import NoneType
@@ -19,6 +20,7 @@ from typing import TYPE_CHECKING, Any, get_args, get_type_hints
 from urllib.parse import parse_qsl, quote
 
 from automotive_cosim.errors import ModelError, SetupError, UnknownNameError, UserError
+from automotive_cosim.models.apis import Chat, ProviderApi
 from automotive_cosim.models.base import ChatMessage, ModelReply
 
 if TYPE_CHECKING:
@@ -31,6 +33,8 @@ LONGEST_FINISH = 40
 """Characters of the reason why an answer ends."""
 LONGEST_PAUSE_S = 60.0
 FIRST_PAUSE_S = 0.5
+STREAMED = "X-Stainless-Raw-Response"
+"""With this header and the value ``stream``, the ``openai`` package hands over the answer before it has read it."""
 SHORTEST_KEY = 12
 """A shorter key is no secret but a dummy for a local server, and may occur in any answer."""
 
@@ -82,8 +86,12 @@ def _number(name: str, value: str, kinds: tuple[type, ...]) -> float | int | Non
     return number
 
 
-def make_remote(spec: str) -> Remote:
+def make_remote(spec: str, api: ProviderApi | None = None) -> Remote:
     """The model ``PROVIDER/NAME`` or ``PROVIDER/NAME?settings``.
+
+    Args:
+        spec: its name.
+        api: the protocol of its endpoint; by default chat completions.
 
     Raises:
         SetupError: the ``openai`` package, the key or the address is missing.
@@ -100,7 +108,8 @@ def make_remote(spec: str) -> Remote:
         )
     if not base_url and provider != "openai":
         raise SetupError(f"model {whole!r} requires an address in {prefix}_BASE_URL, e.g. http://127.0.0.1:8000/v1")
-    return Remote(spec, model, settings, _Endpoint(provider, base_url or None, key))
+    spoken = api or Chat("max_completion_tokens" if provider == "openai" else "max_tokens")
+    return Remote(spec, model, settings, _Endpoint(provider, base_url or None, key), spoken)
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,6 +169,7 @@ class Remote:
         model: str,
         settings: Settings,
         endpoint: _Endpoint,
+        api: ProviderApi,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
         """Makes the model without connecting to it.
@@ -169,6 +179,7 @@ class Remote:
             model: the provider's name of it.
             settings: how to ask it.
             endpoint: where to ask it.
+            api: the protocol in which to ask it.
             sleep: waits for a number of seconds, between attempts and for the rate limit.
 
         Raises:
@@ -178,6 +189,7 @@ class Remote:
         self._model = model
         self._settings = settings
         self._endpoint = endpoint
+        self._api = api
         self._sleep = sleep
         self._client = endpoint.client(settings.timeout_s)
         self._next_s = 0.0
@@ -234,20 +246,23 @@ class Remote:
 
     def _post(self, messages: Sequence[ChatMessage]) -> bytes:
         """The body of the answer. It is read in pieces, so that the time limit applies to a slow server too."""
+        import openai
+
         settings = self._settings
-        longest = "max_completion_tokens" if self._endpoint.provider == "openai" else "max_tokens"
-        wanted: dict[str, Any] = {
-            "seed": settings.seed,
-            "temperature": settings.temperature,
-            longest: settings.max_tokens,
-        }
+        wanted = {"seed": settings.seed, "temperature": settings.temperature, "max_tokens": settings.max_tokens}
+        limits = {name: value for name, value in wanted.items() if value is not None}
+        headers: dict[str, Any] = dict(self._api.headers(self._endpoint.key))
+        if headers:  # a key of its own takes the bearer's place
+            headers["Authorization"] = openai.Omit()
         limit_s = time.monotonic() + settings.timeout_s
         body = b""
-        with self._client.chat.completions.with_streaming_response.create(
-            model=self._model,
-            messages=[_wire(message) for message in messages],  # type: ignore[misc]
-            **{name: value for name, value in wanted.items() if value is not None},
-        ) as response:
+        response = self._client.post(
+            self._api.path(self._model),
+            cast_to=openai.APIResponse[bytes],
+            body=self._api.body(self._model, messages, limits),
+            options={"headers": headers | {STREAMED: "stream"}},
+        )
+        with closing(response):
             for piece in response.iter_bytes():
                 body += piece
                 if time.monotonic() > limit_s:
@@ -258,24 +273,19 @@ class Remote:
 
     def _read(self, body: bytes) -> ModelReply:
         try:
-            told = json.loads(body)
-            choice = told["choices"][0]
-            content = choice["message"].get("content")
-            usage = told.get("usage") or {}
-            tokens_in, tokens_out = (int(usage.get(f"{kind}_tokens") or 0) for kind in ("prompt", "completion"))
-            if not (0 <= tokens_in <= MOST_TOKENS and 0 <= tokens_out <= MOST_TOKENS):
+            reply = self._api.read(json.loads(body))
+            if not (0 <= reply.tokens_in <= MOST_TOKENS and 0 <= reply.tokens_out <= MOST_TOKENS):
                 raise ValueError("no number of tokens")
-            finish = str(choice.get("finish_reason") or "stop")
         except (ArithmeticError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
             shown = self._endpoint.clean(body.decode(errors="replace"))[:80]  # cut first, half a key would pass
-            raise _PassingError(f"the answer is not a chat completion: {shown!r}") from None
+            raise _PassingError(f"the answer is not one of its protocol: {shown!r}") from None
         settings = self._settings
-        cost_usd = (tokens_in * settings.usd_per_million_in + tokens_out * settings.usd_per_million_out) / 1e6
+        dollars = reply.tokens_in * settings.usd_per_million_in + reply.tokens_out * settings.usd_per_million_out
         # Half a surrogate pair is valid JSON but not valid text: it could not be written into a record.
         text, finish = (
-            self._endpoint.clean(each).encode("utf-8", "replace").decode() for each in (_text(content), finish)
+            self._endpoint.clean(each).encode("utf-8", "replace").decode() for each in (reply.text, reply.finish)
         )
-        return ModelReply(text, tokens_in, tokens_out, cost_usd, finish=finish[:LONGEST_FINISH])
+        return replace(reply, text=text, finish=finish[:LONGEST_FINISH], cost_usd=dollars / 1e6)
 
 
 def _pause(header: str | None) -> float | None:
@@ -284,22 +294,3 @@ def _pause(header: str | None) -> float | None:
         return max(0.0, float(header)) if header else None
     except ValueError:
         return None
-
-
-def _text(content: object) -> str:
-    """A string, or the text parts of a list; nothing else counts as text."""
-    if isinstance(content, str):
-        return content
-    if isinstance(content, list):
-        return "".join(str(part.get("text", "")) for part in content if isinstance(part, dict))
-    return ""
-
-
-def _wire(message: ChatMessage) -> dict[str, Any]:
-    if not message.pictures:
-        return {"role": message.role, "content": message.text}
-    parts: list[dict[str, Any]] = [{"type": "text", "text": message.text}]
-    for picture in message.pictures:
-        data = base64.b64encode(picture).decode()
-        parts.append({"type": "image_url", "image_url": {"url": f"data:image/png;base64,{data}"}})
-    return {"role": message.role, "content": parts}

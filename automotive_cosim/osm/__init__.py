@@ -1,10 +1,14 @@
 """OSM extract -> scenario: a map, its country's conventions and traffic that keeps flowing.
 
     overpass    fetches a map from a server, if asked to
-    extract     reads any format, keeps the roads that cars use
-    country     its side of the road and general limits
-    limits      the mapped speed limits; the country's where none is mapped
+    extract     reads any format (overpass_json: a server's), keeps the roads that cars use
+    limits      the limits and zones that a road's tags state
+    towns       town or country by the density of the streets, where the tags do not tell
+    assumed     the limit that the law of the place sets, where none is stated (country: the most common one)
+    roads       all of it for each road: what netconvert is told, and what its edges keep
     network     netconvert, and its result
+    repair      opens the lanes in which cars would be trapped
+    agreement   compares every edge with its road
     demand      random traffic
     trips       routes for the ego
     folder      scenario.toml, .sumocfg, README

@@ -17,10 +17,11 @@ from automotive_cosim.geo.place import Place, shipped
 from automotive_cosim.osm import demand, extract, folder, network, trips
 from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.country import country_codes
+from automotive_cosim.osm.demand import Journey
 from automotive_cosim.osm.report import ImportReport, make_report
 from automotive_cosim.osm.roads import describe
 from automotive_cosim.scenarios import Scenario, Sumo, Trip, load
-from automotive_cosim.traffic.stability import HALTED_SHARE_LIMIT, Stability, measure
+from automotive_cosim.traffic.stability import HALTED_SHARE_LIMIT, Stability, Stuck, measure
 
 DEMAND_S = 7200.0
 """Traffic departs for two hours: the warm-up, an hour, and a margin."""
@@ -28,12 +29,26 @@ DEMAND_S = 7200.0
 HALTED_SHARE_AIM = 0.8 * HALTED_SHARE_LIMIT
 """The search is stricter than the check, because other seeds and step lengths may do a little worse."""
 
-SCALE_STEP = 0.8
 SCALE_MIN = 0.05
-"""The demand is repeatedly lowered to four fifths until it flows, at most to a twentieth."""
+"""The demand is lowered at most to a twentieth."""
 
-QUICK_STEP_S = 1.0
-"""The search starts with steps this long: five times as fast as 0.1 s, and nearly as strict."""
+SCALE_STEPS = (0.4, 0.8)
+"""A trial that fails lowers the demand by a factor between these: the more it jammed, the more."""
+
+TRIALS = 8
+"""Maximum number of trials with long steps, and with the scenario's own."""
+
+TRIAL_STEP_S = 1.0
+"""The search starts with steps this long: nearly as strict as 0.1 s, and faster."""
+
+TRIAL_S = 600.0
+"""Traffic must flow this long in a trial with long steps; locked junctions show within minutes."""
+
+QUICK_DENSITY = 0.5
+"""Share of the requested density with which a quick import starts."""
+
+STUCK_SHARE_MAX = 0.01
+"""Trips that stood for good in a trial that flowed otherwise are left out, up to this share of all."""
 
 FULL_PER_KM = 1000 / 7.5
 """Cars that fit on a kilometre of lane: SUMO's default length of 5 m and gap of 2.5 m."""
@@ -53,8 +68,10 @@ class ImportOptions:
     """Vehicles per kilometre of lane at a time if all drove freely, before scaling down."""
     seed: int = 0
     """Seed of the traffic and the ego trips."""
-    stable_for_s: float = 3600.0
+    stable_for_s: float = 1800.0
     """Traffic must flow this long after the warm-up."""
+    quick: bool = False
+    """Whether to take modest traffic, and try it with long steps only."""
     replace: bool = False
     """Whether to replace an existing scenario folder."""
 
@@ -99,7 +116,7 @@ def import_map(
         built = network.convert(mapped, roads, net, options.country, building.parent)
         tell("drawing trips", None)
         rng = np.random.default_rng(options.seed)
-        journeys = demand.draw(
+        drawn = demand.draw(
             built,
             net,
             scratch=building.parent,
@@ -107,10 +124,7 @@ def import_map(
             duration_s=DEMAND_S,
             rng=rng,
         )
-        demand.write(journeys, building / f"{options.name}.trips.xml.gz")
-        ways = trips.pick(journeys, rng)
-        flow = _find_scale(_write(building, options, place, ways, scale=1.0), options, tell)
-        _write(building, options, place, ways, scale=flow.scale)
+        flow, journeys, stuck = _Search(building, options, place, drawn, rng, tell).run()
         report = make_report(
             source,
             mapped,
@@ -122,6 +136,8 @@ def import_map(
             density_per_km=options.density_per_km,
             seed=options.seed,
             demand_per_hour=len(journeys) * 3600 / DEMAND_S,
+            stuck=stuck,
+            quick=options.quick,
         )
         report.write(building / "import.json")
         folder.write_readme(building / "README.md", title=_title(options), source=source.name, lines=report.guessed)
@@ -166,31 +182,89 @@ def _write(building: Path, options: ImportOptions, place: Place, ways: Sequence[
     return load(building)
 
 
-def _find_scale(scenario: Scenario, options: ImportOptions, tell: Tell) -> Stability:
-    """Scales the traffic down until it flows, first with long steps, then with the scenario's own."""
-    quick = _lower_until_it_flows(scenario, 1.0, QUICK_STEP_S, options, tell)
-    return _lower_until_it_flows(scenario, quick.scale, scenario.sumo.step_length_s, options, tell)
+class _Search:
+    """Finds traffic that flows, from above: first with long steps, then with the scenario's own."""
 
+    def __init__(
+        self,
+        building: Path,
+        options: ImportOptions,
+        place: Place,
+        journeys: Sequence[Journey],
+        rng: np.random.Generator,
+        tell: Tell,
+    ) -> None:
+        self._building = building
+        self._options = options
+        self._place = place
+        self._journeys = list(journeys)
+        self._most_stuck = math.ceil(STUCK_SHARE_MAX * len(journeys))
+        self._ways = trips.pick(journeys, rng)
+        self._tell = tell
+        self._stuck: list[Stuck] = []
 
-def _lower_until_it_flows(
-    scenario: Scenario, scale: float, step_length_s: float, options: ImportOptions, tell: Tell
-) -> Stability:
-    while True:
-        run = measure(
-            scenario,
-            observe_s=options.stable_for_s,
-            scale=scale,
-            seed=options.seed,
-            step_length_s=step_length_s,
-            stop_at=HALTED_SHARE_AIM,
-            on_progress=partial(tell, f"traffic at scale {scale:g}, in steps of {step_length_s:g} s"),
-        )
-        if run.stable and run.halted_share_max < HALTED_SHARE_AIM:
-            return run
-        if scale * SCALE_STEP < SCALE_MIN:
-            why = "; ".join(run.problems) or f"{run.halted_share_max:.0%} halted in the worst minute"
-            raise ImportMapError(
-                f"traffic on this map locks up even at a scale of {scale:g} ({why});"
-                " give a larger extract or a lower --density"
+    def run(self) -> tuple[Stability, Sequence[Journey], tuple[Stuck, ...]]:
+        """Writes the scenario.
+
+        Returns:
+            The figures of the last trial, the trips that drive, and what stood for good in a trial.
+
+        Raises:
+            ImportMapError: no traffic flows.
+        """
+        self._write_demand()
+        scale = QUICK_DENSITY if self._options.quick else 1.0
+        flow = self._until_it_flows(scale, TRIAL_STEP_S, min(TRIAL_S, self._options.stable_for_s))
+        if not self._options.quick:
+            own_s = self._scenario(flow.scale).sumo.step_length_s
+            flow = self._until_it_flows(flow.scale, own_s, self._options.stable_for_s)
+        self._scenario(flow.scale)
+        return flow, self._journeys, tuple(self._stuck)
+
+    def _until_it_flows(self, scale: float, step_length_s: float, observe_s: float) -> Stability:
+        for trials_left in reversed(range(TRIALS)):
+            run = measure(
+                self._scenario(scale),
+                observe_s=observe_s,
+                scale=scale,
+                seed=self._options.seed,
+                step_length_s=step_length_s,
+                stop_at=HALTED_SHARE_AIM,
+                on_progress=partial(self._tell, f"traffic at scale {scale:g}, in steps of {step_length_s:g} s"),
             )
-        scale = round(scale * SCALE_STEP, 3)
+            if run.stable and run.halted_share_max < HALTED_SHARE_AIM:
+                return run
+            self._tell(f"scale {scale:g} does not flow: {_why(run)}", None)
+            rest_flows = run.halted_share_max < HALTED_SHARE_AIM and self._left_out(run)
+            if not trials_left or (scale <= SCALE_MIN and not rest_flows):
+                raise ImportMapError(
+                    f"traffic on this map locks up even at a scale of {scale:g} ({_why(run)});"
+                    " give a larger extract or a lower --density"
+                )
+            if not rest_flows:
+                factor = HALTED_SHARE_AIM / max(run.halted_share_max, HALTED_SHARE_AIM)
+                scale = round(max(SCALE_MIN, scale * min(max(factor, SCALE_STEPS[0]), SCALE_STEPS[1])), 3)
+        raise AssertionError("the last trial returns or raises")
+
+    def _left_out(self, run: Stability) -> bool:
+        """Whether trips that stood for good where the rest flowed could be left out."""
+        numbers = {int(each.vehicle) for each in run.stuck if each.vehicle.isdecimal()}
+        if not numbers or len(self._stuck) + len(numbers) > self._most_stuck:
+            return False
+        self._stuck += run.stuck
+        self._journeys = [journey for number, journey in enumerate(self._journeys) if number not in numbers]
+        self._write_demand()
+        return True
+
+    def _write_demand(self) -> None:
+        demand.write(self._journeys, self._building / f"{self._options.name}.trips.xml.gz")
+
+    def _scenario(self, scale: float) -> Scenario:
+        return _write(self._building, self._options, self._place, self._ways, scale=scale)
+
+
+def _why(run: Stability) -> str:
+    """Why a trial failed, with the lanes on which vehicles stood for good."""
+    problems = "; ".join(run.problems) or f"{run.halted_share_max:.0%} halted in the worst minute"
+    lanes = sorted({each.lane for each in run.stuck})
+    return f"{problems}; they stood on {', '.join(lanes[:3])}{', …' * (len(lanes) > 3)}" if lanes else problems

@@ -9,6 +9,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from automotive_cosim.contracts import LimitSource
+from automotive_cosim.contracts.plain import counted
 from automotive_cosim.osm.agreement import differences
 from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.country import LEFT_HAND
@@ -19,7 +20,7 @@ from automotive_cosim.osm.network import Built
 from automotive_cosim.osm.roads import MappedRoad, way_of
 from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.posted import timed_limits
-from automotive_cosim.traffic.stability import Stability
+from automotive_cosim.traffic.stability import Stability, Stuck
 
 WAYS_SHOWN = 10
 """How many OSM ways a line names."""
@@ -91,8 +92,14 @@ def make_report(
     density_per_km: float,
     seed: int,
     demand_per_hour: float,
+    stuck: Sequence[Stuck],
+    quick: bool,
 ) -> ImportReport:
-    """Counts what an import found. ``demand_per_hour`` is the traffic before scaling."""
+    """Counts what an import found.
+
+    ``demand_per_hour`` is the traffic before scaling; ``stuck`` are the vehicles that stood for good in a trial;
+    ``quick`` is whether the traffic was only tried with long steps.
+    """
     edges = built.edges
     length_m = sum(edge.length_m for edge in edges)
     posted_m = sum(edge.length_m for edge in edges if edge.limit_source is LimitSource.POSTED)
@@ -125,7 +132,10 @@ def make_report(
         seed=seed,
         scale=stability.scale,
         stability=stability,
-        guessed=tuple(_guesses(extract, built, country, (length_m - posted_m) / 1000)),
+        guessed=(
+            *_guesses(extract, built, country, (length_m - posted_m) / 1000),
+            *_of_traffic(stability, stuck, quick=quick),
+        ),
         differences=tuple(map(str, differences(edges, roads))),
     )
 
@@ -170,8 +180,20 @@ def _guesses(extract: Extract, built: Built, country: str, assumed_km: float) ->
         ways = sorted({way_of(edge_id) for edge_id in built.opened})
         yield f"lanes for buses or taxis that part the lanes for cars, opened to cars: {_ways_in_words(ways)}"
     yield "lanes and right of way that the map does not state: by road class"
-    yield "traffic: random trips, half of them across the map's edge"
     yield "date, weather and ego trips: to be changed in scenario.toml"
+
+
+def _of_traffic(stability: Stability, stuck: Sequence[Stuck], *, quick: bool) -> Iterator[str]:
+    yield "traffic: random trips, half of them across the map's edge"
+    if quick:
+        yield (
+            f"traffic that flows: modest, tried for {stability.observed_s / 60:.0f} min in steps of"
+            f" {stability.step_length_s:g} s (--quick)"
+        )
+    if stuck:
+        ways = sorted({way_of(each.lane) for each in stuck if not each.lane.startswith(":")})
+        reasons = ", ".join(sorted({each.reason for each in stuck}))
+        yield f"{counted(len(stuck), 'trip')} left out that stood for good ({reasons}): {_ways_in_words(ways)}"
 
 
 def _doubted(extract: Extract, country: str) -> dict[str, list[int]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Sequence
+from itertools import chain, count
 
 import numpy as np
 
@@ -42,16 +43,20 @@ def _shared(journey: Journey, used: set[str]) -> float:
 
 
 def slug(text: str) -> str:
-    """Lower case, ASCII, words joined by hyphens; "" if no Latin letters remain."""
+    """Lower case, words joined by hyphens: in ASCII, or in the script of a name that has no Latin letters."""
     plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode().lower()
-    return re.sub(r"[^a-z0-9]+", "-", plain).strip("-")
+    latin = re.sub(r"[^a-z0-9]+", "-", plain).strip("-")
+    if re.search("[a-z]", latin) or not re.search(r"[^\W\d_]", text):
+        return latin
+    return re.sub(r"[\W_]+", "-", unicodedata.normalize("NFKC", text).lower()).strip("-")
 
 
 def _trip(journey: Journey, taken: Sequence[str]) -> Trip:
     names = [edge.name for edge in journey.way if edge.name] or ["unnamed road"]
-    name = f"{slug(names[0]) or 'start'}-to-{slug(names[-1]) or 'goal'}"
-    while name in taken:
-        name += "-again"
+    ends = slug(names[0]) or "start", slug(names[-1]) or "goal"
+    plain = f"along-{ends[0]}" if ends[0] == ends[1] else "-to-".join(ends)
+    others = (f"{plain}-{number}" for number in count(2))
+    name = next(name for name in chain([plain], others) if name not in taken)
     about = f"{journey.length_m / 1000:.1f} km from {names[0]} to {names[-1]}"
     tunnel_m = sum(edge.length_m for edge in journey.way if edge.in_tunnel)
     if tunnel_m:

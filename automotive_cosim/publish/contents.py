@@ -25,7 +25,7 @@ Sha256 = Annotated[str, Form("^[0-9a-f]{64}$", "64 hexadecimal digits")]
 
 
 @dataclass(frozen=True, slots=True)
-class Counts:
+class BundleCounts:
     """What has become of the planned episodes."""
 
     planned: Annotated[int, Ge(0)]
@@ -48,7 +48,7 @@ class Contents:
     """Of the bundle; any other is refused."""
     suite: str
     """Version of automotive-cosim that ran the evaluation."""
-    counts: Counts
+    counts: BundleCounts
     """What has become of the planned episodes."""
     files: Mapping[str, Sha256]
     """SHA-256 of every other file, by its path in the bundle."""
@@ -63,14 +63,14 @@ class Contents:
         return hashlib.sha256(self.text().encode()).hexdigest()
 
 
-def counts(found: Coverage, successes: int) -> Counts:
+def counts(found: Coverage, successes: int) -> BundleCounts:
     """The counts of an evaluation.
 
     Args:
         found: how much of its plan has been run.
         successes: the number of successes.
     """
-    return Counts(found.planned, found.judged, successes, found.errors, len(found.not_run))
+    return BundleCounts(found.planned, found.judged, successes, found.errors, len(found.not_run))
 
 
 def file_sha256(path: Path) -> str:

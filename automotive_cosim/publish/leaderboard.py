@@ -34,7 +34,7 @@ COLUMNS = (
 
 
 @dataclass(frozen=True, slots=True)
-class Conditions:
+class BundleConditions:
     """What contestants must share to stand in one table."""
 
     suite: str
@@ -47,7 +47,7 @@ class Conditions:
     episodes: str
     """How many a contestant was to run, with a digest of exactly which."""
 
-    def differing(self, other: Conditions) -> list[str]:
+    def differing(self, other: BundleConditions) -> list[str]:
         """The conditions in which another differs, in words."""
         return [
             f"{name}: {getattr(self, name)} instead of {getattr(other, name)}"
@@ -57,13 +57,13 @@ class Conditions:
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class BoardEntry:
     """One contestant of one bundle."""
 
     bundle: str
     sha256: str
     contestant: Contestant
-    conditions: Conditions
+    conditions: BundleConditions
     rates: tuple[Rate, ...]
     """By dimension, over first halves; of the safety pairs; of all episodes."""
 
@@ -91,7 +91,7 @@ def write_leaderboard(folder: Path, out: Path, *, workers: int = 1) -> list[str]
     """
     if not folder.is_dir():
         raise UserError(f"{folder} is not a folder; give one with bundles, which `automotive-cosim bundle` makes")
-    entries: list[Entry] = []
+    entries: list[BoardEntry] = []
     left_out: list[str] = []
     for path in sorted(path for path in folder.iterdir() if path.is_file() and path.resolve() != out.resolve()):
         try:
@@ -112,7 +112,7 @@ def write_leaderboard(folder: Path, out: Path, *, workers: int = 1) -> list[str]
     return left_out
 
 
-def read_entries(bundle: Path) -> list[Entry]:
+def read_entries(bundle: Path) -> list[BoardEntry]:
     """The contestants of a bundle.
 
     Raises:
@@ -127,13 +127,13 @@ def read_entries(bundle: Path) -> list[Entry]:
         by_dimension = [rate_of(row for row in firsts if row.dimension == name) for name in DIMENSIONS]
         rates = (*by_dimension, rate_of(pair for pair, _ in pairs(rows)), rate_of(rows))
         conditions = _conditions(contents.suite, results.manifest["plan"], rows)
-        made.append(Entry(bundle.name, contents.sha256, each, conditions, rates))
+        made.append(BoardEntry(bundle.name, contents.sha256, each, conditions, rates))
     return made
 
 
-def tables(entries: Sequence[Entry]) -> list[tuple[Table, Conditions, list[str]]]:
+def tables(entries: Sequence[BoardEntry]) -> list[tuple[Table, BundleConditions, list[str]]]:
     """A table for each set of conditions, that with the most entries first; with how it differs from the first."""
-    alike: dict[Conditions, list[Entry]] = defaultdict(list)
+    alike: dict[BundleConditions, list[BoardEntry]] = defaultdict(list)
     for entry in entries:
         alike[entry.conditions].append(entry)
     ordered = sorted(alike.items(), key=lambda each: (-len(each[1]), str(each[0])))
@@ -144,7 +144,7 @@ def tables(entries: Sequence[Entry]) -> list[tuple[Table, Conditions, list[str]]
     ]
 
 
-def _table(number: int, entries: Sequence[Entry]) -> Table:
+def _table(number: int, entries: Sequence[BoardEntry]) -> Table:
     rows: list[TableRow] = []
     for entry in sorted(entries, key=lambda each: each.order):
         each = entry.contestant
@@ -168,11 +168,11 @@ def _speed(each: Contestant) -> list[str]:
     return clock + ([f"latency {each.latency_s:g} s"] if each.latency_s else [])
 
 
-def _conditions(suite: str, plan: Json, rows: Sequence[EpisodeRow]) -> Conditions:
+def _conditions(suite: str, plan: Json, rows: Sequence[EpisodeRow]) -> BundleConditions:
     instances = sorted({(row.task, row.half, row.scenario, row.seed, row.repeat) for row in rows})
     digest = hashlib.sha256(repr(instances).encode()).hexdigest()[:8]
     limits = plan["limits"]
-    return Conditions(
+    return BundleConditions(
         suite=suite,
         tasks=counted(len({row.task for row in rows}), "task"),
         scenarios=", ".join(plan["scenarios"]) or "each task's own",

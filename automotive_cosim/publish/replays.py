@@ -15,7 +15,7 @@ from automotive_cosim.publish.problems import Problem, differences
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.moments import judged_file, read_judged
 from automotive_cosim.run.plan import EpisodeJob
-from automotive_cosim.run.rerun import Played, played
+from automotive_cosim.run.rerun import PlayedAgain, played
 from automotive_cosim.run.row import as_json, steady
 from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.traffic.fork import Simulations
@@ -65,7 +65,7 @@ def _channels(job: EpisodeJob, steps: Sequence[Json]) -> list[frozenset[Channel]
 
 
 def _differences(
-    folder: Path, row: EpisodeRow, steps: Sequence[Json], last: Json, again: Played
+    folder: Path, row: EpisodeRow, steps: Sequence[Json], last: Json, again: PlayedAgain
 ) -> Iterator[Problem]:
     *new_steps, new_last = json.loads(json.dumps(again.lines))
     file = trace_file(folder, row.id).relative_to(folder).as_posix()

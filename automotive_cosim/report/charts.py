@@ -36,11 +36,13 @@ WIDE_IN, NARROW_IN = 9.6, 4.0
 
 
 def charts(results: Results) -> dict[str, tuple[str, str, str]]:
-    """Plots by name: title, SVG for a wide page, SVG for a narrow one.
+    """Plots by name: title, SVG for a wide page, SVG for a narrow one; none without episodes.
 
     Raises:
         SetupError: matplotlib is not installed.
     """
+    if not results.rows:
+        return {}
     made = {
         "dimensions": ("Success by dimension", _dimensions(results)),
         "modules": ("Success by module", _modules(results)),

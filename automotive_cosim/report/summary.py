@@ -7,7 +7,8 @@ from collections.abc import Callable, Hashable, Iterable, Sequence
 from itertools import combinations
 from operator import itemgetter
 
-from automotive_cosim.agents import PROFILES
+from automotive_cosim.agents import PROFILES, NativeAgent, chosen
+from automotive_cosim.contracts import ActionType, GoalStatus
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.report.published import PAPER, PAPER_COLUMNS, PAPER_ROWS
 from automotive_cosim.report.results import Contestant, Results, instance, not_judged, pairs
@@ -330,6 +331,10 @@ def input_of(each: Contestant) -> str:
     """The agent's input, in the paper's words."""
     control = "" if each.geo == "full" else f" (geo {each.geo})"
     control += "" if each.mode == Mode.PROMPTED else f" ({each.mode})"
+    if each.agent == NativeAgent.name:
+        lacks = chosen(each.model)[1].lacks
+        missing = [word for word in (ActionType.SHOW_ALERT, GoalStatus.NOT_NEEDED) if word in lacks]
+        return "screen" + (f", no words for {', '.join(missing)}" if missing else "") + control
     profile = PROFILES.get(each.agent)
     if profile is None:
         return NONE + control

@@ -76,7 +76,7 @@ def rerun(folder: Path, episode: str) -> list[Compared]:
 
 
 @dataclass(frozen=True, slots=True)
-class Played:
+class PlayedAgain:
     """What an evaluation would have kept of an episode that was played again."""
 
     lines: list[Json]
@@ -92,7 +92,7 @@ def played(
     failure: str | None = None,
     *,
     simulations: Simulations | None = None,
-) -> Played:
+) -> PlayedAgain:
     """Plays the actions of a stored episode in the same setup.
 
     Args:
@@ -111,7 +111,7 @@ def played(
     result = run_episode(job.setup, player, (collector,), simulations=simulations)
     if result.error is not None:
         raise InfrastructureError(result.error)
-    return Played(collector.trace(result), collector.row(job, result), collector.judged())
+    return PlayedAgain(collector.trace(result), collector.row(job, result), collector.judged())
 
 
 def compare(stored: Sequence[Json], again: Sequence[Json]) -> list[Compared]:

@@ -14,6 +14,7 @@ line says ``format`` and what is run; every other line has one of these keys:
                speed_kmh, limit_kmh, road, local_time, sun_deg (elevation; null without a place), weather_code (WMO)
                incidents  [[kind, x, y], …]
                events     [text, …]
+    baseline   [[at_s, x, y, heading, speed], …]                          the car in the baseline run, once judged
 
 The file is written while the drive goes on; what a kill leaves is readable up to the last whole line.
 """

@@ -50,6 +50,7 @@ class RoadRecorder(Watcher):
         """Snapshots whose second has not been reported yet."""
         self._before: list[tuple[Moment, RoadSnapshot]] = []
         self._writer: _Writer | None = None
+        self._episode: Episode | None = None
 
     def looked(self, snapshot: RoadSnapshot) -> None:
         """Keeps it until its second is reported."""
@@ -68,6 +69,7 @@ class RoadRecorder(Watcher):
     def handed_over(self, episode: Episode, shot: Shot) -> None:
         """Begins the file with the drive so far."""
         departed_s, now_s = episode.drive[0].time_s, shot.step.moment.time_s
+        self._episode = episode
         self._path.parent.mkdir(parents=True, exist_ok=True)
         self._writer = _Writer(self._path, episode, self._setup, now_s)
         for moment, snapshot in self._before:
@@ -76,7 +78,9 @@ class RoadRecorder(Watcher):
         self._before = []
 
     def finished(self, result: EpisodeResult) -> None:
-        """Completes the file."""
+        """Adds the baseline run of a judged episode, and completes the file."""
+        if self._writer is not None and self._episode is not None and self._episode.verdict is not None:
+            self._writer.baseline(self._episode.baseline_moments)
         self.close()
 
     def close(self) -> None:
@@ -182,6 +186,15 @@ class _Writer:
         )
         self._file.flush()
         self._raw.flush()
+
+    def baseline(self, moments: Sequence[Moment]) -> None:
+        """The same car with nobody at the cockpit."""
+        rows = []
+        for moment in moments:
+            car, at_s = moment.driving, round(moment.time_s - self._hand_over_s, 2)
+            heading_deg = round(car.heading_deg, 1) % 360
+            rows.append([at_s, round(car.x_m, 2), round(car.y_m, 2), heading_deg, round(car.speed_mps, 2)])
+        self._line({"baseline": rows})
 
     def close(self) -> None:
         self._file.close()

@@ -10,7 +10,7 @@ from automotive_cosim.contracts import KMH_PER_MPS, ActionType
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.interface.trace import Step
-from automotive_cosim.run.words import ROUNDING_KMH, action_in_words, limit_in_words, limit_kmh, road_in_words
+from automotive_cosim.run.words import ROUNDING_KMH, action_in_words, limit_kmh, road_in_words, speed_in_words
 
 QUIET = frozenset({ActionType.WAIT, ActionType.STATUS})
 
@@ -78,7 +78,7 @@ def timeline(moments: Sequence[Moment], steps: Sequence[Step], goal_s: float | N
 
 def _entry(moment: Moment, zero_s: float, kind: str, text: str) -> TimelineEntry:
     driving = moment.driving
-    speed = f"{driving.speed_mps * KMH_PER_MPS:.0f} km/h, {limit_in_words(limit_at(moment.context))}"
+    speed = speed_in_words(driving.speed_mps, limit_at(moment.context), moment.context.speed_unit)
     return TimelineEntry(round(moment.time_s - zero_s, 2), kind, f"{text} {road_in_words(driving.road)}: {speed}")
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from automotive_cosim.contracts import Action, ActionType, Element, Limit, Reason, RoadHere
+from automotive_cosim.contracts import KMH_PER_MPS, Action, ActionType, Element, Limit, Reason, RoadHere
+from automotive_cosim.geo.text import amount_of_speed
 
 ROUNDING_KMH = 1.0
 """A speedometer's last digit: a speed this much above the limit counts as at the limit."""
@@ -65,20 +66,28 @@ def action_in_words(action: Action | None, elements: Sequence[Element]) -> str:
 
 def road_in_words(road: RoadHere) -> str:
     """A road by its name, else by its class."""
-    return road.name or (f"a {_plain(road.road_class)} road" if road.road_class else "a road without a name")
+    if road.name or not road.road_class:
+        return road.name or "a road without a name"
+    words = _plain(road.road_class)
+    return f"{'an' if words[0] in 'aeiou' else 'a'} {words}" + ("" if words.endswith("street") else " road")
+
+
+def speed_in_words(speed_mps: float, limit: Limit, unit: str) -> str:
+    """A speed and the limit in the unit of the place: ``"48 km/h, 50 posted"``, ``"30 mph, no limit known"``."""
+    return f"{amount_of_speed(speed_mps * KMH_PER_MPS, unit)}, {limit_in_words(limit, unit)}"
+
+
+def limit_in_words(limit: Limit, unit: str) -> str:
+    """A limit with its source, in the unit of the place but without it."""
+    if limit.kmh is None:
+        return "no limit" if limit.is_posted else "no limit known"
+    amount = amount_of_speed(limit.kmh, unit).partition(" ")[0]
+    return f"{amount} posted" if limit.is_posted else f"{amount} by law"
 
 
 def limit_kmh(limit: Limit) -> float | None:
     """A limit in km/h, to a tenth; None if there is none."""
     return None if limit.kmh is None else round(limit.kmh, 1)
-
-
-def limit_in_words(limit: Limit) -> str:
-    """A limit with its source."""
-    speed_kmh = limit_kmh(limit)
-    if speed_kmh is None:
-        return "no limit known"
-    return f"{speed_kmh:g} posted" if limit.is_posted else f"{speed_kmh:g} by law"
 
 
 def is_over(speed_kmh: float, limit_kmh: float | None) -> bool:

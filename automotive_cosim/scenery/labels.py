@@ -11,7 +11,7 @@ import numpy.typing as npt
 from PIL import Image, ImageDraw
 from shapely import Polygon, box
 
-from automotive_cosim.cockpit.theme import DAY, Colour, Weight, font
+from automotive_cosim.cockpit.theme import DAY, Colour, Weight, can_set, face, font
 from automotive_cosim.contracts import KMH_PER_MPS, MPH_PER_MPS, LimitSource
 from automotive_cosim.geo.place import Atlas
 from automotive_cosim.traffic.georeference import GeoReference
@@ -39,6 +39,8 @@ class Labels:
     pixels: Callable[[Sequence[tuple[float, float]]], Points]
     """Network metres to pixels, (n, 2)."""
     taken: list[Polygon] = field(default_factory=list)
+    unwritten: list[str] = field(default_factory=list)
+    """Names in a script that no font has."""
 
     def is_free(self, outline: Polygon) -> bool:
         """Whether it lies within the picture and overlaps no earlier label."""
@@ -80,8 +82,10 @@ def _by_limit(edges: Sequence[Edge]) -> list[list[Edge]]:
 
 
 def _write_name(labels: Labels, name: str, edges: Sequence[Edge]) -> None:
-    face = font(Weight.MEDIUM, NAME_SIZE)
-    width = face.getlength(name)
+    if not can_set(name, Weight.MEDIUM, NAME_SIZE):
+        labels.unwritten.append(name)
+        return
+    width = face(name, Weight.MEDIUM, NAME_SIZE).getlength(name)
     for x, y, angle in _places(labels, edges, width):
         outline = _turned(x, y, width + 6, NAME_SIZE + 4, angle)
         if labels.is_free(outline):
@@ -137,11 +141,11 @@ def _along(line: Points) -> Points:
 
 def _write(picture: Image.Image, text: str, at: tuple[float, float], angle: float) -> None:
     """Dark letters with a light rim, turned."""
-    face = font(Weight.MEDIUM, NAME_SIZE * 3)
-    wide, high = round(face.getlength(text)) + 24, NAME_SIZE * 3 + 24
+    letters = face(text, Weight.MEDIUM, NAME_SIZE * 3)
+    wide, high = round(letters.getlength(text)) + 24, NAME_SIZE * 3 + 24
     for stroke, colour in ((7, DAY.halo), (0, DAY.text)):
         mask = Image.new("L", (wide, high))
-        ImageDraw.Draw(mask).text((wide / 2, high / 2), text, 255, face, "mm", stroke_width=stroke)
+        ImageDraw.Draw(mask).text((wide / 2, high / 2), text, 255, letters, "mm", stroke_width=stroke)
         mask = mask.rotate(-math.degrees(angle), Image.Resampling.BICUBIC, expand=True).reduce(3)
         picture.paste(colour, (round(at[0] - mask.width / 2), round(at[1] - mask.height / 2)), mask)
 

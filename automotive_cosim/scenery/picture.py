@@ -12,7 +12,7 @@ from PIL import Image, ImageDraw
 from shapely import LineString, Polygon, box
 
 from automotive_cosim.cockpit.map import AVENUES, MOTORWAYS, QUIET
-from automotive_cosim.cockpit.theme import DAY, Colour, Weight, font
+from automotive_cosim.cockpit.theme import DAY, Colour, Weight, face, font
 from automotive_cosim.errors import ScenarioError, UserError
 from automotive_cosim.geo.place import Atlas
 from automotive_cosim.scenarios import Scenario
@@ -93,6 +93,11 @@ def draw_scenario(scenario: Scenario) -> Image.Image:
     Raises:
         ScenarioError: its network cannot be read, or a trip has no route through it.
     """
+    return _drawn(scenario)[0]
+
+
+def _drawn(scenario: Scenario) -> tuple[Image.Image, tuple[str, ...]]:
+    """The picture, and the street names that it lacks because no font has their script."""
     network = network_of(scenario)
     edges = tuple(network.edges.values())
     frame = Viewport.around(edges)
@@ -103,17 +108,20 @@ def draw_scenario(scenario: Scenario) -> Image.Image:
     labels.taken.append(_scale_bar(picture, frame, edges))
     labels.taken += _ends(picture, frame, network, scenario)
     place_labels(labels, network)
-    return _framed(picture, scenario, _where(scenario, network))
+    return _framed(picture, scenario, _where(scenario, network)), tuple(labels.unwritten)
 
 
-def save_picture(scenario: Scenario, path: Path) -> None:
+def save_picture(scenario: Scenario, path: Path) -> tuple[str, ...]:
     """Draws the scenario into a file whose suffix is one of ``ENDINGS``, completely or not at all.
+
+    Returns:
+        The street names that it lacks because no font has their script.
 
     Raises:
         ScenarioError: see ``draw_scenario``.
         UserError: the file cannot be written.
     """
-    picture = draw_scenario(scenario)
+    picture, unwritten = _drawn(scenario)
     draft = path.with_name(f".{path.name}.part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -123,6 +131,7 @@ def save_picture(scenario: Scenario, path: Path) -> None:
         raise UserError(
             f"cannot write {path} ({error.strerror}); give --out a folder that you may write to"
         ) from error
+    return unwritten
 
 
 def _roads(frame: Viewport, edges: Sequence[Edge]) -> Image.Image:
@@ -158,7 +167,7 @@ def _trips(picture: Image.Image, frame: Viewport, network: Network, scenario: Sc
 def _ends(picture: Image.Image, frame: Viewport, network: Network, scenario: Scenario) -> list[Polygon]:
     """Draws a disc with the trip's number where it begins and a ring where it ends; returns what they cover."""
     brush = ImageDraw.Draw(picture)
-    face = font(Weight.BOLD, 15)
+    digits = font(Weight.BOLD, 15)
     taken: list[tuple[float, float]] = []
     for number, trip in enumerate(scenario.ego.trips):
         for edge, at, is_start in ((trip.from_edge, 0, True), (trip.to_edge, -1, False)):
@@ -168,7 +177,7 @@ def _ends(picture: Image.Image, frame: Viewport, network: Network, scenario: Sce
             taken.append((x, y))
             fill, ink = (trip_colour(number), DAY.halo) if is_start else (DAY.halo, trip_colour(number))
             brush.ellipse((x - 11, y - 11, x + 11, y + 11), fill, trip_colour(number), 3)
-            brush.text((x, y + 0.5), str(number + 1), ink, face, "mm")
+            brush.text((x, y + 0.5), str(number + 1), ink, digits, "mm")
     return [box(x - 12, y - 12, x + 12, y + 12) for x, y in taken]
 
 
@@ -215,7 +224,7 @@ def _framed(picture: Image.Image, scenario: Scenario, where: str) -> Image.Image
     whole.paste(picture, (0, HEAD))
     brush = ImageDraw.Draw(whole)
     title = cut(scenario.title, Weight.MEDIUM, 26, whole.width - 48)
-    brush.text((24, 30), title, DAY.text, font(Weight.MEDIUM, 26), "lm")
+    brush.text((24, 30), title, DAY.text, face(title, Weight.MEDIUM, 26), "lm")
     facts = f"{where} · {scenario.start:%A} {scenario.start.day} {scenario.start:%B %Y, %H:%M}"
     if ATTRIBUTED in scenario.about:
         facts += f" · map data © {ATTRIBUTED} contributors"
@@ -226,32 +235,32 @@ def _framed(picture: Image.Image, scenario: Scenario, where: str) -> Image.Image
         y += ROW
         brush.ellipse((24, y - 11, 46, y + 11), trip_colour(number))
         brush.text((35, y + 0.5), str(number + 1), DAY.halo, font(Weight.BOLD, 15), "mm")
-        brush.text((58, y), trip.name, DAY.text, font(Weight.MEDIUM, 17), "lm")
-        left = 58 + font(Weight.MEDIUM, 17).getlength(trip.name) + 14
+        brush.text((58, y), trip.name, DAY.text, face(trip.name, Weight.MEDIUM, 17), "lm")
+        left = 58 + face(trip.name, Weight.MEDIUM, 17).getlength(trip.name) + 14
         about = cut(trip.about, Weight.REGULAR, 17, whole.width - 24 - left)
-        brush.text((left, y), about, DAY.muted, font(Weight.REGULAR, 17), "lm")
+        brush.text((left, y), about, DAY.muted, face(about, Weight.REGULAR, 17), "lm")
     return whole
 
 
 def _classes(brush: ImageDraw.ImageDraw, y: float) -> None:
     x = 24.0
-    face = font(Weight.REGULAR, 16)
+    letters = font(Weight.REGULAR, 16)
     for words, road_class in CLASSES:
         brush.line((x, y, x + 34, y), DAY.casing, 11)
         brush.line((x + 1, y, x + 33, y), _colour(road_class), 8)
-        brush.text((x + 44, y), words, DAY.muted, face, "lm")
-        x += 44 + face.getlength(words) + 26
+        brush.text((x + 44, y), words, DAY.muted, letters, "lm")
+        x += 44 + letters.getlength(words) + 26
     brush.line((x, y, x + 34, y), TUNNEL, 11)
     _dashed(brush, np.array(((x + 1, y), (x + 33, y))), 8, _colour("primary"))
-    brush.text((x + 44, y), "tunnel", DAY.muted, face, "lm")
+    brush.text((x + 44, y), "tunnel", DAY.muted, letters, "lm")
 
 
 def cut(text: str, weight: Weight, size: int, width: float) -> str:
     """The text, shortened until it fits."""
-    face = font(weight, size)
-    if face.getlength(text) <= width:
+    letters = face(text, weight, size)
+    if letters.getlength(text) <= width:
         return text
-    while text and face.getlength(text + "…") > width:
+    while text and letters.getlength(text + "…") > width:
         text = text[:-1]
     return text.rstrip() + "…"
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import Any
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import KMH_PER_MPS, Element, Json
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats.files import parse_json, read_json
 from automotive_cosim.report.page import PARTS, element
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.road import FORMAT, read_road
@@ -197,7 +197,7 @@ def _head_of(path: Path, *_stamp: int) -> Json:
 def _json_lines(path: Path, *_stamp: int) -> list[Json]:
     """The whole lines of a file that may still grow."""
     text = path.read_text(encoding="utf-8")
-    return [json.loads(line) for line in text[: text.rfind("\n") + 1].splitlines()]
+    return [parse_json(line) for line in text[: text.rfind("\n") + 1].splitlines()]
 
 
 @lru_cache(maxsize=4)
@@ -212,7 +212,7 @@ def _head(result: Json) -> Json:
 
 def _object(path: Path) -> Json:
     try:
-        made = json.loads(path.read_text(encoding="utf-8"))
+        made = read_json(path)
     except (OSError, ValueError) as error:
         raise UserError(f"cannot read {path}: {error}") from error
     if not isinstance(made, dict):

@@ -54,6 +54,8 @@ class PlayState(StrEnum):
     DRIVING = "driving"
     """The car is on its way to the situation."""
     ACTING = "acting"
+    ENDING = "ending"
+    """The road is watched a little longer, and the record is written."""
     OVER = "over"
     FAILED = "failed"
 
@@ -144,14 +146,16 @@ class Game(Watcher):
         self._person.give(parse(action))
 
     def leave(self) -> None:
-        """Ends the episode, if one is running, and waits until it has ended."""
+        """Ends the episode, if one is running, soon."""
         self._person.stop()
-        if self._thread is not None:
-            self._thread.join()
+        if self._scene.state is PlayState.ACTING:
+            self._tell(state=PlayState.ENDING)
 
     def close(self) -> None:
-        """Ends everything."""
+        """Ends everything, and waits until it has ended."""
         self.leave()
+        if self._thread is not None:
+            self._thread.join()
         self._simulations.close()
 
     def scene(self, seen: int = -1, wait_s: float = 0.0) -> PlayScene:
@@ -176,7 +180,7 @@ class Game(Watcher):
         """Tells that the car is on its way."""
         if self._scene.state is PlayState.WARMING:
             self._tell(state=PlayState.DRIVING)
-        if self._scene.state is not PlayState.ACTING:
+        if self._scene.state in (PlayState.WARMING, PlayState.DRIVING):
             self._check_stays()
 
     def handed_over(self, episode: Episode, shot: Shot) -> None:
@@ -186,7 +190,9 @@ class Game(Watcher):
 
     def stepped(self, shot: Shot) -> None:
         """Shows the screen after a second."""
-        self._tell(screen=_jpeg(shot.screenshot))
+        action = shot.step.action
+        has_declared = action is not None and action.action_type is ActionType.STATUS
+        self._tell(screen=_jpeg(shot.screenshot), state=PlayState.ENDING if has_declared else self._scene.state)
 
     def _check_stays(self) -> None:
         """Before the hand-over, there is nothing to record of an episode that is left."""
@@ -201,7 +207,7 @@ class Game(Watcher):
 
     def _run(self, setup: EpisodeSetup, folder: Path) -> None:
         recorder = Recorder(folder, setup, {})
-        watchers = (recorder, RoadRecorder(folder, setup), Film(folder), self)
+        watchers = (self, recorder, RoadRecorder(folder, setup), Film(folder))  # the person first
         try:
             run_episode(setup, self._person, watchers, simulations=self._simulations)
         except StoppedError:

@@ -26,6 +26,7 @@ from urllib.parse import parse_qs, unquote, urlsplit
 
 from automotive_cosim import __version__
 from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.formats.files import parse_json
 from automotive_cosim.serve import catalogue
 from automotive_cosim.serve.content import Content
 from automotive_cosim.serve.play import Game
@@ -145,7 +146,7 @@ class Site:
         if game is None or path not in ("/api/play/start", "/api/play/act", "/api/play/leave"):
             raise RefusedRequestError(HTTPStatus.METHOD_NOT_ALLOWED, "these pages only read")
         try:
-            asked = json.loads(body or b"{}")
+            asked = parse_json(body or b"{}")
             if not isinstance(asked, dict):
                 raise UserError("give a JSON object")
             if path == "/api/play/start":

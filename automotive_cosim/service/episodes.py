@@ -74,7 +74,7 @@ class EpisodeService:
         self._limits = limits
         self._clock = clock
         self._running: dict[str, _Running] = {}
-        self._starting = 0
+        self._starting: set[str] = set()
         self._lock = threading.Lock()
         self._closed = threading.Event()
         threading.Thread(target=self._sweep, name="expiry of idle episodes", daemon=True).start()
@@ -94,7 +94,7 @@ class EpisodeService:
             TriggerNotReachedError: the situation did not arise within its time limit.
             TrafficError: the traffic simulation failed.
         """
-        with self._room():
+        with self._room() as episode_id:
             finder = SituationFinder(spec, self._simulations, listener=listener)
             hand_over = finder.find(SeedSource(spec.seed).next())
             try:
@@ -102,9 +102,9 @@ class EpisodeService:
             except BaseException:
                 hand_over.world.close()
                 raise
-            episode_id = secrets.token_hex(8)  # not to be guessed: whoever knows it is at the wheel
             with self._lock:
                 self._running[episode_id] = _Running(spec, episode, self._clock())
+                self._starting.discard(episode_id)
             if self._closed.is_set():
                 self._drop(episode_id)
         return _turn(episode_id, episode)
@@ -180,19 +180,20 @@ class EpisodeService:
             self.expire()
 
     @contextmanager
-    def _room(self) -> Iterator[None]:
-        """Keeps a place for an episode that is starting."""
+    def _room(self) -> Iterator[str]:
+        """Keeps a place for an episode that is starting, and gives its id."""
         self.expire()
+        episode_id = secrets.token_hex(8)  # not to be guessed: whoever knows it is at the wheel
         with self._lock:
-            if len(self._running) + self._starting >= self._limits.episodes:
+            if len(self._running) + len(self._starting) >= self._limits.episodes:
                 at_once = counted(self._limits.episodes, "episode")
                 raise UserError(f"{at_once} at once is the limit; finish one before you start another")
-            self._starting += 1
+            self._starting.add(episode_id)
         try:
-            yield
+            yield episode_id
         finally:
             with self._lock:
-                self._starting -= 1
+                self._starting.discard(episode_id)
 
     @contextmanager
     def _held(self, episode_id: str) -> Iterator[_Running]:

@@ -6,6 +6,8 @@ ends at once: reading the position of each vehicle in a town takes several times
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from automotive_cosim.contracts import LaneShape, RoadShapes, RoadSnapshot
 from automotive_cosim.traffic.records import make_seen
 from automotive_cosim.traffic.sumo import LibSumo
@@ -27,6 +29,7 @@ class Lookout:
         """Reads nothing yet."""
         self._sumo = sumo
         self._vehicle = vehicle
+        self._lights: Sequence[str] | None = None
         self._sizes: dict[str, Size] = {}
         """By vehicle type: SUMO gives a vehicle that is changed a type of its own."""
 
@@ -41,8 +44,10 @@ class Lookout:
             make_seen(vehicle, *self._size(kind), x_m, y_m, heading_deg, speed_mps, signals)
             for vehicle, kind, (x_m, y_m), heading_deg, speed_mps, signals in found
         )
+        if self._lights is None:
+            self._lights = sumo.light_ids()
         state = sumo.light_state
-        return RoadSnapshot(sumo.time(), vehicles, tuple((light, state(light)) for light in sumo.light_ids()))
+        return RoadSnapshot(sumo.time(), vehicles, tuple((light, state(light)) for light in self._lights))
 
     def _size(self, kind: str) -> Size:
         size = self._sizes.get(kind)

@@ -145,6 +145,7 @@ class _Connection:
     from_edge: str
     from_lane: str
     to_edge: str
+    to_lane: str
     via: str | None
     is_straight: bool
     has_signal: bool
@@ -306,19 +307,30 @@ def _shape(text: str) -> Shape:
 
 def _take_connection(element: ET.Element, reading: _Reading) -> None:
     origin = element.attrib["from"]
-    lane = f"{origin}_{element.attrib['fromLane']}"
-    is_straight = element.get("dir", "s") == "s"
+    goal = element.attrib["to"]
     reading.connections.append(
-        _Connection(origin, lane, element.attrib["to"], element.get("via"), is_straight, "tl" in element.attrib)
+        _Connection(
+            from_edge=origin,
+            from_lane=f"{origin}_{element.attrib['fromLane']}",
+            to_edge=goal,
+            to_lane=f"{goal}_{element.attrib['toLane']}",
+            via=element.get("via"),
+            is_straight=element.get("dir", "s") == "s",
+            has_signal="tl" in element.attrib,
+        )
     )
 
 
 def _crossings(reading: _Reading) -> dict[str, dict[str, Crossing]]:
-    """Adds up the inner lanes of each connection through a junction; a waiting position splits it in two."""
+    """Adds up the inner lanes of each connection through a junction; a waiting position splits it in two.
+
+    A connection from or to a lane that is closed to cars is none for them.
+    """
     onward = {link.from_lane: link.via for link in reading.connections if link.from_edge.startswith(":")}
     crossings: dict[str, dict[str, Crossing]] = {}
     for link in reading.connections:
-        if link.from_edge in reading.edges and link.to_edge in reading.edges:
+        origin, goal = reading.edges.get(link.from_edge), reading.edges.get(link.to_edge)
+        if origin and goal and link.from_lane in origin.lane_ids and link.to_lane in goal.lane_ids:
             ways = crossings.setdefault(link.from_edge, {})
             if link.to_edge not in ways:
                 ways[link.to_edge] = _through(link, onward, reading)

@@ -15,7 +15,7 @@ import subprocess
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -37,6 +37,9 @@ LONGEST_WAIT_S = 300
 
 BACKLOG_SHARE_LIMIT = 0.05
 """Maximum share of vehicles still waiting to enter at the end, among all that should have."""
+
+TELEPORTS_SHOWN = 3
+"""A run that is to be stopped early still shows so many vehicles that stand for good."""
 
 SILENCE_LIMIT_S = 120.0
 """Processor time without a second of traffic after which SUMO counts as hung; a second takes it milliseconds. If a
@@ -66,6 +69,16 @@ StepFigures = dict[str, float]
 
 
 @dataclass(frozen=True, slots=True)
+class Stuck:
+    """A vehicle that SUMO teleported."""
+
+    vehicle: str
+    lane: str
+    reason: str
+    """SUMO's: ``"wrong lane"``, ``"yield"``, ``"jam"``, ..."""
+
+
+@dataclass(frozen=True, slots=True)
 class Stability:
     """Figures of the traffic after its warm-up."""
 
@@ -87,6 +100,8 @@ class Stability:
     """Vehicles waiting to enter the network at the end."""
     backlog_share: float
     """Its share of all departures by then."""
+    stuck: tuple[Stuck, ...] = ()
+    """The vehicles that were teleported, by SUMO's own account."""
 
     @property
     def problems(self) -> tuple[str, ...]:
@@ -130,8 +145,8 @@ def measure(
         scale: factor on the demand; None takes the scenario's own.
         seed: SUMO's seed.
         step_length_s: 1 s shows most jams at a fifth of the cost of 0.1 s.
-        stop_at: end the run once a minute's halted share reaches this, or a vehicle was teleported after the
-            warm-up; 1 runs to the end whatever happens.
+        stop_at: end the run once a minute's halted share reaches this, or more than ``TELEPORTS_SHOWN`` vehicles
+            were teleported after the warm-up; 1 runs to the end whatever happens.
         on_progress: called once per simulated minute.
 
     Raises:
@@ -149,14 +164,25 @@ def measure(
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-stability-") as scratch:
         setup = Setup(replace(scenario, sumo=sumo), seed=seed)
         options = _options(setup, end_s, Path(scratch))
-        with closing(summary(scenario.config.name, options, Path(scratch))) as steps:
+        warnings: list[str] = []
+        with closing(summary(scenario.config.name, options, Path(scratch), warnings)) as steps:
             for step in steps:
                 minute_is_over = tally.add(step)
                 if minute_is_over and on_progress:
                     on_progress(min(1.0, (step["time"] - begin_s) / (end_s - begin_s)))
                 if minute_is_over and tally.broken_beyond(stop_at):
                     break
-    return tally.result(setup)
+    return replace(tally.result(setup), stuck=tuple(_stuck(warnings)))
+
+
+_TELEPORTED = re.compile(r"Teleporting vehicle '([^']*)'; waited too long \(([^)]*)\), lane='([^']*)'")
+
+
+def _stuck(warnings: Sequence[str]) -> Iterator[Stuck]:
+    for warning in warnings:
+        found = _TELEPORTED.search(warning)
+        if found:
+            yield Stuck(found[1], found[3], found[2])
 
 
 def _options(setup: Setup, end_s: float, scratch: Path) -> list[str]:
@@ -165,6 +191,8 @@ def _options(setup: Setup, end_s: float, scratch: Path) -> list[str]:
         "time-to-teleport": str(LONGEST_WAIT_S),
         "summary-output": "stdout",
         "summary-output.period": "1",
+        "no-warnings": "false",
+        "emergencydecel.warning-threshold": "10",
     }
     return command_line(options)[1:]
 
@@ -172,13 +200,16 @@ def _options(setup: Setup, end_s: float, scratch: Path) -> list[str]:
 _ATTRIBUTE = re.compile(r'(\w+)="(-?[\d.]+)"')
 
 
-def summary(config: str, options: Sequence[str], scratch: Path) -> Generator[StepFigures, None, None]:
+def summary(
+    config: str, options: Sequence[str], scratch: Path, warnings: list[str] | None = None
+) -> Generator[StepFigures, None, None]:
     """Runs SUMO and yields its summary as it comes. Closing the iterator ends SUMO.
 
     Args:
         config: the scenario's configuration, for error texts.
         options: SUMO's, with ``--summary-output stdout`` among them.
         scratch: the folder it runs in.
+        warnings: receives what SUMO warned of, once it has ended.
 
     Raises:
         ScenarioError: SUMO refuses the scenario; the message is SUMO's.
@@ -211,6 +242,10 @@ def summary(config: str, options: Sequence[str], scratch: Path) -> Generator[Ste
         finally:
             watchdog.stop()
             process.kill()
+            if warnings is not None:
+                process.wait()
+                complaints.seek(0)
+                warnings += (line for line in complaints if line.startswith("Warning:"))
 
 
 class _Watchdog:
@@ -316,7 +351,9 @@ class _Tally:
         return minute_is_over
 
     def broken_beyond(self, halted_share: float) -> bool:
-        return halted_share < 1 and (self._halted_share_max() >= halted_share or self._since("teleports") > 0)
+        return halted_share < 1 and (
+            self._halted_share_max() >= halted_share or self._since("teleports") > TELEPORTS_SHOWN
+        )
 
     def result(self, setup: Setup) -> Stability:
         backlog = int(self.last.get("waiting", 0))

@@ -141,6 +141,7 @@ def test_a_stop_says_how_to_go_on(program, tmp_path, until, session, in_backgrou
     assert err.endswith("error: interrupted\n")
     assert "Traceback" not in err
     assert "rerun the command to resume" in err
+    assert "of 50 planned episodes judged" in err
     assert lines.read_bytes().endswith(b"\n")
     until(lambda: not session(process.pid))
 

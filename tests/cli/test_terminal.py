@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+import typer
 from hypothesis import given
 from hypothesis import strategies as st
 from rich.panel import Panel
@@ -82,6 +83,17 @@ def test_rich_finds_the_stream_behind_a_plain_one(monkeypatch: pytest.MonkeyPatc
     print(EVIL)
     assert "\x1b[31m" in stream.getvalue()
     assert stream.getvalue().splitlines()[-1].startswith("\ufffd[2J")
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "utf-8", "latin-1"])
+def test_no_encoding_is_a_way_round(monkeypatch: pytest.MonkeyPatch, encoding: str) -> None:
+    data = io.BytesIO()
+    monkeypatch.setattr("sys.stdout", Plain(io.TextIOWrapper(data, encoding=encoding, errors="replace")))
+    typer.echo(f"{EVIL}é")
+    print(f"{EVIL}é", flush=True)
+    told = data.getvalue().decode(encoding)
+    assert _controls(told) == []
+    assert told.count("owned") == 2
 
 
 def test_names_and_errors_are_shown_plain(cli, tmp_path: Path) -> None:

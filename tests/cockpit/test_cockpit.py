@@ -425,6 +425,7 @@ def test_two_copies_left_alone_stay_alike(cockpit: Cockpit, around: Surroundings
     assert cockpit.screenshot().tobytes() == twin.screenshot().tobytes()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_thousands_of_random_touches_break_nothing(make: Make, around: Surroundings, seed: int) -> None:
     rng = np.random.default_rng(seed)

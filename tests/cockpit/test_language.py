@@ -213,6 +213,7 @@ def test_every_text_of_a_screen_is_in_the_tables(make: Make, around: Surrounding
             assert [text for text in texts(view.cockpit.tree) if not from_table(text, names)] == [], view.name
 
 
+@pytest.mark.slow
 def test_every_answer_to_a_tap_is_in_the_tables(make: Make, around: Surroundings, walker: Any) -> None:
     """And the notice that goes with it. Resource ids, screens' names and signals stay as they are."""
     heard, unknown = set(), set()

@@ -220,6 +220,7 @@ LONG = (
 """The longest street names of the shipped scenarios, and longer ones than any map at hand has (49 letters)."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("language", ["en", "de", "ja"])
 @pytest.mark.parametrize("parked", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_the_longest_street_names_are_not_cut(
@@ -252,6 +253,7 @@ def test_every_text_on_the_picture_is_in_the_list(screens: list[Cockpit]) -> Non
             assert ink.text in said
 
 
+@pytest.mark.slow
 def test_every_text_stands_out_from_its_ground(screens: list[Cockpit]) -> None:
     for cockpit in screens:
         canvas = render(cockpit.tree)
@@ -333,6 +335,7 @@ def test_long_lists_end_early_while_driving(make: Make, around: Surroundings, wa
     assert cut >= {"phone.contacts", "media.entries"}
 
 
+@pytest.mark.slow
 def test_same_state_same_bytes_and_another_state_other_bytes(make: Make, around: Surroundings, walker: Any) -> None:
     slow = replace(around, driving=replace(around.driving, speed_mps=0.0))
     for one, other in zip(walker(make()), walker(make()), strict=True):

@@ -107,6 +107,8 @@ STATEMENTS: list[tuple[str, str, Mapping[str, object], object]] = [
     ("DE.limit.motorway", "§3(3)", MOTORWAY, "none"),
     ("DE.limit.built_up", "§3(3)", TOWN, 50),
     ("DE.limit.dual", "§3(3)", {"dual_carriageway": True}, "none"),
+    ("DE.limit.two_lanes", "§3(3)", {"lanes": 2}, "none"),
+    ("DE.limit.two_lanes", "§3(3)", {"lanes": 1}, None),
     ("DE.limit.rural", "§3(3)", {}, 100),
     ("DE.limit.visibility", "§3(1)", DENSE, 50),
     ("DE.limit.visibility", "§3(1)", BLIZZARD, 50),
@@ -360,6 +362,19 @@ def test_no_general_rule_is_certain_of_a_street_with_a_law_of_its_own(
             assert found.certain is any(road_class in named for named in classes) or not found.rule.fixed
 
 
+@pytest.mark.parametrize("code", [code for code in Geo().atlas.codes() if "-" in code])
+def test_a_region_sets_no_limit_on_motorways_by_a_rule_about_country_roads(
+    geo: Geo, situation: Callable[..., Situation], code: str
+) -> None:
+    """Where the country has a limit of motorways, it stands unless the region or city names motorways."""
+    layers = tuple(entry for entry in geo.atlas.country(code[:2]) if entry.code in (code, code[:2]))
+    of_country = [rule for rule in layers[-1].by_topic.get("limit", ()) if rule.may_apply(situation(**MOTORWAY))]
+    fixed = [rule for rule in of_country if rule.fixed]
+    if any(test.word == "motorway" for rule in fixed for test in rule.tests) and code[:2] not in ("AU", "US"):
+        found = [one for one in limits(Place(code[:2], layers=layers), situation(**MOTORWAY)) if one.rule.fixed]
+        assert any(test.word in ("motorway", "road_classes") for test in found[0].rule.tests)
+
+
 def test_rain_slows_an_italian_dual_carriageway_and_a_town_a_spanish_motorway(
     rules: dict[str, Rule], situation: Callable[..., Situation]
 ) -> None:
@@ -445,7 +460,7 @@ def test_a_city_or_region_overrides_with_a_date(geo: Geo, rules: dict[str, Rule]
     assert all(rule.law and rule.as_of.year >= 2000 for rule in entry.rules)
 
 
-LEFT = {"GB", "IE", "JP", "AU", "IN", "ZA"}
+LEFT = {"GB", "IE", "JP", "AU", "IN", "ZA", "HK", "MO", "SG"}
 MILES = {"GB", "US"}
 
 
@@ -455,6 +470,7 @@ def test_the_side_of_the_road_the_units_and_the_emergency_number(geo: Geo) -> No
     assert {code for code, entry in law.items() if entry.speed_unit == "mph"} == MILES
     assert {code for code, entry in law.items() if entry.temperature_unit == "F"} == {"US"}
     first = {"US": "911", "CA": "911", "AE": "999", "AU": "000", "GB": "999", "BR": "190", "CN": "110", "JP": "110"}
+    first |= {"HK": "999", "MO": "999", "SG": "999", "SA": "911"}
     assert {code: entry.emergency[0] for code, entry in law.items()} == {
         code: first.get(code, "112") for code in law
     }

@@ -111,6 +111,15 @@ def test_the_border_is_near_all_along(atlas: Atlas) -> None:
     assert {"LU", "DE"} <= seen
 
 
+@pytest.mark.parametrize(("lat", "lon", "code"), [(-21.1, 55.5, "RE"), (16.2, -61.6, "GP"), (4.9, -52.4, "GF")])
+def test_overseas_france_has_the_law_of_france(atlas: Atlas, lat: float, lon: float, code: str) -> None:
+    place = atlas.place(lon, lat)
+    assert (place.country, [layer.code for layer in place.layers]) == (code, ["FR"])
+    assert place.country_name not in ("", "France")
+    assert place.law is not None
+    assert atlas.place(-66.1, 18.4).law is None, "Puerto Rico has a law of its own"
+
+
 def test_the_border_of_a_region_is_flagged(atlas: Atlas) -> None:
     assert "GB-WLS" in atlas.place(-2.91, 53.18).near_border_to
 

@@ -324,6 +324,7 @@ def _loaded(modules: Sequence[str]) -> str:
     return subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout.strip()
 
 
+@pytest.mark.slow
 def test_what_an_agent_can_reach_does_not_even_load_the_checks() -> None:
     reach = ["automotive_cosim.interface.observe", "automotive_cosim.geo.sensor", "automotive_cosim.agents"]
     assert _loaded(reach) == "False"

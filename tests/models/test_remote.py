@@ -4,6 +4,7 @@ import base64
 import io
 import json
 import logging
+import re
 import sys
 import threading
 import time
@@ -57,6 +58,7 @@ class Server:
         self.behaviours: list[Behave] = [lambda handler: send(handler, 200, completion("hello"))]
         self.asked: list[dict] = []
         self.keys: list[str] = []
+        self.headers: list[dict[str, str]] = []
         server = self
 
         class Handler(BaseHTTPRequestHandler):
@@ -64,6 +66,7 @@ class Server:
                 body = self.rfile.read(int(self.headers["Content-Length"]))
                 server.asked.append({"path": self.path, **json.loads(body)})
                 server.keys.append(self.headers["Authorization"])
+                server.headers.append({name.lower(): value for name, value in self.headers.items()})
                 behave = server.behaviours.pop(0) if len(server.behaviours) > 1 else server.behaviours[0]
                 try:
                     behave(self)
@@ -381,6 +384,43 @@ def touches(simulations: Simulations) -> list[Action]:
     return watcher.actions
 
 
+def body_of(form: str, text: str) -> bytes:
+    """An answer as the provider of a format sends it."""
+    if FORMATS[form].api is None:
+        return completion(text)
+    told = json.loads(text)
+    say, calls = told["say"], [(call["name"], call["arguments"]) for call in told["calls"]]
+    whole: dict
+    if form == "openai":
+        actions = [{"type": "computer_call", "actions": [{"type": name, **given}]} for name, given in calls]
+        message = {"type": "message", "content": [{"type": "output_text", "text": say}]}
+        whole = {"output": [{"type": "reasoning"}, message, *actions]}
+        whole["usage"] = {"input_tokens": 7, "output_tokens": 3}
+    elif form.startswith("anthropic"):
+        uses = [
+            {"type": "tool_use", "toolset_name": "computer", "name": name, "input": given}
+            if form == "anthropic"
+            else {"type": "tool_use", "name": "computer", "input": {"action": name, **given}}
+            for name, given in calls
+        ]
+        whole = {"content": [{"type": "text", "text": say}, *uses]}
+        whole["usage"] = {"input_tokens": 7, "output_tokens": 3}
+    else:
+        parts = [{"text": say}, *({"functionCall": {"name": name, "args": given}} for name, given in calls)]
+        whole = {"candidates": [{"content": {"parts": parts}}]}
+        whole["usageMetadata"] = {"promptTokenCount": 7, "candidatesTokenCount": 3}
+    return json.dumps(whole).encode()
+
+
+ASKS = {
+    "openai": "/responses",
+    "anthropic": "/messages",
+    "anthropic-2025-01": "/messages",
+    "anthropic-2025-11": "/messages",
+    "gemini": "/models/some-model:generateContent",
+}
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("form", FORMATS)
 def test_a_model_at_an_endpoint_works_the_car_in_its_own_format(
@@ -393,7 +433,7 @@ def test_a_model_at_an_endpoint_works_the_car_in_its_own_format(
     texts = [chosen.syntax.write("I see.", [call], chosen.verbs) for call in calls if call]
 
     def answer(text: str) -> Behave:
-        return lambda handler: send(handler, 200, completion(text))
+        return lambda handler: send(handler, 200, body_of(form, text))
 
     server.behaviours = [answer(text) for text in texts]
     name = f"local/some-model?seed=7&format={form}"
@@ -403,10 +443,13 @@ def test_a_model_at_an_endpoint_works_the_car_in_its_own_format(
     )
     assert (result.success, result.model) == (True, name)
     assert (result.tokens_in, result.tokens_out) == (7 * len(texts), 3 * len(texts))
-    for asked in server.asked:
-        assert (asked["model"], asked["seed"]) == ("some-model", 7)
-        [message] = asked["messages"]
-        assert [part["type"] for part in message["content"]] == ["text", "image_url"]
+    for asked, headers in zip(server.asked, server.headers, strict=True):
+        assert asked["path"] == "/v1" + ASKS.get(form, "/chat/completions")
+        assert len(re.findall("iVBORw0KGgo", json.dumps(asked))) == 1  # one picture, a PNG
+        assert ("car" in json.dumps(asked.get("tools", ()))) == (chosen.api is not None)
+        own = {"anthropic": "x-api-key", "gemini": "x-goog-api-key"}.get(form.partition("-")[0])
+        assert headers.get(own or "authorization") == (KEY if own else f"Bearer {KEY}")
+        assert ("authorization" in headers) == (own is None)
     again = make_agent("native", f"replay/{tmp_path / 'out'}?format={form}")
     assert run_episode(setup, again, simulations=simulations).trace_sha256 == result.trace_sha256
 

@@ -21,6 +21,7 @@ def test_import_makes_a_folder_and_prints_the_figures(
     for word in (
         "edges",
         "posted limit",
+        "as mapped",
         "signals",
         "tunnels",
         "scale",
@@ -30,6 +31,10 @@ def test_import_makes_a_folder_and_prints_the_figures(
         "OpenStreetMap",
     ):
         assert word in done.stdout
+    told = done.stderr.splitlines()
+    assert told[0] == "reading the map", "a log has the progress too"
+    assert any(line.startswith("traffic at scale 1, in steps of 1 s") for line in told)
+    assert len(told) == len(set(told))
 
 
 def test_import_passes_errors_on(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from automotive_cosim.errors import ScenarioError, TrafficError
 from automotive_cosim.osm import ImportReport
 from automotive_cosim.scenarios import load
 from automotive_cosim.traffic import stability
-from automotive_cosim.traffic.stability import BACKLOG_SHARE_LIMIT, HALTED_SHARE_LIMIT, Stability, measure
+from automotive_cosim.traffic.stability import BACKLOG_SHARE_LIMIT, HALTED_SHARE_LIMIT, Stability, Stuck, measure
 
 Imported = tuple[Path, ImportReport]
 
@@ -52,6 +52,15 @@ def test_a_red_light_is_no_jam_where_few_drive() -> None:
             counts = {"running": vehicles, "halting": 0.9 * vehicles, "teleports": 0, "inserted": vehicles}
             tally.add({"time": float(second), **counts})
         assert tally.broken_beyond(HALTED_SHARE_LIMIT) == is_jam
+
+
+def test_sumo_says_who_stood_where_and_why() -> None:
+    warnings = (
+        "Warning: At actuated tlLogic 'a', linkIndex 4 has no controlling detector.\n",
+        "Warning: Teleporting vehicle '3'; waited too long (wrong lane), lane='13#1_1', time=378.00.\n",
+        "Warning: Vehicle '3' ends teleporting on edge '14', time=378.00.\n",
+    )
+    assert list(stability._stuck(warnings)) == [Stuck("3", "13#1_1", "wrong lane")]
 
 
 def test_a_run_is_the_same_again_and_leaves_the_folder_alone(imported: Imported) -> None:

@@ -207,6 +207,7 @@ def test_results_come_as_a_data_frame(folder):
     assert set(frame.drive_overspeed_m.dropna()) == {4.0}
 
 
+@pytest.mark.slow
 def test_the_report_is_the_same_each_time(folder):
     before = (folder / "report.html").read_bytes()
     size = re.compile(rb"[\d.]+ MB")

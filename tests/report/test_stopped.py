@@ -85,6 +85,7 @@ def test_an_error_of_one_contestant_takes_no_instance_from_the_others(tmp_path):
     assert "errors" in str(main(found.shared()).rows)
 
 
+@pytest.mark.slow
 def test_the_page_the_terminal_and_the_other_commands_say_so(tmp_path):
     part, whole = write(tmp_path / "part", range(11)), write(tmp_path / "whole", range(len(JOBS)))
     told = f"11 of {len(JOBS)} planned episodes judged, {len(JOBS) - 11} not run"
@@ -114,11 +115,14 @@ def test_a_contestant_without_an_episode_yet_is_shown(tmp_path):
     found = read_results(write(tmp_path / "e", mine))
     assert {each.agent for each in found.contestants} == {"asurada", "t3a", "always-alert"}
     assert not found.shared().rows
+    page = write_report(tmp_path / "e").read_text(encoding="utf-8")
+    assert "on the 0 instances that all of them have run" in page
     assert any(
         line.startswith("t3a") and "0 of 0 episodes" in line and "not run" in line for line in standings(found)
     )
 
 
+@pytest.mark.slow
 def test_a_catalogue_that_has_changed_since_invents_no_episodes(tmp_path, monkeypatch):
     whole = write(tmp_path / "whole", range(len(JOBS)))
     part = write(tmp_path / "part", range(9))

@@ -17,7 +17,7 @@ from automotive_cosim.models import ModelReply
 from automotive_cosim.run.nursery import Nursery
 from automotive_cosim.run.outside import OutsideAgent, check_agent
 
-pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="processes are forked")
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(sys.platform == "win32", reason="processes are forked")]
 
 AGENTS = '''
 import gc, json, os, pathlib, signal, subprocess, sys, time
@@ -310,6 +310,14 @@ def test_pictures_reach_the_model_and_its_answer_comes_back_whole(nursery, obser
     ((message,),) = model.asked
     assert len(message.pictures) == 2
     assert all(picture.startswith(b"\x89PNG") for picture in message.pictures)
+
+
+def test_an_agent_reads_the_format_of_its_model_from_the_whole_name(nursery, observation):
+    model, screen = Model(ModelReply("Action: press_home()")), np.zeros((720, 1280, 3), np.uint8)
+    named = "local/m?format=ui-tars-1.5"
+    with closing(OutsideAgent(nursery, "native", named, chat_model=model)) as agent:
+        agent.reset("x")
+        assert agent.act(observation("x", screenshot=screen)) == Action(ActionType.NAVIGATE_HOME)
 
 
 @pytest.mark.slow

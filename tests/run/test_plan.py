@@ -85,6 +85,7 @@ def test_a_plan_with_nothing_to_run_says_why(values, said):
         plan(**values).check()
 
 
+@pytest.mark.slow
 def test_ids_are_good_for_files_and_tell_everything_apart():
     wide = plan(
         agents=["a.b:C", "a.b:D"], models=["x/y?seed=1"], seeds=[0, 1], geo=["full", "none"], repeats=2,

@@ -33,6 +33,12 @@ def test_the_road_is_recorded_and_nothing_else_changes(tmp_path, simulations):
     assert lights
     assert lights == record.seconds[-1].lights.keys()
     assert max(len(second.vehicles) for second in record.seconds) > 1
+    (baseline,) = (line["baseline"] for line in read_road(tmp_path / NAME) if "baseline" in line)
+    assert [row[0] for row in baseline] == [
+        second.at_s for second in record.seconds if 0 <= second.at_s <= blind.sim_seconds
+    ]
+    at_hand_over = next(sample for sample in blind.path if sample.at_s == 0)
+    assert baseline[0][1:3] == [at_hand_over.x_m, at_hand_over.y_m]
 
     path = tmp_path / NAME
     whole = path.read_bytes()

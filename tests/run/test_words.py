@@ -1,17 +1,22 @@
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 
 from automotive_cosim.cockpit.actions import FIELDS
 from automotive_cosim.contracts import (
+    NO_LIMIT,
     Action,
     ActionType,
     AlertKind,
     Direction,
     Element,
     GoalStatus,
+    Limit,
+    LimitSource,
+    RoadHere,
 )
-from automotive_cosim.run.words import action_in_words, is_over
+from automotive_cosim.run.words import action_in_words, is_over, limit_in_words, road_in_words
 
 VALUES = {
     "text": "hello",
@@ -61,3 +66,39 @@ def test_unreadable_answers_have_words_too():
 )
 def test_the_last_digit_of_a_speedometer_is_not_speeding(speed_kmh: float, limit_kmh: float | None, over: bool):
     assert is_over(speed_kmh, limit_kmh) is over
+
+
+def _road(**changes: object) -> RoadHere:
+    road = RoadHere("e", "e_0", 0, 1, 0.0, "", "primary", NO_LIMIT, False, None, None, None, 1.0)
+    return replace(road, **changes)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("name", "road_class", "words"),
+    [
+        ("Ring Road", "unclassified", "Ring Road"),
+        ("", "unclassified", "an unclassified road"),
+        ("", "primary", "a primary road"),
+        ("", "living_street", "a living street"),
+        ("", "motorway_link", "a motorway link road"),
+        ("", "", "a road without a name"),
+    ],
+)
+def test_a_road_is_called_as_people_say(name: str, road_class: str, words: str):
+    assert road_in_words(_road(name=name, road_class=road_class)) == words
+
+
+@pytest.mark.parametrize(
+    ("limit_mps", "source", "unit", "words"),
+    [
+        (50 / 3.6, LimitSource.POSTED, "km/h", "50 posted"),
+        (13.41, LimitSource.POSTED, "mph", "30 posted"),
+        (8.94, LimitSource.POSTED, "mph", "20 posted"),
+        (70 / 3.6, LimitSource.LAW, "km/h", "70 by law"),
+        (26.82, LimitSource.LAW, "mph", "60 by law"),
+        (None, LimitSource.POSTED, "km/h", "no limit"),
+        (None, LimitSource.NONE, "km/h", "no limit known"),
+    ],
+)
+def test_a_limit_is_told_as_its_sign_shows_it(limit_mps: float | None, source: LimitSource, unit: str, words: str):
+    assert limit_in_words(Limit(limit_mps, source), unit) == words

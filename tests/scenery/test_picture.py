@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 
 from automotive_cosim import scenarios
-from automotive_cosim.cockpit.theme import DAY
+from automotive_cosim.cockpit.theme import DAY, Weight, can_set
 from automotive_cosim.errors import ScenarioError, UserError
 from automotive_cosim.scenarios import Ego, Trip
 from automotive_cosim.scenery import open_scenario
@@ -71,6 +71,33 @@ def test_names_and_signs_do_not_cover_each_other(name: str) -> None:
     place_labels(labels, network)
     assert len(labels.taken) > 40
     assert not any(a.intersects(b) for a, b in combinations(labels.taken, 2))
+
+
+@pytest.mark.parametrize(
+    ("name", "has"),
+    [
+        ("Λεωφόρος Συγγρού", True),
+        ("Невский проспект", True),
+        ("銀座通り", True),
+        ("中关村大街", True),
+        ("세종대로", True),
+        ("شارع الشيخ زايد", False),
+        ("דרך בגין", False),
+    ],
+)
+def test_a_name_is_drawn_in_its_letters_or_told(name: str, has: bool) -> None:
+    network = network_of(GRID)
+    longest = max(network.edges.values(), key=lambda edge: edge.length_m)
+    street = {longest.edge_id: replace(longest, name=name)}
+    frame = Viewport.around(network.edges.values())
+    blank = Image.new("RGB", (frame.width, frame.height))
+    labels = Labels(blank.copy(), frame.pixels)
+    place_labels(labels, replace(network, edges=street))
+    assert can_set(name, Weight.MEDIUM, 14) is has
+    assert labels.unwritten == ([] if has else [name])
+    unnamed = Labels(blank.copy(), frame.pixels)
+    place_labels(unnamed, replace(network, edges={longest.edge_id: replace(longest, name="")}))
+    assert (labels.picture.tobytes() != unnamed.picture.tobytes()) is has
 
 
 @pytest.mark.parametrize("ends", [("cwc0", "nowhere"), ("nowhere", "cwc0")])

@@ -96,9 +96,7 @@ def write_record(folder: Path, steps: int = 4, *, finished: bool = True, **chang
     lines = [step(number, changes.get("goal", "")) for number in range(steps)]
     (folder / "steps.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines), encoding="utf-8")
     for number in range(steps):
-        Image.new("RGB", (1280, 720), (40 * number, 90, 160)).save(
-            folder / "screenshots" / f"step_{number:03d}.png"
-        )
+        Image.new("RGB", (320, 180), (40 * number, 90, 160)).save(folder / "screenshots" / f"step_{number:03d}.png")
     (folder / "road.jsonl.gz").write_bytes(packed(road()))
     if finished:
         (folder / "episode.json").write_text(json.dumps(result(**changes)), encoding="utf-8")
@@ -127,7 +125,7 @@ def write_evaluation(folder: Path) -> Path:
     (folder / "episodes.jsonl").write_text(text, encoding="utf-8")
     trace = [*map(step, range(4)), {"result": result()}]
     (folder / "traces" / "one.jsonl.gz").write_bytes(packed(trace))
-    Image.new("RGB", (1280, 720)).save(folder / "pictures" / "one" / "step_000.jpg")
+    Image.new("RGB", (320, 180)).save(folder / "pictures" / "one" / "step_000.jpg")
     return folder
 
 

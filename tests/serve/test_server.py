@@ -160,17 +160,17 @@ def test_an_evaluation_and_its_episodes(serving: Serving, tmp_path: Path) -> Non
 
 
 def test_a_damaged_record_is_named_and_hides_no_other(serving: Serving, tmp_path: Path) -> None:
-    for name, content in (("a", "{"), ("b", "[]"), ("c", '{"manifest": 3}')):
+    for name, content in (("a", "{"), ("b", "[]"), ("c", '{"manifest": 3}'), ("d", "[" * 100_000)):
         write_record(tmp_path / name)
         (tmp_path / name / "episode.json").write_text(content, encoding="utf-8")
     write_record(tmp_path / "whole")
     write_record(tmp_path / "killed", finished=False)
     browser = serving(tmp_path)
     records = {record["name"]: record for record in browser("/api/runs").json["records"]}
-    assert {name for name, record in records.items() if record["kind"] == "unreadable"} == {"a", "b", "c"}
+    assert {name for name, record in records.items() if record["kind"] == "unreadable"} == {"a", "b", "c", "d"}
     assert records["killed"]["end"] == "stopped before its end"
     assert records["killed"]["running"] is False
-    for name in "abc":
+    for name in "abcd":
         answer = browser(f"/api/runs/{records[name]['id']}")
         assert answer.status == 422
         assert "cannot be read" in answer.json["error"]

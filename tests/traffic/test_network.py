@@ -18,6 +18,7 @@ from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.congestion import MEMORY_S, SAMPLE_PERIOD_S, Congestion, Route
 from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.network import Network, read_network
+from automotive_cosim.traffic.ways import way_through
 
 EDGE = '<edge id="{id}" from="{a}" to="{b}" {more}>{lanes}{params}</edge>'
 LANE = '<lane id="{id}_{n}" index="{n}" speed="{speed}" length="100" shape="0,0 100,0"{more}/>'
@@ -38,6 +39,19 @@ def net(tmp_path: Path) -> Callable[..., Network]:
         return read_network(path)
 
     return make
+
+
+@pytest.mark.parametrize(
+    ("from_lane", "to_lane", "is_way"), [(0, 1, False), (1, 0, False), (0, 0, False), (1, 1, True)]
+)
+def test_a_way_through_a_lane_of_the_buses_is_none(
+    net: Callable[..., Network], from_lane: int, to_lane: int, is_way: bool
+) -> None:
+    lanes = (' allow="bus"', "")
+    link = f'<connection from="ab" to="bc" fromLane="{from_lane}" toLane="{to_lane}" dir="s"/>'
+    found = net(edge("ab", lanes=lanes), edge("bc", lanes=lanes), link)
+    assert ("bc" in found.crossings.get("ab", {})) is is_way
+    assert bool(way_through(found, ("ab", "bc"))) is is_way
 
 
 def test_tags_of_openstreetmap_are_understood(net: Callable[..., Network]) -> None:

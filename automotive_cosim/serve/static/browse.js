@@ -18,7 +18,7 @@ export async function tasksPage(query) {
     list.replaceChildren(...kept.map((task) => h("li", { class: "card" },
       h("div", {}, h("a", { href: `#/tasks/${task.id}` }, task.id), h("p", {}, `“${task.goal_templates[0]}”`),
         h("p", { class: "muted" }, [task.module, plain(task.dimension), task.difficulty, counted(task.optimal_steps, "step")].join(" · "))),
-      task.pair ? h("span", { class: "pill" }, "Pair") : null)));
+      task.pair ? h("span", { class: "pill quiet" }, "Pair") : null)));
     const parameters = new URLSearchParams();
     choices.forEach((choice) => choice.value && parameters.set(choice.name, choice.value));
     if (search.value) parameters.set("q", search.value);
@@ -38,6 +38,7 @@ export async function taskPage(query, id) {
     content: [
       h("h1", {}, task.id),
       h("p", { class: "muted" }, [task.module, plain(task.dimension), task.difficulty, counted(task.optimal_steps, "step"), `runs in ${task.scenarios.join(", ")}`].join(" · ")),
+      h("p", {}, h("a", { href: `#/play?task=${task.id}` }, "Play this task")),
       h("h2", {}, "What the driver says"),
       h("ul", { class: "card words" }, task.goal_templates.map((words) => h("li", {}, `“${words}”`))),
       values.length > 0 && h("ul", { class: "muted" }, values),

@@ -130,10 +130,10 @@ export async function playPage(query) {
     typed.hidden = true;
     const texts = {
       idle: "", warming: `The traffic warms up: ${Math.round(scene.progress * 100)} %`, driving: "The car drives to where the situation arises …",
-      over: "The episode is over.", failed: `There is no verdict: ${scene.error}`,
+      ending: "The road is watched a little longer, and the episode is judged and recorded …", over: "The episode is over.", failed: `There is no verdict: ${scene.error}`,
     };
     status.textContent = texts[state] ?? state;
-    begin.disabled = state === "warming" || state === "driving";
+    begin.disabled = ["warming", "driving", "ending"].includes(state);
     const bar = state === "warming" ? h("progress", { max: 1, value: scene.progress, "aria-label": "Warm-up" }) : null;
     const link = scene.record ? h("p", { class: "card" }, h("a", { href: `#/run/${scene.record}` }, "See the verdict, and the road with everybody on it")) : null;
     main.replaceChildren(...[bar, link, form, rules].filter(Boolean));

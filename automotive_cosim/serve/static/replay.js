@@ -57,7 +57,7 @@ export async function replayPage(query, id, episode) {
   const step = () => steps.findLastIndex((each) => each.at_s <= at + 1e-6);
 
   function head() {
-    const told = [run.half && `${run.half} half`, run.scenario, run.agent, run.model, run.seed !== null && `seed ${run.seed}`];
+    const told = [run.half && `${run.half} half`, run.scenario, run.agent, run.model !== "none" && run.model, run.seed !== null && `seed ${run.seed}`];
     heading.replaceChildren(
       h("div", {}, h("h1", {}, run.task), run.goal && h("p", { class: "said" }, `“${run.goal}”`), h("p", { class: "muted" }, told.filter(Boolean).join(" · "))),
       outcome({ ...run, running }));
@@ -99,7 +99,8 @@ export async function replayPage(query, id, episode) {
       const limit = second.limit_kmh === null ? "no limit known" : `limit ${Math.round(second.limit_kmh)}`;
       about.replaceChildren(h("b", { class: second.limit_kmh !== null && second.speed_kmh > second.limit_kmh + 1 ? "over" : "" }, `${Math.round(second.speed_kmh)} km/h`),
         ` ${limit} · ${second.road || "a road without a name"}${second.local_time ? ` · ${second.local_time.slice(11, 16)}` : ""} · `,
-        road.alone ? "other vehicles were not recorded" : `${counted(others, "other vehicle")} in sight`);
+        road.alone ? "other vehicles were not recorded" : `${counted(others, "other vehicle")} in sight`,
+        view.ghost ? h("span", { class: "ghost" }, "Dashed: the same drive with nobody at the cockpit") : "");
       canvas.setAttribute("aria-label", `The road from above. ${about.textContent}`);
     }
     plot.firstElementChild?.mark?.(at);

@@ -19,6 +19,7 @@ export class RoadRecord {
     this.vehicles = new Map();
     this.seconds = [];
     this.alone = false;
+    this.baseline = [];
     this.bands = new Map();
     this.areas = new Path2D();
     this.stops = [];
@@ -29,6 +30,7 @@ export class RoadRecord {
     this.lines += lines.length;
     for (const line of lines) {
       if (line.alone) this.alone = true;
+      if (line.baseline) this.baseline = line.baseline;
       for (const lane of line.lanes ?? []) this.addLane(lane);
       for (const outline of line.junctions ?? []) {
         this.areas.moveTo(outline[0], outline[1]);
@@ -83,6 +85,15 @@ export class RoadRecord {
   }
 
   second(at) { return this.seconds[this.index(at)]; }
+
+  // The car of the baseline run at an instant, if it is elsewhere than the car itself.
+  ghost(at, ego) {
+    const index = this.baseline.findLastIndex(([at_s]) => at_s <= at + 1e-6);
+    const [now, next] = [this.baseline[index], this.baseline[index + 1]];
+    if (!now || (!next && at > now[0] + 0.5)) return null;
+    const found = next ? between(now.slice(1), next.slice(1), Math.min(1, (at - now[0]) / (next[0] - now[0])), next[0] - now[0]) : state(now.slice(1));
+    return ego && Math.hypot(found.x - ego.x, found.y - ego.y) < 1 ? null : found;
+  }
 
   // Every vehicle at an instant: as recorded on a recorded second, on a smooth line in between.
   at(at) {
@@ -288,6 +299,8 @@ export class RoadView {
     for (const [kind, x, y] of second?.incidents ?? []) this.incident(context, kind, x, y);
     for (const vehicle of this.drawn) if (vehicle.id !== "ego" && this.sees(vehicle.x, vehicle.y)) this.vehicle(context, vehicle, colours);
     const ego = this.drawn.find(({ id }) => id === "ego");
+    this.ghost = record.ghost(at, ego);
+    if (this.ghost) this.shadow(context, { ...this.ghost, length: ego?.length ?? 4.5, width: ego?.width ?? 1.8 });
     if (ego) this.vehicle(context, ego, colours);
     if (camera.scale > 1 && width > 3 * INSET.side * ratio) this.inset(context, colours, ratio);
   }
@@ -406,6 +419,25 @@ export class RoadView {
     context.moveTo(x, y - 0.45 * size);
     context.lineTo(x, y - 0.5 * size);
     context.stroke();
+  }
+
+  // The outline of the car as it would drive with nobody at the cockpit.
+  shadow(context, { x, y, heading, length, width }) {
+    const angle = heading * Math.PI / 180;
+    const [east, north] = [Math.sin(angle), Math.cos(angle)];
+    const long = Math.max(length, 1.7 * LEAST_PX * this.pixel);
+    const wide = Math.max(width, 0.8 * LEAST_PX * this.pixel) / 2;
+    context.beginPath();
+    for (const [ahead, right] of [[0, -1], [0, 1], [-1, 1], [-1, -1]]) context.lineTo(x + ahead * long * east + right * wide * north, y + ahead * long * north - right * wide * east);
+    context.closePath();
+    context.strokeStyle = "#fff";
+    context.lineWidth = 4 * this.pixel;
+    context.stroke();
+    context.strokeStyle = "#1f78e6";
+    context.lineWidth = 2.4 * this.pixel;
+    context.setLineDash([5 * this.pixel, 3 * this.pixel]);
+    context.stroke();
+    context.setLineDash([]);
   }
 
   vehicle(context, vehicle, colours) {

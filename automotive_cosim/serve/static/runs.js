@@ -26,9 +26,9 @@ function line(record) {
     const done = record.planned ? `${record.done} of ${record.planned} episodes` : counted(record.done, "episode");
     return h("li", { class: "card" },
       h("div", {}, h("a", { href: `#/results/${record.id}` }, record.name), h("p", { class: "muted" }, `Evaluation · ${done} · ${when(record.started)}`)),
-      h("span", { class: "pill" }, "Results"));
+      h("span", { class: "pill quiet" }, "Results"));
   }
-  const about = [record.half && `${record.half} half`, record.scenario, record.agent, record.model, record.seed !== null && `seed ${record.seed}`, when(record.started)];
+  const about = [record.half && `${record.half} half`, record.scenario, record.agent, record.model !== "none" && record.model, record.seed !== null && `seed ${record.seed}`, when(record.started)];
   return h("li", { class: "card" },
     h("div", {}, h("a", { href: `#/run/${record.id}` }, record.task),
       record.goal && h("p", {}, `“${record.goal}”`),

@@ -1,0 +1,301 @@
+"""The APIs of providers: for each provider's protocol, the request and how its answer is read.
+
+``chat``        OpenAI's chat completions, which most servers speak
+``openai``      OpenAI's responses with its tool ``computer``
+``anthropic``   Anthropic's messages with its toolset or its earlier tools for a computer
+``gemini``      Gemini's ``generateContent`` with its tool ``computer_use``
+
+The last three answer with calls. Their text is a JSON object, ``{"say": text, "calls": [{"name", "arguments"}]}``,
+so that they are recorded and replayed as any other answer.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.models.base import ChatMessage, ModelReply
+
+
+class ProviderApi(Protocol):
+    """One protocol."""
+
+    def path(self, model: str) -> str:
+        """The path of a request, after the base address."""
+        ...
+
+    def headers(self, key: str) -> Mapping[str, str]:
+        """Its own headers; empty for a bearer's key."""
+        ...
+
+    def body(self, model: str, messages: Sequence[ChatMessage], limits: Json) -> Json:
+        """The request.
+
+        Args:
+            model: the provider's name of the model.
+            messages: the conversation.
+            limits: ``seed``, ``temperature`` and ``max_tokens``, those that are set.
+        """
+        ...
+
+    def read(self, told: Any) -> ModelReply:
+        """Text, tokens and end of an answer.
+
+        Raises:
+            LookupError, TypeError, AttributeError, ValueError, ArithmeticError: it is no answer of this protocol.
+        """
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Chat:
+    """OpenAI's chat completions."""
+
+    longest: str = "max_tokens"
+    """Name of the limit of an answer's tokens, which OpenAI itself has changed."""
+
+    def path(self, model: str) -> str:
+        """See ``ProviderApi``."""
+        return "/chat/completions"
+
+    def headers(self, key: str) -> Mapping[str, str]:
+        """See ``ProviderApi``."""
+        return {}
+
+    def body(self, model: str, messages: Sequence[ChatMessage], limits: Json) -> Json:
+        """See ``ProviderApi``."""
+        named = {self.longest if name == "max_tokens" else name: value for name, value in limits.items()}
+        return {"model": model, "messages": [self._message(message) for message in messages]} | named
+
+    def read(self, told: Any) -> ModelReply:
+        """See ``ProviderApi``."""
+        choice = told["choices"][0]
+        usage = told.get("usage") or {}
+        return ModelReply(
+            _text(choice["message"].get("content")),
+            _count(usage.get("prompt_tokens")),
+            _count(usage.get("completion_tokens")),
+            finish=str(choice.get("finish_reason") or "stop"),
+        )
+
+    def _message(self, message: ChatMessage) -> Json:
+        if not message.pictures:
+            return {"role": message.role, "content": message.text}
+        parts: list[Json] = [{"type": "text", "text": message.text}]
+        parts += [{"type": "image_url", "image_url": {"url": _data_url(picture)}} for picture in message.pictures]
+        return {"role": message.role, "content": parts}
+
+
+@dataclass(frozen=True, slots=True)
+class OpenAI:
+    """OpenAI's responses with its computer tool."""
+
+    functions: tuple[Json, ...] = ()
+    """Further functions, each with name, description and parameters."""
+
+    def path(self, model: str) -> str:
+        """See ``ProviderApi``."""
+        return "/responses"
+
+    def headers(self, key: str) -> Mapping[str, str]:
+        """See ``ProviderApi``."""
+        return {}
+
+    def body(self, model: str, messages: Sequence[ChatMessage], limits: Json) -> Json:
+        """See ``ProviderApi``."""
+        named = {"max_output_tokens" if name == "max_tokens" else name: value for name, value in limits.items()}
+        named.pop("seed", None)  # which this protocol does not have
+        asked = [
+            {
+                "role": message.role,
+                "content": [
+                    {"type": "input_text", "text": message.text},
+                    *({"type": "input_image", "image_url": _data_url(each)} for each in message.pictures),
+                ],
+            }
+            for message in messages
+        ]
+        tools = [{"type": "computer"}, *({"type": "function"} | function for function in self.functions)]
+        return {"model": model, "input": asked, "tools": tools} | named
+
+    def read(self, told: Any) -> ModelReply:
+        """See ``ProviderApi``."""
+        say, calls = "", list[Json]()
+        for item in told["output"]:
+            match item["type"]:
+                case "message":
+                    say += "".join(str(part.get("text", "")) for part in item["content"])
+                case "computer_call":
+                    for action in item.get("actions") or [item["action"]]:
+                        given = dict(action)
+                        calls.append({"name": given.pop("type"), "arguments": given})
+                case "function_call":
+                    calls.append({"name": item["name"], "arguments": json.loads(item["arguments"])})
+        usage = told.get("usage") or {}
+        cut = (told.get("incomplete_details") or {}).get("reason") == "max_output_tokens"
+        return _reply(say, calls, usage.get("input_tokens"), usage.get("output_tokens"), cut)
+
+
+TOOLSET = "computer_toolset_20260801"
+"""Its members are tools of their own, and it needs no size of the display."""
+NO_MEMBERS = (
+    "cursor_position",
+    "hold_key",
+    "left_mouse_down",
+    "left_mouse_up",
+    "middle_click",
+    "mouse_move",
+    "right_click",
+    "zoom",
+)
+"""Those that a touch screen does not have."""
+
+
+@dataclass(frozen=True, slots=True)
+class Anthropic:
+    """Anthropic's messages with its tools for a computer."""
+
+    functions: tuple[Json, ...] = ()
+    tool: str = TOOLSET
+    beta: str = ""
+    """The beta header that the earlier tools require."""
+
+    def path(self, model: str) -> str:
+        """See ``ProviderApi``."""
+        return "/messages"
+
+    def headers(self, key: str) -> Mapping[str, str]:
+        """See ``ProviderApi``."""
+        named = {"x-api-key": key, "anthropic-version": "2023-06-01"}
+        return named | ({"anthropic-beta": self.beta} if self.beta else {})
+
+    def body(self, model: str, messages: Sequence[ChatMessage], limits: Json) -> Json:
+        """See ``ProviderApi``."""
+        asked = [
+            {
+                "role": message.role,
+                "content": [
+                    *(
+                        {
+                            "type": "image",
+                            "source": {"type": "base64", "media_type": "image/png", "data": _base64(each)},
+                        }
+                        for each in message.pictures
+                    ),
+                    {"type": "text", "text": message.text},
+                ],
+            }
+            for message in messages
+        ]
+        computer: Json = {"type": self.tool}
+        if self.tool == TOOLSET:
+            computer["configs"] = {member: {"enabled": False} for member in NO_MEMBERS}
+        else:
+            width, height = _size(messages)
+            computer |= {"name": "computer", "display_width_px": width, "display_height_px": height}
+        functions = [
+            {"name": each["name"], "description": each["description"], "input_schema": each["parameters"]}
+            for each in self.functions
+        ]
+        named = {name: value for name, value in limits.items() if name != "seed"}  # which it does not have
+        return {"model": model, "messages": asked, "tools": [computer, *functions], "max_tokens": 1024} | named
+
+    def read(self, told: Any) -> ModelReply:
+        """See ``ProviderApi``."""
+        say, calls = "", list[Json]()
+        for block in told["content"]:
+            if block["type"] == "text":
+                say += block["text"]
+            elif block["type"] == "tool_use":
+                given = dict(block["input"])
+                name = given.pop("action") if block["name"] == "computer" else block["name"]
+                calls.append({"name": name, "arguments": given})
+        usage = told.get("usage") or {}
+        cut = told.get("stop_reason") == "max_tokens"
+        return _reply(say, calls, usage.get("input_tokens"), usage.get("output_tokens"), cut)
+
+
+@dataclass(frozen=True, slots=True)
+class Gemini:
+    """Gemini's ``generateContent`` with its computer tool."""
+
+    functions: tuple[Json, ...] = ()
+
+    def path(self, model: str) -> str:
+        """See ``ProviderApi``."""
+        return f"/models/{model}:generateContent"
+
+    def headers(self, key: str) -> Mapping[str, str]:
+        """See ``ProviderApi``."""
+        return {"x-goog-api-key": key}
+
+    def body(self, model: str, messages: Sequence[ChatMessage], limits: Json) -> Json:
+        """See ``ProviderApi``."""
+        asked = [
+            {
+                "role": "model" if message.role == "assistant" else "user",
+                "parts": [
+                    {"text": message.text},
+                    *(
+                        {"inlineData": {"mimeType": "image/png", "data": _base64(each)}}
+                        for each in message.pictures
+                    ),
+                ],
+            }
+            for message in messages
+        ]
+        tools: list[Json] = [{"computerUse": {"environment": "ENVIRONMENT_BROWSER"}}]
+        if self.functions:
+            tools.append({"functionDeclarations": list(self.functions)})
+        named = {"maxOutputTokens" if name == "max_tokens" else name: value for name, value in limits.items()}
+        return {"contents": asked, "tools": tools, "generationConfig": named}
+
+    def read(self, told: Any) -> ModelReply:
+        """See ``ProviderApi``."""
+        candidate = told["candidates"][0]
+        say, calls = "", list[Json]()
+        for part in candidate["content"]["parts"]:
+            if "functionCall" in part:
+                called = part["functionCall"]
+                calls.append({"name": called["name"], "arguments": dict(called.get("args") or {})})
+            elif not part.get("thought"):
+                say += str(part.get("text", ""))
+        usage = told.get("usageMetadata") or {}
+        cut = candidate.get("finishReason") == "MAX_TOKENS"
+        return _reply(say, calls, usage.get("promptTokenCount"), usage.get("candidatesTokenCount"), cut)
+
+
+def _reply(say: str, calls: Iterable[Json], tokens_in: Any, tokens_out: Any, cut: bool) -> ModelReply:
+    text = json.dumps({"say": say, "calls": list(calls)}, ensure_ascii=False)
+    return ModelReply(text, _count(tokens_in), _count(tokens_out), finish="length" if cut else "stop")
+
+
+def _count(tokens: Any) -> int:
+    return int(tokens or 0)
+
+
+def _text(content: object) -> str:
+    """A string, or the text parts of a list; nothing else counts as text."""
+    if isinstance(content, str):
+        return content
+    if isinstance(content, list):
+        return "".join(str(part.get("text", "")) for part in content if isinstance(part, dict))
+    return ""
+
+
+def _base64(picture: bytes) -> str:
+    return base64.b64encode(picture).decode()
+
+
+def _data_url(picture: bytes) -> str:
+    return f"data:image/png;base64,{_base64(picture)}"
+
+
+def _size(messages: Sequence[ChatMessage]) -> tuple[int, int]:
+    """Width and height of the last picture, from its PNG header."""
+    picture = next(message.pictures[-1] for message in reversed(messages) if message.pictures)
+    return int.from_bytes(picture[16:20]), int.from_bytes(picture[20:24])
