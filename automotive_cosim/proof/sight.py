@@ -67,7 +67,7 @@ READINGS: Mapping[str, tuple[Facet, float]] = {
     "restrictions": (Facet.MOTION, 0.0),
     "ambient_temperature_c": (Facet.WEATHER, 0.1),
     "cabin_temperature_c": (Facet.CABIN, 1.0),
-    "cabin_humidity_pct": (Facet.CABIN, 5.0),
+    "cabin_humidity_pct": (Facet.CABIN, 6.0),
     "rain_intensity_pct": (Facet.OUTSIDE, 1.0),
     "driver_temperature_set_c": (Facet.SETTINGS, 0.0),
     "fan_speed_pct": (Facet.SETTINGS, 0.0),
@@ -76,14 +76,14 @@ READINGS: Mapping[str, tuple[Facet, float]] = {
     "is_front_fog_on": (Facet.LAMPS, 0.0),
     "is_rear_fog_on": (Facet.LAMPS, 0.0),
     "is_hazard_on": (Facet.LAMPS, 0.0),
-    "energy_level_pct": (Facet.BATTERY, 1.0),
-    "range_km": (Facet.BATTERY, 4.0),
+    "energy_level_pct": (Facet.BATTERY, 1.5),
+    "range_km": (Facet.BATTERY, 6.0),
     "speed_limit_sign_kmh": (Facet.ROAD, 0.0),
     "leader_gap_m": (Facet.TRAFFIC, 0.0),
     "leader_time_to_collision_s": (Facet.TRAFFIC, 0.0),
 }
-"""Facet of each reading, and by how much it may differ all the same: a minute's drive, within which the halves of a
-pair on one road are handed over, makes about half of it."""
+"""Facet of each reading, and by how much it may differ all the same: what one or two minutes of driving make, by
+which the same situation comes earlier or later."""
 _ELEMENTS: Mapping[str, Facet] = {
     "home.map": Facet.VIEW,
     "map.": Facet.VIEW,
