@@ -13,6 +13,7 @@ from enum import Enum, StrEnum
 from functools import lru_cache
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 from PIL import ImageFont
 
@@ -222,8 +223,13 @@ def can_set(text: str, weight: Weight, size: int) -> bool:
     if text.isascii():
         return True
     letters = face(text, weight, size)
-    missing = bytes(letters.getmask(MISSING))
-    return all(char.isspace() or bytes(letters.getmask(char)) != missing for char in set(text))
+    missing = _drawn(letters, MISSING)
+    return all(char.isspace() or _drawn(letters, char) != missing for char in set(text))
+
+
+def _drawn(letters: ImageFont.FreeTypeFont, char: str) -> bytes:
+    pixels: Any = letters.getmask(char)  # Pillow's own type for it lacks that it is a sequence
+    return bytes(pixels)
 
 
 class Icon(StrEnum):

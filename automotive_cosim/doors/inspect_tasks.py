@@ -5,6 +5,7 @@ error of the sample; what a limit of Inspect's cuts short is judged as it is. Ne
 (extra ``inspect``).
 """
 
+# pyright: reportMissingImports=false
 from __future__ import annotations
 
 import asyncio

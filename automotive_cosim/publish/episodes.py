@@ -20,11 +20,11 @@ from automotive_cosim.run.harm import nearest_s
 from automotive_cosim.run.load import driver_load
 from automotive_cosim.run.moments import Judged, judged_file, read_judged
 from automotive_cosim.run.plan import EpisodeJob
+from automotive_cosim.run.regrade import judged_again
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.scenarios import shipped
 from automotive_cosim.tasking import verdict as verdicts
-from automotive_cosim.tasking.instance import Instance
 from automotive_cosim.tasking.task import Mode
 
 ROWS = "episodes.jsonl"
@@ -34,9 +34,9 @@ PLANNED = (
 )  # fmt: skip
 """Fields of a row that the plan and the catalogue determine."""
 ALSO_IN_RESULT = (
-    "task", "half", "scenario", "agent", "model", "geo", "seed", "success", "reward", "steps", "sim_seconds", "end",
-    "error", "error_kind", "agent_error", "held_out", "trace_sha256", "tokens_in", "tokens_out", "model_seconds",
-    "cost_usd", "drive", "baseline_drive",
+    "task", "half", "scenario", "agent", "model", "geo", "seed", "traffic_seed", "success", "reward", "steps",
+    "sim_seconds", "end", "error", "error_kind", "agent_error", "held_out", "trace_sha256", "tokens_in",
+    "tokens_out", "model_seconds", "cost_usd", "drive", "baseline_drive",
 )  # fmt: skip
 """Fields of a row that the result at the end of the trace has too."""
 FROM_MOMENTS = (
@@ -91,6 +91,8 @@ def _problems(folder: Path, job: EpisodeJob, row: EpisodeRow) -> Iterator[Proble
         yield Problem(ROWS, f"{row.id} wall_seconds, model_seconds", "are below zero")
     if job.scenario in _shipped() and row.scenario != job.scenario:
         yield Problem(ROWS, f"{row.id} scenario", f"is {row.scenario!r}, but {job.scenario!r} by the plan")
+    if row.traffic_seed not in (None, job.setup.seed, *job.setup.spare_traffic):
+        yield Problem(ROWS, f"{row.id} traffic_seed", f"is {row.traffic_seed}, which the plan does not have")
     if row.success is None:
         yield from differences(ROWS, row.id, told, as_json(planned(job)), UNJUDGED, "its error")
         if row.error is None or row.error_kind is None or row.end is not End.ERROR:
@@ -104,23 +106,12 @@ def _problems(folder: Path, job: EpisodeJob, row: EpisodeRow) -> Iterator[Proble
 def _judged_problems(folder: Path, job: EpisodeJob, row: EpisodeRow, told: Json) -> Iterator[Problem]:
     *steps, last = read_trace(folder, row.id)
     judged = read_judged(folder, row.id)
-    assert judged.counterfactual is not None
     file, result = trace_file(folder, row.id).relative_to(folder).as_posix(), dict(last["result"])
     if "untouched_drive" in result:  # its name in older traces
         result["baseline_drive"] = result.pop("untouched_drive")
     yield from _step_problems(file, steps, judged)
     source = judged_file(folder, row.id).relative_to(folder).as_posix()
-    instance = Instance(job.task, row.half, judged.goal, judged.parameters)
-    verdict = verdicts.judge(
-        instance,
-        judged.trace,
-        judged.baseline,
-        judged.counterfactual,
-        judged.declared,
-        judged.reason,
-        judged.watched_from_s,
-        row.agent_error,
-    )
+    verdict = judged_again(row, judged)
     whole = verdicts.as_json(verdict)
     start, end = judged.trace[0], judged.trace[-1]
     prompts = [stage["reply"]["tokens_in"] for step in steps for stage in step["stages"] if stage["reply"]]

@@ -24,6 +24,7 @@ OF_THE_AGENT = frozenset({"prompt_tokens", "tokens_in", "tokens_out", "cost_usd"
 """Fields of a row that the actions do not determine."""
 RESULT = (
     "goal",
+    "traffic_seed",
     "verdict",
     "timeline",
     "path",

@@ -39,8 +39,8 @@ from automotive_cosim.run.store import read_evaluation, read_rows, trace_file
 from automotive_cosim.traffic.fork import Simulations
 
 MANIFEST = "manifest.json"
-PLAN_ON_TRUST = frozenset({"models", "everywhere", "limits"})
-"""Fields of a plan that need not show in its episodes: models that no agent uses, limits that none reached."""
+PLAN_ON_TRUST = frozenset({"models", "everywhere", "limits", "spare_traffic"})
+"""Fields of a plan that need not show in its episodes: models that no agent uses, limits that none reached, ..."""
 STARTS_ON_TRUST = frozenset({"started", "platform", "git", "versions"})
 """Fields of a start that nothing else tells, but for the version of the suite."""
 UNKNOWN = (
@@ -52,8 +52,9 @@ UNKNOWN = (
 )
 """What no check can find out."""
 UNKNOWN_WITHOUT_REPLAY = (
-    "of the drives that were not replayed: that the traffic was SUMO's, the baseline run, the cockpit's answers, "
-    "and what is measured after the end (speed-limit compliance, time to collision, harm, path, violations)"
+    "of the drives that were not replayed: that the traffic was SUMO's, the baseline run, the counterfactual, the "
+    "cockpit's answers, and what is measured after the end (speed-limit compliance, time to collision, harm, path, "
+    "violations)"
 )
 UNKNOWN_WITHOUT_HASHES = "whether files were changed since: a folder has no hashes; a bundle has"
 

@@ -8,10 +8,10 @@ from pathlib import Path
 
 from automotive_cosim.errors import CosimError, UserError
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
-from automotive_cosim.run.moments import read_judged
+from automotive_cosim.run.moments import Judged, read_judged
 from automotive_cosim.run.store import read_evaluation, read_rows
 from automotive_cosim.tasking.instance import Instance
-from automotive_cosim.tasking.verdict import judge
+from automotive_cosim.tasking.verdict import Verdict, judge
 from automotive_cosim.tasks import CATALOGUE
 
 
@@ -57,23 +57,31 @@ def regrade(folder: Path) -> Iterator[Regraded]:
             yield _regraded(folder, rows[name], held)
 
 
+def judged_again(row: EpisodeRow, stored: Judged) -> Verdict:
+    """The verdict on an episode's stored moments by the current checks.
+
+    Raises:
+        UserError: there is no such task any more, or it allows other commands than it did.
+    """
+    assert stored.counterfactual is not None
+    instance = Instance(CATALOGUE[row.task], row.half, stored.goal, stored.parameters)
+    if stored.allowed_writes != instance.half.allowed_writes:
+        raise UserError(f"{row.task} now allows other commands than it did, so run {row.id} again")
+    return judge(
+        instance,
+        stored.trace,
+        stored.baseline,
+        stored.counterfactual,
+        stored.declared,
+        stored.reason,
+        stored.watched_from_s,
+        row.agent_error,
+    )
+
+
 def _regraded(folder: Path, row: EpisodeRow, held: PartsHeld) -> Regraded:
     try:
-        stored = read_judged(folder, row.id)
-        assert stored.counterfactual is not None
-        instance = Instance(CATALOGUE[row.task], row.half, stored.goal, stored.parameters)
-        if stored.allowed_writes != instance.half.allowed_writes:
-            raise UserError(f"{row.task} now allows other commands than it did, so run {row.id} again")
-        verdict = judge(
-            instance,
-            stored.trace,
-            stored.baseline,
-            stored.counterfactual,
-            stored.declared,
-            stored.reason,
-            stored.watched_from_s,
-            row.agent_error,
-        )
+        verdict = judged_again(row, read_judged(folder, row.id))
     except CosimError as error:
         return Regraded(row.id, row.has_succeeded, None, problem=str(error))
     changes = tuple(
