@@ -11,6 +11,7 @@ import re
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from io import BytesIO
 
 SHORT_M = 50.0
 """On a shorter edge there is no room to sort oneself into lanes, so it is never parted."""
@@ -100,7 +101,7 @@ def _blocks(is_open: Sequence[bool]) -> Blocks:
 
 def _read(text: str) -> _Lanes:
     lanes = _Lanes()
-    for element in ET.fromstring(text):
+    for _, element in ET.iterparse(BytesIO(text.encode())):
         if element.tag == "edge" and "function" not in element.attrib:
             edge = element.attrib["id"]
             of_edge = list(element.iterfind("lane"))
@@ -114,6 +115,8 @@ def _read(text: str) -> _Lanes:
                 element.get("via", ""),
             )
             lanes.links.setdefault(element.attrib["from"], []).append(link)
+        if element.tag in ("edge", "connection", "junction", "tlLogic"):
+            element.clear()  # a whole network as a tree takes hundreds of megabytes
     return lanes
 
 
