@@ -49,9 +49,7 @@ def test_the_road_is_recorded_and_nothing_else_changes(tmp_path, simulations):
 
 
 @pytest.mark.parametrize(
-    "content", [b"", b"not gzip", gzip.compress(b'{"format":2}
-', mtime=0), gzip.compress(b"[]
-", mtime=0)]
+    "content", [b"", b"not gzip", gzip.compress(b'{"format":2}\n', mtime=0), gzip.compress(b"[]\n", mtime=0)]
 )
 def test_another_file_is_refused_in_one_line(tmp_path, content):
     path = tmp_path / NAME
