@@ -357,7 +357,7 @@ def _field(name: str, value: Any) -> Any:
         raise ActionError(str(UnknownNameError("action field", name, [*_TYPES, *_ENUMS])))
     expected = _TYPES[name]
     if expected is float and type(value) is int:
-        return float(value)
+        return float(min(max(value, -LARGEST), LARGEST))  # beyond any range, and a float may not hold it
     if type(value) is not expected or (expected is float and value != value):
         raise ActionError(f"{name} is {_kind(value)}; it must be {expected.__name__}")
     return value

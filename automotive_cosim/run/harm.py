@@ -62,8 +62,9 @@ def drive_figures(moments: Sequence[Moment], until_s: float) -> DriveFigures:
 
 
 def states_of(moments: Sequence[Moment]) -> list[DrivingState]:
-    """Every step of a drive, from the first moment on."""
-    return [moments[0].driving, *(state for moment in moments[1:] for state in moment.passed)]
+    """Every step of a drive, from the first moment on; none of a drive that never began."""
+    first = [moment.driving for moment in moments[:1]]
+    return first + [state for moment in moments[1:] for state in moment.passed]
 
 
 def overspeed(moments: Sequence[Moment], until_s: float = inf) -> tuple[float, float]:

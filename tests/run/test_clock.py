@@ -64,7 +64,7 @@ def test_the_models_seconds_pass_only_by_the_models_clock(run):
 @pytest.mark.parametrize("clock", Clock)
 def test_what_was_recorded_is_repeated_exactly(run, clock):
     first = run(Slow([4.26, 2.0]), clock=clock, latency_s=1.0)
-    again = run(_Player(_lines(first)[1:], make_agent("oracle").channels), out="again")
+    again = run(_Player(_lines(first)[1:], make_agent("oracle").channels, None), out="again")
     assert again.result.trace_sha256 == first.result.trace_sha256
     assert not any(step.differs for step in compare(_lines(first), _lines(again)))
 

@@ -121,6 +121,7 @@ def nursery():
 def mine(tmp_path, monkeypatch):
     """A working folder with agents of somebody's own."""
     (tmp_path / "mine.py").write_text(AGENTS)
+    monkeypatch.delitem(sys.modules, "mine", raising=False)
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
