@@ -55,7 +55,9 @@ class Extra(NamedTuple):
 
 
 EXTRAS = {
+    "browser": Extra("playwright", "the tests of the pages in a browser"),
     "import": Extra("osmium", "scenarios import, day and download"),
+    "inspect": Extra("inspect_ai", "inspect eval automotive_cosim/cockpit"),
     "llm": Extra("openai", "--model openai/NAME"),
     "mcp": Extra("mcp", "mcp"),
     "ray": Extra("ray", "eval and study on a cluster"),
