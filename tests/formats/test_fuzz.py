@@ -40,7 +40,11 @@ from automotive_cosim.scenery import open_scenario
 
 GRID = scenarios.load("grid").folder
 QUICK = settings(
-    max_examples=60, deadline=None, database=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+    derandomize=True,
+    max_examples=60,
+    deadline=None,
+    database=None,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
 LONGEST = 600
 """Characters of a refusal."""
@@ -216,14 +220,12 @@ NUMBER = re.compile(rb'(?<=[" :=\[,])-?\d+(\.\d+)?(?=["\s,}\]])|(?<=")[^"<>\n]{1
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in NAMES if not name.endswith(".db")])
 @QUICK
-@given(data=st.data(), rough=ROUGH | st.text(st.characters(codec="utf-8"), max_size=20))
-def test_any_value_anywhere_is_read_or_refused(
-    kinds: dict[str, Kind], name: str, data: st.DataObject, rough: str
-) -> None:
+@given(place=st.integers(0, 10**6), rough=ROUGH | st.text(st.characters(codec="utf-8"), max_size=20))
+def test_any_value_anywhere_is_read_or_refused(kinds: dict[str, Kind], name: str, place: int, rough: str) -> None:
     is_packed = name.endswith(".gz")
     good = gzip.decompress(kinds[name].good) if is_packed else kinds[name].good
     spans = [found.span() for found in NUMBER.finditer(good)]
-    first, last = data.draw(st.sampled_from(spans))
+    first, last = spans[place % len(spans)]
     rough_one = good[:first] + rough.encode() + good[last:]
     _accepted_or_refused(kinds[name], gzip.compress(rough_one, 1) if is_packed else rough_one)
 
