@@ -13,7 +13,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from automotive_cosim.contracts import Connectivity, DrivingState, GpsFix, Limit, LimitSource, OtherVehicle, Weather
+from automotive_cosim.contracts import (
+    Connectivity,
+    DrivingState,
+    GpsFix,
+    IncidentKind,
+    Limit,
+    LimitSource,
+    OtherVehicle,
+    RoadIncident,
+    Sight,
+    SightKind,
+    Weather,
+)
 from automotive_cosim.geo import sensor
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.earth import METRES_PER_DEGREE, metres_per_degree_east
@@ -110,7 +122,10 @@ def test_an_incident_on_the_route_is_told_by_hazards_and_traffic(instant: Callab
         RoadIncident(IncidentKind.ROADWORKS, "on", 50.0),
     )
     ahead = replace(known.driving.ahead, route_edges=("here", "on"), incidents=told)
-    sights = (Sight(SightKind.ROADWORKS, "Roadworks in 640 m", 640.0), Sight(SightKind.TYRE, "Rear left tyre: 1.5 bar"))
+    sights = (
+        Sight(SightKind.ROADWORKS, "Roadworks in 640 m", 640.0),
+        Sight(SightKind.TYRE, "Rear left tyre: 1.5 bar"),
+    )
     met = replace(known, driving=replace(known.driving, ahead=ahead), sights=sights)
     for query in ("hazards", "traffic"):
         lines = ask(query, [met]).text.splitlines()
