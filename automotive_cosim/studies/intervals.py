@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from math import sqrt
 
 import numpy as np
 
+from automotive_cosim.errors import SetupError
 from automotive_cosim.report.stats import CONFIDENCE, DRAWS, Interval
 
 LEAST_SEEDS = 10
@@ -23,7 +25,9 @@ class SeedMean:
 
     value: float
     interval: Interval | None
-    """Interval from resampling whole seeds; None with fewer than ``LEAST_SEEDS``."""
+    """t interval with a standard error over seeds; None with fewer than ``LEAST_SEEDS``."""
+    resampled: Interval | None
+    """Interval from resampling whole seeds: narrower, and with few seeds too narrow."""
     count: int
     """Number of decisions."""
     seeds: int
@@ -44,8 +48,28 @@ def seed_mean(values: Iterable[tuple[int, float]], seed: int = 0) -> SeedMean | 
     groups = [by_seed[cluster] for cluster in sorted(by_seed)]
     count = sum(map(len, groups))
     mean = sum(map(sum, groups)) / count
-    interval = _bootstrap(groups, seed) if len(groups) >= LEAST_SEEDS else None
-    return SeedMean(mean, interval, count, len(groups))
+    if len(groups) < LEAST_SEEDS:
+        return SeedMean(mean, None, None, count, len(groups))
+    return SeedMean(mean, _clustered(groups), _bootstrap(groups, seed), count, len(groups))
+
+
+def _clustered(groups: Sequence[Sequence[float]]) -> Interval:
+    """t interval of the mean over decisions, a ratio of two sums over seeds, with one degree of freedom fewer than
+    seeds (W. G. Cochran, Sampling Techniques, 3rd ed. 1977, section 6.4).
+
+    Raises:
+        SetupError: scipy is not installed.
+    """
+    try:
+        from scipy.special import stdtrit
+    except ImportError as error:
+        raise SetupError("intervals require scipy: pip install 'automotive-cosim[report]'") from error
+    count, clusters = sum(map(len, groups)), len(groups)
+    mean = sum(map(sum, groups)) / count
+    spread = sum((sum(group) - mean * len(group)) ** 2 for group in groups)
+    error = sqrt(spread * clusters / (clusters - 1)) / count
+    reach = float(stdtrit(clusters - 1, (1 + CONFIDENCE) / 2)) * error
+    return Interval(mean - reach, mean + reach)
 
 
 def _bootstrap(groups: Sequence[Sequence[float]], seed: int) -> Interval:
