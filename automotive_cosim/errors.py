@@ -25,7 +25,7 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 
 LISTED = 20
-"""An unknown name is answered with the known ones up to this number, if a command lists them."""
+"""An unknown name is answered with the known ones up to this number."""
 SHOWN = 80
 """Characters of an unknown name that are repeated."""
 
@@ -60,7 +60,8 @@ class UnknownNameError(UserError):
         elif hint and len(choices) > LISTED:
             fix = f" among the {len(choices)}."
         else:
-            fix = f"; choose from: {', '.join(choices)}." if choices else "; there are none."
+            more = f" and {len(choices) - LISTED} more" if len(choices) > LISTED else ""
+            fix = f"; choose from: {', '.join(choices[:LISTED])}{more}." if choices else "; there are none."
         super().__init__(f"no {kind} named {came!r}{fix}" + (f" List them with `{hint}`." if hint else ""))
         self.kind = kind
         self.name = name
