@@ -5,14 +5,7 @@ from __future__ import annotations
 from automotive_cosim.cockpit.places import SORTS, PlaceKind
 from automotive_cosim.cockpit.signals import VOICE
 from automotive_cosim.contracts import Reroute
-from automotive_cosim.tasking.checks import (
-    AllOf,
-    AppDataHas,
-    AppDataIs,
-    Entered,
-    RoadAsked,
-    SignalIs,
-)
+from automotive_cosim.tasking.checks import AllOf, AppDataHas, AppDataIs, Entered, RoadAsked, SignalIs
 from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil, TypeText
 from automotive_cosim.tasking.parameters import FromCockpit, param
 from automotive_cosim.tasking.task import Module
