@@ -3,8 +3,8 @@
 Fonts and icons come from dependencies, never from the system, and text is laid out by FreeType alone (BASIC), so
 the pixels are the same on every machine: Roboto (``font-roboto``, Apache 2.0), Noto Sans CJK JP for East Asia
 (``noto-cjk-sans-jp-regular``, SIL Open Font License 1.1), and Material Design Icons 7
-(``fonticon-materialdesignicons7``, Apache 2.0). Only Arabic and Hebrew, written from the right and joined, are laid out
-by Raqm, in the DejaVu Sans of ``matplotlib``, if both are there.
+(``fonticon-materialdesignicons7``, Apache 2.0). Only Arabic and Hebrew, written from the right and joined, are laid
+out by Raqm, in the DejaVu Sans of ``matplotlib``, if both are there.
 """
 
 from __future__ import annotations
