@@ -3,7 +3,7 @@
 | gate | what must be true |
 |---|---|
 | oracle | every reference solution succeeds by public actions, within the budget and 70 % of the deadline |
-| start | the goal does not hold at the hand-over, and the rule that decides is among the lines of the context |
+| start | the goal does not hold at the hand-over, and the context does not leave the deciding rule to a query |
 | world | the weather is one that the place has at that date and hour |
 | prefix | ``complete`` after any earlier step of the reference solution scores 0 |
 | late | the reference solution after the deadline fails |
@@ -85,10 +85,10 @@ def start(ground: Ground) -> Wrong:
     if ground.half.declares is GoalStatus.COMPLETE and ground.half.goal.holds(moment, moment, [moment]):
         yield f"holds already: {ground.half.goal}"
     if ground.half.basis is Basis.LAW:
-        shown = {line.source for line in moment.context.shown}
+        every, shown = ({line.source for line in lines} for lines in (moment.context.lines, moment.context.shown))
         for rule in rules_of(ground.half):
-            if rule.id not in shown:
-                yield f"{rule.id} decides, but is not among the lines of the context"
+            if rule.id in every - shown:
+                yield f"{rule.id} decides, but the context leaves it to a query"
     if BY_NUMBER.search(ground.instance.goal):
         yield f"names a widget by its number: {ground.instance.goal!r}"
 

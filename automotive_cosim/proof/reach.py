@@ -66,12 +66,16 @@ def fingerprint(half: Half) -> str:
 
 def measured(task_id: str, half: str) -> Reach | None:
     """What is on record of a half as it is now; None if it has changed or is not of the shipped catalogue."""
-    reach = read(RECORD).get(f"{task_id}/{half}")
+    reach = _shipped().get(f"{task_id}/{half}")
     known = reach is not None and reach.situation == fingerprint(CATALOGUE[task_id].half(half))
     return reach if known else None
 
 
 @cache
+def _shipped() -> Mapping[str, Reach]:
+    return read(RECORD)
+
+
 def read(path: Path) -> Mapping[str, Reach]:
     """A record by task and half; empty if there is none."""
     if not path.is_file():
@@ -163,7 +167,7 @@ def main() -> None:
         if not reached:
             missed += 1
             print(f"{name}, seed {seed}: not reached", flush=True)
-    everything = read.__wrapped__(given.out).values()
+    everything = read(given.out).values()
     tried, lost = sum(len(each.seeds) for each in everything), sum(len(each.missed) for each in everything)
     print(f"on record: {tried - lost:,} of {tried:,} reached")
 
