@@ -93,6 +93,10 @@ def reroute(
             "mean gain does not show its sign."
         ),
     ] = "1",
+    arrived: Annotated[
+        float,
+        typer.Option(help="Share of the vehicles there at a decision that must arrive before its futures end."),
+    ] = 0.95,
     scale: Annotated[float | None, typer.Option(help="Factor on the demand.", show_default="scenario's")] = None,
     step: Annotated[float, typer.Option(help="SUMO's step length in seconds.")] = 1.0,
     equilibrium_gap: Annotated[
@@ -151,6 +155,7 @@ def reroute(
         driver=driver,
         least_delay_s=delay,
         every_s=every,
+        arrived=arrived,
         scale=scale,
         step_s=step,
         equilibrium_gap=equilibrium_gap,

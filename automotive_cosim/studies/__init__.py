@@ -9,5 +9,6 @@ policies   who decides, and the result
 batch      drives in parallel, resumed, until the interval is narrow enough
 results    reads stored results, as data frames
 intervals  means with bootstrap intervals over seeds
-tables, charts, page    the report
+everyone   how an effect is spread over everyone
+tables, effects, charts, page    the report
 """

@@ -21,6 +21,7 @@ from automotive_cosim.geo.forecast import drawn_weather
 from automotive_cosim.studies import compare
 from automotive_cosim.studies.compare import Future
 from automotive_cosim.studies.driver import decided
+from automotive_cosim.studies.everyone import spread
 from automotive_cosim.studies.plan import AUTO_ERRORS, DriveJob
 from automotive_cosim.studies.policies import PolicyRule, parse_policy
 from automotive_cosim.studies.rows import Branch, Decision, DriveRow, News, Replicate
@@ -279,13 +280,13 @@ def _compared(point: _Point, stay: Future, history: Sequence[Pulse]) -> Decision
     futures = [future for each in drawn for future in (each.stay, *each.branches)]
     futures += [point.placebo] if point.placebo else []
     jams = (gridlock([*history, point.pulse, each.stay.settled.pulse]) for each in drawn)
-    jam = next(filter(None, jams), "")
+    jam = next((jam for jam in jams if jam is not None), None)
     excluded, why = "", ""
     if not all(future.has_arrived for future in futures):
         ends = sorted({str(future.last.end) for future in futures if not future.has_arrived})
         excluded, why = NOT_ARRIVED, f"it ended as {', '.join(ends)}"
-    elif jam:
-        excluded, why = GRIDLOCK, jam
+    elif jam is not None:
+        excluded, why = f"{GRIDLOCK}: {jam.rule}", jam.why
     elif not all(future.settled.is_complete for future in futures):
         excluded, why = NOT_CLEARED, "too few of the vehicles that were there had arrived in time"
     return replace(
@@ -302,6 +303,11 @@ def _compared(point: _Point, stay: Future, history: Sequence[Pulse]) -> Decision
             )
             for each in point.replicates
         ),
+        spreads=tuple(
+            spread([(each.stay, each.branches[number]) for each in drawn], point.group, point.decision.at_s)
+            for number in range(len(point.branches))
+        ),
+        traffic=point.pulse,
     )
 
 

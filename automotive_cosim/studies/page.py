@@ -15,6 +15,7 @@ from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.row import columns
 from automotive_cosim.run.store import cannot_write
 from automotive_cosim.studies.charts import charts
+from automotive_cosim.studies.effects import effects
 from automotive_cosim.studies.intervals import LEAST_SEEDS, PUBLISHED_SEEDS
 from automotive_cosim.studies.plan import named
 from automotive_cosim.studies.results import Study, read_study
@@ -33,7 +34,8 @@ def write_study(folder: Path) -> Path:
     study = read_study(folder)
     if not study.rows:
         raise UserError(f"{folder} has no drives yet; rerun its `study` command to resume")
-    made, plots = tables(study), charts(study) if study.choices else {}
+    made = [*tables(study), *(table for table in effects(study) if table.rows)]
+    plots = charts(study) if study.choices else {}
     try:
         for name in ("tables", "plots"):
             (folder / name).mkdir(exist_ok=True)

@@ -8,6 +8,7 @@ from statistics import fmean
 from typing import Annotated
 
 from automotive_cosim.run.row import InColumns, JobRow
+from automotive_cosim.traffic.accounts import Pulse
 from automotive_cosim.traffic.chance import Fresh
 
 
@@ -53,6 +54,55 @@ class OthersTotals:
 
 NOBODY = OthersTotals(count=0, gain_s=0.0, changed=0, unfinished_stay=0, unfinished=0)
 """The comparison of a future with itself."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TripClass:
+    """Vehicles whose trips still take about as long from the fork."""
+
+    from_s: float
+    """Least time left if the ego keeps its route; the next class has the greatest."""
+    count: int
+    gain_s: float
+    """Their total savings."""
+    later: int
+    """Number that arrive noticeably later."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Horizon:
+    """The effect on the others up to an earlier or later instant than that of ``OthersTotals``."""
+
+    share: float
+    """The instant at which this share of them had arrived in the first of the two futures."""
+    gain_s: float | None
+    """Their total savings until then; None if the futures ended before."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Spread:
+    """What single vehicles save in a branch, the ego included; each as its mean over the draws."""
+
+    count: int
+    mean_s: float
+    low_s: float
+    """5 % of the vehicles save less."""
+    lower_s: float
+    """25 %."""
+    median_s: float
+    upper_s: float
+    """75 %."""
+    high_s: float
+    """95 %."""
+    earlier: int
+    """Number that arrive noticeably earlier."""
+    later: int
+    gini_stay: float
+    """Gini coefficient of the times from fork to arrival if the ego keeps its route."""
+    gini: float
+    """The same in the branch."""
+    trips: tuple[TripClass, ...]
+    horizons: tuple[Horizon, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -126,6 +176,10 @@ class Decision:
     """The route kept once more, with fresh random numbers; None if not drawn. Replicates contain it."""
     replicates: tuple[Replicate, ...] = ()
     """Further draws of all futures; the drive itself and ``branches`` are draw 0."""
+    spreads: tuple[Spread, ...] = ()
+    """How each branch affects everyone."""
+    traffic: Pulse | None = None
+    """The traffic as a whole at the decision."""
 
     @property
     def time_index(self) -> float:
@@ -210,6 +264,8 @@ class PolicyChoice:
     policy: str
     complies: bool
     rerouted: bool
+    branch: int | None
+    """Number of the branch that it chose in most draws; None for keeping the route."""
     promised_s: float | None
     """Predicted saving on the other route."""
     stay: Annotated[Totals, InColumns("stay")]

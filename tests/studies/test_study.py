@@ -18,6 +18,7 @@ from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.row import steady as steady_part
 from automotive_cosim.run.store import read_rows
 from automotive_cosim.studies.batch import run_study
+from automotive_cosim.studies.drive import NO_ROOM, NOT_CLEARED
 from automotive_cosim.studies.page import write_study
 from automotive_cosim.studies.plan import StudyPlan
 from automotive_cosim.studies.results import load_study, read_study
@@ -136,10 +137,20 @@ def test_the_report_is_whole(folder: Path) -> None:
         written = list(csv.DictReader(file))
     assert len(written) == len(frame) == 8 * 5 * 2
     assert [row["id"] for row in written] == list(frame.id)
-    for name in ("policies", "costs", "by_congestion", "by_age", "noise", "excluded"):
+    for name in (
+        "policies",
+        "costs",
+        "by_congestion",
+        "by_age",
+        "noise",
+        "excluded",
+        "everyone",
+        "by_trip",
+        "traffic",
+    ):
         for suffix in ("md", "csv", "tex"):
             assert (folder / "tables" / f"{name}.{suffix}").read_text(encoding="utf-8").strip()
-    for name in ("policies", "promised", "congestion", "ages"):
+    for name in ("policies", "promised", "congestion", "ages", "everyone"):
         assert (folder / "plots" / f"{name}.svg").read_text(encoding="utf-8").startswith("<svg")
 
 
@@ -150,7 +161,7 @@ def test_gridlocked_traffic_is_kept_apart(two_ways: Draw, tmp_path: Path) -> Non
     run_study(plan, tmp_path / "jam")
     study = read_study(tmp_path / "jam")
     assert not study.decisions
-    assert {reason for _, reason in study.excluded} <= {"gridlock", "no room to enter"}
+    assert {reason for _, reason in study.excluded} <= {NOT_CLEARED, NO_ROOM, "gridlock: waiting for long"}
     assert sum(study.excluded.values()) == 1
 
 
