@@ -93,6 +93,13 @@ def reroute(
             "mean gain does not show its sign."
         ),
     ] = "1",
+    whole_drives: Annotated[
+        bool,
+        typer.Option(
+            "--whole-drives",
+            help="Also drive every policy from departure to destination.",
+        ),
+    ] = False,
     arrived: Annotated[
         float,
         typer.Option(help="Share of the vehicles there at a decision that must arrive before its futures end."),
@@ -156,6 +163,7 @@ def reroute(
         least_delay_s=delay,
         every_s=every,
         arrived=arrived,
+        whole_drives=whole_drives,
         scale=scale,
         step_s=step,
         equilibrium_gap=equilibrium_gap,

@@ -2,6 +2,9 @@
 
 plan       what a study runs: scenario, departures, seeds, shares, news, policies
 drive      one drive with its decision points, and the branches forked there
+looks      drives on to the next decision
+whole      whole drives under a policy
+points     the futures of one decision
 compare    compares two futures of one instant
 traffic    whether the traffic still flows, or is excluded as gridlocked
 driver     lets an agent at the cockpit decide

@@ -28,7 +28,7 @@ KIND = "reroute"
 EQUILIBRIUM_GAP = 0.01
 """Relative gap under which a dynamic user assignment counts as converged."""
 
-AUTO_DRAWS = range(4, 15)
+AUTO_DRAWS = range(4, 14)
 """With ``auto``, each future is driven at least and at most so often after the first."""
 AUTO_ERRORS = 2.0
 """... and no more once the mean gain of every branch is this many standard errors from zero."""
@@ -81,6 +81,8 @@ class StudyPlan:
     """Relative gap of the assignment (duaIterate) that produced the demand's routes; None without one."""
     half_width_s: Annotated[float, Ge(0.1), Le(3_600)] | None = None
     """Half-width of the mean gain's interval at which no further seeds are added; None runs all."""
+    whole_drives: bool = False
+    """Whether every policy also drives from the departure to the destination."""
     agent_steps: Annotated[int, Ge(1), Le(100)] = 12
     """Maximum number of an agent's actions per decision."""
 

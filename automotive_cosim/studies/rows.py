@@ -213,6 +213,21 @@ class Decision:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class WholeDrive:
+    """A drive from departure to destination under one policy, compared with the one that keeps its route."""
+
+    policy: str
+    draw: int
+    """0 with the random numbers of the drive itself, then with fresh ones."""
+    reroutings: int
+    """How often the policy left its route; 0 makes the two drives the same."""
+    branch: Branch
+    excluded: str = ""
+    """Why it is excluded from the averages; empty if it counts."""
+    why: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class DriveRow(JobRow):
     """One drive of a study."""
 
@@ -232,6 +247,8 @@ class DriveRow(JobRow):
     stay: Totals | None = None
     """The drive itself; None without a decision."""
     decisions: tuple[Decision, ...] = ()
+    whole: tuple[WholeDrive, ...] = ()
+    """Whole drives under each policy, if the plan has them."""
 
 
 @dataclass(frozen=True, slots=True)

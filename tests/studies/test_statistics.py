@@ -13,10 +13,10 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.studies import compare, policies
 from automotive_cosim.studies.compare import Future
-from automotive_cosim.studies.drive import _Drawn, _shows_signs
 from automotive_cosim.studies.everyone import gini, spread
 from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
 from automotive_cosim.studies.plan import StudyPlan, make_study
+from automotive_cosim.studies.points import Drawn, shows_signs
 from automotive_cosim.studies.policies import best, chosen, parse_policy
 from automotive_cosim.studies.results import Noise, choices, noise
 from automotive_cosim.studies.rows import NOTHING, Branch, Decision, DriveRow, News, OthersTotals, Replicate
@@ -156,7 +156,7 @@ def test_cross_fitted_hindsight_is_unbiased_where_single_draws_gain_by_luck() ->
 
 def test_replicates_end_where_the_sign_shows() -> None:
     def shows(*gains_s: float) -> bool:
-        return _shows_signs([_Drawn(0, future(900.0), [later(-gain_s)]) for gain_s in gains_s])
+        return shows_signs([Drawn(0, future(900.0), [later(-gain_s)]) for gain_s in gains_s])
 
     assert shows(20.0, 22.0, 19.0, 25.0)
     assert shows(-20.0, -22.0, -19.0, -25.0)

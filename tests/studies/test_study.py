@@ -18,9 +18,10 @@ from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.row import steady as steady_part
 from automotive_cosim.run.store import read_rows
 from automotive_cosim.studies.batch import run_study
-from automotive_cosim.studies.drive import NO_ROOM, NOT_CLEARED
+from automotive_cosim.studies.drive import NO_ROOM
 from automotive_cosim.studies.page import write_study
 from automotive_cosim.studies.plan import StudyPlan
+from automotive_cosim.studies.points import NOT_CLEARED
 from automotive_cosim.studies.results import load_study, read_study
 from automotive_cosim.studies.rows import NOTHING, DriveRow
 from automotive_cosim.traffic.chance import Fresh
@@ -173,6 +174,41 @@ def test_each_share_is_traffic_of_its_own(two_ways: Draw, tmp_path: Path) -> Non
     assert {each.share for each in study.choices} == {0.0, 1.0}
     write_study(tmp_path / "shares")
     assert "Too few seeds" in (tmp_path / "shares" / "tables" / "by_share.md").read_text()
+
+
+def test_a_whole_drive_gains_what_its_one_rerouting_does(two_ways: Draw, tmp_path: Path) -> None:
+    """There is one place to turn off, so following a policy is the one deviation, or none."""
+    scenario = str(two_ways(more=MORE_TRIPS))
+    policies = ("never", "always", "delay:3000", "sumo", "best")
+    plan = StudyPlan(
+        scenario,
+        (0.0,),
+        seeds=(0,),
+        per_drive=1,
+        policies=policies,
+        whole_drives=True,
+        placebo_every=0,
+        replicates=2,
+    )
+    run_study(plan, tmp_path / "whole")
+    study = read_study(tmp_path / "whole")
+    row = {row.trip: row for row in study.rows}["across"]
+    (decision,) = row.decisions
+    always = [each for each in row.whole if each.policy == "always"]
+    assert [each.draw for each in always] == [0, 1]
+    for each in always:
+        assert each.reroutings == 1
+        assert each.branch.gains == decision.branches[decision.news[0].branch or 0].gains
+    assert {(each.policy, each.reroutings) for each in row.whole if each.policy == "delay:3000"} == {
+        ("delay:3000", 0)
+    }
+    assert {each.policy for each in row.whole} == {"always", "delay:3000", "sumo"}
+    free = {row.trip: row for row in study.rows}["free"]
+    assert free.excluded == "no congestion met"
+    assert {each.branch.gains for each in free.whole} == {NOTHING}
+    write_study(tmp_path / "whole")
+    text = (tmp_path / "whole" / "tables" / "whole.csv").read_text()
+    assert "always,3,0" in text, "the drives without a decision count; the one that has nowhere to go does not"
 
 
 @pytest.mark.slow
