@@ -13,5 +13,6 @@ batch      drives in parallel, resumed, until the interval is narrow enough
 results    reads stored results, as data frames
 intervals  means with bootstrap intervals over seeds
 everyone   how an effect is spread over everyone
+data       every future as a row, as files
 tables, effects, charts, page    the report
 """

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import hashlib
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -153,6 +154,48 @@ def test_the_report_is_whole(folder: Path) -> None:
             assert (folder / "tables" / f"{name}.{suffix}").read_text(encoding="utf-8").strip()
     for name in ("policies", "promised", "congestion", "ages", "everyone"):
         assert (folder / "plots" / f"{name}.svg").read_text(encoding="utf-8").startswith("<svg")
+
+
+def test_every_future_is_a_row_and_the_package_describes_it(folder: Path) -> None:
+    write_study(folder)
+    study = read_study(folder)
+    decisions = [decision for row in study.rows for decision in row.decisions]
+    with (folder / "futures.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == sum(
+        (1 + len(each.branches)) * each.draws + (each.placebo is not None) for each in decisions
+    )
+    always = [each for each in study.choices if (each.policy, each.age_s) == ("always", 0.0)]
+    found = {row["id"]: float(row["gain_time_s"]) for row in rows if "always" in row["policies"].split()}
+    assert found == {each.id: each.gain.time_s for each in always}
+    package = json.loads((folder / "datapackage.json").read_text(encoding="utf-8"))
+    assert package["study"]["plan"] == study.plan.as_json()
+    assert "two.net.xml" in package["inputs"]
+    for resource in package["resources"]:
+        content = (folder / resource["path"]).read_bytes()
+        assert resource["hash"] == f"sha256:{hashlib.sha256(content).hexdigest()}"
+        if resource["format"] == "csv":
+            header = content.decode().splitlines()[0].split(",")
+            assert [field["name"] for field in resource["schema"]["fields"]] == header
+            assert not [
+                field
+                for field in resource["schema"]["fields"]
+                if field["type"] == "any" and field["name"] not in EMPTY_HERE
+            ]
+
+
+def test_parquet_holds_the_same(folder: Path) -> None:
+    pd = pytest.importorskip("pandas")
+    pytest.importorskip("pyarrow")
+    write_study(folder)
+    for name in ("choices", "futures"):
+        read = pd.read_parquet(folder / f"{name}.parquet")
+        assert list(read.columns) == list(pd.read_csv(folder / f"{name}.csv").columns)
+        assert read.id.tolist() == pd.read_csv(folder / f"{name}.csv").id.tolist()
+
+
+EMPTY_HERE = {"gain_error_s", "won", "lost", "chose_best", "draw_seed"}
+"""Columns that a study of single draws leaves empty."""
 
 
 def test_gridlocked_traffic_is_kept_apart(two_ways: Draw, tmp_path: Path) -> None:
