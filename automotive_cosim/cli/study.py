@@ -100,6 +100,13 @@ def reroute(
             help="Also drive every policy from departure to destination.",
         ),
     ] = False,
+    together: Annotated[
+        str | None,
+        typer.Option(
+            help="Shares of the cars that could, 0 to 1, which take the other way with the ego.",
+            show_default="none",
+        ),
+    ] = None,
     arrived: Annotated[
         float,
         typer.Option(help="Share of the vehicles there at a decision that must arrive before its futures end."),
@@ -154,6 +161,7 @@ def reroute(
     values |= {"departures_s": _departures(scenario, departures)} if departures is not None else {}
     values |= {"trips": tuple(words("trips", trips))} if trips is not None else {}
     values |= {"shares": tuple(_numbers("shares", shares))} if shares is not None else {}
+    values |= {"together": tuple(_numbers("together", together))} if together is not None else {}
     plan = StudyPlan(
         scenario,
         from_place=from_place,

@@ -4,6 +4,7 @@ plan       what a study runs: scenario, departures, seeds, shares, news, policie
 drive      one drive with its decision points, and the branches forked there
 looks      drives on to the next decision
 whole      whole drives under a policy
+together   many cars take the other way at once
 points     the futures of one decision
 compare    compares two futures of one instant
 traffic    whether the traffic still flows, or is excluded as gridlocked
@@ -14,5 +15,5 @@ results    reads stored results, as data frames
 intervals  means with bootstrap intervals over seeds
 everyone   how an effect is spread over everyone
 data       every future as a row, as files
-tables, effects, charts, page    the report
+tables, effects, context, charts, page    the report
 """

@@ -21,13 +21,14 @@ from automotive_cosim.studies.compare import Future
 from automotive_cosim.studies.driver import decided
 from automotive_cosim.studies.looks import drive_on
 from automotive_cosim.studies.plan import DriveJob
-from automotive_cosim.studies.points import Drawn, Point, compared, shows_signs
+from automotive_cosim.studies.points import Diverted, Drawn, Point, compared, shows_signs
 from automotive_cosim.studies.policies import PolicyRule, parse_policy
 from automotive_cosim.studies.rows import Decision, DriveRow, News
 from automotive_cosim.studies.whole import whole_drives
 from automotive_cosim.traffic.accounts import Pulse
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.chance import SEED_RANGE, Fresh
+from automotive_cosim.traffic.divert import Edges, section
 from automotive_cosim.traffic.fork import Forked, RemoteTraffic
 
 SAME_PLACE = "start is goal"
@@ -161,6 +162,13 @@ class _Drive:
                 self.looks += 1
                 return False
             replicates = self._replicates(begun, group)
+            offered = next((number for edges, number in numbers.items() if edges == _offered(news)), None)
+            diverted: list[Diverted] = []
+            if offered is not None and not self.points:
+                ways_apart = section(now.ahead.route_edges, _offered(news))
+                diverted = self._diverted(
+                    begun[offered], ways_apart, [0, *(each.seed for each in replicates)], group
+                )
             branches = [self._left(branch, group) for branch in begun]
         decision = Decision(
             at_s=now.time_s,
@@ -174,7 +182,7 @@ class _Drive:
             agents=agents,
             agents_rerouted=tuple(turned),
         )
-        point = Point(decision, group, pulse, branches, replicates=replicates)
+        point = Point(decision, group, pulse, branches, replicates=replicates, together=diverted)
         if not self.points and self._has_placebo() and not replicates:
             point.placebo = self._renewed(traffic, self._seed(1), group)
         self.points.append(point)
@@ -201,6 +209,21 @@ class _Drive:
             drawn.append(Drawn(seed, stay, branches))
         return drawn
 
+    def _diverted(
+        self, begun: RemoteTraffic, ways: tuple[Edges, Edges], seeds: Sequence[int], group: Sequence[str]
+    ) -> list[Diverted]:
+        """The futures in which others take the way that the ego has begun, in every draw."""
+        found: list[Diverted] = []
+        old, new = ways
+        for share in self.job.plan.together if old else ():
+            for draw, seed in enumerate(seeds):
+                with closing(begun.branch()) as copy:
+                    took, could = copy.divert(old, new, share, self._seed(0))
+                    if draw:
+                        copy.renew(self._simulation.fresh(), seed)
+                    found.append(Diverted(share, draw, self._left(copy, group), took, could))
+        return found
+
     def _renewed(self, traffic: RemoteTraffic, seed: int, group: Sequence[str]) -> Future:
         """The future of a copy with fresh random numbers."""
         self.fresh = self._simulation.fresh()
@@ -222,6 +245,12 @@ class _Drive:
         """Drawn randomly, so that it does not depend on the results of other drives."""
         every = self.job.plan.placebo_every
         return every > 0 and self._draws.random() < 1 / every
+
+
+def _offered(news: dict[float, tuple[RouteOption, ...]]) -> tuple[str, ...]:
+    """The quickest other route by the newest news of the plan; empty without one."""
+    options = next(iter(news.values()))
+    return options[1].edges if len(options) > 1 else ()
 
 
 def _ways(

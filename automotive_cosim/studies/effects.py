@@ -1,25 +1,24 @@
-"""Tables of the effect on everyone, of the traffic, and of what the exclusions could hide."""
+"""Tables of wider effects: of following a policy, of many cars at once, and on everyone else."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise
 from statistics import fmean
 
 from automotive_cosim.report.tables import Table, TableRow
 from automotive_cosim.studies.everyone import CLASSES_S, HORIZONS, NOTICED_S
 from automotive_cosim.studies.intervals import SeedMean, seed_mean
-from automotive_cosim.studies.points import NOT_ARRIVED
-from automotive_cosim.studies.results import Study, all_decisions, choices_at
-from automotive_cosim.studies.rows import PolicyChoice, Spread, WholeDrive
-from automotive_cosim.studies.tables import NONE, STAYING, goes_by_news, groups, told, told_mean
+from automotive_cosim.studies.results import Study
+from automotive_cosim.studies.rows import PolicyChoice, Spread, Together, WholeDrive
+from automotive_cosim.studies.tables import NONE, goes_by_news, groups, told, told_mean
 
 SpreadOf = tuple[PolicyChoice, Spread]
 
 
 def effects(study: Study) -> list[Table]:
     """All of these tables."""
-    return [whole(study), everyone(study), by_trip(study), horizons(study), bounds(study), traffic(study)]
+    return [whole(study), many(study), everyone(study), by_trip(study), horizons(study)]
 
 
 def whole(study: Study) -> Table:
@@ -88,6 +87,48 @@ def rerouted(study: Study) -> list[tuple[tuple[str, str, str], list[SpreadOf]]]:
         if spreads:
             found.append(((f"{share:.0%}", policy, f"{age_s:g}" if goes_by_news(policy) else NONE), spreads))
     return found
+
+
+def many(study: Study) -> Table:
+    """What it costs when many take the other way at once."""
+    found: dict[tuple[float, float], list[tuple[int, list[Together]]]] = {}
+    for point in study.decisions:
+        for share in study.plan.together:
+            draws = [each for each in point.decision.together if each.share == share]
+            if draws:
+                found.setdefault((point.drive.share, share), []).append((point.drive.seed, draws))
+    rows: list[TableRow] = []
+    for (rerouting, share), here in sorted(found.items()):
+        rows.append(
+            (
+                f"{rerouting:.0%}",
+                f"{share:.0%}",
+                str(len(here)),
+                _drawn_cell(here, lambda each: each.could, ".1f"),
+                _drawn_cell(here, lambda each: each.took, ".1f"),
+                _drawn_cell(here, lambda each: each.ego_gain_s, "+.1f"),
+                _drawn_cell(here, lambda each: each.took_gain_s, "+.1f"),
+                _drawn_cell(here, lambda each: each.rest_gain_s, "+.1f"),
+                _drawn_cell(here, lambda each: each.ego_gain_s + each.took_gain_s + each.rest_gain_s, "+.1f"),
+            )
+        )
+    columns = (
+        "Share rerouting",
+        "Sent along",
+        "Decisions",
+        "Could go",
+        "Went",
+        "Ego saves, s",
+        "Those save, s",
+        "The rest save, s",
+        "All save, s",
+    )
+    note = (
+        "At the first decision of each drive with another route, whatever the news predicts: the ego takes it, and "
+        "with it that share of the cars whose routes pass both ends of the section in which the two ways differ. "
+        "The same cars, traffic and random numbers at every share, so the rows differ by the share alone."
+    )
+    return Table("many", "When many take the other way at once", columns, tuple(rows), note, heads=2)
 
 
 def everyone(study: Study) -> Table:
@@ -179,94 +220,11 @@ def horizons(study: Study) -> Table:
     return Table("horizons", "The others, by horizon", columns, tuple(rows), note, heads=3)
 
 
-def bounds(study: Study) -> Table:
-    """The mean gain with the excluded decisions put in."""
-    left_out = [point for point in all_decisions(study.rows) if point.decision.excluded]
-    rows: list[TableRow] = []
-    for share, policy, age_s, counted in groups(study) if left_out else ():
-        if policy in STAYING:
-            continue
-        here = [point for point in left_out if point.drive.share == share]
-        put_in = [
-            (point.decision.excluded, choice)
-            for point in here
-            for choice in choices_at(point, (policy,))
-            if choice.age_s == age_s
-        ]
-        known = _gains(counted) + _gains(choice for reason, choice in put_in if reason != NOT_ARRIVED)
-        unknown = [choice.seed for reason, choice in put_in if reason == NOT_ARRIVED]
-        worst_s, best_s = (end(gain_s for _, gain_s in known) for end in (min, max))
-        rows.append(
-            (
-                f"{share:.0%}",
-                policy,
-                f"{age_s:g}" if goes_by_news(policy) else NONE,
-                str(len(counted)),
-                told_mean(seed_mean(_gains(counted)), "+.1f"),
-                str(len(put_in) - len(unknown)),
-                told_mean(seed_mean(known), "+.1f"),
-                str(len(unknown)),
-                *(
-                    told_mean(seed_mean([*known, *((seed, end_s) for seed in unknown)]), "+.1f")
-                    for end_s in (worst_s, best_s)
-                ),
-            )
-        )
-    columns = (
-        "Share rerouting",
-        "Policy",
-        "News age, s",
-        "Counted",
-        "Time saved, s",
-        "Excluded, measured",
-        "With these, s",
-        "Not measured",
-        "At worst, s",
-        "At best, s",
-    )
-    note = (
-        "Exclusion looks at the outcome, so it could favour a policy. Decisions that are excluded although "
-        "the ego arrived in every future are put in as measured; those in which it did not arrive get the greatest "
-        "loss and the greatest gain of all others. Measured in a gridlock, they say little by themselves."
-    )
-    return Table("bounds", "With the excluded decisions put in", columns, tuple(rows), note, heads=3)
-
-
-def traffic(study: Study) -> Table:
-    """The traffic as a whole at the decisions."""
-    rows: list[TableRow] = []
-    for share in sorted({row.share for row in study.rows}):
-        points = [point for point in all_decisions(study.rows) if point.drive.share == share]
-        pulses = [pulse for point in points if (pulse := point.decision.traffic) is not None]
-        if pulses:
-            rows.append(
-                (
-                    f"{share:.0%}",
-                    str(len(pulses)),
-                    f"{fmean(each.running for each in pulses):.0f}",
-                    f"{fmean(each.halted / max(1, each.running) for each in pulses):.0%}",
-                    str(max(each.stuck for each in pulses)),
-                    str(max(each.backlog for each in pulses)),
-                    str(max(each.teleported for each in pulses)),
-                )
-            )
-    columns = (
-        "Share rerouting",
-        "Decisions",
-        "Vehicles on the road",
-        "Standing",
-        "Most waiting for 300 s",
-        "Most without room to enter",
-        "Most teleports",
-    )
-    note = "At all decisions, excluded ones too. Vehicles without room to enter wait outside and are no gridlock."
-    return Table("traffic", "The traffic at the decisions", columns, tuple(rows), note)
-
-
-def _gains(chosen: Iterable[PolicyChoice]) -> list[tuple[int, float]]:
-    return [(each.seed, each.gain.time_s) for each in chosen]
-
-
 def _mean_cell(found: Iterable[SpreadOf], of: Callable[[Spread], float], form: str) -> str:
     mean: SeedMean | None = seed_mean((choice.seed, of(spread)) for choice, spread in found)
     return told_mean(mean, form)
+
+
+def _drawn_cell(here: Sequence[tuple[int, list[Together]]], of: Callable[[Together], float], form: str) -> str:
+    """The mean over decisions of the means over their draws; each with the seed of its traffic."""
+    return told_mean(seed_mean((seed, fmean(map(of, draws))) for seed, draws in here), form)

@@ -83,6 +83,8 @@ class StudyPlan:
     """Half-width of the mean gain's interval at which no further seeds are added; None runs all."""
     whole_drives: bool = False
     """Whether every policy also drives from the departure to the destination."""
+    together: tuple[Annotated[float, Ge(0), Le(1)], ...] = ()
+    """Shares of the cars that could take the quickest other way, which take it with the ego."""
     agent_steps: Annotated[int, Ge(1), Le(100)] = 12
     """Maximum number of an agent's actions per decision."""
 
@@ -98,7 +100,7 @@ class StudyPlan:
             UserError: one does not exist or is out of range.
         """
         _check(asdict(self))
-        for name in ("departures_s", "seeds", "shares", "ages_s", "policies", "trips"):
+        for name in ("departures_s", "seeds", "shares", "ages_s", "policies", "trips", "together"):
             values = getattr(self, name)
             if len(set(values)) < len(values):
                 raise UserError(f"{_option(name)} names something twice: {', '.join(map(str, values))}")

@@ -11,6 +11,7 @@ from automotive_cosim.studies.compare import Future
 from automotive_cosim.studies.everyone import spread
 from automotive_cosim.studies.plan import AUTO_ERRORS
 from automotive_cosim.studies.rows import Branch, Decision, Replicate
+from automotive_cosim.studies.together import together
 from automotive_cosim.studies.traffic import gridlock
 from automotive_cosim.traffic.accounts import Pulse
 
@@ -32,6 +33,18 @@ class Point:
     branches: list[Future]
     placebo: Future | None = None
     replicates: list[Drawn] = field(default_factory=list)
+    together: list[Diverted] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class Diverted:
+    """A future in which others take the ego's other way too."""
+
+    share: float
+    draw: int
+    future: Future
+    took: tuple[str, ...]
+    could: int
 
 
 @dataclass(slots=True)
@@ -59,6 +72,7 @@ def compared(point: Point, stay: Future, history: Sequence[Pulse]) -> Decision:
     drawn = [Drawn(0, stay, point.branches), *point.replicates]
     pairs = [(each.stay, branch) for each in drawn for branch in each.branches]
     pairs += [(stay, point.placebo)] if point.placebo else []
+    pairs += [(drawn[each.draw].stay, each.future) for each in point.together]
     excluded, why = exclusion(pairs, [*history, point.pulse])
     return replace(
         point.decision,
@@ -79,6 +93,12 @@ def compared(point: Point, stay: Future, history: Sequence[Pulse]) -> Decision:
             for number in range(len(point.branches))
         ),
         traffic=point.pulse,
+        together=tuple(
+            together(
+                each.share, each.draw, (drawn[each.draw].stay, each.future), point.group, each.took, each.could
+            )
+            for each in point.together
+        ),
     )
 
 

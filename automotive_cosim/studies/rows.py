@@ -127,6 +127,23 @@ class Replicate:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Together:
+    """A future in which other cars take the other way with the ego, compared with that in which nobody does."""
+
+    share: float
+    """Share of the cars that could take it; with 0 the ego is alone."""
+    draw: int
+    could: int
+    """Number of cars whose routes pass both ends of the section in which the two ways differ."""
+    took: int
+    ego_gain_s: float
+    took_gain_s: float
+    """Total savings of the cars that took it too."""
+    rest_gain_s: float
+    """Total savings of all others that were there."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class News:
     """What traffic news of one age says at a decision."""
 
@@ -180,6 +197,8 @@ class Decision:
     """How each branch affects everyone."""
     traffic: Pulse | None = None
     """The traffic as a whole at the decision."""
+    together: tuple[Together, ...] = ()
+    """Futures in which others take the quickest other way too, at the first decision of a drive."""
 
     @property
     def time_index(self) -> float:
