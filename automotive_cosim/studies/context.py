@@ -110,10 +110,6 @@ def traffic(study: Study) -> Table:
     return Table("traffic", "The traffic at the decisions", columns, tuple(rows), note)
 
 
-def _gains(chosen: Iterable[PolicyChoice]) -> list[tuple[int, float]]:
-    return [(each.seed, each.gain.time_s) for each in chosen]
-
-
 def by_departure(study: Study) -> Table:
     """The gains by how long the traffic had run when the ego departed."""
     first_s = study.plan.ages_s[0]
@@ -131,8 +127,12 @@ def by_departure(study: Study) -> Table:
         on_road = f"{fmean(running):.0f}" if running else NONE
         rows.append((f"{warm_up_s + departure_s:g}", str(len(ids)), on_road, *cells))
     note = (
-        "Seconds saved. Figures that drift with the age of the traffic mean that its warm-up was too short, or that "
-        "the demand changes with the hour."
+        "Seconds saved. Figures that drift with the age of the traffic mean that its warm-up was too short, or "
+        "that the demand changes with the hour."
     )
     columns = ("Traffic has run for, s", "Decisions", "Vehicles on the road", *named)
     return Table("by_departure", "Time saved by the age of the traffic", columns, tuple(rows), note)
+
+
+def _gains(chosen: Iterable[PolicyChoice]) -> list[tuple[int, float]]:
+    return [(each.seed, each.gain.time_s) for each in chosen]

@@ -149,6 +149,7 @@ def test_the_report_is_whole(folder: Path) -> None:
         "everyone",
         "by_trip",
         "traffic",
+        "by_departure",
     ):
         for suffix in ("md", "csv", "tex"):
             assert (folder / "tables" / f"{name}.{suffix}").read_text(encoding="utf-8").strip()
@@ -252,6 +253,33 @@ def test_a_whole_drive_gains_what_its_one_rerouting_does(two_ways: Draw, tmp_pat
     write_study(tmp_path / "whole")
     text = (tmp_path / "whole" / "tables" / "whole.csv").read_text()
     assert "always,3,0" in text, "the drives without a decision count; the one that has nowhere to go does not"
+
+
+@pytest.mark.slow
+def test_many_at_once_start_from_the_one(two_ways: Draw, tmp_path: Path) -> None:
+    """Sending nobody along is the ego's branch; sending all along changes it, and nobody is counted twice."""
+    plan = StudyPlan(
+        str(two_ways(DAWDLING)),
+        (0.0,),
+        seeds=(0,),
+        per_drive=2,
+        every_s=10.0,
+        least_delay_s=0.0,
+        together=(0.0, 1.0),
+    )
+    run_study(plan, tmp_path / "many")
+    (row,) = read_study(tmp_path / "many").rows
+    first, second = row.decisions
+    assert not second.together
+    branch = first.branches[first.news[0].branch or 0]
+    alone, everybody = first.together
+    assert (alone.took, alone.took_gain_s) == (0, 0.0)
+    assert alone.ego_gain_s == branch.gains.time_s
+    assert alone.rest_gain_s == branch.others.gain_s
+    assert 0 < everybody.took <= everybody.could == alone.could < branch.others.count
+    assert everybody.took_gain_s < 0, "the other way is half as long again and nothing holds them up on their own"
+    write_study(tmp_path / "many")
+    assert (tmp_path / "many" / "tables" / "many.md").read_text().count("\n| 0% |") == 2
 
 
 @pytest.mark.slow
