@@ -119,6 +119,9 @@ def reroute(
             help="Declare that the demand comes from duaIterate with this relative gap.", show_default=False
         ),
     ] = None,
+    measure_gap: Annotated[
+        bool, typer.Option(help="Measure how far the demand's routes are from an equilibrium.")
+    ] = True,
     until: Annotated[
         float | None,
         typer.Option(
@@ -145,6 +148,7 @@ def reroute(
     from automotive_cosim.cli.console import Console
     from automotive_cosim.run.store import read_rows
     from automotive_cosim.studies.batch import run_study
+    from automotive_cosim.studies.demand import measure_demand
     from automotive_cosim.studies.page import write_study
     from automotive_cosim.studies.plan import StudyPlan
     from automotive_cosim.studies.results import read_study
@@ -198,6 +202,9 @@ def reroute(
         except KeyboardInterrupt:
             typer.echo(f"finished drives are in {folder}; rerun the command to resume", err=True)
             raise
+    if measure_gap:
+        for each in measure_demand(plan, folder):
+            console.print(f"demand, {each.share:.0%} reroute: {each.gap or each.why_not}", soft_wrap=True)
     page = write_study(folder)
     _tell(console, read_study(folder), page, as_json=as_json)
 

@@ -13,6 +13,7 @@ from automotive_cosim.run.store import cannot_write
 from automotive_cosim.studies.charts import charts
 from automotive_cosim.studies.context import context
 from automotive_cosim.studies.data import write_data
+from automotive_cosim.studies.demand import demand_table, read_demand
 from automotive_cosim.studies.effects import effects
 from automotive_cosim.studies.intervals import LEAST_SEEDS, PUBLISHED_SEEDS
 from automotive_cosim.studies.plan import named
@@ -31,7 +32,10 @@ def write_study(folder: Path) -> Path:
     study = read_study(folder)
     if not study.rows:
         raise UserError(f"{folder} has no drives yet; rerun its `study` command to resume")
-    made = [*tables(study), *(table for table in (*effects(study), *context(study)) if table.rows)]
+    made = [
+        *tables(study),
+        *(table for table in (*effects(study), *context(study), demand_table(read_demand(folder))) if table.rows),
+    ]
     plots = charts(study) if study.choices else {}
     try:
         for name in ("tables", "plots"):

@@ -19,6 +19,7 @@ from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.row import steady as steady_part
 from automotive_cosim.run.store import read_rows
 from automotive_cosim.studies.batch import run_study
+from automotive_cosim.studies.demand import read_demand
 from automotive_cosim.studies.drive import NO_ROOM
 from automotive_cosim.studies.page import write_study
 from automotive_cosim.studies.plan import StudyPlan
@@ -373,6 +374,11 @@ def test_the_command(two_ways: Draw, tmp_path: Path) -> None:
     told = json.loads(text.strip().splitlines()[-1])
     assert (told["drives"], told["decisions"], told["errors"], told["excluded"]) == (1, 1, 0, {})
     assert (out / "report.html").is_file()
+    (demand,) = read_demand(out)
+    assert demand.gap is not None
+    assert demand.gap.relative == 0, "the lorries have no other way"
+    assert "relative gap 0.0%" in text
+    assert (out / "tables" / "demand.md").is_file()
     written = (out / "report.html").read_bytes()
     text, error = invoke("report", str(out))
     assert error is None
