@@ -107,6 +107,16 @@ def reroute(
             show_default="none",
         ),
     ] = None,
+    emissions: Annotated[
+        bool, typer.Option("--emissions", help="Measure what every vehicle emits and consumes, by emission class.")
+    ] = False,
+    ego_class: Annotated[
+        str,
+        typer.Option(
+            help="SUMO's emission class of the ego, as Energy/default for an electric one.",
+            show_default="SUMO's for cars",
+        ),
+    ] = "",
     arrived: Annotated[
         float,
         typer.Option(help="Share of the vehicles there at a decision that must arrive before its futures end."),
@@ -176,6 +186,8 @@ def reroute(
         every_s=every,
         arrived=arrived,
         whole_drives=whole_drives,
+        emissions=emissions,
+        ego_class=ego_class,
         scale=scale,
         step_s=step,
         equilibrium_gap=equilibrium_gap,

@@ -91,7 +91,14 @@ def depart(job: DriveJob, simulation: Forked) -> RemoteTraffic:
     """Starts the ego in the scenario's weather, or the one drawn for its place and month."""
     scenario = job.plan.scene(job.share)
     seed = int(np.random.default_rng([*job.entropy, 0]).integers(2**31))
-    plan = EgoPlan(job.trip, job.plan.driver or scenario.ego.driver, seed, scenario.weather, scenario.start)
+    plan = EgoPlan(
+        job.trip,
+        job.plan.driver or scenario.ego.driver,
+        seed,
+        scenario.weather,
+        scenario.start,
+        emission_class=job.plan.ego_class,
+    )
     traffic = simulation.depart(plan)
     if plan.weather:
         return traffic

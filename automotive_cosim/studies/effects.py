@@ -10,7 +10,7 @@ from automotive_cosim.report.tables import Table, TableRow
 from automotive_cosim.studies.everyone import CLASSES_S, HORIZONS, NOTICED_S
 from automotive_cosim.studies.intervals import SeedMean, seed_mean
 from automotive_cosim.studies.results import Study
-from automotive_cosim.studies.rows import PolicyChoice, Spread, Together, WholeDrive
+from automotive_cosim.studies.rows import FleetClass, PolicyChoice, Spread, Together, WholeDrive
 from automotive_cosim.studies.tables import NONE, goes_by_news, groups, told, told_mean
 
 SpreadOf = tuple[PolicyChoice, Spread]
@@ -18,7 +18,7 @@ SpreadOf = tuple[PolicyChoice, Spread]
 
 def effects(study: Study) -> list[Table]:
     """All of these tables."""
-    return [whole(study), many(study), everyone(study), by_trip(study), horizons(study)]
+    return [whole(study), many(study), everyone(study), by_trip(study), horizons(study), fleet(study)]
 
 
 def whole(study: Study) -> Table:
@@ -218,6 +218,50 @@ def horizons(study: Study) -> Table:
         "(--arrived)."
     )
     return Table("horizons", "The others, by horizon", columns, tuple(rows), note, heads=3)
+
+
+def fleet(study: Study) -> Table:
+    """What everyone emits and consumes less, by emission class."""
+    decisions = {point.id: point.decision for point in study.decisions}
+    rows: list[TableRow] = []
+    for heads, found in rerouted(study):
+        by_class: dict[str, list[tuple[int, list[FleetClass]]]] = {}
+        for choice, _ in found:
+            decision = decisions[choice.id]
+            drawn = [decision.drawn(draw, choice.branch) for draw in range(decision.draws)]
+            parts = [part for branch in drawn if branch is not None for part in branch.fleet]
+            for name in dict.fromkeys(part.emission_class for part in parts):
+                here = [part for part in parts if part.emission_class == name]
+                by_class.setdefault(name, []).append((choice.seed, here))
+        for name, here in sorted(by_class.items()):
+            cells = [
+                told_mean(seed_mean((seed, _mean_of(parts, what)) for seed, parts in here), form)
+                for what, form in (("co2_g", "+.0f"), ("nox_g", "+.2f"), ("fuel_g", "+.0f"), ("energy_wh", "+.1f"))
+            ]
+            vehicles = fmean(part.count for _, parts in here for part in parts)
+            rows.append((*heads, name, f"{vehicles:.0f}", *cells))
+    columns = (
+        "Share rerouting",
+        "Policy",
+        "News age, s",
+        "Emission class",
+        "Vehicles",
+        "CO2 saved, g",
+        "NOx saved, g",
+        "Fuel saved, g",
+        "Electricity saved, Wh",
+    )
+    note = (
+        "Sums over the vehicles of the class that arrived in both futures, per decision in which the policy "
+        "reroutes. Classes are those that the demand's vehicle types declare (emissionClass), else SUMO's own for "
+        "the kind of vehicle; --ego-class declares the ego's."
+    )
+    return Table("fleet", "Emissions and consumption of everyone", columns, tuple(rows), note, heads=4)
+
+
+def _mean_of(parts: Sequence[FleetClass], what: str) -> float:
+    """The mean of a figure over the draws of a decision."""
+    return fmean(getattr(part, what) for part in parts)
 
 
 def _mean_cell(found: Iterable[SpreadOf], of: Callable[[Spread], float], form: str) -> str:

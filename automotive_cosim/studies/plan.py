@@ -85,6 +85,10 @@ class StudyPlan:
     """Whether every policy also drives from the departure to the destination."""
     together: tuple[Annotated[float, Ge(0), Le(1)], ...] = ()
     """Shares of the cars that could take the quickest other way, which take it with the ego."""
+    emissions: bool = False
+    """Whether to measure what every vehicle emits and consumes."""
+    ego_class: str = ""
+    """SUMO's emission class of the ego; empty takes SUMO's for passenger cars."""
     agent_steps: Annotated[int, Ge(1), Le(100)] = 12
     """Maximum number of an agent's actions per decision."""
 
@@ -117,6 +121,8 @@ class StudyPlan:
             make_agent(*named(agent))
         if self.driver:
             profile(self.driver)
+        if self.ego_class and not re.fullmatch(r"[A-Za-z0-9_.]+(/[A-Za-z0-9_.]+)?", self.ego_class):
+            raise UserError(f"--ego-class is {self.ego_class!r}; give an emission class of SUMO, as Energy/default")
         scenario = self.scene(0.0)
         for name in self.trips:
             scenario.trip(name)

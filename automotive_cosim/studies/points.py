@@ -140,5 +140,8 @@ def branched(stay: Future, other: Future, group: Sequence[str]) -> Branch:
         group: the other vehicles that were there at the fork.
     """
     return Branch(
-        gains=compare.gains(stay, other), totals=other.totals(), others=compare.others(stay, other, group)
+        gains=compare.gains(stay, other),
+        totals=other.totals(),
+        others=compare.others(stay, other, group),
+        fleet=compare.fleet(stay, other, group),
     )

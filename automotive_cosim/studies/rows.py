@@ -22,6 +22,8 @@ class Totals:
     standing_s: float
     co2_g: float
     fuel_g: float
+    energy_wh: float = 0.0
+    """From the battery, of an electric ego."""
 
     @classmethod
     def mean(cls, drives: Sequence[Totals]) -> Totals:
@@ -54,6 +56,19 @@ class OthersTotals:
 
 NOBODY = OthersTotals(count=0, gain_s=0.0, changed=0, unfinished_stay=0, unfinished=0)
 """The comparison of a future with itself."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FleetClass:
+    """What the vehicles of one emission class save that were there and arrived in both futures."""
+
+    emission_class: str
+    """SUMO's name of it; the ego is a class of its own, ``ego: `` and its name."""
+    count: int
+    co2_g: float
+    nox_g: float
+    fuel_g: float
+    energy_wh: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -112,6 +127,8 @@ class Branch:
     gains: Totals
     totals: Totals
     others: OthersTotals
+    fleet: tuple[FleetClass, ...] = ()
+    """What everyone emits and consumes less, if the plan asks for it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -92,15 +92,18 @@ class Forked:
             raise TrafficError("the simulation is closed")
         return self._source.departed(plan)
 
-    def watch(self) -> None:
+    def watch(self, *, consumptions: bool = False) -> None:
         """Makes this traffic and every drive that departs from it keep a ledger, which studies read.
+
+        Args:
+            consumptions: also of what every vehicle emits and consumes.
 
         Raises:
             SetupError: the platform cannot fork.
         """
         if self._source.by_replay:
             raise SetupError("studies branch a running simulation, which requires fork: use Linux")
-        self._source.warm_call("watch")
+        self._source.warm_call("watch", consumptions)
 
     def run_on(self, duration_s: float) -> Pulse:
         """Lets the watched traffic run, so that later drives depart later; returns its state.

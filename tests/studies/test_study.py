@@ -283,6 +283,43 @@ def test_many_at_once_start_from_the_one(two_ways: Draw, tmp_path: Path) -> None
     assert (tmp_path / "many" / "tables" / "many.md").read_text().count("\n| 0% |") == 2
 
 
+def test_emissions_are_of_everyone_by_class_and_the_ego_can_be_electric(two_ways: Draw, tmp_path: Path) -> None:
+    plan = StudyPlan(
+        str(two_ways()),
+        (0.0,),
+        seeds=(0,),
+        per_drive=1,
+        placebo_every=0,
+        emissions=True,
+        ego_class="Energy/default",
+    )
+    run_study(plan, tmp_path / "fleet")
+    (row,) = read_study(tmp_path / "fleet").rows
+    (decision,) = row.decisions
+    branch = decision.branches[0]
+    assert row.stay is not None
+    assert (row.stay.co2_g, row.stay.fuel_g) == (0, 0)
+    assert row.stay.energy_wh > 50
+    fleet = {each.emission_class: each for each in branch.fleet}
+    ego = fleet.pop("ego: Energy/default")
+    assert ego.energy_wh == pytest.approx(branch.gains.energy_wh, abs=0.01)
+    assert ego.count == 1
+    (lorries,) = fleet.values()
+    assert lorries.count > 0
+    assert (lorries.co2_g, lorries.nox_g, lorries.fuel_g, lorries.energy_wh) == (0, 0, 0, 0), (
+        "nobody is in their way"
+    )
+    write_study(tmp_path / "fleet")
+    assert "Energy/default" in (tmp_path / "fleet" / "tables" / "fleet.md").read_text()
+
+
+def test_an_emission_class_that_sumo_lacks_is_named(two_ways: Draw, tmp_path: Path) -> None:
+    plan = StudyPlan(str(two_ways()), (0.0,), seeds=(0,), per_drive=1, ego_class="Steam/big")
+    run_study(plan, tmp_path / "steam", retries=0)
+    (row,) = read_study(tmp_path / "steam").rows
+    assert "Steam/big" in (row.error or "")
+
+
 @pytest.mark.slow
 def test_seeds_are_added_only_until_enough_is_known(two_ways: Draw, tmp_path: Path) -> None:
     """Without chance every seed finds the same gain, so the fewest that an interval takes are enough."""
