@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Sequence
 from itertools import pairwise
 from statistics import fmean
 
+from automotive_cosim.contracts.plain import counted
 from automotive_cosim.report.tables import Table, TableRow
 from automotive_cosim.studies.everyone import CLASSES_S, HORIZONS, NOTICED_S
 from automotive_cosim.studies.intervals import SeedMean, seed_mean
@@ -89,16 +90,25 @@ def rerouted(study: Study) -> list[tuple[tuple[str, str, str], list[SpreadOf]]]:
     return found
 
 
-def many(study: Study) -> Table:
-    """What it costs when many take the other way at once."""
+def together_by_share(study: Study) -> dict[tuple[float, float], list[tuple[int, list[Together]]]]:
+    """The draws of each decision with the seed of its traffic, by share of rerouting cars and share sent along.
+
+    A decision of which any draw of any share does not count is left out of all, so that the shares stay paired.
+    """
     found: dict[tuple[float, float], list[tuple[int, list[Together]]]] = {}
     for point in study.decisions:
-        for share in study.plan.together:
-            draws = [each for each in point.decision.together if each.share == share]
-            if draws:
-                found.setdefault((point.drive.share, share), []).append((point.drive.seed, draws))
+        every = point.decision.together
+        for share in study.plan.together if every and not any(each.excluded for each in every) else ():
+            draws = [each for each in every if each.share == share]
+            found.setdefault((point.drive.share, share), []).append((point.drive.seed, draws))
+    return dict(sorted(found.items()))
+
+
+def many(study: Study) -> Table:
+    """What it costs when many take the other way at once."""
+    left_out = sum(any(each.excluded for each in point.decision.together) for point in study.decisions)
     rows: list[TableRow] = []
-    for (rerouting, share), here in sorted(found.items()):
+    for (rerouting, share), here in together_by_share(study).items():
         rows.append(
             (
                 f"{rerouting:.0%}",
@@ -126,7 +136,8 @@ def many(study: Study) -> Table:
     note = (
         "At the first decision of each drive with another route, whatever the news predicts: the ego takes it, and "
         "with it that share of the cars whose routes pass both ends of the section in which the two ways differ. "
-        "The same cars, traffic and random numbers at every share, so the rows differ by the share alone."
+        "The same cars, traffic and random numbers at every share, so the rows differ by the share alone. "
+        f"{counted(left_out, 'decision')} left out because some share did not arrive or clear in time."
     )
     return Table("many", "When many take the other way at once", columns, tuple(rows), note, heads=2)
 

@@ -207,7 +207,8 @@ class DriveJob:
     @property
     def wall_s(self) -> float:
         """Limit of its wall time: agents may think for a while."""
-        return (7_200.0 if self.plan.agents else 1_800.0) * (1 + self.plan.draws.stop)
+        parts = 1 + self.plan.whole_drives + len(self.plan.together)
+        return (7_200.0 if self.plan.agents else 1_800.0) * (1 + self.plan.draws.stop) * parts
 
     @property
     def id(self) -> str:

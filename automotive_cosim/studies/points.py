@@ -10,7 +10,7 @@ from automotive_cosim.studies import compare
 from automotive_cosim.studies.compare import Future
 from automotive_cosim.studies.everyone import spread
 from automotive_cosim.studies.plan import AUTO_ERRORS
-from automotive_cosim.studies.rows import Branch, Decision, Replicate
+from automotive_cosim.studies.rows import Branch, Decision, Replicate, Together
 from automotive_cosim.studies.together import together
 from automotive_cosim.studies.traffic import gridlock
 from automotive_cosim.traffic.accounts import Pulse
@@ -72,8 +72,8 @@ def compared(point: Point, stay: Future, history: Sequence[Pulse]) -> Decision:
     drawn = [Drawn(0, stay, point.branches), *point.replicates]
     pairs = [(each.stay, branch) for each in drawn for branch in each.branches]
     pairs += [(stay, point.placebo)] if point.placebo else []
-    pairs += [(drawn[each.draw].stay, each.future) for each in point.together]
-    excluded, why = exclusion(pairs, [*history, point.pulse])
+    pulses = [*history, point.pulse]
+    excluded, why = exclusion(pairs, pulses)
     return replace(
         point.decision,
         excluded=excluded,
@@ -93,13 +93,15 @@ def compared(point: Point, stay: Future, history: Sequence[Pulse]) -> Decision:
             for number in range(len(point.branches))
         ),
         traffic=point.pulse,
-        together=tuple(
-            together(
-                each.share, each.draw, (drawn[each.draw].stay, each.future), point.group, each.took, each.could
-            )
-            for each in point.together
-        ),
+        together=tuple(_together(each, drawn[each.draw].stay, point, pulses) for each in point.together),
     )
+
+
+def _together(diverted: Diverted, stay: Future, point: Point, pulses: Sequence[Pulse]) -> Together:
+    """What many cars gain, unless that very future does not count; the decision itself does."""
+    pair = stay, diverted.future
+    excluded, _ = exclusion([pair], pulses)
+    return together(diverted.share, diverted.draw, pair, point.group, diverted.took, diverted.could, excluded)
 
 
 def exclusion(pairs: Sequence[tuple[Future, Future]], pulses: Sequence[Pulse]) -> tuple[str, str]:

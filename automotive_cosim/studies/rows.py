@@ -158,6 +158,8 @@ class Together:
     """Total savings of the cars that took it too."""
     rest_gain_s: float
     """Total savings of all others that were there."""
+    excluded: str = ""
+    """Why it is excluded from the averages; empty if it counts."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

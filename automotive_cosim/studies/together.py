@@ -9,7 +9,13 @@ from automotive_cosim.studies.rows import Together
 
 
 def together(
-    share: float, draw: int, pair: tuple[Future, Future], group: Sequence[str], took: Sequence[str], could: int
+    share: float,
+    draw: int,
+    pair: tuple[Future, Future],
+    group: Sequence[str],
+    took: Sequence[str],
+    could: int,
+    excluded: str,
 ) -> Together:
     """Savings of the ego, of the cars that went with it, and of all the rest.
 
@@ -20,6 +26,7 @@ def together(
         group: the other vehicles that were there.
         took: those that went along.
         could: how many could have.
+        excluded: why the future does not count.
     """
     stay, other = pair
     until_s = min(future.settled.time_s for future in pair)
@@ -38,4 +45,5 @@ def together(
         ego_gain_s=round(stay.totals().time_s - other.totals().time_s, 3),
         took_gain_s=round(sum(gains_s(took)), 3),
         rest_gain_s=round(sum(gains_s([vehicle for vehicle in group if vehicle not in went])), 3),
+        excluded=excluded,
     )

@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from automotive_cosim.contracts import Json
+from automotive_cosim.contracts import EgoEnd, Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.studies import compare, policies
 from automotive_cosim.studies.compare import Future
 from automotive_cosim.studies.everyone import gini, spread
 from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
 from automotive_cosim.studies.plan import StudyPlan, make_study
-from automotive_cosim.studies.points import Drawn, shows_signs
+from automotive_cosim.studies.points import Diverted, Drawn, Point, compared, shows_signs
 from automotive_cosim.studies.policies import best, chosen, parse_policy
 from automotive_cosim.studies.results import Noise, choices, noise
 from automotive_cosim.studies.rows import NOTHING, Branch, Decision, DriveRow, News, OthersTotals, Replicate
@@ -306,8 +306,23 @@ def test_gini(values: list[float], expected: float) -> None:
     assert gini(np.array(values)) == pytest.approx(expected)
 
 
+def test_many_cars_that_jam_leave_the_decision_itself_in() -> None:
+    """Sending everybody along ends in a gridlock: that future does not count, and the decision does."""
+    good = ends(future(900.0, a=200.0), 450.0)
+    jammed = replace(good, settled=replace(good.settled, pulse=replace(FLOWING, stuck=200)))
+    late = replace(good, settled=replace(good.settled, is_complete=False))
+    sent = [Diverted(share, 0, made, ("a",), 1) for share, made in ((0.0, good), (0.5, late), (1.0, jammed))]
+    point = Point(decision(), ("a",), FLOWING, [ends(future(900.0, a=190.0), 400.0)], together=sent)
+    found = compared(point, good, [])
+    assert found.excluded == ""
+    assert found.branches[0].gains.time_s == 50
+    assert [each.excluded for each in found.together] == ["", "traffic did not clear", ""]
+    jam = compared(replace(point, together=[]), jammed, [])
+    assert jam.excluded == "gridlock: waiting for long"
+
+
 def ends(made: Future, at_s: float) -> Future:
-    return replace(made, last=replace(made.last, time_s=at_s))
+    return replace(made, last=replace(made.last, time_s=at_s, end=EgoEnd.ARRIVED))
 
 
 @pytest.mark.parametrize(
