@@ -242,8 +242,8 @@ def fleet(study: Study) -> Table:
             drawn = [decision.drawn(draw, choice.branch) for draw in range(decision.draws)]
             parts = [part for branch in drawn if branch is not None for part in branch.fleet]
             for name in dict.fromkeys(part.emission_class for part in parts):
-                here = [part for part in parts if part.emission_class == name]
-                by_class.setdefault(name, []).append((choice.seed, here))
+                same = [part for part in parts if part.emission_class == name]
+                by_class.setdefault(name, []).append((choice.seed, same))
         for name, here in sorted(by_class.items()):
             cells = [
                 told_mean(seed_mean((seed, _mean_of(parts, what)) for seed, parts in here), form)

@@ -70,14 +70,14 @@ class Ledger:
 
     def consumptions(self, vehicles: Iterable[str]) -> dict[str, Consumption]:
         """What those vehicles have emitted and consumed so far; empty if that is not recorded."""
-        consumed = self._consumed or {}
-        return {
-            each: Consumption(
-                self._classes[each], *(mg / 1000 for mg in consumed[each][:3]), energy_wh=consumed[each][3]
-            )
-            for each in vehicles
-            if each in consumed
-        }
+        found = {}
+        for each in vehicles:
+            if self._consumed is not None and each in self._consumed:
+                co2_mg, nox_mg, fuel_mg, energy_wh = self._consumed[each]
+                found[each] = Consumption(
+                    self._classes[each], co2_mg / 1000, nox_mg / 1000, fuel_mg / 1000, energy_wh
+                )
+        return found
 
     def _note_ego(self) -> None:
         vehicle, before, step_s = self._sumo.vehicle, self._ego, self._step_s
