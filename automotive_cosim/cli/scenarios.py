@@ -334,13 +334,13 @@ def equilibrate_scenario(
 
     Prints the relative gap of every step, as measured from the trips driven, and keeps the best step.
     """
-    from automotive_cosim.scenery.equilibrium import Options, Step, equilibrate
+    from automotive_cosim.scenery.equilibrium import AssignmentStep, Options, equilibrate
 
     if not (folder / "scenario.toml").is_file():
         raise UserError(f"{folder} is no scenario's folder: it has no scenario.toml")
     target = out or folder.with_name(f"{folder.resolve().name}_equilibrium")
 
-    def tell(step: Step) -> None:
+    def tell(step: AssignmentStep) -> None:
         typer.echo(f"step {step.number}: {step.gap}; {step.changed} change", err=as_json)
 
     found = equilibrate(folder, target, Options(steps, gap, minutes * 60.0, seed), tell, force=force)

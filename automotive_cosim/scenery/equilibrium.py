@@ -51,7 +51,7 @@ class Options:
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class AssignmentStep:
     """One step."""
 
     number: int
@@ -62,8 +62,8 @@ class Step:
 
 
 def equilibrate(
-    folder: Path, target: Path, options: Options, tell: Callable[[Step], None], *, force: bool = False
-) -> tuple[Step, ...]:
+    folder: Path, target: Path, options: Options, tell: Callable[[AssignmentStep], None], *, force: bool = False
+) -> tuple[AssignmentStep, ...]:
     """Writes a copy of a scenario whose demand is the best step's; returns all steps.
 
     Args:
@@ -95,9 +95,9 @@ def _search(
     scenario: Scenario,
     types: str,
     options: Options,
-    tell: Callable[[Step], None],
+    tell: Callable[[AssignmentStep], None],
     scratch: Path,
-) -> tuple[tuple[Step, ...], tuple[DrivenTrip, ...]]:
+) -> tuple[tuple[AssignmentStep, ...], tuple[DrivenTrip, ...]]:
     """All steps, and the trips of the best one."""
     rng = np.random.default_rng(options.seed)
     given = replace(scenario.sumo, scale=1.0, background_rerouting=0.0, random_traffic_per_km_h=0.0)
@@ -105,7 +105,7 @@ def _search(
     last_s = configuration.begin_s + scenario.sumo.warm_up_s + options.observe_s
     driven = drive(configuration, scenario, options.observe_s, options.seed)
     trips = tuple(trip for trip in driven.trips if trip.departed_s < last_s)
-    steps: list[Step] = []
+    steps: list[AssignmentStep] = []
     best = trips, driven.gap.relative
     for number in range(options.steps + 1):
         if number:
@@ -119,7 +119,7 @@ def _search(
             best = trips, driven.gap.relative
         is_last = number == options.steps or driven.gap.relative <= options.gap or _is_stuck(steps, driven.gap)
         routes = {} if is_last else _changes(driven, 1 / (number + 2), rng)
-        steps.append(Step(number, driven.gap, len(routes)))
+        steps.append(AssignmentStep(number, driven.gap, len(routes)))
         tell(steps[-1])
         if is_last:
             break
@@ -127,7 +127,7 @@ def _search(
     return tuple(steps), best[0]
 
 
-def _is_stuck(steps: list[Step], gap: Gap) -> bool:
+def _is_stuck(steps: list[AssignmentStep], gap: Gap) -> bool:
     """Whether the gap has not become smaller for some steps."""
     gaps = [*(step.gap.relative for step in steps), gap.relative]
     return len(gaps) > PATIENCE and min(gaps[-PATIENCE:]) >= min(gaps[:-PATIENCE])
@@ -168,7 +168,7 @@ def _write(
     scenario: Scenario,
     configuration: Configuration,
     demand: str,
-    steps: tuple[Step, ...],
+    steps: tuple[AssignmentStep, ...],
     options: Options,
 ) -> None:
     """Copies the scenario with its new demand; the copy appears whole."""

@@ -20,7 +20,7 @@ LEAST_S, MOST_S = 900.0, 3_600.0
 
 
 @dataclass(frozen=True, slots=True)
-class Demand:
+class DemandGap:
     """The gap of the traffic with one share of rerouting cars."""
 
     share: float
@@ -30,7 +30,7 @@ class Demand:
     """Why it could not be measured."""
 
 
-def measure_demand(plan: StudyPlan, folder: Path) -> tuple[Demand, ...]:
+def measure_demand(plan: StudyPlan, folder: Path) -> tuple[DemandGap, ...]:
     """Drives the traffic of every share once without the ego; what was measured before is read."""
     known = read_demand(folder)
     if known:
@@ -40,26 +40,26 @@ def measure_demand(plan: StudyPlan, folder: Path) -> tuple[Demand, ...]:
     for share in sorted({job.share for job in plan.jobs()}):
         try:
             gap = measure(plan.scene(share), observe_s=observe_s, seed=plan.seeds[0])
-            found.append(Demand(share, plan.seeds[0], gap))
+            found.append(DemandGap(share, plan.seeds[0], gap))
         except CosimError as error:  # such as SUMO's programs, which a study does not need otherwise
-            found.append(Demand(share, plan.seeds[0], None, str(error)))
+            found.append(DemandGap(share, plan.seeds[0], None, str(error)))
     if all(each.gap is not None for each in found):
         write_whole(folder / FILE, json.dumps([asdict(each) for each in found], indent=1))
     return tuple(found)
 
 
-def read_demand(folder: Path) -> tuple[Demand, ...]:
+def read_demand(folder: Path) -> tuple[DemandGap, ...]:
     """What was measured before; nothing if it was not."""
     path = folder / FILE
     if not path.is_file():
         return ()
     try:
-        return tuple(from_json(Demand, each) for each in json.loads(path.read_text(encoding="utf-8")))
+        return tuple(from_json(DemandGap, each) for each in json.loads(path.read_text(encoding="utf-8")))
     except (ValueError, TypeError):
         return ()  # cut short or of another version: it is measured again
 
 
-def demand_table(found: Sequence[Demand]) -> Table:
+def demand_table(found: Sequence[DemandGap]) -> Table:
     """The gaps."""
     rows = tuple(
         (

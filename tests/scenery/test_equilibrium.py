@@ -9,7 +9,7 @@ import pytest
 
 from automotive_cosim import scenarios
 from automotive_cosim.errors import UserError
-from automotive_cosim.scenery.equilibrium import RECORD, Options, Step, _is_stuck, _settings, equilibrate
+from automotive_cosim.scenery.equilibrium import RECORD, AssignmentStep, Options, _is_stuck, _settings, equilibrate
 from automotive_cosim.scenery.gap import DrivenTrip, EdgeTimes, Gap, measure
 from automotive_cosim.traffic import sumo_programs
 
@@ -42,8 +42,8 @@ def test_the_gap_is_what_was_lost_as_a_share_of_the_best() -> None:
 
 
 def test_it_ends_once_the_gap_no_longer_falls() -> None:
-    def step(relative: float) -> Step:
-        return Step(0, gap(relative), 0)
+    def step(relative: float) -> AssignmentStep:
+        return AssignmentStep(0, gap(relative), 0)
 
     def gap(relative: float) -> Gap:
         return Gap(1, 0, 1 + relative, 1.0, 0.0, 0)
@@ -122,7 +122,7 @@ def jammed(sumo: None, tmp_path: Path) -> Path:
 
 @pytest.mark.slow
 def test_drivers_find_the_other_way(jammed: Path, tmp_path: Path) -> None:
-    told: list[Step] = []
+    told: list[AssignmentStep] = []
     target = tmp_path / "found"
     steps = equilibrate(jammed, target, Options(steps=4, gap=0.01, observe_s=900.0), told.append)
     assert tuple(told) == steps
