@@ -26,7 +26,7 @@ from automotive_cosim.contracts import Answer, RoadNetwork, RoadRequest, RoadSha
 from automotive_cosim.errors import CosimError, TrafficError
 from automotive_cosim.traffic.accounts import Pulse, Settled
 from automotive_cosim.traffic.base import EgoPlan
-from automotive_cosim.traffic.chance import PROOF_S, Fresh, FreshSample, Generators, fingerprint, renew
+from automotive_cosim.traffic.chance import PROOF_S, Fresh, Generators, Trial, fingerprint, renew
 from automotive_cosim.traffic.channel import LOADING_LIMIT_S, ClosedError, MessageChannel
 from automotive_cosim.traffic.divert import Edges, divert
 from automotive_cosim.traffic.drive import Call, EgoDrive
@@ -195,7 +195,7 @@ class Server:
         """Sends a share of the other cars another way; returns who took it, and how many could have."""
         return divert(load_library(), old, new, share, seed)
 
-    def do_prove_fresh(self, seed: int) -> FreshSample:
+    def do_prove_fresh(self, seed: int) -> Trial:
         """What a seed makes of this traffic; this process cannot be used for anything else afterwards."""
         assert self._world is not None
         generators = Generators(load_library())
