@@ -117,6 +117,9 @@ def reroute(
             show_default="SUMO's for cars",
         ),
     ] = "",
+    redraw: Annotated[
+        bool, typer.Option("--redraw", help="Draw the trips of the demand anew for every seed: another day.")
+    ] = False,
     arrived: Annotated[
         float,
         typer.Option(help="Share of the vehicles there at a decision that must arrive before its futures end."),
@@ -186,6 +189,7 @@ def reroute(
         every_s=every,
         arrived=arrived,
         whole_drives=whole_drives,
+        redraw=redraw,
         emissions=emissions,
         ego_class=ego_class,
         scale=scale,

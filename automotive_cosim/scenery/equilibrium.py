@@ -100,7 +100,9 @@ def _search(
 ) -> tuple[tuple[AssignmentStep, ...], tuple[DrivenTrip, ...]]:
     """All steps, and the trips of the best one."""
     rng = np.random.default_rng(options.seed)
-    given = replace(scenario.sumo, scale=1.0, background_rerouting=0.0, random_traffic_per_km_h=0.0)
+    given = replace(
+        scenario.sumo, scale=1.0, background_rerouting=0.0, random_traffic_per_km_h=0.0, redraws_trips=False
+    )
     fixed = replace(scenario, sumo=given)
     last_s = configuration.begin_s + scenario.sumo.warm_up_s + options.observe_s
     driven = drive(configuration, scenario, options.observe_s, options.seed)
@@ -205,7 +207,12 @@ def _local(value: str, folder: Path) -> str:
 
 def _settings(text: str) -> str:
     """The scenario's settings for a demand that is complete and keeps its routes."""
-    for name, value in (("background_rerouting", "0.0"), ("scale", "1.0"), ("random_traffic_per_km_h", "0.0")):
+    for name, value in (
+        ("background_rerouting", "0.0"),
+        ("scale", "1.0"),
+        ("random_traffic_per_km_h", "0.0"),
+        ("redraws_trips", "false"),
+    ):
         text = re.sub(rf"(?m)^{name}\s*=.*$", "", text)
         text = re.sub(r"(?m)^\[sumo\]\s*$", f"[sumo]\n{name} = {value}", text, count=1)
     return re.sub(r"\n{3,}", "\n\n", text)

@@ -85,6 +85,8 @@ class StudyPlan:
     """Whether every policy also drives from the departure to the destination."""
     together: tuple[Annotated[float, Ge(0), Le(1)], ...] = ()
     """Shares of the cars that could take the quickest other way, which take it with the ego."""
+    redraw: bool = False
+    """Whether every seed is another day of the demand, see ``redraws_trips`` of a scenario."""
     emissions: bool = False
     """Whether to measure what every vehicle emits and consumes."""
     ego_class: str = ""
@@ -136,6 +138,7 @@ class StudyPlan:
         scenario = self.opened
         sumo = replace(scenario.sumo, step_length_s=self.step_s, background_rerouting=share)
         sumo = replace(sumo, action_step_length_s=max(self.step_s, sumo.action_step_length_s))
+        sumo = replace(sumo, redraws_trips=self.redraw or sumo.redraws_trips)
         return replace(scenario, sumo=sumo if self.scale is None else replace(sumo, scale=self.scale))
 
     @property
@@ -155,9 +158,11 @@ class StudyPlan:
         if self.equilibrium_gap is not None:
             return f"routes from duaIterate, relative gap {self.equilibrium_gap:.2%}"
         told = sorted({job.share for job in self.jobs()})
+        drawn = "; every seed draws the trips anew" if self.scene(0.0).sumo.redraws_trips else ""
         if told == [0.0]:
-            return "one-shot: routes by free flow at departure, kept to the end"
-        return f"rerouting: {' / '.join(f'{share:.0%}' for share in told)} of the cars reroute by current times"
+            return f"one-shot: routes by free flow at departure, kept to the end{drawn}"
+        shares = " / ".join(f"{share:.0%}" for share in told)
+        return f"rerouting: {shares} of the cars reroute by current times{drawn}"
 
     @property
     def opened(self) -> Scenario:
