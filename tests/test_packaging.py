@@ -52,7 +52,8 @@ def test_every_template_and_style_is_package_data(project):
 
 
 def test_the_version_is_stated_once(project):
-    assert automotive_cosim.__version__ == project["project"]["version"]
+    assert "version" in project["project"]["dynamic"]
+    assert project["tool"]["setuptools"]["dynamic"]["version"] == {"attr": "automotive_cosim.__version__"}
 
 
 @pytest.mark.parametrize("name", ["tasks", "agents"])

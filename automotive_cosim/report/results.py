@@ -15,6 +15,7 @@ from automotive_cosim.run.coverage import Coverage, coverage
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.row import columns
 from automotive_cosim.run.store import read_evaluation, read_rows
+from automotive_cosim.run.versions import ran_with
 from automotive_cosim.tasking.task import Mode
 
 if TYPE_CHECKING:
@@ -72,6 +73,11 @@ class Results:
     manifest: Json
     rows: tuple[EpisodeRow, ...]
     coverage: Coverage
+
+    @property
+    def version(self) -> str:
+        """The version of the suite that ran it."""
+        return ran_with(self.manifest)
 
     @property
     def contestants(self) -> tuple[Contestant, ...]:
