@@ -24,6 +24,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from difflib import get_close_matches
 
+CLOSE = 3
+"""At most so many similar names are offered for an unknown one."""
+SURE = 0.8
+"""A name as similar as this is offered alone."""
 LISTED = 20
 """An unknown name is answered with the known ones up to this number, if a command lists them."""
 
@@ -51,9 +55,14 @@ class UnknownNameError(UserError):
 
     def __init__(self, kind: str, name: str, known: Iterable[str], hint: str = "") -> None:
         choices = sorted(known)
-        close = get_close_matches(name, choices, n=1, cutoff=0.5)
+        close = (
+            get_close_matches(name, choices, n=1, cutoff=SURE)
+            or [each for each in choices if len(name) > 2 and name in each][:CLOSE]
+            or get_close_matches(name, choices, n=CLOSE, cutoff=0.5)
+        )
         if close:
-            fix = f": did you mean '{close[0]}'?"
+            *others, last = (f"'{each}'" for each in close)
+            fix = f": did you mean {', '.join(others)}{' or ' * bool(others)}{last}?"
         elif hint and len(choices) > LISTED:
             fix = f" among the {len(choices)}."
         else:

@@ -168,7 +168,9 @@ def _guesses(extract: Extract, built: Built, country: str, assumed_km: float) ->
     if built.roundabouts:
         yield f"right of way in {built.roundabouts} roundabouts"
     for doubt, ways in sorted(_doubted(extract, country).items()):
-        about = "limits without mph, read as km/h" if doubt == NO_UNIT else f"{doubt}, which is no limit, left out"
+        about = (
+            "limits without mph, read as km/h" if doubt == NO_UNIT else f"{doubt}, which is not a limit, left out"
+        )
         yield f"{about}: {_ways_in_words(ways)}"
     density_m = sum(edge.length_m for edge in built.edges if edge.built_up is None)
     if density_m:

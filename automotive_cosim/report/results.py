@@ -122,11 +122,11 @@ def _won(rows: Sequence[EpisodeRow]) -> str:
 
 def _count(rows: Sequence[EpisodeRow]) -> str:
     counts = []
-    for unit, each in (("episodes", rows), ("pairs", [pair for pair, _ in pairs(rows)])):
+    for unit, each in (("episode", rows), ("pair", [pair for pair, _ in pairs(rows)])):
         if each:
             beside = not_judged(sum(row.success is None and row.has_run for row in each), _waiting(each))
             won = sum(row.has_succeeded for row in each)
-            counts.append(f"{won} of {len(each)} {unit}" + (f" ({beside})" if beside else ""))
+            counts.append(f"{won} of {counted(len(each), unit)}" + (f" ({beside})" if beside else ""))
     return ", ".join(counts)
 
 

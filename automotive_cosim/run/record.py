@@ -33,9 +33,9 @@ STAMPED = ("automotive-cosim", "libsumo", "gymnasium", "numpy", "pillow")
 
 
 def default_folder(setup: EpisodeSetup) -> Path:
-    """``runs/<timestamp>-<task>-<agent>-seed<seed>``; a second run in the same second gets a number."""
+    """``runs/<timestamp>-<task>-<half>-<agent>-seed<seed>``; a second run in the same second gets a number."""
     stamp = datetime.now().strftime("%Y%m%d-%H%M%S")
-    folder = Path("runs") / f"{stamp}-{setup.task}-{setup.agent}-seed{setup.seed}"
+    folder = Path("runs") / f"{stamp}-{setup.task}-{setup.half}-{setup.agent}-seed{setup.seed}"
     number = 2
     while folder.exists():
         folder = folder.with_name(f"{folder.name.removesuffix(f'-{number - 1}')}-{number}")
