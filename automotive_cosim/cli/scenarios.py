@@ -287,8 +287,8 @@ def scale_to_a_day(
 ) -> None:
     """Scale an imported scenario's traffic over a day to the counts of one road.
 
-    This is not a calibration: it matches one road, and the flows on all others stay random. Days are simulated until
-    every hour is near its count; each takes ten to fifteen minutes of one core for a city district.
+    This is not a calibration: it matches one road, and the flows on all others stay random. Days are simulated
+    until every hour is near its count; each takes ten to fifteen minutes of one core for a city district.
     """
     from automotive_cosim.osm.day import DayOptions, make_day
     from automotive_cosim.report.day import require_plots, write_day

@@ -1,6 +1,6 @@
 """An imported scenario with a day of traffic, scaled by the hour until one road matches its counts.
 
-This is not a calibration: it matches one road, and nothing is known of all others. ``fit`` explains how.
+This is no calibration: it matches one road, and nothing is known of all others. ``fit`` explains how.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ STEP_S = 1.0
 DAY_FILE, TRIPS = "day.json", "day.trips.xml.gz"
 
 NO_CALIBRATION = (
-    "The demand is scaled to the counts of one road. This is not a calibration: the flows on other roads, and where"
+    "The demand is scaled to the counts of one road. This is no calibration: the flows on other roads, and where"
     " vehicles come from and go to, are as random as before."
 )
 
