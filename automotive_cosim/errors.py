@@ -25,9 +25,9 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 
 CLOSE = 3
-"""At most so many similar names are offered for an unknown one."""
-SURE = 0.8
-"""A name as similar as this is offered alone."""
+"""At most so many names that contain an unknown one are offered for it."""
+SURE = 0.6
+"""A name as similar as this goes before those."""
 LISTED = 20
 """An unknown name is answered with the known ones up to this number, if a command lists them."""
 
@@ -58,7 +58,7 @@ class UnknownNameError(UserError):
         close = (
             get_close_matches(name, choices, n=1, cutoff=SURE)
             or [each for each in choices if len(name) > 2 and name in each][:CLOSE]
-            or get_close_matches(name, choices, n=CLOSE, cutoff=0.5)
+            or get_close_matches(name, choices, n=1, cutoff=0.5)
         )
         if close:
             *others, last = (f"'{each}'" for each in close)
