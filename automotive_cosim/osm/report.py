@@ -164,7 +164,8 @@ def _guesses(extract: Extract, built: Built, country: str, assumed_km: float) ->
         yield f"the limit on {assumed_km:.2f} km of road: by the law of {country} or as is common there"
     mapped = sum(node.tags.get("highway") == "traffic_signals" for node in extract.nodes.values())
     if mapped:
-        yield f"junctions and phases of {counted(built.signals, 'signal')}, from {counted(mapped, 'point')} in the map"
+        points = counted(mapped, "point")
+        yield f"junctions and phases of {counted(built.signals, 'signal')}, from {points} in the map"
     if built.roundabouts:
         yield f"right of way in {built.roundabouts} roundabouts"
     for doubt, ways in sorted(_doubted(extract, country).items()):

@@ -1,5 +1,7 @@
-"""README and docs say what is so: every command in them is understood, and every block is run: as it stands where that is
-quick, on the small grid where it is not, and with ``--dry-run`` or ``--help`` where it needs what only the reader has.
+"""README and docs say what is so: every command in them is understood, and every block is run.
+
+As it stands where that is quick, on the small grid where it is not, and with ``--dry-run`` or ``--help`` where it
+needs what only the reader has.
 """
 
 import re
@@ -97,7 +99,8 @@ TREATED: list[tuple[str, tuple[str, ...], str]] = [
     (r"run .*--model", HELP, "asks a language model"),
     (r"run .*(city|my|any)\.(net|sumocfg)", HELP, "needs a network of the reader's"),
     (r"run --agent (my_package|\$agent)", HELP, "needs what only the reader has"),
-    (r"run .*--(scenario (hamlet|grid)|task my_)|run --agent my_", ("--force", "--out", "runs/last"), ""),
+    (r"run .*--(scenario (hamlet|grid)|task my_)", ("--force", "--out", "runs/last"), ""),
+    (r"run --agent my_", (*SMALL[:4], "--force", "--out", "runs/last"), "takes ten seconds in its own scenario"),
     (
         r"run",
         (*SMALL, "--out", "runs/last"),
@@ -143,6 +146,11 @@ def place(tmp_path_factory):
     agent = python("docs/tutorial.md", "from automotive_cosim import Action")
     (folder / "my_agents.py").write_text(agent, encoding="utf-8")
     shutil.copytree(TOP / "docs/examples", folder / "docs/examples")
+    (folder / "my_rules").mkdir()
+    (rules,) = (text for language, text in blocks(TOP / "docs/geo.md") if language == "toml")
+    (folder / "my_rules/FR-tours.toml").write_text(rules, encoding="utf-8")
+    for name in ("my_agent.py", "plan.toml"):
+        shutil.copyfile(TOP / "docs/examples/my-agent" / name, folder / name)
     return folder
 
 
@@ -181,8 +189,6 @@ def test_every_command_runs(line, reader, place, request):
         request.getfixturevalue("ran")
         episode = next(Path("runs/mine/traces").glob("*.jsonl.gz")).name.removesuffix(".jsonl.gz")
         line = line.replace(" ID", f" {episode}")
-    if "--rules" in line:
-        (place / "my_rules").mkdir(exist_ok=True)
     if added != HELP and "hamlet" in line and "import" not in line and not Path("hamlet").exists():
         assert reader("scenarios", "import", "docs/examples/hamlet.osm").code == 0
     if line.startswith("automotive-cosim bundle"):
