@@ -29,7 +29,9 @@ CLOSE = 3
 SURE = 0.6
 """A name as similar as this goes before those."""
 LISTED = 20
-"""An unknown name is answered with the known ones up to this number, if a command lists them."""
+"""An unknown name is answered with the known ones up to this number."""
+SHOWN = 80
+"""Characters of an unknown name that are repeated."""
 
 
 class CosimError(Exception):
@@ -55,10 +57,11 @@ class UnknownNameError(UserError):
 
     def __init__(self, kind: str, name: str, known: Iterable[str], hint: str = "") -> None:
         choices = sorted(known)
+        came = name if len(name) <= SHOWN else name[:SHOWN] + "…"
         close = (
-            get_close_matches(name, choices, n=1, cutoff=SURE)
-            or [each for each in choices if len(name) > 2 and name in each][:CLOSE]
-            or get_close_matches(name, choices, n=1, cutoff=0.5)
+            get_close_matches(came, choices, n=1, cutoff=SURE)
+            or [each for each in choices if len(came) > 2 and came in each][:CLOSE]
+            or get_close_matches(came, choices, n=1, cutoff=0.5)
         )
         if close:
             *others, last = (f"'{each}'" for each in close)
@@ -66,8 +69,9 @@ class UnknownNameError(UserError):
         elif hint and len(choices) > LISTED:
             fix = f" among the {len(choices)}."
         else:
-            fix = f"; choose from: {', '.join(choices)}." if choices else "; there are none."
-        super().__init__(f"no {kind} named {name!r}{fix}" + (f" List them with `{hint}`." if hint else ""))
+            more = f" and {len(choices) - LISTED} more" if len(choices) > LISTED else ""
+            fix = f"; choose from: {', '.join(choices[:LISTED])}{more}." if choices else "; there are none."
+        super().__init__(f"no {kind} named {came!r}{fix}" + (f" List them with `{hint}`." if hint else ""))
         self.kind = kind
         self.name = name
 

@@ -120,6 +120,11 @@ def test_a_fall_in_a_stopped_evaluation_is_worse_not_merely_incomplete(tmp_path)
     assert {each.outcome(0.0) for each in changes(before, after)} >= {"worse", "incomplete"}
 
 
+def test_where_nothing_was_judged_nothing_has_become_worse(tmp_path):
+    nothing = write(tmp_path / "a", ())
+    assert {each.outcome(0.0) for each in changes(nothing, nothing)} == {"incomplete"}
+
+
 def test_a_contestant_without_an_episode_yet_is_shown(tmp_path):
     mine = [number for number, job in enumerate(JOBS) if job.setup.agent == "asurada"]
     found = read_results(write(tmp_path / "e", mine))
