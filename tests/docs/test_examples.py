@@ -4,7 +4,6 @@ import json
 import os
 import shutil
 import subprocess
-import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -29,28 +28,13 @@ def test_the_hamlet_is_imported_as_it_is_drawn_and_a_car_speeds_through_it(cli, 
 
 
 @pytest.fixture
-def evaluate(tmp_path):
+def evaluate(tmp_path, on_path):
     """The script, as a service would call it, on a copy of the example."""
     shutil.copytree(EXAMPLES / "my-agent", tmp_path / "checkout")
-    bin_folder = tmp_path / "bin"
-    bin_folder.mkdir()
-    program = bin_folder / "automotive-cosim"
-    program.write_text(
-        f'#!/bin/sh\nexec {sys.executable} -c "from automotive_cosim_main import main; main()" "$@"\n',
-        encoding="utf-8",
-    )
-    program.chmod(0o755)
-    paths = os.pathsep.join((str(bin_folder), os.environ["PATH"]))
-    found = os.pathsep.join(filter(None, (str(TOP), os.environ.get("PYTHONPATH"))))
 
     def run(*arguments):
         return subprocess.run(
-            ["bash", SCRIPT, *arguments],
-            cwd=tmp_path,
-            env=os.environ | {"PATH": paths, "PYTHONPATH": found},
-            capture_output=True,
-            text=True,
-            check=False,
+            ["bash", SCRIPT, *arguments], cwd=tmp_path, capture_output=True, text=True, check=False
         )
 
     return run
