@@ -188,6 +188,7 @@ class _Drive:
             own=numbers.get(own),
             agents=agents,
             agents_rerouted=tuple(turned),
+            planned_draws=1 + plan.draws.start,
         )
         point = Point(decision, group, pulse, branches, replicates=replicates, together=diverted)
         if not self.points and self._has_placebo() and not replicates:

@@ -239,7 +239,7 @@ def fleet(study: Study) -> Table:
         by_class: dict[str, list[tuple[int, list[FleetClass]]]] = {}
         for choice, _ in found:
             decision = decisions[choice.id]
-            drawn = [decision.drawn(draw, choice.branch) for draw in range(decision.draws)]
+            drawn = [decision.drawn(draw, choice.branch) for draw in decision.scored]
             parts = [part for branch in drawn if branch is not None for part in branch.fleet]
             for name in dict.fromkeys(part.emission_class for part in parts):
                 same = [part for part in parts if part.emission_class == name]
