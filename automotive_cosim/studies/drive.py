@@ -219,7 +219,7 @@ class _Drive:
     def _diverted(
         self, begun: RemoteTraffic, ways: tuple[Edges, Edges], seeds: Sequence[int], group: Sequence[str]
     ) -> list[Diverted]:
-        """The futures in which others take the way that the ego has begun, in every draw of which means are taken."""
+        """The futures in which others take the way that the ego has begun, in the scored draws."""
         found: list[Diverted] = []
         old, new = ways
         for share in self.job.plan.together if old else ():
