@@ -166,9 +166,7 @@ def render(
     names: Names = None,
     out: Annotated[
         Path | None,
-        typer.Option(
-            help="A .png or .webp file, or a folder for several.", show_default="NAME.webp in the working folder"
-        ),
+        typer.Option(help="A .png or .webp file, or a folder for several.", show_default="runs/maps/NAME.webp"),
     ] = None,
 ) -> None:
     """Draw scenarios from above: road classes, names, limits, tunnels and the ego's trips."""
@@ -181,9 +179,9 @@ def render(
         wanted = "a folder" if len(found) > 1 else f"a file that ends in {' or '.join(ENDINGS)}"
         raise UserError(f"--out {out} cannot be used here; give {wanted}")
     for scenario in found:
-        target = out if out and to_file else (out or Path()) / f"{scenario.name}.webp"
+        target = out if out and to_file else (out or Path("runs/maps")) / f"{scenario.name}.webp"
         unwritten = save_picture(scenario, target)
-        typer.echo(str(target))
+        typer.echo(f"{target} written")
         if unwritten:
             left_out = counted(len(unwritten), "street name")
             typer.echo(f"{left_out} left out, such as {unwritten[0]}: no font here has that script", err=True)
@@ -289,8 +287,8 @@ def scale_to_a_day(
 ) -> None:
     """Scale an imported scenario's traffic over a day to the counts of one road.
 
-    This is no calibration: it matches one road, and the flows on all others stay random. Days are simulated until
-    every hour is near its count; each takes ten to fifteen minutes of one core for a city district.
+    This is not a calibration: it matches one road, and the flows on all others stay random. Days are simulated
+    until every hour is near its count; each takes ten to fifteen minutes of one core for a city district.
     """
     from automotive_cosim.osm.day import DayOptions, make_day
     from automotive_cosim.report.day import require_plots, write_day
