@@ -24,6 +24,7 @@ from PIL import Image
 from automotive_cosim.cockpit import accessibility, deeds, desk, language, media, people, places, update, vhal
 from automotive_cosim.cockpit.arrivals import Arrival, timeline
 from automotive_cosim.cockpit.cabin import CabinStart
+from automotive_cosim.cockpit.changes import Change, schedule
 from automotive_cosim.cockpit.drawing import pixels_of
 from automotive_cosim.cockpit.map import road_map
 from automotive_cosim.cockpit.messages import Ask, CallEmergency, Deed, Message, Pan, Set, WarnDriver
@@ -117,6 +118,7 @@ class Cockpit:
         cabin: Mapping[str, Any] | None = None,
         signals: Mapping[str, Any] | None = None,
         arrivals: Sequence[Arrival] = (),
+        changes: Sequence[Change] = (),
         sign_camera: bool = True,
         width: int = SCREEN_WIDTH,
     ) -> None:
@@ -129,13 +131,14 @@ class Cockpit:
             signals: VSS paths and values before departure; actuators also set what is coupled to them, in the given
                 order.
             arrivals: incoming calls and messages while driving.
+            changes: changes of the car while driving that nobody commands.
             sign_camera: whether it reads limit signs; without it, the status bar shows no sign.
             width: width of the screenshot in pixels; the height follows from 16 to 9.
 
         Raises:
             UnknownNameError: no such signal or initial condition.
             SignalError: an illegal value, or one the car refuses.
-            UserError: an arrival is impossible.
+            UserError: an arrival or a change is impossible.
         """
         roads = road_map(network)
         library, atlas, directory = media.library(rng), places.atlas(roads, rng), people.directory(rng)
@@ -153,6 +156,7 @@ class Cockpit:
             CabinStart.read(cabin or {}),
         )
         self._state.expected = timeline(arrivals, directory, rng)
+        self._state.changes = schedule(changes)
         self._state.picked = {**self._state.picked, "media.show": library.shows[0]}
         self._width = width
         for path, value in (signals or {}).items():

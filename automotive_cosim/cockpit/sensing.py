@@ -7,6 +7,7 @@ from datetime import datetime
 
 from automotive_cosim.cockpit.cabin import Air, Cabin
 from automotive_cosim.cockpit.calls import receive
+from automotive_cosim.cockpit.changes import Change, step
 from automotive_cosim.cockpit.desk import FILM_S
 from automotive_cosim.cockpit.errands import odometer, play_on
 from automotive_cosim.cockpit.restrictions import Restriction
@@ -22,6 +23,8 @@ from automotive_cosim.cockpit.signals import (
     OUTSIDE,
     SEAT,
     TYRE,
+    LeafKind,
+    named,
 )
 from automotive_cosim.cockpit.sky import feel
 from automotive_cosim.cockpit.state import State
@@ -59,6 +62,7 @@ def sense(state: State, surroundings: Surroundings, dt_s: float) -> None:
     else:
         _prepare_climate(state, before.local_time, surroundings.local_time)
     _end_film(state)
+    _change(state, dt_s)
     receive(state)
     state.signals[DRIVE.HORN] = False
     if Restriction.NO_KEYBOARD in state.restrictions:
@@ -147,6 +151,29 @@ def _end_film(state: State) -> None:
     film = state.desk.film
     if film is not None and (Restriction.NO_VIDEO in state.restrictions or state.time_s - film[1] >= FILM_S):
         state.desk = replace(state.desk, film=None)
+
+
+def _change(state: State, dt_s: float) -> None:
+    """Makes the changes that are due."""
+    going_on = []
+    for change in state.changes:
+        since_s = state.time_s - state.departed_s - change.at_s
+        if since_s >= 0:
+            _make(state, change, since_s, dt_s)
+        if since_s < change.over_s:
+            going_on.append(change)
+    state.changes = tuple(going_on)
+
+
+def _make(state: State, change: Change, since_s: float, dt_s: float) -> None:
+    """Turns a switch as from inside the car, even one that is locked while driving; sets what is measured."""
+    signal, signals = named(change.path), state.signals
+    if signal in TYRES and state.tyres is not None:
+        state.tyres = state.tyres.changed(TYRES.index(signal), lambda cold: step(change, cold, since_s, dt_s))
+    else:
+        value = step(change, signals[signal], since_s, dt_s)
+        if signal.kind is not LeafKind.ACTUATOR or state.vehicle.command(signal, value):
+            signals[signal] = signal.check(value)
 
 
 def _minute(time: datetime) -> float:

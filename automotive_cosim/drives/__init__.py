@@ -1,9 +1,14 @@
-"""Drives: a watch of 10 to 30 minutes with many events, each judged by what could be known and done in time.
+"""Drives: ten to thirty minutes at the cockpit, with events that an agent has to notice by itself.
 
-plan, families   what is driven, drawn from a seed
-departure        puts the car on the road
-events           kinds of events, found on the drive itself
-watch            an agent's session on a drive: it waits, and what happens wakes it
-judge, score     what became of each event and act, and what that comes to
-watchers         reference and trivial watchers
+plan       everything that is drawn before a drive departs
+staging    what can be staged, each kind with its bait
+family     draws plans from a seed
+families/  the families over all scenarios
+departure  a plan -> a running co-simulation
+events/    kinds of events, found on the drive itself
+wakes      what wakes an agent that waits
+watch      an agent's session on a drive
+judge      what became of each event, and what each act was
+score      what that comes to
+watchers   the rule-perfect watcher, and trivial ones
 """

@@ -143,7 +143,7 @@ def _lamps(known: Known) -> Iterator[Concern]:
         if dark or _needs_lamps(known):
             yield Concern("lamps", AlertKind.VISIBILITY)
         away_m = known.away_m("tunnel")
-        if away_m is not None and 0 < away_m:
+        if away_m is not None and away_m > 0:
             yield Concern("tunnel", AlertKind.TUNNEL, away_m <= known.mps * (10 + LOOK_S))
     if car.is_high_beam_on:
         near = car.leader_gap_m is not None and car.leader_gap_m <= 100

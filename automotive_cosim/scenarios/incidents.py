@@ -177,7 +177,7 @@ class Pedestrians(Incident):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EmergencyVehicle(EgoIncident):
-    """An ambulance with blue lights comes up from behind on the ego's route.
+    """An ambulance with blue lights comes up from behind on the ego's route, or a plain van as fast.
 
     Other drivers form a corridor for it only if ``[sumo] lateral_resolution_m`` enables SUMO's sublane model.
     """
@@ -187,6 +187,8 @@ class EmergencyVehicle(EgoIncident):
     """Distance behind the ego at which it appears, out of sight on the ego's route."""
     speed_ratio: Annotated[float, Gt(0)] = 1.5
     """Its factor on the limit, where traffic allows."""
+    blue_light: bool = True
+    """False for a van: others need not make way for it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

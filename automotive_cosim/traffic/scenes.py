@@ -338,7 +338,7 @@ class _Pedestrians(_Scene):
 
 
 class _EmergencyVehicle(_Scene):
-    """An ambulance on the route behind the ego."""
+    """An ambulance, or a van, on the route behind the ego."""
 
     def __init__(self, stage: IncidentStage, incident: incidents.EmergencyVehicle) -> None:
         self._stage, self._incident = stage, incident
@@ -351,16 +351,20 @@ class _EmergencyVehicle(_Scene):
             return ""
         self._sent = True
         index, on_edge_m = sensor.route.edge_at(sensor.position_m - self._incident.behind_m)
-        kind = stage.kind("ambulance")
+        what = "ambulance" if self._incident.blue_light else "van"
+        kind = stage.kind(what)
         types = stage.sumo.type
-        types.setVehicleClass(kind, "emergency")
-        types.setShapeClass(kind, "emergency")
+        if self._incident.blue_light:
+            types.setVehicleClass(kind, "emergency")
+            types.setShapeClass(kind, "emergency")
+            types.setParameter(kind, "has.bluelight.device", "true")
+        else:
+            types.setShapeClass(kind, "delivery")
         types.setLength(kind, 6.5)
         types.setSpeedFactor(kind, self._incident.speed_ratio)
         types.setSpeedDeviation(kind, 0.0)
-        types.setParameter(kind, "has.bluelight.device", "true")
         types.setParameter(kind, "has.rerouting.device", "false")
-        stage.car("ambulance", sensor.route.edge_ids[index:], "", on_edge_m, "max", kind)
+        stage.car(what, sensor.route.edge_ids[index:], "", on_edge_m, "max", kind)
         return ""
 
 

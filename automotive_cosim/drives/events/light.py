@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from typing import ClassVar
 
 from automotive_cosim.cockpit.signals import LIGHTS
 from automotive_cosim.contracts import STANDING_BELOW_MPS, AlertKind
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.drives.events.base import Act, EventKind, Sighting, off, on
+from automotive_cosim.drives.events.base import Act, EventKind, Sighting, Wanted, off, on
 from automotive_cosim.drives.events.law import says
 
 LAMP_S = 2.0
@@ -29,7 +30,10 @@ class Lamps(EventKind):
     bait = "a low sun or drizzle, in which the law requires no lamps"
     source = "UN R48, 6.2.7: 2 s; deadline: 10 s"
     alerts = frozenset({AlertKind.VISIBILITY})
-    writes = {LIGHTS.LOW_BEAM.path: on, LIGHTS.SWITCH.path: lambda value: value in ("BEAM", "AUTO")}
+    writes: ClassVar[Mapping[str, Wanted]] = {
+        LIGHTS.LOW_BEAM.path: on,
+        LIGHTS.SWITCH.path: lambda value: value in ("BEAM", "AUTO"),
+    }
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
         """While moving without dipped or high beam."""
@@ -61,7 +65,7 @@ class HighBeam(EventKind):
     source = "UN R48, 6.1.9.3: 100 m to a vehicle ahead, 2 s; deadline: 6 s, one more vehicle met"
     grace_s = 6.0
     alerts = frozenset({AlertKind.VISIBILITY, AlertKind.DISTRACTION})
-    writes = {LIGHTS.HIGH_BEAM.path: off}
+    writes: ClassVar[Mapping[str, Wanted]] = {LIGHTS.HIGH_BEAM.path: off}
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
         """While the high beam is on."""
@@ -87,7 +91,7 @@ class FogLamps(EventKind):
     source = "the law of the place; UN R48, 6.2.7: 2 s; deadline: 10 s"
     weight = 0.5
     alerts = frozenset({AlertKind.VISIBILITY})
-    writes = {LIGHTS.FRONT_FOG.path: off, LIGHTS.REAR_FOG.path: off}
+    writes: ClassVar[Mapping[str, Wanted]] = {LIGHTS.FRONT_FOG.path: off, LIGHTS.REAR_FOG.path: off}
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
         """While a fog lamp is on and the car moves."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from typing import ClassVar
 
 from automotive_cosim.cockpit.sensing import RADAR_M
 from automotive_cosim.cockpit.signals import ADAS, LIGHTS
@@ -14,7 +15,7 @@ from automotive_cosim.contracts import (
     SlowDown,
 )
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.drives.events.base import EventKind, Sighting, on
+from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, on
 from automotive_cosim.drives.events.law import REACTION_S, certain, speed_kmh, time_left_s
 
 NEAR_M = 500.0
@@ -47,7 +48,10 @@ class Tunnel(EventKind):
     bait = "a tunnel that is still a kilometre away"
     source = "10 s before the portal; deadline: the portal, less 1 s to switch"
     alerts = frozenset({AlertKind.TUNNEL, AlertKind.VISIBILITY})
-    writes = {LIGHTS.LOW_BEAM.path: on, LIGHTS.SWITCH.path: lambda value: value in ("BEAM", "AUTO")}
+    writes: ClassVar[Mapping[str, Wanted]] = {
+        LIGHTS.LOW_BEAM.path: on,
+        LIGHTS.SWITCH.path: lambda value: value in ("BEAM", "AUTO"),
+    }
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
         """By the map, on the route."""
@@ -75,7 +79,7 @@ class JamTail(EventKind):
     weight = 2.0
     alerts = frozenset({AlertKind.TRAFFIC, AlertKind.COLLISION, AlertKind.DISTANCE, AlertKind.SPEED})
     requests = (SlowDown,)
-    writes = {LIGHTS.HAZARD.path: on}
+    writes: ClassVar[Mapping[str, Wanted]] = {LIGHTS.HAZARD.path: on}
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
         """By the live traffic on the route."""
@@ -131,7 +135,9 @@ class LeaderClose(EventKind):
     grace_s = 6.0
     alerts = frozenset({AlertKind.DISTANCE, AlertKind.COLLISION})
     requests = (SlowDown,)
-    writes = {ADAS.CRUISE_GAP.path: lambda value: isinstance(value, float) and value >= 2.0}
+    writes: ClassVar[Mapping[str, Wanted]] = {
+        ADAS.CRUISE_GAP.path: lambda value: isinstance(value, float) and value >= 2.0
+    }
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
         """Above 30 km/h, within the radar's reach."""

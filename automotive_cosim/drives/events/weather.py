@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from typing import ClassVar
 
 from automotive_cosim.cockpit.screens.notices import NOTICED
 from automotive_cosim.cockpit.signals import BODY, DRIVE, GLASS, HVAC
 from automotive_cosim.contracts import AlertKind, PullOver, SlowDown
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.drives.events.base import EventKind, Sighting, off, on
+from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, off, on
 from automotive_cosim.drives.events.law import SLOW_KMH, speed_kmh
 
 ICY = 0.5
@@ -30,7 +31,7 @@ class GlassFogs(EventKind):
     )
     grace_s = 20.0
     alerts = frozenset({AlertKind.VISIBILITY})
-    writes = {
+    writes: ClassVar[Mapping[str, Wanted]] = {
         HVAC.FRONT_DEFROSTER.path: on,
         HVAC.MAX_DEFROST.path: on,
         HVAC.AIR_CONDITIONING.path: on,
@@ -60,7 +61,7 @@ class Wipers(EventKind):
     bait = "a few drops that cover less than a fifth of the glass"
     source = "a fifth of the light is lost; deadline: 10 s"
     alerts = frozenset({AlertKind.VISIBILITY, AlertKind.WEATHER})
-    writes = {BODY.FRONT_WIPER.path: lambda value: value != "OFF"}
+    writes: ClassVar[Mapping[str, Wanted]] = {BODY.FRONT_WIPER.path: lambda value: value != "OFF"}
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
         """While the wipers are off and something falls."""
@@ -87,7 +88,7 @@ class Slippery(EventKind):
     grace_s = 20.0
     alerts = frozenset({AlertKind.SLIPPERY, AlertKind.WEATHER})
     requests = (SlowDown, PullOver)
-    writes = {DRIVE.MODE.path: lambda value: value == "SNOW"}
+    writes: ClassVar[Mapping[str, Wanted]] = {DRIVE.MODE.path: lambda value: value == "SNOW"}
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
         """Of the lane under the car."""
