@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from automotive_cosim.contracts import KMH_PER_MPS
 from automotive_cosim.cosim.moment import Moment
@@ -37,7 +38,7 @@ class Harm:
 def harm(drive: Sequence[Moment]) -> Harm:
     """The harm on a drive's moments, one per second."""
     over_s = over_m = short_s = 0.0
-    for before, now in zip(drive, drive[1:], strict=False):
+    for before, now in pairwise(drive):
         dt_s = now.time_s - before.time_s
         limit = binding_limit(now.context)
         excess_kmh = 0.0 if limit is None else now.driving.speed_mps * KMH_PER_MPS - limit.kmh

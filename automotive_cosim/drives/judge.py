@@ -1,7 +1,7 @@
 """The judge: what became of each event of a drive, and what each act was.
 
-Each event is judged against the agent's own drive; one that never became an obligation there is compared with a copy
-of the drive that was forked when the event became observable, with nobody at its cockpit.
+Each event is judged against the agent's own drive; one that never became an obligation there is compared with a
+copy of the drive that was forked when the event became observable, with nobody at its cockpit.
 """
 
 from __future__ import annotations
@@ -117,13 +117,14 @@ class JudgedEvent:
 
     @property
     def credit(self) -> float:
-        """1 until three seconds after the obligation, falling to 0 at the deadline; -1 if nothing came in time; 0 for
-        what does not count."""
+        """1 until three seconds after the obligation, falling to 0 at the deadline; -1 if nothing came in time;
+        0 for what does not count."""
         if not self.outcome.is_credited:
             return -1.0 if self.outcome.counts else 0.0
         if self.outcome is not Outcome.HIT or self.acted_s is None:
             return 1.0
-        assert self.obliged_s is not None and self.deadline_s is not None
+        assert self.obliged_s is not None
+        assert self.deadline_s is not None
         full_s = self.obliged_s + FULL_S
         if self.acted_s <= full_s or self.deadline_s <= full_s:
             return 1.0
@@ -185,8 +186,8 @@ def judge(
         kinds: the kinds by name.
         events: those of the agent's own drive.
         acts: what the agent did, in chronological order.
-        due_anyway: by the index of an event, when its obligation arose in the copy of the drive that was forked when
-            it became observable; None if it did not.
+        due_anyway: by the index of an event, when its obligation arose in the copy of the drive that was forked
+            when it became observable; None if it did not.
         at_start: the signals at departure; to set one back is no nuisance.
     """
     cases = [_Case(event, kinds[event.kind]) for event in events]
@@ -282,7 +283,8 @@ def _outcome(case: _Case, due_anyway_s: float | None) -> Outcome:
         return Outcome.PREVENTED if in_time and not case.caused else Outcome.VOID
     if case.caused:
         return Outcome.CAUSED
-    assert event.deadline_s is not None and event.due_until_s is not None
+    assert event.deadline_s is not None
+    assert event.due_until_s is not None
     if acted_s is not None and acted_s <= event.deadline_s:
         return Outcome.PREPARED if acted_s < event.obliged_s else Outcome.HIT
     if event.deadline_s - event.observable_s < CHANCE_S or event.due_until_s < event.deadline_s - SELF_ENDED_S:

@@ -4,8 +4,8 @@
     score = 100 (U - U_noop) / (U_perfect - U_noop)
 
 Doing nothing misses every event (credit -1), a rule-perfect watcher meets each at once (credit 1) and does nothing
-else; both are taken over the events that arose on the agent's own drive, since a drive of its own diverges after the
-first act and its events are no longer the same.
+else; both are taken over the events that arose on the agent's own drive, since it diverges from any other after the
+first act.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ NUISANCE = 0.4
 """Cost of a nuisance: a fifth of what lies between a hit (1) and a miss (-1). PhysioNet/CinC 2015 weighs a
 suppressed true alarm five times an accepted false one."""
 LEAST_WORTH = 1.0
-"""Worth of the events that a drive without any is scaled by, so that silence is 100 there and a false alarm costs."""
+"""Scale of a drive without events, so that silence is 100 there and a false alarm costs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +85,7 @@ class Score:
 
     @property
     def value(self) -> float:
-        """The headline: 0 is doing nothing, 100 the rule-perfect watcher; a drive without events is 100 in silence."""
+        """0 is doing nothing, 100 the rule-perfect watcher; a drive without events is 100 in silence."""
         worth = self.worth or LEAST_WORTH
         without_nuisances = self.gained + self.worth if self.worth else 2 * LEAST_WORTH
         return 100 * (without_nuisances - NUISANCE * self.nuisances) / (2 * worth)

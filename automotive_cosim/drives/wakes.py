@@ -108,6 +108,10 @@ def _lamps(now: Moment) -> tuple[bool, ...]:
     )
 
 
+def _lamp_words(now: Moment) -> str:
+    return "dipped beam " + ("on" if _lamps(now)[0] else "off")
+
+
 def _step(value: float, size: float, least: float) -> Hashable:
     """The reading of a gauge in steps, from one value on."""
     return None if value < least else int(value / size)
@@ -187,9 +191,7 @@ WAKES: tuple[Wake, ...] = (
             "in a tunnel" if now.driving.road.in_tunnel else str(now.context.sun and now.context.sun.darkness)
         ),
     ),
-    Wake(
-        "lamps", "a lamp goes on or off", _lamps, lambda now: "dipped beam " + ("on" if _lamps(now)[0] else "off")
-    ),
+    Wake("lamps", "a lamp goes on or off", _lamps, _lamp_words),
     Wake(
         "weather",
         "other weather, another class of visibility, frost",

@@ -69,10 +69,7 @@ class Act:
         if self.requests:
             return ", ".join(type(request).__name__ for request in self.requests)
         if self.writes:
-            return ", ".join(
-                path.removeprefix("Vehicle.") + ("" if value is None else f" = {value}")
-                for path, value in self.writes
-            )
+            return ", ".join(_written(path, value) for path, value in self.writes)
         return "said something"
 
 
@@ -122,6 +119,10 @@ class EventKind(ABC):
     def concerns(self, act: Act) -> bool:
         """Whether an act touches what the kind is about, rightly or not."""
         return any(path in self.writes for path, _ in act.writes)
+
+
+def _written(path: str, value: Any) -> str:
+    return path.removeprefix("Vehicle.") + ("" if value is None else f" = {value}")
 
 
 def on(value: Any) -> bool:

@@ -31,7 +31,7 @@ class SpeedKind(EventKind):
     """An event that a lower speed settles; its value is the highest right speed in km/h."""
 
     def settles(self, act: Act, value: float | None) -> bool:
-        """An alert that advises no more than the right speed, a request for it, or a limiter or cruise set to it."""
+        """An alert that advises no more than the right speed, a request for it, or a limiter set to it."""
         most_kmh = 1000.0 if value is None else value + 1.0
         if act.alert is not None:
             return act.alert in self.alerts and (act.speed_kmh is None or act.speed_kmh <= most_kmh)

@@ -26,9 +26,7 @@ class GlassFogs(EventKind):
     name = "glass_fog"
     about = "the windshield fogs inside while the car moves"
     bait = "a breath of mist on the glass, that no screen speaks of"
-    source = (
-        "a fifth of the light is lost, from which the screens speak of it; deadline: 20 s, the defroster's delay"
-    )
+    source = "a fifth of the light is lost, as the screens say; deadline: 20 s, what a defroster takes"
     grace_s = 20.0
     alerts = frozenset({AlertKind.VISIBILITY})
     writes: ClassVar[Mapping[str, Wanted]] = {
