@@ -313,13 +313,13 @@ class AlertOnWake:
 
 
 class AlertOften:
-    """Gives the most frequent kind of alert once a minute, whatever happens."""
+    """Gives the most frequent kind of alert twice a minute, whatever happens."""
 
-    name = "alert-speed"
+    name = "alert-often"
     model = "none"
     channels: frozenset[Channel] = frozenset()
 
-    def __init__(self, kind: AlertKind = AlertKind.SPEED, every_s: float = 60.0) -> None:
+    def __init__(self, kind: AlertKind = AlertKind.SPEED, every_s: float = 30.0) -> None:
         """Of that kind, that often."""
         self._kind, self._every_s = kind, every_s
         self.reset("")

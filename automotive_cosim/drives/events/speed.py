@@ -189,4 +189,5 @@ class WeatherSpeed(SpeedKind):
         for reduced in context.reduced_limits:
             value = reduced.rule.cases[0].value
             if reduced.value is None and isinstance(value, float) and kmh > value + margin_kmh(value):
-                yield Sighting(f"{reduced.rule.text}, which it is not", reduced.rule.id, bait=True, value=value)
+                yield Sighting(f"{reduced.rule.text}, which it is not", bait=True, value=value)
+                return
