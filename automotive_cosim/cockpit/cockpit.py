@@ -32,6 +32,7 @@ from automotive_cosim.cockpit.navigation import Navigation
 from automotive_cosim.cockpit.render import render, repaint
 from automotive_cosim.cockpit.restrictions import ENTRIES_LIMIT, REASONS, Restriction
 from automotive_cosim.cockpit.screens import APPS, SCREENS, picture
+from automotive_cosim.cockpit.screens.lookout import sights
 from automotive_cosim.cockpit.sensing import sense
 from automotive_cosim.cockpit.signals import (
     ADAS,
@@ -60,6 +61,7 @@ from automotive_cosim.contracts import (
     FeedbackCode,
     RoadNetwork,
     RoadRequest,
+    Sight,
     Surroundings,
     VehicleState,
 )
@@ -120,6 +122,8 @@ class Cockpit:
         arrivals: Sequence[Arrival] = (),
         changes: Sequence[Change] = (),
         sign_camera: bool = True,
+        lookout: bool = False,
+        driven_s: float = 0.0,
         width: int = SCREEN_WIDTH,
     ) -> None:
         """A cockpit before its first ``sense``.
@@ -133,6 +137,8 @@ class Cockpit:
             arrivals: incoming calls and messages while driving.
             changes: changes of the car while driving that nobody commands.
             sign_camera: whether it reads limit signs; without it, the status bar shows no sign.
+            lookout: whether home and map show what the car notices around, ahead and aboard.
+            driven_s: how long the driver had been driving without a break before departure.
             width: width of the screenshot in pixels; the height follows from 16 to 9.
 
         Raises:
@@ -157,6 +163,7 @@ class Cockpit:
         )
         self._state.expected = timeline(arrivals, directory, rng)
         self._state.changes = schedule(changes)
+        self._state.lookout, self._state.driven_s = lookout, driven_s
         self._state.picked = {**self._state.picked, "media.show": library.shows[0]}
         self._width = width
         for path, value in (signals or {}).items():
@@ -486,6 +493,11 @@ class Cockpit:
             leader_gap_m=now[ADAS.LEADER_DISTANCE],
             leader_time_to_collision_s=now[ADAS.LEADER_TIME_TO_COLLISION],
         )
+
+    @property
+    def sights(self) -> tuple[Sight, ...]:
+        """What the car notices now; empty without a lookout."""
+        return sights(self._state)
 
     # --- inside -------------------------------------------------------------------------------------------
 

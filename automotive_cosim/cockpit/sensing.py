@@ -10,6 +10,7 @@ from automotive_cosim.cockpit.calls import receive
 from automotive_cosim.cockpit.changes import Change, step
 from automotive_cosim.cockpit.desk import FILM_S
 from automotive_cosim.cockpit.errands import odometer, play_on
+from automotive_cosim.cockpit.reach import NEWS_EVERY_S, RADAR_M
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.signals import (
     ADAS,
@@ -35,8 +36,6 @@ from automotive_cosim.cockpit.warmth import display_contrast, seat_after
 from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, OtherVehicle, Surroundings, Weather
 
 MOVING_MPS = 0.1
-RADAR_M = 150.0
-"""Reach of the forward radar; a typical long-range one."""
 TYRES = (TYRE.FRONT_LEFT, TYRE.FRONT_RIGHT, TYRE.REAR_LEFT, TYRE.REAR_RIGHT)
 RAIN_FULL_MM_H = 10.0
 """Heavy rain (WMO: 10 mm/h and more is heavy) covers the rain sensor."""
@@ -47,8 +46,11 @@ def sense(state: State, surroundings: Surroundings, dt_s: float) -> None:
     before, state.outside = state.outside, surroundings
     driving, weather = surroundings.driving, surroundings.weather
     _motion(state, surroundings)
-    if state.injected.get(LINK.ONLINE.path, state.signals[LINK.ONLINE]):
+    online = bool(state.injected.get(LINK.ONLINE.path, state.signals[LINK.ONLINE]))
+    if online:
         state.heard = surroundings
+    if state.lookout and online and (state.news is None or driving.time_s - state.news.time_s >= NEWS_EVERY_S):
+        state.news = driving
     _road(state, driving)
     sun = surroundings.sun_elevation_deg
     state.vehicle.follow_light(driving.road.in_tunnel or (sun is not None and sun < DARK_BELOW_DEG))

@@ -25,6 +25,7 @@ from automotive_cosim.cockpit.vehicle import Vehicle
 from automotive_cosim.contracts import (
     Alert,
     AlertKind,
+    DrivingState,
     Feedback,
     FeedbackCode,
     RoadRequest,
@@ -109,6 +110,12 @@ class State:
     outside: Surroundings | None = None
     heard: Surroundings | None = None
     """The surroundings when the car was last online, from which it knows the live traffic."""
+    lookout: bool = False
+    """Whether the car shows what it notices around, ahead and aboard (``screens.lookout``)."""
+    news: DrivingState | None = None
+    """The road at the last report of the traffic service, for the lookout."""
+    driven_s: float = 0.0
+    """How long the driver had been driving without a break before departure."""
     screen: str = "home"
     past: tuple[tuple[str, str], ...] = ()
     """Screens to go back to, with their items."""

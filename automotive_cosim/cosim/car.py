@@ -78,6 +78,7 @@ class Car:
             context=self.geo.locate(driving, gps, weather, local_time),
             signals=self.cockpit.signals.snapshot(),
             commands=self.cockpit.commands(),
+            sights=self.cockpit.sights,
         )
 
     def _is_asking(self, now_s: float) -> bool:

@@ -48,6 +48,8 @@ def depart(plan: DrivePlan, simulations: Simulations, listener: Listener | None 
             signals=plan.signals,
             arrivals=plan.arrivals,
             changes=plan.changes,
+            lookout=True,
+            driven_s=plan.driven_s,
         )
         world = couple(
             traffic,

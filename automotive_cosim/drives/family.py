@@ -11,7 +11,7 @@ import numpy as np
 from automotive_cosim.cockpit.arrivals import Arrival
 from automotive_cosim.contracts import Weather
 from automotive_cosim.drives.plan import APART_S, LONGEST_S, QUIET_S, SHORTEST_S, DrivePlan, Staged
-from automotive_cosim.drives.staging import STUNTS, Cue, Spell
+from automotive_cosim.drives.staging import ONCE, STUNTS, Cue, Spell
 from automotive_cosim.scenarios import WeatherAt
 from automotive_cosim.tasking.draws import Draws, Purpose
 
@@ -36,7 +36,8 @@ class Season(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Family:
-    """Draws plans. Each kind of its cast that is drawn is staged twice, as an event and as a bait, in any order."""
+    """Draws plans. Each kind of its cast that is drawn is staged twice, as an event and as a bait, in any order; what
+    cannot be undone (``staging.ONCE``) is either, at equal rates."""
 
     id: str
     """Name by which commands refer to it."""
@@ -61,7 +62,7 @@ class Family:
         rng = Draws(self.id, seed).rng(Purpose.DRIVE)
         count = min(len(self.cast), int(rng.integers(FEWEST, MOST + 1)))
         kinds = [self.cast[index] for index in rng.permutation(len(self.cast))[:count]]
-        roles = [(kind, is_bait) for kind in kinds for is_bait in (False, True)]
+        roles = [(kind, is_bait) for kind in kinds for is_bait in _roles(kind, rng)]
         order = [roles[index] for index in rng.permutation(len(roles))]
         times_s, quiet_s, end_s = _times_s(len(order), rng)
         staged = tuple(Staged(kind, at_s, bait) for (kind, bait), at_s in zip(order, times_s, strict=True))
@@ -83,9 +84,15 @@ class Family:
             changes=tuple(change for each in props for change in each.changes),
             arrivals=_arrivals(rng, end_s),
             incidents=tuple(incident for each in props for incident in each.incidents),
+            driven_s=max(each.driven_s for each in props),
             staged=staged,
             quiet_s=quiet_s,
         )
+
+
+def _roles(kind: str, rng: np.random.Generator) -> tuple[bool, ...]:
+    """Whether each staging of a kind is a bait."""
+    return (bool(rng.random() < 0.5),) if kind in ONCE else (False, True)
 
 
 def _times_s(count: int, rng: np.random.Generator) -> tuple[list[float], tuple[float, float], float]:

@@ -75,6 +75,8 @@ class DrivePlan:
     """Incidents on the road, besides the scenario's own."""
     staged: tuple[Staged, ...] = ()
     """What is staged by all of this, in the order of the times."""
+    driven_s: Annotated[float, Ge(0)] = 0.0
+    """How long the driver had been driving without a break before departure."""
     quiet_s: tuple[float, float] = (0.0, 0.0)
     """From when to when nothing is staged."""
 

@@ -8,13 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
 from automotive_cosim.cockpit.changes import Change
-from automotive_cosim.cockpit.signals import CABIN, SEAT, TYRE, Signal
+from automotive_cosim.cockpit.signals import BODY, CABIN, ENERGY, HVAC, LIGHTS, SEAT, TYRE, Signal
 from automotive_cosim.contracts import Weather
-from automotive_cosim.scenarios.incidents import AnyIncident, BrakingLeader, EmergencyVehicle
+from automotive_cosim.drives.sky import drizzle, fog, rain, sleet
+from automotive_cosim.scenarios.incidents import AheadIncident, AnyIncident, BrakingLeader, EmergencyVehicle
 from automotive_cosim.traffic.base import DriverAt
 
 
@@ -35,11 +37,13 @@ class Props:
     changes: tuple[Change, ...] = ()
     incidents: tuple[AnyIncident, ...] = ()
     spells: tuple[Spell, ...] = ()
+    driven_s: float = 0.0
+    """How long the driver had been driving before departure."""
 
 
 @dataclass(frozen=True, slots=True)
 class Cue:
-    """When and where a stunt is staged."""
+    """When and in what a stunt is staged."""
 
     at_s: float
     """Seconds after departure."""
@@ -54,24 +58,48 @@ class Cue:
 Stunt = Callable[[Cue], Props]
 
 MOOD_S = 40.0
-"""How long a driver keeps a mood: an overtaking, a hurry, a phone call that annoys."""
+"""How long a driver keeps a mood."""
+LEADER_WITHIN_S = 40.0
+"""A leader that has not been found by then does not brake, lest it do so during the next stunt."""
+SPELL_S = 120.0
+"""Length of a bank of fog or a shower."""
+AHEAD_S = 420.0
+"""How long an incident on the road lasts."""
+BREAK_AFTER_S = 2 * 3600.0
+"""The Highway Code, rule 91: a break of at least 15 minutes after every two hours of driving."""
 
 
-def _mood(of_event: str, of_bait: str, for_s: float = MOOD_S) -> Stunt:
+# --- the driver ---------------------------------------------------------------------------------------------
+
+
+def _mood(of_event: str, of_bait: str) -> Stunt:
     def stage(cue: Cue) -> Props:
         mood = of_bait if cue.is_bait else of_event
-        return Props(moods=(DriverAt(cue.at_s, mood), DriverAt(cue.at_s + for_s, cue.driver)))
+        return Props(moods=(DriverAt(cue.at_s, mood), DriverAt(cue.at_s + MOOD_S, cue.driver)))
 
     return stage
+
+
+def _fatigue(cue: Cue) -> Props:
+    """Two hours without a break are full at that time; as a bait, one and a half."""
+    full_s = 0.75 * BREAK_AFTER_S if cue.is_bait else BREAK_AFTER_S
+    return Props(driven_s=full_s - cue.at_s)
+
+
+def _belt(cue: Cue) -> Props:
+    """The driver opens the belt; as a bait, only pulls it straight."""
+    return Props(changes=_turned(SEAT.DRIVER_BELT, cue, False, 2.0 if cue.is_bait else 90.0))
+
+
+# --- the car ------------------------------------------------------------------------------------------------
 
 
 def _turned(signal: Signal[bool], cue: Cue, value: bool, for_s: float) -> tuple[Change, ...]:
     return (Change(cue.at_s, signal.path, value), Change(cue.at_s + for_s, signal.path, not value))
 
 
-def _belt(cue: Cue) -> Props:
-    """The driver opens the belt; as a bait, only pulls it straight."""
-    return Props(changes=_turned(SEAT.DRIVER_BELT, cue, False, 2.0 if cue.is_bait else 90.0))
+def _set(cue: Cue, *values: tuple[Signal[bool] | Signal[str], bool | str]) -> tuple[Change, ...]:
+    return tuple(Change(cue.at_s, signal.path, value) for signal, value in values)
 
 
 def _door(cue: Cue) -> Props:
@@ -87,6 +115,63 @@ def _tyre(cue: Cue) -> Props:
     return Props(changes=(Change(cue.at_s, tyre.path, 237.0 if cue.is_bait else 165.0, 240.0),))
 
 
+def _range(cue: Cue) -> Props:
+    """A cell fails and ten kilometres are left; as a bait, a hundred."""
+    return Props(changes=(Change(cue.at_s, ENERGY.LEVEL.path, 25.0 if cue.is_bait else 2.5, 20.0),))
+
+
+def _lamps(cue: Cue) -> Props:
+    """The driver switches the lamps off; as a bait, to dipped beam by hand."""
+    return Props(changes=_set(cue, (LIGHTS.SWITCH, "BEAM" if cue.is_bait else "OFF")))
+
+
+def _high_beam(cue: Cue) -> Props:
+    """The driver leaves high beam on; as a bait, flashes once."""
+    to_beam = _set(cue, (LIGHTS.SWITCH, "BEAM"))
+    return Props(changes=(*to_beam, *_turned(LIGHTS.HIGH_BEAM, cue, True, 1.0 if cue.is_bait else 90.0)))
+
+
+def _fog_lamps(cue: Cue) -> Props:
+    """The rear fog lamp in clear air; as a bait, in fog as thick as it is for."""
+    on = Change(cue.at_s + (20.0 if cue.is_bait else 0.0), LIGHTS.REAR_FOG.path, True)
+    off = Change(cue.at_s + 100.0, LIGHTS.REAR_FOG.path, False)
+    spells = (Spell(cue.at_s, cue.at_s + SPELL_S, fog(cue.weather, 40.0)),) if cue.is_bait else ()
+    return Props(changes=(*_set(cue, (LIGHTS.SWITCH, "BEAM")), on, off), spells=spells)
+
+
+def _glass_fog(cue: Cue) -> Props:
+    """The air is recirculated, with the fan low, for good; as a bait, for half a minute."""
+    closed = _turned(HVAC.RECIRCULATION, cue, True, 30.0) if cue.is_bait else _set(cue, (HVAC.RECIRCULATION, True))
+    return Props(changes=(Change(cue.at_s, HVAC.AIR_CONDITIONING.path, False), *closed))
+
+
+# --- the sky ------------------------------------------------------------------------------------------------
+
+
+def _wipers(cue: Cue) -> Props:
+    """Rain sets in, and the wipers are off; as a bait, the sensor drives them."""
+    mode = "RAIN_SENSOR" if cue.is_bait else "OFF"
+    return Props(
+        changes=_set(cue, (BODY.FRONT_WIPER, mode)),
+        spells=(Spell(cue.at_s + 5.0, cue.at_s + 5.0 + SPELL_S, rain(cue.weather)),),
+    )
+
+
+def _weather_speed(cue: Cue) -> Props:
+    """A bank of thick fog; as a bait, mist."""
+    visibility_m = 1600.0 if cue.is_bait else float(round(cue.rng.uniform(60, 140), -1))
+    return Props(spells=(Spell(cue.at_s, cue.at_s + SPELL_S, fog(cue.weather, visibility_m)),))
+
+
+def _slippery(cue: Cue) -> Props:
+    """Freezing rain, or snow; as a bait, a trace of drizzle."""
+    fallen = drizzle(cue.weather) if cue.is_bait else sleet(cue.weather)
+    return Props(spells=(Spell(cue.at_s, cue.at_s + SPELL_S, fallen),))
+
+
+# --- the road -----------------------------------------------------------------------------------------------
+
+
 def _blue_light(cue: Cue) -> Props:
     """An ambulance comes up from behind; as a bait, a van as fast."""
     return Props(incidents=(EmergencyVehicle(from_s=cue.at_s, blue_light=not cue.is_bait),))
@@ -94,19 +179,45 @@ def _blue_light(cue: Cue) -> Props:
 
 def _leader_brakes(cue: Cue) -> Props:
     """The vehicle ahead brakes hard; as a bait, it slows down gently."""
-    if cue.is_bait:
-        return Props(incidents=(BrakingLeader(from_s=cue.at_s, deceleration_mps2=0.8, to_kmh=25.0),))
-    return Props(incidents=(BrakingLeader(from_s=cue.at_s, to_kmh=10.0),))
+    hard_mps2, to_kmh = (0.8, 25.0) if cue.is_bait else (6.0, 10.0)
+    until_s = cue.at_s + LEADER_WITHIN_S
+    brakes = BrakingLeader(from_s=cue.at_s, to_s=until_s, ahead_m=50.0, deceleration_mps2=hard_mps2, to_kmh=to_kmh)
+    return Props(incidents=(brakes,))
+
+
+def _ahead(what: Literal["breakdown", "roadworks", "jam", "tractor"]) -> Stunt:
+    """On the way; as a bait, on the other carriageway."""
+
+    def stage(cue: Cue) -> Props:
+        until_s = cue.at_s + AHEAD_S
+        return Props(incidents=(AheadIncident(what=what, from_s=cue.at_s, to_s=until_s, other_way=cue.is_bait),))
+
+    return stage
 
 
 STUNTS: Mapping[str, Stunt] = {
     "over_limit": _mood("hurried", "brisk"),
     "leader_close": _mood("pressing", "calm"),
-    "fatigue": _mood("drowsy", "calm", 120.0),
+    "fatigue": _fatigue,
     "belt": _belt,
     "door": _door,
     "tyre": _tyre,
+    "range": _range,
+    "lamps": _lamps,
+    "high_beam": _high_beam,
+    "fog_lamps": _fog_lamps,
+    "glass_fog": _glass_fog,
+    "wipers": _wipers,
+    "weather_speed": _weather_speed,
+    "slippery": _slippery,
     "blue_light": _blue_light,
     "leader_brakes": _leader_brakes,
+    "breakdown": _ahead("breakdown"),
+    "roadworks": _ahead("roadworks"),
+    "jam_tail": _ahead("jam"),
+    "tractor": _ahead("tractor"),
 }
 """The stunts by the kind of event that they stage."""
+
+ONCE = frozenset({"fatigue", "range"})
+"""Kinds that a drive stages as an event or as a bait, not both: a battery does not fill up again."""

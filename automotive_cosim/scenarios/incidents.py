@@ -73,6 +73,8 @@ class Breakdown(Incident):
     """Its front bumper, from the start of the edge."""
     lane: Annotated[int, Ge(0)] = 0
     """Among the edge's lanes for cars, 0 nearest the kerb."""
+    aside: bool = False
+    """Whether it stands beside the lane, so that others can pass."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -208,6 +210,22 @@ class BrakingLeader(EgoIncident):
     """How long it keeps that speed before it drives on."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AheadIncident(EgoIncident):
+    """An incident on the ego's route some way ahead, wherever that is by then, as far as a road there has room."""
+
+    kind: Literal["ahead"] = "ahead"
+    what: Literal["breakdown", "roadworks", "jam", "tractor"]
+    """A car stands with its hazard lights on, on the verge where there is one lane; a lower limit is signed; a
+    queue; a slow vehicle drives a kilometre along the route."""
+    ahead_m: Annotated[float, Gt(0)] = 600.0
+    """Distance from the ego along its route."""
+    length_m: Annotated[float, Gt(0)] = 100.0
+    """Of the queue, at first."""
+    other_way: bool = False
+    """Whether it is on the carriageway of the other direction, where it concerns others."""
+
+
 AnyIncident = Annotated[
     Breakdown
     | Roadworks
@@ -218,7 +236,8 @@ AnyIncident = Annotated[
     | Tractor
     | Pedestrians
     | EmergencyVehicle
-    | BrakingLeader,
+    | BrakingLeader
+    | AheadIncident,
     TaggedBy("kind"),
 ]
 """One of ``[[incidents]]``."""

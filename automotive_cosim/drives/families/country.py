@@ -1,19 +1,111 @@
-"""Country roads and villages."""
+"""Country roads, villages and passes."""
 
 from __future__ import annotations
 
 from automotive_cosim.contracts import Weather
+from automotive_cosim.drives.families.casts import CAR, COLD, DARK, DRIVER, ROAD, WET
 from automotive_cosim.drives.family import Family, Season
 
-BEAUCE = (
+COUNTRY = (
     Family(
         id="beauce_november",
-        about="Village to village on the Beauce plain, a grey November morning.",
+        about="Village to village on the Beauce plain, a raw November morning or evening.",
         season=Season.WINTER,
         scenario="beauce",
         trips=("villages", "plain"),
-        starts=("2026-11-17T08:15:00", "2026-11-22T10:40:00"),
+        starts=("2026-11-17T08:15:00", "2026-11-22T10:40:00", "2026-11-19T17:50:00"),
         weather=Weather(4.0, 92.0, 0.0, 3, 95.0, 9000.0, 8.0),
-        cast=("over_limit", "leader_close", "belt", "door", "tyre", "blue_light", "leader_brakes", "fatigue"),
+        cast=(*DRIVER, *CAR, *ROAD, *WET, "weather_speed", "tractor", "range"),
+    ),
+    Family(
+        id="beauce_june",
+        about="The same plain in June, at harvest time.",
+        season=Season.SUMMER,
+        scenario="beauce",
+        trips=("villages", "plain"),
+        starts=("2026-06-16T09:00:00", "2026-06-21T16:30:00"),
+        weather=Weather(18.0, 62.0, 0.0, 1, 25.0, 22000.0, 14.0),
+        cast=(*DRIVER, *CAR, *ROAD, "wipers", "tractor", "range"),
+    ),
+    Family(
+        id="border_january",
+        about="To and fro across the Irish border on a cold January day, kilometres south of it and miles north.",
+        season=Season.WINTER,
+        scenario="border",
+        trips=("old_road", "south"),
+        starts=("2026-01-20T10:30:00", "2026-01-20T17:20:00"),
+        weather=Weather(2.0, 95.0, 0.0, 3, 100.0, 9000.0, 14.0),
+        cast=(*DRIVER, *CAR, "blue_light", "leader_brakes", "roadworks", *WET, *COLD),
+    ),
+    Family(
+        id="border_july",
+        about="The same roads in July.",
+        season=Season.SUMMER,
+        scenario="border",
+        trips=("old_road", "south"),
+        starts=("2026-07-14T10:30:00", "2026-07-19T20:00:00"),
+        weather=Weather(16.0, 80.0, 0.0, 2, 60.0, 20000.0, 18.0),
+        cast=(*DRIVER, *CAR, "blue_light", "leader_brakes", "roadworks", "breakdown", "wipers", "tractor"),
+    ),
+    Family(
+        id="alpine_december",
+        about="The San Bernardino with its tunnel and hairpins, a December morning in the frost.",
+        season=Season.WINTER,
+        scenario="alpine_pass",
+        trips=("tunnel", "hairpins", "descent"),
+        starts=("2026-12-16T08:40:00", "2026-12-20T15:50:00"),
+        weather=Weather(-6.0, 88.0, 0.0, 3, 90.0, 12000.0, 10.0),
+        cast=(*DRIVER, *CAR, "blue_light", "leader_brakes", "roadworks", *COLD, "wipers", "range", "lamps"),
+    ),
+    Family(
+        id="alpine_july",
+        about="The same pass in July, with lamps on by day as the law asks.",
+        season=Season.SUMMER,
+        scenario="alpine_pass",
+        trips=("hairpins", "descent", "villages"),
+        starts=("2026-07-15T09:00:00", "2026-07-19T17:10:00"),
+        weather=Weather(15.0, 70.0, 0.0, 2, 45.0, 22000.0, 8.0),
+        cast=(*DRIVER, *CAR, *ROAD, "wipers", "lamps", "tractor"),
+    ),
+    Family(
+        id="nordic_december",
+        about="Kiruna and the E10 in the polar night: lit streets, unlit road, snow.",
+        season=Season.WINTER,
+        scenario="nordic",
+        trips=("town", "kurravaara", "jukkasjarvi"),
+        starts=("2026-12-15T10:00:00", "2026-12-20T16:00:00"),
+        weather=Weather(-12.0, 84.0, 0.0, 3, 95.0, 9000.0, 11.0),
+        driver="calm",
+        cast=(*DRIVER, *CAR, "blue_light", "leader_brakes", "roadworks", *DARK, *COLD),
+    ),
+    Family(
+        id="nordic_july",
+        about="The same roads under the midnight sun.",
+        season=Season.SUMMER,
+        scenario="nordic",
+        trips=("town", "kurravaara", "jukkasjarvi"),
+        starts=("2026-07-14T10:00:00", "2026-07-18T22:30:00"),
+        weather=Weather(14.0, 68.0, 0.0, 1, 30.0, 24000.0, 12.0),
+        cast=(*DRIVER, *CAR, *ROAD, "wipers", "lamps"),
+    ),
+    Family(
+        id="sydney_november",
+        about="The north-western edge of Sydney on a school morning in spring, with zones at 40; or on a Sunday.",
+        season=Season.SUMMER,
+        scenario="sydney",
+        trips=("school_run", "richmond", "putty_road"),
+        starts=("2026-11-18T08:20:00", "2026-11-22T08:20:00"),
+        weather=Weather(20.0, 66.0, 0.0, 1, 20.0, 25000.0, 10.0),
+        cast=(*DRIVER, *CAR, *ROAD, "wipers", "tractor"),
+    ),
+    Family(
+        id="sydney_july",
+        about="The same roads in winter, on a school afternoon or after nightfall.",
+        season=Season.WINTER,
+        scenario="sydney",
+        trips=("school_run", "richmond", "putty_road"),
+        starts=("2026-07-22T14:20:00", "2026-07-22T18:10:00"),
+        weather=Weather(12.0, 75.0, 0.0, 2, 50.0, 18000.0, 8.0),
+        cast=(*DRIVER, *CAR, *ROAD, *WET, "weather_speed"),
     ),
 )
