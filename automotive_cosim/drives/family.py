@@ -36,8 +36,8 @@ class Season(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Family:
-    """Draws plans. Each kind of its cast that is drawn is staged twice, as an event and as a bait, in any order; what
-    cannot be undone (``staging.ONCE``) is either, at equal rates."""
+    """Draws plans. Each kind of its cast that is drawn is staged twice, as an event and as a bait, in any order;
+    what cannot be undone (``staging.ONCE``) is either, at equal rates."""
 
     id: str
     """Name by which commands refer to it."""

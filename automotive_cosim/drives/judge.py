@@ -163,6 +163,8 @@ class _Case:
     answered_s: float | None = None
     told_s: float | None = None
     told_severity: float = 0.0
+    is_named: bool = False
+    """Whether an alert was about it in the first place; one may settle others along with it."""
     caused: bool = False
     taken: bool = False
 
@@ -231,6 +233,7 @@ def _act(act: Act, cases: Sequence[_Case], written: set[str], at_start: Mapping[
 def _told(act: Act, cases: Sequence[_Case]) -> Worth:
     """Notes an act that is right for some open events; the best that it is for any of them."""
     worths = []
+    unnamed = [case for case in cases if not case.is_named]
     for case in cases:
         event = case.event
         if case.answered_s is None:
@@ -242,10 +245,12 @@ def _told(act: Act, cases: Sequence[_Case]) -> Worth:
         else:
             severity = event.severity_at(act.time_s)
             recent = case.told_s is not None and act.time_s - case.told_s < REPEAT_S
-            again = recent and severity < WORSE * case.told_severity
+            again = recent and not unnamed and severity < WORSE * case.told_severity
             worths.append(Worth.REPEAT if again else Worth.NEUTRAL)
         if act.alert is not None:
             case.told_s, case.told_severity = act.time_s, event.severity_at(act.time_s)
+    if unnamed and act.alert is not None:
+        unnamed[-1].is_named = True
     return min(worths, key=(Worth.RIGHT, Worth.LATE, Worth.NEUTRAL, Worth.REPEAT).index)
 
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 
 from automotive_cosim.cockpit.signals import BODY, CABIN, CALL, ENERGY, GLASS, LIGHTS, SEAT, TYRE
-from automotive_cosim.contracts import KMH_PER_MPS
+from automotive_cosim.contracts import KMH_PER_MPS, Sight, SightKind
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.geo.text import KM_PER_MILE
 from automotive_cosim.geo.weather import visibility_class
@@ -21,10 +21,16 @@ LONGEST_S = 60
 CLOSE_S = 2.0
 CLOSING_S = 5.0
 TUNNEL_M = 500.0
-JAM_M = 1500.0
-BEHIND_M = 40.0
+REPORT_M = 1500.0
 ROLLING_KMH = 5.0
 MIST = 0.1
+WINDOWS = (
+    CABIN.DRIVER_WINDOW,
+    CABIN.PASSENGER_WINDOW,
+    CABIN.REAR_LEFT_WINDOW,
+    CABIN.REAR_RIGHT_WINDOW,
+    CABIN.SUNROOF,
+)
 TYRES = (TYRE.FRONT_LEFT, TYRE.FRONT_RIGHT, TYRE.REAR_LEFT, TYRE.REAR_RIGHT)
 
 Reading = Callable[[Moment], Hashable]
@@ -82,18 +88,42 @@ def _leader_words(now: Moment) -> str:
     return f"vehicle {leader.gap_m:.0f} m ahead, {gap_s:.1f} s"
 
 
+def _seen(now: Moment, kind: SightKind) -> Sight | None:
+    return next((sight for sight in now.sights if sight.kind is kind), None)
+
+
 def _behind(now: Moment) -> Hashable:
-    around = now.driving.around
-    if around.emergency_behind is not None:
+    if _seen(now, SightKind.EMERGENCY_VEHICLE) is not None:
         return "blue light"
-    return "vehicle" if around.follower is not None and around.follower.gap_m <= BEHIND_M else None
+    return "vehicle" if _seen(now, SightKind.VEHICLE_BEHIND) is not None else None
 
 
 def _behind_words(now: Moment) -> str:
-    around = now.driving.around
-    if around.emergency_behind is not None:
-        return f"blue light {around.emergency_behind.gap_m:.0f} m behind"
-    return "a vehicle close behind" if around.follower is not None else "nobody behind"
+    blue = _seen(now, SightKind.EMERGENCY_VEHICLE)
+    if blue is not None:
+        return f"blue light {blue.distance_m or 0:.0f} m behind"
+    other = _seen(now, SightKind.VEHICLE_BEHIND)
+    return f"a vehicle {0 if other is None else other.distance_m or 0:.0f} m behind comes closer"
+
+
+def _reported(kind: SightKind, about: str) -> Wake:
+    """What the traffic service or the map reports on the route."""
+
+    def away_m(now: Moment) -> float | None:
+        sight = _seen(now, kind)
+        return None if sight is None else sight.distance_m
+
+    return Wake(
+        kind.value.replace("_", " "),
+        f"{about} on the route within 1500, 750 and 400 m",
+        lambda now: _ahead_m(away_m(now), REPORT_M, REPORT_M / 2, 400.0),
+        lambda now: f"in {away_m(now) or 0:.0f} m",
+    )
+
+
+def _hours(now: Moment) -> float | None:
+    sight = _seen(now, SightKind.DRIVING_TIME)
+    return None if sight is None else sight.value
 
 
 def _road(now: Moment) -> Hashable:
@@ -130,7 +160,7 @@ def _open_parts(now: Moment) -> tuple[str, ...]:
     parts = {
         "trunk": now.signals[CABIN.TRUNK.path],
         "charging flap": now.signals[ENERGY.CHARGE_FLAP.path],
-        "window": any(now.signals[part.path] > 0 for part in (CABIN.DRIVER_WINDOW, CABIN.SUNROOF)),
+        "window": any(now.signals[part.path] > 0 for part in WINDOWS),
     }
     return tuple(name for name, is_open in parts.items() if is_open)
 
@@ -218,11 +248,16 @@ WAKES: tuple[Wake, ...] = (
         lambda now: _ahead_m(now.driving.ahead.tunnel_distance_m, TUNNEL_M, TUNNEL_M / 2),
         lambda now: f"in {now.driving.ahead.tunnel_distance_m or 0:.0f} m",
     ),
+    _reported(SightKind.JAM, "a jam"),
+    _reported(SightKind.BREAKDOWN, "a broken-down vehicle"),
+    _reported(SightKind.ROADWORKS, "roadworks"),
+    _reported(SightKind.CLOSURE, "a closed road"),
+    _reported(SightKind.SCHOOL_ZONE, "a school zone"),
     Wake(
-        "jam",
-        "a jam on the route within 1500, 750 and 400 m",
-        lambda now: _ahead_m(now.driving.ahead.jam_distance_m, JAM_M, JAM_M / 2, 400.0),
-        lambda now: f"in {now.driving.ahead.jam_distance_m or 0:.0f} m",
+        "driving time",
+        "an hour of driving without a break, and every quarter more",
+        lambda now: None if (hours := _hours(now)) is None else int(hours * 4),
+        lambda now: f"{_hours(now) or 0:.2f} h without a break",
     ),
     Wake(
         "belt",

@@ -25,6 +25,8 @@ class Concern:
     alert: AlertKind
     now: bool = True
     """False while it only has to be watched."""
+    is_there: bool = False
+    """Whether it is the same concern already while it only has to be watched, such as a jam that comes nearer."""
 
 
 class RulePerfect:
@@ -53,6 +55,8 @@ class RulePerfect:
             return Action(ActionType.WAIT)
         concerns = [concern for look in LOOKS for concern in look(known)]
         for concern in concerns:
+            if concern.is_there and not concern.now and concern.key in self._seen:
+                self._seen[concern.key] = known.time_s
             if concern.now and self._is_new(concern, known.time_s):
                 return Action(ActionType.SHOW_ALERT, kind=concern.alert)
         return Action(ActionType.WAIT, seconds=LOOK_S) if concerns else Action(ActionType.WAIT)
@@ -131,7 +135,7 @@ def _limit_ahead(known: Known) -> Iterator[Concern]:
     if known.speed_kmh > _above(limit_kmh) + 1:
         right_mps = _above(limit_kmh) / 3.6
         coasting_m = (known.mps**2 - right_mps**2) / 2 + known.mps * (1.1 + LOOK_S)
-        yield Concern(f"falls {limit_kmh:.0f}", AlertKind.SPEED, away_m <= coasting_m)
+        yield Concern(f"falls {limit_kmh:.0f}", AlertKind.SPEED, away_m <= coasting_m, is_there=True)
 
 
 def _lamps(known: Known) -> Iterator[Concern]:
@@ -144,7 +148,7 @@ def _lamps(known: Known) -> Iterator[Concern]:
             yield Concern("lamps", AlertKind.VISIBILITY)
         away_m = known.away_m("tunnel")
         if away_m is not None and away_m > 0:
-            yield Concern("tunnel", AlertKind.TUNNEL, away_m <= known.mps * (10 + LOOK_S))
+            yield Concern("tunnel", AlertKind.TUNNEL, away_m <= known.mps * (10 + LOOK_S), is_there=True)
     if car.is_high_beam_on:
         near = car.leader_gap_m is not None and car.leader_gap_m <= 100
         yield Concern("high beam", AlertKind.VISIBILITY, near or _forbids_high_beam(known))
@@ -188,7 +192,7 @@ def _forbids_fog_lamp(known: Known, label: str) -> bool:
 
 def _weather(known: Known) -> Iterator[Concern]:
     if known.is_icy:
-        yield Concern("slippery", AlertKind.SLIPPERY, known.speed_kmh > 40)
+        yield Concern("slippery", AlertKind.SLIPPERY, known.speed_kmh > 40, is_there=True)
     share = re.search(r"(\d+)%", known.changes.get("glass", (0.0, ""))[1])
     if share is not None and known.speed_kmh >= 1:
         yield Concern("glass", AlertKind.VISIBILITY, float(share[1]) >= 20)
@@ -200,7 +204,11 @@ def _weather(known: Known) -> Iterator[Concern]:
 def _traffic(known: Known) -> Iterator[Concern]:
     away_m = known.away_m("jam")
     if away_m is not None and away_m > 0 and known.speed_kmh >= 40:
-        yield Concern("jam", AlertKind.TRAFFIC, away_m <= known.mps * (15 + LOOK_S))
+        yield Concern("jam", AlertKind.TRAFFIC, away_m <= known.mps * (15 + LOOK_S), is_there=True)
+    for name, alert in (("breakdown", AlertKind.MOVE_OVER), ("roadworks", AlertKind.TRAFFIC)):
+        away_m = known.away_m(name)
+        if away_m is not None and away_m > 0 and known.mps > 5:
+            yield Concern(name, alert, away_m <= known.mps * (12 + LOOK_S), is_there=True)
     if "blue light" in known.changes.get("behind", (0.0, ""))[1]:
         yield Concern("blue light", AlertKind.YIELD)
     gap_m, ttc_s = known.vehicle.leader_gap_m, known.vehicle.leader_time_to_collision_s
@@ -224,7 +232,7 @@ def _traffic(known: Known) -> Iterator[Concern]:
 
 def _car(known: Known) -> Iterator[Concern]:
     if "belt" in known.changes:
-        yield Concern("belt", AlertKind.SEAT_BELT, known.speed_kmh >= 25)
+        yield Concern("belt", AlertKind.SEAT_BELT, known.speed_kmh >= 25, is_there=True)
     words = known.changes.get("open", (0.0, ""))[1]
     for part in ("trunk", "charging flap"):
         if part in words:
@@ -232,6 +240,9 @@ def _car(known: Known) -> Iterator[Concern]:
     pressure = re.search(r"(\d+) kPa", known.changes.get("tyre", (0.0, ""))[1])
     if pressure is not None:
         yield Concern("tyre", AlertKind.VEHICLE, float(pressure[1]) < 200)
+    hours = re.match(r"(\d+\.\d+) h", known.changes.get("driving time", (0.0, ""))[1])
+    if hours is not None:
+        yield Concern("fatigue", AlertKind.FATIGUE, float(hours[1]) >= 2)
     left = re.search(r"(\d+) km, (\d+\.\d) km to go", known.changes.get("range", (0.0, ""))[1])
     if left is not None:
         yield Concern("range", AlertKind.VEHICLE, known.vehicle.range_km < float(left[2]) + 2)

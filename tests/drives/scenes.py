@@ -18,6 +18,7 @@ from automotive_cosim.contracts import (
     OtherVehicle,
     RoadAhead,
     RoadHere,
+    Sight,
     Weather,
 )
 from automotive_cosim.cosim.moment import Moment
@@ -79,6 +80,7 @@ def moment(
     signals: dict[str, Any] | None = None,
     at: datetime = NOON,
     position: tuple[float, float] = (2.0, 48.3),
+    sights: tuple[Sight, ...] = (),
     **changes: Any,
 ) -> Moment:
     """A moment; other changes go to the field of road, ahead, around or weather that has that name."""
@@ -122,6 +124,7 @@ def moment(
         context=_geo().locate(driving, gps, parts["weather"], local_time),
         signals=values,
         commands=values,
+        sights=sights,
     )
 
 

@@ -8,7 +8,7 @@ from zoneinfo import ZoneInfo
 import pytest
 
 from automotive_cosim.cockpit.signals import BODY, CABIN, ENERGY, GLASS, LIGHTS, SEAT, TYRE
-from automotive_cosim.contracts import AlertKind, SlowDown
+from automotive_cosim.contracts import AlertKind, IncidentKind, RoadIncident, Sight, SightKind, SlowDown
 from automotive_cosim.drives.events import KINDS, Act
 from automotive_cosim.drives.events.tracker import CLOSE_S, REOPEN_S
 from tests.drives.scenes import NOON, found, limit, moment, stream, vehicle
@@ -20,6 +20,17 @@ UNLIT = {LIGHTS.LOW_BEAM.path: False, LIGHTS.SWITCH.path: "OFF"}
 SCHOOL = {"school_zone": True, "limit": limit(30), "limit_hours": "30 km/h Mo-Fr 13:00-14:00"}
 MOTORWAY = {"road_class": "motorway", "lane_count": 2, "limit": limit(130)}
 RAIN = {"weather_code": 63, "precipitation": 4.0}
+
+
+def sight(kind: SightKind, away_m: float | None, value: float | None = None) -> dict[str, Any]:
+    """What the car notices."""
+    return {"sights": (Sight(kind, kind.value, away_m, value),)}
+
+
+def elsewhere(kind: IncidentKind) -> dict[str, Any]:
+    """An incident that is reported, but not on the route."""
+    return {"incidents": (RoadIncident(kind, "x", 0.0),)}
+
 
 SCENES: Mapping[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "over_limit": ({"kmh": 60}, {"kmh": 52}),
@@ -57,8 +68,17 @@ SCENES: Mapping[str, tuple[dict[str, Any], dict[str, Any]]] = {
         {"temperature_2m": 2.0},
     ),
     "tunnel": ({"tunnel_distance_m": 110.0, "signals": UNLIT}, {"tunnel_distance_m": 900.0, "signals": UNLIT}),
-    "jam_tail": ({"kmh": 90, "jam_distance_m": 300.0}, {"kmh": 50, "relative_speed": 0.4}),
-    "blue_light": ({"emergency_behind": vehicle(100.0, 80)}, {"follower": vehicle(20.0, 80)}),
+    "jam_tail": ({"kmh": 90, **sight(SightKind.JAM, 300.0)}, {"kmh": 50, "relative_speed": 0.4}),
+    "breakdown": (
+        {"kmh": 80, **sight(SightKind.BREAKDOWN, 250.0)},
+        {"incidents": (RoadIncident(IncidentKind.BREAKDOWN, "x", 0.0),)},
+    ),
+    "roadworks": (
+        {"kmh": 80, **sight(SightKind.ROADWORKS, 250.0)},
+        {"incidents": (RoadIncident(IncidentKind.ROADWORKS, "x", 0.0),)},
+    ),
+    "fatigue": ({**sight(SightKind.DRIVING_TIME, None, 2.1)}, {**sight(SightKind.DRIVING_TIME, None, 1.4)}),
+    "blue_light": (sight(SightKind.EMERGENCY_VEHICLE, 100.0), sight(SightKind.VEHICLE_BEHIND, 30.0)),
     "leader_close": ({"kmh": 50, "leader": vehicle(12.0)}, {"kmh": 50, "leader": vehicle(32.0)}),
     "leader_brakes": (
         {"leader": vehicle(15.0, 10, time_to_collision_s=3.5, drac_mps2=4.1)},

@@ -142,6 +142,18 @@ def test_one_alert_settles_all_that_it_is_about() -> None:
     assert [event.outcome for event in judged(warn(105.0), events=(SPEEDING, other)).events] == [Outcome.HIT] * 2
 
 
+def test_a_second_alert_may_be_about_a_second_event() -> None:
+    """The tyre and the tailgate share a kind of alert: two alerts for two events are no repeat, a third is."""
+    tyre = replace(SPEEDING, kind="tyre", subject="", value=None)
+    door = replace(tyre, kind="door")
+    acts = [warn(at_s, AlertKind.VEHICLE) for at_s in (105.0, 108.0, 111.0)]
+    assert [act.worth for act in judged(*acts, events=(tyre, door)).acts] == [
+        Worth.RIGHT,
+        Worth.NEUTRAL,
+        Worth.REPEAT,
+    ]
+
+
 # --- the score -----------------------------------------------------------------------------------------------
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from automotive_cosim.drives.events import car, light, road, speed, weather
+from automotive_cosim.drives.events import car, light, people, road, speed, weather
 from automotive_cosim.drives.events.base import Act, EventKind, Sighting
 from automotive_cosim.drives.events.tracker import Event, Tracker
 
@@ -29,6 +29,8 @@ KINDS: Mapping[str, EventKind] = {
         weather.Slippery(),
         road.Tunnel(),
         road.JamTail(),
+        road.Breakdown(),
+        road.Roadworks(),
         road.BlueLight(),
         road.LeaderClose(),
         road.LeaderBrakes(),
@@ -37,6 +39,7 @@ KINDS: Mapping[str, EventKind] = {
         car.FlapOpen(),
         car.Tyre(),
         car.RangeShort(),
+        people.Fatigue(),
     )
 }
 """Every kind by its name."""

@@ -16,6 +16,13 @@ BELT_KMH = 25.0
 ROLLING_KMH = 5.0
 WARM_KPA = 225.0
 """Between this and 200 kPa a tyre is low, but needs no warning."""
+WINDOWS = (
+    CABIN.DRIVER_WINDOW,
+    CABIN.PASSENGER_WINDOW,
+    CABIN.REAR_LEFT_WINDOW,
+    CABIN.REAR_RIGHT_WINDOW,
+    CABIN.SUNROOF,
+)
 RESERVE_M = 2000.0
 """A range that ends this much after the destination is short."""
 
@@ -63,7 +70,7 @@ class FlapOpen(EventKind):
         for part, words in ((CABIN.TRUNK, "the trunk is open"), (ENERGY.CHARGE_FLAP, "the charging flap is open")):
             if signals[part.path]:
                 yield Sighting(f"{words} while driving", part.path, due=True, hold_s=2.0)
-        if any(float(signals[part.path]) > 0 for part in (CABIN.DRIVER_WINDOW, CABIN.SUNROOF)):
+        if any(float(signals[part.path]) > 0 for part in WINDOWS):
             yield Sighting("a window is open", "window", bait=True)
 
 

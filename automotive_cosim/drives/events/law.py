@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from automotive_cosim.contracts import KMH_PER_MPS
+from automotive_cosim.contracts import KMH_PER_MPS, Sight, SightKind
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.geo.applied import AppliedRule
 from automotive_cosim.geo.breaches import BindingLimit, binding_limit
@@ -60,6 +60,11 @@ def certain(context: GeoContext, topic: str) -> Iterator[AppliedRule]:
 def says(context: GeoContext, topic: str, word: str) -> bool:
     """Whether a verified rule on a topic certainly says ``required`` or ``forbidden``."""
     return any(found.value == word for found in certain(context, topic))
+
+
+def seen(moment: Moment, kind: SightKind) -> Sight | None:
+    """What the car notices of a kind, as its screens show it; None if nothing."""
+    return next((sight for sight in moment.sights if sight.kind is kind), None)
 
 
 def time_left_s(distance_m: float, speed_mps: float, end_mps: float = 0.0) -> float:

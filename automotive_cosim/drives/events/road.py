@@ -5,18 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import ClassVar
 
-from automotive_cosim.cockpit.sensing import RADAR_M
+from automotive_cosim.cockpit.reach import RADAR_M
 from automotive_cosim.cockpit.signals import ADAS, LIGHTS
 from automotive_cosim.contracts import (
     KMH_PER_MPS,
     AlertKind,
+    IncidentKind,
     OtherVehicle,
     PullOver,
+    Reroute,
+    SightKind,
     SlowDown,
 )
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, on
-from automotive_cosim.drives.events.law import REACTION_S, certain, speed_kmh, time_left_s
+from automotive_cosim.drives.events.law import REACTION_S, certain, seen, speed_kmh, time_left_s
 
 NEAR_M = 500.0
 """A tunnel is announced on the map from this distance."""
@@ -26,8 +29,11 @@ JAM_FROM_KMH = 40.0
 JAM_DUE_S = 15.0
 """A queue's tail is announced 300 to 400 m ahead at 80 km/h by warning vehicles and gantries."""
 BLUE_DUE_M = 150.0
-VAN_M = 40.0
-"""Closer behind, another vehicle fills the mirror."""
+STANDS_DUE_S = 12.0
+"""A warning triangle stands 100 m and more before a stopped vehicle outside towns: 4.5 s at 80 km/h; warnings on
+the screen come before it."""
+PASS_SHARE = 0.6
+"""A car passes what stands at the roadside at this share of its speed."""
 CLOSE_S = 1.0
 """A time gap below this leaves no time to react (mean reaction 1.1 s)."""
 GAP_HOLD_S = 3.0
@@ -84,7 +90,8 @@ class JamTail(EventKind):
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
         """By the live traffic on the route."""
         now = drive[-1]
-        away_m, mps = now.driving.ahead.jam_distance_m, now.driving.speed_mps
+        tail, mps = seen(now, SightKind.JAM), now.driving.speed_mps
+        away_m = None if tail is None else tail.distance_m
         if away_m is None:
             if now.driving.around.relative_speed < 0.6 and mps > 2.0:
                 yield Sighting(f"traffic at {now.driving.around.relative_speed:.0%}", bait=True)
@@ -96,6 +103,53 @@ class JamTail(EventKind):
             due=away_m <= JAM_DUE_S * mps,
             left_s=time_left_s(away_m, mps),
         )
+
+
+class Standing(EventKind):
+    """Something that stands ahead on the route and that the traffic service reports."""
+
+    sights: ClassVar[SightKind]
+    weight = 1.5
+    source = (
+        "12 s before it; deadline: reaction 1.1 s and braking at 3.4 m/s2 (AASHTO) to three fifths of the speed"
+    )
+    requests = (SlowDown, Reroute)
+
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """By the reports: on the route, or anywhere else."""
+        now = drive[-1]
+        there, mps = seen(now, self.sights), now.driving.speed_mps
+        if there is None or there.distance_m is None:
+            kind = IncidentKind(self.sights.value)
+            if any(incident.kind is kind for incident in now.driving.ahead.incidents):
+                yield Sighting(f"{kind.value.replace('_', ' ')} reported elsewhere", bait=True)
+        elif mps > 5.0:
+            yield Sighting(
+                there.text,
+                due=there.distance_m <= STANDS_DUE_S * mps,
+                left_s=time_left_s(there.distance_m, mps, PASS_SHARE * mps),
+            )
+
+
+class Breakdown(Standing):
+    """A broken-down vehicle ahead."""
+
+    name = "breakdown"
+    about = "a broken-down vehicle stands ahead on the route"
+    bait = "one that is reported on another road or the other carriageway"
+    sights = SightKind.BREAKDOWN
+    alerts = frozenset({AlertKind.MOVE_OVER, AlertKind.TRAFFIC, AlertKind.COLLISION, AlertKind.SPEED})
+
+
+class Roadworks(Standing):
+    """Roadworks ahead."""
+
+    name = "roadworks"
+    about = "roadworks narrow the road ahead on the route"
+    bait = "roadworks that are reported on another road or the other carriageway"
+    weight = 1.0
+    sights = SightKind.ROADWORKS
+    alerts = frozenset({AlertKind.TRAFFIC, AlertKind.MOVE_OVER, AlertKind.LANE, AlertKind.SPEED})
 
 
 class BlueLight(EventKind):
@@ -111,18 +165,14 @@ class BlueLight(EventKind):
     requests = (PullOver,)
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
-        """Within 300 m behind."""
+        """By the radio message that such a vehicle sends, or the radar."""
         now = drive[-1]
-        behind, follower = now.driving.around.emergency_behind, now.driving.around.follower
-        if behind is not None:
-            yield Sighting(
-                f"a blue light {behind.gap_m:.0f} m behind",
-                behind.vehicle_id,
-                due=behind.gap_m <= BLUE_DUE_M,
-                hold_s=1.0,
-            )
-        elif follower is not None and follower.gap_m <= VAN_M:
-            yield Sighting(f"a car {follower.gap_m:.0f} m behind", bait=True)
+        behind, follower = seen(now, SightKind.EMERGENCY_VEHICLE), seen(now, SightKind.VEHICLE_BEHIND)
+        if behind is not None and behind.distance_m is not None:
+            due = behind.distance_m <= BLUE_DUE_M
+            yield Sighting(f"a blue light {behind.distance_m:.0f} m behind", due=due, hold_s=1.0)
+        elif follower is not None:
+            yield Sighting(f"a car {follower.distance_m or 0:.0f} m behind comes closer", bait=True)
 
 
 class LeaderClose(EventKind):
