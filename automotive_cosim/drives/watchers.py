@@ -55,22 +55,25 @@ class RulePerfect:
             return Action(ActionType.WAIT)
         concerns = [concern for look in LOOKS for concern in look(known)]
         for concern in concerns:
-            if concern.is_there and not concern.now and concern.key in self._seen:
-                self._seen[concern.key] = known.time_s
-            if concern.now and self._is_new(concern, known.time_s):
+            if concern.now or concern.is_there:
+                self._note(concern, known.time_s)
+            if concern.now and self._is_time(concern, known.time_s):
+                self._told.add(concern.key)
                 return Action(ActionType.SHOW_ALERT, kind=concern.alert)
         return Action(ActionType.WAIT, seconds=LOOK_S) if concerns else Action(ActionType.WAIT)
 
-    def _is_new(self, concern: Concern, now_s: float) -> bool:
+    def _note(self, concern: Concern, now_s: float) -> None:
+        """One that was away for long is another concern."""
         key = concern.key
         if now_s - self._seen.get(key, -GONE_S) >= GONE_S:
             self._told.discard(key)
-            self._since[key] = now_s
+            self._since.pop(key, None)
         self._seen[key] = now_s
-        if key in self._told or now_s - self._since[key] < self._delay_s:
-            return False
-        self._told.add(key)
-        return True
+        if concern.now:
+            self._since.setdefault(key, now_s)
+
+    def _is_time(self, concern: Concern, now_s: float) -> bool:
+        return concern.key not in self._told and now_s - self._since[concern.key] >= self._delay_s
 
 
 # --- what it looks at ---------------------------------------------------------------------------------------
