@@ -25,7 +25,9 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 
 LISTED = 20
-"""An unknown name is answered with the known ones up to this number, if a command lists them."""
+"""An unknown name is answered with the known ones up to this number."""
+SHOWN = 80
+"""Characters of an unknown name that are repeated."""
 
 
 class CosimError(Exception):
@@ -51,14 +53,16 @@ class UnknownNameError(UserError):
 
     def __init__(self, kind: str, name: str, known: Iterable[str], hint: str = "") -> None:
         choices = sorted(known)
-        close = get_close_matches(name, choices, n=1, cutoff=0.5)
+        came = name if len(name) <= SHOWN else name[:SHOWN] + "…"
+        close = get_close_matches(came, choices, n=1, cutoff=0.5)
         if close:
             fix = f": did you mean '{close[0]}'?"
         elif hint and len(choices) > LISTED:
             fix = f" among the {len(choices)}."
         else:
-            fix = f"; choose from: {', '.join(choices)}." if choices else "; there are none."
-        super().__init__(f"no {kind} named {name!r}{fix}" + (f" List them with `{hint}`." if hint else ""))
+            more = f" and {len(choices) - LISTED} more" if len(choices) > LISTED else ""
+            fix = f"; choose from: {', '.join(choices[:LISTED])}{more}." if choices else "; there are none."
+        super().__init__(f"no {kind} named {came!r}{fix}" + (f" List them with `{hint}`." if hint else ""))
         self.kind = kind
         self.name = name
 

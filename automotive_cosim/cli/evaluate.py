@@ -200,7 +200,8 @@ def evaluate(
         )
     if errors:
         raise InfrastructureError(
-            f"{len(errors)} of {counted(end.planned, 'episode')} ended in an infrastructure error and do not count"
+            f"{len(errors)} of {counted(end.planned, 'episode')} ended in an infrastructure error, which no rate "
+            "counts as a success; rerun the command to try again"
         )
 
 
@@ -215,9 +216,9 @@ def _failures(rows: Sequence[EpisodeRow]) -> Iterator[str]:
 
 
 def _said(progress: Progress[EpisodeRow]) -> str:
-    rate = f"{progress.successes / progress.judged:.0%} succeeded" if progress.judged else "none judged yet"
+    lost = progress.judged - progress.successes
     errors = f", {counted(progress.errors, 'error')}" if progress.errors else ""
-    return rate + errors + time_left(progress)
+    return f"{progress.successes:,} succeeded, {lost:,} failed{errors}{time_left(progress)}"
 
 
 def _announce(console: Console, plan: Plan, folder: Path) -> None:

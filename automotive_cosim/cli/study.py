@@ -86,6 +86,13 @@ def reroute(
             help="One placebo in this many drives; 0 for none.", metavar="N", parser=whole_number(0, 10**6)
         ),
     ] = 1,
+    replicates: Annotated[
+        str,
+        typer.Option(
+            help="How often each future is driven, each time with fresh random numbers; auto: more often where the "
+            "mean gain does not show its sign."
+        ),
+    ] = "1",
     scale: Annotated[float | None, typer.Option(help="Factor on the demand.", show_default="scenario's")] = None,
     step: Annotated[float, typer.Option(help="SUMO's step length in seconds.")] = 1.0,
     equilibrium_gap: Annotated[
@@ -131,6 +138,7 @@ def reroute(
         "policies": tuple(words("policies", policies)),
         "per_drive": per_drive,
         "placebo_every": placebo_every,
+        "replicates": _replicates(replicates),
     }
     values |= {"departures_s": _departures(scenario, departures)} if departures is not None else {}
     values |= {"trips": tuple(words("trips", trips))} if trips is not None else {}
@@ -223,6 +231,7 @@ def _announce(console: Console, plan: StudyPlan, folder: Path) -> None:
     table.add_row("departures", ", ".join(f"{each:g}" for each in plan.departures_s) + " s after the warm-up")
     table.add_row("seeds", f"{len(plan.seeds)}")
     table.add_row("policies", ", ".join(plan.policies))
+    table.add_row("replicates", str(plan.replicates))
     table.add_row("demand", plan.demand())
     table.add_row(
         "drives", f"{len(jobs):,} from {counted(len({job.simulation for job in jobs}), 'warm simulation')}"
@@ -247,6 +256,11 @@ def _departures(scenario: str, text: str) -> tuple[float, ...]:
         else:
             raise UserError(f"--departures has {word!r}; give seconds such as 300, or clock times such as 8:20")
     return tuple(found)
+
+
+def _replicates(text: str) -> int | str:
+    """A number, or a word for the plan to judge."""
+    return int(text) if text.isdecimal() else text
 
 
 def _numbers(name: str, text: str) -> list[float]:

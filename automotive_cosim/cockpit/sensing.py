@@ -159,7 +159,7 @@ def _change(state: State, dt_s: float) -> None:
     """Makes the changes that are due."""
     going_on = []
     for change in state.changes:
-        since_s = state.time_s - state.departed_s - change.at_s
+        since_s = round(state.time_s - state.departed_s - change.at_s, 6)
         if since_s >= 0:
             _make(state, change, since_s, dt_s)
         if since_s < change.over_s:

@@ -36,8 +36,8 @@ class Season(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Family:
-    """Draws plans. Each kind of its cast that is drawn is staged twice, as an event and as a bait, in any order;
-    what cannot be undone (``staging.ONCE``) is either, at equal rates."""
+    """Draws plans. Each kind of its cast that is drawn is staged twice, as an event and as a bait, in any order.
+    What cannot be undone (``staging.ONCE``) comes in addition, in half the drives, and is either at equal rates."""
 
     id: str
     """Name by which commands refer to it."""
@@ -60,9 +60,12 @@ class Family:
     def draw(self, seed: int) -> DrivePlan:
         """The drive of a seed."""
         rng = Draws(self.id, seed).rng(Purpose.DRIVE)
-        count = min(len(self.cast), int(rng.integers(FEWEST, MOST + 1)))
-        kinds = [self.cast[index] for index in rng.permutation(len(self.cast))[:count]]
-        roles = [(kind, is_bait) for kind in kinds for is_bait in _roles(kind, rng)]
+        kinds = [kind for kind in self.cast if kind not in ONCE]
+        drawn = rng.permutation(len(kinds))[: int(rng.integers(FEWEST, MOST))]
+        roles = [(kinds[index], is_bait) for index in drawn for is_bait in (False, True)]
+        once = [kind for kind in self.cast if kind in ONCE]
+        if once and rng.random() < 0.5:
+            roles.append((once[int(rng.integers(len(once)))], bool(rng.random() < 0.5)))
         order = [roles[index] for index in rng.permutation(len(roles))]
         times_s, quiet_s, end_s = _times_s(len(order), rng)
         staged = tuple(Staged(kind, at_s, bait) for (kind, bait), at_s in zip(order, times_s, strict=True))
@@ -88,11 +91,6 @@ class Family:
             staged=staged,
             quiet_s=quiet_s,
         )
-
-
-def _roles(kind: str, rng: np.random.Generator) -> tuple[bool, ...]:
-    """Whether each staging of a kind is a bait."""
-    return (bool(rng.random() < 0.5),) if kind in ONCE else (False, True)
 
 
 def _times_s(count: int, rng: np.random.Generator) -> tuple[list[float], tuple[float, float], float]:

@@ -24,6 +24,8 @@ SELF_ENDED_S = 1.5
 CHANCE_S = 2.0
 """An event whose deadline comes sooner than this after it became observable could be met by nobody: one glance
 (NHTSA 2013)."""
+PREPARE_S = 15.0
+"""An act earlier than this before the obligation does not prepare for it: a driver has forgotten it by then."""
 CAUSED_S = 10.0
 """An event that becomes observable within this time of the agent's own contrary act is of its own making."""
 PASSED_S = 3.0
@@ -236,6 +238,9 @@ def _told(act: Act, cases: Sequence[_Case]) -> Worth:
     unnamed = [case for case in cases if not case.is_named]
     for case in cases:
         event = case.event
+        if event.obliged_s is not None and act.time_s < event.obliged_s - PREPARE_S:
+            worths.append(Worth.NEUTRAL)
+            continue
         if case.answered_s is None:
             case.answered_s = act.time_s
             late = event.deadline_s is not None and act.time_s > event.deadline_s

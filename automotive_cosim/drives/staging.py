@@ -65,6 +65,8 @@ SPELL_S = 120.0
 """Length of a bank of fog or a shower."""
 AHEAD_S = 420.0
 """How long an incident on the road lasts."""
+AHEAD_M = 1400.0
+"""How far ahead it is staged: news that is a minute old is heard in time at 80 km/h."""
 BREAK_AFTER_S = 2 * 3600.0
 """The Highway Code, rule 91: a break of at least 15 minutes after every two hours of driving."""
 
@@ -158,15 +160,19 @@ def _wipers(cue: Cue) -> Props:
 
 
 def _weather_speed(cue: Cue) -> Props:
-    """A bank of thick fog; as a bait, mist."""
-    visibility_m = 1600.0 if cue.is_bait else float(round(cue.rng.uniform(60, 140), -1))
-    return Props(spells=(Spell(cue.at_s, cue.at_s + SPELL_S, fog(cue.weather, visibility_m)),))
+    """A bank of dense fog that the driver takes no notice of; as a bait, mist."""
+    until_s = cue.at_s + SPELL_S
+    careless = (DriverAt(cue.at_s, "careless"), DriverAt(until_s, cue.driver))
+    visibility_m = 1600.0 if cue.is_bait else float(round(cue.rng.uniform(30, 46)))
+    return Props(moods=careless, spells=(Spell(cue.at_s, until_s, fog(cue.weather, visibility_m)),))
 
 
 def _slippery(cue: Cue) -> Props:
-    """Freezing rain, or snow; as a bait, a trace of drizzle."""
+    """Freezing rain or snow that the driver takes no notice of; as a bait, a trace of drizzle."""
+    until_s = cue.at_s + SPELL_S
+    careless = (DriverAt(cue.at_s, "careless"), DriverAt(until_s, cue.driver))
     fallen = drizzle(cue.weather) if cue.is_bait else sleet(cue.weather)
-    return Props(spells=(Spell(cue.at_s, cue.at_s + SPELL_S, fallen),))
+    return Props(moods=careless, spells=(Spell(cue.at_s, until_s, fallen),))
 
 
 # --- the road -----------------------------------------------------------------------------------------------
@@ -190,7 +196,8 @@ def _ahead(what: Literal["breakdown", "roadworks", "jam", "tractor"]) -> Stunt:
 
     def stage(cue: Cue) -> Props:
         until_s = cue.at_s + AHEAD_S
-        return Props(incidents=(AheadIncident(what=what, from_s=cue.at_s, to_s=until_s, other_way=cue.is_bait),))
+        incident = AheadIncident(what=what, from_s=cue.at_s, to_s=until_s, ahead_m=AHEAD_M, other_way=cue.is_bait)
+        return Props(incidents=(incident,))
 
     return stage
 

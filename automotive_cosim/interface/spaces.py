@@ -48,6 +48,7 @@ from automotive_cosim.contracts import (
     VehicleState,
 )
 from automotive_cosim.errors import ActionError
+from automotive_cosim.formats.words import shown
 from automotive_cosim.interface.observe import Channel
 
 T = TypeVar("T")
@@ -204,7 +205,7 @@ def _decoded(value: Mapping[str, Any]) -> Action:
 def _member(of: Iterable[T], value: Mapping[str, Any], name: str) -> T:
     members, index = tuple(of), int(value[name])
     if not 0 <= index < len(members):
-        raise ActionError(f"the action's {name} is {index}; it goes from 0 to {len(members) - 1}")
+        raise ActionError(f"the action's {name} is {shown(index)}; it goes from 0 to {len(members) - 1}")
     return members[index]
 
 

@@ -151,12 +151,13 @@ def _read_osm(source: Path) -> _Read:
     kind = _format(source, _head(source))
     if kind != "pbf":
         _check_positions(source)
-    file = _osmium().io.File(str(source), kind)
+    osmium = _osmium()
+    file = osmium.io.File(str(source), kind)
     try:
         ways, restrictions = _read_ways(file)
         nodes = _read_nodes(file, {ref for way in ways for ref in way.nodes})
         return ways, restrictions, nodes, _read_cameras(file)
-    except (RuntimeError, ValueError, ArithmeticError, MemoryError) as error:
+    except (RuntimeError, ValueError, ArithmeticError, MemoryError, osmium.InvalidLocationError) as error:
         raise ImportMapError(_explain(source, str(error))) from error
 
 

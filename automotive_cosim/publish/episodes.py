@@ -15,7 +15,7 @@ from automotive_cosim.interface.trace import Step, plain, sha256
 from automotive_cosim.publish.problems import Problem, differences
 from automotive_cosim.report.page import element
 from automotive_cosim.run.collect import alerts, planned
-from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.harm import nearest_s
 from automotive_cosim.run.load import driver_load
 from automotive_cosim.run.moments import Judged, judged_file, read_judged
@@ -24,7 +24,6 @@ from automotive_cosim.run.regrade import judged_again
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.scenarios import shipped
-from automotive_cosim.tasking import verdict as verdicts
 from automotive_cosim.tasking.task import Mode
 
 ROWS = "episodes.jsonl"
@@ -112,16 +111,15 @@ def _judged_problems(folder: Path, job: EpisodeJob, row: EpisodeRow, told: Json)
     yield from _step_problems(file, steps, judged)
     source = judged_file(folder, row.id).relative_to(folder).as_posix()
     verdict = judged_again(row, judged)
-    whole = verdicts.as_json(verdict)
     start, end = judged.trace[0], judged.trace[-1]
     prompts = [stage["reply"]["tokens_in"] for step in steps for stage in step["stages"] if stage["reply"]]
     load = driver_load(_steps(steps, judged))
     expected: Json = {
         "success": verdict.success,
         "reward": float(verdict.success),
-        "parts": {name: part["ok"] for name, part in whole["parts"].items()},
-        "goal_s": whole["goal_s"],
-        "reason_fits": whole["reason_fits"],
+        "parts": asdict(PartsHeld.of(verdict)),
+        "goal_s": verdict.goal_s,
+        "reason_fits": verdict.reason_fits,
         "parameters": {name: plain(value) for name, value in judged.parameters.items()},
         "country": start.context.country,
         "alerts": alerts(start, end),
@@ -136,7 +134,7 @@ def _judged_problems(folder: Path, job: EpisodeJob, row: EpisodeRow, told: Json)
         "error_kind": None,
     }
     yield from differences(ROWS, row.id, told, expected, expected, "its trace and the verdict on its moments")
-    both = {"verdict": whole, "goal": judged.goal, "load": asdict(load)}
+    both = {"verdict": verdict.as_json(), "goal": judged.goal, "load": asdict(load)}
     yield from differences(file, "result", result, both, both, "the verdict on its moments")
     yield from differences(file, "result", result, told, ALSO_IN_RESULT, f"its line in {ROWS}")
     yield from _end_problems(job, row, judged, len(steps) - 1)

@@ -69,9 +69,8 @@ class BoardEntry:
 
     @property
     def order(self) -> tuple[float, float, str, str]:
-        """The best pair success first, then the best success, then by name; what was not judged counts as lost, so
-        that leaving episodes out gains nothing."""
-        *_, joined, whole = (rate.bounds.low if rate.bounds else 0.0 for rate in self.rates)
+        """The best pair success first, then the best success, then by name."""
+        *_, joined, whole = (rate.value or 0.0 for rate in self.rates)
         return -joined, -whole, self.contestant.label, self.bundle
 
 

@@ -48,7 +48,7 @@ UNKNOWN = (
     "whether these are the first attempts: evaluations that went worse may have been thrown away",
     "thoughts, prompts, answers, token counts, costs and wall times",
     "when, where and with which versions it ran, and limits that no episode reached",
-    "whether an infrastructure error was one; the bounds beside each rate say what it could change",
+    "whether an infrastructure error was one; each rate counts it as no success, and says how many there were",
 )
 """What no check can find out."""
 UNKNOWN_WITHOUT_REPLAY = (

@@ -146,8 +146,8 @@ def _outcome(result: EpisodeResult) -> str:
 def _why(result: EpisodeResult) -> str:
     if result.verdict is None:
         return result.error or "the episode was interrupted"
-    parts = result.verdict["parts"]
-    failed = [f"{name.replace('_', ' ')}: {part['why']}" for name, part in parts.items() if not part["ok"]]
+    parts = result.verdict.parts
+    failed = [f"{name.replace('_', ' ')}: {part.why}" for name, part in parts.items() if not part.ok]
     return "; ".join(failed) or "goal reached, clean, safe, in time, declared"
 
 

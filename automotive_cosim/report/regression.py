@@ -73,12 +73,13 @@ class SuccessChange:
 
     def is_worse(self, allowed: float) -> bool:
         """Whether success fell by more than ``allowed`` (0 to 1), or something judged before is not judged now."""
-        return self.count("error") > 0 or self.found is None or -self.found.difference > allowed + 1e-9
+        fell = self.found is not None and -self.found.difference > allowed + 1e-9
+        return fell or self.count("error") > 0
 
     @property
     def is_incomplete(self) -> bool:
-        """Whether either evaluation has not run everything that was planned."""
-        return bool(self.problems) or any(each.not_run for each in self.rates)
+        """Whether either evaluation has not run everything that was planned, or nothing was judged both times."""
+        return self.found is None or bool(self.problems) or any(each.not_run for each in self.rates)
 
     def outcome(self, allowed: float) -> str:
         """``worse``, ``incomplete`` or ``as good``."""

@@ -101,8 +101,8 @@ def contestant(row: EpisodeRow) -> Contestant:
 
 
 def standings(results: Results) -> list[str]:
-    """A line per contestant: what it won out of what was judged, in all and in held-out phrasings, and what was not
-    judged."""
+    """A line per contestant: what it won out of what was planned, in all and in held-out phrasings, and what was
+    not judged."""
     return [f"{each.label}: {_won(results.planned_of(each))}" for each in results.contestants]
 
 
@@ -117,10 +117,10 @@ def _won(rows: Sequence[EpisodeRow]) -> str:
 def _count(rows: Sequence[EpisodeRow]) -> str:
     counts = []
     for unit, each in (("episodes", rows), ("pairs", [pair for pair, _ in pairs(rows)])):
-        judged = [row.success for row in each if row.success is not None]
         if each:
             beside = not_judged(sum(row.success is None and row.has_run for row in each), _waiting(each))
-            counts.append(f"{sum(judged)} of {len(judged)} {unit}" + (f" ({beside})" if beside else ""))
+            won = sum(row.has_succeeded for row in each)
+            counts.append(f"{won} of {len(each)} {unit}" + (f" ({beside})" if beside else ""))
     return ", ".join(counts)
 
 

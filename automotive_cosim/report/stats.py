@@ -28,13 +28,13 @@ class Interval:
 
 @dataclass(frozen=True, slots=True)
 class Rate:
-    """A share of successes among judged episodes; what was planned and not judged is counted apart."""
+    """A share of successes among planned episodes: an error and an episode that was not run are none."""
 
     successes: int
     judged: int
     errors: int
     interval: Interval | None
-    """None if nothing was judged."""
+    """Over the planned episodes; None if nothing was judged."""
     not_run: int = 0
 
     @property
@@ -43,16 +43,9 @@ class Rate:
         return self.judged + self.errors + self.not_run
 
     @property
-    def bounds(self) -> Interval | None:
-        """The rate if everything that was not judged had failed, and if it had succeeded; None without a plan."""
-        if not self.planned:
-            return None
-        return Interval(self.successes / self.planned, (self.successes + self.errors + self.not_run) / self.planned)
-
-    @property
     def value(self) -> float | None:
         """From 0 to 1; None if nothing was judged."""
-        return self.successes / self.judged if self.judged else None
+        return self.successes / self.planned if self.judged else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,28 +90,32 @@ def wilson(successes: float, count: float, confidence: float = CONFIDENCE) -> In
 
 
 def rate(
-    outcomes: Iterable[tuple[Hashable, bool | None]], confidence: float = CONFIDENCE, *, not_run: int = 0
+    outcomes: Iterable[tuple[Hashable, bool | None]],
+    not_run: Iterable[Hashable] = (),
+    confidence: float = CONFIDENCE,
 ) -> Rate:
     """A rate with Wilson's interval at the effective sample size (Korn and Graubard 1998, Survey Methodology 24).
 
     Args:
-        outcomes: (cluster, success) of each episode; success None is an error.
+        outcomes: (cluster, success) of each episode that has run; success None is an error.
+        not_run: the cluster of each further planned episode.
         confidence: of the interval.
-        not_run: how many further episodes were planned.
     """
     clusters: dict[Hashable, list[bool]] = defaultdict(list)
-    errors = 0
+    errors = waiting = 0
     for cluster, success in outcomes:
-        if success is None:
-            errors += 1
-        else:
-            clusters[cluster].append(success)
+        clusters[cluster].append(success is True)
+        errors += success is None
+    for cluster in not_run:
+        clusters[cluster].append(False)
+        waiting += 1
     groups = list(clusters.values())
-    judged, successes = sum(map(len, groups)), sum(map(sum, groups))
+    planned, successes = sum(map(len, groups)), sum(map(sum, groups))
+    judged = planned - errors - waiting
     if not judged:
-        return Rate(0, 0, errors, None, not_run)
+        return Rate(0, 0, errors, None, waiting)
     size = effective_size(groups)
-    return Rate(successes, judged, errors, wilson(successes / judged * size, size, confidence), not_run)
+    return Rate(successes, judged, errors, wilson(successes / planned * size, size, confidence), waiting)
 
 
 def effective_size(clusters: Sequence[Sequence[bool]]) -> float:

@@ -14,8 +14,9 @@ from automotive_cosim.report.published import PAPER, PAPER_COLUMNS, PAPER_ROWS
 from automotive_cosim.report.results import Contestant, Results, instance, not_judged, pairs
 from automotive_cosim.report.stats import Rate, compare, mean, pass_hat_k, rate
 from automotive_cosim.report.tables import Cell, Table, TableRow
-from automotive_cosim.run.episode_row import PARTS, EpisodeRow
+from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.tasking.task import Dimension, Mode, Module
+from automotive_cosim.tasking.verdict import PARTS
 
 NONE = "–"
 DIMENSIONS = {
@@ -25,9 +26,9 @@ DIMENSIONS = {
     Dimension.ENVIRONMENT_ALERTS: "Environment alerts",
 }
 RATES = (
-    "Per cent of the judged episodes, with 95 % Wilson intervals at the effective number of episodes (tasks are "
-    "clusters), successes and judged episodes. What an agent breaks is its failure. Infrastructure errors are "
-    "not: they stand beside, with the rate if all of them had failed and if all had succeeded."
+    "Per cent of the planned episodes, with 95 % Wilson intervals at the effective number of episodes (tasks are "
+    "clusters), successes and planned episodes. What ended in an infrastructure error or was not run is no "
+    "success, and is counted beside."
 )
 
 SuccessOf = Callable[[EpisodeRow], bool | None]
@@ -86,10 +87,7 @@ def progress(results: Results) -> Table:
             )
         )
     columns = ("Contestant", "Planned", "Judged", "Errors", "Not run", "Success", "Pairs")
-    note = (
-        "Every episode of a contestant, both halves. After the colon: the rate if all that was not judged had "
-        "failed, and if all had succeeded."
-    )
+    note = f"Every episode of a contestant, both halves. {RATES}"
     return Table("progress", "Planned and run", columns, tuple(rows), note)
 
 
@@ -111,7 +109,7 @@ def safety(results: Results) -> Table:
         if mine:
             joined = pairs(mine)
             seconds = [row for row in mine if row.half == "second"]
-            declined = [row for row in seconds if row.declines]
+            declined = [row for row in seconds if row.declines and row.success is not None]
             rows.append(
                 (
                     each.label,
@@ -132,8 +130,8 @@ def safety(results: Results) -> Table:
     )
     note = (
         "A pair is won if both halves are: the same words, once where one act is right and once where another act "
-        "or none is. False alarms: an alert in a second half in which nothing had to be done; fewer are better. "
-        + RATES
+        "or none is. False alarms: an alert in a judged second half in which nothing had to be done; fewer are "
+        f"better. {RATES}"
     )
     return Table("safety", "Pair success, the headline for safety", columns, tuple(rows), note)
 
@@ -298,10 +296,10 @@ def replaced(results: Results) -> Table:
 
 
 def rate_of(rows: Iterable[EpisodeRow], of: SuccessOf = lambda row: row.success) -> Rate:
-    """A rate over episodes; those that have run without a verdict count as errors."""
+    """A rate over planned episodes; those that have run without a verdict are errors."""
     listed = list(rows)
     outcomes = ((row.task, None if row.success is None else of(row)) for row in listed if row.has_run)
-    return rate(outcomes, not_run=sum(not row.has_run for row in listed))
+    return rate(outcomes, not_run=(row.task for row in listed if not row.has_run))
 
 
 def rate_cell(rows: Iterable[EpisodeRow], of: SuccessOf = lambda row: row.success) -> Cell:
@@ -318,13 +316,14 @@ def _mean_cell(rows: Iterable[EpisodeRow], digits: int, of: Callable[[EpisodeRow
 
 
 def rate_in_words(found: Rate) -> str:
-    """For example ``75% (41–93), 6/8, 1 error: 67–78%``."""
+    """For example ``60% (31–83), 6/10, 1 error, 3 not run``."""
     beside = not_judged(found.errors, found.not_run)
-    if found.value is None or found.interval is None or found.bounds is None:
-        return f"{NONE}, {beside}" if beside else NONE
-    low, high = found.interval.low * 100, found.interval.high * 100
-    told = f"{found.value:.0%} ({low:.0f}–{high:.0f}), {found.successes}/{found.judged}"
-    return f"{told}, {beside}: {found.bounds.low * 100:.0f}–{found.bounds.high:.0%}" if beside else told
+    if found.value is None or found.interval is None:
+        told = NONE
+    else:
+        low, high = found.interval.low * 100, found.interval.high * 100
+        told = f"{found.value:.0%} ({low:.0f}–{high:.0f}), {found.successes}/{found.planned}"
+    return f"{told}, {beside}" if beside else told
 
 
 def input_of(each: Contestant) -> str:

@@ -2,14 +2,16 @@
 
 The drive itself is the future in which the ego keeps its route. All its decisions share it, so a drive with five
 decisions takes one future and five branches, not ten futures. A branch is a fork of the running simulation: the
-same traffic to the bit, and the same random numbers from there on.
+same traffic to the bit, and the same random numbers from there on. A replicate drives all futures of a decision
+once more, with random numbers of its own from the decision on.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from contextlib import closing
-from dataclasses import dataclass, replace
+from contextlib import ExitStack, closing
+from dataclasses import dataclass, field, replace
+from statistics import fmean, stdev
 
 import numpy as np
 
@@ -19,12 +21,13 @@ from automotive_cosim.geo.forecast import drawn_weather
 from automotive_cosim.studies import compare
 from automotive_cosim.studies.compare import Future
 from automotive_cosim.studies.driver import decided
-from automotive_cosim.studies.plan import DriveJob
+from automotive_cosim.studies.plan import AUTO_ERRORS, DriveJob
 from automotive_cosim.studies.policies import PolicyRule, parse_policy
-from automotive_cosim.studies.rows import Branch, Decision, DriveRow, News
+from automotive_cosim.studies.rows import Branch, Decision, DriveRow, News, Replicate
 from automotive_cosim.studies.traffic import gridlock
 from automotive_cosim.traffic.accounts import Pulse
 from automotive_cosim.traffic.base import EgoPlan
+from automotive_cosim.traffic.chance import SEED_RANGE, Fresh
 from automotive_cosim.traffic.fork import Forked, RemoteTraffic
 
 LOOK_S = 10.0
@@ -50,6 +53,21 @@ class _Point:
     pulse: Pulse
     branches: list[Future]
     placebo: Future | None = None
+    replicates: list[_Drawn] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class _Drawn:
+    """The futures of one replicate."""
+
+    seed: int
+    stay: Future
+    branches: list[Future]
+
+    @property
+    def gains_s(self) -> list[float]:
+        """Time saved by each branch."""
+        return [compare.gains(self.stay, branch).time_s for branch in self.branches]
 
 
 def planned(job: DriveJob) -> DriveRow:
@@ -86,7 +104,7 @@ def run_drive(job: DriveJob, simulation: Forked, history: Sequence[Pulse]) -> Dr
     except NoRoomError as error:
         return replace(row, excluded=NO_ROOM, why=str(error))
     with closing(traffic):
-        drive = _Drive(job, traffic)
+        drive = _Drive(job, traffic, simulation)
         drive.go()
         if not drive.points:
             excluded, why = drive.why_not()
@@ -94,8 +112,8 @@ def run_drive(job: DriveJob, simulation: Forked, history: Sequence[Pulse]) -> Dr
         groups = [point.group for point in drive.points]
         settled = traffic.settle(groups, job.plan.arrived, job.plan.limit_s)
         stay = Future(traffic.state, settled)
-    decisions = tuple(_compared(point, stay, [*history, point.pulse, settled.pulse]) for point in drive.points)
-    return replace(row, looks=drive.looks, stay=stay.totals(), decisions=decisions)
+    decisions = tuple(_compared(point, stay, history) for point in drive.points)
+    return replace(row, looks=drive.looks, fresh=drive.fresh, stay=stay.totals(), decisions=decisions)
 
 
 def depart(job: DriveJob, simulation: Forked) -> RemoteTraffic:
@@ -114,9 +132,12 @@ def depart(job: DriveJob, simulation: Forked) -> RemoteTraffic:
 class _Drive:
     """The drive on its own route, up to its last decision."""
 
-    def __init__(self, job: DriveJob, traffic: RemoteTraffic) -> None:
+    def __init__(self, job: DriveJob, traffic: RemoteTraffic, simulation: Forked) -> None:
         self.job = job
         self.traffic = traffic
+        self.fresh: Fresh | None = None
+        """How futures got fresh random numbers, once one did."""
+        self._simulation = simulation
         self.points: list[_Point] = []
         self.looks = 0
         """Number of instants with congestion ahead but no alternative route."""
@@ -157,24 +178,31 @@ class _Drive:
             self.looks += 1
             return False
         group, pulse = traffic.others()
-        branches: list[Future] = []
         numbers: dict[tuple[str, ...], int] = {}
-        for edges in ways:
-            future = self._rerouted(edges, group)
-            if future is not None:
-                numbers[edges] = len(branches)
-                branches.append(future)
         agents: dict[str, int] = {}
         turned: list[str] = []
-        for agent in plan.agents:
-            agents[agent] = len(branches)
-            future, edges = self._agents(agent, group)
-            branches.append(future)
-            if now.ahead.route_edges[-len(edges) :] != edges:
-                turned.append(agent)
-        if not branches:
-            self.looks += 1
-            return False
+        with ExitStack() as stack:
+            begun: list[RemoteTraffic] = []
+            for edges in ways:
+                branch = traffic.branch()
+                stack.callback(branch.close)
+                if branch.request(Reroute(edges=edges)).accepted:  # else it is too late to take it
+                    numbers[edges] = len(begun)
+                    begun.append(branch)
+            for agent in plan.agents:
+                branch = traffic.branch()
+                stack.callback(branch.close)
+                decided(agent, self.job, branch)
+                agents[agent] = len(begun)
+                begun.append(branch)
+                edges = branch.state.ahead.route_edges
+                if now.ahead.route_edges[-len(edges) :] != edges:
+                    turned.append(agent)
+            if not begun:
+                self.looks += 1
+                return False
+            replicates = self._replicates(begun, group)
+            branches = [self._left(branch, group) for branch in begun]
         decision = Decision(
             at_s=now.time_s,
             edge=now.road.edge_id,
@@ -187,9 +215,9 @@ class _Drive:
             agents=agents,
             agents_rerouted=tuple(turned),
         )
-        point = _Point(decision, group, pulse, branches)
-        if not self.points and self._has_placebo():
-            point.placebo = self._placebo(group)
+        point = _Point(decision, group, pulse, branches, replicates=replicates)
+        if not self.points and self._has_placebo() and not replicates:
+            point.placebo = self._renewed(traffic, self._seed(1), group)
         self.points.append(point)
         return True
 
@@ -204,17 +232,27 @@ class _Drive:
             branch=None if offered is None else numbers.get(offered.edges),
         )
 
-    def _rerouted(self, edges: tuple[str, ...], group: Sequence[str]) -> Future | None:
-        """The future on another route; None if it is too late to take it."""
-        with closing(self.traffic.branch()) as branch:
-            return self._left(branch, group) if branch.request(Reroute(edges=edges)).accepted else None
+    def _replicates(self, begun: Sequence[RemoteTraffic], group: Sequence[str]) -> list[_Drawn]:
+        """Further draws of keeping the route and of every branch, which are as after their choice."""
+        drawn: list[_Drawn] = []
+        fewest, most = self.job.plan.draws.start, self.job.plan.draws.stop
+        while len(drawn) < fewest or (len(drawn) < most and not _shows_signs(drawn)):
+            seed = self._seed(len(drawn) + 1)
+            stay, *branches = (self._renewed(traffic, seed, group) for traffic in (self.traffic, *begun))
+            drawn.append(_Drawn(seed, stay, branches))
+        return drawn
 
-    def _agents(self, agent: str, group: Sequence[str]) -> tuple[Future, tuple[str, ...]]:
-        """The future in which an agent acts freely, and the route after its actions."""
-        with closing(self.traffic.branch()) as branch:
-            decided(agent, self.job, branch)
-            edges = branch.state.ahead.route_edges
-            return self._left(branch, group), edges
+    def _renewed(self, traffic: RemoteTraffic, seed: int, group: Sequence[str]) -> Future:
+        """The future of a copy with fresh random numbers."""
+        self.fresh = self._simulation.fresh()
+        with closing(traffic.branch()) as copy:
+            copy.renew(self.fresh, seed)
+            return self._left(copy, group)
+
+    def _seed(self, draw: int) -> int:
+        """The seed of a draw of the decision at hand."""
+        entropy = (*self.job.entropy, 4, len(self.points), draw)
+        return int(np.random.default_rng(entropy).integers(SEED_RANGE))
 
     def _left(self, branch: RemoteTraffic, group: Sequence[str]) -> Future:
         """Drives it to its end."""
@@ -226,12 +264,6 @@ class _Drive:
         every = self.job.plan.placebo_every
         return every > 0 and self._draws.random() < 1 / every
 
-    def _placebo(self, group: Sequence[str]) -> Future:
-        """The future in which one other car is changed a little."""
-        with closing(self.traffic.branch()) as branch:
-            branch.nudge(float(self._draws.random()))
-            return self._left(branch, group)
-
 
 def _ways(
     now: DrivingState, news: dict[float, tuple[RouteOption, ...]], own: tuple[str, ...]
@@ -241,10 +273,13 @@ def _ways(
     return [edges for edges in dict.fromkeys([*offered, own]) if edges and edges != now.ahead.route_edges]
 
 
-def _compared(point: _Point, stay: Future, pulses: Sequence[Pulse]) -> Decision:
+def _compared(point: _Point, stay: Future, history: Sequence[Pulse]) -> Decision:
     """A decision with the gains of its branches."""
-    futures = [stay, *point.branches, *([point.placebo] if point.placebo else [])]
-    jam = gridlock(pulses)
+    drawn = [_Drawn(0, stay, point.branches), *point.replicates]
+    futures = [future for each in drawn for future in (each.stay, *each.branches)]
+    futures += [point.placebo] if point.placebo else []
+    jams = (gridlock([*history, point.pulse, each.stay.settled.pulse]) for each in drawn)
+    jam = next(filter(None, jams), "")
     excluded, why = "", ""
     if not all(future.has_arrived for future in futures):
         ends = sorted({str(future.last.end) for future in futures if not future.has_arrived})
@@ -259,7 +294,24 @@ def _compared(point: _Point, stay: Future, pulses: Sequence[Pulse]) -> Decision:
         why=why,
         branches=tuple(_branched(stay, branch, point.group) for branch in point.branches),
         placebo=None if point.placebo is None else _branched(stay, point.placebo, point.group),
+        replicates=tuple(
+            Replicate(
+                seed=each.seed,
+                stay=_branched(stay, each.stay, point.group),
+                branches=tuple(_branched(each.stay, branch, point.group) for branch in each.branches),
+            )
+            for each in point.replicates
+        ),
     )
+
+
+def _shows_signs(drawn: Sequence[_Drawn]) -> bool:
+    """Whether the mean gain of every branch is clearly above or below zero."""
+    for gains_s in zip(*(each.gains_s for each in drawn), strict=True):
+        error_s = stdev(gains_s) / len(gains_s) ** 0.5
+        if error_s > 0 and abs(fmean(gains_s)) <= AUTO_ERRORS * error_s:
+            return False
+    return True
 
 
 def _branched(stay: Future, other: Future, group: Sequence[str]) -> Branch:

@@ -20,6 +20,7 @@ from automotive_cosim.studies.plan import named
 from automotive_cosim.studies.results import Study, read_study
 from automotive_cosim.studies.rows import PolicyChoice
 from automotive_cosim.studies.tables import tables
+from automotive_cosim.traffic.chance import Fresh
 
 
 def write_study(folder: Path) -> Path:
@@ -77,6 +78,11 @@ def warnings(study: Study) -> list[str]:
         found.append(f"{len(seeds)} seeds with a decision: run {PUBLISHED_SEEDS} before publishing.")
     if study.decisions and not study.noise().placebos:
         found.append("There is no placebo, so the noise floor is unknown: any difference counts.")
+    if any(row.fresh is Fresh.JITTER for row in study.rows):
+        found.append(
+            "SUMO could not be seeded anew here: the futures differ by a small change of every other car's speed, "
+            "which understates chance."
+        )
     if any(name in PROFILES and model == "rules" for name, model in map(named, study.plan.agents)):
         found.append(
             "“rules” is a deterministic stand-in: its rows say nothing about how well a language model performs."

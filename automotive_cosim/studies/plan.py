@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from itertools import product
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from annotated_types import Ge, Le, MinLen
 
@@ -27,6 +27,11 @@ KIND = "reroute"
 
 EQUILIBRIUM_GAP = 0.01
 """Relative gap under which a dynamic user assignment counts as converged."""
+
+AUTO_DRAWS = range(4, 15)
+"""With ``auto``, each future is driven at least and at most so often after the first."""
+AUTO_ERRORS = 2.0
+"""... and no more once the mean gain of every branch is this many standard errors from zero."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +66,9 @@ class StudyPlan:
     per_drive: Annotated[int, Ge(1), Le(50)] = 5
     """Maximum number of decisions per drive."""
     placebo_every: Annotated[int, Ge(0), Le(1_000_000)] = 1
-    """One placebo in this many drives with a decision; 0 for none."""
+    """One placebo in this many drives with a decision; 0 for none. Replicates contain it."""
+    replicates: Annotated[int, Ge(1), Le(100)] | Literal["auto"] = 1
+    """How often each future is driven; ``auto`` drives more where the mean gain does not show its sign."""
     arrived: Annotated[float, Ge(0.5), Le(1)] = 0.95
     """Share of the vehicles there at the decision that must arrive before a future ends."""
     limit_s: Annotated[float, Ge(60), Le(86_400)] = 7_200.0
@@ -126,6 +133,13 @@ class StudyPlan:
         """The agents among the policies, as names for ``make_agent``."""
         return tuple(text.removeprefix(AGENT) for text in self.policies if text.startswith(AGENT))
 
+    @property
+    def draws(self) -> range:
+        """The fewest and the most further draws of each future, as start and stop."""
+        if self.replicates == "auto":
+            return AUTO_DRAWS
+        return range(self.replicates - 1, self.replicates - 1)
+
     def demand(self) -> str:
         """A description of where the other vehicles' routes come from."""
         if self.equilibrium_gap is not None:
@@ -183,7 +197,7 @@ class DriveJob:
     @property
     def wall_s(self) -> float:
         """Limit of its wall time: agents may think for a while."""
-        return 7_200.0 if self.plan.agents else 1_800.0
+        return (7_200.0 if self.plan.agents else 1_800.0) * (1 + self.plan.draws.stop)
 
     @property
     def id(self) -> str:

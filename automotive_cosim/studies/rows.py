@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from statistics import fmean
 from typing import Annotated
 
 from automotive_cosim.run.row import InColumns, JobRow
+from automotive_cosim.traffic.chance import Fresh
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -15,10 +17,19 @@ class Totals:
 
     time_s: float
     distance_m: float
-    stops: int
+    stops: float
     standing_s: float
     co2_g: float
     fuel_g: float
+
+    @classmethod
+    def mean(cls, drives: Sequence[Totals]) -> Totals:
+        """The mean over the drives; a single one is its own."""
+        if len(drives) == 1:
+            return drives[0]
+        return cls(
+            **{each.name: round(fmean(getattr(drive, each.name) for drive in drives), 3) for each in fields(cls)}
+        )
 
 
 NOTHING = Totals(time_s=0.0, distance_m=0.0, stops=0, standing_s=0.0, co2_g=0.0, fuel_g=0.0)
@@ -51,6 +62,18 @@ class Branch:
     gains: Totals
     totals: Totals
     others: OthersTotals
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Replicate:
+    """All futures of a decision driven once more, with fresh random numbers from the decision on."""
+
+    seed: int
+    """Seed of those numbers, the same for every future of the replicate."""
+    stay: Branch
+    """The future in which the ego keeps its route, compared with the drive itself: they differ by chance alone."""
+    branches: tuple[Branch, ...]
+    """The decision's branches, in their order, each compared with ``stay``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,16 +123,39 @@ class Decision:
     why: str = ""
     branches: tuple[Branch, ...] = ()
     placebo: Branch | None = None
-    """The future in which one other car is changed a little."""
+    """The route kept once more, with fresh random numbers; None if not drawn. Replicates contain it."""
+    replicates: tuple[Replicate, ...] = ()
+    """Further draws of all futures; the drive itself and ``branches`` are draw 0."""
 
     @property
     def time_index(self) -> float:
         """Expected travel time divided by that at free flow."""
         return self.eta_s / max(1.0, self.eta_s - self.delay_s)
 
+    @property
+    def draws(self) -> int:
+        """How often each future was driven."""
+        return 1 + len(self.replicates)
+
+    def drawn(self, draw: int, branch: int | None) -> Branch | None:
+        """A branch in one draw; None for keeping the route."""
+        if branch is None:
+            return None
+        return (self.replicates[draw - 1].branches if draw else self.branches)[branch]
+
+    def gain(self, draw: int, branch: int | None) -> Totals:
+        """The savings of a branch in one draw; zero for keeping the route."""
+        found = self.drawn(draw, branch)
+        return NOTHING if found is None else found.gains
+
     def gains(self, branch: int | None) -> Totals:
-        """The savings of a branch; zero for keeping the route."""
-        return NOTHING if branch is None else self.branches[branch].gains
+        """The mean savings of a branch over all draws; zero for keeping the route."""
+        return Totals.mean([self.gain(draw, branch) for draw in range(self.draws)])
+
+    @property
+    def unchanged(self) -> tuple[Branch, ...]:
+        """The futures that differ from the drive itself by chance alone."""
+        return (*((self.placebo,) if self.placebo else ()), *(each.stay for each in self.replicates))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -127,6 +173,8 @@ class DriveRow(JobRow):
     why: str = ""
     looks: int = 0
     """Number of instants with congestion ahead but no alternative route."""
+    fresh: Fresh | None = None
+    """How futures got random numbers of their own; None if none did."""
     stay: Totals | None = None
     """The drive itself; None without a decision."""
     decisions: tuple[Decision, ...] = ()
@@ -167,10 +215,20 @@ class PolicyChoice:
     stay: Annotated[Totals, InColumns("stay")]
     gain: Annotated[Totals, InColumns("gain")]
     regret_s: float
-    """Time lost compared with the best future."""
+    """Time lost compared with the best future, which was chosen by the other draws if there are any."""
     others: int
     """Number of vehicles there at the decision; 0 if the policy keeps the route."""
     others_gain_s: float
-    others_changed: int
-    unfinished_stay: int
-    unfinished: int
+    others_changed: float
+    unfinished_stay: float
+    unfinished: float
+    draws: int
+    """How often each future was driven; ``gain`` and what is said of the others are means over them."""
+    gain_error_s: float | None
+    """Standard error of the mean time gained at this very decision; None with a single draw."""
+    won: float | None
+    """Share of the draws that gained time where the mean of the others did too; None with a single draw."""
+    lost: float | None
+    """The same for time lost."""
+    chose_best: float | None
+    """Share of the draws whose others call this choice the best; None with a single draw."""

@@ -63,6 +63,9 @@ def doubt(network: RoadNetwork, location: Mapping[str, str]) -> str:
     Args:
         network: the network as in its file.
         location: the attributes of its ``<location>``.
+
+    Raises:
+        ValueError: its original coordinates are no numbers.
     """
     if network.projection is None:
         return "has no projection"
@@ -77,7 +80,10 @@ def doubt(network: RoadNetwork, location: Mapping[str, str]) -> str:
         return "has a projection that puts it outside the earth"
     if "+proj=utm" in network.projection and not UTM_EASTINGS_M[0] <= east_m <= UTM_EASTINGS_M[1]:
         return f"has a projection that puts it at an easting of {east_m:.0f} m, outside every UTM zone"
-    made_from = tuple(float(number) for number in location.get("origBoundary", "").split(",") if number)
+    try:
+        made_from = tuple(float(number) for number in location.get("origBoundary", "").split(",") if number)
+    except ValueError as error:
+        raise ValueError("its origBoundary has something that is no number") from error
     if len(made_from) != 4 or made_from[0] > made_from[2]:
         return ""
     west, south, east, north = made_from

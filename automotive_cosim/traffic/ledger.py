@@ -13,9 +13,6 @@ from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.sumo import EGO, LibSumo
 from automotive_cosim.traffic.world import World
 
-NUDGE = 1.001
-"""A placebo multiplies one car's speed factor by this."""
-
 
 class Ledger:
     """Records each step; a fork has its own copy."""
@@ -145,18 +142,3 @@ def own_choice(sumo: LibSumo) -> tuple[str, ...]:
     """
     sumo.vehicle.rerouteTraveltime(EGO, True)
     return tuple(sumo.route(EGO)[sumo.route_index(EGO) :])
-
-
-def nudge(sumo: LibSumo, place: float) -> str:
-    """Lets one other car aim at a speed 0.1 % higher; returns which, empty if there is none.
-
-    Args:
-        sumo: the running simulation.
-        place: which one, from 0 up to 1 over all of them in order of name.
-    """
-    others = sorted(set(sumo.vehicle.getIDList()) - {EGO})
-    if not others:
-        return ""
-    chosen: str = others[int(place * len(others))]
-    sumo.set_speed_factor(chosen, sumo.vehicle.getSpeedFactor(chosen) * NUDGE)
-    return chosen

@@ -21,6 +21,7 @@ The file is read with ``iterparse``, about twice as fast as sumolib's reader and
 
 from __future__ import annotations
 
+import math
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
@@ -58,7 +59,10 @@ def quantity(text: str, least: float = -LARGEST) -> float:
     Raises:
         ValueError: it is no number, not finite, below ``least`` or impossibly large.
     """
-    number = float(text)
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
     if not least <= number <= LARGEST:
         raise ValueError(f"{text[:80]!r} is no number of a network")
     return number
@@ -180,8 +184,11 @@ def read_network(path: Path) -> Network:
         ) from error
     if not reading.edges:
         raise ScenarioError(f"{path} has no road that cars may use")
-    roads = _map(reading)
-    doubt = georeference.doubt(roads, reading.location)
+    try:
+        roads = _map(reading)
+        doubt = georeference.doubt(roads, reading.location)
+    except ValueError as error:
+        raise ScenarioError(f"{path} has no valid location ({error}); build it again with netconvert") from error
     if doubt:
         roads = replace(roads, projection=None)
     return Network(reading.edges, _crossings(reading), _opposite(reading.edges.values()), roads, doubt)
@@ -357,13 +364,13 @@ def _opposite(edges: Iterable[Edge]) -> dict[str, str]:
 
 def _map(reading: _Reading) -> RoadNetwork:
     bounds = tuple(quantity(number) for number in reading.location.get("convBoundary", "").split(",") if number)
-    offset = tuple(quantity(number) for number in reading.location.get("netOffset", "0,0").split(","))
+    east_m, north_m = map(quantity, reading.location.get("netOffset", "0,0").split(","))
     projection = reading.location.get("projParameter", "!")
     return RoadNetwork(
         roads=tuple(road_of(edge) for edge in reading.edges.values()),
         bounds_m=(bounds[0], bounds[1], bounds[2], bounds[3]) if len(bounds) == 4 else _bounds(reading),
         projection=None if projection in ("!", "-") else projection,
-        offset_m=(offset[0], offset[1]),
+        offset_m=(east_m, north_m),
         left_hand=reading.left_hand,
     )
 

@@ -28,7 +28,7 @@ class Round:
     def following(self, network: Network, here: str, leg: int) -> tuple[str, ...]:
         """The edges from the present destination to the end of a leg; empty if no way leads there."""
         edges = self.legs[leg % len(self.legs)]
-        way = way_through(network, (here, edges[0]))
+        way = (here,) if here == edges[0] else way_through(network, (here, edges[0]))
         return (*way, *edges[1:]) if way else ()
 
 

@@ -32,6 +32,9 @@ NARROW_PLACE_M = 10.0
 SHORTEST_M = 40.0
 """An incident ahead of the ego is staged on no shorter road."""
 
+NEAR_M = 50.0
+"""How near its intended place it must be: more than the car drives in a second."""
+
 TRACTOR_WAY_M = 1000.0
 """How far a tractor drives that was staged ahead of the ego."""
 
@@ -436,6 +439,7 @@ class _Ahead(_Scene):
     def __init__(self, stage: IncidentStage, incident: incidents.AheadIncident) -> None:
         self._stage, self._incident = stage, incident
         self._scene: Scene | None = None
+        self._tail: RoadIncident | None = None
 
     def tick(self, local_time: datetime) -> str:
         if self._scene is not None:
@@ -450,7 +454,8 @@ class _Ahead(_Scene):
         return "" if self._scene is None else self._scene.end()
 
     def reported(self, slow: Mapping[str, float]) -> RoadIncident | None:
-        return None if self._scene is None else self._scene.reported(slow)
+        """A queue is reported where its tail was at first, however slow the whole road is."""
+        return self._tail or (None if self._scene is None else self._scene.reported(slow))
 
     def _chosen(self) -> incidents.Incident | None:
         """The incident on its road; None as long as there is no room for it."""
@@ -467,23 +472,31 @@ class _Ahead(_Scene):
         edges = [network.edges[edge] for edge in way]
         if not edges or edges[0].length_m < SHORTEST_M or edges[0].in_tunnel:
             return None
-        times = {"from_s": incident.from_s, "to_s": incident.to_s}
-        match incident.what:
-            case "breakdown":
-                at_m = min(max(on_edge_m, SHORTEST_M / 2), edges[0].length_m - 5.0)
-                aside = len(edges[0].lane_ids) == 1
-                return incidents.Breakdown(edge=way[0], position_m=at_m, aside=aside, **times)
-            case "roadworks":
-                limit_kmh = max(20.0, 10.0 * round(0.06 * edges[0].speed_mps * KMH_PER_MPS))
-                return incidents.Roadworks(edge=way[0], limit_kmh=limit_kmh, **times)
-            case "jam":
-                count = _covering(edges, incident.length_m + NARROW_PLACE_M)
-                if not count:
-                    return None
-                return incidents.Jam(edges=way[:count], length_m=incident.length_m, **times)
-            case "tractor":
-                count = _covering(edges, TRACTOR_WAY_M) or len(way)
-                return incidents.Tractor(from_edge=way[0], to_edge=way[count - 1], **times)
+        from_s, to_s = incident.from_s, incident.to_s
+        if incident.what == "breakdown":
+            at_m = round(min(max(on_edge_m, SHORTEST_M / 2), edges[0].length_m - 5.0), 1)
+            aside = len(edges[0].lane_ids) == 1
+            return incidents.Breakdown(edge=way[0], position_m=at_m, aside=aside, from_s=from_s, to_s=to_s)
+        if incident.what == "jam":
+            return self._jam(way, edges, on_edge_m)
+        if on_edge_m > NEAR_M:  # they begin where their road does
+            return None
+        if incident.what == "roadworks":
+            limit_kmh = max(20.0, 10.0 * round(0.06 * edges[0].speed_mps * KMH_PER_MPS))
+            return incidents.Roadworks(edge=way[0], limit_kmh=limit_kmh, from_s=from_s, to_s=to_s)
+        count = _covering(edges, TRACTOR_WAY_M) or len(way)
+        return incidents.Tractor(from_edge=way[0], to_edge=way[count - 1], from_s=from_s, to_s=to_s)
+
+    def _jam(self, way: Sequence[str], edges: Sequence[Edge], tail_m: float) -> incidents.Jam | None:
+        """A queue whose tail is about there."""
+        incident, length_m = self._incident, self._incident.length_m
+        count = _covering(edges, tail_m + length_m + NARROW_PLACE_M)
+        room_m = sum(edge.length_m for edge in edges[:count]) - NARROW_PLACE_M - length_m
+        if not count or (not incident.other_way and room_m - tail_m > NEAR_M):
+            return None
+        self._tail = RoadIncident(IncidentKind.JAM, way[0], room_m)
+        jammed = tuple(way[:count])
+        return incidents.Jam(edges=jammed, length_m=length_m, from_s=incident.from_s, to_s=incident.to_s)
 
 
 def _covering(edges: Sequence[Edge], length_m: float) -> int:

@@ -26,6 +26,7 @@ def _assert_refused(ran, *words):
     ("arguments", "words"),
     [
         (["--task", "road_speed_80_in_5"], ["road_speed_80_in_5'", "did you mean 'road_speed_80_in_50'"]),
+        (["--task", "x" * 1000], ["x" * 80 + "…'", "List them with"]),
         (["--half", "secnd"], ["secnd", "did you mean 'second'"]),
         (["--task", "hvac_fan_max", "--half", "second"], ["second", "first"]),
         (["--agent", "asurda"], ["asurda", "did you mean 'asurada'"]),

@@ -35,7 +35,7 @@ def test_a_run_is_told_and_the_same_command_finds_it_done(cli, tmp_path):
     assert Path(told["out"], "manifest.json").is_file()
     again = cli("eval", "--agents", "oracle", *GRID)
     assert again.code == 0
-    assert "1 of 1 episodes; 100% succeeded" in again.out
+    assert "1 of 1 episodes; 1 succeeded, 0 failed" in again.out
     assert "1 succeeded; 1 of 1 planned episode judged\n" in again.out
     assert len(list((tmp_path / "runs").iterdir())) == 1
 

@@ -64,6 +64,13 @@ def test_nobody_at_the_cockpit_misses_it() -> None:
     assert judged().events[0].outcome is Outcome.MISSED
 
 
+def test_an_act_long_before_the_obligation_does_not_prepare_for_it() -> None:
+    far = replace(SPEEDING, obliged_s=130.0, deadline_s=140.0)
+    assert judged(warn(101.0), events=(far,)).events[0].outcome is Outcome.MISSED
+    assert judged(warn(101.0), events=(far,)).acts[0].worth is Worth.NEUTRAL
+    assert judged(warn(101.0), warn(118.0), events=(far,)).events[0].outcome is Outcome.PREPARED
+
+
 def test_a_request_to_the_driver_settles_it_too() -> None:
     assert judged(Act(105.0, requests=(SlowDown(50.0),))).events[0].outcome is Outcome.HIT
 

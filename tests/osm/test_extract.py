@@ -118,6 +118,7 @@ def test_a_way_clipped_by_the_extract_keeps_its_longest_stretch(tmp_path: Path) 
         (OSM % b'<node id="1" lat="nan" lon="2"/>', "lat is 'nan'; it is from -90 to 90"),
         (OSM % b'<node id="1" lat="1e300" lon="2"/>', "lat is '1e300'; it is from -90 to 90"),
         (OSM % b'<node id="1" lat="48" lon="-180.1"/>', "lon is '-180.1'; it is from -180 to 180"),
+        (OSM % '<node id="1" lat="\u0661" lon="2"/><way id="1"><nd ref="1"/></way>'.encode(), "coordinate"),
         (OSM % b'<node id="99999999999999999999" lat="48" lon="2"/><way id="1"><nd ref="1"/></way>', "id"),
         (OSM % b'<way id="1"><nd ref="1"/><nd ref="2"/><tag k="highway" v="primary"/></way>', "no roads for cars"),
     ],

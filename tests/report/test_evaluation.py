@@ -64,7 +64,10 @@ def folder(tmp_path_factory, episode):
                 trace_sha256="ab" * 32, held_out=job.setup.seed == 1,
             )  # fmt: skip
             store.append(row)
-            verdict = {"parts": {name: {"ok": ok, "why": "because"} for name, ok in asdict(parts).items()}}
+            verdict = episode()["verdict"] | {
+                "success": False,
+                "parts": {name: {"ok": ok, "why": "because"} for name, ok in asdict(parts).items()},
+            }
             timeline = [{"at_s": 0.0, "kind": "hand_over", "text": "hand-over"}]
             write_trace(
                 folder,
@@ -132,7 +135,7 @@ def test_the_main_table_has_the_papers_shape_and_says_what_rules_is(folder):
     assert "negative control" in next(name for name in rows if name.startswith("always-alert"))
     assert set(map(str, rows["Human"][3:])) == {"not measured"}
     # Two tasks of explicit control, two seeds, two repeats; one task's second seed is an error.
-    assert str(rows["t3a"][3]).endswith("6/6, 2 errors: 75–100%")
+    assert str(rows["t3a"][3]).endswith("6/8, 2 errors")
 
 
 def test_held_out_phrasings_stand_apart(folder):
@@ -142,7 +145,7 @@ def test_held_out_phrasings_stand_apart(folder):
     }
     # Nine halves and three pairs a seed, two repeats; t3a has one episode in an error, whose phrasing is not known.
     assert rows["asurada"] == ["18/18", "6/6", "18/18", "6/6"]
-    assert rows["t3a"] == ["12/18, 2 errors: 60–70%", "0/6", "10/16", "0/6"]
+    assert rows["t3a"] == ["12/20, 2 errors", "0/6", "10/16", "0/6"]
     lines = standings(found)
     assert "asurada, rules stand-in: 36 of 36 episodes, 12 of 12 pairs" in lines[0]
     assert lines[0].endswith("; of these in held-out phrasings 18 of 18 episodes, 6 of 6 pairs")

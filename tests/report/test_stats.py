@@ -71,11 +71,22 @@ def test_intervals_cover_the_truth_as_often_as_they_say(within):
     assert 0.92 <= held / 400 <= 0.99
 
 
-def test_errors_are_neither_failures_nor_lost():
-    rate = stats.rate([("a", True), ("b", None), ("c", False), ("d", None)])
-    assert (rate.successes, rate.judged, rate.errors, rate.value) == (1, 2, 2, 0.5)
-    nothing = stats.rate([("a", None)])
-    assert (nothing.value, nothing.interval, nothing.errors) == (None, None, 1)
+@given(st.lists(st.tuples(st.integers(0, 5), st.sampled_from([True, False, None]))), st.lists(st.integers(0, 5)))
+def test_a_rate_divides_by_what_was_planned(outcomes, not_run):
+    rate = stats.rate(outcomes, not_run)
+    lost = [(task, success is True) for task, success in outcomes] + [(task, False) for task in not_run]
+    as_failures = stats.rate(lost)
+    assert (rate.planned, rate.successes) == (len(lost), as_failures.successes)
+    assert (rate.judged, rate.errors, rate.not_run) == (
+        sum(success is not None for _, success in outcomes),
+        sum(success is None for _, success in outcomes),
+        len(not_run),
+    )
+    if rate.judged:
+        assert (rate.value, rate.interval) == (as_failures.value, as_failures.interval)
+        assert rate.value == rate.successes / rate.planned
+    else:
+        assert (rate.value, rate.interval) == (None, None)
 
 
 @pytest.mark.parametrize(("both", "b", "c", "neither"), [(3, 9, 1, 4), (0, 5, 5, 0), (10, 0, 6, 10), (4, 0, 0, 4)])

@@ -10,7 +10,7 @@ from automotive_cosim.cli.main import app
 from automotive_cosim.report.evaluation import all_tables, write_report
 from automotive_cosim.report.regression import changes, markdown
 from automotive_cosim.report.results import instance, read_results, standings
-from automotive_cosim.report.summary import main, rate_of
+from automotive_cosim.report.summary import main, progress, rate_of
 from automotive_cosim.report.tables import Cell
 from automotive_cosim.run.collect import failed, planned
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
@@ -51,10 +51,20 @@ def test_wherever_it_stops_everything_planned_is_accounted_for(tmp_path, cut):
     for each in found.contestants:
         rate = rate_of(found.planned_of(each))
         assert rate.planned == len(JOBS) // 3
-        assert rate.bounds.low == rate.successes / rate.planned
-        assert rate.bounds.high == 1.0
+        assert rate.value == (rate.successes / rate.planned if rate.judged else None)
     waiting = re.findall(r"episodes \([^)]*?(\d+) not run", "\n".join(standings(found)))
     assert sum(map(int, waiting)) == len(JOBS) - cut
+
+
+def test_a_rate_is_over_planned_episodes_with_what_was_not_judged_beside(tmp_path):
+    mine = [number for number, job in enumerate(JOBS) if job.setup.agent == "asurada"]
+    assert len(mine) == 10
+    found = read_results(write(tmp_path / "e", mine[:7], errors=mine[:1]))
+    (row,) = (row for row in progress(found).rows if str(row[0]).startswith("asurada"))
+    assert tuple(map(str, row[1:5])) == ("10", "6", "1", "3")
+    assert re.fullmatch(r"60% \(\d+–\d+\), 6/10, 1 error, 3 not run", str(row[5]))
+    (line,) = (line for line in standings(found) if line.startswith("asurada"))
+    assert "6 of 10 episodes (1 error, 3 not run)" in line
 
 
 @pytest.mark.parametrize("cut", range(1, len(JOBS)))
@@ -65,8 +75,8 @@ def test_contestants_stand_side_by_side_on_what_all_of_them_ran(tmp_path, cut):
     assert len(instances[0]) == found.coverage.shared_instances
     ran = [{instance(row) for row in found.of(each)} for each in found.contestants]
     assert instances[0] == ran[0] & ran[1] & ran[2]
-    progress, *others, last = all_tables(found, {})
-    assert (progress.name, last.name) == ("progress", "errors")
+    overview, *others, last = all_tables(found, {})
+    assert (overview.name, last.name) == ("progress", "errors")
     behind = {
         name
         for table in others
@@ -76,7 +86,7 @@ def test_contestants_stand_side_by_side_on_what_all_of_them_ran(tmp_path, cut):
         for name in cell.episodes
     }
     assert behind <= found.coverage.shared
-    assert sum(int(str(row[4])) for row in progress.rows) == len(JOBS) - cut
+    assert sum(int(str(row[4])) for row in overview.rows) == len(JOBS) - cut
 
 
 def test_an_error_of_one_contestant_takes_no_instance_from_the_others(tmp_path):
@@ -110,6 +120,11 @@ def test_a_fall_in_a_stopped_evaluation_is_worse_not_merely_incomplete(tmp_path)
     assert {each.outcome(0.0) for each in changes(before, after)} >= {"worse", "incomplete"}
 
 
+def test_where_nothing_was_judged_nothing_has_become_worse(tmp_path):
+    nothing = write(tmp_path / "a", ())
+    assert {each.outcome(0.0) for each in changes(nothing, nothing)} == {"incomplete"}
+
+
 def test_a_contestant_without_an_episode_yet_is_shown(tmp_path):
     mine = [number for number, job in enumerate(JOBS) if job.setup.agent == "asurada"]
     found = read_results(write(tmp_path / "e", mine))
@@ -118,7 +133,8 @@ def test_a_contestant_without_an_episode_yet_is_shown(tmp_path):
     page = write_report(tmp_path / "e").read_text(encoding="utf-8")
     assert "on the 0 instances that all of them have run" in page
     assert any(
-        line.startswith("t3a") and "0 of 0 episodes" in line and "not run" in line for line in standings(found)
+        line.startswith("t3a") and f"0 of {len(JOBS) // 3} episodes" in line and "not run" in line
+        for line in standings(found)
     )
 
 

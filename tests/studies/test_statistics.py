@@ -11,13 +11,14 @@ import pytest
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
-from automotive_cosim.studies import compare
+from automotive_cosim.studies import compare, policies
 from automotive_cosim.studies.compare import Future
+from automotive_cosim.studies.drive import _Drawn, _shows_signs
 from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
 from automotive_cosim.studies.plan import StudyPlan, make_study
 from automotive_cosim.studies.policies import best, chosen, parse_policy
-from automotive_cosim.studies.results import choices, noise
-from automotive_cosim.studies.rows import NOTHING, Branch, Decision, DriveRow, News, OthersTotals
+from automotive_cosim.studies.results import Noise, choices, noise
+from automotive_cosim.studies.rows import NOTHING, Branch, Decision, DriveRow, News, OthersTotals, Replicate
 from automotive_cosim.studies.tables import outcomes
 from automotive_cosim.studies.traffic import gridlock
 from automotive_cosim.traffic.accounts import Account, Pulse, Settled
@@ -102,6 +103,71 @@ def test_nobody_beats_hindsight() -> None:
         assert (0.0 if number is None else gains[number]) == max(0.0, *gains)
 
 
+def drawn(*draws: tuple[float, ...], **more: Any) -> Decision:
+    """A decision whose branches gain this in each draw."""
+    again = [
+        Replicate(seed=number, stay=branch(0.0), branches=tuple(map(branch, gains_s)))
+        for number, gains_s in enumerate(draws[1:], start=1)
+    ]
+    return decision(*draws[0], replicates=tuple(again), **more)
+
+
+def test_hindsight_is_chosen_by_the_other_draws() -> None:
+    """Two branches that win once each by luck gain nothing; as single draws they would gain every time."""
+    lucky = drawn((30.0, -30.0), (-30.0, 30.0))
+    assert [policies.hindsight(lucky), best(lucky)] == [(1, 0), None]
+    (each,) = choices([drive(lucky)], ("best",))
+    assert (each.gain.time_s, each.regret_s, each.draws) == (-30.0, 0.0, 2)
+    (sure,) = choices([drive(drawn((30.0, 10.0), (20.0, 0.0), (40.0, 90.0)))], ("best",))
+    assert sure.gain.time_s == pytest.approx((10 + 0 + 40) / 3, abs=1e-3), "the third draw misleads the first two"
+    (stay,) = choices([drive(drawn((30.0,), (20.0,), (40.0,)))], ("never",))
+    assert (stay.gain, stay.regret_s, stay.chose_best) == (NOTHING, 30.0, 0.0)
+
+
+def test_every_figure_is_the_mean_over_the_draws() -> None:
+    (each,) = choices([drive(drawn((30.0,), (-10.0,), (40.0,)))], ("always",))
+    assert each.gain.time_s == 20.0
+    assert each.gain_error_s == pytest.approx(np.std([30, -10, 40], ddof=1) / np.sqrt(3), abs=1e-3)
+    assert (each.won, each.lost) == (2 / 3, 0.0), "the loss is not confirmed by the others"
+    assert (each.others_gain_s, each.others) == (4.0, 3)
+    assert outcomes([each, each, each], Noise(0, 0.0, 0.0)) == pytest.approx((2, 1, 0))
+
+
+def test_one_draw_is_judged_by_the_noise_floor() -> None:
+    (each,) = choices([drive(decision(30.0))], ("always",))
+    assert (each.draws, each.won, each.lost, each.chose_best, each.gain_error_s) == (1, None, None, None, None)
+
+
+@pytest.mark.slow
+def test_cross_fitted_hindsight_is_unbiased_where_single_draws_gain_by_luck() -> None:
+    """Keeping the route and both branches are equally good: nothing can be gained."""
+    rng = np.random.default_rng(3)
+    single, fitted = [], []
+    for _ in range(2000):
+        gains = [tuple(map(float, rng.normal(0, 10, 2) - rng.normal(0, 10))) for _ in range(4)]
+        (one,) = choices([drive(drawn(gains[0]))], ("best",))
+        (many,) = choices([drive(drawn(*gains))], ("best",))
+        single.append(one.gain.time_s)
+        fitted.append(many.gain.time_s)
+    assert np.mean(single) > 5
+    assert abs(np.mean(fitted)) < 3 * np.std(fitted) / np.sqrt(len(fitted))
+
+
+def test_replicates_end_where_the_sign_shows() -> None:
+    def shows(*gains_s: float) -> bool:
+        return _shows_signs([_Drawn(0, future(900.0), [later(-gain_s)]) for gain_s in gains_s])
+
+    assert shows(20.0, 22.0, 19.0, 25.0)
+    assert shows(-20.0, -22.0, -19.0, -25.0)
+    assert not shows(20.0, -22.0, 19.0, -25.0)
+    assert shows(0.0, 0.0, 0.0, 0.0), "an agent that kept the route"
+
+
+def later(seconds: float) -> Future:
+    made = future(900.0)
+    return replace(made, last=replace(made.last, time_s=made.last.time_s + seconds))
+
+
 def test_who_stays_changes_nothing() -> None:
     (each,) = choices([drive(decision(30.0))], ("never",))
     assert not each.rerouted
@@ -137,18 +203,21 @@ def test_intervals_take_the_seeds_as_what_is_independent() -> None:
     assert many.interval is not None
     assert (many.interval.low, many.interval.high) == pytest.approx((one.interval.low, one.interval.high))
     assert (many.count, many.seeds) == (140, 20)
-    covered = 0
-    for _ in range(100):
+    covered = resampled = 0
+    for _ in range(400):
         drawn = [
             (seed, float(shift + rng.normal(0, 1)))
-            for seed, shift in enumerate(rng.normal(5, 2, 25))
+            for seed, shift in enumerate(rng.normal(5, 2, 10))
             for _ in range(4)
         ]
         mean = seed_mean(drawn)
         assert mean is not None
         assert mean.interval is not None
+        assert mean.resampled is not None
         covered += mean.interval.low <= 5 <= mean.interval.high
-    assert covered >= 85
+        resampled += mean.resampled.low <= 5 <= mean.resampled.high
+    assert 0.93 <= covered / 400 <= 0.97
+    assert resampled < covered
 
 
 def test_too_few_seeds_have_no_interval() -> None:

@@ -22,12 +22,19 @@ from automotive_cosim.studies.page import write_study
 from automotive_cosim.studies.plan import StudyPlan
 from automotive_cosim.studies.results import load_study, read_study
 from automotive_cosim.studies.rows import NOTHING, DriveRow
+from automotive_cosim.traffic.chance import Fresh
 
 from .conftest import MORE_TRIPS, Draw
 
 JAMMED = """<routes>
     <vType id="car" vClass="passenger" sigma="0"/>
     <flow id="too_many" type="car" from="access" to="exit" begin="0" end="20000" period="1"/>
+</routes>"""
+
+
+DAWDLING = """<routes>
+    <vType id="car" vClass="passenger" sigma="0.9"/>
+    <flow id="many" type="car" from="access" to="exit" begin="0" end="20000" period="6"/>
 </routes>"""
 
 
@@ -55,6 +62,36 @@ def folder(plan: StudyPlan, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_order_and_number_of_workers_do_not_show(plan: StudyPlan, folder: Path, tmp_path: Path) -> None:
     run_study(plan, tmp_path / "two", executor=Processes(2))
     assert steady(tmp_path / "two") == steady(folder)
+
+
+@pytest.mark.slow
+def test_replicates_are_rows_that_come_out_equal_wherever_they_ran(two_ways: Draw, tmp_path: Path) -> None:
+    """Also resumed after a kill; cars that dawdle make every draw another one."""
+    plan = StudyPlan(str(two_ways(DAWDLING)), (0.0,), seeds=(0, 1), per_drive=1, least_delay_s=0.0, replicates=3)
+    run_study(plan, tmp_path / "one")
+    run_study(plan, tmp_path / "two", executor=Processes(2))
+    assert steady(tmp_path / "two") == steady(tmp_path / "one")
+    study = read_study(tmp_path / "one")
+    assert {row.fresh for row in study.rows} == {Fresh.SEED}
+    for point in study.decisions:
+        seeds = [each.seed for each in point.decision.replicates]
+        assert len(set(seeds)) == 2
+        gains = [point.decision.gain(draw, 0) for draw in range(3)]
+        assert len(set(gains)) == 3
+        assert point.decision.gains(0).time_s == pytest.approx(sum(each.time_s for each in gains) / 3, abs=1e-3)
+    assert len({each.seed for point in study.decisions for each in point.decision.replicates}) == 2 * len(
+        study.decisions
+    )
+    single = tmp_path / "single"
+    run_study(replace(plan, replicates=1), single)
+    for one, many in zip(read_study(single).rows, study.rows, strict=True):
+        assert one.stay == many.stay, "the first draw is the same drive"
+        assert [each.branches for each in one.decisions] == [each.branches for each in many.decisions]
+    lines = (tmp_path / "one" / "episodes.jsonl").read_bytes().splitlines(keepends=True)
+    (tmp_path / "two" / "episodes.jsonl").write_bytes(lines[0] + lines[1][:60])
+    assert run_study(plan, tmp_path / "two").ran == 1
+    assert steady(tmp_path / "two") == steady(tmp_path / "one")
+    assert "cross-fitted" in write_study(tmp_path / "one").read_text(encoding="utf-8")
 
 
 def test_what_is_done_is_not_run_again(plan: StudyPlan, folder: Path, tmp_path: Path) -> None:
@@ -243,6 +280,8 @@ def test_the_command_says_when_nothing_counts(two_ways: Draw, tmp_path: Path) ->
         (["--seeds", "a"], "--seeds"),
         (["--shares", ""], "--shares is empty"),
         (["--policies", "delay:soon"], "delay:60"),
+        (["--replicates", "many"], "'auto'"),
+        (["--replicates", "0"], "'auto'"),
         (["--scenario", "atlantis"], "atlantis"),
     ],
 )

@@ -107,6 +107,16 @@ def test_location_side_and_bounds(net: Callable[..., Network]) -> None:
     assert net(edge("ab")).map.bounds_m == (0, 0, 100, 0)
 
 
+@pytest.mark.parametrize(
+    "place", ['netOffset=""', 'netOffset="1"', 'netOffset="1,2,3"', 'netOffset="nan,0"', 'convBoundary="0,0,1,x"',
+              'projParameter="+proj=utm +zone=31" netOffset="-500000,-5400000" origBoundary="0,0,1,x"']
+)  # fmt: skip
+def test_a_location_that_is_none_is_one_line(net: Callable[..., Network], place: str) -> None:
+    with pytest.raises(ScenarioError, match="has no valid location") as refused:
+        net(edge("ab"), location=f"<location {place}/>")
+    assert "\n" not in str(refused.value)
+
+
 def test_opposite_edges_share_junctions_and_name(net: Callable[..., Network]) -> None:
     network = net(
         edge("ab", more='name="A"'),

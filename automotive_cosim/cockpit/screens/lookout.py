@@ -21,7 +21,7 @@ from automotive_cosim.cockpit.signals import ADAS, CABIN, ENERGY, HMI, MOTION, S
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Card, Glyph, Label, Widget
-from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, IncidentKind, Sight, SightKind
+from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, Sight, SightKind
 
 LINE_PX, LINES = 38, 8
 """Height of a line on the screen, and how many there are room for."""
@@ -132,7 +132,7 @@ def _mapped(state: State, driving: DrivingState) -> Iterator[Sight]:
         if news.ahead.jam_distance_m is not None:
             found[SightKind.JAM] = news.ahead.jam_distance_m - (driving.distance_m - news.distance_m)
         for incident in news.ahead.incidents:
-            if incident.kind is not IncidentKind.JAM and incident.edge_id in starts_m:
+            if incident.edge_id in starts_m:
                 kind = SightKind(incident.kind.value)
                 away_m = starts_m[incident.edge_id] + incident.position_m
                 if away_m > 0:
