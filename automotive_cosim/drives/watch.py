@@ -144,7 +144,10 @@ class Watch(Session):
         self._note_acts()
         if action is None or action.action_type is not ActionType.WAIT:
             feedback = super()._spend(action, feedback, cost_s)
-            return self._told(feedback.code, feedback.text)
+            goes_on = action is not None and action.action_type is ActionType.STATUS
+            return self._told(
+                feedback.code, "the watch goes on; wait for what changes" if goes_on else feedback.text
+            )
         self.waits += 1
         begun_s, longest_s = self.world.moment.time_s, float(action.seconds or LONGEST_S)
         left_s = min(longest_s, self._left_s())

@@ -1,10 +1,11 @@
 """A watch on a drive: what wakes, what ends it, and that watchers get what they deserve."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import pytest
 
-from automotive_cosim.contracts import Action, ActionType, AlertKind, GoalStatus, Observation
+from automotive_cosim.agents import Thinker, make_agent
+from automotive_cosim.contracts import Action, ActionType, AlertKind, Element, GoalStatus, Observation
 from automotive_cosim.drives.departure import depart
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.score import Score, score
@@ -169,6 +170,24 @@ def test_the_rule_perfect_watcher_meets_every_event_and_disturbs_nobody(begin: B
 @pytest.mark.parametrize("watcher", [AlertAll(), AlertOnWake(), AlertOften()])
 def test_who_alerts_by_rote_does_worse_than_nobody(begin: Begin, watcher: Actor) -> None:
     assert played(begin(), watcher).value < 0.0
+
+
+@pytest.mark.slow
+def test_the_stand_in_keeps_watch_with_one_call_a_wait(begin: Begin) -> None:
+    agent = make_agent("asurada", "rules")
+    watch = begin(240.0, agent.channels)
+    agent.reset(watch.goal)
+    asked = []
+
+    def count(session: Watch, seen: Sequence[Element]) -> None:
+        assert isinstance(agent, Thinker)
+        asked.append((session.steps[-2].action, sum(stage.reply is not None for stage in agent.stages)))
+
+    play(watch, agent, (count,))
+    assert watch.judgement is not None
+    assert score(watch.judgement, watch.seconds).met > 0
+    waited = {calls for before, calls in asked if before is not None and before.action_type is ActionType.WAIT}
+    assert waited == {1}
 
 
 @pytest.mark.slow
