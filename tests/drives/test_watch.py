@@ -149,7 +149,7 @@ def test_the_same_seed_and_actions_give_the_same_trace(begin: Begin) -> None:
 def test_nobody_at_the_cockpit_scores_0_and_drives_as_the_baseline(begin: Begin) -> None:
     watch = begin()
     found = played(watch, Silent())
-    assert found.events > 2
+    assert found.events >= 2
     assert (found.value, found.recall, found.false_alarms) == (0.0, 0.0, 0)
     assert [m.driving for m in watch.moments] == [m.driving for m in watch.baseline_moments]
 
@@ -158,7 +158,7 @@ def test_nobody_at_the_cockpit_scores_0_and_drives_as_the_baseline(begin: Begin)
 def test_the_rule_perfect_watcher_meets_every_event_and_disturbs_nobody(begin: Begin) -> None:
     watch = begin()
     found = played(watch, RulePerfect())
-    assert found.events > 2
+    assert found.events >= 2
     assert found.recall == 1.0
     assert found.nuisances == 0
     assert found.value > 90.0
