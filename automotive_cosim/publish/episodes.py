@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 
 from automotive_cosim.cockpit.actions import parse
-from automotive_cosim.contracts import Feedback, FeedbackCode, Json
+from automotive_cosim.contracts import ActionType, Feedback, FeedbackCode, Json
 from automotive_cosim.episode.specification import ROUNDING_S, End
 from automotive_cosim.errors import CosimError
 from automotive_cosim.interface.trace import Step, plain, sha256
@@ -169,6 +169,14 @@ def _step_problems(file: str, steps: Sequence[Json], judged: Judged) -> Iterator
     declared = (action.goal_status, action.reason) if action else (None, None)
     if declared != (judged.declared, judged.reason):
         yield Problem(file, f"step {len(steps) - 1} action", "is not the declaration that was judged")
+    if tuple(text for step in steps for text in _answers(step)) != judged.said:
+        yield Problem(file, "action", "the answers are not those that were judged")
+
+
+def _answers(step: Json) -> Iterator[str]:
+    action = step["action"]
+    if isinstance(action, dict) and action.get("action_type") == ActionType.ANSWER:
+        yield str(action.get("text"))
 
 
 def _end_problems(job: EpisodeJob, row: EpisodeRow, judged: Judged, steps: int) -> Iterator[Problem]:

@@ -83,6 +83,7 @@ class Collector(Watcher):
             episode.watched_from_s,
             episode.counterfactual,
             episode.instance.half.allowed_writes,
+            episode.said,
         )
 
     def keeps_pictures_of(self, result: EpisodeResult) -> bool:
