@@ -13,7 +13,7 @@ from automotive_cosim.interface.observe import Channel
 READS = frozenset({Channel.VEHICLE, Channel.CONTEXT})
 LOOK_S = 2
 """How often it looks again while something nears a threshold."""
-GONE_S = 33.0
+GONE_S = 31.0
 """A concern that was away for longer is another one."""
 
 
@@ -196,10 +196,10 @@ def _forbids_fog_lamp(known: Known, label: str) -> bool:
 def _weather(known: Known) -> Iterator[Concern]:
     if known.is_icy:
         yield Concern("slippery", AlertKind.SLIPPERY, known.speed_kmh > 40, is_there=True)
-    share = re.search(r"(\d+)%", known.changes.get("glass", (0.0, ""))[1])
+    share = re.search(r"(\d+\.\d)%", known.changes.get("glass", (0.0, ""))[1])
     if share is not None and known.speed_kmh >= 1:
         yield Concern("glass", AlertKind.VISIBILITY, float(share[1]) >= 20)
-    share = re.search(r"(\d+)%", known.changes.get("rain", (0.0, ""))[1])
+    share = re.search(r"(\d+\.\d)%", known.changes.get("rain", (0.0, ""))[1])
     if share is not None and known.speed_kmh >= 1:
         yield Concern("rain", AlertKind.VISIBILITY, float(share[1]) >= 20)
 

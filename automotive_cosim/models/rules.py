@@ -52,8 +52,8 @@ def _answer(page: Page) -> str:
     if isinstance(decided, Decline):
         return _say(decided.because, _status(decided.status, decided.reason))
     if isinstance(decided, Wait):
-        longest = {} if decided.seconds is None else {"seconds": decided.seconds}
-        return _say(decided.because, {"action_type": "wait"} | longest)
+        wait: dict[str, object] = {"action_type": "wait"}
+        return _say(decided.because, wait if decided.seconds is None else wait | {"seconds": decided.seconds})
     end = (("status", "complete", "none"),) if decided.declares else ()
     return _go_on(page, decided.because, (*decided.moves, *end), 0)
 

@@ -121,7 +121,7 @@ TELLS: tuple[tuple[str, str], ...] = (
     (r"vehicle ahead: .* 0\.\d s", "distance"),
     (r"open: .*(trunk|flap)", "vehicle"),
     (r"tyre: lowest 1\d\d kPa", "vehicle"),
-    (r"(glass|rain): .* [2-9]\d%", "visibility"),
+    (r"(glass|rain): .* [2-9]\d\.\d%", "visibility"),
     (r"weather: .*(snow|freezing|rime)", "slippery"),
     (r"driving time: [2-9]\.", "fatigue"),
 )
