@@ -311,7 +311,7 @@ WAKES: tuple[Wake, ...] = (
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class Noticed:
     """One change that an agent is told of."""
 
     words: str
@@ -333,7 +333,7 @@ class Alarm:
     wakes: tuple[Wake, ...] = WAKES
     _held: dict[str, _Held] = field(default_factory=dict)
 
-    def see(self, now: Moment) -> tuple[Change, ...]:
+    def see(self, now: Moment) -> tuple[Noticed, ...]:
         """What has changed at the newest moment. At the first, whatever there is to report."""
         found = []
         for wake in self.wakes:
@@ -344,8 +344,8 @@ class Alarm:
             if reading != held.told and now.time_s - held.since_s >= wake.hold_s:
                 held.told = reading
                 found.append(
-                    Change(f"{wake.name}: over", wakes=False)
+                    Noticed(f"{wake.name}: over", wakes=False)
                     if reading is None
-                    else Change(f"{wake.name}: {wake.words(now)}", wakes=True)
+                    else Noticed(f"{wake.name}: {wake.words(now)}", wakes=True)
                 )
         return tuple(found)

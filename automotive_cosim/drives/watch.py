@@ -21,7 +21,7 @@ from automotive_cosim.drives.events import KINDS, Act, Event, Tracker
 from automotive_cosim.drives.harm import Harm, harm
 from automotive_cosim.drives.judge import Judgement, judge
 from automotive_cosim.drives.order import STANDING_ORDER
-from automotive_cosim.drives.wakes import LONGEST_S, Alarm, Change
+from automotive_cosim.drives.wakes import LONGEST_S, Alarm, Noticed
 from automotive_cosim.episode.baseline import Baseline
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.session import Session, beginning
@@ -77,7 +77,7 @@ class Watch(Session):
     twins: list[Twin] = field(default_factory=list)
     due_anyway: dict[int, float | None] = field(default_factory=dict)
     """By number of an event, when its obligation arose in its do-nothing copy."""
-    changes: list[Change] = field(default_factory=list)
+    changes: list[Noticed] = field(default_factory=list)
     """What has changed since the last observation."""
     waits: int = 0
     wakes: int = 0

@@ -122,6 +122,11 @@ class World:
         round_ = planned(self.network, plan.trip, plan.onward) if plan.onward else None
         edges = round_.first if round_ else self._trip_edges(plan.trip)
         self._add_ego(edges, driver_profile, parked=plan.parked)
+        if plan.emission_class:
+            try:
+                self._sumo.vehicle.setEmissionClass(EGO, plan.emission_class)
+            except self._sumo.refusals as error:
+                raise ScenarioError(f"SUMO has no emission class {plan.emission_class!r}: {error}") from error
         for _ in range(round(INSERTION_LIMIT_S / self.step_s)):
             self.step()
             if beat is not None:
