@@ -15,7 +15,7 @@ from automotive_cosim.formats.annotations import OneOf
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class CarChange:
     """One change of a signal. A switch can be turned back afterwards, and what is measured goes on from there."""
 
     at_s: Annotated[float, Ge(0)]
@@ -27,7 +27,7 @@ class Change:
     """How long a number takes to get there, evenly; 0 is at once."""
 
 
-def schedule(changes: Iterable[Change]) -> tuple[Change, ...]:
+def schedule(changes: Iterable[CarChange]) -> tuple[CarChange, ...]:
     """The changes in chronological order.
 
     Raises:
@@ -36,7 +36,7 @@ def schedule(changes: Iterable[Change]) -> tuple[Change, ...]:
     return tuple(sorted(map(_checked, changes), key=lambda change: change.at_s))
 
 
-def step(change: Change, now: Any, since_s: float, dt_s: float) -> Any:
+def step(change: CarChange, now: Any, since_s: float, dt_s: float) -> Any:
     """The value after ``dt_s`` more seconds of a change that has begun, ``since_s`` seconds after its begin."""
     left_s = change.over_s - since_s
     if left_s <= 1e-9 or not isinstance(now, float):
@@ -44,7 +44,7 @@ def step(change: Change, now: Any, since_s: float, dt_s: float) -> Any:
     return now + (float(change.value) - now) * dt_s / (left_s + dt_s)
 
 
-def _checked(change: Change) -> Change:
+def _checked(change: CarChange) -> CarChange:
     if not all(math.isfinite(time_s) and time_s >= 0 for time_s in (change.at_s, change.over_s)):
         raise UserError(
             f"{change.path} changes at {change.at_s} s over {change.over_s} s; give seconds after departure, 0 or "

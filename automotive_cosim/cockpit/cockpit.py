@@ -22,7 +22,7 @@ import numpy.typing as npt
 from automotive_cosim.cockpit import deeds, desk, language, media, people, places, update, vhal
 from automotive_cosim.cockpit.arrivals import Arrival, timeline
 from automotive_cosim.cockpit.cabin import CabinStart
-from automotive_cosim.cockpit.changes import Change, schedule
+from automotive_cosim.cockpit.changes import CarChange, schedule
 from automotive_cosim.cockpit.content import content
 from automotive_cosim.cockpit.display import Display
 from automotive_cosim.cockpit.map import road_map
@@ -104,7 +104,7 @@ class Cockpit:
         cabin: Mapping[str, Any] | None = None,
         signals: Mapping[str, Any] | None = None,
         arrivals: Sequence[Arrival] = (),
-        changes: Sequence[Change] = (),
+        changes: Sequence[CarChange] = (),
         sign_camera: bool = True,
         lookout: bool = False,
         driven_s: float = 0.0,

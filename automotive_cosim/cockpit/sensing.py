@@ -7,7 +7,7 @@ from datetime import datetime
 
 from automotive_cosim.cockpit.cabin import Air, Cabin
 from automotive_cosim.cockpit.calls import receive
-from automotive_cosim.cockpit.changes import Change, step
+from automotive_cosim.cockpit.changes import CarChange, step
 from automotive_cosim.cockpit.desk import FILM_S
 from automotive_cosim.cockpit.errands import odometer, play_on
 from automotive_cosim.cockpit.reach import NEWS_EVERY_S, RADAR_M
@@ -167,7 +167,7 @@ def _change(state: State, dt_s: float) -> None:
     state.changes = tuple(going_on)
 
 
-def _make(state: State, change: Change, since_s: float, dt_s: float) -> None:
+def _make(state: State, change: CarChange, since_s: float, dt_s: float) -> None:
     """Turns a switch as from inside the car, even one that is locked while driving; sets what is measured."""
     signal, signals = named(change.path), state.signals
     if signal in TYRES and state.tyres is not None:

@@ -9,7 +9,7 @@ from typing import Any
 
 from automotive_cosim.cockpit.arrivals import Arrival
 from automotive_cosim.cockpit.cabin import Cabin, CabinStart
-from automotive_cosim.cockpit.changes import Change
+from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.desk import Desk
 from automotive_cosim.cockpit.map import RoadMap
 from automotive_cosim.cockpit.media import Library, Listening
@@ -144,7 +144,7 @@ class State:
     pending: tuple[RoadRequest, ...] = ()
     expected: tuple[Arrival, ...] = ()
     """Calls and messages still to come."""
-    changes: tuple[Change, ...] = ()
+    changes: tuple[CarChange, ...] = ()
     """Changes of the car that are still to come or going on."""
     departed_s: float = 0.0
     """Simulation time of the first ``sense``."""

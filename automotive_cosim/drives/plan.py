@@ -10,7 +10,7 @@ from typing import Annotated
 from annotated_types import Ge, Le, MinLen
 
 from automotive_cosim.cockpit.arrivals import Arrival
-from automotive_cosim.cockpit.changes import Change
+from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.formats.annotations import Form, Latitude, Longitude
 from automotive_cosim.formats.checked import as_json, checked
 from automotive_cosim.formats.toml import dotted
@@ -67,7 +67,7 @@ class DrivePlan:
     """Changes of the way that the driver drives."""
     signals: Mapping[str, bool | float | str] = field(default_factory=dict)
     """VSS paths and values at departure."""
-    changes: tuple[Change, ...] = ()
+    changes: tuple[CarChange, ...] = ()
     """Changes of the car that nobody commands."""
     arrivals: tuple[Arrival, ...] = ()
     """Incoming calls and messages."""

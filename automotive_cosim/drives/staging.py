@@ -12,7 +12,7 @@ from typing import Literal
 
 import numpy as np
 
-from automotive_cosim.cockpit.changes import Change
+from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.signals import BODY, CABIN, ENERGY, HVAC, LIGHTS, SEAT, TYRE, Signal
 from automotive_cosim.contracts import Weather
 from automotive_cosim.drives.sky import drizzle, fog, rain, sleet
@@ -34,7 +34,7 @@ class Props:
     """What one stunt adds to a plan."""
 
     moods: tuple[DriverAt, ...] = ()
-    changes: tuple[Change, ...] = ()
+    changes: tuple[CarChange, ...] = ()
     incidents: tuple[AnyIncident, ...] = ()
     spells: tuple[Spell, ...] = ()
     driven_s: float = 0.0
@@ -96,30 +96,30 @@ def _belt(cue: Cue) -> Props:
 # --- the car ------------------------------------------------------------------------------------------------
 
 
-def _turned(signal: Signal[bool], cue: Cue, value: bool, for_s: float) -> tuple[Change, ...]:
-    return (Change(cue.at_s, signal.path, value), Change(cue.at_s + for_s, signal.path, not value))
+def _turned(signal: Signal[bool], cue: Cue, value: bool, for_s: float) -> tuple[CarChange, ...]:
+    return (CarChange(cue.at_s, signal.path, value), CarChange(cue.at_s + for_s, signal.path, not value))
 
 
-def _set(cue: Cue, *values: tuple[Signal[bool] | Signal[str], bool | str]) -> tuple[Change, ...]:
-    return tuple(Change(cue.at_s, signal.path, value) for signal, value in values)
+def _set(cue: Cue, *values: tuple[Signal[bool] | Signal[str], bool | str]) -> tuple[CarChange, ...]:
+    return tuple(CarChange(cue.at_s, signal.path, value) for signal, value in values)
 
 
 def _door(cue: Cue) -> Props:
     """The tailgate springs open; as a bait, somebody opens a window."""
     if cue.is_bait:
-        return Props(changes=(Change(cue.at_s, CABIN.REAR_LEFT_WINDOW.path, 30.0),))
+        return Props(changes=(CarChange(cue.at_s, CABIN.REAR_LEFT_WINDOW.path, 30.0),))
     return Props(changes=_turned(CABIN.TRUNK, cue, True, 180.0))
 
 
 def _tyre(cue: Cue) -> Props:
     """A tyre loses a third of its air in four minutes; as a bait, a twentieth."""
     tyre = (TYRE.FRONT_LEFT, TYRE.FRONT_RIGHT, TYRE.REAR_LEFT, TYRE.REAR_RIGHT)[int(cue.rng.integers(4))]
-    return Props(changes=(Change(cue.at_s, tyre.path, 237.0 if cue.is_bait else 165.0, 240.0),))
+    return Props(changes=(CarChange(cue.at_s, tyre.path, 237.0 if cue.is_bait else 165.0, 240.0),))
 
 
 def _range(cue: Cue) -> Props:
     """A cell fails and ten kilometres are left; as a bait, a hundred."""
-    return Props(changes=(Change(cue.at_s, ENERGY.LEVEL.path, 25.0 if cue.is_bait else 2.5, 20.0),))
+    return Props(changes=(CarChange(cue.at_s, ENERGY.LEVEL.path, 25.0 if cue.is_bait else 2.5, 20.0),))
 
 
 def _lamps(cue: Cue) -> Props:
@@ -135,8 +135,8 @@ def _high_beam(cue: Cue) -> Props:
 
 def _fog_lamps(cue: Cue) -> Props:
     """The rear fog lamp in clear air; as a bait, in fog as thick as it is for."""
-    on = Change(cue.at_s + (20.0 if cue.is_bait else 0.0), LIGHTS.REAR_FOG.path, True)
-    off = Change(cue.at_s + 100.0, LIGHTS.REAR_FOG.path, False)
+    on = CarChange(cue.at_s + (20.0 if cue.is_bait else 0.0), LIGHTS.REAR_FOG.path, True)
+    off = CarChange(cue.at_s + 100.0, LIGHTS.REAR_FOG.path, False)
     spells = (Spell(cue.at_s, cue.at_s + SPELL_S, fog(cue.weather, 40.0)),) if cue.is_bait else ()
     return Props(changes=(*_set(cue, (LIGHTS.SWITCH, "BEAM")), on, off), spells=spells)
 
@@ -144,7 +144,7 @@ def _fog_lamps(cue: Cue) -> Props:
 def _glass_fog(cue: Cue) -> Props:
     """The air is recirculated, with the fan low, for good; as a bait, for half a minute."""
     closed = _turned(HVAC.RECIRCULATION, cue, True, 30.0) if cue.is_bait else _set(cue, (HVAC.RECIRCULATION, True))
-    return Props(changes=(Change(cue.at_s, HVAC.AIR_CONDITIONING.path, False), *closed))
+    return Props(changes=(CarChange(cue.at_s, HVAC.AIR_CONDITIONING.path, False), *closed))
 
 
 # --- the sky ------------------------------------------------------------------------------------------------

@@ -468,9 +468,11 @@ class _Ahead(_Scene):
         way = sensor.route.edge_ids[index:]
         if incident.other_way:
             back = network.opposite.get(way[0])
-            way, on_edge_m = (() if back is None else (back,)), 0.0
+            if back is None:
+                return None
+            way, on_edge_m = (back,), 0.0
         edges = [network.edges[edge] for edge in way]
-        if not edges or edges[0].length_m < SHORTEST_M or edges[0].in_tunnel:
+        if edges[0].length_m < SHORTEST_M or edges[0].in_tunnel:
             return None
         from_s, to_s = incident.from_s, incident.to_s
         if incident.what == "breakdown":

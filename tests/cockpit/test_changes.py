@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import pytest
 
-from automotive_cosim.cockpit.changes import Change
+from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.signals import BODY, CABIN, ENERGY, LIGHTS, SEAT, TYRE, Signal
 from automotive_cosim.contracts import Surroundings
@@ -24,7 +24,9 @@ def drive(cockpit: Cockpit, around: Surroundings, from_s: int, to_s: int) -> Non
 
 
 def test_a_switch_turns_at_its_time_and_can_be_turned_back(make: Make, around: Surroundings) -> None:
-    cockpit = make(changes=[Change(5.0, BODY.FRONT_WIPER.path, "OFF"), Change(9.0, SEAT.DRIVER_BELT.path, False)])
+    cockpit = make(
+        changes=[CarChange(5.0, BODY.FRONT_WIPER.path, "OFF"), CarChange(9.0, SEAT.DRIVER_BELT.path, False)]
+    )
     drive(cockpit, around, 0, 4)
     assert cockpit.signals[BODY.FRONT_WIPER] == "RAIN_SENSOR"
     drive(cockpit, around, 4, 5)
@@ -37,13 +39,13 @@ def test_a_switch_turns_at_its_time_and_can_be_turned_back(make: Make, around: S
 
 
 def test_what_is_locked_while_driving_can_still_spring_open(make: Make, around: Surroundings) -> None:
-    cockpit = make(changes=[Change(1.0, CABIN.TRUNK.path, True)])
+    cockpit = make(changes=[CarChange(1.0, CABIN.TRUNK.path, True)])
     drive(cockpit, around, 0, 1)
     assert cockpit.signals[CABIN.TRUNK]
 
 
 def test_nothing_that_changes_by_itself_counts_as_a_deed(make: Make, around: Surroundings) -> None:
-    cockpit, other = make(changes=[Change(1.0, LIGHTS.SWITCH.path, "BEAM")]), make()
+    cockpit, other = make(changes=[CarChange(1.0, LIGHTS.SWITCH.path, "BEAM")]), make()
     drive(cockpit, around, 0, 2)
     drive(other, around, 0, 2)
     assert cockpit.signals[LIGHTS.LOW_BEAM]
@@ -52,7 +54,7 @@ def test_nothing_that_changes_by_itself_counts_as_a_deed(make: Make, around: Sur
 
 @pytest.mark.parametrize("signal", [TYRE.FRONT_LEFT, TYRE.REAR_RIGHT])
 def test_a_tyre_leaks_evenly_and_the_others_do_not(make: Make, around: Surroundings, signal: Signal[float]) -> None:
-    cockpit, whole = make(changes=[Change(10.0, signal.path, 150.0, over_s=100.0)]), make()
+    cockpit, whole = make(changes=[CarChange(10.0, signal.path, 150.0, over_s=100.0)]), make()
     lost = []
     for second in range(0, 140, 10):
         drive(cockpit, around, second, second + 10)
@@ -68,7 +70,7 @@ def test_a_tyre_leaks_evenly_and_the_others_do_not(make: Make, around: Surroundi
 
 
 def test_the_battery_goes_on_from_where_it_fell_to(make: Make, around: Surroundings) -> None:
-    cockpit = make(changes=[Change(5.0, ENERGY.LEVEL.path, 10.0, over_s=10.0)])
+    cockpit = make(changes=[CarChange(5.0, ENERGY.LEVEL.path, 10.0, over_s=10.0)])
     drive(cockpit, around, 0, 15)
     assert cockpit.signals[ENERGY.LEVEL] == pytest.approx(10.0, abs=0.1)
     drive(cockpit, around, 15, 60)
@@ -77,7 +79,7 @@ def test_the_battery_goes_on_from_where_it_fell_to(make: Make, around: Surroundi
 
 def test_a_copy_has_the_same_changes_before_it(make: Make, around: Surroundings) -> None:
     cockpit = make(
-        changes=[Change(5.0, SEAT.DRIVER_BELT.path, False), Change(3.0, TYRE.REAR_LEFT.path, 180.0, 9.0)]
+        changes=[CarChange(5.0, SEAT.DRIVER_BELT.path, False), CarChange(3.0, TYRE.REAR_LEFT.path, 180.0, 9.0)]
     )
     drive(cockpit, around, 0, 4)
     twin = cockpit.copy()
@@ -89,14 +91,14 @@ def test_a_copy_has_the_same_changes_before_it(make: Make, around: Surroundings)
 @pytest.mark.parametrize(
     "change",
     [
-        Change(-1.0, SEAT.DRIVER_BELT.path, False),
-        Change(float("nan"), SEAT.DRIVER_BELT.path, False),
-        Change(1.0, SEAT.DRIVER_BELT.path, False, over_s=5.0),
-        Change(1.0, SEAT.DRIVER_BELT.path, 0.5),
-        Change(1.0, "Vehicle.Nothing", False),
-        Change(1.0, TYRE.REAR_LEFT.path, 9000.0),
+        CarChange(-1.0, SEAT.DRIVER_BELT.path, False),
+        CarChange(float("nan"), SEAT.DRIVER_BELT.path, False),
+        CarChange(1.0, SEAT.DRIVER_BELT.path, False, over_s=5.0),
+        CarChange(1.0, SEAT.DRIVER_BELT.path, 0.5),
+        CarChange(1.0, "Vehicle.Nothing", False),
+        CarChange(1.0, TYRE.REAR_LEFT.path, 9000.0),
     ],
 )
-def test_an_impossible_change_is_refused_before_the_drive(make: Make, change: Change) -> None:
+def test_an_impossible_change_is_refused_before_the_drive(make: Make, change: CarChange) -> None:
     with pytest.raises(CosimError):
         make(changes=[change])

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from automotive_cosim.cockpit.changes import Change
+from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.language import said
 from automotive_cosim.cockpit.reach import HORIZON_M, NEWS_EVERY_S
@@ -130,6 +130,6 @@ def test_news_comes_once_a_minute_and_only_online(make: Make, around: Surroundin
 
 @pytest.mark.parametrize("language", ["fr", "de", "ja"])
 def test_every_sight_is_translated(make: Make, around: Surroundings, language: str) -> None:
-    cockpit = make(surroundings=full(around), lookout=True, changes=[Change(0.0, CABIN.TRUNK.path, True)])
+    cockpit = make(surroundings=full(around), lookout=True, changes=[CarChange(0.0, CABIN.TRUNK.path, True)])
     for sight in cockpit.sights:
         assert said(language, sight.text) != sight.text or sight.text.startswith("Tunnel")

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from automotive_cosim.cockpit.arrivals import Arrival
-from automotive_cosim.cockpit.changes import Change
+from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.signals import CABIN, CALL, SEAT
 from automotive_cosim.contracts import KMH_PER_MPS, Alert, AlertKind, IncidentKind, Weather
 from automotive_cosim.cosim.moment import Moment
@@ -95,7 +95,7 @@ def test_what_is_planned_comes_at_its_time(simulations: Simulations) -> None:
     rain = replace(DRY, precipitation=4.0, weather_code=63, cloud_cover=100.0, visibility=6000.0)
     plan = replace(
         LAPS,
-        changes=(Change(30.0, SEAT.DRIVER_BELT.path, False), Change(40.0, CABIN.TRUNK.path, True)),
+        changes=(CarChange(30.0, SEAT.DRIVER_BELT.path, False), CarChange(40.0, CABIN.TRUNK.path, True)),
         arrivals=(Arrival("call", 50.0),),
         weather=(WeatherAt(0.0, DRY), WeatherAt(60.0, rain)),
         moods=(DriverAt(70.0, "hurried"), DriverAt(100.0, "calm")),
