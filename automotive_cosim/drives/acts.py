@@ -7,13 +7,13 @@ from typing import Any
 
 from automotive_cosim.cockpit.messages import Deed, Set, SetAll, WarnDriver
 from automotive_cosim.contracts import Action, ActionType, Alert
-from automotive_cosim.drives.events.base import Act
+from automotive_cosim.drives.events.base import WatchAct
 
 BOOKKEEPING = frozenset({"alerts", "requests"})
 """Commands that only say that something was asked for."""
 
 
-def acts_of(deeds: Sequence[Deed]) -> Iterator[Act]:
+def acts_of(deeds: Sequence[Deed]) -> Iterator[WatchAct]:
     """The acts in what was commanded, in order; preparations such as a typed text are none."""
     for deed in deeds:
         if not deed.aims:
@@ -24,9 +24,9 @@ def acts_of(deeds: Sequence[Deed]) -> Iterator[Act]:
         if isinstance(message, WarnDriver):
             alert = alert or message.alert
         if alert is not None:
-            yield Act(deed.time_s, alert.kind, alert.severity, alert.speed_kmh)
+            yield WatchAct(deed.time_s, alert.kind, alert.severity, alert.speed_kmh)
             continue
-        yield Act(deed.time_s, requests=asked, writes=tuple(_writes(deed)))
+        yield WatchAct(deed.time_s, requests=asked, writes=tuple(_writes(deed)))
 
 
 def _writes(deed: Deed) -> Iterator[tuple[str, Any]]:
@@ -39,6 +39,6 @@ def _writes(deed: Deed) -> Iterator[tuple[str, Any]]:
         yield from ((path, None) for path in sorted(deed.aims - BOOKKEEPING))
 
 
-def spoken(action: Action, time_s: float) -> Act | None:
+def spoken(action: Action, time_s: float) -> WatchAct | None:
     """What an action says to the driver besides alerts."""
-    return Act(time_s, said=action.text or "") if action.action_type is ActionType.ANSWER else None
+    return WatchAct(time_s, said=action.text or "") if action.action_type is ActionType.ANSWER else None

@@ -12,8 +12,8 @@ from enum import StrEnum
 from typing import Any
 
 from automotive_cosim.contracts import AlertKind
-from automotive_cosim.drives.events.base import Act, EventKind
-from automotive_cosim.drives.events.tracker import Event
+from automotive_cosim.drives.events.base import EventKind, WatchAct
+from automotive_cosim.drives.events.tracker import DriveEvent
 
 REPEAT_S = 60.0
 """An alert about the same event within this time is a nuisance unless it has become worse."""
@@ -34,7 +34,7 @@ LATE_S = 30.0
 """How long after a deadline an act still counts as late and not as a nuisance."""
 
 
-class Outcome(StrEnum):
+class EventOutcome(StrEnum):
     """What became of an event."""
 
     HIT = "hit"
@@ -59,12 +59,12 @@ class Outcome(StrEnum):
     @property
     def is_credited(self) -> bool:
         """Whether the agent did what was right in time."""
-        return self in (Outcome.HIT, Outcome.PREPARED, Outcome.PREVENTED)
+        return self in (EventOutcome.HIT, EventOutcome.PREPARED, EventOutcome.PREVENTED)
 
     @property
     def counts(self) -> bool:
         """Whether recall counts it: an event in which something had to be done."""
-        return self.is_credited or self in (Outcome.LATE, Outcome.MISSED, Outcome.CAUSED)
+        return self.is_credited or self in (EventOutcome.LATE, EventOutcome.MISSED, EventOutcome.CAUSED)
 
 
 class Worth(StrEnum):
@@ -104,7 +104,7 @@ class JudgedEvent:
     words: str
     bait: bool
     weight: float
-    outcome: Outcome
+    outcome: EventOutcome
     observable_s: float
     obliged_s: float | None
     deadline_s: float | None
@@ -123,7 +123,7 @@ class JudgedEvent:
         0 for what does not count."""
         if not self.outcome.is_credited:
             return -1.0 if self.outcome.counts else 0.0
-        if self.outcome is not Outcome.HIT or self.acted_s is None:
+        if self.outcome is not EventOutcome.HIT or self.acted_s is None:
             return 1.0
         assert self.obliged_s is not None
         assert self.deadline_s is not None
@@ -160,7 +160,7 @@ class Judgement:
 class _Case:
     """An event while it is judged."""
 
-    event: Event
+    event: DriveEvent
     kind: EventKind
     answered_s: float | None = None
     told_s: float | None = None
@@ -179,8 +179,8 @@ class _Case:
 
 def judge(
     kinds: Mapping[str, EventKind],
-    events: Sequence[Event],
-    acts: Sequence[Act],
+    events: Sequence[DriveEvent],
+    acts: Sequence[WatchAct],
     due_anyway: Mapping[int, float | None],
     at_start: Mapping[str, Any] | None = None,
 ) -> Judgement:
@@ -206,13 +206,13 @@ def judge(
     return Judgement(tuple(outcomes), tuple(judged))
 
 
-def _contrary(case: _Case, act: Act) -> bool:
+def _contrary(case: _Case, act: WatchAct) -> bool:
     """Whether an act brought an event about: it wrote what the kind watches, the wrong way, just before."""
     before_s = case.event.observable_s - act.time_s
     return 0.0 <= before_s <= CAUSED_S and case.kind.concerns(act) and not case.kind.settles(act, case.event.value)
 
 
-def _act(act: Act, cases: Sequence[_Case], written: set[str], at_start: Mapping[str, Any]) -> JudgedAct:
+def _act(act: WatchAct, cases: Sequence[_Case], written: set[str], at_start: Mapping[str, Any]) -> JudgedAct:
     there = [case for case in cases if case.is_open(act.time_s)]
     true = [case for case in there if not case.event.bait]
     right = [case for case in true if case.kind.settles(act, case.event.value)]
@@ -232,7 +232,7 @@ def _act(act: Act, cases: Sequence[_Case], written: set[str], at_start: Mapping[
     return JudgedAct(act.time_s, act.words, worth)
 
 
-def _told(act: Act, cases: Sequence[_Case]) -> Worth:
+def _told(act: WatchAct, cases: Sequence[_Case]) -> Worth:
     """Notes an act that is right for some open events; the best that it is for any of them."""
     worths = []
     unnamed = [case for case in cases if not case.is_named]
@@ -259,7 +259,7 @@ def _told(act: Act, cases: Sequence[_Case]) -> Worth:
     return min(worths, key=(Worth.RIGHT, Worth.LATE, Worth.NEUTRAL, Worth.REPEAT).index)
 
 
-def _sets_back(act: Act, written: set[str], at_start: Mapping[str, Any]) -> bool:
+def _sets_back(act: WatchAct, written: set[str], at_start: Mapping[str, Any]) -> bool:
     """Whether an act only sets back what the agent itself had changed."""
     return bool(act.writes) and all(
         path in written and path in at_start and at_start[path] == value for path, value in act.writes
@@ -284,22 +284,22 @@ def _event(case: _Case, due_anyway_s: float | None) -> JudgedEvent:
     )
 
 
-def _outcome(case: _Case, due_anyway_s: float | None) -> Outcome:
+def _outcome(case: _Case, due_anyway_s: float | None) -> EventOutcome:
     event, acted_s = case.event, case.answered_s
     if event.bait:
-        return Outcome.TAKEN if case.taken else Outcome.AVOIDED
+        return EventOutcome.TAKEN if case.taken else EventOutcome.AVOIDED
     if event.obliged_s is None:
         in_time = acted_s is not None and due_anyway_s is not None
-        return Outcome.PREVENTED if in_time and not case.caused else Outcome.VOID
+        return EventOutcome.PREVENTED if in_time and not case.caused else EventOutcome.VOID
     if case.caused:
-        return Outcome.CAUSED
+        return EventOutcome.CAUSED
     assert event.deadline_s is not None
     assert event.due_until_s is not None
     if acted_s is not None and acted_s <= event.deadline_s:
-        return Outcome.PREPARED if acted_s < event.obliged_s else Outcome.HIT
+        return EventOutcome.PREPARED if acted_s < event.obliged_s else EventOutcome.HIT
     if event.deadline_s - event.observable_s < CHANCE_S or event.due_until_s < event.deadline_s - SELF_ENDED_S:
-        return Outcome.VOID
-    return Outcome.LATE if acted_s is not None else Outcome.MISSED
+        return EventOutcome.VOID
+    return EventOutcome.LATE if acted_s is not None else EventOutcome.MISSED
 
 
 def most_frequent(judgement: Judgement, kinds: Mapping[str, EventKind]) -> AlertKind | None:

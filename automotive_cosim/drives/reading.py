@@ -28,7 +28,7 @@ class LawLine:
 
 
 @dataclass(slots=True)
-class Known:
+class Gathered:
     """What is known at one observation."""
 
     time_s: float
@@ -92,12 +92,12 @@ class Known:
         return None if found is None else float(found[1]) - self.mps * (self.time_s - at_s)
 
 
-def read(seen: Observation, changes: dict[str, tuple[float, str]]) -> Known | None:
+def read(seen: Observation, changes: dict[str, tuple[float, str]]) -> Gathered | None:
     """What an observation says; None for an agent without the car's readings or the context.
 
     Args:
         seen: the observation.
-        changes: as in ``Known``, of the observations before; it is brought up to date.
+        changes: as in ``Gathered``, of the observations before; it is brought up to date.
     """
     if seen.vehicle is None or seen.context is None:
         return None
@@ -107,7 +107,7 @@ def read(seen: Observation, changes: dict[str, tuple[float, str]]) -> Known | No
             changes.pop(name, None)
         elif words:
             changes[name] = seen.time_s, words
-    known = Known(seen.time_s, seen.vehicle, changes=changes)
+    known = Gathered(seen.time_s, seen.vehicle, changes=changes)
     defaults, reduced, law = [], [], {}
     for line in seen.context.splitlines():
         label, _, text = line.partition(": ")
@@ -153,7 +153,7 @@ def _sun_deg(text: str) -> float | None:
     return None if found is None else float(found[1]) * (1 if found[2] == "above" else -1)
 
 
-def _read_weather(known: Known, text: str) -> None:
+def _read_weather(known: Gathered, text: str) -> None:
     known.weather = text.partition(",")[0]
     if (seen := re.search(r"visibility (\d+) m", text)) is not None:
         known.visibility_m = float(seen[1])

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from statistics import median
 
-from automotive_cosim.drives.judge import Judgement, Outcome, Worth
+from automotive_cosim.drives.judge import EventOutcome, Judgement, Worth
 
 NUISANCE = 0.4
 """Cost of a nuisance: a fifth of what lies between a hit (1) and a miss (-1). PhysioNet/CinC 2015 weighs a
@@ -99,20 +99,20 @@ def score(judgement: Judgement, driven_s: float) -> Score:
         driven_s: how long it lasted.
     """
     events, acts = judgement.events, judgement.acts
-    counts = {outcome: sum(event.outcome is outcome for event in events) for outcome in Outcome}
+    counts = {outcome: sum(event.outcome is outcome for event in events) for outcome in EventOutcome}
     met = [event for event in events if event.outcome.is_credited]
     return Score(
         driven_s=driven_s,
         events=sum(event.outcome.counts for event in events),
-        hits=counts[Outcome.HIT],
-        prepared=counts[Outcome.PREPARED],
-        prevented=counts[Outcome.PREVENTED],
-        late=counts[Outcome.LATE],
-        missed=counts[Outcome.MISSED],
-        caused=counts[Outcome.CAUSED],
-        void=counts[Outcome.VOID],
+        hits=counts[EventOutcome.HIT],
+        prepared=counts[EventOutcome.PREPARED],
+        prevented=counts[EventOutcome.PREVENTED],
+        late=counts[EventOutcome.LATE],
+        missed=counts[EventOutcome.MISSED],
+        caused=counts[EventOutcome.CAUSED],
+        void=counts[EventOutcome.VOID],
         baits=sum(event.bait for event in events),
-        baits_taken=counts[Outcome.TAKEN],
+        baits_taken=counts[EventOutcome.TAKEN],
         acts=sum(act.worth is not Worth.NEUTRAL for act in acts),
         false_alarms=sum(act.worth.is_false for act in acts),
         nuisances=sum(act.worth.is_nuisance for act in acts),
@@ -122,7 +122,7 @@ def score(judgement: Judgement, driven_s: float) -> Score:
         delays_due_s=tuple(
             event.acted_s - event.obliged_s
             for event in met
-            if event.outcome is Outcome.HIT and event.acted_s is not None and event.obliged_s is not None
+            if event.outcome is EventOutcome.HIT and event.acted_s is not None and event.obliged_s is not None
         ),
     )
 

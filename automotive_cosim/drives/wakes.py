@@ -33,7 +33,7 @@ WINDOWS = (
 )
 TYRES = (TYRE.FRONT_LEFT, TYRE.FRONT_RIGHT, TYRE.REAR_LEFT, TYRE.REAR_RIGHT)
 
-Reading = Callable[[Moment], Hashable]
+WakeReading = Callable[[Moment], Hashable]
 """A reading; None while there is nothing to report."""
 
 
@@ -43,7 +43,7 @@ class Wake:
 
     name: str
     about: str
-    reads: Reading
+    reads: WakeReading
     words: Callable[[Moment], str]
     hold_s: float = 0.0
     """How long the new reading must have lasted."""

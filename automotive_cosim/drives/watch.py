@@ -17,7 +17,7 @@ from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCod
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation
 from automotive_cosim.drives.acts import acts_of, spoken
-from automotive_cosim.drives.events import KINDS, Act, Event, Tracker
+from automotive_cosim.drives.events import KINDS, DriveEvent, Tracker, WatchAct
 from automotive_cosim.drives.harm import Harm, harm
 from automotive_cosim.drives.judge import Judgement, judge
 from automotive_cosim.drives.order import STANDING_ORDER
@@ -38,7 +38,7 @@ class Twin:
 
     index: int
     """Number of the event."""
-    event: Event
+    event: DriveEvent
     world: CoSimulation
     drive: list[Moment]
     tracker: Tracker
@@ -72,7 +72,7 @@ class Watch(Session):
     """The same drive from departure with nobody at the cockpit, for comparison."""
     tracker: Tracker
     alarm: Alarm
-    acts: list[Act] = field(default_factory=list)
+    acts: list[WatchAct] = field(default_factory=list)
     """What the agent did so far that reaches driver, car or road."""
     twins: list[Twin] = field(default_factory=list)
     due_anyway: dict[int, float | None] = field(default_factory=dict)
@@ -108,7 +108,7 @@ class Watch(Session):
         return watch
 
     @property
-    def events(self) -> Sequence[Event]:
+    def events(self) -> Sequence[DriveEvent]:
         """The events so far, for reports and reference; no agent is told."""
         return self.tracker.events
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from automotive_cosim.contracts import Action, ActionType, AlertKind, Observation
-from automotive_cosim.drives.reading import Known, read
+from automotive_cosim.drives.reading import Gathered, read
 from automotive_cosim.interface.observe import Channel
 
 READS = frozenset({Channel.VEHICLE, Channel.CONTEXT})
@@ -86,7 +86,7 @@ def _above(limit_kmh: float) -> float:
     return limit_kmh + max(MARGIN_KMH, MARGIN_SHARE * limit_kmh)
 
 
-def _speed(known: Known) -> Iterator[Concern]:
+def _speed(known: Gathered) -> Iterator[Concern]:
     """The binding limit, with those that weather lowers."""
     limit_kmh, reduced_kmh = known.limit_kmh, _reduced_kmh(known)
     if known.speed_kmh < 20:
@@ -105,7 +105,7 @@ def _speed(known: Known) -> Iterator[Concern]:
         yield Concern("sight", AlertKind.VISIBILITY)
 
 
-def _reduced_kmh(known: Known) -> float | None:
+def _reduced_kmh(known: Gathered) -> float | None:
     """The lowest limit that weather brings into force here, of those that the context states for certain."""
     found = [
         line.kmh for line in known.reduced if line.kmh is not None and line.is_verified and _holds(line.text, known)
@@ -113,7 +113,7 @@ def _reduced_kmh(known: Known) -> float | None:
     return min(found, default=None)
 
 
-def _holds(text: str, known: Known) -> bool:
+def _holds(text: str, known: Gathered) -> bool:
     motorway = "motorway" in known.road and "outside" in known.road
     if "on motorways" in text and not motorway:
         return False
@@ -127,7 +127,7 @@ def _holds(text: str, known: Known) -> bool:
     return "rain or other precipitation" in text and "precipitation" in known.phenomena
 
 
-def _limit_ahead(known: Known) -> Iterator[Concern]:
+def _limit_ahead(known: Gathered) -> Iterator[Concern]:
     away_m, words = known.away_m("limit ahead"), known.changes.get("limit ahead", (0.0, ""))[1]
     found = re.match(r"(\d+) km/h", words)
     if away_m is None or found is None or known.speed_kmh < 20 or away_m < 0:
@@ -141,7 +141,7 @@ def _limit_ahead(known: Known) -> Iterator[Concern]:
         yield Concern(f"falls {limit_kmh:.0f}", AlertKind.SPEED, away_m <= coasting_m, is_there=True)
 
 
-def _lamps(known: Known) -> Iterator[Concern]:
+def _lamps(known: Gathered) -> Iterator[Concern]:
     car = known.vehicle
     if known.speed_kmh < 1:
         return
@@ -160,7 +160,7 @@ def _lamps(known: Known) -> Iterator[Concern]:
             yield Concern(label, AlertKind.VISIBILITY, _forbids_fog_lamp(known, label))
 
 
-def _needs_lamps(known: Known) -> bool:
+def _needs_lamps(known: Gathered) -> bool:
     line = known.law.get("Dipped beam")
     if line is None or not line.is_verified:
         return False
@@ -171,7 +171,7 @@ def _needs_lamps(known: Known) -> bool:
     )
 
 
-def _forbids_high_beam(known: Known) -> bool:
+def _forbids_high_beam(known: Gathered) -> bool:
     line = known.law.get("High beam")
     if line is None or not line.is_verified:
         return False
@@ -180,7 +180,7 @@ def _forbids_high_beam(known: Known) -> bool:
     return lit or town
 
 
-def _forbids_fog_lamp(known: Known, label: str) -> bool:
+def _forbids_fog_lamp(known: Gathered, label: str) -> bool:
     line = known.law.get(label)
     if line is None or not line.is_verified or "allowed" not in line.text:
         return False
@@ -193,7 +193,7 @@ def _forbids_fog_lamp(known: Known, label: str) -> bool:
     return bool(words) and not words & known.phenomena
 
 
-def _weather(known: Known) -> Iterator[Concern]:
+def _weather(known: Gathered) -> Iterator[Concern]:
     if known.is_icy:
         yield Concern("slippery", AlertKind.SLIPPERY, known.speed_kmh > 40, is_there=True)
     share = re.search(r"(\d+\.\d)%", known.changes.get("glass", (0.0, ""))[1])
@@ -204,7 +204,7 @@ def _weather(known: Known) -> Iterator[Concern]:
         yield Concern("rain", AlertKind.VISIBILITY, float(share[1]) >= 20)
 
 
-def _traffic(known: Known) -> Iterator[Concern]:
+def _traffic(known: Gathered) -> Iterator[Concern]:
     away_m = known.away_m("jam")
     if away_m is not None and away_m > 0 and known.speed_kmh >= 40:
         yield Concern("jam", AlertKind.TRAFFIC, away_m <= known.mps * (15 + LOOK_S), is_there=True)
@@ -233,7 +233,7 @@ def _traffic(known: Known) -> Iterator[Concern]:
         yield Concern("slow vehicle", AlertKind.TRAFFIC, gap_m <= (8 + LOOK_S) * closing_mps)
 
 
-def _car(known: Known) -> Iterator[Concern]:
+def _car(known: Gathered) -> Iterator[Concern]:
     if "belt" in known.changes:
         yield Concern("belt", AlertKind.SEAT_BELT, known.speed_kmh >= 25, is_there=True)
     words = known.changes.get("open", (0.0, ""))[1]
@@ -251,7 +251,7 @@ def _car(known: Known) -> Iterator[Concern]:
         yield Concern("range", AlertKind.VEHICLE, known.vehicle.range_km < float(left[2]) + 2)
 
 
-LOOKS: tuple[Callable[[Known], Iterator[Concern]], ...] = (
+LOOKS: tuple[Callable[[Gathered], Iterator[Concern]], ...] = (
     _traffic,
     _speed,
     _limit_ahead,

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.drives.judge import JudgedEvent, Outcome, Worth
+from automotive_cosim.drives.judge import EventOutcome, JudgedEvent, Worth
 from automotive_cosim.report.charts import INK, NARROW_IN, PALETTE, WIDE_IN, Drawing, drawn
 from automotive_cosim.run.watch_row import WatchRow
 
@@ -15,15 +15,15 @@ if TYPE_CHECKING:
 
 BLUE, RED, GREEN, PURPLE, ORANGE, SKY, _, GREY = PALETTE
 COLOURS = {
-    Outcome.HIT: GREEN,
-    Outcome.PREPARED: GREEN,
-    Outcome.PREVENTED: SKY,
-    Outcome.LATE: ORANGE,
-    Outcome.MISSED: RED,
-    Outcome.CAUSED: PURPLE,
-    Outcome.VOID: GREY,
-    Outcome.AVOIDED: GREY,
-    Outcome.TAKEN: RED,
+    EventOutcome.HIT: GREEN,
+    EventOutcome.PREPARED: GREEN,
+    EventOutcome.PREVENTED: SKY,
+    EventOutcome.LATE: ORANGE,
+    EventOutcome.MISSED: RED,
+    EventOutcome.CAUSED: PURPLE,
+    EventOutcome.VOID: GREY,
+    EventOutcome.AVOIDED: GREY,
+    EventOutcome.TAKEN: RED,
 }
 """Colour of a bar by what became of the event."""
 MARKS = {
@@ -85,7 +85,7 @@ def _drawing(row: WatchRow, timeline: Json) -> Drawing:
 
 def _kinds(events: Sequence[JudgedEvent]) -> list[str]:
     """Kinds with an event in which something had to be done, or a look-alike that was taken, in order of time."""
-    shown = [event for event in events if event.outcome.counts or event.outcome is Outcome.TAKEN]
+    shown = [event for event in events if event.outcome.counts or event.outcome is EventOutcome.TAKEN]
     return list(dict.fromkeys(event.kind for event in shown))
 
 
@@ -104,7 +104,7 @@ def _events(axes: Axes, events: Sequence[JudgedEvent], kinds: Sequence[str]) -> 
             color="none" if event.bait else colour,
             edgecolor=colour,
             hatch="////" if event.bait else None,
-            alpha=0.45 if event.outcome in (Outcome.VOID, Outcome.AVOIDED) else 0.75,
+            alpha=0.45 if event.outcome in (EventOutcome.VOID, EventOutcome.AVOIDED) else 0.75,
             linewidth=0.8,
         )
         if event.outcome.counts:

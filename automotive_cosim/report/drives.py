@@ -36,7 +36,7 @@ Figure = Callable[[Sequence[WatchRow]], float | None]
 
 
 @dataclass(frozen=True, slots=True)
-class Watcher:
+class WatchedBy:
     """Who watched, and under which conditions: one line of the tables."""
 
     agent: str
@@ -55,14 +55,14 @@ class Watcher:
         return ", ".join(parts)
 
 
-def watcher_of(row: WatchRow) -> Watcher:
+def watcher_of(row: WatchRow) -> WatchedBy:
     """Who watched a drive."""
-    return Watcher(row.agent, row.model, str(row.geo), str(row.clock), row.latency_s)
+    return WatchedBy(row.agent, row.model, str(row.geo), str(row.clock), row.latency_s)
 
 
-def grouped(rows: Iterable[WatchRow]) -> dict[Watcher, list[WatchRow]]:
+def grouped(rows: Iterable[WatchRow]) -> dict[WatchedBy, list[WatchRow]]:
     """The judged drives of each watcher, the best first."""
-    found: dict[Watcher, list[WatchRow]] = {}
+    found: dict[WatchedBy, list[WatchRow]] = {}
     for row in rows:
         if row.score is not None:
             found.setdefault(watcher_of(row), []).append(row)
@@ -184,7 +184,7 @@ def tables(rows: Sequence[WatchRow]) -> list[Table]:
     return [table for table in (_watchers(groups), _kinds(groups), _families(groups), _errors(rows)) if table.rows]
 
 
-def _watchers(groups: dict[Watcher, list[WatchRow]]) -> Table:
+def _watchers(groups: dict[WatchedBy, list[WatchRow]]) -> Table:
     lines: tuple[TableRow, ...] = tuple(
         (
             each.label,
@@ -208,7 +208,7 @@ def _watchers(groups: dict[Watcher, list[WatchRow]]) -> Table:
     )
 
 
-def _kinds(groups: dict[Watcher, list[WatchRow]]) -> Table:
+def _kinds(groups: dict[WatchedBy, list[WatchRow]]) -> Table:
     """Events met of each kind, and look-alikes left alone."""
     lines = []
     for name, kind in KINDS.items():
@@ -231,7 +231,7 @@ def _kinds(groups: dict[Watcher, list[WatchRow]]) -> Table:
     )
 
 
-def _families(groups: dict[Watcher, list[WatchRow]]) -> Table:
+def _families(groups: dict[WatchedBy, list[WatchRow]]) -> Table:
     families = dict.fromkeys(row.family for mine in groups.values() for row in mine)
     lines = []
     for family in families:

@@ -22,7 +22,7 @@ from automotive_cosim.contracts import (
     Weather,
 )
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.drives.events import KINDS, Event, Tracker
+from automotive_cosim.drives.events import KINDS, DriveEvent, Tracker
 from automotive_cosim.geo.locate import Geo
 
 ROAD = RoadHere(
@@ -133,7 +133,7 @@ def stream(seconds: float, **scene: Any) -> list[Moment]:
     return [moment(float(second), **scene) for second in range(int(seconds) + 1)]
 
 
-def found(drive: Sequence[Moment], kind: str | None = None) -> list[Event]:
+def found(drive: Sequence[Moment], kind: str | None = None) -> list[DriveEvent]:
     """The events on a drive, of one kind or of all."""
     tracker = Tracker(KINDS if kind is None else {kind: KINDS[kind]})
     for count in range(len(drive)):

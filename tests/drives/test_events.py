@@ -9,7 +9,7 @@ import pytest
 
 from automotive_cosim.cockpit.signals import BODY, CABIN, ENERGY, GLASS, LIGHTS, SEAT, TYRE
 from automotive_cosim.contracts import AlertKind, IncidentKind, RoadIncident, Sight, SightKind, SlowDown
-from automotive_cosim.drives.events import KINDS, Act
+from automotive_cosim.drives.events import KINDS, WatchAct
 from automotive_cosim.drives.events.tracker import CLOSE_S, REOPEN_S
 from tests.drives.scenes import NOON, found, limit, moment, stream, vehicle
 
@@ -131,7 +131,7 @@ def test_an_ordinary_moment_is_neither(name: str) -> None:
 @pytest.mark.parametrize("name", KINDS)
 def test_only_its_own_alerts_settle_a_kind(name: str) -> None:
     kind = KINDS[name]
-    settled = {alert for alert in AlertKind if kind.settles(Act(0.0, alert), 30.0)}
+    settled = {alert for alert in AlertKind if kind.settles(WatchAct(0.0, alert), 30.0)}
     assert settled == kind.alerts
     assert 0 < len(settled) < len(AlertKind) / 2
 
@@ -157,14 +157,14 @@ def test_the_obligation_comes_sooner_the_faster_the_car() -> None:
 
 def test_an_advised_speed_above_the_limit_settles_nothing() -> None:
     kind = KINDS["over_limit"]
-    assert kind.settles(Act(0.0, AlertKind.SPEED, speed_kmh=50.0), 50.0)
-    assert not kind.settles(Act(0.0, AlertKind.SPEED, speed_kmh=70.0), 50.0)
-    assert kind.settles(Act(0.0, requests=(SlowDown(48.0),)), 50.0)
-    assert not kind.settles(Act(0.0, requests=(SlowDown(90.0),)), 50.0)
+    assert kind.settles(WatchAct(0.0, AlertKind.SPEED, speed_kmh=50.0), 50.0)
+    assert not kind.settles(WatchAct(0.0, AlertKind.SPEED, speed_kmh=70.0), 50.0)
+    assert kind.settles(WatchAct(0.0, requests=(SlowDown(48.0),)), 50.0)
+    assert not kind.settles(WatchAct(0.0, requests=(SlowDown(90.0),)), 50.0)
 
 
 def test_an_automatic_switch_lights_nothing_by_day() -> None:
-    kind, act = KINDS["lamps"], Act(0.0, writes=((LIGHTS.SWITCH.path, "AUTO"),))
+    kind, act = KINDS["lamps"], WatchAct(0.0, writes=((LIGHTS.SWITCH.path, "AUTO"),))
     assert kind.settles(act, 1.0)
     assert not kind.settles(act, 0.0)
 

@@ -11,30 +11,30 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from automotive_cosim.drives.events import car, light, people, road, speed, weather
-from automotive_cosim.drives.events.base import Act, EventKind, Sighting
-from automotive_cosim.drives.events.tracker import Event, Tracker
+from automotive_cosim.drives.events.base import EventKind, Sighting, WatchAct
+from automotive_cosim.drives.events.tracker import DriveEvent, Tracker
 
 KINDS: Mapping[str, EventKind] = {
     kind.name: kind
     for kind in (
         speed.OverLimit(),
         speed.LimitFalls(),
-        speed.SchoolZone(),
+        speed.SchoolHours(),
         speed.WeatherSpeed(),
-        light.Lamps(),
+        light.LampsMissing(),
         light.HighBeam(),
         light.FogLamps(),
         weather.GlassFogs(),
         weather.Wipers(),
         weather.Slippery(),
-        road.Tunnel(),
+        road.TunnelAhead(),
         road.JamTail(),
-        road.Breakdown(),
-        road.Roadworks(),
+        road.BreakdownAhead(),
+        road.RoadworksAhead(),
         road.BlueLight(),
         road.LeaderClose(),
         road.LeaderBrakes(),
-        road.Tractor(),
+        road.TractorAhead(),
         car.Belt(),
         car.FlapOpen(),
         car.Tyre(),
@@ -44,4 +44,4 @@ KINDS: Mapping[str, EventKind] = {
 }
 """Every kind by its name."""
 
-__all__ = ["KINDS", "Act", "Event", "EventKind", "Sighting", "Tracker"]
+__all__ = ["KINDS", "DriveEvent", "EventKind", "Sighting", "Tracker", "WatchAct"]

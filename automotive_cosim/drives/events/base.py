@@ -45,7 +45,7 @@ class Sighting:
 
 
 @dataclass(frozen=True, slots=True)
-class Act:
+class WatchAct:
     """Something that an agent did and that reaches the driver, the car or the road."""
 
     time_s: float
@@ -103,7 +103,7 @@ class EventKind(ABC):
         """
         ...
 
-    def settles(self, act: Act, value: float | None) -> bool:
+    def settles(self, act: WatchAct, value: float | None) -> bool:
         """Whether an act is one that is right for an event.
 
         Args:
@@ -116,7 +116,7 @@ class EventKind(ABC):
             return True
         return any(path in self.writes and self.writes[path](written) for path, written in act.writes)
 
-    def concerns(self, act: Act) -> bool:
+    def concerns(self, act: WatchAct) -> bool:
         """Whether an act touches what the kind is about, rightly or not."""
         return any(path in self.writes for path, _ in act.writes)
 

@@ -8,7 +8,7 @@ from typing import ClassVar
 from automotive_cosim.cockpit.signals import LIGHTS
 from automotive_cosim.contracts import STANDING_BELOW_MPS, AlertKind
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.drives.events.base import Act, EventKind, Sighting, Wanted, off, on
+from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, WatchAct, off, on
 from automotive_cosim.drives.events.law import says
 
 LAMP_S = 2.0
@@ -22,7 +22,7 @@ CLEAR_M = 150.0
 """Reach of the forward radar: nobody is seen ahead beyond."""
 
 
-class Lamps(EventKind):
+class LampsMissing(EventKind):
     """No dipped beam where law or darkness requires it."""
 
     name = "lamps"
@@ -50,7 +50,7 @@ class Lamps(EventKind):
         elif (sun is not None and sun.elevation_deg < LOW_SUN_DEG) or now.weather.precipitation > 0:
             yield Sighting("no dipped beam by a low sun or in rain", bait=True, value=0.0)
 
-    def settles(self, act: Act, value: float | None) -> bool:
+    def settles(self, act: WatchAct, value: float | None) -> bool:
         """By day an automatic switch lights nothing."""
         by_day_auto = value == 0.0 and (LIGHTS.SWITCH.path, "AUTO") in act.writes
         return super().settles(act, value) and not by_day_auto

@@ -46,7 +46,7 @@ FAST_ROAD_KMH = 65.0
 TRACTOR_DUE_S = 8.0
 
 
-class Tunnel(EventKind):
+class TunnelAhead(EventKind):
     """A tunnel ahead, with the lamps off."""
 
     name = "tunnel"
@@ -105,7 +105,7 @@ class JamTail(EventKind):
         )
 
 
-class Standing(EventKind):
+class StandsAhead(EventKind):
     """Something that stands ahead on the route and that the traffic service reports."""
 
     sights: ClassVar[SightKind]
@@ -131,7 +131,7 @@ class Standing(EventKind):
             )
 
 
-class Breakdown(Standing):
+class BreakdownAhead(StandsAhead):
     """A broken-down vehicle ahead."""
 
     name = "breakdown"
@@ -141,7 +141,7 @@ class Breakdown(Standing):
     alerts = frozenset({AlertKind.MOVE_OVER, AlertKind.TRAFFIC, AlertKind.COLLISION, AlertKind.SPEED})
 
 
-class Roadworks(Standing):
+class RoadworksAhead(StandsAhead):
     """Roadworks ahead."""
 
     name = "roadworks"
@@ -236,7 +236,7 @@ class LeaderBrakes(EventKind):
             yield Sighting(words, bait=True)
 
 
-class Tractor(EventKind):
+class TractorAhead(EventKind):
     """A slow vehicle ahead on a fast road."""
 
     name = "tractor"

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from automotive_cosim.cockpit.signals import ADAS
 from automotive_cosim.contracts import AlertKind, Cruise, PullOver, SlowDown
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.drives.events.base import Act, EventKind, Sighting
+from automotive_cosim.drives.events.base import EventKind, Sighting, WatchAct
 from automotive_cosim.drives.events.law import (
     REACTION_S,
     SLOW_KMH,
@@ -30,7 +30,7 @@ SWITCHES = frozenset({ADAS.CRUISE_ACTIVE.path, ADAS.LIMITER_ACTIVE.path})
 class SpeedKind(EventKind):
     """An event that a lower speed settles; its value is the highest right speed in km/h."""
 
-    def settles(self, act: Act, value: float | None) -> bool:
+    def settles(self, act: WatchAct, value: float | None) -> bool:
         """An alert that advises no more than the right speed, a request for it, or a limiter set to it."""
         most_kmh = 1000.0 if value is None else value + 1.0
         if act.alert is not None:
@@ -46,7 +46,7 @@ class SpeedKind(EventKind):
             for path, written in act.writes
         )
 
-    def concerns(self, act: Act) -> bool:
+    def concerns(self, act: WatchAct) -> bool:
         """Whether it touches what keeps the speed."""
         return any(path in KEEPERS | SWITCHES for path, _ in act.writes)
 
@@ -124,7 +124,7 @@ def is_school_time(moment: Moment) -> bool:
     return road.school_zone and road.limit_by_clock and road.limit.posted_mps is not None
 
 
-class SchoolZone(SpeedKind):
+class SchoolHours(SpeedKind):
     """Too fast in a school zone at its hours."""
 
     name = "school_zone"

@@ -15,7 +15,7 @@ REOPEN_S = 30.0
 
 
 @dataclass(slots=True)
-class Event:
+class DriveEvent:
     """One event of a drive; all times are simulation times. It grows while it lasts."""
 
     kind: str
@@ -48,11 +48,11 @@ class Tracker:
     def __init__(self, kinds: Mapping[str, EventKind]) -> None:
         """Of these kinds."""
         self._kinds = kinds
-        self._latest: dict[tuple[str, str, bool], Event] = {}
-        self.events: list[Event] = []
+        self._latest: dict[tuple[str, str, bool], DriveEvent] = {}
+        self.events: list[DriveEvent] = []
         """All events so far, by the instant at which they became observable."""
 
-    def see(self, drive: Sequence[Moment]) -> tuple[Event, ...]:
+    def see(self, drive: Sequence[Moment]) -> tuple[DriveEvent, ...]:
         """Takes the last moment of a drive, and returns the events that became observable at it."""
         now_s = drive[-1].time_s
         opened = []
@@ -70,8 +70,8 @@ class Tracker:
                     event.ended = now_s - event.last_s > CLOSE_S
         return tuple(opened)
 
-    def _open(self, kind: EventKind, sighting: Sighting, now_s: float) -> Event:
-        event = Event(
+    def _open(self, kind: EventKind, sighting: Sighting, now_s: float) -> DriveEvent:
+        event = DriveEvent(
             kind=kind.name,
             subject=sighting.subject,
             words=sighting.words,
@@ -85,7 +85,7 @@ class Tracker:
         self.events.append(event)
         return event
 
-    def _update(self, event: Event, kind: EventKind, sighting: Sighting, now_s: float) -> None:
+    def _update(self, event: DriveEvent, kind: EventKind, sighting: Sighting, now_s: float) -> None:
         event.last_s, event.ended = now_s, False
         if sighting.severity > event.severity_at(now_s):
             event.severities.append((now_s, sighting.severity))
