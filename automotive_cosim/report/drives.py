@@ -202,8 +202,8 @@ def _watchers(groups: dict[WatchedBy, list[WatchRow]]) -> Table:
         "Watchers",
         ("Watcher", "Drives", "Hours", *(name for name, _, _ in FIGURES)),
         lines,
-        "Score: 0 is doing nothing, 100 the rule-perfect watcher; a nuisance costs a fifth of what lies between a "
-        "hit and a miss. In brackets 95 % intervals from resampling whole drives. Saved: compared with the same "
+        "Score: 0 is doing nothing, 100 the rule-perfect watcher; a nuisance costs as much as "
+        "a miss. In brackets 95 % intervals from resampling whole drives. Saved: compared with the same "
         "drives with nobody at the cockpit.",
     )
 

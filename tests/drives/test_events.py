@@ -137,8 +137,7 @@ def test_only_its_own_alerts_settle_a_kind(name: str) -> None:
 
 
 def test_an_event_that_flickers_is_one() -> None:
-    fast, slow = {"kmh": 70.0}, {"kmh": 40.0}
-    drive = [moment(float(s), **(slow if 10 < s < 10 + CLOSE_S else fast)) for s in range(20)]
+    drive = [moment(float(s), kmh=40.0 if 10 < s < 10 + CLOSE_S else 70.0) for s in range(20)]
     assert len(found(drive, "over_limit")) == 1
 
 
