@@ -245,6 +245,7 @@ def suite(
     out: Annotated[Path, typer.Option(help="Folder for all studies; existing ones are resumed.")] = Path(
         "runs/suite"
     ),
+    as_json: AsJson = False,
 ) -> None:
     """Run the same study on several networks and put them into one table.
 
@@ -271,7 +272,7 @@ def suite(
     for plan in plans:
         plan.check()
     where = executor_of("processes", workers, None, None)
-    console = Console(highlight=False)
+    console = Console(stderr=as_json, highlight=False)
     found = []
     with where:
         for number, plan in enumerate(plans, start=1):
@@ -285,6 +286,9 @@ def suite(
     page = write_networks(table, out)
     console.print(table.markdown(), soft_wrap=True)
     console.print(f"{page} written; every study has its own report beside it", soft_wrap=True)
+    if as_json:
+        rows = [dict(zip(table.columns, map(str, row), strict=True)) for row in table.rows]
+        typer.echo(json.dumps({"networks": rows, "out": str(out)}, ensure_ascii=False))
     errors = sum(len(study.errors) for study in found)
     if errors:
         raise InfrastructureError(f"{counted(errors, 'drive')} ended in an error; rerun the command to retry them")

@@ -441,10 +441,12 @@ def test_several_networks_in_one_table(two_ways: Draw, tmp_path: Path) -> None:
         "--workers",
         "1",
     ]
-    text, error = invoke(*words, "--replicates", "1", "--out", str(tmp_path / "suite"))
+    text, error = invoke(*words, "--replicates", "1", "--out", str(tmp_path / "suite"), "--json")
     assert error is None, text
+    told = json.loads(text.strip().splitlines()[-1])["networks"]
     with (tmp_path / "suite" / "networks.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
+    assert rows == told
     assert len(rows) == 2
     for row, folder in zip(
         rows, sorted(path for path in (tmp_path / "suite").iterdir() if path.is_dir()), strict=True
