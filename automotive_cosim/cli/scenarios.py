@@ -310,6 +310,52 @@ def scale_to_a_day(
     _print_day(day, target, write_day(target))
 
 
+@app.command("equilibrate")
+def equilibrate_scenario(
+    folder: Annotated[Path, typer.Argument(help="Folder of a scenario.", show_default=False)],
+    gap: Annotated[
+        float, typer.Option(parser=number(0.0, 1.0), metavar="GAP", help="Relative gap at which to stop.")
+    ] = 0.02,
+    steps: Annotated[
+        int, typer.Option(parser=whole_number(1, 100), metavar="N", help="Maximum number of steps.")
+    ] = 12,
+    minutes: Annotated[
+        int,
+        typer.Option(parser=whole_number(5, 1440), metavar="M", help="Minutes of departures after the warm-up."),
+    ] = 60,
+    seed: Annotated[int, typer.Option(help="Seed of the traffic and of who changes.")] = 0,
+    out: Annotated[Path | None, typer.Option(help="Folder to create.", show_default="FOLDER_equilibrium")] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace an earlier equilibrium.")] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Give a scenario's drivers the routes that they would find: a user equilibrium in the micro simulation.
+
+    Prints the relative gap of every step, as measured from the trips driven, and keeps the best step.
+    """
+    from automotive_cosim.scenery.equilibrium import AssignmentStep, Options, equilibrate
+
+    if not (folder / "scenario.toml").is_file():
+        raise UserError(f"{folder} is no scenario's folder: it has no scenario.toml")
+    target = out or folder.with_name(f"{folder.resolve().name}_equilibrium")
+
+    def tell(step: AssignmentStep) -> None:
+        typer.echo(f"step {step.number}: {step.gap}; {step.changed} change", err=as_json)
+
+    found = equilibrate(folder, target, Options(steps, gap, minutes * 60.0, seed), tell, force=force)
+    best = min(found, key=lambda step: step.gap.relative)
+    if as_json:
+        print_json(
+            {
+                "out": str(target),
+                "kept": best.number,
+                "relative_gaps": [step.gap.relative for step in found],
+            }
+        )
+        return
+    reached = "" if best.gap.relative <= gap else f"; {gap:.1%} was not reached"
+    typer.echo(f"{target}: the demand of step {best.number}, {best.gap}{reached}")
+
+
 @app.command("download")
 def download_map(
     bbox: Annotated[str, typer.Option(metavar="W,S,E,N", help="West, south, east and north, in degrees.")],
