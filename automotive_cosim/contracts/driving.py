@@ -77,7 +77,8 @@ class RoadHere:
     name: str
     """Street name as signed; empty without one."""
     road_class: str
-    """OSM highway value, e.g. ``"motorway"``, ``"primary"``, ``"residential"``; empty if unknown."""
+    """OSM highway value, e.g. ``"motorway"``, ``"primary"``, ``"residential"``, or ``"cycle_street"``; empty if
+    unknown."""
     limit: Limit
     """The lane's limit in the network, from a sign or assumed."""
     in_tunnel: bool

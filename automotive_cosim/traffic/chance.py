@@ -42,7 +42,7 @@ class Fresh(StrEnum):
     """Every other car's speed factor was changed by ``JITTER`` times a normal variate."""
 
     @classmethod
-    def proven(cls, first: Sample, again: Sample, other: Sample) -> Fresh:
+    def proven(cls, first: Trial, again: Trial, other: Trial) -> Fresh:
         """What three copies prove, of which the first two had the same seed.
 
         Each has the first number of every generator and a fingerprint of the traffic after ``PROOF_S``.
@@ -53,7 +53,7 @@ class Fresh(StrEnum):
         return cls.SEED_UNSEEN if first[1] == other[1] else cls.SEED
 
 
-Sample = tuple[tuple[float, ...], int]
+Trial = tuple[tuple[float, ...], int]
 
 
 class Generators:

@@ -30,7 +30,7 @@ from automotive_cosim.errors import SetupError, TrafficError
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.accounts import Pulse, Settled
 from automotive_cosim.traffic.base import Advance, EgoPlan, WarmUpProgress
-from automotive_cosim.traffic.chance import Fresh, Sample
+from automotive_cosim.traffic.chance import Fresh, Trial
 from automotive_cosim.traffic.drive import Call
 from automotive_cosim.traffic.options import Setup
 from automotive_cosim.traffic.profiles import profile
@@ -285,12 +285,12 @@ class _Source:
         self._warm_calls.append((name, arguments))
         return answer
 
-    def sampled(self, seed: int) -> Sample:
+    def sampled(self, seed: int) -> Trial:
         """What a seed makes of a copy of the warm traffic."""
         with self._lock:
             copy = self._ready().fork(self._next_outputs())
         with closing(copy):
-            sample: Sample = copy.call("prove_fresh", seed)
+            sample: Trial = copy.call("prove_fresh", seed)
             return sample
 
     def close(self) -> None:

@@ -26,7 +26,7 @@ from automotive_cosim.contracts import Answer, RoadNetwork, RoadRequest, RoadSha
 from automotive_cosim.errors import CosimError, TrafficError
 from automotive_cosim.traffic.accounts import Pulse, Settled
 from automotive_cosim.traffic.base import EgoPlan
-from automotive_cosim.traffic.chance import PROOF_S, Fresh, Generators, Sample, fingerprint, renew
+from automotive_cosim.traffic.chance import PROOF_S, Fresh, Generators, Trial, fingerprint, renew
 from automotive_cosim.traffic.channel import LOADING_LIMIT_S, ClosedError, MessageChannel
 from automotive_cosim.traffic.drive import Call, EgoDrive
 from automotive_cosim.traffic.ledger import Ledger, own_choice, settle
@@ -190,7 +190,7 @@ class Server:
         """Gives this copy random numbers of its own."""
         renew(load_library(), fresh, seed)
 
-    def do_prove_fresh(self, seed: int) -> Sample:
+    def do_prove_fresh(self, seed: int) -> Trial:
         """What a seed makes of this traffic; this process cannot be used for anything else afterwards."""
         assert self._world is not None
         generators = Generators(load_library())

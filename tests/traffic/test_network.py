@@ -310,3 +310,12 @@ def test_a_map_is_told_where_the_traffic_is_slow(town: Network) -> None:
     assert flow.slow_edges() == (("c1c2", round(flow.relative_speed("c1c2"), 2)),)
     assert Route(AVENUE, town, flow).ahead(0, 0.0, None).slow_edges == flow.slow_edges()
     assert jammed(town).slow_edges() == ()
+
+
+@pytest.mark.parametrize(
+    ("params", "road_class"),
+    [("bicycle_road=yes", "cycle_street"), ("cyclestreet=yes", "cycle_street"), ("cyclestreet=no", "residential")],
+)
+def test_a_cycle_street_is_a_class_of_its_own(net: Callable[..., Network], params: str, road_class: str) -> None:
+    network = net(edge("ab", params, more='type="highway.residential"'), edge("bc"))
+    assert network.edges["ab"].road_class == road_class
