@@ -204,7 +204,7 @@ def _phrasing_problems(file: str, job: EpisodeJob, row: EpisodeRow, judged: Judg
     """Whether what the driver said is a phrasing of the task, and held out or not as the row says."""
     said = [text.format_map(judged.parameters) for text in job.task.templates]
     if judged.goal not in said:
-        yield Problem(file, "goal", f"is {judged.goal!r}, which is no phrasing of {row.task}")
+        yield Problem(file, "goal", f"is {judged.goal!r}, which is not a phrasing of {row.task}")
     elif row.held_out is not (judged.goal == said[-1]) or (job.setup.held_out and not row.held_out):
         yield Problem(
             ROWS, f"{row.id} held_out", f"is {str(row.held_out).lower()}, but not by what the driver said"

@@ -31,6 +31,7 @@ from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.accounts import Pulse, Settled
 from automotive_cosim.traffic.base import Advance, EgoPlan, WarmUpProgress
 from automotive_cosim.traffic.chance import Fresh, Trial
+from automotive_cosim.traffic.divert import Edges
 from automotive_cosim.traffic.drive import Call
 from automotive_cosim.traffic.options import Setup
 from automotive_cosim.traffic.profiles import profile
@@ -91,15 +92,18 @@ class Forked:
             raise TrafficError("the simulation is closed")
         return self._source.departed(plan)
 
-    def watch(self) -> None:
+    def watch(self, *, consumptions: bool = False) -> None:
         """Makes this traffic and every drive that departs from it keep a ledger, which studies read.
+
+        Args:
+            consumptions: also of what every vehicle emits and consumes.
 
         Raises:
             SetupError: the platform cannot fork.
         """
         if self._source.by_replay:
             raise SetupError("studies branch a running simulation, which requires fork: use Linux")
-        self._source.warm_call("watch")
+        self._source.warm_call("watch", consumptions)
 
     def run_on(self, duration_s: float) -> Pulse:
         """Lets the watched traffic run, so that later drives depart later; returns its state.
@@ -210,6 +214,11 @@ class RemoteTraffic:
     def renew(self, fresh: Fresh, seed: int) -> None:
         """Gives everything from here on other random numbers; the same seed gives the same ones."""
         self._process.call("renew", fresh, seed)
+
+    def divert(self, old: Edges, new: Edges, share: float, seed: int) -> tuple[tuple[str, ...], int]:
+        """Sends a share of the other cars another way, see ``divert.divert``."""
+        outcome: tuple[tuple[str, ...], int] = self._process.call("divert", old, new, share, seed)
+        return outcome
 
     def settle(self, groups: Sequence[Sequence[str]], share: float, limit_s: float) -> Settled:
         """Runs a watched simulation until the ego's drive has ended and a share of each group has arrived.
