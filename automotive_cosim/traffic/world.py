@@ -143,7 +143,7 @@ class World:
             self._sumo, EGO, self.network, self.congestion, self._reported, self._emergency, self.step_s
         )
         self._situations.set_off(plan, sensor, self._sumo.time())
-        self._has_incidents = self._situations.are_left
+        self._has_incidents = self._has_incidents or bool(plan.incidents)
         if self._situations.take_changes():
             sensor.refresh()
         pedals = SumoPedals(self._sumo, EGO, self.network, sensor, self._router)
