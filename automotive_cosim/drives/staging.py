@@ -57,12 +57,10 @@ class Cue:
 
 Stunt = Callable[[Cue], Props]
 
-MOOD_S = 60.0
+MOOD_S = 40.0
 """How long a driver keeps a mood."""
 LEADER_WITHIN_S = 40.0
 """A leader that has not been found by then does not brake, lest it do so during the next stunt."""
-PULLS_OUT_S = 0.5
-"""A leader that may only pull out has no second in which to brake."""
 SPELL_S = 120.0
 """Length of a bank of fog or a shower."""
 AHEAD_S = 420.0
@@ -76,20 +74,12 @@ BREAK_AFTER_S = 2 * 3600.0
 # --- the driver ---------------------------------------------------------------------------------------------
 
 
-def _mood(cue: Cue, of_event: str, of_bait: str) -> tuple[DriverAt, ...]:
-    mood = of_bait if cue.is_bait else of_event
-    return DriverAt(cue.at_s, mood), DriverAt(cue.at_s + MOOD_S, cue.driver)
+def _mood(of_event: str, of_bait: str) -> Stunt:
+    def stage(cue: Cue) -> Props:
+        mood = of_bait if cue.is_bait else of_event
+        return Props(moods=(DriverAt(cue.at_s, mood), DriverAt(cue.at_s + MOOD_S, cue.driver)))
 
-
-def _over_limit(cue: Cue) -> Props:
-    """The driver is in a hurry; as a bait, drives by a speedometer that reads a little low."""
-    return Props(moods=_mood(cue, "hurried", "brisk"))
-
-
-def _leader_close(cue: Cue) -> Props:
-    """The driver presses whoever is ahead; as a bait, keeps back. If nobody is ahead, a car pulls out."""
-    pulls_out = BrakingLeader(from_s=cue.at_s, to_s=cue.at_s + PULLS_OUT_S, ahead_m=40.0)
-    return Props(moods=_mood(cue, "pressing", "calm"), incidents=(pulls_out,))
+    return stage
 
 
 def _fatigue(cue: Cue) -> Props:
@@ -194,13 +184,11 @@ def _blue_light(cue: Cue) -> Props:
 
 
 def _leader_brakes(cue: Cue) -> Props:
-    """The vehicle ahead brakes as hard as it can, close before the car; as a bait, with room, and less."""
+    """The vehicle ahead brakes hard; as a bait, it slows down gently."""
+    hard_mps2, to_kmh = (0.8, 25.0) if cue.is_bait else (6.0, 10.0)
     until_s = cue.at_s + LEADER_WITHIN_S
-    if cue.is_bait:
-        gently = BrakingLeader(from_s=cue.at_s, to_s=until_s, ahead_m=50.0, deceleration_mps2=2.5, to_kmh=20.0)
-        return Props(incidents=(gently,))
-    hard = BrakingLeader(from_s=cue.at_s, to_s=until_s, ahead_m=20.0, deceleration_mps2=9.0)
-    return Props(moods=(DriverAt(cue.at_s - 5.0, "blind"), DriverAt(until_s, cue.driver)), incidents=(hard,))
+    brakes = BrakingLeader(from_s=cue.at_s, to_s=until_s, ahead_m=50.0, deceleration_mps2=hard_mps2, to_kmh=to_kmh)
+    return Props(incidents=(brakes,))
 
 
 def _ahead(what: Literal["breakdown", "roadworks", "jam", "tractor"]) -> Stunt:
@@ -215,8 +203,8 @@ def _ahead(what: Literal["breakdown", "roadworks", "jam", "tractor"]) -> Stunt:
 
 
 STUNTS: Mapping[str, Stunt] = {
-    "over_limit": _over_limit,
-    "leader_close": _leader_close,
+    "over_limit": _mood("hurried", "brisk"),
+    "leader_close": _mood("pressing", "calm"),
     "fatigue": _fatigue,
     "belt": _belt,
     "door": _door,
