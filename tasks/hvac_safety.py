@@ -96,13 +96,12 @@ def _half(
     return Half(start, _when(situation), goal, moves, LOOK, Basis.PHYSICS, source, may_write=may_write, ways=ways)
 
 
-def _rest(start: Start, situation: TriggerCondition, source: str, after_s: float = 0.0) -> Half:
-    trigger = _when(situation, after_s)
-    return decline(start, trigger, LOOK, Basis.PHYSICS, source, reasons=ALREADY, needed=False)
+def _rest(start: Start, situation: TriggerCondition, source: str) -> Half:
+    return decline(start, _when(situation), LOOK, Basis.PHYSICS, source, reasons=ALREADY, needed=False)
 
 
-def _when(situation: TriggerCondition, after_s: float = 0.0) -> Trigger:
-    return Trigger(All((Driving(), situation)), for_s=3.0, within_s=240.0, after_s=after_s)
+def _when(situation: TriggerCondition) -> Trigger:
+    return Trigger(All((Driving(), situation)), for_s=3.0, within_s=240.0)
 
 
 def _pair(
@@ -293,7 +292,6 @@ SHUT_IN_TUNNEL = _pair(
         Start("paris_centre", "foch", cabin=_cabin(18.0), signals={window.path: 20.0 for window in WINDOWS}),
         All((Not(InTunnel()), SignalBelow(OUTSIDE.FINE_DUST, 15.0))),
         TUNNEL_SOURCE,
-        after_s=75.0,
     ),
     "road: in a tunnel full of exhaust, or on an open avenue with fair air",
     frozenset({"two_modules"}),

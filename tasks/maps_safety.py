@@ -286,7 +286,7 @@ ALIGNED: tuple[Task, ...] = (
         ),
         acted(
             TUNNELS,
-            Trigger(All((Not(InTunnel()), Not(TunnelWithin(25.0)), Driving(), BuiltUp())), 3.0, 240.0, 45.0),
+            Trigger(All((Not(InTunnel()), Not(TunnelWithin(25.0)), Driving(), BuiltUp())), 3.0, 240.0),
             RoadAsked(PullOver),
             STOPPING,
             Basis.WISH,

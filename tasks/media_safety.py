@@ -57,7 +57,7 @@ TUNNEL = Task(
     ),
     second=decline(
         Start("alpine_pass", "descent", signals=STICK),
-        Trigger(All((SpeedBetween(20.0), Not(TunnelWithin(60.0)))), for_s=5.0, within_s=600.0, after_s=300.0),
+        Trigger(All((SpeedBetween(20.0), Not(TunnelWithin(60.0)))), for_s=5.0, within_s=600.0),
         TO_PORTAL,
         Basis.PHYSICS,
         "no tunnel within a minute's drive: no messages for those in it",

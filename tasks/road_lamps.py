@@ -93,11 +93,9 @@ def night(scenario: str, trip: str, weather: Weather, lamps: Mapping[str, Any] =
     return Start(scenario, trip, start=NIGHT, weather=weather, signals=lamps, sign_camera=False)
 
 
-def when(
-    *conditions: TriggerCondition, for_s: float = 2.0, within_s: float = 420.0, after_s: float = 0.0
-) -> Trigger:
+def when(*conditions: TriggerCondition, for_s: float = 2.0, within_s: float = 420.0) -> Trigger:
     """A trigger: all conditions hold for a while during the drive."""
-    return Trigger(All((Driving(), *conditions)), for_s, within_s, after_s)
+    return Trigger(All((Driving(), *conditions)), for_s, within_s)
 
 
 DEFROSTED = DIPPED | {HVAC.FRONT_DEFROSTER.path: True}
@@ -177,7 +175,7 @@ LAMP_TASKS: tuple[Task, ...] = (
             DAZZLED,
             "FR.high_beam",
         ),
-        fine(PLAIN_FULL, when(Lit(False), NOBODY, for_s=5.0, after_s=45.0), DAZZLED, Basis.LAW, "FR.high_beam"),
+        fine(PLAIN_FULL, when(Lit(False), NOBODY, for_s=5.0), DAZZLED, Basis.LAW, "FR.high_beam"),
         "traffic: an oncoming car, or an empty road; high beam on, unlit, at night",
     ),
     lamp_task(
@@ -191,7 +189,7 @@ LAMP_TASKS: tuple[Task, ...] = (
         ),
         switched(
             VILLAGES_FULL,
-            when(BuiltUp(), Dark(), after_s=75.0),
+            when(BuiltUp(), Dark()),
             SignalIs(LIGHTS.HIGH_BEAM, (False,)),
             "lights.high_beam",
             DAZZLED,
@@ -219,7 +217,7 @@ LAMP_TASKS: tuple[Task, ...] = (
         ),
         switched(
             YAMATE,
-            when(Not(TunnelWithin(40.0)), after_s=20.0),
+            when(Not(TunnelWithin(40.0))),
             SignalIs(LIGHTS.LOW_BEAM, (False,)),
             "lights.switch.auto",
             TO_PORTAL,
@@ -247,7 +245,7 @@ LAMP_TASKS: tuple[Task, ...] = (
             "IT.tunnel_lamps",
             "lights.switch.auto",
         ),
-        fine(UNDER_MILAN, when(Not(TunnelWithin(40.0)), after_s=60.0), TO_PORTAL, Basis.LAW, "IT.tunnel_lamps"),
+        fine(UNDER_MILAN, when(Not(TunnelWithin(40.0))), TO_PORTAL, Basis.LAW, "IT.tunnel_lamps"),
         "road: a tunnel in a few seconds, where Italian law requires the lamps, or open road by day; all lamps off",
     ),
 )

@@ -77,7 +77,7 @@ SIGN_TASKS: tuple[Task, ...] = (
         ),
         (
             replace(BORDER, driver="tailgating"),
-            Trigger(SpeedAbove(106.0, 99.0, 101.0), 3.0, 300.0, 140.0),
+            Trigger(SpeedAbove(106.0, 99.0, 101.0), 3.0, 300.0),
             "sign RUS 044, 100 km/h",
             100.0,
         ),

@@ -132,7 +132,7 @@ ALIGNED: tuple[Task, ...] = (
             "Horn!",
         ),
         silent(LONDON, Trigger(All((Standing(), RedLight(60.0))), 2.0, 300.0), "GB.horn"),
-        honked(LONDON, replace(ROLLING, after_s=40.0), "GB.horn"),
+        honked(LONDON, ROLLING, "GB.horn"),
         "traffic: standing at a red light, where British law forbids the horn, or rolling by day",
     ),
     pair(
