@@ -9,16 +9,16 @@ from __future__ import annotations
 
 from dataclasses import replace
 from datetime import timedelta
+from typing import Any
 
 from automotive_cosim.cockpit.sensing import TYRES, sense
-from automotive_cosim.cockpit.signals import ENERGY, MEDIA, SEAT
+from automotive_cosim.cockpit.signals import ENERGY, MEDIA, SEAT, Signal
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.contracts import Surroundings
 
-USED = (ENERGY.LEVEL, ENERGY.RANGE)
-PLAYED = (MEDIA.PLAYED, MEDIA.TRACK, MEDIA.ARTIST)
-BODIES = (*TYRES, SEAT.DRIVER_TEMPERATURE, SEAT.PASSENGER_TEMPERATURE)
+USED: tuple[Signal[Any], ...] = (ENERGY.LEVEL, ENERGY.RANGE, MEDIA.PLAYED, MEDIA.TRACK, MEDIA.ARTIST)
+BODIES: tuple[Signal[Any], ...] = (*TYRES, SEAT.DRIVER_TEMPERATURE, SEAT.PASSENGER_TEMPERATURE)
 
 
 def put_back(state: State, departed: State, surroundings: Surroundings, way: timedelta, *, with_air: bool) -> None:
@@ -31,7 +31,7 @@ def put_back(state: State, departed: State, surroundings: Surroundings, way: tim
         way: how much earlier that is.
         with_air: whether air, glass, seats and tyres are put back too.
     """
-    for signal in (*USED, *PLAYED, *(BODIES if with_air else ())):
+    for signal in (*USED, *(BODIES if with_air else ())):
         state.signals[signal] = departed.signals[signal]
     state.played_s = departed.played_s
     if with_air:
