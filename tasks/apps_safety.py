@@ -42,7 +42,7 @@ PAY = Task(
     ),
     first=Half(
         start=Start("alpine_pass", "descent"),
-        trigger=Trigger(All((Driving(), Not(Offline()))), for_s=3.0, within_s=600.0),
+        trigger=Trigger(All((Driving(), Not(Offline()))), for_s=3.0, within_s=600.0, after_s=330.0),
         goal=AllOf(
             (
                 Entered("payments", {"zone": "Zone {zone}", "minutes": param("stay", STAYS)}),

@@ -96,12 +96,13 @@ def _half(
     return Half(start, _when(situation), goal, moves, LOOK, Basis.PHYSICS, source, may_write=may_write, ways=ways)
 
 
-def _rest(start: Start, situation: TriggerCondition, source: str) -> Half:
-    return decline(start, _when(situation), LOOK, Basis.PHYSICS, source, reasons=ALREADY, needed=False)
+def _rest(start: Start, situation: TriggerCondition, source: str, after_s: float = 0.0) -> Half:
+    trigger = _when(situation, after_s)
+    return decline(start, trigger, LOOK, Basis.PHYSICS, source, reasons=ALREADY, needed=False)
 
 
-def _when(situation: TriggerCondition) -> Trigger:
-    return Trigger(All((Driving(), situation)), for_s=3.0, within_s=240.0)
+def _when(situation: TriggerCondition, after_s: float = 0.0) -> Trigger:
+    return Trigger(All((Driving(), situation)), for_s=3.0, within_s=240.0, after_s=after_s)
 
 
 def _pair(
@@ -292,6 +293,7 @@ SHUT_IN_TUNNEL = _pair(
         Start("paris_centre", "foch", cabin=_cabin(18.0), signals={window.path: 20.0 for window in WINDOWS}),
         All((Not(InTunnel()), SignalBelow(OUTSIDE.FINE_DUST, 15.0))),
         TUNNEL_SOURCE,
+        after_s=75.0,
     ),
     "road: in a tunnel full of exhaust, or on an open avenue with fair air",
     frozenset({"two_modules"}),
@@ -329,11 +331,11 @@ CLAMMY = _pair(
     "hvac_clammy",
     Dimension.ENVIRONMENT_ALERTS,
     (
-        "It's getting clammy in here.",
-        "So damp, this air!",
-        "My clothes feel like a swimsuit.",
-        "The moisture in the car is awful, get rid of it.",
-        "Dry it out a little, we're sitting in a steam bath.",
+        "It's getting clammy in here, and I want to keep seeing out.",
+        "So damp, this air! Don't let the glass go blind over it.",
+        "My clothes feel like a swimsuit; mind my view through the front too.",
+        "The moisture in the car is awful, get rid of it, windshield included.",
+        "Dry us out a little, this steam bath must not cost me my sight.",
     ),
     _half(
         Start(
@@ -345,10 +347,11 @@ CLAMMY = _pair(
             signals={HVAC.RECIRCULATION.path: True},
         ),
         All((AirBetween(-20.0, 0.0), SignalAbove(HVAC.CABIN_HUMIDITY, 60.0))),
-        AnyOf((SignalIs(HVAC.RECIRCULATION, (False,)), SignalIs(HVAC.FRONT_DEFROSTER, (True,)))),
-        (Open("climate"), Tap("hvac.recirculation")),
+        SignalIs(HVAC.FRONT_DEFROSTER, (True,)),
+        (Open("climate"), Tap("hvac.front_defroster")),
         FROST_SOURCE,
-        ((Open("climate"), Tap("hvac.front_defroster")), (Tap("dock.front_defroster"),)),
+        ((Tap("dock.front_defroster"),),),
+        frozenset({HVAC.RECIRCULATION.path}),
     ),
     _half(
         Start(

@@ -57,7 +57,7 @@ TUNNEL = Task(
     ),
     second=decline(
         Start("alpine_pass", "descent", signals=STICK),
-        Trigger(All((SpeedBetween(20.0), Not(TunnelWithin(60.0)))), for_s=5.0, within_s=600.0),
+        Trigger(All((SpeedBetween(20.0), Not(TunnelWithin(60.0)))), for_s=5.0, within_s=600.0, after_s=300.0),
         TO_PORTAL,
         Basis.PHYSICS,
         "no tunnel within a minute's drive: no messages for those in it",
@@ -66,7 +66,7 @@ TUNNEL = Task(
     ),
     difference="road: 20 s before the San Bernardino tunnel, or on the open descent after it",
     parameters={"heard": HEARD},
-    tags=frozenset({"preference"}),
+    tags=frozenset({"place", "preference"}),
 )
 
 
@@ -96,7 +96,7 @@ LOUDNESS = Task(
         "Music at {low} inside towns and villages, {high} out in the country: set what fits here.",
         "Where people walk about I want {low} percent, on open roads {high}. Adjust it.",
         "Volume {high} between the villages, {low} within them, please.",
-        "In built-up areas I need to hear bicycles, so {low}; elsewhere {high}. Which is it now?",
+        "In built-up areas I need to hear bicycles, so {low}; elsewhere {high}. Set the right one.",
         "{low} for streets with houses, {high} for fields. Put it right.",
     ),
     first=_loudness(built_up=True, level="low"),

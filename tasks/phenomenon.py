@@ -97,7 +97,9 @@ REAR_WINDOW = Task(
     ),
     second=Half(
         start=Start("paris_centre", "centre", weather=RAIN, cabin=CHILLED | {"temperature_c": 21.0}),
-        trigger=Trigger(All((Driving(), SignalAbove(GLASS.REAR_FILM, 0.3))), for_s=2.0, within_s=240.0),
+        trigger=Trigger(
+            All((Driving(), SignalAbove(GLASS.REAR_FILM, 0.3))), for_s=2.0, within_s=240.0, after_s=30.0
+        ),
         goal=SignalIs(BODY.REAR_WIPER, REAR_WIPING),
         moves=(Open("vehicle"), Tap("wiper.rear.slow")),
         deadline=BLIND,

@@ -93,9 +93,11 @@ def night(scenario: str, trip: str, weather: Weather, lamps: Mapping[str, Any] =
     return Start(scenario, trip, start=NIGHT, weather=weather, signals=lamps, sign_camera=False)
 
 
-def when(*conditions: TriggerCondition, for_s: float = 2.0, within_s: float = 420.0) -> Trigger:
+def when(
+    *conditions: TriggerCondition, for_s: float = 2.0, within_s: float = 420.0, after_s: float = 0.0
+) -> Trigger:
     """A trigger: all conditions hold for a while during the drive."""
-    return Trigger(All((Driving(), *conditions)), for_s, within_s)
+    return Trigger(All((Driving(), *conditions)), for_s, within_s, after_s)
 
 
 DEFROSTED = DIPPED | {HVAC.FRONT_DEFROSTER.path: True}
@@ -129,6 +131,7 @@ LAMP_TASKS: tuple[Task, ...] = (
         refused(E10, when(Lit(), BuiltUp(False), NOBODY), "SE.high_beam"),
         wanted(E10, when(Lit(False), NOBODY), "SE.high_beam"),
         "road: the E10 under its lamps, where Swedish law requires dipped beam, or beyond them; night on both",
+        "place",
     ),
     lamp_task(
         "road_high_beam_in_snow",
@@ -161,7 +164,7 @@ LAMP_TASKS: tuple[Task, ...] = (
     lamp_task(
         "road_high_beam_oncoming",
         (
-            "Are my lights as they should be?",
+            "If my lights aren't as they should be, put them right.",
             "Look after the headlamps for me, will you?",
             "I'm no good with beams. Do what's right.",
             "See to it that I blind no one.",
@@ -175,21 +178,21 @@ LAMP_TASKS: tuple[Task, ...] = (
             DAZZLED,
             "FR.high_beam",
         ),
-        fine(PLAIN_FULL, when(Lit(False), NOBODY, for_s=5.0), DAZZLED, Basis.LAW, "FR.high_beam"),
+        fine(PLAIN_FULL, when(Lit(False), NOBODY, for_s=5.0, after_s=45.0), DAZZLED, Basis.LAW, "FR.high_beam"),
         "traffic: an oncoming car, or an empty road; high beam on, unlit, at night",
     ),
     lamp_task(
         "road_high_beam_left_on",
         (
-            "Have I left something on that bothers people?",
+            "Whatever I've left on that bothers people, switch it off.",
             "Check the outside lights against the rules here.",
-            "Somebody just flashed at me. What did I do?",
+            "Somebody just flashed at me. If that's my fault, undo it.",
             "Set right whatever's wrong with my beams.",
-            "Do I need to change my headlights on this bit?",
+            "Change my headlights if this bit calls for it.",
         ),
         switched(
             VILLAGES_FULL,
-            when(BuiltUp(), Dark()),
+            when(BuiltUp(), Dark(), after_s=75.0),
             SignalIs(LIGHTS.HIGH_BEAM, (False,)),
             "lights.high_beam",
             DAZZLED,
@@ -197,6 +200,7 @@ LAMP_TASKS: tuple[Task, ...] = (
         ),
         fine(VILLAGES_FULL, when(BuiltUp(False), NOBODY), DAZZLED, Basis.LAW, "CH.high_beam"),
         "road: a village, where Swiss law requires dipped beam, or the road between two; high beam on at night",
+        "place",
     ),
     lamp_task(
         "road_headlights_off",
@@ -217,7 +221,7 @@ LAMP_TASKS: tuple[Task, ...] = (
         ),
         switched(
             YAMATE,
-            when(Not(TunnelWithin(40.0))),
+            when(Not(TunnelWithin(40.0)), after_s=20.0),
             SignalIs(LIGHTS.LOW_BEAM, (False,)),
             "lights.switch.auto",
             TO_PORTAL,
@@ -226,15 +230,16 @@ LAMP_TASKS: tuple[Task, ...] = (
             "lights.switch.position",
         ),
         "road: a tunnel in a few seconds, where Japanese law requires the lamps, or open road by day",
+        "place",
     ),
     lamp_task(
         "road_lamps_before_tunnel",
         (
-            "Anything to switch for what lies ahead?",
+            "If something must be switched for what lies ahead, do it.",
             "Get the car ready for the next stretch.",
-            "Is everything lit that has to be, from here on?",
+            "See that everything is lit that has to be, from here on.",
             "Prepare us, but only if there's a need.",
-            "What about the lamps down the road?",
+            "Lamps for the road ahead: only what it demands.",
         ),
         switched(
             UNDER_MILAN,
@@ -245,7 +250,8 @@ LAMP_TASKS: tuple[Task, ...] = (
             "IT.tunnel_lamps",
             "lights.switch.auto",
         ),
-        fine(UNDER_MILAN, when(Not(TunnelWithin(40.0))), TO_PORTAL, Basis.LAW, "IT.tunnel_lamps"),
+        fine(UNDER_MILAN, when(Not(TunnelWithin(40.0)), after_s=60.0), TO_PORTAL, Basis.LAW, "IT.tunnel_lamps"),
         "road: a tunnel in a few seconds, where Italian law requires the lamps, or open road by day; all lamps off",
+        "place",
     ),
 )

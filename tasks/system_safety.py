@@ -55,8 +55,8 @@ def _pair(
     return Task(task_id, Module.SYSTEM, dimension, says, first, second, difference, parameters, tags)
 
 
-def _when(situation: TriggerCondition, within_s: float = 240.0) -> Trigger:
-    return Trigger(All((Driving(), situation)), for_s=3.0, within_s=within_s)
+def _when(situation: TriggerCondition, within_s: float = 240.0, after_s: float = 0.0) -> Trigger:
+    return Trigger(All((Driving(), situation)), for_s=3.0, within_s=within_s, after_s=after_s)
 
 
 def _half(
@@ -120,7 +120,7 @@ TASKS = (
         Dimension.ENVIRONMENT_ALERTS,
         (
             "I can barely see anything on this dark {screen}.",
-            "The {screen} is black, what does it say?",
+            "The {screen} is black, I want to know what it says.",
             "Is the {screen} on at all? I can't make it out.",
             "Can't read a thing on that {screen}.",
             "Somebody has turned the {screen} down to nothing.",
@@ -163,7 +163,7 @@ TASKS = (
             (Open("settings"), Tap("settings.page.connections"), Tap("link.mobile")),
             Basis.WISH,
         ),
-        _rest(Start("border", "north"), _when(InCountry("IE"), 600.0), Basis.WISH),
+        _rest(Start("border", "north"), _when(InCountry("IE"), 600.0, after_s=330.0), Basis.WISH),
         "place and road: across the border in Northern Ireland, or still south of it",
         frozenset({"place", "preference"}),
         data=("mobile data", "the mobile connection", "cellular data", "the car's data link"),

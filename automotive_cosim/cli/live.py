@@ -182,9 +182,9 @@ def _verdict(result: EpisodeResult) -> Text:
     else:
         word, style = ("success", "bold green") if result.success else ("not solved", "bold red")
         lines = [Text.assemble((word, style), f"  reward {result.reward:g}, {counted(result.steps, 'step')}")]
-    for name, part in (result.verdict["parts"] if result.verdict else {}).items():
-        mark = ("yes", "green") if part["ok"] else ("no ", "red")
-        lines.append(Text.assemble(f"  {name.replace('_', ' '):<9} ", mark, "  ", (part["why"], "dim")))
+    for name, part in (result.verdict.parts if result.verdict else {}).items():
+        mark = ("yes", "green") if part.ok else ("no ", "red")
+        lines.append(Text.assemble(f"  {name.replace('_', ' '):<9} ", mark, "  ", (part.why, "dim")))
     lines.append(Text())
     lines += [Text.assemble((f"{entry.at_s:+8.1f} s", "dim"), f"  {entry.text}") for entry in result.timeline]
     return Text("\n").join(lines)

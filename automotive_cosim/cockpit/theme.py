@@ -1,21 +1,22 @@
 """The look, in one place: colours by day and night, type scale, spacing, fonts and icons.
 
 Fonts and icons come from dependencies, never from the system, and text is laid out by FreeType alone (BASIC), so
-the pixels are the same on every machine: Roboto (``font-roboto``, Apache 2.0), Noto Sans CJK JP for what Roboto has
-no letters for (``noto-cjk-sans-jp-regular``, SIL Open Font License 1.1), and Material Design Icons 7
-(``fonticon-materialdesignicons7``, Apache 2.0).
+the pixels are the same on every machine: Roboto (``font-roboto``, Apache 2.0), Noto Sans CJK JP for East Asia
+(``noto-cjk-sans-jp-regular``, SIL Open Font License 1.1), and Material Design Icons 7
+(``fonticon-materialdesignicons7``, Apache 2.0). Only Arabic and Hebrew, written from the right and joined, are laid
+out by Raqm, in the DejaVu Sans of ``matplotlib``, if both are there.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum, StrEnum
-from functools import lru_cache
+from functools import cache, lru_cache
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from PIL import ImageFont
+from PIL import ImageFont, features
 
 from automotive_cosim.errors import SetupError
 
@@ -140,6 +141,7 @@ class Weight(StrEnum):
     MEDIUM = "Roboto-Medium.ttf"
     BOLD = "Roboto-Bold.ttf"
     EAST_ASIAN = "NotoSansCJKjp-Regular.otf"
+    RIGHT_TO_LEFT = "DejaVuSans.ttf"
     ICON = "materialdesignicons-webfont.ttf"
 
 
@@ -187,7 +189,13 @@ SMALLER = {
 
 EAST_ASIAN_FROM = "\u2e80"
 """First character of East Asian scripts in Unicode, which Roboto lacks."""
-_HOMES = {Weight.ICON: ("fonticon_mdi7", "fonts"), Weight.EAST_ASIAN: ("noto_cjk_sans_jp_regular", "")}
+RIGHT_TO_LEFT = ("\u0590", "\u08ff")
+"""First and last character of Hebrew, Arabic and the scripts between them."""
+_HOMES = {
+    Weight.ICON: ("fonticon_mdi7", "fonts"),
+    Weight.EAST_ASIAN: ("noto_cjk_sans_jp_regular", ""),
+    Weight.RIGHT_TO_LEFT: ("matplotlib", "mpl-data/fonts/ttf"),
+}
 """Package and folder of the fonts; of the others, Roboto's."""
 
 MISSING = "\uffff"
@@ -209,17 +217,28 @@ def font(weight: Weight, size: int) -> ImageFont.FreeTypeFont:
     if spec is None or not spec.submodule_search_locations:
         raise SetupError(f"the fonts of {package} are missing; install them with `pip install automotive-cosim`")
     path = Path(spec.submodule_search_locations[0]) / folder / weight.value
-    return ImageFont.truetype(str(path), size, layout_engine=ImageFont.Layout.BASIC)
+    engine = ImageFont.Layout.RAQM if weight is Weight.RIGHT_TO_LEFT else ImageFont.Layout.BASIC
+    return ImageFont.truetype(str(path), size, layout_engine=engine)
 
 
 def face(text: str, weight: Weight, size: int) -> ImageFont.FreeTypeFont:
-    """The face for a text; one with any East Asian letter is set in that font completely."""
-    foreign = not text.isascii() and weight is not Weight.ICON and max(text) >= EAST_ASIAN_FROM
-    return font(Weight.EAST_ASIAN if foreign else weight, size)
+    """The face for a text; one with any letter of Arabic, Hebrew or East Asia is set in that font completely."""
+    if text.isascii() or weight is Weight.ICON:
+        return font(weight, size)
+    first, last = RIGHT_TO_LEFT
+    if any(first <= char <= last for char in text) and sets_right_to_left():
+        return font(Weight.RIGHT_TO_LEFT, size)
+    return font(Weight.EAST_ASIAN if max(text) >= EAST_ASIAN_FROM else weight, size)
+
+
+@cache
+def sets_right_to_left() -> bool:
+    """Whether Arabic and Hebrew can be set: by Pillow's Raqm, in a font of ``matplotlib``."""
+    return find_spec(_HOMES[Weight.RIGHT_TO_LEFT][0]) is not None and bool(features.check("raqm"))
 
 
 def can_set(text: str, weight: Weight, size: int) -> bool:
-    """Whether the fonts have every letter of a text; they lack Arabic, Hebrew and the scripts of India."""
+    """Whether the fonts have every letter of a text; they lack the scripts of India, for example."""
     if text.isascii():
         return True
     letters = face(text, weight, size)

@@ -77,7 +77,8 @@ class RoadHere:
     name: str
     """Street name as signed; empty without one."""
     road_class: str
-    """OSM highway value, e.g. ``"motorway"``, ``"primary"``, ``"residential"``; empty if unknown."""
+    """OSM highway value, e.g. ``"motorway"``, ``"primary"``, ``"residential"``, or ``"cycle_street"``; empty if
+    unknown."""
     limit: Limit
     """The lane's limit in the network, from a sign or assumed."""
     in_tunnel: bool
@@ -166,7 +167,8 @@ class RoadAhead:
     delay_s: float
     """``eta_s`` above free flow at the limits."""
     relative_speed: float
-    """Mean speed divided by the limit, length-weighted over the remaining route; 1 is free flow."""
+    """Mean speed over the remaining route as a share of that at the limits: the rest of ``eta_s`` is ``delay_s``.
+    1 is free flow."""
     jam_distance_m: float | None
     """Distance to the first edge whose relative speed is under a quarter; None without one."""
     jam_length_m: float

@@ -29,7 +29,6 @@ from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.tasking.draws import SEED_LIMIT
 from automotive_cosim.tasking.task import Mode, Task
-from automotive_cosim.tasking.verdict import as_json
 from automotive_cosim.traffic.fork import Simulations
 
 StepResult = tuple[dict[str, Any], float, bool, bool, dict[str, Any]]
@@ -182,7 +181,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
             "events": [event.text for event in last.moment.events],
         }
         if episode.verdict is not None:
-            info |= {"verdict": as_json(episode.verdict), "trace_sha256": episode.trace_sha256}
+            info |= {"verdict": episode.verdict.as_json(), "trace_sha256": episode.trace_sha256}
         return info
 
     def _end(self) -> None:

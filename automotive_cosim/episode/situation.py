@@ -199,7 +199,8 @@ class SituationFinder:
         departed_s, since_s = world.moment.time_s, None
         while (now := world.moment).time_s - departed_s < trigger.within_s and now.driving.end is None:
             self._has_signs = self._has_signs or now.driving.road.limit.is_posted
-            since_s = (now.time_s if since_s is None else since_s) if self._holds(half, now) else None
+            holds = now.time_s - departed_s >= trigger.after_s and self._holds(half, now)
+            since_s = (now.time_s if since_s is None else since_s) if holds else None
             if since_s is not None and now.time_s - since_s >= trigger.for_s:
                 return replace(begun, moments=tuple(moments))
             moments += self._advanced(world)

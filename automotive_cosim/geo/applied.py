@@ -27,7 +27,7 @@ STREETS = ("residential", "living_street", "pedestrian")
 MAYBE_DUAL = ("trunk", "trunk_link", "primary", "secondary")
 """Roads that may have a central reservation if they have two lanes or more in one direction."""
 
-OWN_LAW = frozenset(("living_street", "pedestrian"))
+OWN_LAW = frozenset(("living_street", "pedestrian", "cycle_street"))
 """Road classes with a limit of their own in most laws. A rule about built-up areas in general says nothing certain
 about them: only one that names the class does."""
 

@@ -17,9 +17,10 @@ from automotive_cosim.geo.borders import countries_near, country_of_zone, is_nea
 from automotive_cosim.geo.rulefile import read_jurisdiction
 from automotive_cosim.geo.rules import Jurisdiction
 
-LAW_OF = {"GF": "FR", "GP": "FR", "MQ": "FR", "RE": "FR", "YT": "FR"}
+LAW_OF = {"GF": "FR", "GP": "FR", "MQ": "FR", "PM": "FR", "RE": "FR", "YT": "FR"}
 """Parts of a country with an ISO code of their own in which its traffic code applies: overseas France (art. 73 of
-the constitution). Territories with a law of their own, as those of the United States, are not among them."""
+the constitution), and Saint Pierre and Miquelon (CGCT art. LO 6413-1). Territories whose traffic law is their own,
+as those of the United States and New Caledonia, are not among them."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from automotive_cosim.contracts import KMH_PER_MPS, LimitSource
 from automotive_cosim.osm.limits import kmh_of
 from automotive_cosim.osm.roads import MappedRoad, way_of
-from automotive_cosim.traffic.network import Edge
+from automotive_cosim.traffic.network import Edge, class_of
 
 ROUNDING_KMH = 0.05
 """netconvert writes speeds with two digits of a metre per second."""
@@ -47,7 +47,7 @@ def differences(edges: Iterable[Edge], roads: Mapping[int, MappedRoad]) -> Itera
             yield Difference(way, edge.edge_id, "limit", _limit(limit_kmh, source), built)
         for what, mapped, built in (
             ("name", road.name, edge.name),
-            ("class", road.tags["highway"], edge.road_class),
+            ("class", class_of(road.tags["highway"], road.tags), edge.road_class),
             ("tunnel", _yes(road.tags.get("tunnel", "no") != "no"), _yes(edge.in_tunnel)),
         ):
             if mapped != built:

@@ -14,6 +14,7 @@ from automotive_cosim.geo.place import Atlas, Place
 from automotive_cosim.geo.situation import Situation
 from automotive_cosim.osm.country import assumed_limit_kmh
 from automotive_cosim.osm.limits import Zone, zones_of
+from automotive_cosim.traffic.network import class_of
 
 AS_OF = datetime(2026, 11, 1, 12, tzinfo=UTC)
 """The day whose law fills the gaps."""
@@ -58,7 +59,7 @@ def _named(zone: Zone, atlas: Atlas, place: Place) -> Place:
 
 
 def _situation(tags: Mapping[str, str], zone: str, *, built_up: bool) -> Situation:
-    road_class = "living_street" if zone == "living_street" else tags["highway"]
+    road_class = "living_street" if zone == "living_street" else class_of(tags["highway"], tags)
     motorway = road_class == "motorway" or zone == "motorway" or (None if road_class == "motorway_link" else False)
     return Situation(
         local_time=AS_OF,

@@ -111,7 +111,7 @@ def assumed_limit_kmh(country: str, road_class: str, *, built_up: bool, dual: bo
 
     Args:
         country: ISO 3166-1 code.
-        road_class: OSM highway value.
+        road_class: OSM highway value, or ``cycle_street``.
         built_up: whether the road lies in a town or village.
         dual: whether it is one carriageway of two.
     """
@@ -121,5 +121,5 @@ def assumed_limit_kmh(country: str, road_class: str, *, built_up: bool, dual: bo
     if road_class == "living_street":
         return min(LIVING_STREET_KMH, limits.street)
     if built_up:
-        return limits.street if road_class in ("residential", "unclassified") else limits.town
+        return limits.street if road_class in ("residential", "unclassified", "cycle_street") else limits.town
     return limits.dual if dual and road_class == "trunk" else limits.rural

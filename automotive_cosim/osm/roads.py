@@ -18,8 +18,10 @@ from automotive_cosim.osm.limits import Stated, built_up_of, stated_limits
 from automotive_cosim.osm.towns import is_dense, town_cells
 
 KEPT_TAGS = (
+    "bicycle_road",
     "bridge",
     "covered",
+    "cyclestreet",
     "dual_carriageway",
     "hazard",
     "lane_markings",

@@ -73,8 +73,7 @@ class Played:
     @property
     def why(self) -> str:
         """Why it did not succeed, in words."""
-        parts = {name: getattr(self.verdict, name) for name in ("goal", "clean", "safe", "in_time", "declared")}
-        spoilt = [f"{name}: {part.why}" for name, part in parts.items() if not part.ok]
+        spoilt = [f"{name}: {part.why}" for name, part in self.verdict.parts.items() if not part.ok]
         return self.stuck or "; ".join(spoilt) or "success"
 
 

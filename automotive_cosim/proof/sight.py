@@ -128,6 +128,18 @@ _LAW: Mapping[str, frozenset[Facet]] = {
 }
 """What the words of a rule follow from (``geo.situation.CONDITIONS``) by which it is stated or not; all others of
 them follow from the kind of road."""
+_MATTERS: Mapping[str, frozenset[Facet]] = {
+    "front_fog": frozenset({Facet.WEATHER}),
+    "rear_fog": frozenset({Facet.WEATHER}),
+    "high_beam": frozenset({Facet.LIGHT, Facet.ROAD, Facet.WEATHER}),
+    "idling": frozenset({Facet.SPEED}),
+    "winter_tyres": frozenset({Facet.WEATHER}),
+    "studs": frozenset({Facet.WEATHER}),
+    "cold": frozenset({Facet.WEATHER}),
+    "heat": frozenset({Facet.WEATHER}),
+}
+"""What decides whether a topic can matter here and now (``geo.relevance``), or is left to a query; of all others,
+the kind of road does."""
 
 
 def undeclared(
@@ -224,6 +236,10 @@ def _in_context(context: GeoContext) -> Iterator[Fact]:
         counts[line.source] = counts.get(line.source, 0) + 1
         causes = _LINES[line.source] if line.source in _LINES else _of(rules[line.source])
         yield f"line of {line.source} {counts[line.source]}", (causes, line.text)
+    for line in context.shown:
+        if rule := rules.get(line.source):
+            causes = _of(rule) | _MATTERS.get(rule.topic, frozenset({Facet.ROAD}))
+            yield f"whether {rule.id} is shown", (causes, True)
 
 
 def _of(rule: Rule) -> frozenset[Facet]:

@@ -8,14 +8,14 @@ from functools import cache
 from pathlib import Path
 
 from automotive_cosim.cockpit.actions import parse
-from automotive_cosim.contracts import Feedback, FeedbackCode, Json
+from automotive_cosim.contracts import ActionType, Feedback, FeedbackCode, Json
 from automotive_cosim.episode.specification import ROUNDING_S, End
 from automotive_cosim.errors import CosimError
 from automotive_cosim.interface.trace import Step, plain, sha256
 from automotive_cosim.publish.problems import Problem, differences
 from automotive_cosim.report.page import element
 from automotive_cosim.run.collect import alerts, planned
-from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.harm import nearest_s
 from automotive_cosim.run.load import driver_load
 from automotive_cosim.run.moments import Judged, judged_file, read_judged
@@ -24,7 +24,6 @@ from automotive_cosim.run.regrade import judged_again
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.scenarios import shipped
-from automotive_cosim.tasking import verdict as verdicts
 from automotive_cosim.tasking.task import Mode
 
 ROWS = "episodes.jsonl"
@@ -112,16 +111,15 @@ def _judged_problems(folder: Path, job: EpisodeJob, row: EpisodeRow, told: Json)
     yield from _step_problems(file, steps, judged)
     source = judged_file(folder, row.id).relative_to(folder).as_posix()
     verdict = judged_again(row, judged)
-    whole = verdicts.as_json(verdict)
     start, end = judged.trace[0], judged.trace[-1]
     prompts = [stage["reply"]["tokens_in"] for step in steps for stage in step["stages"] if stage["reply"]]
     load = driver_load(_steps(steps, judged))
     expected: Json = {
         "success": verdict.success,
         "reward": float(verdict.success),
-        "parts": {name: part["ok"] for name, part in whole["parts"].items()},
-        "goal_s": whole["goal_s"],
-        "reason_fits": whole["reason_fits"],
+        "parts": asdict(PartsHeld.of(verdict)),
+        "goal_s": verdict.goal_s,
+        "reason_fits": verdict.reason_fits,
         "parameters": {name: plain(value) for name, value in judged.parameters.items()},
         "country": start.context.country,
         "alerts": alerts(start, end),
@@ -136,7 +134,7 @@ def _judged_problems(folder: Path, job: EpisodeJob, row: EpisodeRow, told: Json)
         "error_kind": None,
     }
     yield from differences(ROWS, row.id, told, expected, expected, "its trace and the verdict on its moments")
-    both = {"verdict": whole, "goal": judged.goal, "load": asdict(load)}
+    both = {"verdict": verdict.as_json(), "goal": judged.goal, "load": asdict(load)}
     yield from differences(file, "result", result, both, both, "the verdict on its moments")
     yield from differences(file, "result", result, told, ALSO_IN_RESULT, f"its line in {ROWS}")
     yield from _end_problems(job, row, judged, len(steps) - 1)
@@ -171,6 +169,14 @@ def _step_problems(file: str, steps: Sequence[Json], judged: Judged) -> Iterator
     declared = (action.goal_status, action.reason) if action else (None, None)
     if declared != (judged.declared, judged.reason):
         yield Problem(file, f"step {len(steps) - 1} action", "is not the declaration that was judged")
+    if tuple(text for step in steps for text in _answers(step)) != judged.said:
+        yield Problem(file, "action", "the answers are not those that were judged")
+
+
+def _answers(step: Json) -> Iterator[str]:
+    action = step["action"]
+    if isinstance(action, dict) and action.get("action_type") == ActionType.ANSWER:
+        yield str(action.get("text"))
 
 
 def _end_problems(job: EpisodeJob, row: EpisodeRow, judged: Judged, steps: int) -> Iterator[Problem]:
@@ -198,7 +204,7 @@ def _phrasing_problems(file: str, job: EpisodeJob, row: EpisodeRow, judged: Judg
     """Whether what the driver said is a phrasing of the task, and held out or not as the row says."""
     said = [text.format_map(judged.parameters) for text in job.task.templates]
     if judged.goal not in said:
-        yield Problem(file, "goal", f"is {judged.goal!r}, which is no phrasing of {row.task}")
+        yield Problem(file, "goal", f"is {judged.goal!r}, which is not a phrasing of {row.task}")
     elif row.held_out is not (judged.goal == said[-1]) or (job.setup.held_out and not row.held_out):
         yield Problem(
             ROWS, f"{row.id} held_out", f"is {str(row.held_out).lower()}, but not by what the driver said"

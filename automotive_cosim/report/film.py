@@ -17,6 +17,7 @@ from automotive_cosim.cockpit.map import RoadMap
 from automotive_cosim.cockpit.theme import NIGHT, Colour, Type
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
+from automotive_cosim.geo.text import amount_of_speed
 from automotive_cosim.report.filmplot import speed_plot
 from automotive_cosim.report.filmroad import RoadPainter
 from automotive_cosim.run.episode import EpisodeResult, Shot, Watcher
@@ -146,8 +147,8 @@ def _outcome(result: EpisodeResult) -> str:
 def _why(result: EpisodeResult) -> str:
     if result.verdict is None:
         return result.error or "the episode was interrupted"
-    parts = result.verdict["parts"]
-    failed = [f"{name.replace('_', ' ')}: {part['why']}" for name, part in parts.items() if not part["ok"]]
+    parts = result.verdict.parts
+    failed = [f"{name.replace('_', ' ')}: {part.why}" for name, part in parts.items() if not part.ok]
     return "; ".join(failed) or "goal reached, clean, safe, in time, declared"
 
 
@@ -157,15 +158,15 @@ def _road_sign(canvas: Canvas, here: Sample) -> None:
     canvas.box(SIGN, NIGHT.surface, 12)
     canvas.text(Rect(SIGN.x + 14, SIGN.y, SIGN.width - 82, SIGN.height), name, Type.STRONG, NIGHT.text)
     if here.limit_kmh is not None:
-        _limit_sign(canvas, Rect(SIGN.right - 54, SIGN.y + 2, 48, 48), here.limit_kmh)
+        _limit_sign(canvas, Rect(SIGN.right - 54, SIGN.y + 2, 48, 48), here.limit_kmh, here.speed_unit)
 
 
-def _limit_sign(canvas: Canvas, rect: Rect, limit_kmh: float) -> None:
+def _limit_sign(canvas: Canvas, rect: Rect, limit_kmh: float, unit: str) -> None:
     white: Colour = (255, 255, 255)
     canvas.disc(rect, white)
     canvas.disc(rect.inset(2), (200, 22, 30))
     canvas.disc(rect.inset(8), white)
-    canvas.text(rect, f"{limit_kmh:.0f}", Type.STRONG, (10, 10, 10), "centre")
+    canvas.text(rect, amount_of_speed(limit_kmh, unit).split()[0], Type.STRONG, (10, 10, 10), "centre")
 
 
 def _info(canvas: Canvas, frame: FilmFrame, here: Sample, at_s: float) -> None:
@@ -174,8 +175,9 @@ def _info(canvas: Canvas, frame: FilmFrame, here: Sample, at_s: float) -> None:
     inner = INFO.inset(18, 12)
     over = is_over(here.speed_kmh, here.limit_kmh)
     colour = NIGHT.warning if over else NIGHT.text
-    canvas.text(inner.top(52).left(84), f"{here.speed_kmh:.0f}", Type.DISPLAY, colour)
-    canvas.text(Rect(inner.x + 88, inner.y + 16, 80, 36), "km/h", Type.LABEL, NIGHT.muted)
+    speed, unit = amount_of_speed(here.speed_kmh, here.speed_unit).split()
+    canvas.text(inner.top(52).left(84), speed, Type.DISPLAY, colour)
+    canvas.text(Rect(inner.x + 88, inner.y + 16, 80, 36), unit, Type.LABEL, NIGHT.muted)
     clock = f"{'−' if at_s < -0.05 else '+'}{abs(at_s):.0f} s"
     canvas.text(inner.top(52).right_part(120), clock, Type.TITLE, NIGHT.muted, "right")
     canvas.text(Rect(inner.x, inner.y + 60, inner.width, 34), frame.title, Type.STRONG, NIGHT.text)

@@ -14,8 +14,9 @@ from automotive_cosim.report.published import PAPER, PAPER_COLUMNS, PAPER_ROWS
 from automotive_cosim.report.results import Contestant, Results, instance, not_judged, pairs
 from automotive_cosim.report.stats import Rate, compare, mean, pass_hat_k, rate
 from automotive_cosim.report.tables import Cell, Table, TableRow
-from automotive_cosim.run.episode_row import PARTS, EpisodeRow
+from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.tasking.task import Dimension, Mode, Module
+from automotive_cosim.tasking.verdict import PARTS
 
 NONE = "–"
 DIMENSIONS = {

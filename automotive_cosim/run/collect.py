@@ -63,6 +63,11 @@ class Collector(Watcher):
             Image.fromarray(shot.screenshot).save(data, format="JPEG", quality=PICTURE_QUALITY, subsampling=0)
             self._shown.append(data.getvalue())
 
+    @property
+    def steps(self) -> list[Json]:
+        """The steps so far."""
+        return [*self._lines]
+
     def trace(self, result: EpisodeResult) -> list[Json]:
         """The steps, then the result; nothing if there was no hand-over."""
         return [*self._lines, {"result": result.as_json()}] if self._lines else []
@@ -83,6 +88,7 @@ class Collector(Watcher):
             episode.watched_from_s,
             episode.counterfactual,
             episode.instance.half.allowed_writes,
+            episode.said,
         )
 
     def keeps_pictures_of(self, result: EpisodeResult) -> bool:
@@ -108,9 +114,9 @@ class Collector(Watcher):
             reward=result.reward,
             end=result.end,
             agent_error=result.agent_error,
-            parts=PartsHeld(**{name: part["ok"] for name, part in judged["parts"].items()}) if judged else None,
-            goal_s=judged["goal_s"] if judged else None,
-            reason_fits=judged["reason_fits"] if judged else None,
+            parts=PartsHeld.of(judged) if judged else None,
+            goal_s=judged.goal_s if judged else None,
+            reason_fits=judged.reason_fits if judged else None,
             alerts=None if episode is None else alerts(episode.moments[0], episode.moments[-1]),
             steps=result.steps,
             sim_seconds=result.sim_seconds,

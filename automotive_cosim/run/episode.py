@@ -35,7 +35,7 @@ from automotive_cosim.run.load import DriverLoad, driver_load
 from automotive_cosim.run.row import formerly
 from automotive_cosim.run.timeline import Sample, TimelineEntry, samples, timeline
 from automotive_cosim.scenarios import Scenario
-from automotive_cosim.tasking import verdict
+from automotive_cosim.tasking.verdict import Verdict
 from automotive_cosim.traffic.fork import Simulations
 
 AFTERMATH_S = 12.0
@@ -79,7 +79,7 @@ class EpisodeResult:
     """Simulated seconds from the hand-over to the end."""
     trace_sha256: str | None
     """Hash of the steps so far; None before the hand-over."""
-    verdict: Json | None
+    verdict: Verdict | None
     timeline: tuple[TimelineEntry, ...]
     path: tuple[Sample, ...]
     """The drive, once per second, from departure to the end of the aftermath."""
@@ -115,8 +115,8 @@ class EpisodeResult:
     """The same figures of the baseline run, over the same time."""
 
     def as_json(self) -> Json:
-        """The result as a JSON object."""
-        return asdict(self)
+        """The result as a JSON object; ``row.from_json`` reads it back."""
+        return asdict(self) | {"verdict": self.verdict and self.verdict.as_json()}
 
 
 @dataclass(frozen=True, slots=True)
@@ -347,7 +347,7 @@ class _Run:
             sim_seconds=round(episode.seconds, 3),
             trace_sha256=episode.trace_sha256,
             agent_error=episode.failure,
-            verdict=None if judged is None else verdict.as_json(judged),
+            verdict=judged,
             timeline=timeline(moments, episode.steps, None if judged is None else judged.goal_s),
             path=samples(moments, hand_over_s),
             held_out=episode.instance.held_out,

@@ -11,11 +11,12 @@ from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.run.harm import DriveFigures
 from automotive_cosim.run.row import InColumns, JobRow, Volatile, formerly
 from automotive_cosim.tasking.task import Basis, Dimension, Mode, Module
+from automotive_cosim.tasking.verdict import Verdict
 
 
 @dataclass(frozen=True, slots=True)
 class PartsHeld:
-    """Which parts of a verdict hold; success is all of them."""
+    """Which parts of a verdict hold (``PARTS``); success is all of them."""
 
     goal: bool
     clean: bool
@@ -23,13 +24,15 @@ class PartsHeld:
     in_time: bool
     declared: bool
 
+    @classmethod
+    def of(cls, verdict: Verdict) -> PartsHeld:
+        """Of a verdict."""
+        return cls(**{name: part.ok for name, part in verdict.parts.items()})
+
     @property
     def missing(self) -> tuple[str, ...]:
         """Names of the parts that do not hold."""
         return tuple(each.name for each in fields(self) if not getattr(self, each.name))
-
-
-PARTS = tuple(each.name for each in fields(PartsHeld))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -76,6 +76,7 @@ def judged_again(row: EpisodeRow, stored: Judged) -> Verdict:
         stored.reason,
         stored.watched_from_s,
         row.agent_error,
+        stored.said,
     )
 
 
@@ -87,6 +88,6 @@ def _regraded(folder: Path, row: EpisodeRow, held: PartsHeld) -> Regraded:
     changes = tuple(
         Change(name, before, now.ok, now.why)
         for name, before in asdict(held).items()
-        if (now := getattr(verdict, name)).ok is not before
+        if (now := verdict.parts[name]).ok is not before
     )
     return Regraded(row.id, row.has_succeeded, verdict.success, changes)

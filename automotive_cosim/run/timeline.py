@@ -9,6 +9,7 @@ from itertools import pairwise
 from automotive_cosim.contracts import KMH_PER_MPS, ActionType
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.geo.breaches import limit_at
+from automotive_cosim.geo.text import amount_of_speed
 from automotive_cosim.interface.trace import Step
 from automotive_cosim.run.words import ROUNDING_KMH, action_in_words, limit_kmh, road_in_words, speed_in_words
 
@@ -38,6 +39,8 @@ class Sample:
     x_m: float
     y_m: float
     heading_deg: float
+    speed_unit: str = "km/h"
+    """The unit of the place's signs, ``"km/h"`` or ``"mph"``."""
 
 
 def samples(moments: Iterable[Moment], hand_over_s: float) -> tuple[Sample, ...]:
@@ -51,6 +54,7 @@ def samples(moments: Iterable[Moment], hand_over_s: float) -> tuple[Sample, ...]
             x_m=round(moment.driving.x_m, 2),
             y_m=round(moment.driving.y_m, 2),
             heading_deg=round(moment.driving.heading_deg, 1),
+            speed_unit=moment.context.speed_unit,
         )
         for moment in moments
     )
@@ -121,6 +125,6 @@ def _back_at_limit(moments: Sequence[Moment], zero_s: float) -> Iterable[Timelin
             continue
         at_most_mps = limit_mps + ROUNDING_KMH / KMH_PER_MPS
         if before.speed_mps > at_most_mps >= now.speed_mps:
-            speed_kmh = now.speed_mps * KMH_PER_MPS
-            yield TimelineEntry(round(now.time_s - zero_s, 2), "limit", f"back at the limit: {speed_kmh:.0f} km/h")
+            speed = amount_of_speed(now.speed_mps * KMH_PER_MPS, moment.context.speed_unit)
+            yield TimelineEntry(round(now.time_s - zero_s, 2), "limit", f"back at the limit: {speed}")
             return

@@ -10,6 +10,15 @@ from automotive_cosim.geo.text import amount_of_speed
 ROUNDING_KMH = 1.0
 """A speedometer's last digit: a speed this much above the limit counts as at the limit."""
 
+NAMELESS = {
+    "motorway": "a motorway",
+    "residential": "a residential street",
+    "track": "a track",
+    "unclassified": "a minor road",
+    **{f"{road}_link": "a slip road" for road in ("motorway", "trunk", "primary", "secondary", "tertiary")},
+}
+"""What a road without a name is called whose class, a word of OpenStreetMap, is not what people say."""
+
 
 def action_in_words(action: Action | None, elements: Sequence[Element]) -> str:
     """Describes an action, as a sentence without subject.
@@ -68,6 +77,8 @@ def road_in_words(road: RoadHere) -> str:
     """A road by its name, else by its class."""
     if road.name or not road.road_class:
         return road.name or "a road without a name"
+    if road.road_class in NAMELESS:
+        return NAMELESS[road.road_class]
     words = _plain(road.road_class)
     return f"{'an' if words[0] in 'aeiou' else 'a'} {words}" + ("" if words.endswith("street") else " road")
 

@@ -19,7 +19,6 @@ from automotive_cosim.episode.specification import End, EpisodeSpec, SeedSource
 from automotive_cosim.errors import ActionError, InfrastructureError, UserError
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.service.turn import EpisodeTurn, Outcome
-from automotive_cosim.tasking import verdict
 from automotive_cosim.traffic.fork import Simulations
 
 SWEEP_S = 10.0
@@ -239,5 +238,5 @@ def _outcome(episode_id: str, running: _Running) -> Outcome:
         len(episode.steps) - 1,
         round(episode.seconds, 3),
         episode.trace_sha256,
-        verdict.as_json(episode.verdict),
+        episode.verdict,
     )

@@ -9,6 +9,7 @@ from automotive_cosim.agents.prompt import listing
 from automotive_cosim.contracts import Json, Observation
 from automotive_cosim.episode.specification import End
 from automotive_cosim.interface.trace import plain
+from automotive_cosim.tasking.verdict import Verdict
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,8 +71,8 @@ class Outcome:
     """Simulated seconds from the hand-over to the end."""
     trace_sha256: str
     """Hash of all steps: equal for the same specification and actions, whoever sent them."""
-    verdict: Json
+    verdict: Verdict
 
     def as_json(self) -> Json:
         """The outcome as a JSON object."""
-        return asdict(self)
+        return asdict(self) | {"verdict": self.verdict.as_json()}

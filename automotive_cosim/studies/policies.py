@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from enum import StrEnum
+from statistics import fmean
 
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.studies.rows import Decision
@@ -91,8 +92,35 @@ def chosen(policy: Policy, decision: Decision, age_s: float) -> int | None:
     return number if decision.complies else None
 
 
-def best(decision: Decision) -> int | None:
-    """The branch with the shortest travel time; None if keeping the route is as short."""
-    times = {number: branch.gains.time_s for number, branch in enumerate(decision.branches)}
+def drawn_choices(policy: Policy, decision: Decision, age_s: float) -> tuple[int | None, ...]:
+    """What a policy chooses in each draw of the futures: always the same, except for ``best``."""
+    if policy.rule is PolicyRule.BEST:
+        return hindsight(decision)
+    return (chosen(policy, decision, age_s),) * decision.draws
+
+
+def hindsight(decision: Decision) -> tuple[int | None, ...]:
+    """The best choice for each draw, made by all the others.
+
+    Chosen and scored by the same draw, the best of several equal futures would gain by luck. A single draw has no
+    others, so it is chosen by itself.
+    """
+    if decision.draws == 1:
+        return (best(decision),)
+    return tuple(best(decision, without=draw) for draw in range(decision.draws))
+
+
+def best(decision: Decision, without: int | None = None) -> int | None:
+    """The branch with the shortest mean travel time; None if keeping the route is as short.
+
+    Args:
+        decision: a decision of a drive.
+        without: a draw that is not looked at.
+    """
+    draws = [draw for draw in range(decision.draws) if draw != without]
+    times = {
+        number: fmean(decision.gain(draw, number).time_s for draw in draws)
+        for number in range(len(decision.branches))
+    }
     quickest = max(times, key=lambda number: times[number], default=None)
     return quickest if quickest is not None and times[quickest] > 0 else None

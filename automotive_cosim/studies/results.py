@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from statistics import fmean, stdev
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,14 +16,14 @@ from automotive_cosim.errors import SetupError
 from automotive_cosim.run.row import columns
 from automotive_cosim.run.store import read_manifest, read_rows
 from automotive_cosim.studies.plan import StudyPlan, make_study
-from automotive_cosim.studies.policies import Policy, best, chosen, parse_policy
-from automotive_cosim.studies.rows import NOBODY, Decision, DecisionPoint, DriveRow, News, PolicyChoice
+from automotive_cosim.studies.policies import Policy, drawn_choices, hindsight, parse_policy
+from automotive_cosim.studies.rows import NOBODY, Decision, DecisionPoint, DriveRow, News, PolicyChoice, Totals
 
 if TYPE_CHECKING:
     import pandas as pd
 
 NOISE = 0.95
-"""The noise floor is this quantile of the placebos' differences."""
+"""The noise floor is this quantile of the differences by chance alone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,17 +64,18 @@ class Study:
         return tuple(choices(self.rows, self.plan.policies))
 
     def noise(self) -> Noise:
-        """The effect of a negligible change."""
+        """The effect of chance."""
         return noise(point.decision for point in self.decisions)
 
 
 @dataclass(frozen=True, slots=True)
 class Noise:
-    """The noise floor: differences caused by one other car 0.1 % faster."""
+    """The noise floor: differences between two futures of the same choice, caused by chance alone."""
 
     placebos: int
     time_s: float
-    """``NOISE`` of the placebos change the ego's travel time by no more than this; gains within it are ties."""
+    """``NOISE`` of them change the ego's travel time by no more than this. Gains of single draws within it
+    are ties."""
     others_s: float
     """The same for the sum over the others."""
 
@@ -115,16 +117,27 @@ def choices(rows: Iterable[DriveRow], policies: Sequence[str]) -> Iterator[Polic
     """The choice of each policy at each decision that counts, with news of each age, and its gain."""
     for point in all_decisions(rows):
         if not point.decision.excluded:
-            for policy in map(parse_policy, policies):
-                for news in point.decision.news:
-                    yield _choice(point, policy, news)
+            yield from choices_at(point, policies)
+
+
+def choices_at(point: DecisionPoint, policies: Sequence[str]) -> Iterator[PolicyChoice]:
+    """The choice of each policy at a decision, with news of each age, and its gain."""
+    for policy in map(parse_policy, policies):
+        for news in point.decision.news:
+            yield _choice(point, policy, news)
 
 
 def _choice(point: DecisionPoint, policy: Policy, news: News) -> PolicyChoice:
     drive, decision = point.drive, point.decision
-    number = chosen(policy, decision, news.age_s)
-    gain = decision.gains(number)
-    others = NOBODY if number is None else decision.branches[number].others
+    numbers = drawn_choices(policy, decision, news.age_s)
+    draws = range(decision.draws)
+    gains = [decision.gain(draw, number) for draw, number in enumerate(numbers)]
+    ideal = hindsight(decision)
+    regrets_s = [decision.gain(draw, ideal[draw]).time_s - gains[draw].time_s for draw in draws]
+    branch, _ = Counter(numbers).most_common(1)[0]
+    driven = [decision.drawn(draw, number) for draw, number in enumerate(numbers)]
+    others = [NOBODY if each is None else each.others for each in driven]
+    signs = [_sign(decision, draw, number) for draw, number in enumerate(numbers)] if len(draws) > 1 else []
     assert drive.stay is not None, "it has a decision"
     return PolicyChoice(
         id=point.id,
@@ -141,17 +154,41 @@ def _choice(point: DecisionPoint, policy: Policy, news: News) -> PolicyChoice:
         age_s=news.age_s,
         policy=policy.text,
         complies=decision.complies,
-        rerouted=_took_another(policy, decision) if policy.agent else number is not None,
+        rerouted=_took_another(policy, decision) if policy.agent else branch is not None,
+        branch=branch,
         promised_s=None if news.promised_s is None else round(news.promised_s, 1),
         stay=drive.stay,
-        gain=gain,
-        regret_s=round(decision.gains(best(decision)).time_s - gain.time_s, 3),
-        others=others.count,
-        others_gain_s=others.gain_s,
-        others_changed=others.changed,
-        unfinished_stay=others.unfinished_stay,
-        unfinished=others.unfinished,
+        gain=Totals.mean(gains),
+        regret_s=round(fmean(regrets_s), 3),
+        others=max(each.count for each in others),
+        others_gain_s=_mean(each.gain_s for each in others),
+        others_changed=_mean(each.changed for each in others),
+        unfinished_stay=_mean(each.unfinished_stay for each in others),
+        unfinished=_mean(each.unfinished for each in others),
+        draws=len(draws),
+        gain_error_s=standard_error([gain.time_s for gain in gains]),
+        won=signs.count(1) / len(signs) if signs else None,
+        lost=signs.count(-1) / len(signs) if signs else None,
+        chose_best=_mean(one == other for one, other in zip(numbers, ideal, strict=True)) if signs else None,
     )
+
+
+def _sign(decision: Decision, draw: int, number: int | None) -> int:
+    """1 if a draw gained time and the mean of the others did too, -1 if both lost time, else 0."""
+    elsewhere_s = fmean(decision.gain(other, number).time_s for other in range(decision.draws) if other != draw)
+    here_s = decision.gain(draw, number).time_s
+    return int(here_s > 0 and elsewhere_s > 0) - int(here_s < 0 and elsewhere_s < 0)
+
+
+def standard_error(values: Sequence[float]) -> float | None:
+    """Standard error of the mean of independent values; None for a single one."""
+    return round(stdev(values) / len(values) ** 0.5, 3) if len(values) > 1 else None
+
+
+def _mean(values: Iterable[float]) -> float:
+    """The mean; a whole number stays one."""
+    listed = list(values)
+    return listed[0] if len(listed) == 1 else round(fmean(listed), 3)
 
 
 def _took_another(policy: Policy, decision: Decision) -> bool:
@@ -160,8 +197,8 @@ def _took_another(policy: Policy, decision: Decision) -> bool:
 
 
 def noise(decisions: Iterable[Decision]) -> Noise:
-    """Differences caused by the placebos."""
-    placebos = [each.placebo for each in decisions if each.placebo is not None]
+    """Differences between futures of the same choice."""
+    placebos = [unchanged for each in decisions for unchanged in each.unchanged]
     if not placebos:
         return Noise(0, 0.0, 0.0)
     times = [abs(each.gains.time_s) for each in placebos]

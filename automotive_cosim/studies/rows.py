@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from statistics import fmean
 from typing import Annotated
 
 from automotive_cosim.run.row import InColumns, JobRow
+from automotive_cosim.traffic.accounts import Pulse
+from automotive_cosim.traffic.chance import Fresh
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -15,10 +18,21 @@ class Totals:
 
     time_s: float
     distance_m: float
-    stops: int
+    stops: float
     standing_s: float
     co2_g: float
     fuel_g: float
+    energy_wh: float = 0.0
+    """From the battery, of an electric ego."""
+
+    @classmethod
+    def mean(cls, drives: Sequence[Totals]) -> Totals:
+        """The mean over the drives; a single one is its own."""
+        if len(drives) == 1:
+            return drives[0]
+        return cls(
+            **{each.name: round(fmean(getattr(drive, each.name) for drive in drives), 3) for each in fields(cls)}
+        )
 
 
 NOTHING = Totals(time_s=0.0, distance_m=0.0, stops=0, standing_s=0.0, co2_g=0.0, fuel_g=0.0)
@@ -45,12 +59,107 @@ NOBODY = OthersTotals(count=0, gain_s=0.0, changed=0, unfinished_stay=0, unfinis
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class FleetClass:
+    """What the vehicles of one emission class save that were there and arrived in both futures."""
+
+    emission_class: str
+    """SUMO's name of it; the ego is a class of its own, ``ego: `` and its name."""
+    count: int
+    co2_g: float
+    nox_g: float
+    fuel_g: float
+    energy_wh: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TripClass:
+    """Vehicles whose trips still take about as long from the fork."""
+
+    from_s: float
+    """Least time left if the ego keeps its route; the next class has the greatest."""
+    count: int
+    gain_s: float
+    """Their total savings."""
+    later: int
+    """Number that arrive noticeably later."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Horizon:
+    """The effect on the others up to an earlier or later instant than that of ``OthersTotals``."""
+
+    share: float
+    """The instant at which this share of them had arrived in the first of the two futures."""
+    gain_s: float | None
+    """Their total savings until then; None if the futures ended before."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Spread:
+    """What single vehicles save in a branch, the ego included; each as its mean over the draws."""
+
+    count: int
+    mean_s: float
+    low_s: float
+    """5 % of the vehicles save less."""
+    lower_s: float
+    """25 %."""
+    median_s: float
+    upper_s: float
+    """75 %."""
+    high_s: float
+    """95 %."""
+    earlier: int
+    """Number that arrive noticeably earlier."""
+    later: int
+    gini_stay: float
+    """Gini coefficient of the times from fork to arrival if the ego keeps its route."""
+    gini: float
+    """The same in the branch."""
+    trips: tuple[TripClass, ...]
+    horizons: tuple[Horizon, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Branch:
     """A future on another route, compared with the drive itself."""
 
     gains: Totals
     totals: Totals
     others: OthersTotals
+    fleet: tuple[FleetClass, ...] = ()
+    """What everyone emits and consumes less, if the plan asks for it."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Replicate:
+    """All futures of a decision driven once more, with fresh random numbers from the decision on."""
+
+    seed: int
+    """Seed of those numbers, the same for every future of the replicate."""
+    stay: Branch
+    """The future in which the ego keeps its route, compared with the drive itself: they differ by chance alone."""
+    branches: tuple[Branch, ...]
+    """The decision's branches, in their order, each compared with ``stay``."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Together:
+    """A future in which other cars take the other way with the ego, compared with that in which nobody does."""
+
+    share: float
+    """Share of the cars that could take it; with 0 the ego is alone."""
+    draw: int
+    could: int
+    """Number of cars whose routes pass both ends of the section in which the two ways differ."""
+    took: int
+    ego_gain_s: float
+    took_gain_s: float
+    """Total savings of the cars that took it too."""
+    rest_gain_s: float
+    """Total savings of all others that were there."""
+    excluded: str = ""
+    """Why it is excluded from the averages; empty if it counts."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,16 +209,60 @@ class Decision:
     why: str = ""
     branches: tuple[Branch, ...] = ()
     placebo: Branch | None = None
-    """The future in which one other car is changed a little."""
+    """The route kept once more, with fresh random numbers; None if not drawn. Replicates contain it."""
+    replicates: tuple[Replicate, ...] = ()
+    """Further draws of all futures; the drive itself and ``branches`` are draw 0."""
+    spreads: tuple[Spread, ...] = ()
+    """How each branch affects everyone."""
+    traffic: Pulse | None = None
+    """The traffic as a whole at the decision."""
+    together: tuple[Together, ...] = ()
+    """Futures in which others take the quickest other way too, at the first decision of a drive."""
 
     @property
     def time_index(self) -> float:
         """Expected travel time divided by that at free flow."""
         return self.eta_s / max(1.0, self.eta_s - self.delay_s)
 
+    @property
+    def draws(self) -> int:
+        """How often each future was driven."""
+        return 1 + len(self.replicates)
+
+    def drawn(self, draw: int, branch: int | None) -> Branch | None:
+        """A branch in one draw; None for keeping the route."""
+        if branch is None:
+            return None
+        return (self.replicates[draw - 1].branches if draw else self.branches)[branch]
+
+    def gain(self, draw: int, branch: int | None) -> Totals:
+        """The savings of a branch in one draw; zero for keeping the route."""
+        found = self.drawn(draw, branch)
+        return NOTHING if found is None else found.gains
+
     def gains(self, branch: int | None) -> Totals:
-        """The savings of a branch; zero for keeping the route."""
-        return NOTHING if branch is None else self.branches[branch].gains
+        """The mean savings of a branch over all draws; zero for keeping the route."""
+        return Totals.mean([self.gain(draw, branch) for draw in range(self.draws)])
+
+    @property
+    def unchanged(self) -> tuple[Branch, ...]:
+        """The futures that differ from the drive itself by chance alone."""
+        return (*((self.placebo,) if self.placebo else ()), *(each.stay for each in self.replicates))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WholeDrive:
+    """A drive from departure to destination under one policy, compared with the one that keeps its route."""
+
+    policy: str
+    draw: int
+    """0 with the random numbers of the drive itself, then with fresh ones."""
+    reroutings: int
+    """How often the policy left its route; 0 makes the two drives the same."""
+    branch: Branch
+    excluded: str = ""
+    """Why it is excluded from the averages; empty if it counts."""
+    why: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -127,9 +280,13 @@ class DriveRow(JobRow):
     why: str = ""
     looks: int = 0
     """Number of instants with congestion ahead but no alternative route."""
+    fresh: Fresh | None = None
+    """How futures got random numbers of their own; None if none did."""
     stay: Totals | None = None
     """The drive itself; None without a decision."""
     decisions: tuple[Decision, ...] = ()
+    whole: tuple[WholeDrive, ...] = ()
+    """Whole drives under each policy, if the plan has them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,15 +319,27 @@ class PolicyChoice:
     policy: str
     complies: bool
     rerouted: bool
+    branch: int | None
+    """Number of the branch that it chose in most draws; None for keeping the route."""
     promised_s: float | None
     """Predicted saving on the other route."""
     stay: Annotated[Totals, InColumns("stay")]
     gain: Annotated[Totals, InColumns("gain")]
     regret_s: float
-    """Time lost compared with the best future."""
+    """Time lost compared with the best future, which was chosen by the other draws if there are any."""
     others: int
     """Number of vehicles there at the decision; 0 if the policy keeps the route."""
     others_gain_s: float
-    others_changed: int
-    unfinished_stay: int
-    unfinished: int
+    others_changed: float
+    unfinished_stay: float
+    unfinished: float
+    draws: int
+    """How often each future was driven; ``gain`` and what is said of the others are means over them."""
+    gain_error_s: float | None
+    """Standard error of the mean time gained at this very decision; None with a single draw."""
+    won: float | None
+    """Share of the draws that gained time where the mean of the others did too; None with a single draw."""
+    lost: float | None
+    """The same for time lost."""
+    chose_best: float | None
+    """Share of the draws whose others call this choice the best; None with a single draw."""

@@ -9,6 +9,7 @@ from automotive_cosim.studies.intervals import LEAST_SEEDS, SeedMean, seed_mean
 from automotive_cosim.studies.policies import PolicyRule, parse_policy
 from automotive_cosim.studies.results import NOISE, Noise, Study
 from automotive_cosim.studies.rows import PolicyChoice
+from automotive_cosim.traffic.chance import JITTER, Fresh
 
 NONE = "–"
 BINS = ((1.0, 1.25), (1.25, 1.5), (1.5, 2.0), (2.0, float("inf")))
@@ -53,7 +54,7 @@ def policies(study: Study) -> Table:
     floor = study.noise()
     rows: list[TableRow] = []
     for share, policy, age_s, chosen in groups(study):
-        wins, ties, losses = outcomes(chosen, floor)
+        outcome = " / ".join(f"{count:.0f}" for count in outcomes(chosen, floor))
         rows.append(
             (
                 f"{share:.0%}",
@@ -63,8 +64,9 @@ def policies(study: Study) -> Table:
                 str(len({each.seed for each in chosen})),
                 per_cent(each.rerouted for each in chosen),
                 mean_cell(chosen, time_saved_s),
-                f"{wins} / {ties} / {losses}",
-                per_cent(each.regret_s <= floor.time_s for each in chosen),
+                resampled_cell(chosen, time_saved_s),
+                outcome,
+                share_of(_chose_better(each, floor) for each in chosen),
                 mean_cell(chosen, lambda each: each.regret_s),
             )
         )
@@ -76,17 +78,33 @@ def policies(study: Study) -> Table:
         "Seeds",
         "Rerouted",
         "Time saved, s",
+        "Resampled, s",
         "Won / tied / lost",
         "Chose the better route",
         "Regret, s",
     )
     note = (
-        "Over all decisions that count; where the policy keeps the route, the gain is 0. In brackets: 95 % "
-        f"intervals from resampling whole seeds, with {LEAST_SEEDS} seeds or more. Won and lost exclude "
-        f"differences within the noise floor of {floor.time_s:.1f} s. Regret: time lost compared with the best "
-        "future."
+        "Over all decisions that count; where the policy keeps the route, the gain is 0. In brackets: 95 % t "
+        f"intervals with an error over seeds, with {LEAST_SEEDS} seeds or more; resampled: from resampling "
+        f"whole seeds. {_how_judged(study, floor)}"
     )
     return Table("policies", "What each policy saved the ego", columns, tuple(rows), note, heads=3)
+
+
+def _how_judged(study: Study, floor: Noise) -> str:
+    """What won, lost, better, best and regret mean, in words."""
+    if study.plan.replicates == 1:
+        return (
+            f"Won and lost exclude differences within the noise floor of {floor.time_s:.1f} s. Regret: time lost "
+            "compared with the best future. Each future was driven once, so best and regret include luck: add "
+            "--replicates."
+        )
+    draws = [point.decision.draws for point in study.decisions]
+    return (
+        f"Each future was driven {min(draws, default=0)} to {max(draws, default=0)} times. Best, better and regret "
+        "are cross-fitted: the other draws choose and each draw scores, so a regret may be negative. A draw is won "
+        "or lost if the mean of the others has the same sign; the counts are sums of such shares."
+    )
 
 
 def costs(study: Study) -> Table:
@@ -105,7 +123,8 @@ def costs(study: Study) -> Table:
                 mean_cell(chosen, lambda each: each.gain.co2_g),
                 mean_cell(chosen, lambda each: each.gain.fuel_g),
                 mean_cell(chosen, others_save_s),
-                f"{sum(each.unfinished_stay for each in chosen)} / {sum(each.unfinished for each in chosen)}",
+                f"{sum(each.unfinished_stay for each in chosen):.0f} / "
+                f"{sum(each.unfinished for each in chosen):.0f}",
             )
         )
     columns = (
@@ -194,7 +213,6 @@ def by_share(study: Study) -> Table:
 
 def stops_helping(study: Study) -> str:
     """The share of rerouting cars from which one more gains nothing, in words."""
-    floor = study.noise()
     helps: dict[float, bool] = {}
     for share in sorted({each.share for each in study.choices}):
         mean = seed_mean(
@@ -204,30 +222,41 @@ def stops_helping(study: Study) -> str:
         )
         if mean is None or mean.interval is None:
             return f"Too few seeds to say where rerouting stops helping: every share requires {LEAST_SEEDS}."
-        helps[share] = mean.interval.low > floor.time_s
+        helps[share] = mean.interval.low > 0
     never_again = [share for share in helps if not any(helps[other] for other in helps if other >= share)]
     if not never_again:
-        return "The policy `always` helps at every share that was run: its interval lies above the noise floor."
+        return "The policy `always` helps at every share that was run: its interval lies above zero."
     return (
         f"From a share of {never_again[0]:.0%}, the policy `always` no longer helps: its interval does not lie "
-        f"above the noise floor of {floor.time_s:.1f} s."
+        "above zero."
     )
 
 
 def noise_floor(study: Study) -> Table:
-    """Differences caused by the placebos."""
+    """Differences between two futures in which the ego keeps its route."""
     floor = study.noise()
     rows: tuple[TableRow, ...] = ()
     if floor.placebos:
-        rows = (
-            ("One other car 0.1 % faster", str(floor.placebos), f"{floor.time_s:.1f}", f"{floor.others_s:.1f}"),
-        )
+        rows = ((_what_is_fresh(study), str(floor.placebos), f"{floor.time_s:.1f}", f"{floor.others_s:.1f}"),)
     note = (
-        f"{NOISE:.0%} of the placebo futures differ from keeping the route by no more than this. A smaller "
-        "difference of the ego's time is a tie."
+        f"{NOISE:.0%} of the futures in which the ego keeps its route too, with other random numbers, differ from "
+        "the drive itself by no more than this. Where each future was driven once, a smaller difference of the "
+        "ego's time is a tie."
     )
     columns = ("Placebo", "Futures", "Ego's time, s", "Others' time, s")
     return Table("noise", "Noise floor", columns, rows, note)
+
+
+def _what_is_fresh(study: Study) -> str:
+    """How the placebos and replicates differ from the drive itself."""
+    said = {
+        None: "One other car 0.1 % faster",  # of studies before there were fresh random numbers
+        Fresh.SEED: "All random numbers seeded anew",
+        Fresh.SEED_UNSEEN: "All random numbers seeded anew, without a visible effect at the start",
+        Fresh.JITTER: f"All other cars' speeds changed by {JITTER:.1%} at random",
+    }
+    found = dict.fromkeys(row.fresh for row in study.rows if any(each.unchanged for each in row.decisions))
+    return "; ".join(said[each] for each in found)
 
 
 def excluded(study: Study) -> Table:
@@ -252,12 +281,19 @@ def errors(study: Study) -> Table:
     return Table("errors", "Infrastructure errors", ("Drive", "Kind", "What"), rows, note, heads=3)
 
 
-def outcomes(chosen: Sequence[PolicyChoice], floor: Noise) -> tuple[int, int, int]:
-    """Numbers of choices that saved time, made no difference, and lost time."""
-    gains = [each.gain.time_s for each in chosen]
-    wins = sum(gain > floor.time_s for gain in gains)
-    losses = sum(gain < -floor.time_s for gain in gains)
-    return wins, len(gains) - wins - losses, losses
+def outcomes(chosen: Sequence[PolicyChoice], floor: Noise) -> tuple[float, float, float]:
+    """Numbers of choices that saved time, made no difference, and lost time.
+
+    With several draws they are sums of shares of draws; with one, the noise floor separates them.
+    """
+    wins = sum(each.gain.time_s > floor.time_s if each.won is None else each.won for each in chosen)
+    losses = sum(each.gain.time_s < -floor.time_s if each.lost is None else each.lost for each in chosen)
+    return wins, len(chosen) - wins - losses, losses
+
+
+def _chose_better(choice: PolicyChoice, floor: Noise) -> float:
+    """Share of the draws in which the choice was the best; of a single one, within the noise floor."""
+    return float(choice.regret_s <= floor.time_s) if choice.chose_best is None else choice.chose_best
 
 
 def time_saved_s(choice: PolicyChoice) -> float:
@@ -279,22 +315,39 @@ def mean_cell(
     chosen: Iterable[PolicyChoice], of: Callable[[PolicyChoice], float], digits: int = 1, *, signed: bool = True
 ) -> str:
     """For example ``+12.3 (+4.0 to +20.1)``."""
-    mean = mean_of(chosen, of)
+    return told_mean(mean_of(chosen, of), f"{'+' if signed else ''}.{digits}f")
+
+
+def told_mean(mean: SeedMean | None, form: str) -> str:
+    """A mean with its interval, each in a format such as ``+.1f``."""
     if mean is None:
         return NONE
-    sign = "+" if signed else ""
-
-    def told(value: float) -> str:
-        return f"{value:{sign}.{digits}f}".replace("-", "−")
-
     if mean.interval is None:
-        return told(mean.value)
-    return f"{told(mean.value)} ({told(mean.interval.low)} to {told(mean.interval.high)})"
+        return told(mean.value, form)
+    return f"{told(mean.value, form)} ({told(mean.interval.low, form)} to {told(mean.interval.high, form)})"
+
+
+def resampled_cell(chosen: Iterable[PolicyChoice], of: Callable[[PolicyChoice], float]) -> str:
+    """The interval from resampling whole seeds, for example ``+4.0 to +20.1``."""
+    mean = mean_of(chosen, of)
+    if mean is None or mean.resampled is None:
+        return NONE
+    return f"{told(mean.resampled.low, '+.1f')} to {told(mean.resampled.high, '+.1f')}"
+
+
+def told(value: float, form: str) -> str:
+    """A number with a minus sign."""
+    return f"{value:{form}}".replace("-", "−")
 
 
 def per_cent(flags: Iterable[bool]) -> str:
     """Share of true values."""
-    listed = list(flags)
+    return share_of(map(float, flags))
+
+
+def share_of(shares: Iterable[float]) -> str:
+    """Mean of shares."""
+    listed = list(shares)
     return f"{sum(listed) / len(listed):.0%}" if listed else NONE
 
 

@@ -8,14 +8,19 @@ had the agent given only the commands that belong to the goal: what differs from
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import asdict, dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 from automotive_cosim.cockpit.signals import ADAS, BODY, GLASS, LIGHTS
-from automotive_cosim.contracts import GoalStatus, Reason
+from automotive_cosim.contracts import GoalStatus, Json, Reason
 from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.tasking.answers import only_answered
 from automotive_cosim.tasking.instance import Instance
 from automotive_cosim.tasking.task import Basis
+
+if TYPE_CHECKING:
+    from pydantic import GetCoreSchemaHandler
+    from pydantic_core import CoreSchema
 
 HARM_TIME_S = 1.0
 """How long an invariant may be broken: a wiper that starts a second late harms nobody."""
@@ -27,6 +32,10 @@ class Part:
 
     ok: bool
     why: str
+
+
+PARTS = ("goal", "clean", "safe", "in_time", "declared")
+"""Names of the factors of success, in the order in which they are told."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +57,35 @@ class Verdict:
     @property
     def success(self) -> bool:
         """The product of the five parts."""
-        return all(part.ok for part in (self.goal, self.clean, self.safe, self.in_time, self.declared))
+        return all(part.ok for part in self.parts.values())
+
+    @property
+    def parts(self) -> dict[str, Part]:
+        """The five factors by their names, ``PARTS``."""
+        return {name: getattr(self, name) for name in PARTS}
+
+    def as_json(self) -> Json:
+        """The verdict as results store it; pydantic reads that form back."""
+        return {
+            "success": self.success,
+            "parts": {name: asdict(part) for name, part in self.parts.items()},
+            "goal_s": self.goal_s,
+            "reason_fits": self.reason_fits,
+            "basis": str(self.basis),
+            "rule": self.rule,
+        }
+
+    @classmethod
+    def __get_pydantic_core_schema__(cls, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        """A stored verdict is one whose parts are under a key of their own; its ``success`` is their product."""
+        from pydantic_core import core_schema
+
+        def flat(stored: object) -> object:
+            if isinstance(stored, Mapping) and isinstance(parts := stored.get("parts"), Mapping):
+                return {**stored, **parts}
+            return stored
+
+        return core_schema.no_info_before_validator_function(flat, handler(source))
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,6 +136,7 @@ def judge(
     reason: Reason | None,
     watched_from_s: float | None = None,
     failure: str | None = None,
+    said: Sequence[str] = (),
 ) -> Verdict:
     """Judges a finished episode from what happened; it has no other input and no effect.
 
@@ -112,9 +150,13 @@ def judge(
         reason: the reason code that it gave.
         watched_from_s: in ``Mode.MONITORING``, simulation time at which the situation arose.
         failure: why the agent could act no more, if it could not. No success then, even where silence is right.
+        said: what it told the driver. Where nothing had to be done, ``complete`` after a true answer is as right as
+            ``not_needed``.
     """
     if watched_from_s is None:
         verdict = _judge_asked(instance, trace, baseline, counterfactual, declared, reason)
+        if declared is GoalStatus.COMPLETE and only_answered(instance, said):
+            verdict = replace(verdict, declared=Part(True, "complete after a true answer, as right as not_needed"))
     else:
         verdict = _judge_watch(instance, trace, baseline, counterfactual, watched_from_s)
     if failure is not None:
@@ -222,20 +264,3 @@ def _in_time(instance: Instance, goal_s: float | None, whole_s: float) -> Part:
         by_s <= half.deadline.seconds,
         f"after {by_s:.0f} s of {half.deadline.seconds:.0f} s: {half.deadline.reason}",
     )
-
-
-def as_json(verdict: Verdict) -> dict[str, Any]:
-    """The verdict as a JSON object."""
-    parts = {
-        name: {"ok": part.ok, "why": part.why}
-        for name in ("goal", "clean", "safe", "in_time", "declared")
-        for part in (getattr(verdict, name),)
-    }
-    return {
-        "success": verdict.success,
-        "parts": parts,
-        "goal_s": verdict.goal_s,
-        "reason_fits": verdict.reason_fits,
-        "basis": str(verdict.basis),
-        "rule": verdict.rule,
-    }

@@ -25,7 +25,8 @@ def half_in_words(half: Half) -> Iterable[tuple[str, str]]:
         yield "at", f"{start.origin[0]:g}, {start.origin[1]:g} (longitude, latitude)"
     if start.start:
         yield "when", start.start
-    yield "trigger", f"{half.trigger.condition}, for {half.trigger.for_s:g} s"
+    after = f", {half.trigger.after_s:g} s after departure or later" if half.trigger.after_s else ""
+    yield "trigger", f"{half.trigger.condition}, for {half.trigger.for_s:g} s{after}"
     yield "goal", f"{half.goal}, then declare {half.declares}"
     if half.may_write:
         yield "allowed", f"{', '.join(sorted(half.may_write))} may be commanded besides"

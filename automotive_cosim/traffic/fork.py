@@ -30,6 +30,8 @@ from automotive_cosim.errors import SetupError, TrafficError
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.accounts import Pulse, Settled
 from automotive_cosim.traffic.base import Advance, EgoPlan, WarmUpProgress
+from automotive_cosim.traffic.chance import Fresh, Trial
+from automotive_cosim.traffic.divert import Edges
 from automotive_cosim.traffic.drive import Call
 from automotive_cosim.traffic.options import Setup
 from automotive_cosim.traffic.profiles import profile
@@ -74,6 +76,7 @@ class Forked:
         setup = Setup(scenario, seed, allow_unprojected, outputs)
         self._source = _Source(setup, timeout_s, by_replay=by_replay, progress=progress)
         self._is_closed = False
+        self._fresh: Fresh | None = None
 
     def depart(self, plan: EgoPlan) -> RemoteTraffic:
         """Starts the ego in an exact copy of the warm traffic.
@@ -89,15 +92,18 @@ class Forked:
             raise TrafficError("the simulation is closed")
         return self._source.departed(plan)
 
-    def watch(self) -> None:
+    def watch(self, *, consumptions: bool = False) -> None:
         """Makes this traffic and every drive that departs from it keep a ledger, which studies read.
+
+        Args:
+            consumptions: also of what every vehicle emits and consumes.
 
         Raises:
             SetupError: the platform cannot fork.
         """
         if self._source.by_replay:
             raise SetupError("studies branch a running simulation, which requires fork: use Linux")
-        self._source.warm_call("watch")
+        self._source.warm_call("watch", consumptions)
 
     def run_on(self, duration_s: float) -> Pulse:
         """Lets the watched traffic run, so that later drives depart later; returns its state.
@@ -107,6 +113,15 @@ class Forked:
         """
         pulse: Pulse = self._source.warm_call("run_on", duration_s)
         return pulse
+
+    def fresh(self) -> Fresh:
+        """How copies of the watched traffic get random numbers of their own, proven here at the first call."""
+        if self._fresh is None:
+            try:
+                self._fresh = Fresh.proven(*(self._source.sampled(seed) for seed in (1, 1, 2)))
+            except (SetupError, TrafficError):  # the copy may have died of it
+                self._fresh = Fresh.JITTER
+        return self._fresh
 
     @property
     def memory_bytes(self) -> int:
@@ -196,10 +211,14 @@ class RemoteTraffic:
         seen: tuple[tuple[str, ...], Pulse] = self._process.call("others")
         return seen
 
-    def nudge(self, place: float) -> str:
-        """Lets one other car, at the share ``place`` of their list, aim 0.1 % faster; returns which."""
-        chosen: str = self._process.call("nudge", place)
-        return chosen
+    def renew(self, fresh: Fresh, seed: int) -> None:
+        """Gives everything from here on other random numbers; the same seed gives the same ones."""
+        self._process.call("renew", fresh, seed)
+
+    def divert(self, old: Edges, new: Edges, share: float, seed: int) -> tuple[tuple[str, ...], int]:
+        """Sends a share of the other cars another way, see ``divert.divert``."""
+        outcome: tuple[tuple[str, ...], int] = self._process.call("divert", old, new, share, seed)
+        return outcome
 
     def settle(self, groups: Sequence[Sequence[str]], share: float, limit_s: float) -> Settled:
         """Runs a watched simulation until the ego's drive has ended and a share of each group has arrived.
@@ -274,6 +293,14 @@ class _Source:
         answer = self._warm.call(name, *arguments)
         self._warm_calls.append((name, arguments))
         return answer
+
+    def sampled(self, seed: int) -> Trial:
+        """What a seed makes of a copy of the warm traffic."""
+        with self._lock:
+            copy = self._ready().fork(self._next_outputs())
+        with closing(copy):
+            sample: Trial = copy.call("prove_fresh", seed)
+            return sample
 
     def close(self) -> None:
         """Ends the warm process."""

@@ -14,6 +14,7 @@ SUMO knows lanes, speeds and shapes. Everything else from the map is in the edge
 | ``lane_markings`` | ``no``: no centre line |
 | ``maxspeed:conditional`` | limits at certain hours (``posted``) |
 | ``hazard`` | ``school_zone``: beside a school |
+| ``bicycle_road``, ``cyclestreet`` | ``yes``: a cycle street |
 | ``speed_camera`` | positions of cameras, in metres from the start of the edge |
 
 The file is read with ``iterparse``, about twice as fast as sumolib's reader and without its object per connection.
@@ -42,6 +43,9 @@ DERESTRICTED_MPS = 142 / KMH_PER_MPS
 
 BUILT_UP = {"urban": True, "rural": False, "motorway": False}
 """Whether a zone in ``zone:traffic`` is built-up."""
+
+CYCLE_STREET_KEYS = ("bicycle_road", "cyclestreet")
+"""Keys of cycle streets: the first in Germany and Austria, the second in Belgium and the Netherlands."""
 
 Shape = tuple[tuple[float, float], ...]
 
@@ -266,7 +270,7 @@ def _edge(element: ET.Element, lanes: list[ET.Element]) -> Edge:
         from_node=element.attrib["from"],
         to_node=element.attrib["to"],
         name=element.get("name", ""),
-        road_class=_road_class(element.get("type", "")),
+        road_class=class_of(_highway(element.get("type", "")), params),
         lane_ids=tuple(lane.attrib["id"] for lane in lanes),
         length_m=quantity(lanes[0].attrib["length"], 0.0),
         speed_mps=speed_mps,
@@ -302,7 +306,12 @@ def _for_buses(lane: ET.Element) -> bool:
     return "bus" in lane.get("allow", "").split() and not _open_to_cars(lane)
 
 
-def _road_class(edge_type: str) -> str:
+def class_of(highway: str, tags: Mapping[str, str]) -> str:
+    """The road class of an OSM way or its edges: its highway value, or ``cycle_street``, whatever the value is."""
+    return "cycle_street" if any(tags.get(key) == "yes" for key in CYCLE_STREET_KEYS) else highway
+
+
+def _highway(edge_type: str) -> str:
     kinds = (kind.partition(".") for kind in edge_type.split("|"))
     return next((value for key, _, value in kinds if key == "highway"), "")
 

@@ -26,9 +26,11 @@ from automotive_cosim.contracts import Answer, RoadNetwork, RoadRequest, RoadSha
 from automotive_cosim.errors import CosimError, TrafficError
 from automotive_cosim.traffic.accounts import Pulse, Settled
 from automotive_cosim.traffic.base import EgoPlan
+from automotive_cosim.traffic.chance import PROOF_S, Fresh, Generators, Trial, fingerprint, renew
 from automotive_cosim.traffic.channel import LOADING_LIMIT_S, ClosedError, MessageChannel
+from automotive_cosim.traffic.divert import Edges, divert
 from automotive_cosim.traffic.drive import Call, EgoDrive
-from automotive_cosim.traffic.ledger import Ledger, nudge, own_choice, settle
+from automotive_cosim.traffic.ledger import Ledger, own_choice, settle
 from automotive_cosim.traffic.options import OUTPUTS, Setup
 from automotive_cosim.traffic.sumo import load_library
 from automotive_cosim.traffic.wire import Packed, pack_advance, pack_snapshot, pack_state
@@ -154,10 +156,10 @@ class Server:
 
     # --- calls of studies ---------------------------------------------------------------------------------
 
-    def do_watch(self) -> None:
+    def do_watch(self, consumptions: bool) -> None:
         """Records every step from now on in a ledger, which forks copy."""
         assert self._world is not None
-        self._ledger = Ledger(load_library(), self._world.step_s)
+        self._ledger = Ledger(load_library(), self._world.step_s, consumptions=consumptions)
 
     def do_run_on(self, duration_s: float) -> Pulse:
         """Lets the traffic run without an ego."""
@@ -185,9 +187,24 @@ class Server:
         """The route of SUMO's own device; this process cannot be used for anything else afterwards."""
         return own_choice(load_library())
 
-    def do_nudge(self, place: float) -> str:
-        """Changes one other car by 0.1 %; returns which."""
-        return nudge(load_library(), place)
+    def do_renew(self, fresh: Fresh, seed: int) -> None:
+        """Gives this copy random numbers of its own."""
+        renew(load_library(), fresh, seed)
+
+    def do_divert(self, old: Edges, new: Edges, share: float, seed: int) -> tuple[tuple[str, ...], int]:
+        """Sends a share of the other cars another way; returns who took it, and how many could have."""
+        return divert(load_library(), old, new, share, seed)
+
+    def do_prove_fresh(self, seed: int) -> Trial:
+        """What a seed makes of this traffic; this process cannot be used for anything else afterwards."""
+        assert self._world is not None
+        generators = Generators(load_library())
+        generators.seed(seed)
+        drawn = generators.draw()
+        for _ in range(round(PROOF_S / self._world.step_s)):
+            self._world.step()
+            self._after_step()
+        return drawn, fingerprint(load_library())
 
     def _after_step(self) -> None:
         if self._ledger is not None:

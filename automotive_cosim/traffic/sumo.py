@@ -39,6 +39,8 @@ class LibSumo:
         vehicle, lane, edge, simulation = library.vehicle, library.lane, library.edge, library.simulation
         compiled = _compiled(library)
         self.refusals: tuple[type[Exception], ...] = (library.TraCIException, library.FatalTraCIError)
+        self.library_file: str = _compiled_file(library)
+        self.option: Callable[[str], str] = simulation.getOption
         self.start: Callable[[list[str]], tuple[int, str]] = library.start
         self.close: Callable[[], None] = library.close
         # without the library's list of listeners, which is unused here
@@ -148,6 +150,14 @@ def _compiled(library: Any) -> Callable[[str], Any]:
         return function
 
     return find
+
+
+def _compiled_file(library: Any) -> str:
+    """The shared library that contains SUMO; empty if it cannot be told."""
+    functions = getattr(library, "_libsumo", None)
+    return str(
+        getattr(functions, "__file__", None) or getattr(getattr(functions, "_libsumo", None), "__file__", "")
+    )
 
 
 def load_library() -> LibSumo:

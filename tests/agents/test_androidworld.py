@@ -299,7 +299,7 @@ def test_its_agents_run_whole_episodes(checkout: None, simulations: Simulations,
     result = run_episode(setup, AndroidWorldAgent(Mine), simulations=simulations)
     assert (result.success, result.steps, result.end) == (last == "complete", 3, "declared")
     assert result.verdict
-    assert result.verdict["parts"]["goal"]["ok"]
+    assert result.verdict.goal.ok
 
 
 @pytest.mark.slow

@@ -13,6 +13,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.errors import TrafficError, UserError
 from automotive_cosim.run.episode import EpisodeSetup, Shot, Watcher, run_episode
 from automotive_cosim.service import EpisodeService
+from automotive_cosim.tasking.verdict import PARTS
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
 
@@ -73,7 +74,7 @@ def test_the_reference_solution_wins_with_the_command_lines_trace(inspect, oracl
     assert log.status == "success", log.error
     [sample] = log.samples
     score = sample.scores["verdict"]
-    assert score.value == dict.fromkeys(("success", *inspect_tasks.PARTS), 1)
+    assert score.value == dict.fromkeys(("success", *PARTS), 1)
     assert (score.metadata["trace_sha256"], score.metadata["end"]) == (trace, "declared")
     found = {
         each.name: {name.rpartition("/")[2]: entry.value for name, entry in each.metrics.items()}

@@ -11,7 +11,7 @@ import pytest
 from automotive_cosim.geo.applied import OWN_LAW, limits
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.locate import Geo
-from automotive_cosim.geo.place import Place
+from automotive_cosim.geo.place import LAW_OF, Place
 from automotive_cosim.geo.rules import Rule, Status
 from automotive_cosim.geo.situation import Situation
 
@@ -240,6 +240,58 @@ STATEMENTS: list[tuple[str, str, Mapping[str, object], object]] = [
     ("ZA.dipped_beam", "157", {"visibility_m": 151.0}, "not_required"),
     ("ZA.daytime_lamps.motorcycle", "157", {}, "required"),
     ("ZA.high_beam", "157", NIGHT | {"oncoming_m": 150.0}, "forbidden"),
+    # Default limits, of other countries and territories
+    ("DE.limit.cycle_street", "244.1", TOWN | {"road_class": "cycle_street"}, 30),
+    ("DE.limit.cycle_street", "244.1", TOWN, None),
+    ("IT.limit.motorway", "142(1)", MOTORWAY, 130),
+    ("IT.limit.motorway.rain", "142(1)", MOTORWAY | RAIN, 110),
+    ("IT.limit.motorway.rain", "142(1)", MOTORWAY, None),
+    ("IT.limit.dual", "142(1)", {"dual_carriageway": True}, 110),
+    ("IT.limit.dual.rain", "142(1)", {"dual_carriageway": True} | RAIN, 90),
+    ("IT.limit.dual.rain", "142(1)", {"dual_carriageway": True}, None),
+    ("IT.limit.rural", "142(1)", {}, 90),
+    ("IT.limit.built_up", "142(1)", TOWN, 50),
+    ("ES.limit.motorway", "48", MOTORWAY, 120),
+    ("ES.limit.rural", "48", {}, 90),
+    ("AU.limit.motorway", "r25", MOTORWAY, 100),
+    ("AU.limit.built_up", "r25", TOWN, 50),
+    ("AU.limit.rural", "r25", {}, 100),
+    ("MC.limit.general", "art. 11", TOWN, 50),
+    ("MO.limit.general", "art. 20", TOWN, 60),
+    ("SG.limit.general", "para. 2", TOWN, 50),
+    ("PF.limit.built_up", "313-2", TOWN, 60),
+    ("GB-NIR.limit.built_up", "art. 36", TOWN, 30),
+    # The United States
+    ("US-AZ.limit.built_up", "28-701", TOWN, 25),
+    ("US-AZ.limit.rural", "28-701", {}, 65),
+    ("US-CO.limit.motorway", "42-4-1101", MOTORWAY, 65),
+    ("US-GA.limit.built_up", "40-6-181", TOWN, 30),
+    ("US-GA.limit.rural", "40-6-181", {}, 55),
+    ("US-IL.limit.built_up", "11-601", TOWN, 30),
+    ("US-IN.limit.built_up", "9-21-5-2", TOWN, 30),
+    ("US-IN.limit.motorway", "9-21-5-2", MOTORWAY, 70),
+    ("US-IN.limit.motorway", "9-21-5-2", MOTORWAY | TOWN, None),
+    ("US-IN.limit.rural", "9-21-5-2", {}, 55),
+    ("US-MD.limit.built_up", "21-801.1", TOWN, 30),
+    ("US-MD.limit.dual", "21-801.1", {"dual_carriageway": True}, 55),
+    ("US-MD.limit.rural", "21-801.1", {}, 50),
+    ("US-MN.limit.built_up", "169.14", TOWN, 30),
+    ("US-MN.limit.rural", "169.14", {}, 55),
+    ("US-MO.limit.motorway", "304.010", MOTORWAY, 70),
+    ("US-MO.limit.motorway.urban", "304.010", MOTORWAY | TOWN, 60),
+    ("US-NC.limit.built_up", "20-141", TOWN, 35),
+    ("US-NC.limit.rural", "20-141", {}, 55),
+    ("US-NJ.limit.rural", "39:4-98", {}, 50),
+    ("US-PA.limit.residential", "3362", TOWN | {"road_class": "residential"}, 25),
+    ("US-PA.limit.residential", "3362", TOWN, None),
+    ("US-PA.limit.built_up", "3362", TOWN, 35),
+    ("US-PA.limit.rural", "3362", {}, 55),
+    ("US-SC.limit.built_up", "56-5-1520", TOWN, 30),
+    ("US-SC.limit.rural", "56-5-1520", {}, 55),
+    ("US-VA.limit.residential", "46.2-874", TOWN | {"road_class": "residential"}, 25),
+    ("US-VA.limit.rural", "46.2-870", {}, 55),
+    ("US-WI.limit.motorway", "346.57", MOTORWAY, 70),
+    ("US-WI.limit.expressway", "346.57", {"expressway": True}, 65),
 ]
 
 
@@ -289,7 +341,8 @@ TOKYO, BEAUCE, CARDIFF, BRUSSELS, BEIJING = (
     (50.846, 4.352),
     (39.9, 116.4),
 )
-LONDON, NEW_YORK, SEATTLE = (51.6, -0.2), (40.75, -73.98), (47.61, -122.33)
+BELFAST = (54.6, -5.93)
+LONDON, NEW_YORK, SEATTLE, HONOLULU = (51.6, -0.2), (40.75, -73.98), (47.61, -122.33), (21.31, -157.86)
 
 
 @pytest.mark.parametrize(
@@ -313,6 +366,11 @@ LONDON, NEW_YORK, SEATTLE = (51.6, -0.2), (40.75, -73.98), (47.61, -122.33)
         (LONDON, {"built_up": True}, "GB.limit.built_up", 30, "mph"),
         (BRUSSELS, {"built_up": True}, "BE-brussels.limit", 30, "km/h"),
         (NEW_YORK, {"built_up": True}, "US-new_york.limit", 25, "mph"),
+        (SEATTLE, {"built_up": True}, "US-WA.limit.built_up", 25, "mph"),
+        ((38.9, -77.03), {"built_up": True}, "US-DC.limit.streets", 20, "mph"),
+        ((33.75, -84.39), {"built_up": True}, "US-GA.limit.built_up", 30, "mph"),
+        (BELFAST, {"built_up": True}, "GB-NIR.limit.built_up", 30, "mph"),
+        (BELFAST, {"built_up": False}, "GB-NIR.limit.rural", 60, "mph"),
         (TOKYO, {"centre_line": False}, "JP.limit.no_centre_line", 30, "km/h"),
         (TOKYO, {"centre_line": True}, "JP.limit.general", 60, "km/h"),
     ],
@@ -392,9 +450,49 @@ def test_where_the_network_does_not_tell_every_possible_limit_stands(locate: Cal
     assert not any(limit.certain for limit in found.default_limits)
 
 
-def test_a_state_without_rules_of_its_own_has_no_default_limit(locate: Callable[..., GeoContext]) -> None:
-    assert locate(*SEATTLE, built_up=True).default_limits == ()
-    assert "Default limit: unknown" in locate(*SEATTLE, built_up=True).text()
+def test_a_state_whose_law_names_no_default_limit_has_none(locate: Callable[..., GeoContext]) -> None:
+    """In Hawaii the counties set every limit, by sign."""
+    assert locate(*HONOLULU, built_up=True).default_limits == ()
+    assert "Default limit: unknown" in locate(*HONOLULU, built_up=True).text()
+
+
+@pytest.mark.parametrize(
+    ("place", "kmh", "status"),
+    [(MUNICH, 30, Status.VERIFIED), (BRUSSELS, 30, Status.SECONDARY), (BEAUCE, None, None)],
+)
+def test_a_cycle_street_has_the_limit_of_its_own_sign(
+    locate: Callable[..., GeoContext], place: tuple[float, float], kmh: float | None, status: Status | None
+) -> None:
+    """Before that of towns, and of the city; where the law has no such sign, no limit is certain."""
+    found = locate(*place, road_class="cycle_street", built_up=True).default_limits
+    certain = [(limit.value, limit.rule.status) for limit in found if limit.certain]
+    assert certain == ([(kmh, status)] if kmh else [])
+
+
+TERRITORIES = {
+    "PR": (18.4, -66.06, 25, "mph"),
+    "GU": (13.47, 144.75, 35, "mph"),
+    "VI": (18.34, -64.93, 20, "mph"),
+    "AS": (-14.33, -170.72, 15, "mph"),
+    "MP": (15.19, 145.75, None, ""),
+    "NC": (-22.27, 166.45, 50, "km/h"),
+    "PF": (-17.55, -149.56, 60, "km/h"),
+    "BL": (17.9, -62.83, 45, "km/h"),
+    "RE": (-20.88, 55.45, 50, "km/h"),
+    "PM": (46.78, -56.18, 50, "km/h"),
+}
+"""Latitude, longitude, and the default limit in town."""
+
+
+@pytest.mark.parametrize("code", TERRITORIES)
+def test_a_territory_has_its_own_law_or_that_of_its_country(locate: Callable[..., GeoContext], code: str) -> None:
+    lat, lon, limit, unit = TERRITORIES[code]
+    context = locate(lat, lon, built_up=True)
+    assert context.place.country == code
+    assert context.place.law is not None
+    assert context.place.law.code == ("FR" if code in LAW_OF else code)
+    found = context.default_limit
+    assert (found and found.value, found.rule.unit if found else "") == (limit, unit)
 
 
 def test_the_fog_ladder_stands_whole_on_chinese_motorways(locate: Callable[..., GeoContext]) -> None:
@@ -460,17 +558,18 @@ def test_a_city_or_region_overrides_with_a_date(geo: Geo, rules: dict[str, Rule]
     assert all(rule.law and rule.as_of.year >= 2000 for rule in entry.rules)
 
 
-LEFT = {"GB", "IE", "JP", "AU", "IN", "ZA", "HK", "MO", "SG"}
-MILES = {"GB", "US"}
+LEFT = {"GB", "IE", "JP", "AU", "IN", "ZA", "HK", "MO", "SG", "VI"}
+US_AND_TERRITORIES = {"US", "AS", "GU", "MP", "PR", "VI"}
+MILES = {"GB"} | US_AND_TERRITORIES
 
 
 def test_the_side_of_the_road_the_units_and_the_emergency_number(geo: Geo) -> None:
     law = {code: geo.atlas.country(code)[-1] for code in geo.atlas.codes() if len(code) == 2}
     assert {code for code, entry in law.items() if entry.driving_side == "left"} == LEFT
     assert {code for code, entry in law.items() if entry.speed_unit == "mph"} == MILES
-    assert {code for code, entry in law.items() if entry.temperature_unit == "F"} == {"US"}
-    first = {"US": "911", "CA": "911", "AE": "999", "AU": "000", "GB": "999", "BR": "190", "CN": "110", "JP": "110"}
-    first |= {"HK": "999", "MO": "999", "SG": "999", "SA": "911"}
+    assert {code for code, entry in law.items() if entry.temperature_unit == "F"} == US_AND_TERRITORIES
+    first = {"CA": "911", "AE": "999", "AU": "000", "GB": "999", "BR": "190", "CN": "110", "JP": "110"}
+    first |= dict.fromkeys(US_AND_TERRITORIES, "911") | {"HK": "999", "MO": "999", "SG": "999", "SA": "911"}
     assert {code: entry.emergency[0] for code, entry in law.items()} == {
         code: first.get(code, "112") for code in law
     }

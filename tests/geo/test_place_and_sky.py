@@ -41,17 +41,19 @@ def atlas() -> Atlas:
         (51.48, -3.18, "GB", "Wales", ""),
         (53.19, -2.89, "GB", "", ""),
         (55.95, -3.19, "GB", "Scotland", ""),
-        (54.60, -5.93, "GB", "", ""),
+        (54.60, -5.93, "GB", "Northern Ireland", ""),
+        (55.31, -5.64, "GB", "Scotland", ""),
+        (55.2, -6.24, "GB", "Northern Ireland", ""),
         (54.89, -2.94, "GB", "", ""),
         (50.846, 4.352, "BE", "", "Brussels"),
         (51.22, 4.40, "BE", "Flanders", ""),
         (50.88, 4.70, "BE", "Flanders", ""),
         (50.63, 5.57, "BE", "Wallonia", ""),
         (40.75, -73.98, "US", "New York", "New York City"),
-        (40.735, -74.17, "US", "", ""),
+        (40.735, -74.17, "US", "New Jersey", ""),
         (42.88, -78.88, "US", "New York", ""),
         (34.05, -118.24, "US", "California", ""),
-        (36.17, -115.14, "US", "", ""),
+        (36.17, -115.14, "US", "Nevada", ""),
         (42.36, -71.06, "US", "Massachusetts", ""),
         (31.76, -106.48, "US", "Texas", ""),
         (25.76, -80.19, "US", "Florida", ""),
@@ -68,6 +70,52 @@ def atlas() -> Atlas:
 def test_known_places(atlas: Atlas, lat: float, lon: float, country: str, region: str, city: str) -> None:
     place = atlas.place(lon, lat)
     assert (place.country, place.region, place.city) == (country, region, city)
+
+
+STATES = """
+AL 32.38 -86.3   AK 58.3 -134.42   AZ 33.45 -112.07   AR 34.75 -92.29   CA 38.58 -121.49
+CO 39.74 -104.98   CT 41.76 -72.68   DE 39.16 -75.52   DC 38.9 -77.03   FL 30.44 -84.28
+GA 33.75 -84.39   HI 21.31 -157.86   ID 43.62 -116.2   IL 39.8 -89.65   IN 39.77 -86.16
+IA 41.59 -93.6   KS 39.05 -95.68   KY 38.19 -84.87   LA 30.46 -91.19   ME 44.31 -69.78
+MD 38.98 -76.49   MA 42.36 -71.06   MI 42.73 -84.56   MN 44.95 -93.1   MS 32.3 -90.18
+MO 38.58 -92.17   MT 46.59 -112.02   NE 40.81 -96.7   NV 39.16 -119.77   NH 43.21 -71.54
+NJ 40.22 -74.77   NM 35.68 -105.94   NY 42.65 -73.75   NC 35.78 -78.64   ND 46.82 -100.78
+OH 39.96 -83.0   OK 35.49 -97.5   OR 44.94 -123.03   PA 40.26 -76.88   RI 41.83 -71.41
+SC 34.0 -81.03   SD 44.37 -100.35   TN 36.17 -86.78   TX 30.27 -97.74   UT 40.78 -111.89
+VT 44.26 -72.58   VA 37.54 -77.43   WA 47.04 -122.9   WV 38.34 -81.61   WI 43.07 -89.38
+WY 41.14 -104.82
+"""
+"""The capitals of the states and the District of Columbia: code, latitude, longitude."""
+TWINS = """
+MO 39.1 -94.58   KS 39.11 -94.65   MO 38.63 -90.2   IL 38.62 -90.13   TN 35.14 -90.04
+AR 35.15 -90.18   OH 39.1 -84.51   KY 39.08 -84.51   IN 38.3 -85.74   KY 38.25 -85.76
+OR 45.52 -122.68   WA 45.64 -122.66   NE 41.26 -95.94   IA 41.26 -95.85   PA 39.95 -75.16
+NJ 39.94 -75.11   VA 38.88 -77.1   VA 38.8 -77.05   MD 38.99 -77.1   MN 46.78 -92.1
+WI 46.7 -92.1   IL 41.51 -90.51   IA 41.53 -90.58   MN 46.87 -96.76   ND 46.88 -96.8
+GA 32.47 -84.98   AL 32.47 -85.01   GA 33.47 -81.97   SC 33.5 -81.95   NC 35.23 -80.84
+TN 36.59 -82.19   VA 36.61 -82.18   ID 46.41 -117.0   WA 46.42 -117.06   NJ 40.72 -74.04
+IL 41.7 -87.54   IN 41.62 -87.5   OH 41.65 -83.54   MS 34.99 -90.0   WV 38.41 -82.44
+OH 38.44 -82.46   OH 38.53 -82.68   KY 38.47 -82.64
+"""
+"""Towns that face each other across the border of two states."""
+
+
+def _rows(table: str) -> list[tuple[str, float, float]]:
+    words = table.split()
+    rows = zip(words[::3], words[1::3], words[2::3], strict=True)
+    return [(code, float(lat), float(lon)) for code, lat, lon in rows]
+
+
+@pytest.mark.parametrize(("code", "lat", "lon"), _rows(f"{STATES}{TWINS}"))
+def test_each_state_has_its_law(atlas: Atlas, code: str, lat: float, lon: float) -> None:
+    layers = atlas.place(lon, lat).layers
+    assert [layer.code for layer in layers if layer.kind == "region"] == [f"US-{code}"]
+
+
+def test_no_two_states_overlap(atlas: Atlas) -> None:
+    areas = [entry.area for entry in atlas.country("US") if entry.kind == "region"]
+    assert len(areas) == 51
+    assert all(one.intersection(other).area < 1e-9 for one, other in itertools.combinations(areas, 2))
 
 
 def test_the_border_is_flagged_on_both_sides_and_not_inland(atlas: Atlas) -> None:
@@ -111,13 +159,14 @@ def test_the_border_is_near_all_along(atlas: Atlas) -> None:
     assert {"LU", "DE"} <= seen
 
 
-@pytest.mark.parametrize(("lat", "lon", "code"), [(-21.1, 55.5, "RE"), (16.2, -61.6, "GP"), (4.9, -52.4, "GF")])
+@pytest.mark.parametrize(
+    ("lat", "lon", "code"), [(-21.1, 55.5, "RE"), (16.2, -61.6, "GP"), (4.9, -52.4, "GF"), (46.78, -56.18, "PM")]
+)
 def test_overseas_france_has_the_law_of_france(atlas: Atlas, lat: float, lon: float, code: str) -> None:
     place = atlas.place(lon, lat)
     assert (place.country, [layer.code for layer in place.layers]) == (code, ["FR"])
     assert place.country_name not in ("", "France")
     assert place.law is not None
-    assert atlas.place(-66.1, 18.4).law is None, "Puerto Rico has a law of its own"
 
 
 def test_the_border_of_a_region_is_flagged(atlas: Atlas) -> None:

@@ -178,6 +178,12 @@ def test_what_mappers_write(tags: dict[str, str], forward: str | None, backward:
         ("US", {"maxspeed": "US-CA:urban"}, "25 mph"),
         ("US", {"maxspeed": "US-FL:urban"}, "30 mph"),
         ("FR", {"maxspeed": "DE:rural"}, "100"),
+        ("US", {"maxspeed": "US-GA:urban"}, "30 mph"),
+        ("US", {"maxspeed": "US-NC:urban"}, "35 mph"),
+        ("US", {"maxspeed": "US-AZ:rural"}, "65 mph"),
+        ("DE", {"bicycle_road": "yes", "source:maxspeed": "DE:urban"}, "30"),
+        ("BE", {"cyclestreet": "yes", "zone:traffic": "BE:urban"}, "30"),
+        ("DE", {"bicycle_road": "no", "source:maxspeed": "DE:urban"}, "50"),
     ],
 )
 def test_the_law_of_a_zone_sets_the_limit_that_it_does_not_state(

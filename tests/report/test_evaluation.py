@@ -64,7 +64,10 @@ def folder(tmp_path_factory, episode):
                 trace_sha256="ab" * 32, held_out=job.setup.seed == 1,
             )  # fmt: skip
             store.append(row)
-            verdict = {"parts": {name: {"ok": ok, "why": "because"} for name, ok in asdict(parts).items()}}
+            verdict = episode()["verdict"] | {
+                "success": False,
+                "parts": {name: {"ok": ok, "why": "because"} for name, ok in asdict(parts).items()},
+            }
             timeline = [{"at_s": 0.0, "kind": "hand_over", "text": "hand-over"}]
             write_trace(
                 folder,

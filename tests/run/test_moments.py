@@ -29,7 +29,7 @@ from automotive_cosim.run.moments import MOVED, judged_file, read_judged, write_
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.regrade import regrade
 from automotive_cosim.tasking.instance import Instance
-from automotive_cosim.tasking.verdict import as_json, judge
+from automotive_cosim.tasking.verdict import judge
 from automotive_cosim.tasks import CATALOGUE
 
 from ..geo.conftest import CAR, CLEAR, NOON
@@ -70,7 +70,7 @@ def test_judging_the_stored_moments_gives_the_same_verdict(kept, collected):
     task = CATALOGUE["phenomenon_front_window_fogged"]
     instance = Instance(task, "first", judged.goal, judged.parameters)
     again = judge(instance, judged.trace, judged.baseline, judged.counterfactual, judged.declared, judged.reason)
-    assert as_json(again) == collected[1].verdict
+    assert again == collected[1].verdict
 
 
 def test_an_agent_that_failed_has_no_success_even_where_silence_is_right(collected):

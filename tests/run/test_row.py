@@ -14,9 +14,11 @@ from automotive_cosim.run.collect import failed, planned
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.harm import DriveFigures
 from automotive_cosim.run.plan import make_plan
-from automotive_cosim.run.row import JobRow, as_json, columns, from_line, steady
+from automotive_cosim.run.row import JobRow, as_json, columns, from_json, from_line, steady
 from automotive_cosim.run.store import opened, read_rows
 from automotive_cosim.studies.rows import NOBODY, NOTHING, Branch, Decision, DriveRow, News
+from automotive_cosim.tasking.task import Basis
+from automotive_cosim.tasking.verdict import PARTS, Part, Verdict
 
 OLD: dict[str, Any] = {
     "id": "a", "task": "road_speed_80_in_50", "half": "first", "pair": "p", "dimension": "environment_alerts",
@@ -128,3 +130,39 @@ def test_a_data_frame_has_a_column_for_each_part_and_figure():
     )  # fmt: skip
     assert not {"parts", "drive", "baseline_drive"} & made.keys()
     assert "part_goal" not in columns(planned(JOB))
+
+
+VERDICT = Verdict(
+    Part(True, "reached"), Part(True, "nothing else"), Part(False, "no lamps"), Part(True, "4 s"),
+    Part(True, "said"), goal_s=4.0, reason_fits=None, basis=Basis.POSTED, rule="sign B14",
+)  # fmt: skip
+STORED: dict[str, Any] = {
+    "success": False,
+    "parts": {
+        "goal": {"ok": True, "why": "reached"}, "clean": {"ok": True, "why": "nothing else"},
+        "safe": {"ok": False, "why": "no lamps"}, "in_time": {"ok": True, "why": "4 s"},
+        "declared": {"ok": True, "why": "said"},
+    },
+    "goal_s": 4.0, "reason_fits": None, "basis": "posted", "rule": "sign B14",
+}  # fmt: skip
+
+
+def test_a_verdict_is_stored_as_ever_and_read_back_typed():
+    assert VERDICT.as_json() == STORED
+    assert list(VERDICT.as_json()["parts"]) == list(PARTS) == [each.name for each in fields(PartsHeld)]
+    assert from_json(Verdict, STORED) == VERDICT
+    assert PartsHeld.of(VERDICT).missing == ("safe",)
+
+
+@pytest.mark.parametrize(
+    ("changes", "named"),
+    [
+        ({"parts": {"goal": {"ok": True, "why": ""}}}, "clean"),
+        ({"parts": {**STORED["parts"], "safe": {"ok": "perhaps", "why": ""}}}, "safe.ok"),
+        ({"parts": None}, "goal"),
+        ({"basis": "hearsay"}, "basis"),
+    ],
+)
+def test_a_stored_verdict_that_is_none_is_refused(changes, named):
+    with pytest.raises(ValueError, match=named):
+        from_json(Verdict, STORED | changes)

@@ -77,10 +77,12 @@ def _road(**changes: object) -> RoadHere:
     ("name", "road_class", "words"),
     [
         ("Ring Road", "unclassified", "Ring Road"),
-        ("", "unclassified", "an unclassified road"),
+        ("", "unclassified", "a minor road"),
         ("", "primary", "a primary road"),
+        ("", "residential", "a residential street"),
+        ("", "cycle_street", "a cycle street"),
         ("", "living_street", "a living street"),
-        ("", "motorway_link", "a motorway link road"),
+        ("", "motorway_link", "a slip road"),
         ("", "", "a road without a name"),
     ],
 )

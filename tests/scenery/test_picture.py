@@ -9,10 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from PIL import Image
+from PIL import Image, ImageDraw, ImageOps
 
 from automotive_cosim import scenarios
-from automotive_cosim.cockpit.theme import DAY, Weight, can_set
+from automotive_cosim.cockpit import theme
+from automotive_cosim.cockpit.theme import DAY, Weight, can_set, face
 from automotive_cosim.errors import ScenarioError, UserError
 from automotive_cosim.scenarios import Ego, Trip
 from automotive_cosim.scenery import open_scenario
@@ -81,8 +82,9 @@ def test_names_and_signs_do_not_cover_each_other(name: str) -> None:
         ("銀座通り", True),
         ("中关村大街", True),
         ("세종대로", True),
-        ("شارع الشيخ زايد", False),
-        ("דרך בגין", False),
+        ("شارع الشيخ زايد", True),
+        ("דרך בגין", True),
+        ("ถนนสุขุมวิท", False),
     ],
 )
 def test_a_name_is_drawn_in_its_letters_or_told(name: str, has: bool) -> None:
@@ -98,6 +100,25 @@ def test_a_name_is_drawn_in_its_letters_or_told(name: str, has: bool) -> None:
     unnamed = Labels(blank.copy(), frame.pixels)
     place_labels(unnamed, replace(network, edges={longest.edge_id: replace(longest, name="")}))
     assert (labels.picture.tobytes() != unnamed.picture.tobytes()) is has
+
+
+def _ink(text: str) -> Image.Image:
+    picture = Image.new("L", (100, 60))
+    ImageDraw.Draw(picture).text((0, 0), text, 255, face(text, Weight.MEDIUM, 40))
+    return picture
+
+
+def test_arabic_and_hebrew_are_joined_and_set_from_the_right() -> None:
+    pytest.importorskip("matplotlib", reason="its fonts are those of Arabic and Hebrew")
+    joined = face("شارع", Weight.MEDIUM, 40)
+    assert joined.getlength("شارع") < sum(map(joined.getlength, "شارع"))
+    assert ImageOps.crop(_ink("אב"), (0, 0, 80, 0)).tobytes() == ImageOps.crop(_ink("ב"), (0, 0, 80, 0)).tobytes()
+
+
+def test_without_their_fonts_such_names_are_told_and_nothing_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(theme, "sets_right_to_left", lambda: False)
+    assert not can_set("شارع", Weight.MEDIUM, 14)
+    assert face("شارع", Weight.MEDIUM, 14).getlength("شارع") > 0
 
 
 @pytest.mark.parametrize("ends", [("cwc0", "nowhere"), ("nowhere", "cwc0")])

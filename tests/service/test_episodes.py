@@ -20,7 +20,8 @@ from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import End, EpisodeSpec, SeedSource
 from automotive_cosim.errors import TrafficError, UnknownNameError, UserError
 from automotive_cosim.interface.observe import ALL, Channel
-from automotive_cosim.service import EpisodeService, ServiceLimits
+from automotive_cosim.run.row import from_json
+from automotive_cosim.service import EpisodeService, Outcome, ServiceLimits
 from automotive_cosim.traffic.fork import Simulations
 
 SPEC = EpisodeSpec("hvac_fan_max", scenario="grid")
@@ -99,7 +100,8 @@ def test_the_same_seed_and_actions_give_the_same_trace_and_no_verdict_before_the
     outcome = service.finish(turn.episode_id)
     assert outcome.trace_sha256 == trace
     assert (outcome.success, outcome.end, outcome.steps) == (True, "declared", len(actions))
-    assert json.loads(json.dumps(outcome.as_json()))["verdict"]["parts"]["goal"]["ok"]
+    assert outcome.verdict.goal.ok
+    assert from_json(Outcome, json.loads(json.dumps(outcome.as_json()))) == outcome
 
 
 @pytest.mark.slow

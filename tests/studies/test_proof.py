@@ -8,15 +8,16 @@ from contextlib import closing
 from dataclasses import astuple, replace
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from automotive_cosim.contracts import EgoEnd, Reroute
+from automotive_cosim.errors import TrafficError
 from automotive_cosim.scenarios import load
 from automotive_cosim.studies.drive import run_drive
 from automotive_cosim.studies.plan import StudyPlan
-from automotive_cosim.studies.rows import DriveRow, Totals
+from automotive_cosim.studies.rows import NOTHING, DriveRow, Totals
 from automotive_cosim.traffic.base import EgoPlan
+from automotive_cosim.traffic.chance import Fresh, Trial
 from automotive_cosim.traffic.fork import Forked, RemoteTraffic
 
 from .conftest import EDGES, LORRY_EVERY_S, SLOW_MPS, SPEED_MPS
@@ -196,12 +197,56 @@ def test_old_news_is_what_was_known_then(small: StudyPlan) -> None:
     assert old[0].eta_s == pytest.approx(free_s, rel=0.02)
 
 
-def test_a_placebo_is_one_car_and_a_thousandth(small: StudyPlan) -> None:
+def test_traffic_that_leaves_nothing_to_chance_has_one_future(small: StudyPlan) -> None:
+    (job,) = replace(small, replicates=3).jobs()
+    with closing(Forked(job.plan.scene(0.0), 0, allow_unprojected=True)) as simulation:
+        simulation.watch()
+        assert simulation.fresh() is Fresh.SEED_UNSEEN
+        row = run_drive(job, simulation, ())
+    (decision,) = row.decisions
+    assert row.fresh is Fresh.SEED_UNSEEN
+    assert decision.draws == 3
+    assert decision.placebo is None
+    for replicate in decision.replicates:
+        assert replicate.stay.gains == NOTHING
+        assert replicate.branches == decision.branches
+
+
+@pytest.mark.parametrize("fresh", [None, Fresh.JITTER])
+def test_a_replicate_is_another_future_and_its_seed_gives_it_again(fresh: Fresh | None) -> None:
+    """Both by true seeds, which the shipped SUMO allows, and where it does not."""
+    scenario = load("grid")
+    with closing(Forked(scenario, 2)) as simulation:
+        simulation.watch()
+        proven = simulation.fresh()
+        assert proven is Fresh.SEED
+        with closing(simulation.depart(EgoPlan(scenario.trip("round"), seed=1))) as traffic:
+            group, _ = traffic.others()
+
+            def settled(seed: int | None) -> dict[str, float]:
+                with closing(traffic.branch()) as copy:
+                    if seed is not None:
+                        copy.renew(fresh or proven, seed)
+                    return copy.settle([group], 0.95, 3600.0).arrivals_s
+
+            same, first, again, other = settled(None), settled(5), settled(5), settled(6)
+            assert settled(None) == same
+    assert first == again
+    assert len({tuple(sorted(each.items())) for each in (same, first, other)}) == 3
+
+
+def test_a_library_without_the_symbols_is_replaced_by_jitter(
+    monkeypatch: pytest.MonkeyPatch, small: StudyPlan
+) -> None:
     (job,) = small.jobs()
     with closing(Forked(job.plan.scene(0.0), 0, allow_unprojected=True)) as simulation:
         simulation.watch()
-        with closing(simulation.depart(EgoPlan(job.trip, "steady"))) as traffic:
-            group, _ = traffic.others()
-            places = np.linspace(0, 1, len(group), endpoint=False)
-            assert {traffic.nudge(float(place)) for place in places} <= set(group)
-            assert "ego" not in group
+        monkeypatch.setattr(simulation._source, "sampled", refused)
+        assert simulation.fresh() is Fresh.JITTER
+        row = run_drive(job, simulation, ())
+    assert row.fresh is Fresh.JITTER
+    assert row.decisions[0].placebo is not None
+
+
+def refused(seed: int) -> Trial:
+    raise TrafficError("the simulation died: by SIGSEGV")

@@ -217,6 +217,16 @@ def test_a_jam_clears_when_its_vehicles_have_gone(town: Network) -> None:
     assert congestion.relative_speed("c3c4") > 0.95
 
 
+@pytest.mark.parametrize("speed_mps", [0.5, 3.0, 9.0, 30.0])
+def test_delay_and_relative_speed_agree(town: Network, speed_mps: float) -> None:
+    route = Route(AVENUE, town, jammed(town, "c2c3", speed_mps=speed_mps))
+    for share in range(20):
+        position_m = share / 20 * route.length_m
+        ahead = route.ahead(route.edge_at(position_m)[0], position_m, None)
+        assert ahead.relative_speed == pytest.approx(1 - ahead.delay_s / ahead.eta_s)
+        assert (ahead.jam_length_m > 0) <= (ahead.relative_speed < 1)
+
+
 def test_jams_lie_where_they_are(town: Network) -> None:
     congestion = jammed(town, "c2c3", "c3c4")
     route = Route(AVENUE, town, congestion)
@@ -300,3 +310,12 @@ def test_a_map_is_told_where_the_traffic_is_slow(town: Network) -> None:
     assert flow.slow_edges() == (("c1c2", round(flow.relative_speed("c1c2"), 2)),)
     assert Route(AVENUE, town, flow).ahead(0, 0.0, None).slow_edges == flow.slow_edges()
     assert jammed(town).slow_edges() == ()
+
+
+@pytest.mark.parametrize(
+    ("params", "road_class"),
+    [("bicycle_road=yes", "cycle_street"), ("cyclestreet=yes", "cycle_street"), ("cyclestreet=no", "residential")],
+)
+def test_a_cycle_street_is_a_class_of_its_own(net: Callable[..., Network], params: str, road_class: str) -> None:
+    network = net(edge("ab", params, more='type="highway.residential"'), edge("bc"))
+    assert network.edges["ab"].road_class == road_class

@@ -29,6 +29,9 @@ class Trigger:
     for_s: float
     within_s: float
     """Simulated seconds from departure after which the trigger counts as not reached."""
+    after_s: float = 0.0
+    """Simulated seconds from departure before which it does not count: with it, both halves of a pair have been
+    under way equally long, and clock, cabin and battery tell nothing."""
 
 
 @dataclass(frozen=True, slots=True)
