@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
-from automotive_cosim.contracts import Connectivity, DrivingState, GpsFix, Surroundings, Weather
+from automotive_cosim.contracts import Connectivity, DrivingState, GpsFix, Sight, Surroundings, Weather
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.sun import elevation_deg
 from automotive_cosim.traffic.base import Event
@@ -33,6 +33,8 @@ class Moment:
     """Every VSS path and its value."""
     commands: Mapping[str, Any]
     """Everything that can be commanded: actuator signals, app data, sent messages and requests."""
+    sights: tuple[Sight, ...] = ()
+    """What the car notices and shows by itself; empty if it has no such equipment."""
 
     def earlier(self, by: timedelta) -> Moment:
         """The same at an earlier time of day; what the car has sensed is not changed."""

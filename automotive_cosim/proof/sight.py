@@ -45,7 +45,7 @@ class Facet(StrEnum):
 _DRIVING = {Facet.SPEED, Facet.TRAFFIC, Facet.VIEW}
 """What another pace changes: where on the road the situation comes about, and with whom."""
 FREED: Mapping[Differs, frozenset[Facet]] = {
-    Differs.PLACE: frozenset({Facet.PLACE}),
+    Differs.PLACE: frozenset({Facet.PLACE, Facet.SIGN}),
     Differs.ROAD: frozenset({Facet.PLACE, Facet.ROAD, Facet.SIGN, Facet.LINK, *_DRIVING}),
     Differs.TRAFFIC: frozenset({*_DRIVING}),
     Differs.WEATHER: frozenset({Facet.WEATHER, Facet.CABIN, *_DRIVING}),
