@@ -9,13 +9,14 @@ COPY . /source
 RUN python -m pip install --no-cache-dir build && python -m build --wheel --outdir /dist /source
 
 FROM python:3.11-slim
+ARG EXTRAS=llm,report
 RUN apt-get update \
     && apt-get install -y --no-install-recommends libgl1 libx11-6 libxext6 libxrender1 libatomic1 libexpat1 \
     && rm -rf /var/lib/apt/lists/*
 COPY constraints.txt /tmp/constraints.txt
 COPY --from=build /dist /tmp/dist
 RUN wheel="$(ls /tmp/dist/*.whl)" \
-    && python -m pip install --no-cache-dir -c /tmp/constraints.txt "$wheel[llm,report]" \
+    && python -m pip install --no-cache-dir -c /tmp/constraints.txt "${wheel}[${EXTRAS}]" \
     && rm -r /tmp/dist /tmp/constraints.txt \
     && useradd --create-home driver \
     && mkdir -p /work/runs \

@@ -7,7 +7,7 @@ BIN = $(VENV)/bin
 # Container images like to set it; hundreds of processes start in the tests, and each would compile the package anew.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: run test test-fast lint check docs bench clean
+.PHONY: run test test-fast coverage lint check docs report release-check bench clean
 .DELETE_ON_ERROR:
 
 run: $(VENV)/.run
@@ -18,6 +18,9 @@ test: $(VENV)/.dev
 
 test-fast: $(VENV)/.dev
 	$(BIN)/python -m pytest -n auto --dist worksteal -m "not sumo and not slow" -q
+
+coverage: $(VENV)/.dev
+	$(BIN)/python -m pytest -n auto --dist worksteal -m "not sumo and not slow" -q --cov --cov-report=term:skip-covered
 
 lint: $(VENV)/.dev
 	$(BIN)/ruff check .
@@ -30,6 +33,13 @@ check: lint
 
 docs: $(VENV)/.docs
 	$(BIN)/python -m sphinx -q -W --keep-going -b html docs docs/_site
+
+report: docs
+	chromium --headless --no-sandbox --disable-gpu --no-pdf-header-footer --virtual-time-budget=5000 \
+	    --print-to-pdf=docs/_site/report.pdf "file://$(CURDIR)/docs/_site/report.html"
+
+release-check: $(VENV)/.dev $(VENV)/.docs
+	.ci/release
 
 bench: $(VENV)/.run
 	$(BIN)/automotive-cosim bench

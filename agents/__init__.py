@@ -19,6 +19,7 @@ from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.models import ChatModel, make_model
 
 __all__ = [
+    "ABOUT",
     "AGENTS",
     "FORMATS",
     "MODELLED",
@@ -59,6 +60,21 @@ MODELLED = frozenset({*PROFILES, NativeAgent.name})
 
 AGENTS = tuple(sorted([*SIMPLE, *MODELLED]))
 """Names of all agents; ``package.module:Class`` names one of your own."""
+
+
+ABOUT: Mapping[str, str] = {
+    "always-alert": "negative control: warns at once, whatever happens",
+    "asurada": "elements, screenshots, GPS, geo-context; can query rules and remember (as the paper's)",
+    "human": "you, with numbered elements on the terminal",
+    "m3a": "elements and screenshots, raw and marked (after AndroidWorld's M3A)",
+    "native": "screenshots alone, for models trained to operate screens, in their own formats",
+    "no-op": "negative control: waits and declares nothing",
+    "oracle": "reference: is told the task and plays its reference solution",
+    "press-everything": "negative control: presses every button",
+    "random": "negative control: random actions",
+    "t3a": "elements as text (after AndroidWorld's T3A)",
+}
+"""What each agent sees or does, in a line."""
 
 
 def make_agent(

@@ -1,14 +1,35 @@
 """Automotive-ENV coupled to live SUMO traffic: a benchmark for agents that work a car's cockpit.
 
 Importing the package registers ``AutomotiveCosim/Cockpit-v0`` with gymnasium, and ``AutomotiveCosim/Flat-v0``,
-the same for reinforcement learning.
+the same for reinforcement learning. The names in ``__all__`` are what most programs need; each is loaded when it is
+first used. ``docs/api.md`` lists everything that is public.
 """
 
 from __future__ import annotations
 
+from importlib import import_module
+
 import gymnasium
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
+
+_HOMES = {
+    "automotive_cosim.agents": ("Agent", "make_agent"),
+    "automotive_cosim.contracts": ("Action", "ActionType", "Element", "GoalStatus", "Observation", "Reason"),
+    "automotive_cosim.envs.cockpit": ("CockpitEnv",),
+    "automotive_cosim.envs.flat": ("FlatEnv",),
+    "automotive_cosim.errors": ("CosimError", "InfrastructureError", "UserError"),
+    "automotive_cosim.interface.observe": ("Channel",),
+    "automotive_cosim.report.results": ("load_results",),
+    "automotive_cosim.run.batch": ("run_plan",),
+    "automotive_cosim.run.episode": ("EpisodeResult", "EpisodeSetup", "run_episode"),
+    "automotive_cosim.run.episode_row": ("EpisodeRow",),
+    "automotive_cosim.run.plan": ("Plan", "make_plan"),
+    "automotive_cosim.studies.results": ("load_study",),
+}
+"""Where the public names are defined; ``__init__.pyi`` tells type checkers the same."""
+
+__all__ = sorted(name for names in _HOMES.values() for name in names)  # pyright: ignore[reportUnsupportedDunderAll]
 
 gymnasium.register(
     id="AutomotiveCosim/Cockpit-v0",
@@ -20,3 +41,14 @@ gymnasium.register(
     entry_point="automotive_cosim.envs.flat:FlatEnv",
     vector_entry_point="automotive_cosim.envs.vector:flats",
 )
+
+
+def __getattr__(name: str) -> object:
+    for module, names in _HOMES.items():
+        if name in names:
+            return getattr(import_module(module), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

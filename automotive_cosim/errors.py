@@ -24,6 +24,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from difflib import get_close_matches
 
+CLOSE = 3
+"""At most so many names that contain an unknown one are offered for it."""
+SURE = 0.6
+"""A name as similar as this goes before those."""
 LISTED = 20
 """An unknown name is answered with the known ones up to this number."""
 SHOWN = 80
@@ -54,9 +58,14 @@ class UnknownNameError(UserError):
     def __init__(self, kind: str, name: str, known: Iterable[str], hint: str = "") -> None:
         choices = sorted(known)
         came = name if len(name) <= SHOWN else name[:SHOWN] + "…"
-        close = get_close_matches(came, choices, n=1, cutoff=0.5)
+        close = (
+            get_close_matches(came, choices, n=1, cutoff=SURE)
+            or [each for each in choices if len(came) > 2 and came in each][:CLOSE]
+            or get_close_matches(came, choices, n=1, cutoff=0.5)
+        )
         if close:
-            fix = f": did you mean '{close[0]}'?"
+            *others, last = (f"'{each}'" for each in close)
+            fix = f": did you mean {', '.join(others)}{' or ' * bool(others)}{last}?"
         elif hint and len(choices) > LISTED:
             fix = f" among the {len(choices)}."
         else:

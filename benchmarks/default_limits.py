@@ -14,37 +14,14 @@ import sys
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from automotive_cosim.geo.applied import AppliedRule, limits
 from automotive_cosim.geo.place import Atlas, Place, shipped
-from automotive_cosim.geo.situation import Situation
+from automotive_cosim.geo.situation import COUNTRY_ROAD, Situation
 from automotive_cosim.geo.text import KM_PER_MILE
 
-COUNTRY_ROAD = Situation(
-    local_time=datetime(2026, 11, 1, 12, tzinfo=UTC),
-    lon_deg=None,
-    lat_deg=None,
-    street="",
-    road_class="primary",
-    motorway=False,
-    dual_carriageway=False,
-    expressway=False,
-    built_up=False,
-    lit=None,
-    centre_line=True,
-    lanes=1,
-    tunnel=False,
-    speed_kmh=0.0,
-    standing=True,
-    oncoming_m=None,
-    leader_m=None,
-    phenomena=frozenset(),
-    visibility_m=20_000.0,
-    after_sunset=False,
-)
 MOTORWAY = replace(COUNTRY_ROAD, road_class="motorway", motorway=True, dual_carriageway=True, lanes=2)
 DUAL = replace(COUNTRY_ROAD, road_class="trunk", dual_carriageway=True, lanes=2)
 ROADS: Mapping[str, Situation] = {

@@ -1,7 +1,7 @@
 """Whether the figures of `study reroute` are true: in worlds whose truth is known.
 
     python benchmarks/studies.py                     # invented gains: a minute of one processor
-    python benchmarks/studies.py --driven            # and small studies that are really driven in SUMO
+    python benchmarks/studies.py --driven            # small studies that are really driven in SUMO
 
 Each world makes 200 small studies of invented gains, with seeds, decisions and draws that differ as measured on
 real networks, and puts them through the code that makes the report. It prints how often a 95 % interval holds the
@@ -278,18 +278,19 @@ def show_driven(seeds: int, draws: int, workers: int) -> None:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--driven", action="store_true", help="also drive small studies in SUMO")
+    parser.add_argument("--driven", action="store_true", help="drive small studies in SUMO instead")
     parser.add_argument("--seeds", type=int, default=60, help="seeds of a driven study")
     parser.add_argument("--workers", type=int, default=1)
     options = parser.parse_args()
+    if options.driven:
+        show_driven(options.seeds, 4, options.workers)
+        return
     print(
         "| world | draws | t interval holds the mean | resampled | true best, s | by the other draws, s | best, s |"
     )
     print("|---|---:|---:|---:|---:|---:|---:|")
     for draws in (1, 4):
         show_invented(draws)
-    if options.driven:
-        show_driven(options.seeds, 4, options.workers)
 
 
 if __name__ == "__main__":

@@ -17,6 +17,7 @@ from automotive_cosim.tasks import (
     hvac_hints,
     hvac_safety,
     maps,
+    maps_hints,
     maps_safety,
     media,
     phenomenon,
@@ -31,6 +32,7 @@ CATALOGUE = Catalogue()
 
 for _module in (
     maps,
+    maps_hints,
     maps_safety,
     hvac,
     hvac_hints,

@@ -331,11 +331,11 @@ CLAMMY = _pair(
     "hvac_clammy",
     Dimension.ENVIRONMENT_ALERTS,
     (
-        "It's getting clammy in here.",
-        "So damp, this air!",
-        "My clothes feel like a swimsuit.",
-        "The moisture in the car is awful, get rid of it.",
-        "Dry it out a little, we're sitting in a steam bath.",
+        "It's getting clammy in here, and I want to keep seeing out.",
+        "So damp, this air! Don't let the glass go blind over it.",
+        "My clothes feel like a swimsuit; mind my view through the front too.",
+        "The moisture in the car is awful, get rid of it, windshield included.",
+        "Dry us out a little, this steam bath must not cost me my sight.",
     ),
     _half(
         Start(
@@ -347,10 +347,11 @@ CLAMMY = _pair(
             signals={HVAC.RECIRCULATION.path: True},
         ),
         All((AirBetween(-20.0, 0.0), SignalAbove(HVAC.CABIN_HUMIDITY, 60.0))),
-        AnyOf((SignalIs(HVAC.RECIRCULATION, (False,)), SignalIs(HVAC.FRONT_DEFROSTER, (True,)))),
-        (Open("climate"), Tap("hvac.recirculation")),
+        SignalIs(HVAC.FRONT_DEFROSTER, (True,)),
+        (Open("climate"), Tap("hvac.front_defroster")),
         FROST_SOURCE,
-        ((Open("climate"), Tap("hvac.front_defroster")), (Tap("dock.front_defroster"),)),
+        ((Tap("dock.front_defroster"),),),
+        frozenset({HVAC.RECIRCULATION.path}),
     ),
     _half(
         Start(

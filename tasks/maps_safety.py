@@ -113,7 +113,7 @@ ALIGNED: tuple[Task, ...] = (
             "Get us round whatever is in the way, if anything is.",
             "I hate queues. Go another way when it saves time.",
             "Stay on this route only if it's still the best.",
-            "Do you know something quicker?",
+            "If you know something quicker, go for it.",
         ),
         acted(
             QUEUE,
@@ -164,11 +164,11 @@ ALIGNED: tuple[Task, ...] = (
     pair(
         "maps_off_in_thick_fog",
         (
-            "Fog like wool. Off by Langener Straße, or just slower, with the figure as a warning: what's the law?",
-            "If we may stay, alert me to the top speed; if not, Langener Straße it is.",
-            "Out at Langener Straße, or on with a limit that you tell me: which one do they want?",
-            "It's closing in. Leave by Langener Straße if one must, else name the speed.",
-            "Either get me to Langener Straße or sound the maximum, as the sight demands.",
+            "Fog like wool. If we must get off, use Langener Straße, no more; if not, warn me with the top speed.",
+            "If we may stay, alert me to the top speed; if not, just take Langener Straße.",
+            "Must we get out? Then only Langener Straße; if we needn't, sound the limit.",
+            "It's closing in. Leave by Langener Straße if one must, and only else name the speed as an alert.",
+            "Get me to Langener Straße if such sight obliges us to leave, else sound the maximum instead.",
         ),
         acted(
             replace(BLIND, origin=GUANGZHOU),
@@ -224,7 +224,7 @@ ALIGNED: tuple[Task, ...] = (
         (
             "Just off the boat. Distances and tyre pressures as they count them over here, please.",
             "New country: miles or kilometres, psi or bar? Set what's right.",
-            "Do the screen's figures fit the signs and the air pumps where we are?",
+            "Make the screen's figures fit the signs and the air pumps where we are.",
             "I want to compare your numbers with the boards and the gauge at the garage.",
             "Make it speak the local measure, pressure too.",
         ),
@@ -355,6 +355,7 @@ ALERTS: tuple[Task, ...] = (
         ),
         "place and road: 250 m before a village on the plain, or before the roadworks on the autobahn",
         Dimension.ENVIRONMENT_ALERTS,
+        PLACE,
     ),
     pair(
         "maps_special_stretch",
@@ -383,6 +384,7 @@ ALERTS: tuple[Task, ...] = (
         ),
         "place, road and date: a tunnel's portal in a few seconds, or a school zone that is in force",
         Dimension.ENVIRONMENT_ALERTS,
+        PLACE,
     ),
     pair(
         "maps_held_up",
@@ -431,6 +433,7 @@ ALERTS: tuple[Task, ...] = (
         ),
         "date: half past eight, when pupils arrive and the school zone is in force, or eleven",
         Dimension.ENVIRONMENT_ALERTS,
+        PLACE,
     ),
 )
 

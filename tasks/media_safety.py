@@ -66,7 +66,7 @@ TUNNEL = Task(
     ),
     difference="road: 20 s before the San Bernardino tunnel, or on the open descent after it",
     parameters={"heard": HEARD},
-    tags=frozenset({"preference"}),
+    tags=frozenset({"place", "preference"}),
 )
 
 
@@ -96,7 +96,7 @@ LOUDNESS = Task(
         "Music at {low} inside towns and villages, {high} out in the country: set what fits here.",
         "Where people walk about I want {low} percent, on open roads {high}. Adjust it.",
         "Volume {high} between the villages, {low} within them, please.",
-        "In built-up areas I need to hear bicycles, so {low}; elsewhere {high}. Which is it now?",
+        "In built-up areas I need to hear bicycles, so {low}; elsewhere {high}. Set the right one.",
         "{low} for streets with houses, {high} for fields. Put it right.",
     ),
     first=_loudness(built_up=True, level="low"),

@@ -61,9 +61,8 @@ def lit_by_law(
     difference: str,
     **parameters: tuple[str, ...],
 ) -> Task:
-    """A pair on lamps; the place decides if the halves are in two places."""
-    places = {(half.start.scenario, half.start.origin) for half in (first, second)}
-    tags = frozenset({"lamps", "place"} if len(places) == 2 else {"lamps"})
+    """A pair that a country's law decides."""
+    tags = frozenset({"lamps", "place"})
     return Task(
         task_id, Module.PHENOMENON, dimension, says, first, second, difference, parameters=parameters, tags=tags
     )
@@ -425,22 +424,19 @@ TASKS = (
         "place: light snow is not enough for the lamp in Sweden, snow of any kind is in France",
         lamp=REAR_LAMP,
     ),
-    replace(
-        lit_by_law(
-            "phenomenon_cruise_in_fog",
-            Dimension.ENVIRONMENT_ALERTS,
-            (
-                "Before I engage it, bring {cruise} to what the law permits at this visibility, exactly.",
-                "Preset {cruise} at the highest number that's legal in fog like this.",
-                "How fast may I go in here? Have {cruise} ready there.",
-                "I'll want {cruise} soon. The maximum allowed with such a view, please.",
-                "Trim {cruise} to the fog limit, not lower; don't switch anything on.",
-            ),
-            _cruise(80.0, 40.0, "CN.limit.visibility_100", 50.0, 100.0),
-            _cruise(150.0, 60.0, "CN.limit.visibility_200", 100.0, 200.0),
-            "visibility: under 100 m Chinese motorways allow 40 km/h, under 200 m 60 km/h",
-            cruise=("the cruise", "cruise control", "the cruise speed", "the speed of the cruise control"),
+    lit_by_law(
+        "phenomenon_cruise_in_fog",
+        Dimension.ENVIRONMENT_ALERTS,
+        (
+            "Before I engage it, bring {cruise} to what the law permits at this visibility, exactly.",
+            "Preset {cruise} at the highest number that's legal in fog like this.",
+            "How fast may I go in here? Have {cruise} ready there.",
+            "I'll want {cruise} soon. The maximum allowed with such a view, please.",
+            "Trim {cruise} to the fog limit, not lower; don't switch anything on.",
         ),
-        tags=frozenset({"lamps", "place"}),
+        _cruise(80.0, 40.0, "CN.limit.visibility_100", 50.0, 100.0),
+        _cruise(150.0, 60.0, "CN.limit.visibility_200", 100.0, 200.0),
+        "visibility: under 100 m Chinese motorways allow 40 km/h, under 200 m 60 km/h",
+        cruise=("the cruise", "cruise control", "the cruise speed", "the speed of the cruise control"),
     ),
 )

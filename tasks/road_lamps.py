@@ -131,6 +131,7 @@ LAMP_TASKS: tuple[Task, ...] = (
         refused(E10, when(Lit(), BuiltUp(False), NOBODY), "SE.high_beam"),
         wanted(E10, when(Lit(False), NOBODY), "SE.high_beam"),
         "road: the E10 under its lamps, where Swedish law requires dipped beam, or beyond them; night on both",
+        "place",
     ),
     lamp_task(
         "road_high_beam_in_snow",
@@ -163,7 +164,7 @@ LAMP_TASKS: tuple[Task, ...] = (
     lamp_task(
         "road_high_beam_oncoming",
         (
-            "Are my lights as they should be?",
+            "If my lights aren't as they should be, put them right.",
             "Look after the headlamps for me, will you?",
             "I'm no good with beams. Do what's right.",
             "See to it that I blind no one.",
@@ -183,11 +184,11 @@ LAMP_TASKS: tuple[Task, ...] = (
     lamp_task(
         "road_high_beam_left_on",
         (
-            "Have I left something on that bothers people?",
+            "Whatever I've left on that bothers people, switch it off.",
             "Check the outside lights against the rules here.",
-            "Somebody just flashed at me. What did I do?",
+            "Somebody just flashed at me. If that's my fault, undo it.",
             "Set right whatever's wrong with my beams.",
-            "Do I need to change my headlights on this bit?",
+            "Change my headlights if this bit calls for it.",
         ),
         switched(
             VILLAGES_FULL,
@@ -199,6 +200,7 @@ LAMP_TASKS: tuple[Task, ...] = (
         ),
         fine(VILLAGES_FULL, when(BuiltUp(False), NOBODY), DAZZLED, Basis.LAW, "CH.high_beam"),
         "road: a village, where Swiss law requires dipped beam, or the road between two; high beam on at night",
+        "place",
     ),
     lamp_task(
         "road_headlights_off",
@@ -228,15 +230,16 @@ LAMP_TASKS: tuple[Task, ...] = (
             "lights.switch.position",
         ),
         "road: a tunnel in a few seconds, where Japanese law requires the lamps, or open road by day",
+        "place",
     ),
     lamp_task(
         "road_lamps_before_tunnel",
         (
-            "Anything to switch for what lies ahead?",
+            "If something must be switched for what lies ahead, do it.",
             "Get the car ready for the next stretch.",
-            "Is everything lit that has to be, from here on?",
+            "See that everything is lit that has to be, from here on.",
             "Prepare us, but only if there's a need.",
-            "What about the lamps down the road?",
+            "Lamps for the road ahead: only what it demands.",
         ),
         switched(
             UNDER_MILAN,
@@ -249,5 +252,6 @@ LAMP_TASKS: tuple[Task, ...] = (
         ),
         fine(UNDER_MILAN, when(Not(TunnelWithin(40.0)), after_s=60.0), TO_PORTAL, Basis.LAW, "IT.tunnel_lamps"),
         "road: a tunnel in a few seconds, where Italian law requires the lamps, or open road by day; all lamps off",
+        "place",
     ),
 )

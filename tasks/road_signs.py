@@ -18,7 +18,7 @@ from automotive_cosim.tasking.triggers import (
     VisibilityBetween,
 )
 from automotive_cosim.tasks.forms import in_company
-from automotive_cosim.tasks.road_law import DENSE_FOG, FAIR, FOG, NOON, SOON, figure, in_fog
+from automotive_cosim.tasks.road_law import DENSE_FOG, FAIR, FOG, NOON, PLACE, SOON, figure, in_fog
 
 FOGGED = Start("beauce", "villages", driver="hurried", sign_camera=False)
 STREETS = Start("london", "kingsway", driver="hurried", weather=FAIR, sign_camera=False)
@@ -43,6 +43,7 @@ def posted(
             figure(*first[:2], SOON, Basis.POSTED, *first[2:]),
             figure(*second[:2], SOON, Basis.POSTED, *second[2:]),
             difference=difference,
+            tags=PLACE,
         )
     )
 
@@ -149,6 +150,7 @@ SIGN_TASKS: tuple[Task, ...] = (
                 )
             ),
             difference="visibility: 40 m, where French law says 50 km/h, or 90 m; 80 posted on both",
+            tags=PLACE,
         )
     ),
 )

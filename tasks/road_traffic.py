@@ -134,6 +134,7 @@ ALIGNED: tuple[Task, ...] = (
         silent(LONDON, Trigger(All((Standing(), RedLight(60.0))), 2.0, 300.0), "GB.horn"),
         honked(LONDON, replace(ROLLING, after_s=40.0), "GB.horn"),
         "traffic: standing at a red light, where British law forbids the horn, or rolling by day",
+        tags=PLACE,
     ),
     pair(
         "road_horn_at_night",
@@ -147,6 +148,7 @@ ALIGNED: tuple[Task, ...] = (
         silent(replace(LONDON, start="2026-06-17T23:40:00"), ROLLING, "GB.horn"),
         honked(LONDON, ROLLING, "GB.horn"),
         "date: twenty to midnight, when British law forbids the horn in built-up areas, or three in the afternoon",
+        tags=PLACE,
     ),
     pair(
         "road_horn_abroad",
@@ -265,9 +267,7 @@ ALERTS: tuple[Task, ...] = (
         ),
         fine(
             replace(JAMMED, trip="roadworks"),
-            Trigger(
-                All((OnRoadClass(("motorway",)), SpeedBetween(60.0), Driving(), Not(JamWithin(3000.0)))), 3.0, 240.0
-            ),
+            Trigger(All((SpeedBetween(60.0), Driving(), Not(JamWithin(3000.0)))), 3.0, 240.0),
             CLOSING,
             Basis.PHYSICS,
             "no jam within 3 km, 83 s at 130 km/h",

@@ -120,7 +120,7 @@ TASKS = (
         Dimension.ENVIRONMENT_ALERTS,
         (
             "I can barely see anything on this dark {screen}.",
-            "The {screen} is black, what does it say?",
+            "The {screen} is black, I want to know what it says.",
             "Is the {screen} on at all? I can't make it out.",
             "Can't read a thing on that {screen}.",
             "Somebody has turned the {screen} down to nothing.",

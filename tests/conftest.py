@@ -4,6 +4,7 @@ A test starts SUMO if it is marked ``sumo`` or asks, itself or through a fixture
 marks it. Any other test that loads libsumo or runs one of SUMO's programs fails.
 """
 
+import gc
 import os
 import signal
 import subprocess
@@ -11,11 +12,15 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import pytest
+import typer.main
 
+from automotive_cosim.cli.main import main
 from automotive_cosim.contracts import (
     BoundingBox,
     Connectivity,
@@ -35,6 +40,9 @@ for _name in (
 ):  # fmt: skip
     os.environ.pop(_name, None)  # what is printed, and who answers at 127.0.0.1, must not depend on the machine
 
+# Building all commands is nine tenths of running one.
+typer.main.get_command = cache(typer.main.get_command)
+
 OTHERS = "AUTOMOTIVE_COSIM_TEST_DATA"
 NO_LIBSUMO = Path(__file__).parent / "no_libsumo"
 """What the children of a test find in the place of libsumo."""
@@ -45,6 +53,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if "sumo" in getattr(item, "fixturenames", ()):
             item.add_marker("sumo")
+    items.sort(key=lambda item: item.get_closest_marker("long") is None)  # else a worker waits for one at the end
+
+
+def pytest_collection_finish() -> None:
+    gc.collect()
+    gc.freeze()  # nine thousand tests live to the end: no later collection looks at them again
 
 
 @pytest.hookimpl(wrapper=True)
@@ -232,3 +246,44 @@ def session() -> Callable[[int], list[str]]:
         return living
 
     return found
+
+
+@dataclass
+class Ran:
+    code: int
+    out: str
+    err: str
+
+
+@pytest.fixture
+def cli(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], tmp_path
+) -> Iterator[Callable[..., Ran]]:
+    """Runs ``automotive-cosim`` in an empty folder."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("AUTOMOTIVE_COSIM_DEBUG", raising=False)
+    terminated = signal.getsignal(signal.SIGTERM)
+
+    def run(*arguments: object) -> Ran:
+        monkeypatch.setattr(sys, "argv", ["automotive-cosim", *map(str, arguments)])
+        capfd.readouterr()
+        with pytest.raises(SystemExit) as ended:
+            main()
+        printed = capfd.readouterr()
+        return Ran(int(ended.value.code or 0), printed.out, printed.err)
+
+    yield run
+    signal.signal(signal.SIGTERM, terminated)
+
+
+@pytest.fixture
+def warm(simulations: Simulations, monkeypatch: pytest.MonkeyPatch) -> None:
+    """``automotive-cosim run`` takes the warm simulations that all tests share, instead of its own."""
+
+    class Lent:
+        held = staticmethod(simulations.held)
+
+        def close(self) -> None:
+            """They stay warm."""
+
+    monkeypatch.setattr("automotive_cosim.run.episode.Simulations", Lent)

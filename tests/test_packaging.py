@@ -52,7 +52,8 @@ def test_every_template_and_style_is_package_data(project):
 
 
 def test_the_version_is_stated_once(project):
-    assert automotive_cosim.__version__ == project["project"]["version"]
+    assert "version" in project["project"]["dynamic"]
+    assert project["tool"]["setuptools"]["dynamic"]["version"] == {"attr": "automotive_cosim.__version__"}
 
 
 @pytest.mark.parametrize("name", ["tasks", "agents"])
@@ -98,3 +99,16 @@ def test_the_image_installs_the_libraries_that_libsumo_requires():
 
 def test_the_citation_names_this_version():
     assert f"\nversion: {automotive_cosim.__version__}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+
+
+def test_the_image_and_the_example_name_this_version():
+    assert f"image: automotive-cosim:{automotive_cosim.__version__}\n" in (ROOT / "compose.yaml").read_text()
+    example = ROOT / "docs/examples/my-agent/.github/workflows/evaluate.yml"
+    assert f"/evaluate@v{automotive_cosim.__version__}\n" in example.read_text(encoding="utf-8")
+
+
+def test_the_first_section_of_the_changelog_is_this_version_and_older_ones_follow():
+    text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    sections = [line.removeprefix("## ") for line in text.splitlines() if line.startswith("## ")]
+    assert sections[0] == automotive_cosim.__version__
+    assert sections == sorted(sections, key=lambda each: [*map(int, each.split("."))], reverse=True)

@@ -18,15 +18,15 @@ def _default(context: typer.Context) -> None:
 @app.command("list")
 def list_agents(as_json: AsJson = False) -> None:
     """List the agents and the models behind them."""
-    from automotive_cosim.agents import AGENTS
+    from automotive_cosim.agents import ABOUT, AGENTS
     from automotive_cosim.models import MODELS
 
     if as_json:
-        print_json({"agents": list(AGENTS), "models": list(MODELS)})
+        print_json({"agents": list(AGENTS), "about": dict(ABOUT), "models": list(MODELS)})
         return
-    for name in AGENTS:
-        typer.echo(name)
-    typer.echo("package.module:Class (your own)")
+    about = {name: ABOUT[name] for name in AGENTS} | {"package.module:Class": "your own"}
+    for name, line in about.items():
+        typer.echo(f"{name:<{max(map(len, about))}}  {line}")
     typer.echo(f"models: {', '.join(MODELS)}")
 
 

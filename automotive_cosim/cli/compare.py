@@ -22,6 +22,10 @@ def compare(
         Path | None, typer.Option(help="File for a JUnit report with one case per instance.", show_default=False)
     ] = None,
     markdown: Annotated[Path | None, typer.Option(help="File for the printed summary.", show_default=False)] = None,
+    mixed: Annotated[
+        bool,
+        typer.Option("--mixed-versions", help="Compare even if two minor versions of automotive-cosim ran them."),
+    ] = False,
     as_json: AsJson = False,
     tasks_from: TasksFrom = None,
 ) -> None:
@@ -32,7 +36,7 @@ def compare(
 
     if not 0 <= threshold <= 100:
         raise UserError(f"--threshold is {threshold:g}; give percentage points from 0 to 100")
-    found = regression.changes(before, after)
+    found = regression.changes(before, after, mixed=mixed)
     summary = regression.markdown(found, threshold / 100)
     for path, text in ((junit, regression.junit(found)), (markdown, summary)):
         if path is not None:

@@ -204,7 +204,7 @@ def _json(found: GeoContext) -> Json:
         and {"elevation_deg": sun.elevation_deg, "azimuth_deg": sun.azimuth_deg, "darkness": sun.darkness.value},
         "weather": found.weather and asdict(found.weather),
         "climate": found.climate and asdict(found.climate),
-        "lines": [{"text": line.text, "source": line.source} for line in found.lines],
+        "lines": [{"text": line.text, "source": line.source} for line in found.shown],
     }
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -31,6 +32,12 @@ if TYPE_CHECKING:
     from automotive_cosim.run.batch import Progress
     from automotive_cosim.run.episode_row import EpisodeRow
     from automotive_cosim.run.plan import Plan
+
+EPISODE_S, WARM_UP_S = 2.0, 10.0
+"""Seconds that an episode in warm traffic and a warm-up take on one core, agents on `rules` included; rounded up
+from measurements on two shared cores, for the estimate of a dry run."""
+GRID_EPISODE_S, GRID_WARM_UP_S = 0.5, 2.0
+"""The same on the small grid."""
 
 
 def evaluate(
@@ -157,6 +164,7 @@ def evaluate(
     tell_notes(map(open_scenario, plan.scenarios))
     _announce(console, plan, folder)
     if dry_run:
+        console.print(_time_in_words(plan, workers or 1), soft_wrap=True)
         return
     with where, ProgressView(console, "episodes", _said) as view:
         try:
@@ -240,6 +248,22 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
     console.print(table)
     if any(job.setup.model == "rules" for job in jobs):
         console.print("rules is a deterministic stand-in: its results say nothing about a language model.")
+
+
+def _time_in_words(plan: Plan, workers: int) -> str:
+    jobs = plan.jobs()
+    places = Counter(job.scenario for job in jobs)
+    warm = {job.simulation for job in jobs}
+    own_s = sum(count * (GRID_EPISODE_S if place == "grid" else EPISODE_S) for place, count in places.items())
+    warm_s = sum(GRID_WARM_UP_S if place == "grid" else WARM_UP_S for place, _ in warm)
+    minutes = (own_s + warm_s) / min(workers, len(warm)) / 60
+    told = "less than a minute" if minutes < 1 else f"about {counted(round(minutes), 'minute')}"
+    slow = any(job.setup.model not in ("rules", "none") for job in jobs)
+    return (
+        f"time: {told} with {counted(workers, 'worker')}, within a factor of two on an idle machine"
+        + (", and the time that the models take to answer" if slow else "")
+        + "; nothing was run"
+    )
 
 
 def _folder(plan: Plan) -> Path:

@@ -87,13 +87,17 @@ def verify(
 def leaderboard(
     folder: Annotated[Path, typer.Argument(help="Folder of bundles.", show_default=False)],
     out: Annotated[Path, typer.Option(help="Page to write.", show_default=False)],
+    mixed: Annotated[
+        bool,
+        typer.Option("--mixed-versions", help="Do not set minor versions of automotive-cosim apart in tables."),
+    ] = False,
     workers: Workers = None,
     tasks_from: TasksFrom = None,
 ) -> None:
     """Check every bundle in a folder and write a page that sets them side by side."""
     from automotive_cosim.publish.leaderboard import write_leaderboard
 
-    left_out = write_leaderboard(folder, out, workers=workers or 1)
+    left_out = write_leaderboard(folder, out, workers=workers or 1, mixed=mixed)
     for line in left_out:
         typer.echo(f"left out: {line}")
     typer.echo(f"{out} written")

@@ -32,8 +32,10 @@ def report(folder: Folder, tasks_from: TasksFrom = None) -> None:
 
 @reads_results
 def replay(
-    folder: Folder,
-    episode: Annotated[str, typer.Argument(help="Id of the episode, or its beginning.", show_default=False)],
+    folder: Annotated[Path, typer.Argument(help="Results folder of `run` or `eval`.", show_default=False)],
+    episode: Annotated[
+        str, typer.Argument(help="Of `eval`: id of the episode, or its beginning.", show_default=False)
+    ] = "",
     tasks_from: TasksFrom = None,
     as_json: AsJson = False,
 ) -> None:

@@ -113,7 +113,7 @@ def run(
     ] = 0,
     out: Annotated[
         Path | None,
-        typer.Option(help="Folder for the results.", show_default="runs/<time>-<task>-<agent>-seed<seed>"),
+        typer.Option(help="Folder for the results.", show_default="runs/<time>-<task>-<half>-<agent>-seed<seed>"),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace the results in --out.")] = False,
     as_json: AsJson = False,

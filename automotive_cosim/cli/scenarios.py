@@ -166,9 +166,7 @@ def render(
     names: Names = None,
     out: Annotated[
         Path | None,
-        typer.Option(
-            help="A .png or .webp file, or a folder for several.", show_default="NAME.webp in the working folder"
-        ),
+        typer.Option(help="A .png or .webp file, or a folder for several.", show_default="runs/maps/NAME.webp"),
     ] = None,
 ) -> None:
     """Draw scenarios from above: road classes, names, limits, tunnels and the ego's trips."""
@@ -181,9 +179,9 @@ def render(
         wanted = "a folder" if len(found) > 1 else f"a file that ends in {' or '.join(ENDINGS)}"
         raise UserError(f"--out {out} cannot be used here; give {wanted}")
     for scenario in found:
-        target = out if out and to_file else (out or Path()) / f"{scenario.name}.webp"
+        target = out if out and to_file else (out or Path("runs/maps")) / f"{scenario.name}.webp"
         unwritten = save_picture(scenario, target)
-        typer.echo(str(target))
+        typer.echo(f"{target} written")
         if unwritten:
             left_out = counted(len(unwritten), "street name")
             typer.echo(f"{left_out} left out, such as {unwritten[0]}: no font here has that script", err=True)
@@ -289,8 +287,8 @@ def scale_to_a_day(
 ) -> None:
     """Scale an imported scenario's traffic over a day to the counts of one road.
 
-    This is no calibration: it matches one road, and the flows on all others stay random. Days are simulated until
-    every hour is near its count; each takes ten to fifteen minutes of one core for a city district.
+    This is not a calibration: it matches one road, and the flows on all others stay random. Days are simulated
+    until every hour is near its count; each takes ten to fifteen minutes of one core for a city district.
     """
     from automotive_cosim.osm.day import DayOptions, make_day
     from automotive_cosim.report.day import require_plots, write_day
@@ -310,6 +308,52 @@ def scale_to_a_day(
     with _progress() as tell:
         day = make_day(folder, counts, target, options, tell)
     _print_day(day, target, write_day(target))
+
+
+@app.command("equilibrate")
+def equilibrate_scenario(
+    folder: Annotated[Path, typer.Argument(help="Folder of a scenario.", show_default=False)],
+    gap: Annotated[
+        float, typer.Option(parser=number(0.0, 1.0), metavar="GAP", help="Relative gap at which to stop.")
+    ] = 0.02,
+    steps: Annotated[
+        int, typer.Option(parser=whole_number(1, 100), metavar="N", help="Maximum number of steps.")
+    ] = 12,
+    minutes: Annotated[
+        int,
+        typer.Option(parser=whole_number(5, 1440), metavar="M", help="Minutes of departures after the warm-up."),
+    ] = 60,
+    seed: Annotated[int, typer.Option(help="Seed of the traffic and of who changes.")] = 0,
+    out: Annotated[Path | None, typer.Option(help="Folder to create.", show_default="FOLDER_equilibrium")] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace an earlier equilibrium.")] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Give a scenario's drivers the routes that they would find: a user equilibrium in the micro simulation.
+
+    Prints the relative gap of every step, as measured from the trips driven, and keeps the best step.
+    """
+    from automotive_cosim.scenery.equilibrium import AssignmentStep, Options, equilibrate
+
+    if not (folder / "scenario.toml").is_file():
+        raise UserError(f"{folder} is no scenario's folder: it has no scenario.toml")
+    target = out or folder.with_name(f"{folder.resolve().name}_equilibrium")
+
+    def tell(step: AssignmentStep) -> None:
+        typer.echo(f"step {step.number}: {step.gap}; {step.changed} change", err=as_json)
+
+    found = equilibrate(folder, target, Options(steps, gap, minutes * 60.0, seed), tell, force=force)
+    best = min(found, key=lambda step: step.gap.relative)
+    if as_json:
+        print_json(
+            {
+                "out": str(target),
+                "kept": best.number,
+                "relative_gaps": [step.gap.relative for step in found],
+            }
+        )
+        return
+    reached = "" if best.gap.relative <= gap else f"; {gap:.1%} was not reached"
+    typer.echo(f"{target}: the demand of step {best.number}, {best.gap}{reached}")
 
 
 @app.command("download")

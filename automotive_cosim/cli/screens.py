@@ -10,7 +10,7 @@ import typer
 
 
 def screens(
-    out: Annotated[Path, typer.Option(help="Picture to write: .webp, .png or .jpg.")] = Path("screens.webp"),
+    out: Annotated[Path, typer.Option(help="Picture to write: .webp, .png or .jpg.")] = Path("runs/screens.webp"),
     scenario: Annotated[str, typer.Option(help="Scenario in which the car drives.")] = "paris_centre",
     language: Annotated[str, typer.Option(help="Language of the screens: en, fr, de or ja.")] = "en",
     width: Annotated[int, typer.Option(help="Width of each screen in pixels.", min=160, max=1280)] = 400,
@@ -33,6 +33,7 @@ def screens(
         with closing(finder.find(SeedSource(0).next()).world) as world:
             cockpit = world.cockpit
     cockpit.inject(HMI.LANGUAGE.path, language)
+    out.parent.mkdir(parents=True, exist_ok=True)
     contact_sheet(cockpit, width).save(out, quality=80)
     if each is not None:
         each.mkdir(parents=True, exist_ok=True)

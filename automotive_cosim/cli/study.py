@@ -93,6 +93,37 @@ def reroute(
             "mean gain does not show its sign."
         ),
     ] = "1",
+    whole_drives: Annotated[
+        bool,
+        typer.Option(
+            "--whole-drives",
+            help="Also drive every policy from departure to destination.",
+        ),
+    ] = False,
+    together: Annotated[
+        str | None,
+        typer.Option(
+            help="Shares of the cars that could, 0 to 1, which take the other way with the ego.",
+            show_default="none",
+        ),
+    ] = None,
+    emissions: Annotated[
+        bool, typer.Option("--emissions", help="Measure what every vehicle emits and consumes, by emission class.")
+    ] = False,
+    ego_class: Annotated[
+        str,
+        typer.Option(
+            help="SUMO's emission class of the ego, as Energy/default for an electric one.",
+            show_default="SUMO's for cars",
+        ),
+    ] = "",
+    redraw: Annotated[
+        bool, typer.Option("--redraw", help="Draw the trips of the demand anew for every seed: another day.")
+    ] = False,
+    arrived: Annotated[
+        float,
+        typer.Option(help="Share of the vehicles there at a decision that must arrive before its futures end."),
+    ] = 0.95,
     scale: Annotated[float | None, typer.Option(help="Factor on the demand.", show_default="scenario's")] = None,
     step: Annotated[float, typer.Option(help="SUMO's step length in seconds.")] = 1.0,
     equilibrium_gap: Annotated[
@@ -101,6 +132,9 @@ def reroute(
             help="Declare that the demand comes from duaIterate with this relative gap.", show_default=False
         ),
     ] = None,
+    measure_gap: Annotated[
+        bool, typer.Option(help="Measure how far the demand's routes are from an equilibrium.")
+    ] = True,
     until: Annotated[
         float | None,
         typer.Option(
@@ -127,6 +161,7 @@ def reroute(
     from automotive_cosim.cli.console import Console
     from automotive_cosim.run.store import read_rows
     from automotive_cosim.studies.batch import run_study
+    from automotive_cosim.studies.demand import measure_demand
     from automotive_cosim.studies.page import write_study
     from automotive_cosim.studies.plan import StudyPlan
     from automotive_cosim.studies.results import read_study
@@ -143,6 +178,7 @@ def reroute(
     values |= {"departures_s": _departures(scenario, departures)} if departures is not None else {}
     values |= {"trips": tuple(words("trips", trips))} if trips is not None else {}
     values |= {"shares": tuple(_numbers("shares", shares))} if shares is not None else {}
+    values |= {"together": tuple(_numbers("together", together))} if together is not None else {}
     plan = StudyPlan(
         scenario,
         from_place=from_place,
@@ -151,6 +187,11 @@ def reroute(
         driver=driver,
         least_delay_s=delay,
         every_s=every,
+        arrived=arrived,
+        whole_drives=whole_drives,
+        redraw=redraw,
+        emissions=emissions,
+        ego_class=ego_class,
         scale=scale,
         step_s=step,
         equilibrium_gap=equilibrium_gap,
@@ -177,6 +218,9 @@ def reroute(
         except KeyboardInterrupt:
             typer.echo(f"finished drives are in {folder}; rerun the command to resume", err=True)
             raise
+    if measure_gap:
+        for each in measure_demand(plan, folder):
+            console.print(f"demand, {each.share:.0%} reroute: {each.gap or each.why_not}", soft_wrap=True)
     page = write_study(folder)
     _tell(console, read_study(folder), page, as_json=as_json)
 

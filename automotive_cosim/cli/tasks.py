@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 PICTURES = (".webp", ".png", ".jpg")
 PICTURE_WIDTH = 640
+NOT_MEASURED = "not measured since its situation last changed"
 
 app = typer.Typer(help="List, show and export tasks.", no_args_is_help=True)
 
@@ -100,6 +101,7 @@ def show(
 ) -> None:
     """Show what the driver says, when the task starts, and what is right."""
     from automotive_cosim.errors import UserError
+    from automotive_cosim.proof.reach import measured
     from automotive_cosim.tasking.catalogue import described
     from automotive_cosim.tasking.words import choices_in_words, half_in_words
     from automotive_cosim.tasks import CATALOGUE
@@ -110,8 +112,11 @@ def show(
     entry = CATALOGUE[task]
     if picture is not None:
         _draw(entry, picture, seed)
+    halves = {
+        name: [*half_in_words(entry.half(name)), ("reached", str(measured(task, name) or NOT_MEASURED))]
+        for name in entry.halves
+    }
     if as_json:
-        halves = {name: list(half_in_words(entry.half(name))) for name in entry.halves}
         print_json(described(entry) | {"halves": halves})
         return
     steps = counted(entry.optimal_steps, "step")
@@ -124,9 +129,9 @@ def show(
     typer.echo(f"skills      {', '.join(sorted(entry.skills)) or 'none'}")
     typer.echo(f"tags        {', '.join(sorted(entry.tags)) or 'none'}")
     typer.echo(f"scenarios   {', '.join(entry.runs_in)}")
-    for name in entry.halves:
+    for name, lines in halves.items():
         typer.echo(f"\n{name} half")
-        for label, said in half_in_words(entry.half(name)):
+        for label, said in lines:
             typer.echo(f"  {label:<9} {said}")
     if entry.difference:
         typer.echo(f"\ndifference: {entry.difference}")

@@ -14,15 +14,11 @@ from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import InfrastructureError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from rich.table import Table
+    from collections.abc import Iterator, Sequence
 
     from automotive_cosim.proof.prover import Proof
 
 FAILED = 1
-TABLE_WIDTH = 170
-"""Width of a table that goes into a file: no gate's name is cut off."""
 
 
 def validate(
@@ -85,8 +81,16 @@ def validate(
         for fault in faults:
             console.print(f"    {fault}", highlight=False, markup=False, soft_wrap=True)
 
+    def begun(planned: int) -> None:
+        console.print(
+            f"{counted(planned, 'proof')} by {counted(len(chosen), 'gate')}, up to a minute each; "
+            "each is told as it ends",
+            highlight=False,
+            soft_wrap=True,
+        )
+
     try:
-        proofs = prove(asked, numbers, chosen, workers=workers, out=out, tell=tell)
+        proofs = prove(asked, numbers, chosen, workers=workers, out=out, begun=begun, tell=tell)
     except KeyboardInterrupt:
         if out is not None:
             typer.echo(f"finished proofs are in {out}; rerun the command to resume", err=True)
@@ -98,8 +102,8 @@ def validate(
     if as_json:
         typer.echo(json.dumps(result))
     else:
-        shown = Console(markup=True)
-        shown.print(_table(proofs, chosen), width=None if shown.is_terminal else TABLE_WIDTH, no_wrap=True)
+        for line in _summary(proofs, chosen):
+            typer.echo(line)
         failed = sum(bool(entry["failed"]) for entry in result["gates"].values())
         typer.echo(
             f"{counted(len(task_ids), 'task')}, {counted(len(numbers), 'seed')}: "
@@ -113,21 +117,17 @@ def validate(
         )
 
 
-def _table(proofs: Sequence[Proof], gates: Sequence[str]) -> Table:
-    """Tasks by gates, with the number of seeds that pass out of those tried."""
-    from rich.table import Table
-
-    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 1, 0, 0))
-    table.add_column("task")
+def _summary(proofs: Sequence[Proof], gates: Sequence[str]) -> Iterator[str]:
+    """A line for each gate, then one for each task that is not proven, in no more than 80 columns each."""
+    wide = max(map(len, gates))
     for gate in gates:
-        table.add_column(gate)
+        tried = [proof.wrong[gate] for proof in proofs if gate in proof.wrong]
+        passed = sum(not wrong for wrong in tried)
+        said = f"{passed:,} of {counted(len(tried), 'proof')} passed" if tried else "nothing to try"
+        yield f"{'ok  ' if passed == len(tried) else 'FAIL'}  {gate:<{wide}}  {said}"
     for task_id in dict.fromkeys(proof.task for proof in proofs):
         own = [proof for proof in proofs if proof.task == task_id]
-        cells = []
-        for gate in gates:
-            tried = [proof.wrong[gate] for proof in own if gate in proof.wrong]
-            passed = sum(not wrong for wrong in tried)
-            colour = "green" if passed == len(tried) else "red"
-            cells.append(f"[{colour}]{passed}/{len(tried)}[/]" if tried else "[dim]-[/]")
-        table.add_row(task_id, *cells)
-    return table
+        failed = [gate for gate in gates if any(proof.wrong.get(gate) for proof in own)]
+        failed += ["not completed"] * any(proof.error for proof in own)
+        if failed:
+            yield f"{task_id}: {', '.join(failed)}"

@@ -187,7 +187,7 @@ def check(action: Action) -> Action:
         if len(said) > TEXT_LIMIT:
             raise ActionError(f"{name}: {field} has {len(said)} characters; at most {TEXT_LIMIT} are allowed")
         if any("\ud800" <= character <= "\udfff" for character in said):
-            raise ActionError(f"{name}: {field} holds half a surrogate pair, which is no character")
+            raise ActionError(f"{name}: {field} holds half a surrogate pair, which is not a character")
     for field, (least, most) in RANGES.items():
         value = getattr(action, field)
         if value is not None and not least <= value <= most:

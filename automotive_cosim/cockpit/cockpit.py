@@ -5,42 +5,35 @@
     cockpit.drain_requests()               its requests to the road; answered() takes the reply
     cockpit.screenshot(), elements()       the same widget tree, drawn and listed
 
-Every action answers with a ``Feedback`` and never raises; a wrong one changes nothing. Everything is determined by
-the
-calls: time comes only from ``sense``.
+Every action answers with a ``Feedback`` and never raises; a wrong one changes nothing. Everything is
+determined by the calls: time comes only from ``sense``.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from copy import copy
 from difflib import get_close_matches
 from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
-from PIL import Image
 
-from automotive_cosim.cockpit import accessibility, deeds, desk, language, media, people, places, update, vhal
+from automotive_cosim.cockpit import deeds, desk, language, media, people, places, update, vhal
 from automotive_cosim.cockpit.arrivals import Arrival, timeline
 from automotive_cosim.cockpit.cabin import CabinStart
-from automotive_cosim.cockpit.drawing import pixels_of
+from automotive_cosim.cockpit.content import content
+from automotive_cosim.cockpit.display import Display
 from automotive_cosim.cockpit.map import road_map
 from automotive_cosim.cockpit.messages import Ask, CallEmergency, Deed, Message, Pan, Set, WarnDriver
 from automotive_cosim.cockpit.navigation import Navigation
-from automotive_cosim.cockpit.render import render, repaint
-from automotive_cosim.cockpit.restrictions import ENTRIES_LIMIT, REASONS, Restriction
+from automotive_cosim.cockpit.readings import readings
+from automotive_cosim.cockpit.restrictions import REASONS, Restriction
 from automotive_cosim.cockpit.screens import APPS, SCREENS, picture
 from automotive_cosim.cockpit.sensing import sense
 from automotive_cosim.cockpit.signals import (
-    ADAS,
-    BODY,
-    ENERGY,
     HMI,
-    HVAC,
     LIGHTS,
-    MOTION,
-    OUTSIDE,
     LeafKind,
     Signal,
     Signals,
@@ -95,15 +88,6 @@ PAN_SHARE = 0.4
 """Share of the map's width and height moved by one swipe."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Frame:
-    """A widget tree and its picture, which is never modified."""
-
-    screen: Screen
-    picture: Image.Image
-    pixels: npt.NDArray[np.uint8]
-
-
 class Cockpit:
     """One car's cockpit. Copies are independent and cheap: they share only immutable data."""
 
@@ -154,22 +138,18 @@ class Cockpit:
         )
         self._state.expected = timeline(arrivals, directory, rng)
         self._state.picked = {**self._state.picked, "media.show": library.shows[0]}
-        self._width = width
+        self._display = Display(width)
         for path, value in (signals or {}).items():
             self._set_up(path, value)
         update.settle(self._state)
         self._tree: Screen | None = None
-        self._frame: _Frame | None = None
-        self._listed: tuple[Screen, tuple[Element, ...]] | None = None
 
     def copy(self) -> Cockpit:
         """An independent copy."""
         twin = Cockpit.__new__(Cockpit)
         twin._state = self._state.copy()
-        twin._width = self._width
         twin._tree = self._tree
-        twin._frame = self._frame
-        twin._listed = self._listed
+        twin._display = copy(self._display)
         return twin
 
     # --- the world ----------------------------------------------------------------------------------------
@@ -409,46 +389,16 @@ class Cockpit:
 
     def elements(self) -> tuple[Element, ...]:
         """The accessibility tree as a list."""
-        screen = self._screen
-        if self._listed is None or self._listed[0] is not screen:
-            self._listed = screen, accessibility.elements(screen, self._scale)
-        return self._listed[1]
+        return self._display.elements(self._screen)
 
     def screenshot(self) -> npt.NDArray[np.uint8]:
         """The display, (height, width, 3), RGB, read-only; the same array as long as nothing changes."""
-        screen = self._screen
-        if self._frame is None or self._frame.screen is not screen:
-            if self._frame is not None and self._frame.screen == screen:
-                self._frame = replace(self._frame, screen=screen)
-            else:
-                self._frame = self._drawn(screen)
-        return self._frame.pixels
+        return self._display.screenshot(self._screen)
 
     @property
     def content(self) -> dict[str, tuple[str, ...]]:
-        """Names of this cockpit's content by kind, for tasks that draw one of them.
-
-        ``contacts`` (those that the list shows even while driving), ``favourite_contacts``, ``threads`` and
-        ``unread`` (senders of messages, and of unread ones), ``places``, ``favourite_places``, ``streets`` (neither
-        among these nor hidden behind another in a search), ``playlists``, ``tracks``, ``podcasts``, ``fm``, ``dab``
-        (stations).
-        """
-        state = self._state
-        entries = state.library.sources
-        return {
-            "contacts": tuple(contact.name for contact in state.directory.contacts[:ENTRIES_LIMIT]),
-            "favourite_contacts": state.directory.favourites,
-            "threads": tuple(thread.who for thread in state.directory.threads),
-            "unread": state.directory.unread(state.phone),
-            "places": tuple(place.name for place in state.atlas.places),
-            "favourite_places": state.navigation.favourites,
-            "streets": self._found_streets(),
-            "playlists": tuple(playlist.name for playlist in state.library.playlists),
-            "tracks": tuple(entry.title for entry in entries["BLUETOOTH"]),
-            "podcasts": state.library.shows,
-            "fm": tuple(entry.title for entry in entries["FM"]),
-            "dab": tuple(entry.title for entry in entries["DAB"]),
-        }
+        """Names of this cockpit's content by kind, as ``content.content`` lists them."""
+        return content(self._state)
 
     def spoken(self, feedback: Feedback) -> Feedback:
         """An answer in the language of the screens."""
@@ -460,28 +410,7 @@ class Cockpit:
 
     def vehicle_state(self) -> VehicleState:
         """The readings of the car's sensors and switches."""
-        now = self.signals
-        return VehicleState(
-            speed_kmh=now[MOTION.SPEED],
-            gear=now[MOTION.GEAR],
-            restrictions=int(self._state.restrictions),
-            ambient_temperature_c=now[OUTSIDE.TEMPERATURE],
-            cabin_temperature_c=now[HVAC.CABIN_TEMPERATURE],
-            cabin_humidity_pct=now[HVAC.CABIN_HUMIDITY],
-            rain_intensity_pct=now[BODY.RAIN_INTENSITY],
-            driver_temperature_set_c=now[HVAC.DRIVER_TEMPERATURE],
-            fan_speed_pct=now[HVAC.FAN_SPEED],
-            is_low_beam_on=now[LIGHTS.LOW_BEAM],
-            is_high_beam_on=now[LIGHTS.HIGH_BEAM],
-            is_front_fog_on=now[LIGHTS.FRONT_FOG],
-            is_rear_fog_on=now[LIGHTS.REAR_FOG],
-            is_hazard_on=now[LIGHTS.HAZARD],
-            energy_level_pct=now[ENERGY.LEVEL],
-            range_km=now[ENERGY.RANGE] / 1000,
-            speed_limit_sign_kmh=now[ADAS.LIMIT_SIGN],
-            leader_gap_m=now[ADAS.LEADER_DISTANCE],
-            leader_time_to_collision_s=now[ADAS.LEADER_TIME_TO_COLLISION],
-        )
+        return readings(self._state)
 
     # --- inside -------------------------------------------------------------------------------------------
 
@@ -493,21 +422,7 @@ class Cockpit:
 
     @property
     def _scale(self) -> float:
-        return self._width / SCREEN_WIDTH
-
-    def _drawn(self, screen: Screen) -> _Frame:
-        """Draws the frame, or only where it differs from the last one."""
-        if self._frame is None:
-            picture = render(screen, self._width, round(self._width * SCREEN_HEIGHT / SCREEN_WIDTH)).image
-            return _Frame(screen, picture, pixels_of(picture))
-        picture, boxes = repaint(self._frame.screen, self._frame.picture, screen)
-        pixels = self._frame.pixels.copy()
-        for box in boxes:
-            edges = box.edges(self._scale)
-            left, top, right, bottom = edges
-            pixels[top:bottom, left:right] = pixels_of(picture.crop(edges))
-        pixels.flags.writeable = False
-        return _Frame(screen, picture, pixels)
+        return self._display.scale
 
     def _logical(self, x: int, y: int) -> tuple[float, float]:
         return x / self._scale, y / self._scale
@@ -546,17 +461,6 @@ class Cockpit:
         logical = self._logical(x, y)
         found = [w for w in self._screen.walk() if isinstance(w, kind) and w.rect.contains(*logical)]
         return found[-1] if found else None
-
-    def _found_streets(self) -> tuple[str, ...]:
-        """Streets that are the first search result for their name, and not among the favourites."""
-        state = self._state
-        found = "\n".join(("", *(place.name for place in state.atlas.places), *state.roads.names, "")).casefold()
-        return tuple(
-            name
-            for name in state.roads.names
-            if name not in state.navigation.favourites
-            and found.find(name.casefold()) == found.find(f"\n{name.casefold()}\n") + 1
-        )
 
     def _set_up(self, path: str, value: Any) -> None:
         signal = named(path)

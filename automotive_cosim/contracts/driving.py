@@ -167,7 +167,8 @@ class RoadAhead:
     delay_s: float
     """``eta_s`` above free flow at the limits."""
     relative_speed: float
-    """Mean speed divided by the limit, length-weighted over the remaining route; 1 is free flow."""
+    """Mean speed over the remaining route as a share of that at the limits: the rest of ``eta_s`` is ``delay_s``.
+    1 is free flow."""
     jam_distance_m: float | None
     """Distance to the first edge whose relative speed is under a quarter; None without one."""
     jam_length_m: float

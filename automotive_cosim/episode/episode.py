@@ -142,5 +142,6 @@ class Episode(Session):
             self.reason,
             self.watched_from_s,
             self.failure,
+            self.said,
         )
         super()._finish(end)

@@ -21,7 +21,7 @@ class Actor(Protocol):
         Raises:
             ActionError: its answer could not be read; the step counts all the same.
             OutOfBudgetError: its budget is spent; the session ends as it is.
-            AgentError: it can act no more; the session ends, and is no success.
+            AgentError: it can act no more; the session ends, and is not a success.
         """
         ...
 

@@ -154,6 +154,12 @@ class Session:
             self.hashed.add(step)
         return self.hashed.hex
 
+    @property
+    def said(self) -> tuple[str, ...]:
+        """Every answer of the agent to the driver."""
+        actions = (step.action for step in self.steps)
+        return tuple(each.text or "" for each in actions if each and each.action_type is ActionType.ANSWER)
+
     def screenshot(self) -> npt.NDArray[np.uint8]:
         """The cockpit's screen, (height, width, 3)."""
         return self.world.cockpit.screenshot()

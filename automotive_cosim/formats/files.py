@@ -82,13 +82,13 @@ def opened(path: Path) -> IO[bytes]:
     """The bytes of a file, unpacked if they are gzip's, bzip2's or xz's, whatever it is called.
 
     Raises:
-        OSError: it cannot be opened or is no regular file. Reading raises it too, where an archive is damaged or
+        OSError: it cannot be opened or is not a regular file. Reading raises it too, where an archive is damaged or
             unpacks to too much.
     """
     file = path.open("rb")
     try:
         if not stat.S_ISREG(path.stat().st_mode):
-            raise OSError(f"{path} is no regular file")
+            raise OSError(f"{path} is not a regular file")
         head = file.read(6)
         file.seek(0)
         if head.startswith(b"\x1f\x8b"):

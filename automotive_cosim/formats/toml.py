@@ -72,7 +72,7 @@ def read_toml(path: Path, error: type[UserError] = UserError) -> Document:
     """Reads a file.
 
     Raises:
-        UserError: of that class: it cannot be read, or is no TOML.
+        UserError: of that class: it cannot be read, or is not TOML.
     """
     return parse(read_text(path, error), path, error)
 
@@ -81,7 +81,7 @@ def parse(text: str, path: Path, error: type[UserError] = UserError) -> Document
     """A document from the text of a file.
 
     Raises:
-        UserError: of that class: it is no TOML.
+        UserError: of that class: it is not TOML.
     """
     try:
         if _DEEP.search(text):

@@ -6,8 +6,8 @@
         print(found.from_s, found.to_s, found.rule, found.law, found.margin, found.unit)
 
 Only what the context is certain of is checked: a limit that the network does not determine, or a lamp whose signal
-the car lacks, is no violation. What a car does by itself is not checked: daytime running lamps need no switch (UN
-R48, 6.19). Each entry has its rule's ``status``, so a judge can select the verified ones.
+the car lacks, is not a violation. What a car does by itself is not checked: daytime running lamps need no switch
+(UN R48, 6.19). Each entry has its rule's ``status``, so a judge can select the verified ones.
 """
 
 from __future__ import annotations

@@ -16,6 +16,7 @@ from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, GpsFix, RoadHe
 from automotive_cosim.geo.applied import AppliedRule, built_up, limits, other_rules, situation_at
 from automotive_cosim.geo.climate import ClimateNorm, climate_norm
 from automotive_cosim.geo.place import NOWHERE, Atlas, Place
+from automotive_cosim.geo.relevance import can_matter
 from automotive_cosim.geo.rules import TOPICS, Rule, Value
 from automotive_cosim.geo.situation import Situation
 from automotive_cosim.geo.sun import Sun, sun_at
@@ -127,12 +128,24 @@ class GeoContext:
 
     @property
     def lines(self) -> tuple[Line, ...]:
-        """Every line of the text with its source, the most important first."""
+        """Every fact and rule with its source, the most important first."""
         return tuple(_lines(self))
 
+    @property
+    def shown(self) -> tuple[Line, ...]:
+        """The lines that can matter here and now, and one that names the topics of the others."""
+        air_c = None if self.weather is None else self.weather.temperature_2m
+        left = [found.rule for found in self.rules if not can_matter(found.rule.topic, self._situation, air_c)]
+        ids = {rule.id for rule in left}
+        kept = tuple(line for line in self.lines if line.source not in ids)
+        if not left:
+            return kept
+        topics = ", ".join(dict.fromkeys(TOPICS[rule.topic].casefold() for rule in left))
+        return (*kept, Line(f"Further rules, by query: {topics}", "place"))
+
     def text(self, budget_tokens: int = BUDGET_TOKENS) -> str:
-        """The context as text, one fact per line: as many lines, from the first, as the budget allows."""
-        return within_budget(self.lines, budget_tokens)
+        """The lines of ``shown`` as text, one fact per line: as many, from the first, as the budget allows."""
+        return within_budget(self.shown, budget_tokens)
 
     @cached_property
     def _built_up(self) -> tuple[bool | None, str]:

@@ -62,4 +62,4 @@ def context_text(context: GeoContext, *, with_position: bool) -> str:
     """The geo-context as text; an agent without GPS gets no line that states the position either."""
     if with_position:
         return context.text()
-    return within_budget((line for line in context.lines if line.source != "gps"), BUDGET_TOKENS)
+    return within_budget((line for line in context.shown if line.source != "gps"), BUDGET_TOKENS)

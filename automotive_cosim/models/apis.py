@@ -46,7 +46,7 @@ class ProviderApi(Protocol):
         """Text, tokens and end of an answer.
 
         Raises:
-            LookupError, TypeError, AttributeError, ValueError, ArithmeticError: it is no answer of this protocol.
+            LookupError, TypeError, AttributeError, ValueError, ArithmeticError: not an answer of this protocol.
         """
         ...
 

@@ -164,11 +164,14 @@ def _guesses(extract: Extract, built: Built, country: str, assumed_km: float) ->
         yield f"the limit on {assumed_km:.2f} km of road: by the law of {country} or as is common there"
     mapped = sum(node.tags.get("highway") == "traffic_signals" for node in extract.nodes.values())
     if mapped:
-        yield f"junctions and phases of {built.signals} signals, from {mapped} points in the map"
+        points = counted(mapped, "point")
+        yield f"junctions and phases of {counted(built.signals, 'signal')}, from {points} in the map"
     if built.roundabouts:
         yield f"right of way in {built.roundabouts} roundabouts"
     for doubt, ways in sorted(_doubted(extract, country).items()):
-        about = "limits without mph, read as km/h" if doubt == NO_UNIT else f"{doubt}, which is no limit, left out"
+        about = (
+            "limits without mph, read as km/h" if doubt == NO_UNIT else f"{doubt}, which is not a limit, left out"
+        )
         yield f"{about}: {_ways_in_words(ways)}"
     density_m = sum(edge.length_m for edge in built.edges if edge.built_up is None)
     if density_m:

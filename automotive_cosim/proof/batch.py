@@ -108,6 +108,7 @@ def prove(
     *,
     workers: int = 1,
     out: Path | None = None,
+    begun: Callable[[int], None] = lambda planned: None,
     tell: Callable[[Proof, int, int], None] = lambda proof, done, planned: None,
 ) -> list[Proof]:
     """Proves every task with every seed; a proof that ends in an error is retried once.
@@ -118,6 +119,7 @@ def prove(
         chosen: gates to try.
         workers: number of processes, which does not affect the result.
         out: folder of the proofs, from which the same call resumes; None keeps nothing.
+        begun: called once with the number of proofs, before the first.
         tell: called with each proof as it ends, existing ones first, with the number done and the total.
 
     Returns:
@@ -135,6 +137,7 @@ def prove(
         tempfile.TemporaryDirectory(prefix="automotive-cosim-proof-") as scratch,
         opened(out or Path(scratch), plan.as_json(), Proof, parts=()) as store,
     ):
+        begun(len(jobs))
 
         def heard(progress: Progress[Proof]) -> None:
             if progress.ended is not None:

@@ -3,7 +3,7 @@
 | gate | what must be true |
 |---|---|
 | oracle | every reference solution succeeds by public actions, within the budget and 70 % of the deadline |
-| start | the goal does not hold at the hand-over |
+| start | the goal does not hold at the hand-over, and the context does not leave the deciding rule to a query |
 | world | the weather is one that the place has at that date and hour |
 | prefix | ``complete`` after any earlier step of the reference solution scores 0 |
 | late | the reference solution after the deadline fails |
@@ -17,6 +17,7 @@
 | road | a parked car does not reach the trigger |
 | law | what is right in one half fails in the other |
 | sight | the halves of a pair differ at first sight only in what the pair declares |
+| place | a pair has the tag ``place`` exactly if only place tells what is right |
 | repeat | the same seed gives the same words and trace; other seeds give others |
 | residue | after another task's episode, a task still gives its own trace |
 | reach | in every scenario that the task names, the trigger comes in time and the reference solution succeeds |
@@ -41,8 +42,10 @@ from automotive_cosim.geo.breaches import EQUAL_UP_TO_KMH, binding_limit, violat
 from automotive_cosim.geo.rules import Status
 from automotive_cosim.proof import mutations
 from automotive_cosim.proof.ground import Ground, Played, Script, finish
+from automotive_cosim.proof.place import mistagged
 from automotive_cosim.proof.sight import undeclared
 from automotive_cosim.proof.world import implausible
+from automotive_cosim.tasking.binding import rules_of
 from automotive_cosim.tasking.checks import NothingDone
 from automotive_cosim.tasking.task import Basis, Half, Task
 from automotive_cosim.tasking.triggers import All, Parked, Standing, TriggerCondition
@@ -77,10 +80,15 @@ def oracle(ground: Ground) -> Wrong:
 
 
 def start(ground: Ground) -> Wrong:
-    """Checks the goal and its words at the hand-over."""
+    """Checks the goal, its words and its law at the hand-over."""
     moment = ground.episode.moments[0]
     if ground.half.declares is GoalStatus.COMPLETE and ground.half.goal.holds(moment, moment, [moment]):
         yield f"holds already: {ground.half.goal}"
+    if ground.half.basis is Basis.LAW:
+        every, shown = ({line.source for line in lines} for lines in (moment.context.lines, moment.context.shown))
+        for rule in rules_of(ground.half):
+            if rule.id in every - shown:
+                yield f"{rule.id} decides, but the context leaves it to a query"
     if BY_NUMBER.search(ground.instance.goal):
         yield f"names a widget by its number: {ground.instance.goal!r}"
 
@@ -256,6 +264,12 @@ def sight(grounds: dict[str, Ground]) -> Wrong:
     if len(grounds) == 2:
         one, other = ((ground.episode.observation, ground.episode.moments[0]) for ground in grounds.values())
         yield from undeclared(grounds["first"].task.differs, one, other)
+
+
+def place(grounds: dict[str, Ground]) -> Wrong:
+    """Holds the tag against the hand-overs."""
+    if len(grounds) == 2:
+        yield from mistagged(grounds["first"], grounds["second"])
 
 
 # --- further hand-overs -----------------------------------------------------------------------------------

@@ -33,6 +33,7 @@ GATES = (
     "road",
     "law",
     "sight",
+    "place",
     "repeat",
     "residue",
     "reach",
@@ -112,7 +113,7 @@ class Prover:
                 grounds[half] = Ground.reach(CATALOGUE[task_id], half, seed, self._simulations)
             for half, ground in grounds.items():
                 self._prove_half(found, half, ground)
-            for gate in ("trivial", "law", "sight"):
+            for gate in ("trivial", "law", "sight", "place"):
                 if gate in self._chosen:
                     found.take(gate, getattr(gates, gate)(grounds))
             if "reach" in self._chosen:

@@ -27,6 +27,7 @@ from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.moments import judged_file
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.store import read_evaluation, read_rows, read_trace, trace_file, write_trace
+from automotive_cosim.run.versions import ran_with
 
 SHORTEST_KEY = 12
 """A shorter value of a variable that is named like a key is a dummy, and may occur anywhere."""
@@ -61,7 +62,7 @@ def write_bundle(folder: Path, out: Path) -> Contents:
         _refuse_secrets(staged, os.environ)
         made = Contents(
             FORMAT,
-            str(manifest["starts"][0]["versions"]["automotive-cosim"]),
+            ran_with(manifest),
             counts(found, sum(row.has_succeeded for row in kept)),
             {name: file_sha256(staged / name) for name in archive.members(staged)},
         )

@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 
 from automotive_cosim.cockpit.actions import parse
-from automotive_cosim.contracts import Feedback, FeedbackCode, Json
+from automotive_cosim.contracts import ActionType, Feedback, FeedbackCode, Json
 from automotive_cosim.episode.specification import ROUNDING_S, End
 from automotive_cosim.errors import CosimError
 from automotive_cosim.interface.trace import Step, plain, sha256
@@ -169,6 +169,14 @@ def _step_problems(file: str, steps: Sequence[Json], judged: Judged) -> Iterator
     declared = (action.goal_status, action.reason) if action else (None, None)
     if declared != (judged.declared, judged.reason):
         yield Problem(file, f"step {len(steps) - 1} action", "is not the declaration that was judged")
+    if tuple(text for step in steps for text in _answers(step)) != judged.said:
+        yield Problem(file, "action", "the answers are not those that were judged")
+
+
+def _answers(step: Json) -> Iterator[str]:
+    action = step["action"]
+    if isinstance(action, dict) and action.get("action_type") == ActionType.ANSWER:
+        yield str(action.get("text"))
 
 
 def _end_problems(job: EpisodeJob, row: EpisodeRow, judged: Judged, steps: int) -> Iterator[Problem]:
@@ -196,7 +204,7 @@ def _phrasing_problems(file: str, job: EpisodeJob, row: EpisodeRow, judged: Judg
     """Whether what the driver said is a phrasing of the task, and held out or not as the row says."""
     said = [text.format_map(judged.parameters) for text in job.task.templates]
     if judged.goal not in said:
-        yield Problem(file, "goal", f"is {judged.goal!r}, which is no phrasing of {row.task}")
+        yield Problem(file, "goal", f"is {judged.goal!r}, which is not a phrasing of {row.task}")
     elif row.held_out is not (judged.goal == said[-1]) or (job.setup.held_out and not row.held_out):
         yield Problem(
             ROWS, f"{row.id} held_out", f"is {str(row.held_out).lower()}, but not by what the driver said"

@@ -1,7 +1,7 @@
 """A static page that sets the evaluations in a folder of bundles side by side, as far as they can be compared.
 
-Only contestants that were to run the same episodes with the same version under the same limits share a table. Every
-bundle is checked first; one with a problem is left out and named.
+Only contestants that were to run the same episodes with the same minor version under the same limits share a table.
+Every bundle is checked first; one with a problem is left out and named.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 from collections import defaultdict
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from automotive_cosim.contracts import Json
@@ -27,6 +27,7 @@ from automotive_cosim.report.templates import render
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.store import cannot_write
+from automotive_cosim.run.versions import minor
 
 COLUMNS = (
     "Agent", "Model", "Input", "Geo", "Mode", *DIMENSIONS.values(), "Safety pairs", "All episodes", "Bundle",
@@ -62,6 +63,8 @@ class BoardEntry:
 
     bundle: str
     sha256: str
+    version: str
+    """Of the suite that ran it."""
     contestant: Contestant
     conditions: BundleConditions
     rates: tuple[Rate, ...]
@@ -74,13 +77,14 @@ class BoardEntry:
         return -joined, -whole, self.contestant.label, self.bundle
 
 
-def write_leaderboard(folder: Path, out: Path, *, workers: int = 1) -> list[str]:
+def write_leaderboard(folder: Path, out: Path, *, workers: int = 1, mixed: bool = False) -> list[str]:
     """Writes the page.
 
     Args:
         folder: of bundles.
         out: file to write.
         workers: processes that check.
+        mixed: set evaluations of several versions of the suite in one table, and say so.
 
     Returns:
         What was left out, and why.
@@ -103,6 +107,9 @@ def write_leaderboard(folder: Path, out: Path, *, workers: int = 1) -> list[str]
             left_out.append(str(error).replace(str(path), path.name))
     if not entries:
         raise UserError(f"{folder} has no bundle without a problem{''.join(f'; {each}' for each in left_out[:3])}")
+    if mixed:
+        suite = ", ".join(sorted({entry.conditions.suite for entry in entries}))
+        entries = [replace(entry, conditions=replace(entry.conditions, suite=suite)) for entry in entries]
     page = render("publish/leaderboard.html", tables=tables(entries), left_out=left_out, rates=RATES)
     try:
         write_whole(out, page)
@@ -125,8 +132,8 @@ def read_entries(bundle: Path) -> list[BoardEntry]:
         firsts = [row for row in rows if row.half == "first"]
         by_dimension = [rate_of(row for row in firsts if row.dimension == name) for name in DIMENSIONS]
         rates = (*by_dimension, rate_of(pair for pair, _ in pairs(rows)), rate_of(rows))
-        conditions = _conditions(contents.suite, results.manifest["plan"], rows)
-        made.append(BoardEntry(bundle.name, contents.sha256, each, conditions, rates))
+        conditions = _conditions(minor(contents.suite), results.manifest["plan"], rows)
+        made.append(BoardEntry(bundle.name, contents.sha256, contents.suite, each, conditions, rates))
     return made
 
 
@@ -155,7 +162,7 @@ def _table(number: int, entries: Sequence[BoardEntry]) -> Table:
                 each.geo,
                 ", ".join([each.mode, *_speed(each)]),
                 *(rate_in_words(rate) if rate.planned else NONE for rate in entry.rates),
-                f"{entry.bundle}, {entry.sha256[:12]}",
+                f"{entry.bundle} ({entry.version}), {entry.sha256[:12]}",
             )
         )
     return Table(f"table_{number}", f"Table {number}", COLUMNS, tuple(rows), heads=5)

@@ -36,6 +36,7 @@ from automotive_cosim.run.moments import judged_file
 from automotive_cosim.run.plan import EpisodeJob, make_plan
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.store import read_evaluation, read_rows, trace_file
+from automotive_cosim.run.versions import ran_with
 from automotive_cosim.traffic.fork import Simulations
 
 MANIFEST = "manifest.json"
@@ -220,7 +221,7 @@ def _count_problems(
     whole = json.loads(
         Contents(
             contents.format,
-            str(manifest["starts"][0]["versions"]["automotive-cosim"]),
+            ran_with(manifest),
             counts(found, sum(row.has_succeeded for row in rows.values())),
             contents.files,
         ).text()

@@ -18,7 +18,7 @@ from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.tasking.task import Module
 
 PLACE = "place"
-"""Tag of the pairs whose halves differ in where the car is, and in nothing that the screens show."""
+"""Tag of the pairs in which only the receiver, the context or its queries tell what is right (gate ``place``)."""
 NAMES = {Module.HVAC: "HVAC"}
 FIGURES: tuple[tuple[str, int, Callable[[DriveFigures], float | None]], ...] = (
     ("Above the limit, m", 1, lambda drive: drive.overspeed_m),

@@ -14,6 +14,7 @@ from automotive_cosim.report.stats import Comparison, Rate, compare
 from automotive_cosim.report.summary import rate_of
 from automotive_cosim.report.tables import Table
 from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.versions import minor
 
 MOST_LISTED = 30
 """How many instances of one kind a summary lists; the JUnit file has all of them."""
@@ -66,6 +67,8 @@ class SuccessChange:
     """Before and after, each over everything that was planned then."""
     problems: tuple[str, ...] = ()
     """Why it is not known what was planned."""
+    versions: tuple[str, str] = ("", "")
+    """Of the suite, before and after."""
 
     def count(self, kind: str) -> int:
         """The cases of one kind."""
@@ -86,29 +89,45 @@ class SuccessChange:
         return "worse" if self.is_worse(allowed) else "incomplete" if self.is_incomplete else "as good"
 
 
-def changes(before: Path, after: Path) -> tuple[SuccessChange, ...]:
+def changes(before: Path, after: Path, *, mixed: bool = False) -> tuple[SuccessChange, ...]:
     """Compares two evaluations' folders on what was judged in the first.
 
+    Args:
+        before: the earlier evaluation's folder.
+        after: the later one's.
+        mixed: compare even if two minor versions of the suite ran them.
+
     Raises:
-        UserError: one folder is not an evaluation's, or no contestant is in both.
+        UserError: one folder is not an evaluation's, two minor versions ran them, or no contestant is in both.
     """
     old, new = read_results(before), read_results(after)
+    versions = old.version, new.version
+    if minor(old.version) != minor(new.version) and not mixed:
+        raise UserError(
+            f"{before} was run with automotive-cosim {old.version} and {after} with {new.version}, whose tasks or "
+            "verdicts differ; rerun one of them, or compare them all the same with --mixed-versions"
+        )
     problems = tuple(f"{each.folder}: {each.coverage}" for each in (old, new) if each.coverage.problem)
     found: list[SuccessChange] = []
     for each in old.contestants:
         if each in new.contestants:
             before_rows, after_rows = old.planned_of(each), new.planned_of(each)
-            found.append(_change(each, "episodes", before_rows, after_rows, problems))
+            found.append(_change(each, "episodes", before_rows, after_rows, problems, versions))
             before_pairs, after_pairs = ([pair for pair, _ in pairs(rows)] for rows in (before_rows, after_rows))
             if before_pairs:
-                found.append(_change(each, "pairs", before_pairs, after_pairs, problems))
+                found.append(_change(each, "pairs", before_pairs, after_pairs, problems, versions))
     if not found:
         raise UserError(f"{before} and {after} share no agent, model and geo control; compare runs of one plan")
     return tuple(found)
 
 
 def _change(
-    each: Contestant, unit: str, old: Sequence[EpisodeRow], new: Sequence[EpisodeRow], problems: tuple[str, ...]
+    each: Contestant,
+    unit: str,
+    old: Sequence[EpisodeRow],
+    new: Sequence[EpisodeRow],
+    problems: tuple[str, ...],
+    versions: tuple[str, str],
 ) -> SuccessChange:
     key = pair_instance if unit == "pairs" else instance
     news = {key(row): row for row in new}
@@ -124,7 +143,7 @@ def _change(
         {name: bool(case.before.success) for name, case in judged.items()},
         clusters,
     )
-    return SuccessChange(each, unit, cases, found, (rate_of(old), rate_of(new)), problems)
+    return SuccessChange(each, unit, cases, found, (rate_of(old), rate_of(new)), problems, versions)
 
 
 def markdown(found: Sequence[SuccessChange], allowed: float) -> str:
@@ -172,11 +191,26 @@ def markdown(found: Sequence[SuccessChange], allowed: float) -> str:
         "something that was planned has not been run, or it is not known. Judged: of what was planned.",
         heads=3,
     )
-    unknown = "".join(f"\n{problem}\n" for problem in dict.fromkeys(each for one in found for each in one.problems))
+    mixed = mixed_versions(found)
+    unknown = f"\n{mixed}\n" if mixed else ""
+    unknown += "".join(
+        f"\n{problem}\n" for problem in dict.fromkeys(each for one in found for each in one.problems)
+    )
     return (
         table.markdown()
         + unknown
         + "".join(_listed(each, kind) for each in found for kind in ("lost", "error", "won"))
+    )
+
+
+def mixed_versions(found: Sequence[SuccessChange]) -> str:
+    """A sentence if two minor versions of the suite are compared; else empty."""
+    old, new = found[0].versions
+    if minor(old) == minor(new):
+        return ""
+    return (
+        f"Before is automotive-cosim {old}, after is {new}: their tasks or verdicts differ, so a difference need "
+        "not be the agent's."
     )
 
 
@@ -207,7 +241,12 @@ def as_json(found: Sequence[SuccessChange], allowed: float) -> Json:
         }
         for each in found
     ]
-    return {"ok": all(each["outcome"] == "as good" for each in contestants), "contestants": contestants}
+    return {
+        "ok": all(each["outcome"] == "as good" for each in contestants),
+        "versions": list(found[0].versions),
+        "mixed_versions": bool(mixed_versions(found)),
+        "contestants": contestants,
+    }
 
 
 def junit(found: Sequence[SuccessChange]) -> str:

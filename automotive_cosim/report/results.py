@@ -15,6 +15,7 @@ from automotive_cosim.run.coverage import Coverage, coverage
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.row import columns
 from automotive_cosim.run.store import read_evaluation, read_rows
+from automotive_cosim.run.versions import ran_with
 from automotive_cosim.tasking.task import Mode
 
 if TYPE_CHECKING:
@@ -74,6 +75,11 @@ class Results:
     coverage: Coverage
 
     @property
+    def version(self) -> str:
+        """The version of the suite that ran it."""
+        return ran_with(self.manifest)
+
+    @property
     def contestants(self) -> tuple[Contestant, ...]:
         """The contestants, with or without episodes yet; references and negative controls come last."""
         found = {contestant(row) for row in (*self.rows, *self.coverage.not_run)}
@@ -116,11 +122,11 @@ def _won(rows: Sequence[EpisodeRow]) -> str:
 
 def _count(rows: Sequence[EpisodeRow]) -> str:
     counts = []
-    for unit, each in (("episodes", rows), ("pairs", [pair for pair, _ in pairs(rows)])):
+    for unit, each in (("episode", rows), ("pair", [pair for pair, _ in pairs(rows)])):
         if each:
             beside = not_judged(sum(row.success is None and row.has_run for row in each), _waiting(each))
             won = sum(row.has_succeeded for row in each)
-            counts.append(f"{won} of {len(each)} {unit}" + (f" ({beside})" if beside else ""))
+            counts.append(f"{won} of {counted(len(each), unit)}" + (f" ({beside})" if beside else ""))
     return ", ".join(counts)
 
 

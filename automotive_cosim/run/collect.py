@@ -63,6 +63,11 @@ class Collector(Watcher):
             Image.fromarray(shot.screenshot).save(data, format="JPEG", quality=PICTURE_QUALITY, subsampling=0)
             self._shown.append(data.getvalue())
 
+    @property
+    def steps(self) -> list[Json]:
+        """The steps so far."""
+        return [*self._lines]
+
     def trace(self, result: EpisodeResult) -> list[Json]:
         """The steps, then the result; nothing if there was no hand-over."""
         return [*self._lines, {"result": result.as_json()}] if self._lines else []
@@ -83,6 +88,7 @@ class Collector(Watcher):
             episode.watched_from_s,
             episode.counterfactual,
             episode.instance.half.allowed_writes,
+            episode.said,
         )
 
     def keeps_pictures_of(self, result: EpisodeResult) -> bool:

@@ -62,6 +62,8 @@ class Judged:
     older file, which had none."""
     allowed_writes: frozenset[str] = frozenset()
     """The commands that belonged to it (``Half.allowed_writes``)."""
+    said: tuple[str, ...] = ()
+    """What the agent told the driver."""
 
 
 def judged_file(folder: Path, episode: str) -> Path:

@@ -193,7 +193,7 @@ class OutsideAgent:
         except TimeoutError:
             self._too_slow(limit_s)
         except ValueError as error:
-            self._fail(f"it sent something that is no answer: {error}")
+            self._fail(f"it sent something that is not an answer: {error}")
 
     def _send(self, kind: str, value: object) -> None:
         if self._wire is None:
@@ -209,7 +209,7 @@ class OutsideAgent:
         try:
             return reads(told)
         except (TypeError, ValueError, LookupError, AttributeError) as error:
-            self._fail(f"it sent something that is no answer: {error}")
+            self._fail(f"it sent something that is not an answer: {error}")
 
     def _too_slow(self, limit_s: float) -> NoReturn:
         if self._left_s <= limit_s:

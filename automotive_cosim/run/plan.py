@@ -300,7 +300,7 @@ def read_plan(path: Path) -> dict[str, Any]:
     """The values of a ``plan.toml``, for ``make_plan``.
 
     Raises:
-        UserError: it cannot be read, is no TOML, or has a wrong or surplus field.
+        UserError: it cannot be read, is not TOML, or has a wrong or surplus field.
     """
     document = read_toml(path)
     document.read(Plan)

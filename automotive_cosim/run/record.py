@@ -16,7 +16,6 @@ import shutil
 import tempfile
 from dataclasses import asdict
 from datetime import datetime
-from importlib.metadata import version
 from pathlib import Path
 from typing import IO
 
@@ -26,6 +25,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, Shot, Watcher
+from automotive_cosim.run.versions import installed
 
 OURS = ("episode.json", "steps.jsonl", "screenshots", "road.jsonl.gz", "episode.webp", "summary.html")
 """The content of a record; ``force`` removes these and nothing else."""
@@ -33,9 +33,9 @@ STAMPED = ("automotive-cosim", "libsumo", "gymnasium", "numpy", "pillow")
 
 
 def default_folder(setup: EpisodeSetup) -> Path:
-    """``runs/<timestamp>-<task>-<agent>-seed<seed>``; a second run in the same second gets a number."""
+    """``runs/<timestamp>-<task>-<half>-<agent>-seed<seed>``; a second run in the same second gets a number."""
     stamp = datetime.now().strftime("%Y%m%d-%H%M%S")
-    folder = Path("runs") / f"{stamp}-{setup.task}-{setup.agent}-seed{setup.seed}"
+    folder = Path("runs") / f"{stamp}-{setup.task}-{setup.half}-{setup.agent}-seed{setup.seed}"
     number = 2
     while folder.exists():
         folder = folder.with_name(f"{folder.name.removesuffix(f'-{number - 1}')}-{number}")
@@ -115,7 +115,7 @@ class Recorder(Watcher):
 
     def _manifest(self) -> Json:
         return {
-            "versions": {name: version(name) for name in STAMPED} | {"python": platform.python_version()},
+            "versions": installed(STAMPED) | {"python": platform.python_version()},
             "platform": platform.platform(),
             "setup": asdict(self._setup),
             "arguments": self._arguments,

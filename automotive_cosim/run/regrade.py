@@ -76,6 +76,7 @@ def judged_again(row: EpisodeRow, stored: Judged) -> Verdict:
         stored.reason,
         stored.watched_from_s,
         row.agent_error,
+        stored.said,
     )
 
 

@@ -9,28 +9,36 @@ from dataclasses import dataclass
 from itertools import zip_longest
 from pathlib import Path
 
+from automotive_cosim.agents import PROFILES, AgentSettings, NativeAgent, make_agent
+from automotive_cosim.agents.settings import geo_input, parts
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import Action, Json, Observation
+from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import (
     ActionError,
     AgentError,
     InfrastructureError,
     OutOfBudgetError,
-    UnknownNameError,
     UserError,
 )
-from automotive_cosim.interface.observe import Channel
+from automotive_cosim.formats import files
+from automotive_cosim.formats.checked import checked
+from automotive_cosim.formats.toml import dotted
+from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.interface.trace import HASHED, canonical
 from automotive_cosim.run.collect import Collector, Pictures
-from automotive_cosim.run.episode import run_episode
+from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, run_episode
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.moments import Judged
 from automotive_cosim.run.nursery import Nursery
 from automotive_cosim.run.plan import EpisodeJob, make_plan
+from automotive_cosim.run.script import ScriptedAgent
 from automotive_cosim.run.store import read_evaluation, read_rows, read_trace
 from automotive_cosim.run.worker import agent_of
 from automotive_cosim.traffic.fork import Simulations
 
+SHOWN = 3
+"""So many ids are shown where several fit."""
 MISSING: Json = {}
 """Placeholder for a step that one of the two runs does not have."""
 
@@ -46,22 +54,33 @@ class Compared:
     """The parts of the step that differ, from ``trace.HASHED``, or ``"length"`` if one run has no such step."""
 
 
-def rerun(folder: Path, episode: str) -> list[Compared]:
+def rerun(folder: Path, episode: str = "") -> list[Compared]:
     """Plays the actions of a stored episode in the same setup and compares step by step.
 
     Args:
-        folder: an evaluation's.
-        episode: an id, or its unique beginning.
+        folder: an evaluation's, or that of a single run.
+        episode: an id of the evaluation, or its unique beginning; a single run has none.
 
     Raises:
         UserError: no such episode, several of them, or its trace cannot be read.
         InfrastructureError: the simulation failed.
     """
+    if (folder / "episode.json").is_file():
+        return _single(folder, episode)
     manifest = read_evaluation(folder)
     rows = read_rows(folder, EpisodeRow)
     matching = [name for name in rows if name == episode] or [name for name in rows if name.startswith(episode)]
-    if len(matching) != 1:
-        raise UnknownNameError(f"one episode in {folder}", episode, rows)
+    if not matching:
+        some = ", ".join(sorted(rows)[:SHOWN]) or "none yet"
+        raise UserError(
+            f"no episode in {folder} begins with {episode!r}; its {counted(len(rows), 'episode')}: {some}, ... "
+            "(episodes.jsonl has the ids)"
+        )
+    if len(matching) > 1:
+        some = ", ".join(sorted(matching)[:SHOWN])
+        raise UserError(
+            f"{len(matching)} episodes in {folder} begin with {episode!r}, such as {some}; give more of the id"
+        )
     plan = make_plan(manifest["plan"])
     job = next((job for job in plan.jobs() if job.id == matching[0]), None)
     if job is None:
@@ -73,6 +92,41 @@ def rerun(folder: Path, episode: str) -> list[Compared]:
         channels = frozenset(agent.channels)
     again = played(job, stored, channels, rows[job.id].agent_error)
     return compare(stored, [line for line in again.lines if "step" in line])
+
+
+def _single(folder: Path, episode: str) -> list[Compared]:
+    """The same for the record of a single run."""
+    if episode:
+        raise UserError(f"{folder} holds a single run; omit {episode!r}")
+    record = files.read_json(folder / "episode.json")
+    steps = [files.parse_json(line) for line in (folder / "steps.jsonl").read_bytes().splitlines()]
+    setup = checked(EpisodeSetup, record["manifest"]["setup"], lambda keys: ("episode.json", dotted(keys)))
+    collector, _ = _again(setup, steps, _channels(setup), record["agent_error"])
+    return compare(steps, collector.steps)
+
+
+def _channels(setup: EpisodeSetup) -> frozenset[Channel]:
+    """What its agent was given; none of its models is asked for."""
+    if setup.agent in PROFILES:
+        settings = AgentSettings(geo_input(setup.geo), parts(setup.without))
+        return PROFILES[setup.agent].under(settings).channels
+    if setup.agent == ScriptedAgent.name:
+        return ALL
+    return frozenset((NativeAgent if setup.agent == NativeAgent.name else make_agent(setup.agent)).channels)
+
+
+def _again(
+    setup: EpisodeSetup,
+    stored: Sequence[Json],
+    channels: frozenset[Channel],
+    failure: str | None,
+    simulations: Simulations | None = None,
+) -> tuple[Collector, EpisodeResult]:
+    collector = Collector(Pictures.NONE)
+    result = run_episode(setup, _Player(stored[1:], channels, failure), (collector,), simulations=simulations)
+    if result.error is not None:
+        raise InfrastructureError(result.error)
+    return collector, result
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,11 +160,7 @@ def played(
         UserError: something in the setup does not exist.
         InfrastructureError: the simulation failed.
     """
-    collector = Collector(Pictures.NONE)
-    player = _Player(stored[1:], channels, failure)
-    result = run_episode(job.setup, player, (collector,), simulations=simulations)
-    if result.error is not None:
-        raise InfrastructureError(result.error)
+    collector, result = _again(job.setup, stored, channels, failure, simulations)
     return PlayedAgain(collector.trace(result), collector.row(job, result), collector.judged())
 
 

@@ -19,7 +19,6 @@ import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from datetime import datetime
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import IO, Generic
 
@@ -29,6 +28,7 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.formats import files
 from automotive_cosim.run.record import STAMPED, write_whole
 from automotive_cosim.run.row import R, as_json, from_line
+from automotive_cosim.run.versions import installed
 
 FORMAT = 1
 """Format of the folder; any other is refused."""
@@ -203,12 +203,7 @@ def read_trace(folder: Path, episode: str) -> list[Json]:
 
 def stamp() -> Json:
     """What the results depend on besides the plan: versions, platform and state of the code."""
-    versions = {"python": platform.python_version()}
-    for name in (*STAMPED, *ALSO_STAMPED):
-        try:
-            versions[name] = version(name)
-        except PackageNotFoundError:
-            versions[name] = "not installed"
+    versions = {"python": platform.python_version(), **installed((*STAMPED, *ALSO_STAMPED))}
     return {"versions": versions, "platform": platform.platform(), "git": _git()}
 
 

@@ -35,6 +35,8 @@ class Sumo:
     """Share of the other vehicles that reroute by current travel times."""
     random_traffic_per_km_h: Annotated[float, Ge(0)] = 0.0
     """Random departures per hour and kilometre of lane, for a network without demand of its own."""
+    redraws_trips: bool = False
+    """Whether every seed is another day: each trip of the route files is taken none, one or several times."""
     lateral_resolution_m: Annotated[float, Gt(0)] | None = None
     """Width of SUMO's sublanes, e.g. 0.8: vehicles then form a corridor for blue lights, at about twice the cost.
     None keeps each vehicle in the middle of its lane."""

@@ -115,7 +115,7 @@ class Game(Watcher):
         half = half or chosen.halves[int(np.random.default_rng([seed, 5]).integers(len(chosen.halves)))]
         chosen.half(half)
         if len(name) > 40 or not all(letter.isalnum() or letter in " -_" for letter in name):
-            raise UserError(f"{name[:40]!r} is no code name; give up to 40 letters, digits, spaces, - or _")
+            raise UserError(f"{name[:40]!r} is not a code name; give up to 40 letters, digits, spaces, - or _")
         with self._news:
             if self._thread is not None and self._thread.is_alive():
                 raise UserError("an episode is running already; finish or leave it first")

@@ -239,7 +239,7 @@ class WebServer(ThreadingHTTPServer):
         self.site.close()
 
     def handle_error(self, request: object, client_address: object) -> None:
-        """Says nothing: a browser that goes away is no error."""
+        """Says nothing: a browser that goes away is not an error."""
 
 
 class RequestHandler(BaseHTTPRequestHandler):

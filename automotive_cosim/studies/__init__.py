@@ -2,6 +2,10 @@
 
 plan       what a study runs: scenario, departures, seeds, shares, news, policies
 drive      one drive with its decision points, and the branches forked there
+looks      drives on to the next decision
+whole      whole drives under a policy
+together   many cars take the other way at once
+points     the futures of one decision
 compare    compares two futures of one instant
 traffic    whether the traffic still flows, or is excluded as gridlocked
 driver     lets an agent at the cockpit decide
@@ -9,5 +13,8 @@ policies   who decides, and the result
 batch      drives in parallel, resumed, until the interval is narrow enough
 results    reads stored results, as data frames
 intervals  means with bootstrap intervals over seeds
-tables, charts, page    the report
+everyone   how an effect is spread over everyone
+demand     how far the demand is from an equilibrium
+data       every future as a row, as files
+tables, effects, context, charts, page    the report
 """

@@ -126,7 +126,7 @@ class _Warm:
             self.close()
             scene = job.plan.scene(job.share)
             self._simulation = Forked(scene, job.seed, allow_unprojected=True)
-            self._simulation.watch()
+            self._simulation.watch(consumptions=job.plan.emissions)
             if job.plan.placebo_every or job.plan.draws.stop:
                 self._simulation.fresh()  # here, so that it does not depend on which departures this worker drives
             self._key, self._now_s, self._pulses = job.simulation, 0.0, []

@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from statistics import fmean
 from typing import TYPE_CHECKING
 
 from automotive_cosim.report.charts import INK, MARKERS, NARROW_IN, PALETTE, WIDE_IN, Drawing, drawn, legend
+from automotive_cosim.studies.effects import rerouted, together_by_share
+from automotive_cosim.studies.intervals import seed_mean
 from automotive_cosim.studies.results import Study
-from automotive_cosim.studies.rows import PolicyChoice
-from automotive_cosim.studies.tables import BINS, STAYING, bin_name, goes_by_news, groups, mean_of, time_saved_s
+from automotive_cosim.studies.rows import PolicyChoice, Together
+from automotive_cosim.studies.tables import (
+    BINS,
+    NONE,
+    STAYING,
+    bin_name,
+    goes_by_news,
+    groups,
+    mean_of,
+    time_saved_s,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,6 +39,8 @@ def charts(study: Study) -> dict[str, tuple[str, str, str]]:
     """
     made = {
         "policies": ("Time saved by each policy", _policies(study)),
+        "everyone": ("Who gains and who loses", _everyone(study)),
+        "many": ("When many take the other way at once", _many(study)),
         "promised": ("Predicted and actual savings", _promised(study)),
         "congestion": ("Time saved by congestion at the decision", _congestion(study)),
         "ages": ("Time saved by the age of the news", _ages(study)),
@@ -127,6 +141,72 @@ def _promised(study: Study) -> Drawing | None:
         legend(axes)
 
     return 4.4, draw
+
+
+def _many(study: Study) -> Drawing | None:
+    """What the ego, those who went along, and all the rest save, against the share sent along."""
+    found = {share: here for (rerouting, share), here in together_by_share(study).items()}
+    if len(found) < 2 or len({row.share for row in study.rows}) > 1:
+        return None
+    series: dict[str, Callable[[Together], float]] = {
+        "the ego": lambda each: each.ego_gain_s,
+        "those who went along": lambda each: each.took_gain_s,
+        "the rest": lambda each: each.rest_gain_s,
+    }
+
+    def draw(axes: Axes) -> None:
+        axes.axhline(0, color=INK, alpha=0.5, linewidth=1)
+        for number, (name, of) in enumerate(series.items()):
+            means = [
+                (share, seed_mean((seed, fmean(map(of, draws))) for seed, draws in here))
+                for share, here in found.items()
+            ]
+            known = [(100 * share, mean) for share, mean in means if mean is not None]
+            reach = [0.0 if mean.interval is None else mean.interval.high - mean.value for _, mean in known]
+            axes.errorbar(
+                [share for share, _ in known],
+                [mean.value for _, mean in known],
+                yerr=reach,
+                marker=MARKERS[number],
+                color=PALETTE[number],
+                markersize=6,
+                elinewidth=1.6,
+                label=name,
+            )
+        axes.set_xlabel("% of the cars that could are sent along")
+        axes.set_ylabel("seconds saved, sum")
+        legend(axes)
+
+    return 4.0, draw
+
+
+def _everyone(study: Study) -> Drawing | None:
+    """What single vehicles save where a policy reroutes: median, half and nine tenths of them."""
+    first = f"{study.plan.ages_s[0]:g}"
+    found = [(heads, rows) for heads, rows in rerouted(study) if heads[2] in (first, NONE)]
+    if not found:
+        return None
+    names = [f"{policy}, {share} reroute" for (share, policy, _), _ in found]
+    spreads = [[spread for _, spread in rows] for _, rows in found]
+
+    def draw(axes: Axes) -> None:
+        axes.axvline(0, color=INK, alpha=0.5, linewidth=1)
+        for place, here in enumerate(spreads):
+            low, lower, median, upper, high = (
+                fmean(getattr(each, name) for each in here)
+                for name in ("low_s", "lower_s", "median_s", "upper_s", "high_s")
+            )
+            first = place == 0
+            colour = PALETTE[0]
+            axes.plot([low, high], [place] * 2, color=colour, linewidth=1.6, label="90 %" if first else None)
+            axes.plot([lower, upper], [place] * 2, color=colour, linewidth=6, label="half" if first else None)
+            axes.plot(median, place, MARKERS[0], color=INK, markersize=5, label="median" if first else None)
+        axes.set_yticks(range(len(names)), names)
+        axes.set_ylim(len(names) - 0.5, -0.5)
+        axes.set_xlabel("seconds saved by one vehicle")
+        legend(axes)
+
+    return 1.4 + 0.35 * len(names), draw
 
 
 def _points(study: Study, names: Sequence[str], series: Series) -> Drawing | None:

@@ -6,8 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 from automotive_cosim.contracts import DrivingState, EgoEnd
-from automotive_cosim.studies.rows import OthersTotals, Totals
+from automotive_cosim.studies.rows import FleetClass, OthersTotals, Totals
 from automotive_cosim.traffic.accounts import Settled
+from automotive_cosim.traffic.sumo import EGO
+
+CONSUMED = ("co2_g", "nox_g", "fuel_g", "energy_wh")
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +36,7 @@ class Future:
             standing_s=round(ego.standing_s, 3),
             co2_g=round(ego.co2_g, 3),
             fuel_g=round(ego.fuel_g, 3),
+            energy_wh=round(ego.energy_wh, 3),
         )
 
 
@@ -65,6 +69,30 @@ def others(stay: Future, other: Future, group: Sequence[str]) -> OthersTotals:
         changed=sum(before != after for before, after in zip(*times, strict=True)),
         unfinished_stay=unfinished(stay, group, until_s),
         unfinished=unfinished(other, group, until_s),
+    )
+
+
+def fleet(stay: Future, other: Future, group: Sequence[str]) -> tuple[FleetClass, ...]:
+    """What everyone emits and consumes less, by emission class, the ego by itself.
+
+    Only vehicles that have arrived in both futures count, whole trips of each, so what was before the fork cancels.
+    """
+    before, after = stay.settled.consumptions, other.settled.consumptions
+    home = [each for each in group if each in stay.settled.arrivals_s and each in other.settled.arrivals_s]
+    saved: dict[str, list[float]] = {}
+    for vehicle in [EGO, *home]:
+        if vehicle in before and vehicle in after:
+            one, two = before[vehicle], after[vehicle]
+            name = f"ego: {one.emission_class}" if vehicle == EGO else one.emission_class
+            sums = saved.setdefault(name, [0.0] * 5)
+            savings = (getattr(one, each) - getattr(two, each) for each in CONSUMED)
+            for number, value in enumerate((1.0, *savings)):
+                sums[number] += value
+    return tuple(
+        FleetClass(
+            emission_class=name, count=round(count), **dict(zip(CONSUMED, (round(x, 3) for x in rest), strict=True))
+        )
+        for name, (count, *rest) in sorted(saved.items())
     )
 
 

@@ -10,64 +10,32 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import ExitStack, closing
-from dataclasses import dataclass, field, replace
-from statistics import fmean, stdev
+from dataclasses import replace
 
 import numpy as np
 
 from automotive_cosim.contracts import DrivingState, Reroute, RouteOption
 from automotive_cosim.errors import NoRoomError
 from automotive_cosim.geo.forecast import drawn_weather
-from automotive_cosim.studies import compare
 from automotive_cosim.studies.compare import Future
 from automotive_cosim.studies.driver import decided
-from automotive_cosim.studies.plan import AUTO_ERRORS, DriveJob
+from automotive_cosim.studies.looks import drive_on
+from automotive_cosim.studies.plan import DriveJob
+from automotive_cosim.studies.points import Diverted, Drawn, Point, compared, shows_signs
 from automotive_cosim.studies.policies import PolicyRule, parse_policy
-from automotive_cosim.studies.rows import Branch, Decision, DriveRow, News, Replicate
-from automotive_cosim.studies.traffic import gridlock
+from automotive_cosim.studies.rows import Decision, DriveRow, News
+from automotive_cosim.studies.whole import whole_drives
 from automotive_cosim.traffic.accounts import Pulse
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.chance import SEED_RANGE, Fresh
+from automotive_cosim.traffic.divert import Edges, section
 from automotive_cosim.traffic.fork import Forked, RemoteTraffic
-
-LOOK_S = 10.0
-"""Time between two checks whether a decision is due; the traffic's speeds are sampled as often."""
 
 SAME_PLACE = "start is goal"
 NO_ROOM = "no room to enter"
 NO_CONGESTION = "no congestion met"
 NO_ALTERNATIVE = "no alternative"
-GRIDLOCK = "gridlock"
-NOT_ARRIVED = "ego did not arrive"
-NOT_CLEARED = "traffic did not clear"
-"""Reasons to exclude a drive or a decision from the averages."""
-
-
-@dataclass(slots=True)
-class _Point:
-    """A decision point with its branches."""
-
-    decision: Decision
-    """The decision without the results of its branches."""
-    group: tuple[str, ...]
-    pulse: Pulse
-    branches: list[Future]
-    placebo: Future | None = None
-    replicates: list[_Drawn] = field(default_factory=list)
-
-
-@dataclass(slots=True)
-class _Drawn:
-    """The futures of one replicate."""
-
-    seed: int
-    stay: Future
-    branches: list[Future]
-
-    @property
-    def gains_s(self) -> list[float]:
-        """Time saved by each branch."""
-        return [compare.gains(self.stay, branch).time_s for branch in self.branches]
+"""Reasons to exclude a drive from the averages."""
 
 
 def planned(job: DriveJob) -> DriveRow:
@@ -104,6 +72,9 @@ def run_drive(job: DriveJob, simulation: Forked, history: Sequence[Pulse]) -> Dr
     except NoRoomError as error:
         return replace(row, excluded=NO_ROOM, why=str(error))
     with closing(traffic):
+        if job.plan.whole_drives:
+            fresh = simulation.fresh() if job.plan.draws.stop else None
+            row = replace(row, fresh=fresh, whole=whole_drives(job, traffic, fresh, history))
         drive = _Drive(job, traffic, simulation)
         drive.go()
         if not drive.points:
@@ -112,15 +83,22 @@ def run_drive(job: DriveJob, simulation: Forked, history: Sequence[Pulse]) -> Dr
         groups = [point.group for point in drive.points]
         settled = traffic.settle(groups, job.plan.arrived, job.plan.limit_s)
         stay = Future(traffic.state, settled)
-    decisions = tuple(_compared(point, stay, history) for point in drive.points)
-    return replace(row, looks=drive.looks, fresh=drive.fresh, stay=stay.totals(), decisions=decisions)
+    decisions = tuple(compared(point, stay, history) for point in drive.points)
+    return replace(row, looks=drive.looks, fresh=drive.fresh or row.fresh, stay=stay.totals(), decisions=decisions)
 
 
 def depart(job: DriveJob, simulation: Forked) -> RemoteTraffic:
     """Starts the ego in the scenario's weather, or the one drawn for its place and month."""
     scenario = job.plan.scene(job.share)
     seed = int(np.random.default_rng([*job.entropy, 0]).integers(2**31))
-    plan = EgoPlan(job.trip, job.plan.driver or scenario.ego.driver, seed, scenario.weather, scenario.start)
+    plan = EgoPlan(
+        job.trip,
+        job.plan.driver or scenario.ego.driver,
+        seed,
+        scenario.weather,
+        scenario.start,
+        emission_class=job.plan.ego_class,
+    )
     traffic = simulation.depart(plan)
     if plan.weather:
         return traffic
@@ -138,26 +116,17 @@ class _Drive:
         self.fresh: Fresh | None = None
         """How futures got fresh random numbers, once one did."""
         self._simulation = simulation
-        self.points: list[_Point] = []
+        self.points: list[Point] = []
         self.looks = 0
         """Number of instants with congestion ahead but no alternative route."""
         self._draws = np.random.default_rng([*job.entropy, 1])
         self._rules = {parse_policy(text).rule for text in job.plan.policies}
-        self._begun_s = traffic.state.time_s
         self._most_delay_s = 0.0
 
     def go(self) -> None:
         """Drives and decides until the drive or its decisions are over."""
-        plan, traffic = self.job.plan, self.traffic
-        due_s = self._begun_s + LOOK_S
-        traffic.advance(LOOK_S)
-        while (now := traffic.state).end is None and now.time_s - self._begun_s < plan.limit_s:
-            self._most_delay_s = max(self._most_delay_s, now.ahead.delay_s)
-            if now.time_s >= due_s - 1e-9 and now.ahead.delay_s >= plan.least_delay_s and self._decide(now):
-                due_s = now.time_s + plan.every_s
-                if len(self.points) == plan.per_drive:
-                    break
-            traffic.advance(LOOK_S)
+        plan = self.job.plan
+        self._most_delay_s = drive_on(self.traffic, plan, self._decide, plan.per_drive)
 
     def why_not(self) -> tuple[str, str]:
         """The reason why there was no decision at all, with its figures."""
@@ -169,8 +138,6 @@ class _Drive:
     def _decide(self, now: DrivingState) -> bool:
         """Runs the branches of a decision; false if there is no decision here."""
         plan, traffic = self.job.plan, self.traffic
-        if now.road.edge_id.startswith(":"):
-            return False
         news = {age_s: traffic.alternatives(age_s) for age_s in plan.ages_s}
         own = traffic.own_choice() if PolicyRule.SUMO in self._rules else now.ahead.route_edges
         ways = _ways(now, news, own)
@@ -202,6 +169,13 @@ class _Drive:
                 self.looks += 1
                 return False
             replicates = self._replicates(begun, group)
+            offered = next((number for edges, number in numbers.items() if edges == _offered(news)), None)
+            diverted: list[Diverted] = []
+            if offered is not None and not self.points:
+                ways_apart = section(now.ahead.route_edges, _offered(news))
+                diverted = self._diverted(
+                    begun[offered], ways_apart, [0, *(each.seed for each in replicates)], group
+                )
             branches = [self._left(branch, group) for branch in begun]
         decision = Decision(
             at_s=now.time_s,
@@ -215,7 +189,7 @@ class _Drive:
             agents=agents,
             agents_rerouted=tuple(turned),
         )
-        point = _Point(decision, group, pulse, branches, replicates=replicates)
+        point = Point(decision, group, pulse, branches, replicates=replicates, together=diverted)
         if not self.points and self._has_placebo() and not replicates:
             point.placebo = self._renewed(traffic, self._seed(1), group)
         self.points.append(point)
@@ -232,15 +206,30 @@ class _Drive:
             branch=None if offered is None else numbers.get(offered.edges),
         )
 
-    def _replicates(self, begun: Sequence[RemoteTraffic], group: Sequence[str]) -> list[_Drawn]:
+    def _replicates(self, begun: Sequence[RemoteTraffic], group: Sequence[str]) -> list[Drawn]:
         """Further draws of keeping the route and of every branch, which are as after their choice."""
-        drawn: list[_Drawn] = []
+        drawn: list[Drawn] = []
         fewest, most = self.job.plan.draws.start, self.job.plan.draws.stop
-        while len(drawn) < fewest or (len(drawn) < most and not _shows_signs(drawn)):
+        while len(drawn) < fewest or (len(drawn) < most and not shows_signs(drawn)):
             seed = self._seed(len(drawn) + 1)
             stay, *branches = (self._renewed(traffic, seed, group) for traffic in (self.traffic, *begun))
-            drawn.append(_Drawn(seed, stay, branches))
+            drawn.append(Drawn(seed, stay, branches))
         return drawn
+
+    def _diverted(
+        self, begun: RemoteTraffic, ways: tuple[Edges, Edges], seeds: Sequence[int], group: Sequence[str]
+    ) -> list[Diverted]:
+        """The futures in which others take the way that the ego has begun, in every draw."""
+        found: list[Diverted] = []
+        old, new = ways
+        for share in self.job.plan.together if old else ():
+            for draw, seed in enumerate(seeds):
+                with closing(begun.branch()) as copy:
+                    took, could = copy.divert(old, new, share, self._seed(0))
+                    if draw:
+                        copy.renew(self._simulation.fresh(), seed)
+                    found.append(Diverted(share, draw, self._left(copy, group), took, could))
+        return found
 
     def _renewed(self, traffic: RemoteTraffic, seed: int, group: Sequence[str]) -> Future:
         """The future of a copy with fresh random numbers."""
@@ -265,56 +254,15 @@ class _Drive:
         return every > 0 and self._draws.random() < 1 / every
 
 
+def _offered(news: dict[float, tuple[RouteOption, ...]]) -> tuple[str, ...]:
+    """The quickest other route by the newest news of the plan; empty without one."""
+    options = next(iter(news.values()))
+    return options[1].edges if len(options) > 1 else ()
+
+
 def _ways(
     now: DrivingState, news: dict[float, tuple[RouteOption, ...]], own: tuple[str, ...]
 ) -> list[tuple[str, ...]]:
     """Every other route that some policy may choose, once."""
     offered = [options[1].edges for options in news.values() if len(options) > 1]
     return [edges for edges in dict.fromkeys([*offered, own]) if edges and edges != now.ahead.route_edges]
-
-
-def _compared(point: _Point, stay: Future, history: Sequence[Pulse]) -> Decision:
-    """A decision with the gains of its branches."""
-    drawn = [_Drawn(0, stay, point.branches), *point.replicates]
-    futures = [future for each in drawn for future in (each.stay, *each.branches)]
-    futures += [point.placebo] if point.placebo else []
-    jams = (gridlock([*history, point.pulse, each.stay.settled.pulse]) for each in drawn)
-    jam = next(filter(None, jams), "")
-    excluded, why = "", ""
-    if not all(future.has_arrived for future in futures):
-        ends = sorted({str(future.last.end) for future in futures if not future.has_arrived})
-        excluded, why = NOT_ARRIVED, f"it ended as {', '.join(ends)}"
-    elif jam:
-        excluded, why = GRIDLOCK, jam
-    elif not all(future.settled.is_complete for future in futures):
-        excluded, why = NOT_CLEARED, "too few of the vehicles that were there had arrived in time"
-    return replace(
-        point.decision,
-        excluded=excluded,
-        why=why,
-        branches=tuple(_branched(stay, branch, point.group) for branch in point.branches),
-        placebo=None if point.placebo is None else _branched(stay, point.placebo, point.group),
-        replicates=tuple(
-            Replicate(
-                seed=each.seed,
-                stay=_branched(stay, each.stay, point.group),
-                branches=tuple(_branched(each.stay, branch, point.group) for branch in each.branches),
-            )
-            for each in point.replicates
-        ),
-    )
-
-
-def _shows_signs(drawn: Sequence[_Drawn]) -> bool:
-    """Whether the mean gain of every branch is clearly above or below zero."""
-    for gains_s in zip(*(each.gains_s for each in drawn), strict=True):
-        error_s = stdev(gains_s) / len(gains_s) ** 0.5
-        if error_s > 0 and abs(fmean(gains_s)) <= AUTO_ERRORS * error_s:
-            return False
-    return True
-
-
-def _branched(stay: Future, other: Future, group: Sequence[str]) -> Branch:
-    return Branch(
-        gains=compare.gains(stay, other), totals=other.totals(), others=compare.others(stay, other, group)
-    )

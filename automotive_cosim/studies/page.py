@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Sequence
-from io import StringIO
 from pathlib import Path
 
 from automotive_cosim.agents import PROFILES
@@ -12,19 +9,21 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.report.charts import INK
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.record import write_whole
-from automotive_cosim.run.row import columns
 from automotive_cosim.run.store import cannot_write
 from automotive_cosim.studies.charts import charts
+from automotive_cosim.studies.context import context
+from automotive_cosim.studies.data import write_data
+from automotive_cosim.studies.demand import demand_table, read_demand
+from automotive_cosim.studies.effects import effects
 from automotive_cosim.studies.intervals import LEAST_SEEDS, PUBLISHED_SEEDS
 from automotive_cosim.studies.plan import named
 from automotive_cosim.studies.results import Study, read_study
-from automotive_cosim.studies.rows import PolicyChoice
 from automotive_cosim.studies.tables import tables
 from automotive_cosim.traffic.chance import Fresh
 
 
 def write_study(folder: Path) -> Path:
-    """Writes ``report.html``, ``choices.csv``, ``tables/`` and ``plots/`` into a study's folder; returns the page.
+    """Writes ``report.html``, the data, ``tables/`` and ``plots/`` into a study's folder; returns the page.
 
     Raises:
         UserError: the folder is not a study's, has no decision that counts, or cannot be written.
@@ -33,7 +32,11 @@ def write_study(folder: Path) -> Path:
     study = read_study(folder)
     if not study.rows:
         raise UserError(f"{folder} has no drives yet; rerun its `study` command to resume")
-    made, plots = tables(study), charts(study) if study.choices else {}
+    made = [
+        *tables(study),
+        *(table for table in (*effects(study), *context(study), demand_table(read_demand(folder))) if table.rows),
+    ]
+    plots = charts(study) if study.choices else {}
     try:
         for name in ("tables", "plots"):
             (folder / name).mkdir(exist_ok=True)
@@ -42,7 +45,7 @@ def write_study(folder: Path) -> Path:
                 write_whole(folder / "tables" / f"{table.name}.{suffix}", text)
         for name, (_, wide, _) in plots.items():
             write_whole(folder / "plots" / f"{name}.svg", wide.replace("currentColor", INK))
-        write_whole(folder / "choices.csv", as_csv(study.choices))
+        write_data(study)
         page = folder / "report.html"
         text = render(
             "studies/study.html",
@@ -94,14 +97,3 @@ def cost_s(study: Study) -> float | None:
     """Wall seconds of one worker per decision, including the drive up to it and all its futures."""
     decisions = sum(len(row.decisions) for row in study.rows)
     return sum(row.wall_seconds for row in study.rows) / decisions if decisions else None
-
-
-def as_csv(choices: Sequence[PolicyChoice]) -> str:
-    """The choices as CSV, one per line, with the columns of ``load_study``."""
-    text = StringIO()
-    rows = [columns(choice) for choice in choices]
-    if rows:
-        writer = csv.DictWriter(text, list(rows[0]), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
-    return text.getvalue()

@@ -28,7 +28,7 @@ KIND = "reroute"
 EQUILIBRIUM_GAP = 0.01
 """Relative gap under which a dynamic user assignment counts as converged."""
 
-AUTO_DRAWS = range(4, 15)
+AUTO_DRAWS = range(4, 14)
 """With ``auto``, each future is driven at least and at most so often after the first."""
 AUTO_ERRORS = 2.0
 """... and no more once the mean gain of every branch is this many standard errors from zero."""
@@ -81,6 +81,16 @@ class StudyPlan:
     """Relative gap of the assignment (duaIterate) that produced the demand's routes; None without one."""
     half_width_s: Annotated[float, Ge(0.1), Le(3_600)] | None = None
     """Half-width of the mean gain's interval at which no further seeds are added; None runs all."""
+    whole_drives: bool = False
+    """Whether every policy also drives from the departure to the destination."""
+    together: tuple[Annotated[float, Ge(0), Le(1)], ...] = ()
+    """Shares of the cars that could take the quickest other way, which take it with the ego."""
+    redraw: bool = False
+    """Whether every seed is another day of the demand, see ``redraws_trips`` of a scenario."""
+    emissions: bool = False
+    """Whether to measure what every vehicle emits and consumes."""
+    ego_class: str = ""
+    """SUMO's emission class of the ego; empty takes SUMO's for passenger cars."""
     agent_steps: Annotated[int, Ge(1), Le(100)] = 12
     """Maximum number of an agent's actions per decision."""
 
@@ -96,7 +106,7 @@ class StudyPlan:
             UserError: one does not exist or is out of range.
         """
         _check(asdict(self))
-        for name in ("departures_s", "seeds", "shares", "ages_s", "policies", "trips"):
+        for name in ("departures_s", "seeds", "shares", "ages_s", "policies", "trips", "together"):
             values = getattr(self, name)
             if len(set(values)) < len(values):
                 raise UserError(f"{_option(name)} names something twice: {', '.join(map(str, values))}")
@@ -113,6 +123,8 @@ class StudyPlan:
             make_agent(*named(agent))
         if self.driver:
             profile(self.driver)
+        if self.ego_class and not re.fullmatch(r"[A-Za-z0-9_.]+(/[A-Za-z0-9_.]+)?", self.ego_class):
+            raise UserError(f"--ego-class is {self.ego_class!r}; give an emission class of SUMO, as Energy/default")
         scenario = self.scene(0.0)
         for name in self.trips:
             scenario.trip(name)
@@ -126,6 +138,7 @@ class StudyPlan:
         scenario = self.opened
         sumo = replace(scenario.sumo, step_length_s=self.step_s, background_rerouting=share)
         sumo = replace(sumo, action_step_length_s=max(self.step_s, sumo.action_step_length_s))
+        sumo = replace(sumo, redraws_trips=self.redraw or sumo.redraws_trips)
         return replace(scenario, sumo=sumo if self.scale is None else replace(sumo, scale=self.scale))
 
     @property
@@ -145,9 +158,11 @@ class StudyPlan:
         if self.equilibrium_gap is not None:
             return f"routes from duaIterate, relative gap {self.equilibrium_gap:.2%}"
         told = sorted({job.share for job in self.jobs()})
+        drawn = "; every seed draws the trips anew" if self.scene(0.0).sumo.redraws_trips else ""
         if told == [0.0]:
-            return "one-shot: routes by free flow at departure, kept to the end"
-        return f"rerouting: {' / '.join(f'{share:.0%}' for share in told)} of the cars reroute by current times"
+            return f"one-shot: routes by free flow at departure, kept to the end{drawn}"
+        shares = " / ".join(f"{share:.0%}" for share in told)
+        return f"rerouting: {shares} of the cars reroute by current times{drawn}"
 
     @property
     def opened(self) -> Scenario:
@@ -197,7 +212,8 @@ class DriveJob:
     @property
     def wall_s(self) -> float:
         """Limit of its wall time: agents may think for a while."""
-        return (7_200.0 if self.plan.agents else 1_800.0) * (1 + self.plan.draws.stop)
+        parts = 1 + self.plan.whole_drives + len(self.plan.together)
+        return (7_200.0 if self.plan.agents else 1_800.0) * (1 + self.plan.draws.stop) * parts
 
     @property
     def id(self) -> str:

@@ -117,9 +117,14 @@ def choices(rows: Iterable[DriveRow], policies: Sequence[str]) -> Iterator[Polic
     """The choice of each policy at each decision that counts, with news of each age, and its gain."""
     for point in all_decisions(rows):
         if not point.decision.excluded:
-            for policy in map(parse_policy, policies):
-                for news in point.decision.news:
-                    yield _choice(point, policy, news)
+            yield from choices_at(point, policies)
+
+
+def choices_at(point: DecisionPoint, policies: Sequence[str]) -> Iterator[PolicyChoice]:
+    """The choice of each policy at a decision, with news of each age, and its gain."""
+    for policy in map(parse_policy, policies):
+        for news in point.decision.news:
+            yield _choice(point, policy, news)
 
 
 def _choice(point: DecisionPoint, policy: Policy, news: News) -> PolicyChoice:
@@ -129,8 +134,9 @@ def _choice(point: DecisionPoint, policy: Policy, news: News) -> PolicyChoice:
     gains = [decision.gain(draw, number) for draw, number in enumerate(numbers)]
     ideal = hindsight(decision)
     regrets_s = [decision.gain(draw, ideal[draw]).time_s - gains[draw].time_s for draw in draws]
-    branches = [decision.drawn(draw, number) for draw, number in enumerate(numbers)]
-    others = [NOBODY if branch is None else branch.others for branch in branches]
+    branch, _ = Counter(numbers).most_common(1)[0]
+    driven = [decision.drawn(draw, number) for draw, number in enumerate(numbers)]
+    others = [NOBODY if each is None else each.others for each in driven]
     signs = [_sign(decision, draw, number) for draw, number in enumerate(numbers)] if len(draws) > 1 else []
     assert drive.stay is not None, "it has a decision"
     return PolicyChoice(
@@ -148,9 +154,8 @@ def _choice(point: DecisionPoint, policy: Policy, news: News) -> PolicyChoice:
         age_s=news.age_s,
         policy=policy.text,
         complies=decision.complies,
-        rerouted=_took_another(policy, decision)
-        if policy.agent
-        else sum(number is not None for number in numbers) * 2 > len(numbers),
+        rerouted=_took_another(policy, decision) if policy.agent else branch is not None,
+        branch=branch,
         promised_s=None if news.promised_s is None else round(news.promised_s, 1),
         stay=drive.stay,
         gain=Totals.mean(gains),

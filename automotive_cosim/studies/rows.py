@@ -8,6 +8,7 @@ from statistics import fmean
 from typing import Annotated
 
 from automotive_cosim.run.row import InColumns, JobRow
+from automotive_cosim.traffic.accounts import Pulse
 from automotive_cosim.traffic.chance import Fresh
 
 
@@ -21,6 +22,8 @@ class Totals:
     standing_s: float
     co2_g: float
     fuel_g: float
+    energy_wh: float = 0.0
+    """From the battery, of an electric ego."""
 
     @classmethod
     def mean(cls, drives: Sequence[Totals]) -> Totals:
@@ -56,12 +59,76 @@ NOBODY = OthersTotals(count=0, gain_s=0.0, changed=0, unfinished_stay=0, unfinis
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class FleetClass:
+    """What the vehicles of one emission class save that were there and arrived in both futures."""
+
+    emission_class: str
+    """SUMO's name of it; the ego is a class of its own, ``ego: `` and its name."""
+    count: int
+    co2_g: float
+    nox_g: float
+    fuel_g: float
+    energy_wh: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TripClass:
+    """Vehicles whose trips still take about as long from the fork."""
+
+    from_s: float
+    """Least time left if the ego keeps its route; the next class has the greatest."""
+    count: int
+    gain_s: float
+    """Their total savings."""
+    later: int
+    """Number that arrive noticeably later."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Horizon:
+    """The effect on the others up to an earlier or later instant than that of ``OthersTotals``."""
+
+    share: float
+    """The instant at which this share of them had arrived in the first of the two futures."""
+    gain_s: float | None
+    """Their total savings until then; None if the futures ended before."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Spread:
+    """What single vehicles save in a branch, the ego included; each as its mean over the draws."""
+
+    count: int
+    mean_s: float
+    low_s: float
+    """5 % of the vehicles save less."""
+    lower_s: float
+    """25 %."""
+    median_s: float
+    upper_s: float
+    """75 %."""
+    high_s: float
+    """95 %."""
+    earlier: int
+    """Number that arrive noticeably earlier."""
+    later: int
+    gini_stay: float
+    """Gini coefficient of the times from fork to arrival if the ego keeps its route."""
+    gini: float
+    """The same in the branch."""
+    trips: tuple[TripClass, ...]
+    horizons: tuple[Horizon, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Branch:
     """A future on another route, compared with the drive itself."""
 
     gains: Totals
     totals: Totals
     others: OthersTotals
+    fleet: tuple[FleetClass, ...] = ()
+    """What everyone emits and consumes less, if the plan asks for it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,6 +141,25 @@ class Replicate:
     """The future in which the ego keeps its route, compared with the drive itself: they differ by chance alone."""
     branches: tuple[Branch, ...]
     """The decision's branches, in their order, each compared with ``stay``."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Together:
+    """A future in which other cars take the other way with the ego, compared with that in which nobody does."""
+
+    share: float
+    """Share of the cars that could take it; with 0 the ego is alone."""
+    draw: int
+    could: int
+    """Number of cars whose routes pass both ends of the section in which the two ways differ."""
+    took: int
+    ego_gain_s: float
+    took_gain_s: float
+    """Total savings of the cars that took it too."""
+    rest_gain_s: float
+    """Total savings of all others that were there."""
+    excluded: str = ""
+    """Why it is excluded from the averages; empty if it counts."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -126,6 +212,12 @@ class Decision:
     """The route kept once more, with fresh random numbers; None if not drawn. Replicates contain it."""
     replicates: tuple[Replicate, ...] = ()
     """Further draws of all futures; the drive itself and ``branches`` are draw 0."""
+    spreads: tuple[Spread, ...] = ()
+    """How each branch affects everyone."""
+    traffic: Pulse | None = None
+    """The traffic as a whole at the decision."""
+    together: tuple[Together, ...] = ()
+    """Futures in which others take the quickest other way too, at the first decision of a drive."""
 
     @property
     def time_index(self) -> float:
@@ -159,6 +251,21 @@ class Decision:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class WholeDrive:
+    """A drive from departure to destination under one policy, compared with the one that keeps its route."""
+
+    policy: str
+    draw: int
+    """0 with the random numbers of the drive itself, then with fresh ones."""
+    reroutings: int
+    """How often the policy left its route; 0 makes the two drives the same."""
+    branch: Branch
+    excluded: str = ""
+    """Why it is excluded from the averages; empty if it counts."""
+    why: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class DriveRow(JobRow):
     """One drive of a study."""
 
@@ -178,6 +285,8 @@ class DriveRow(JobRow):
     stay: Totals | None = None
     """The drive itself; None without a decision."""
     decisions: tuple[Decision, ...] = ()
+    whole: tuple[WholeDrive, ...] = ()
+    """Whole drives under each policy, if the plan has them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -210,6 +319,8 @@ class PolicyChoice:
     policy: str
     complies: bool
     rerouted: bool
+    branch: int | None
+    """Number of the branch that it chose in most draws; None for keeping the route."""
     promised_s: float | None
     """Predicted saving on the other route."""
     stay: Annotated[Totals, InColumns("stay")]

@@ -315,17 +315,16 @@ def mean_cell(
     chosen: Iterable[PolicyChoice], of: Callable[[PolicyChoice], float], digits: int = 1, *, signed: bool = True
 ) -> str:
     """For example ``+12.3 (+4.0 to +20.1)``."""
-    mean = mean_of(chosen, of)
+    return told_mean(mean_of(chosen, of), f"{'+' if signed else ''}.{digits}f")
+
+
+def told_mean(mean: SeedMean | None, form: str) -> str:
+    """A mean with its interval, each in a format such as ``+.1f``."""
     if mean is None:
         return NONE
-    sign = "+" if signed else ""
-
-    def told(value: float) -> str:
-        return _told(value, f"{sign}.{digits}f")
-
     if mean.interval is None:
-        return told(mean.value)
-    return f"{told(mean.value)} ({told(mean.interval.low)} to {told(mean.interval.high)})"
+        return told(mean.value, form)
+    return f"{told(mean.value, form)} ({told(mean.interval.low, form)} to {told(mean.interval.high, form)})"
 
 
 def resampled_cell(chosen: Iterable[PolicyChoice], of: Callable[[PolicyChoice], float]) -> str:
@@ -333,10 +332,11 @@ def resampled_cell(chosen: Iterable[PolicyChoice], of: Callable[[PolicyChoice], 
     mean = mean_of(chosen, of)
     if mean is None or mean.resampled is None:
         return NONE
-    return f"{_told(mean.resampled.low, '+.1f')} to {_told(mean.resampled.high, '+.1f')}"
+    return f"{told(mean.resampled.low, '+.1f')} to {told(mean.resampled.high, '+.1f')}"
 
 
-def _told(value: float, form: str) -> str:
+def told(value: float, form: str) -> str:
+    """A number with a minus sign."""
     return f"{value:{form}}".replace("-", "−")
 
 

@@ -1,11 +1,15 @@
-"""Whether the traffic still flows; measurements in a gridlock say nothing about rerouting."""
+"""Whether the traffic still flows; measurements in a gridlock say nothing about rerouting.
+
+A gridlock is judged by what stands still on the road. Vehicles that find no room to enter are no sign of it: at a
+full edge of the network they wait for a gap, while everybody else drives. They are counted and reported.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
+from dataclasses import dataclass
 
-from automotive_cosim.traffic.accounts import STUCK_S, Pulse
+from automotive_cosim.traffic.accounts import HALTED_MPS, STUCK_S, Pulse
 
 PULSE_S = 300.0
 """Time between two measurements of the traffic as a whole."""
@@ -14,26 +18,40 @@ STUCK_SHARE = 0.05
 TELEPORTED_SHARE = 0.01
 """Gridlock if more than these shares of the vehicles on the road wait, or of the departed were teleported."""
 
-GROWING = 3
-BACKLOG_SHARE = 0.05
-"""Gridlock too if the backlog grew over this many measurements and exceeds this share of those on the road."""
+STANDING_SHARE = 0.5
+STANDING = 2
+"""Gridlock too if more than this share stands in this many measurements in a row."""
+
+FEW = 40
+"""Shares are taken of at least so many vehicles, as two or three at a red light are no gridlock."""
 
 
-def gridlock(pulses: Sequence[Pulse]) -> str:
-    """Why the traffic counts as gridlocked; empty while it flows.
+@dataclass(frozen=True, slots=True)
+class Gridlock:
+    """Why the traffic counts as gridlocked."""
+
+    rule: str
+    """Which rule says so, in two or three words."""
+    why: str
+    """The figures."""
+
+
+def gridlock(pulses: Sequence[Pulse]) -> Gridlock | None:
+    """Why the traffic counts as gridlocked; None while it flows.
 
     Args:
         pulses: measurements of one simulation, in order, about ``PULSE_S`` apart.
     """
     if not pulses:
-        return ""
+        return None
     last = pulses[-1]
-    if last.stuck > STUCK_SHARE * last.running:
-        return f"{last.stuck} of {last.running} vehicles have been waiting for {STUCK_S:g} s or longer"
+    if last.stuck > STUCK_SHARE * max(FEW, last.running):
+        why = f"{last.stuck} of {last.running} vehicles have been waiting for {STUCK_S:g} s or longer"
+        return Gridlock("waiting for long", why)
     if last.teleported > TELEPORTED_SHARE * last.departed:
-        return f"{last.teleported} teleports in {last.departed} departures"
-    backlog = [pulse.backlog for pulse in pulses[-GROWING:]]
-    grows = len(backlog) == GROWING and all(before < after for before, after in pairwise(backlog))
-    if grows and backlog[-1] > BACKLOG_SHARE * last.running:
-        return f"{backlog[-1]} vehicles find no room to enter, and their number keeps growing"
-    return ""
+        return Gridlock("teleports", f"{last.teleported} teleports in {last.departed} departures")
+    recent = pulses[-STANDING:]
+    if len(recent) == STANDING and all(each.halted > STANDING_SHARE * max(FEW, each.running) for each in recent):
+        told = ", then ".join(f"{each.halted} of {each.running}" for each in recent)
+        return Gridlock("standing", f"{told} vehicles are slower than {HALTED_MPS:g} m/s")
+    return None

@@ -41,7 +41,7 @@ class UnmetNeedError(Exception):
 def needs(half: Half) -> tuple[str, ...]:
     """What a place must have for the half to be judged there, in words."""
     if half.basis is Basis.LAW:
-        return tuple(f"a verified rule: {TOPICS[rule.topic].lower()}, as in {rule.id}" for rule in _rules_of(half))
+        return tuple(f"a verified rule: {TOPICS[rule.topic].lower()}, as in {rule.id}" for rule in rules_of(half))
     if _about_signs(half):
         return (POSTED_LIMIT,)
     if half.basis is Basis.POSTED and half.start.origin is not None:
@@ -56,7 +56,7 @@ def bound(half: Half, context: GeoContext) -> str:
         UnmetNeedError: the place has none.
     """
     if half.basis is Basis.LAW:
-        return ", ".join(_law_here(rule, context) for rule in _rules_of(half))
+        return ", ".join(_law_here(rule, context) for rule in rules_of(half))
     if _about_signs(half):
         return _sign_here(context)
     if half.basis is Basis.POSTED and half.start.origin is not None and context.speed_unit != _unit_at_home(half):
@@ -96,7 +96,8 @@ def _unit_at_home(half: Half) -> str:
     return law.speed_unit if law else "km/h"
 
 
-def _rules_of(half: Half) -> tuple[Rule, ...]:
+def rules_of(half: Half) -> tuple[Rule, ...]:
+    """The rules of law that a half names."""
     return tuple(_rule(rule_id.strip(), shipped()) for rule_id in half.rule.split(","))
 
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from automotive_cosim.cockpit.signals import ADAS, BODY, GLASS, LIGHTS
 from automotive_cosim.contracts import GoalStatus, Json, Reason
 from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.tasking.answers import only_answered
 from automotive_cosim.tasking.instance import Instance
 from automotive_cosim.tasking.task import Basis
 
@@ -135,6 +136,7 @@ def judge(
     reason: Reason | None,
     watched_from_s: float | None = None,
     failure: str | None = None,
+    said: Sequence[str] = (),
 ) -> Verdict:
     """Judges a finished episode from what happened; it has no other input and no effect.
 
@@ -148,9 +150,13 @@ def judge(
         reason: the reason code that it gave.
         watched_from_s: in ``Mode.MONITORING``, simulation time at which the situation arose.
         failure: why the agent could act no more, if it could not. No success then, even where silence is right.
+        said: what it told the driver. Where nothing had to be done, ``complete`` after a true answer is as right as
+            ``not_needed``.
     """
     if watched_from_s is None:
         verdict = _judge_asked(instance, trace, baseline, counterfactual, declared, reason)
+        if declared is GoalStatus.COMPLETE and only_answered(instance, said):
+            verdict = replace(verdict, declared=Part(True, "complete after a true answer, as right as not_needed"))
     else:
         verdict = _judge_watch(instance, trace, baseline, counterfactual, watched_from_s)
     if failure is not None:

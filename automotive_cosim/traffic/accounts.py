@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 HALTED_MPS = 0.1
 """SUMO counts a vehicle as halted up to this speed (SUMO_const_haltingSpeed)."""
@@ -40,6 +40,19 @@ class Account:
     co2_g: float
     fuel_g: float
     """Both from SUMO's emission model for the vehicle's class."""
+    energy_wh: float = 0.0
+    """From the battery, of an electric one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Consumption:
+    """What one vehicle has emitted and consumed since it entered, by SUMO's model for its emission class."""
+
+    emission_class: str
+    co2_g: float
+    nox_g: float
+    fuel_g: float
+    energy_wh: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,3 +67,5 @@ class Settled:
     """Simulation time at which each awaited vehicle arrived, without those that have not."""
     ego: Account
     pulse: Pulse
+    consumptions: dict[str, Consumption] = field(default_factory=dict)
+    """Of each awaited vehicle and the ego, if the ledger keeps them."""

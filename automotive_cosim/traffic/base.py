@@ -41,6 +41,8 @@ class EgoPlan:
     """Local time at departure, zone-aware; None takes the scenario's own."""
     parked: bool = False
     """Whether it stays parked beside the first lane of its trip."""
+    emission_class: str = ""
+    """SUMO's emission class of the ego, such as ``Energy/default`` for an electric one; empty leaves SUMO's own."""
     wait_s: float = 0.0
     """Additional traffic time before it departs, so that it meets other cars and other signals."""
 

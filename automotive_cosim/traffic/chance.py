@@ -12,6 +12,7 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Iterator
 from enum import StrEnum
+from zlib import crc32
 
 import numpy as np
 
@@ -42,7 +43,7 @@ class Fresh(StrEnum):
     """Every other car's speed factor was changed by ``JITTER`` times a normal variate."""
 
     @classmethod
-    def proven(cls, first: Sample, again: Sample, other: Sample) -> Fresh:
+    def proven(cls, first: Trial, again: Trial, other: Trial) -> Fresh:
         """What three copies prove, of which the first two had the same seed.
 
         Each has the first number of every generator and a fingerprint of the traffic after ``PROOF_S``.
@@ -53,7 +54,7 @@ class Fresh(StrEnum):
         return cls.SEED_UNSEEN if first[1] == other[1] else cls.SEED
 
 
-Sample = tuple[tuple[float, ...], int]
+Trial = tuple[tuple[float, ...], int]
 
 
 class Generators:
@@ -114,7 +115,8 @@ def renew(sumo: LibSumo, fresh: Fresh, seed: int) -> None:
 
 def fingerprint(sumo: LibSumo) -> int:
     """A number for where every vehicle is and how fast; equal for equal traffic."""
-    return hash(tuple((each, sumo.position(each), sumo.speed(each)) for each in sorted(sumo.vehicle_ids())))
+    traffic = [(each, sumo.position(each), sumo.speed(each)) for each in sorted(sumo.vehicle_ids())]
+    return crc32(repr(traffic).encode())
 
 
 def _address(library: ctypes.CDLL, name: str) -> int:

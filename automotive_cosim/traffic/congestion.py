@@ -145,11 +145,8 @@ class _Leg:
     speed_mps: float
     relative_speed: float
     time_after_s: float
-    """Travel time from its end to the destination at present speeds; the next three are also for the rest."""
+    """Travel time from its end to the destination at present speeds; the next is at the limits."""
     free_after_s: float
-    length_after_m: float
-    relative_after_m: float
-    """Sum of relative speed times length."""
     next_limit: tuple[Limit, float] | None
     """The next different limit and its position."""
     tunnel_m: float | None
@@ -216,13 +213,11 @@ class Route:
         on_edge_m = max(0.0, leg.start_m + leg.edge.length_m - position_m)
         eta_s = on_edge_m / leg.speed_mps + leg.time_after_s
         free_s = on_edge_m / leg.edge.speed_mps + leg.free_after_s
-        relative_m = on_edge_m * leg.relative_speed + leg.relative_after_m
-        edges_left_m = on_edge_m + leg.length_after_m
         return make_ahead(
             left_m,
             eta_s,
             max(0.0, eta_s - free_s),
-            relative_m / edges_left_m if edges_left_m > 0 else leg.relative_speed,
+            min(1.0, free_s / eta_s) if eta_s > 0 else leg.relative_speed,
             max(0.0, leg.jam[0] - position_m) if leg.jam else None,
             leg.jam[1] - max(leg.jam[0], position_m) if leg.jam else 0.0,
             next_light,
@@ -263,10 +258,6 @@ def _legs(
                 free_after_s=way_s + after.free_after_s + after.edge.length_m / after.edge.speed_mps
                 if after
                 else 0.0,
-                length_after_m=after.edge.length_m + after.length_after_m if after else 0.0,
-                relative_after_m=(
-                    after.edge.length_m * after.relative_speed + after.relative_after_m if after else 0.0
-                ),
                 next_limit=_next_limit(edge, after),
                 tunnel_m=None if after is None else after.start_m if after.edge.in_tunnel else after.tunnel_m,
                 jam=_jam(edge, starts_m[index], speed_mps / edge.speed_mps, after),

@@ -30,7 +30,8 @@ from automotive_cosim.errors import SetupError, TrafficError
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.accounts import Pulse, Settled
 from automotive_cosim.traffic.base import Advance, EgoPlan, WarmUpProgress
-from automotive_cosim.traffic.chance import Fresh, Sample
+from automotive_cosim.traffic.chance import Fresh, Trial
+from automotive_cosim.traffic.divert import Edges
 from automotive_cosim.traffic.drive import Call
 from automotive_cosim.traffic.options import Setup
 from automotive_cosim.traffic.profiles import profile
@@ -91,15 +92,18 @@ class Forked:
             raise TrafficError("the simulation is closed")
         return self._source.departed(plan)
 
-    def watch(self) -> None:
+    def watch(self, *, consumptions: bool = False) -> None:
         """Makes this traffic and every drive that departs from it keep a ledger, which studies read.
+
+        Args:
+            consumptions: also of what every vehicle emits and consumes.
 
         Raises:
             SetupError: the platform cannot fork.
         """
         if self._source.by_replay:
             raise SetupError("studies branch a running simulation, which requires fork: use Linux")
-        self._source.warm_call("watch")
+        self._source.warm_call("watch", consumptions)
 
     def run_on(self, duration_s: float) -> Pulse:
         """Lets the watched traffic run, so that later drives depart later; returns its state.
@@ -211,6 +215,11 @@ class RemoteTraffic:
         """Gives everything from here on other random numbers; the same seed gives the same ones."""
         self._process.call("renew", fresh, seed)
 
+    def divert(self, old: Edges, new: Edges, share: float, seed: int) -> tuple[tuple[str, ...], int]:
+        """Sends a share of the other cars another way, see ``divert.divert``."""
+        outcome: tuple[tuple[str, ...], int] = self._process.call("divert", old, new, share, seed)
+        return outcome
+
     def settle(self, groups: Sequence[Sequence[str]], share: float, limit_s: float) -> Settled:
         """Runs a watched simulation until the ego's drive has ended and a share of each group has arrived.
 
@@ -285,12 +294,12 @@ class _Source:
         self._warm_calls.append((name, arguments))
         return answer
 
-    def sampled(self, seed: int) -> Sample:
+    def sampled(self, seed: int) -> Trial:
         """What a seed makes of a copy of the warm traffic."""
         with self._lock:
             copy = self._ready().fork(self._next_outputs())
         with closing(copy):
-            sample: Sample = copy.call("prove_fresh", seed)
+            sample: Trial = copy.call("prove_fresh", seed)
             return sample
 
     def close(self) -> None:

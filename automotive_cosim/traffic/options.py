@@ -17,6 +17,7 @@ from automotive_cosim.formats.xml import scan
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic import random_traffic
 from automotive_cosim.traffic.network import read_network, root_of
+from automotive_cosim.traffic.redraw import redraw
 from automotive_cosim.traffic.vetting import vet
 from automotive_cosim.traffic.vocabulary import IGNORED, REFUSED, TAKEN
 
@@ -178,6 +179,10 @@ def run_options(configuration: Configuration, setup: Setup, scratch: Path) -> di
             options[name] = ",".join(str(vet(Path(file), scratch)) for file in files.split(","))
     sumo = setup.scenario.sumo
     step_s = sumo.step_length_s
+    if sumo.redraws_trips:
+        routes = filter(None, options.get("route-files", "").split(","))
+        days = (redraw(Path(file), scratch / f"day{n}.rou.xml", setup.seed + n) for n, file in enumerate(routes))
+        options["route-files"] = ",".join(map(str, days))
     if sumo.random_traffic_per_km_h > 0:
         drawn = scratch / "random.add.xml"
         random_traffic.write(drawn, read_network(configuration.net), sumo.random_traffic_per_km_h, setup.seed)

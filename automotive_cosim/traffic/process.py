@@ -26,8 +26,9 @@ from automotive_cosim.contracts import Answer, RoadNetwork, RoadRequest, RoadSha
 from automotive_cosim.errors import CosimError, TrafficError
 from automotive_cosim.traffic.accounts import Pulse, Settled
 from automotive_cosim.traffic.base import EgoPlan
-from automotive_cosim.traffic.chance import PROOF_S, Fresh, Generators, Sample, fingerprint, renew
+from automotive_cosim.traffic.chance import PROOF_S, Fresh, Generators, Trial, fingerprint, renew
 from automotive_cosim.traffic.channel import LOADING_LIMIT_S, ClosedError, MessageChannel
+from automotive_cosim.traffic.divert import Edges, divert
 from automotive_cosim.traffic.drive import Call, EgoDrive
 from automotive_cosim.traffic.ledger import Ledger, own_choice, settle
 from automotive_cosim.traffic.options import OUTPUTS, Setup
@@ -155,10 +156,10 @@ class Server:
 
     # --- calls of studies ---------------------------------------------------------------------------------
 
-    def do_watch(self) -> None:
+    def do_watch(self, consumptions: bool) -> None:
         """Records every step from now on in a ledger, which forks copy."""
         assert self._world is not None
-        self._ledger = Ledger(load_library(), self._world.step_s)
+        self._ledger = Ledger(load_library(), self._world.step_s, consumptions=consumptions)
 
     def do_run_on(self, duration_s: float) -> Pulse:
         """Lets the traffic run without an ego."""
@@ -190,7 +191,11 @@ class Server:
         """Gives this copy random numbers of its own."""
         renew(load_library(), fresh, seed)
 
-    def do_prove_fresh(self, seed: int) -> Sample:
+    def do_divert(self, old: Edges, new: Edges, share: float, seed: int) -> tuple[tuple[str, ...], int]:
+        """Sends a share of the other cars another way; returns who took it, and how many could have."""
+        return divert(load_library(), old, new, share, seed)
+
+    def do_prove_fresh(self, seed: int) -> Trial:
         """What a seed makes of this traffic; this process cannot be used for anything else afterwards."""
         assert self._world is not None
         generators = Generators(load_library())

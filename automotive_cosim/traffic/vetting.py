@@ -31,7 +31,7 @@ def vet(path: Path, scratch: Path | None = None) -> Path:
         scratch: a folder for changed files; None only checks.
 
     Raises:
-        ScenarioError: it is no such file, has an element or a device's parameter that is not known to write
+        ScenarioError: it is not such a file, has an element or a device's parameter that is not known to write
             nothing, or names a file that is missing; with its line.
     """
     return _vet(path, scratch, ())

@@ -119,6 +119,11 @@ class World:
             if beat is not None:
                 beat()
         self._add_ego(self._trip_edges(plan.trip), driver_profile, parked=plan.parked)
+        if plan.emission_class:
+            try:
+                self._sumo.vehicle.setEmissionClass(EGO, plan.emission_class)
+            except self._sumo.refusals as error:
+                raise ScenarioError(f"SUMO has no emission class {plan.emission_class!r}: {error}") from error
         for _ in range(round(INSERTION_LIMIT_S / self.step_s)):
             self.step()
             if beat is not None:

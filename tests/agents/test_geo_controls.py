@@ -129,6 +129,7 @@ def _won(simulations, agent: str, geo: GeoInput = GeoInput.FULL) -> Iterator[boo
         ).success
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_with_a_wrong_place_a_pairs_success_falls_to_that_without_place(simulations):
     """80 in a 50: the pipeline carries the information, and nothing else does.

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from automotive_cosim.agents import AGENTS, MODELLED
+from automotive_cosim.agents import ABOUT, AGENTS, MODELLED
 from automotive_cosim.models import MODELS
 
 GRID = ("--task", "hvac_fan_max", "--scenario", "grid")
@@ -108,3 +108,29 @@ def test_a_person_plays_at_the_terminal(cli, monkeypatch):
 def test_a_person_who_leaves_interrupts(cli, monkeypatch):
     monkeypatch.setattr("sys.stdin", io.StringIO(""))
     assert cli("run", *GRID, "--agent", "human").code == 130
+
+
+@pytest.mark.usefixtures("warm")
+def test_a_single_run_is_replayed_and_a_change_is_found(cli, tmp_path):
+    assert cli("run", *GRID, "--agent", "asurada", "--without", "queries", "--out", "one").code == 0
+    again = cli("replay", "one")
+    assert (again.code, again.out.count("the same")) == (
+        0,
+        len((tmp_path / "one/steps.jsonl").open().readlines()) + 1,
+    )
+    assert "replay one" in (tmp_path / "one/summary.html").read_text(encoding="utf-8")
+    refused = cli("replay", "one", "hvac")
+    assert (refused.code, refused.err) == (2, "error: one holds a single run; omit 'hvac'\n")
+    record = json.loads((tmp_path / "one/episode.json").read_text(encoding="utf-8"))
+    record["manifest"]["setup"]["seed"] += 1
+    (tmp_path / "one/episode.json").write_text(json.dumps(record), encoding="utf-8")
+    assert cli("replay", "one").code == 1
+    record["manifest"]["setup"]["sede"] = 1
+    (tmp_path / "one/episode.json").write_text(json.dumps(record), encoding="utf-8")
+    assert "did you mean 'seed'" in cli("replay", "one").err
+
+
+def test_every_agent_has_a_line_of_its_own(cli):
+    assert set(ABOUT) == set(AGENTS)
+    lines = cli("agents").out.splitlines()
+    assert all(any(line.split() == [name, *ABOUT[name].split()] for line in lines) for name in AGENTS)

@@ -3,6 +3,7 @@
 import json
 import re
 import shutil
+from pathlib import Path
 
 import pytest
 from PIL import Image
@@ -115,6 +116,13 @@ def test_check_ends_with_1_if_something_fails(cli, flat):
     assert [scenario["ok"] for scenario in found["scenarios"]] == [False, True]
     assert "has no projection" in found["scenarios"][0]["checks"][0]["detail"]
     _refused(cli("scenarios", "check", "gird"), "did you mean 'grid'")
+
+
+def test_render_writes_where_it_says(cli, tmp_path):
+    told = cli("scenarios", "render", "grid").out
+    assert told == f"{Path('runs/maps/grid.webp')} written\n"
+    assert (tmp_path / "runs/maps/grid.webp").is_file()
+    assert [path.name for path in tmp_path.iterdir()] == ["runs"]
 
 
 def test_render_writes_a_picture_for_each(cli, tmp_path):

@@ -2,6 +2,9 @@
 
 import pytest
 
+from automotive_cosim.cli.validate import _summary
+from automotive_cosim.proof.prover import GATES, Proof
+
 
 @pytest.mark.parametrize(
     ("words", "said"),
@@ -19,3 +22,18 @@ def test_bad_input_is_one_line(cli, tmp_path, words, said):
     assert (ran.code, ran.err.count("\n")) == (2, 1)
     assert ran.err.startswith("error: ")
     assert said in ran.err
+
+
+def test_what_is_printed_fits_a_narrow_terminal_and_names_what_failed():
+    good, bad = {gate: [] for gate in GATES}, {gate: [] for gate in GATES} | {"near": ["first: succeeded"]}
+    proofs = [
+        Proof(id=f"{task}-seed{seed}", task=task, seed=seed, wrong=wrong)
+        for task, wrong in (("hvac_fan_max", good), ("hvac_cold_hands", bad))
+        for seed in range(3)
+    ]
+    lines = list(_summary(proofs, GATES))
+    assert max(map(len, lines)) <= 80
+    assert [line.split()[:2] for line in lines[:-1]] == [
+        ["FAIL" if gate == "near" else "ok", gate] for gate in GATES
+    ]
+    assert lines[-1] == "hvac_cold_hands: near"

@@ -1,7 +1,15 @@
-"""What README and docs tell a reader to type is what the program takes."""
+"""README and docs say what is so: every command in them is understood, and every block is run.
+
+As it stands where that is quick, on the small grid where it is not, and with ``--dry-run`` or ``--help`` where it
+needs what only the reader has.
+"""
 
 import re
 import shlex
+import shutil
+import subprocess
+from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -9,16 +17,16 @@ from typer import TyperException
 from typer.main import get_command
 
 from automotive_cosim.cli.main import app
+from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.tasks.folder import VARIABLE
 
 TOP = Path(__file__).parents[2]
-PAGES = sorted(
-    [TOP / "README.md", TOP / "CONTRIBUTING.md", *(TOP / "docs").glob("*.md"), *(TOP / "docs/studies").glob("*.md")]
-)
+PAGES = sorted([TOP / "README.md", TOP / "CONTRIBUTING.md", *(TOP / "docs").glob("**/*.md")])
+PAGES = [page for page in PAGES if not {"_made", "_site"} & set(page.parts)]
 PROGRAM = re.compile(r"^(?:\S*/)?automotive-cosim\b")
 
 
-def blocks(page):
+def blocks(page: Path) -> Iterator[tuple[str, str]]:
     """The text of every block of code, fenced or indented, with its language."""
     language, lines = "", []
     for line in [*page.read_text(encoding="utf-8").splitlines(), ""]:
@@ -38,14 +46,14 @@ def blocks(page):
             language, lines = "indented", [line]
 
 
-def commands():
-    """Every call of the program in a block, with its page."""
+def commands() -> Iterator[tuple[str, str]]:
+    """Every call of the program in a block, with its page's name."""
     for page in PAGES:
         for language, text in blocks(page):
             if language in ("shell", "text", "bash", "sh", "console"):
-                for line in text.replace("\\\n", " ").splitlines():
-                    if PROGRAM.match(line.strip()):
-                        yield pytest.param(line.strip(), id=f"{page.stem}: {line.strip()[:60]}")
+                for line in re.sub(r"\\\n\s*", "", text).splitlines():
+                    if PROGRAM.match(line.strip().removeprefix("$ ")):
+                        yield page.stem, line.strip().removeprefix("$ ")
 
 
 def parse(command, arguments):
@@ -56,7 +64,7 @@ def parse(command, arguments):
         parse(inner, rest)
 
 
-@pytest.mark.parametrize("line", list(commands()))
+@pytest.mark.parametrize("line", [pytest.param(line, id=f"{page}: {line[:60]}") for page, line in commands()])
 def test_every_command_in_the_docs_is_understood(line, monkeypatch):
     monkeypatch.setenv(VARIABLE, "")  # --tasks-from sets it for every process to come; this takes that back
     words = shlex.split(line.split(" | ")[0].split(" > ")[0], comments=True)
@@ -75,3 +83,162 @@ def test_every_python_block_compiles(page):
     for language, text in blocks(page):
         if language == "python":
             compile(text, page.name, "exec")
+
+
+# --- run -------------------------------------------------------------------------------------------------
+
+SMALL = ("--scenario", "grid", "--task", "hvac_fan_max", "--half", "first", "--agent", "oracle", "--force")
+"""The last of several values of an option counts."""
+AS_IT_IS = ()
+DRY = ("--dry-run",)
+HELP = ("--help",)
+
+TREATED: list[tuple[str, tuple[str, ...], str]] = [
+    (r"eval .*--executor ray", HELP, "needs a cluster; tests/run/test_on_ray.py has one"),
+    (r"eval ", DRY, "takes minutes; `ran` below is an evaluation on the grid"),
+    (r"study reroute --scenario resco", HELP, "needs the scenario of others"),
+    (r"study reroute", DRY, "takes minutes; tests/studies run studies"),
+    (r"run .*--model", HELP, "asks a language model"),
+    (r"run .*(city|my|any)\.(net|sumocfg)", HELP, "needs a network of the reader's"),
+    (r"run --agent (my_package|\$agent)", HELP, "needs what only the reader has"),
+    (r"run .*--(scenario (hamlet|grid)|task my_)", ("--force", "--out", "runs/last"), ""),
+    (r"run --agent my_", (*SMALL[:4], "--force", "--out", "runs/last"), "takes ten seconds in its own scenario"),
+    (
+        r"run",
+        (*SMALL, "--out", "runs/last"),
+        "takes ten seconds in its own scenario; tests/cli/test_run.py runs it",
+    ),
+    (r"validate", ("--gates", "start", "--seeds", "1"), "all gates take minutes; tests/proof tries them"),
+    (r"(serve|mcp)", HELP, "serves until it is stopped; tests/serve and tests/doors ask it"),
+    (r"bench", HELP, "measures for a minute; tests/cli/test_bench.py runs it"),
+    (r"scenarios (check|day|download)", HELP, "takes minutes, counts or the network; tests/osm has them"),
+    (r"scenarios import city", HELP, "needs a map of the reader's; the hamlet is imported"),
+    (r"scenarios import", ("--force",), ""),
+    (r"replay", AS_IT_IS, ""),
+    (r"", AS_IT_IS, ""),
+]
+"""The first pattern that a command begins with says what is added to it, and why."""
+FOLDERS = r"\b(runs/(mine|first|before|after|jam))\b"
+EXCERPTS = {
+    "Skill(": "an excerpt of models/skills.py",
+    "from android_world": "needs a checkout of AndroidWorld; tests/agents/test_androidworld.py has one",
+}
+
+
+def treatment(line):
+    arguments = line.partition(" ")[2]
+    return next(entry for entry in TREATED if re.match(entry[0], arguments))
+
+
+def python(page, first):
+    """The block of a page that begins so."""
+    (block,) = (text for language, text in blocks(TOP / page) if language == "python" and text.startswith(first))
+    return block
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory):
+    """A folder with what the pages tell the reader to save, beside a checkout's docs."""
+    folder = tmp_path_factory.mktemp("reader")
+    (folder / "my_tasks").mkdir()
+    tasks = "\n".join(text for language, text in blocks(TOP / "docs/tasks.md") if language == "python")
+    (folder / "my_tasks/fog.py").write_text(tasks, encoding="utf-8")
+    seats = python("docs/tutorial.md", "from automotive_cosim.tasking.checks")
+    (folder / "my_tasks/seats.py").write_text(seats, encoding="utf-8")
+    agent = python("docs/tutorial.md", "from automotive_cosim import Action")
+    (folder / "my_agents.py").write_text(agent, encoding="utf-8")
+    shutil.copytree(TOP / "docs/examples", folder / "docs/examples")
+    (folder / "my_rules").mkdir()
+    (rules,) = (text for language, text in blocks(TOP / "docs/geo.md") if language == "toml")
+    (folder / "my_rules/FR-tours.toml").write_text(rules, encoding="utf-8")
+    for name in ("my_agent.py", "plan.toml"):
+        shutil.copyfile(TOP / "docs/examples/my-agent" / name, folder / name)
+    return folder
+
+
+@pytest.fixture
+def reader(cli, place, monkeypatch):
+    """The command line in that folder; what ``--tasks-from`` sets ends with the test."""
+    monkeypatch.chdir(place)
+    monkeypatch.setenv(VARIABLE, "")
+    monkeypatch.syspath_prepend(str(place))
+    return cli
+
+
+@pytest.fixture
+def ran(reader, place):
+    """An evaluation under the names that the pages use, and its bundle."""
+    if not (place / "runs/mine").exists():
+        plan = ("--agents", "asurada,no-op", "--tasks", "hvac_fan_max", "--scenarios", "grid", "--out", "runs/mine")
+        assert reader("eval", *plan).code == 0
+        for name in ("first", "before", "after"):
+            shutil.copytree(place / "runs/mine", place / "runs" / name)
+        assert reader("bundle", "runs/mine", "--out", "mine.bundle").code == 0
+        (place / "bundles").mkdir()
+        shutil.copyfile(place / "mine.bundle", place / "bundles/mine.bundle")
+    return place
+
+
+LINES = list(dict.fromkeys(line for _, line in commands()))
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("sumo", "warm")
+@pytest.mark.parametrize("line", [pytest.param(line, id=line[:70]) for line in LINES])
+def test_every_command_runs(line, reader, place, request):
+    added = treatment(line)[1]
+    if (re.search(FOLDERS, line) and added == AS_IT_IS) or "bundle" in line:
+        request.getfixturevalue("ran")
+        episode = next(Path("runs/mine/traces").glob("*.jsonl.gz")).name.removesuffix(".jsonl.gz")
+        line = line.replace(" ID", f" {episode}")
+    if added != HELP and "hamlet" in line and "import" not in line and not Path("hamlet").exists():
+        assert reader("scenarios", "import", "docs/examples/hamlet.osm").code == 0
+    if line.startswith("automotive-cosim bundle"):
+        Path("mine.bundle").unlink(missing_ok=True)
+    words = shlex.split(line.split(" | ")[0].split(" > ")[0], comments=True)[1:]
+    if "--tasks-from" in words:  # the catalogue of this process is complete
+        request.getfixturevalue("on_path")
+        ran = subprocess.run(["automotive-cosim", *words, *added], capture_output=True, text=True, check=False)
+        assert ran.returncode == 0, ran.stderr
+    else:
+        result = reader(*words, *added)
+        assert result.code == 0, result.err
+        assert result.out or result.err
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("sumo", "warm")
+@pytest.mark.parametrize(
+    "page", [page for page in PAGES if "python" in dict(blocks(page))], ids=lambda page: page.stem
+)
+def test_every_python_block_runs(page, reader, on_path, request):
+    names: dict[str, object] = {"__name__": "__main__", "ask": None}
+    if page.stem == "evaluation":
+        request.getfixturevalue("ran")
+    try:
+        for language, text in blocks(page):
+            if language == "python" and not text.startswith(tuple(EXCERPTS)) and "load_study" not in text:
+                exec(compile(text, page.name, "exec"), names)
+    finally:
+        for each in names.values():
+            with suppress(Exception):
+                each.close()  # environments
+
+
+def test_every_treatment_is_needed():
+    used = {treatment(line)[0] for line in LINES}
+    assert {pattern for pattern, _, _ in TREATED} - {"replay"} == used - {"replay"}
+    text = "\n".join(text for page in PAGES for _, text in blocks(page))
+    assert all(each in text for each in EXCERPTS)
+
+
+def test_pages_count_the_tasks_as_they_are():
+    pairs = sum(task.second is not None for task in CATALOGUE.values())
+    told = {
+        "README.md": f"{len(CATALOGUE)} tasks in eight modules. {pairs} are pairs",
+        "docs/report.md": f"{len(CATALOGUE)} tasks in eight modules; {pairs} of them are pairs, so there are "
+        f"{len(CATALOGUE) + pairs} halves",
+        "docs/comparison.md": f"{len(CATALOGUE)} tasks, {pairs} of them pairs",
+    }
+    for page, words in told.items():
+        assert words in (TOP / page).read_text(encoding="utf-8")

@@ -44,6 +44,7 @@ print(json.dumps({"figures": figures, "left": len(memory.tree()) - 1}))
 """In a process of its own: what else a test run keeps alive would show in the figures."""
 
 
+@pytest.mark.long
 @pytest.mark.sumo
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="looks at processes through /proc")

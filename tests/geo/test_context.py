@@ -19,6 +19,8 @@ from automotive_cosim.contracts import DrivingState, GpsFix, Limit, LimitSource,
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.gps import Gps
 from automotive_cosim.geo.locate import Geo
+from automotive_cosim.geo.rules import TOPICS
+from automotive_cosim.geo.text import Line
 
 Locate = Callable[..., GeoContext]
 POSTED = {"limit": Limit(50 / 3.6, LimitSource.POSTED)}
@@ -179,10 +181,43 @@ def test_the_law_of_a_place_does_not_follow_the_weather_light_or_speed(
     assert calm.text() != wild.text()
 
 
+def _sources(lines: Sequence[Line]) -> set[str]:
+    return {line.source for line in lines}
+
+
+@pytest.mark.parametrize("place", EVERYWHERE)
+def test_what_cannot_matter_here_and_now_is_left_to_queries(
+    locate: Locate, weather: Callable[..., Weather], place: tuple[float, float]
+) -> None:
+    for road, sky in itertools.product(_roads(), (weather(), weather(weather_code=45, visibility=60.0))):
+        context = locate(*place, sky, **road)
+        named = [line.text for line in context.shown if line.text.startswith("Further rules, by query: ")]
+        left = [found.rule for found in context.rules if found.rule.id not in _sources(context.shown)]
+        assert len(named) == bool(left)
+        assert all(TOPICS[rule.topic].casefold() in named[0] for rule in left)
+        assert all(line in context.lines for line in context.shown if line.text not in named)
+
+
+DARMSTADT = (49.87, 8.65)
+
+
+def test_fog_lamps_are_a_matter_of_fog_and_high_beam_of_the_dark(
+    locate: Locate, weather: Callable[..., Weather]
+) -> None:
+    night = datetime(2026, 10, 5, 23, tzinfo=ZoneInfo("Europe/Berlin"))
+    clear = locate(*DARMSTADT, **POSTED)
+    fog, dark = (
+        locate(*DARMSTADT, weather(weather_code=45, visibility=60.0), **POSTED),
+        locate(*DARMSTADT, time=night),
+    )
+    assert "DE.rear_fog" in _sources(fog.shown) - _sources(clear.shown)
+    assert "DE.high_beam" in _sources(dark.shown) - _sources(clear.shown)
+
+
 def test_the_text_fits_its_budget_and_drops_from_the_end(locate: Locate) -> None:
     context = locate(*PARIS, **POSTED)
     whole = context.text()
-    assert whole == "\n".join(line.text for line in context.lines)
+    assert whole == "\n".join(line.text for line in context.shown)
     for budget in (0, 50, 120, 400):
         part = context.text(budget)
         assert len(part) <= 4 * budget
@@ -192,7 +227,7 @@ def test_the_text_fits_its_budget_and_drops_from_the_end(locate: Locate) -> None
 def test_the_default_budget_takes_every_line_there_is(locate: Locate) -> None:
     for place, road in itertools.product(EVERYWHERE, _roads()):
         context = locate(*place, **road)
-        assert context.text().count("\n") + 1 == len(context.lines)
+        assert context.text().count("\n") + 1 == len(context.shown)
 
 
 def test_same_input_same_text(geo: Geo, locate: Locate) -> None:

@@ -19,6 +19,7 @@ from automotive_cosim.tasking.triggers import (
     All,
     Dark,
     Driving,
+    InCountry,
     InTunnel,
     Lit,
     Not,
@@ -274,6 +275,46 @@ def test_a_pair_that_can_always_be_declined_is_seen(ground):
 def test_a_pair_that_gives_itself_away_is_seen(ground, start, differs, seen):
     pair = replace(SOUND, second=replace(SOUND.first, start=start), difference=f"{differs}: one, or the other")
     wrong = list(gates.sight({half: ground(pair, half) for half in pair.halves}))
+    assert bool(wrong) == bool(seen)
+    assert seen in "; ".join(wrong)
+
+
+LYON, LEEDS = (4.85, 45.75), (-1.55, 53.80)
+
+
+@pytest.mark.parametrize(
+    ("tags", "origins", "countries", "rule", "seen"),
+    [
+        ((), (LYON, LEEDS), (), "", ""),
+        (("place",), (LYON, LEEDS), (), "", "screens and vehicle tell all"),
+        (
+            (),
+            (LYON, LEEDS),
+            ("FR", "GB"),
+            "",
+            "it would not hold: the car is driving, in FR",
+        ),
+        (("place",), (LYON, LEEDS), ("FR", "GB"), "", ""),
+        ((), (LYON, LYON), (), "FR.horn", "Switzerland on horn: allowed, not forbidden"),
+        (("place",), (LYON, LYON), (), "FR.horn", ""),
+        ((), (LYON, LYON), (), "FR.yield_emergency", ""),
+    ],
+)
+def test_a_wrong_tag_of_place_is_seen(ground, tags, origins, countries, rule, seen):
+    halves = [
+        replace(
+            SOUND.first,
+            start=replace(GRID, origin=origin),
+            trigger=Trigger(All((Driving(), *map(InCountry, countries[at : at + 1]))), 3.0, 60.0),
+            basis=Basis.LAW if rule else Basis.WISH,
+            rule=rule,
+        )
+        for at, origin in enumerate(origins)
+    ]
+    pair = replace(
+        SOUND, first=halves[0], second=halves[1], difference="place: here, or there", tags=frozenset(tags)
+    )
+    wrong = list(gates.place({half: ground(pair, half) for half in pair.halves}))
     assert bool(wrong) == bool(seen)
     assert seen in "; ".join(wrong)
 

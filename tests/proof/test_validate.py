@@ -85,6 +85,7 @@ def told(ran):
     return {name: value for name, value in json.loads(ran.stdout).items() if name != "seconds"}
 
 
+@pytest.mark.long
 @pytest.mark.sumo
 @pytest.mark.slow
 def test_neither_workers_nor_a_stop_show_and_what_is_proven_is_not_proven_again(validate, tmp_path):
@@ -124,6 +125,7 @@ def test_another_plan_or_a_changed_task_wants_another_folder(validate, tmp_path)
     assert len(read_rows(tmp_path / "f", Proof)) == 1
 
 
+@pytest.mark.long
 @pytest.mark.sumo
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks at /proc")

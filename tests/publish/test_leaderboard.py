@@ -96,3 +96,15 @@ def test_nothing_to_show_is_one_line(tmp_path):
         with pytest.raises(UserError, match=said):
             write_leaderboard(folder, tmp_path / "page.html")
     assert not (tmp_path / "page.html").exists()
+
+
+def test_versions_stand_apart_unless_told_and_then_the_page_says_so(shelf, tmp_path, monkeypatch):
+    entries = [each for path in sorted(shelf.iterdir()) if path.suffix == ".bundle" for each in read_entries(path)]
+    older = replace(entries[0], conditions=replace(entries[0].conditions, suite="0.1"))
+    monkeypatch.setattr("automotive_cosim.publish.leaderboard.read_entries", lambda path: [entries[0], older])
+    write_leaderboard(shelf, tmp_path / "apart.html")
+    write_leaderboard(shelf, tmp_path / "mixed.html", mixed=True)
+    apart, mixed = ((tmp_path / f"{name}.html").read_text() for name in ("apart", "mixed"))
+    assert (apart.count("<tbody>"), mixed.count("<tbody>")) == (2, 1)
+    assert "mixes versions" not in apart
+    assert f"mixes versions 0.1, {entries[0].conditions.suite} " in mixed

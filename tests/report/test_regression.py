@@ -1,12 +1,14 @@
 """Two evaluations made by hand, compared as a check on a change would."""
 
+import json
 from dataclasses import replace
 from xml.etree import ElementTree
 
 import pytest
 
+import automotive_cosim
 from automotive_cosim.errors import UserError
-from automotive_cosim.report.regression import changes, junit, markdown
+from automotive_cosim.report.regression import as_json, changes, junit, markdown
 from automotive_cosim.run.collect import failed, planned
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.plan import make_plan
@@ -106,3 +108,27 @@ def test_the_command_tells_by_its_exit_code_and_writes_both_files(tmp_path):
     assert runner.invoke(app, ["compare", first, first]).exit_code == 0
     refused = runner.invoke(app, ["compare", first, second, "--threshold", "-1"])
     assert isinstance(refused.exception, UserError)
+
+
+def test_two_minor_versions_are_compared_only_if_told_and_that_is_said(tmp_path):
+    before, after = write(tmp_path / "a"), write(tmp_path / "b", lost={1})
+    manifest = json.loads((before / "manifest.json").read_text())
+
+    def was_run_with(version):
+        manifest["starts"][0]["versions"]["automotive-cosim"] = version
+        (before / "manifest.json").write_text(json.dumps(manifest))
+
+    assert manifest["starts"][0]["versions"]["automotive-cosim"] == automotive_cosim.__version__
+    was_run_with("0.1.7")
+    with pytest.raises(UserError, match=r"0\.1\.7 .* --mixed-versions"):
+        changes(before, after)
+    found = changes(before, after, mixed=True)
+    assert "Before is automotive-cosim 0.1.7" in markdown(found, 0.0)
+    assert as_json(found, 0.0)["mixed_versions"] is True
+    was_run_with(".".join([*automotive_cosim.__version__.split(".")[:2], "99"]))
+    assert "Before is" not in markdown(changes(before, after), 0.0)
+    assert as_json(changes(before, after), 0.0)["mixed_versions"] is False
+    del manifest["starts"][0]["versions"]
+    (before / "manifest.json").write_text(json.dumps(manifest))
+    with pytest.raises(UserError, match="unknown"):
+        changes(before, after)

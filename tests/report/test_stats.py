@@ -4,9 +4,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.stats import binomtest
-from statsmodels.stats.contingency_tables import mcnemar
-from statsmodels.stats.proportion import proportion_confint
 
 from automotive_cosim.report import stats
 
@@ -14,6 +11,9 @@ from automotive_cosim.report import stats
 @pytest.mark.parametrize(("successes", "count"), [(0, 7), (7, 7), (3, 7), (40, 50), (1, 1000), (500, 1000)])
 @pytest.mark.parametrize("confidence", [0.9, 0.95, 0.99])
 def test_wilson_agrees_with_scipy_and_statsmodels(successes, count, confidence):
+    from scipy.stats import binomtest  # here and below: seconds, in the one worker that needs them
+    from statsmodels.stats.proportion import proportion_confint
+
     ours = stats.wilson(successes, count, confidence)
     theirs = binomtest(successes, count).proportion_ci(confidence, method="wilson")
     assert (ours.low, ours.high) == pytest.approx((theirs.low, theirs.high), abs=1e-9)
@@ -91,6 +91,8 @@ def test_a_rate_divides_by_what_was_planned(outcomes, not_run):
 
 @pytest.mark.parametrize(("both", "b", "c", "neither"), [(3, 9, 1, 4), (0, 5, 5, 0), (10, 0, 6, 10), (4, 0, 0, 4)])
 def test_paired_comparisons_agree_with_statsmodels(both, b, c, neither):
+    from statsmodels.stats.contingency_tables import mcnemar
+
     cells = [(True, True)] * both + [(True, False)] * b + [(False, True)] * c + [(False, False)] * neither
     first = dict(enumerate(one for one, _ in cells))
     second = dict(enumerate(other for _, other in cells))

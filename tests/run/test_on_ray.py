@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -24,6 +25,7 @@ on_ray = pytest.importorskip("automotive_cosim.run.on_ray")  # before Ray, whose
 OnRay = on_ray.OnRay
 
 pytestmark = [
+    pytest.mark.long,
     pytest.mark.sumo,
     pytest.mark.slow,
     pytest.mark.skipif(not Path("/proc").is_dir(), reason="Ray for Linux; looks at /proc"),
@@ -47,7 +49,7 @@ class Slow(Base):
         super().reset(goal)
         self.left = 3
     def act(self, observation):
-        time.sleep(0.6)
+        time.sleep(0.3)
         self.left -= 1
         if self.left == 0: return {"action_type": "status", "goal_status": "complete"}
         return {"action_type": "wait", "seconds": 1}
@@ -75,15 +77,15 @@ def files(folder):
 
 
 def marked(mark):
-    """Processes that were started under a mark and still run."""
-    found = []
+    """Command lines of the processes that were started under a mark and still run, by process id."""
+    found = {}
     for path in Path("/proc").glob("[0-9]*"):
         try:
             if f"{MARK}={mark}".encode() in (path / "environ").read_bytes().split(b"\0"):
-                found.append((path / "cmdline").read_bytes()[:80])
+                found[int(path.name)] = (path / "cmdline").read_text()
         except OSError:
             continue
-    return [each for each in found if each]
+    return {pid: words for pid, words in found.items() if words}
 
 
 def until(true, within_s=60.0):
@@ -103,7 +105,7 @@ def ray_folder():
 
 @pytest.fixture(scope="module")
 def cluster(ray_folder):
-    """Two nodes of a CPU each; nothing of them is left afterwards."""
+    """Two nodes of a CPU each; while they still run, nothing of ours is left on them."""
     from ray.cluster_utils import Cluster
 
     with pytest.MonkeyPatch.context() as patch:
@@ -114,6 +116,10 @@ def cluster(ray_folder):
         made.add_node(num_cpus=1, object_store_memory=OBJECT_STORE_BYTES)
     assert marked("cluster")
     yield made
+    until(lambda: not [words for words in marked("cluster").values() if "automotive_cosim" in words])
+    for pid in marked("cluster"):  # left to themselves, some of Ray's own take half a minute
+        with suppress(ProcessLookupError):
+            os.kill(pid, signal.SIGKILL)
     made.shutdown()
     until(lambda: not marked("cluster"))
 

@@ -29,7 +29,8 @@ def test_default_folders_never_collide(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     made = set()
     for _ in range(12):
-        folder = default_folder(EpisodeSetup())
+        folder = default_folder(EpisodeSetup(half="second"))
+        assert "-road_speed_80_in_50-second-asurada-seed0" in folder.name
         assert folder not in made
         folder.mkdir(parents=True)
         made.add(folder)

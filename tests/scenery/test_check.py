@@ -159,6 +159,7 @@ def test_progress_is_told() -> None:
     assert told[-1] == ("driving the trip avenue", None)
 
 
+@pytest.mark.long
 @pytest.mark.sumo
 @pytest.mark.slow
 @pytest.mark.parametrize("name", scenarios.shipped())

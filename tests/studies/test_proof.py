@@ -17,7 +17,7 @@ from automotive_cosim.studies.drive import run_drive
 from automotive_cosim.studies.plan import StudyPlan
 from automotive_cosim.studies.rows import NOTHING, DriveRow, Totals
 from automotive_cosim.traffic.base import EgoPlan
-from automotive_cosim.traffic.chance import Fresh, Sample
+from automotive_cosim.traffic.chance import Fresh, Trial
 from automotive_cosim.traffic.fork import Forked, RemoteTraffic
 
 from .conftest import EDGES, LORRY_EVERY_S, SLOW_MPS, SPEED_MPS
@@ -248,5 +248,5 @@ def test_a_library_without_the_symbols_is_replaced_by_jitter(
     assert row.decisions[0].placebo is not None
 
 
-def refused(seed: int) -> Sample:
+def refused(seed: int) -> Trial:
     raise TrafficError("the simulation died: by SIGSEGV")

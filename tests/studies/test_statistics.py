@@ -9,13 +9,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from automotive_cosim.contracts import Json
+from automotive_cosim.contracts import EgoEnd, Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.studies import compare, policies
 from automotive_cosim.studies.compare import Future
-from automotive_cosim.studies.drive import _Drawn, _shows_signs
+from automotive_cosim.studies.everyone import gini, spread
 from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
 from automotive_cosim.studies.plan import StudyPlan, make_study
+from automotive_cosim.studies.points import Diverted, Drawn, Point, compared, shows_signs
 from automotive_cosim.studies.policies import best, chosen, parse_policy
 from automotive_cosim.studies.results import Noise, choices, noise
 from automotive_cosim.studies.rows import NOTHING, Branch, Decision, DriveRow, News, OthersTotals, Replicate
@@ -155,7 +156,7 @@ def test_cross_fitted_hindsight_is_unbiased_where_single_draws_gain_by_luck() ->
 
 def test_replicates_end_where_the_sign_shows() -> None:
     def shows(*gains_s: float) -> bool:
-        return _shows_signs([_Drawn(0, future(900.0), [later(-gain_s)]) for gain_s in gains_s])
+        return shows_signs([Drawn(0, future(900.0), [later(-gain_s)]) for gain_s in gains_s])
 
     assert shows(20.0, 22.0, 19.0, 25.0)
     assert shows(-20.0, -22.0, -19.0, -25.0)
@@ -235,18 +236,21 @@ FLOWING = Pulse(1000.0, 400, 40, 0, 5, 1000, 2)
     [
         ([FLOWING], ""),
         ([replace(FLOWING, stuck=20)], ""),
-        ([replace(FLOWING, stuck=21)], "waiting"),
+        ([replace(FLOWING, stuck=21)], "waiting for long"),
         ([replace(FLOWING, teleported=10)], ""),
         ([replace(FLOWING, teleported=11)], "teleports"),
-        ([replace(FLOWING, backlog=count) for count in (10, 20, 30)], "no room"),
-        ([replace(FLOWING, backlog=count) for count in (10, 30, 30)], ""),
-        ([replace(FLOWING, backlog=count) for count in (1, 2, 3)], ""),
+        ([replace(FLOWING, halted=201)] * 2, "standing"),
+        ([replace(FLOWING, halted=201), FLOWING, replace(FLOWING, halted=201)], ""),
+        ([replace(FLOWING, halted=200)] * 9, ""),
+        ([replace(FLOWING, backlog=count) for count in (10, 200, 3000)], ""),
+        ([replace(FLOWING, running=55, backlog=8, stuck=2)], ""),
+        ([replace(FLOWING, running=3, halted=3)] * 5, ""),
         ([], ""),
     ],
 )
 def test_gridlock_is_seen(pulses: list[Pulse], word: str) -> None:
     found = gridlock(pulses)
-    assert (word in found) if word else found == ""
+    assert (found.rule if found else "").startswith(word) if word else found is None
 
 
 def future(until_s: float, **arrivals_s: float) -> Future:
@@ -263,6 +267,62 @@ def test_who_has_not_arrived_is_not_forgotten() -> None:
     assert (found.count, found.changed) == (4, 3)
     back = compare.others(other, stay, ["a", "b", "c", "d"])
     assert back.gain_s == -found.gain_s
+
+
+def test_everyone_counts_once_and_the_classes_add_up() -> None:
+    """The ego gains 50 s; of three others one gains 40 s, one loses 20 s, one has not arrived in either."""
+    stay, other = future(1000.0, a=200.0, b=700.0), future(1000.0, a=220.0, b=660.0)
+    found = spread([(ends(stay, 450.0), ends(other, 400.0))], ["a", "b", "c"], at_s=100.0)
+    assert (found.count, found.earlier, found.later) == (4, 2, 1)
+    assert found.mean_s == pytest.approx((50 - 20 + 40 + 0) / 4)
+    assert sum(each.count for each in found.trips) == 4
+    assert sum(each.gain_s for each in found.trips) == pytest.approx(70.0)
+    assert {each.from_s: (each.count, each.later) for each in found.trips} == {0: (1, 1), 300: (1, 0), 600: (2, 0)}
+    assert found.low_s <= found.lower_s <= found.median_s <= found.upper_s <= found.high_s
+    assert found.gini_stay == pytest.approx(gini(np.array([350.0, 100.0, 600.0, 900.0])), abs=1e-4)
+
+
+def test_everyone_is_the_mean_over_the_draws() -> None:
+    """What one draw gains the other loses again: nobody gains."""
+    one, two = ends(future(900.0, a=200.0), 300.0), ends(future(900.0, a=260.0), 340.0)
+    found = spread([(one, two), (two, one)], ["a"], at_s=100.0)
+    assert (found.mean_s, found.low_s, found.high_s, found.later) == (0, 0, 0, 0)
+    assert found.gini == found.gini_stay
+
+
+def test_a_horizon_ends_when_the_first_future_has_that_share_home() -> None:
+    group = [f"v{number}" for number in range(10)]
+    stay = future(990.0, **{name: 500.0 + 10 * number for number, name in enumerate(group)})
+    slow = future(990.0, **{name: 505.0 + 10 * number for number, name in enumerate(group[:9])})
+    gains = {each.share: each.gain_s for each in spread([(stay, slow)], group, at_s=400.0).horizons}
+    assert gains[0.9] == pytest.approx(-5.0 * 8), "up to 580 s, when the ninth is home, and the last never differs"
+    assert gains[0.99] == pytest.approx(-5.0 * 9)
+    early = future(560.0, **{name: 505.0 + 10 * number for number, name in enumerate(group[:5])})
+    assert {each.gain_s for each in spread([(early, early)], group, at_s=400.0).horizons} == {None}
+
+
+@pytest.mark.parametrize(("values", "expected"), [([3.0] * 5, 0.0), ([0.0, 0.0, 0.0, 8.0], 0.75), ([0.0], 0.0)])
+def test_gini(values: list[float], expected: float) -> None:
+    assert gini(np.array(values)) == pytest.approx(expected)
+
+
+def test_many_cars_that_jam_leave_the_decision_itself_in() -> None:
+    """Sending everybody along ends in a gridlock: that future does not count, and the decision does."""
+    good = ends(future(900.0, a=200.0), 450.0)
+    jammed = replace(good, settled=replace(good.settled, pulse=replace(FLOWING, stuck=200)))
+    late = replace(good, settled=replace(good.settled, is_complete=False))
+    sent = [Diverted(share, 0, made, ("a",), 1) for share, made in ((0.0, good), (0.5, late), (1.0, jammed))]
+    point = Point(decision(), ("a",), FLOWING, [ends(future(900.0, a=190.0), 400.0)], together=sent)
+    found = compared(point, good, [])
+    assert found.excluded == ""
+    assert found.branches[0].gains.time_s == 50
+    assert [each.excluded for each in found.together] == ["", "traffic did not clear", ""]
+    jam = compared(replace(point, together=[]), jammed, [])
+    assert jam.excluded == "gridlock: waiting for long"
+
+
+def ends(made: Future, at_s: float) -> Future:
+    return replace(made, last=replace(made.last, time_s=at_s, end=EgoEnd.ARRIVED))
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import hashlib
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -18,8 +19,11 @@ from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.row import steady as steady_part
 from automotive_cosim.run.store import read_rows
 from automotive_cosim.studies.batch import run_study
+from automotive_cosim.studies.demand import read_demand
+from automotive_cosim.studies.drive import NO_ROOM
 from automotive_cosim.studies.page import write_study
 from automotive_cosim.studies.plan import StudyPlan
+from automotive_cosim.studies.points import NOT_CLEARED
 from automotive_cosim.studies.results import load_study, read_study
 from automotive_cosim.studies.rows import NOTHING, DriveRow
 from automotive_cosim.traffic.chance import Fresh
@@ -136,11 +140,64 @@ def test_the_report_is_whole(folder: Path) -> None:
         written = list(csv.DictReader(file))
     assert len(written) == len(frame) == 8 * 5 * 2
     assert [row["id"] for row in written] == list(frame.id)
-    for name in ("policies", "costs", "by_congestion", "by_age", "noise", "excluded"):
+    for name in (
+        "policies",
+        "costs",
+        "by_congestion",
+        "by_age",
+        "noise",
+        "excluded",
+        "everyone",
+        "by_trip",
+        "traffic",
+        "by_departure",
+    ):
         for suffix in ("md", "csv", "tex"):
             assert (folder / "tables" / f"{name}.{suffix}").read_text(encoding="utf-8").strip()
-    for name in ("policies", "promised", "congestion", "ages"):
+    for name in ("policies", "promised", "congestion", "ages", "everyone"):
         assert (folder / "plots" / f"{name}.svg").read_text(encoding="utf-8").startswith("<svg")
+
+
+def test_every_future_is_a_row_and_the_package_describes_it(folder: Path) -> None:
+    write_study(folder)
+    study = read_study(folder)
+    decisions = [decision for row in study.rows for decision in row.decisions]
+    with (folder / "futures.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == sum(
+        (1 + len(each.branches)) * each.draws + (each.placebo is not None) for each in decisions
+    )
+    always = [each for each in study.choices if (each.policy, each.age_s) == ("always", 0.0)]
+    found = {row["id"]: float(row["gain_time_s"]) for row in rows if "always" in row["policies"].split()}
+    assert found == {each.id: each.gain.time_s for each in always}
+    package = json.loads((folder / "datapackage.json").read_text(encoding="utf-8"))
+    assert package["study"]["plan"] == study.plan.as_json()
+    assert "two.net.xml" in package["inputs"]
+    for resource in package["resources"]:
+        content = (folder / resource["path"]).read_bytes()
+        assert resource["hash"] == f"sha256:{hashlib.sha256(content).hexdigest()}"
+        if resource["format"] == "csv":
+            header = content.decode().splitlines()[0].split(",")
+            assert [field["name"] for field in resource["schema"]["fields"]] == header
+            assert not [
+                field
+                for field in resource["schema"]["fields"]
+                if field["type"] == "any" and field["name"] not in EMPTY_HERE
+            ]
+
+
+def test_parquet_holds_the_same(folder: Path) -> None:
+    pd = pytest.importorskip("pandas")
+    pytest.importorskip("pyarrow")
+    write_study(folder)
+    for name in ("choices", "futures"):
+        read = pd.read_parquet(folder / f"{name}.parquet")
+        assert list(read.columns) == list(pd.read_csv(folder / f"{name}.csv").columns)
+        assert read.id.tolist() == pd.read_csv(folder / f"{name}.csv").id.tolist()
+
+
+EMPTY_HERE = {"gain_error_s", "won", "lost", "chose_best", "draw_seed"}
+"""Columns that a study of single draws leaves empty."""
 
 
 def test_gridlocked_traffic_is_kept_apart(two_ways: Draw, tmp_path: Path) -> None:
@@ -150,7 +207,7 @@ def test_gridlocked_traffic_is_kept_apart(two_ways: Draw, tmp_path: Path) -> Non
     run_study(plan, tmp_path / "jam")
     study = read_study(tmp_path / "jam")
     assert not study.decisions
-    assert {reason for _, reason in study.excluded} <= {"gridlock", "no room to enter"}
+    assert {reason for _, reason in study.excluded} <= {NOT_CLEARED, NO_ROOM, "gridlock: waiting for long"}
     assert sum(study.excluded.values()) == 1
 
 
@@ -162,6 +219,105 @@ def test_each_share_is_traffic_of_its_own(two_ways: Draw, tmp_path: Path) -> Non
     assert {each.share for each in study.choices} == {0.0, 1.0}
     write_study(tmp_path / "shares")
     assert "Too few seeds" in (tmp_path / "shares" / "tables" / "by_share.md").read_text()
+
+
+def test_a_whole_drive_gains_what_its_one_rerouting_does(two_ways: Draw, tmp_path: Path) -> None:
+    """There is one place to turn off, so following a policy is the one deviation, or none."""
+    scenario = str(two_ways(more=MORE_TRIPS))
+    policies = ("never", "always", "delay:3000", "sumo", "best")
+    plan = StudyPlan(
+        scenario,
+        (0.0,),
+        seeds=(0,),
+        per_drive=1,
+        policies=policies,
+        whole_drives=True,
+        placebo_every=0,
+        replicates=2,
+    )
+    run_study(plan, tmp_path / "whole")
+    study = read_study(tmp_path / "whole")
+    row = {row.trip: row for row in study.rows}["across"]
+    (decision,) = row.decisions
+    always = [each for each in row.whole if each.policy == "always"]
+    assert [each.draw for each in always] == [0, 1]
+    for each in always:
+        assert each.reroutings == 1
+        assert each.branch.gains == decision.branches[decision.news[0].branch or 0].gains
+    assert {(each.policy, each.reroutings) for each in row.whole if each.policy == "delay:3000"} == {
+        ("delay:3000", 0)
+    }
+    assert {each.policy for each in row.whole} == {"always", "delay:3000", "sumo"}
+    free = {row.trip: row for row in study.rows}["free"]
+    assert free.excluded == "no congestion met"
+    assert {each.branch.gains for each in free.whole} == {NOTHING}
+    write_study(tmp_path / "whole")
+    text = (tmp_path / "whole" / "tables" / "whole.csv").read_text()
+    assert "always,3,0" in text, "the drives without a decision count; the one that has nowhere to go does not"
+
+
+@pytest.mark.slow
+def test_many_at_once_start_from_the_one(two_ways: Draw, tmp_path: Path) -> None:
+    """Sending nobody along is the ego's branch; sending all along changes it, and nobody is counted twice."""
+    plan = StudyPlan(
+        str(two_ways(DAWDLING)),
+        (0.0,),
+        seeds=(0,),
+        per_drive=2,
+        every_s=10.0,
+        least_delay_s=0.0,
+        together=(0.0, 1.0),
+    )
+    run_study(plan, tmp_path / "many")
+    (row,) = read_study(tmp_path / "many").rows
+    first, second = row.decisions
+    assert not second.together
+    branch = first.branches[first.news[0].branch or 0]
+    alone, everybody = first.together
+    assert (alone.took, alone.took_gain_s) == (0, 0.0)
+    assert alone.ego_gain_s == branch.gains.time_s
+    assert alone.rest_gain_s == branch.others.gain_s
+    assert 0 < everybody.took <= everybody.could == alone.could < branch.others.count
+    assert everybody.took_gain_s < 0, "the other way is half as long again and nothing holds them up on their own"
+    write_study(tmp_path / "many")
+    assert (tmp_path / "many" / "tables" / "many.md").read_text().count("\n| 0% |") == 2
+
+
+def test_emissions_are_of_everyone_by_class_and_the_ego_can_be_electric(two_ways: Draw, tmp_path: Path) -> None:
+    plan = StudyPlan(
+        str(two_ways()),
+        (0.0,),
+        seeds=(0,),
+        per_drive=1,
+        placebo_every=0,
+        emissions=True,
+        ego_class="Energy/default",
+    )
+    run_study(plan, tmp_path / "fleet")
+    (row,) = read_study(tmp_path / "fleet").rows
+    (decision,) = row.decisions
+    branch = decision.branches[0]
+    assert row.stay is not None
+    assert (row.stay.co2_g, row.stay.fuel_g) == (0, 0)
+    assert row.stay.energy_wh > 50
+    fleet = {each.emission_class: each for each in branch.fleet}
+    ego = fleet.pop("ego: Energy/default")
+    assert ego.energy_wh == pytest.approx(branch.gains.energy_wh, abs=0.01)
+    assert ego.count == 1
+    (lorries,) = fleet.values()
+    assert lorries.count > 0
+    assert (lorries.co2_g, lorries.nox_g, lorries.fuel_g, lorries.energy_wh) == (0, 0, 0, 0), (
+        "nobody is in their way"
+    )
+    write_study(tmp_path / "fleet")
+    assert "Energy/default" in (tmp_path / "fleet" / "tables" / "fleet.md").read_text()
+
+
+def test_an_emission_class_that_sumo_lacks_is_named(two_ways: Draw, tmp_path: Path) -> None:
+    plan = StudyPlan(str(two_ways()), (0.0,), seeds=(0,), per_drive=1, ego_class="Steam/big")
+    run_study(plan, tmp_path / "steam", retries=0)
+    (row,) = read_study(tmp_path / "steam").rows
+    assert "Steam/big" in (row.error or "")
 
 
 @pytest.mark.slow
@@ -255,6 +411,11 @@ def test_the_command(two_ways: Draw, tmp_path: Path) -> None:
     told = json.loads(text.strip().splitlines()[-1])
     assert (told["drives"], told["decisions"], told["errors"], told["excluded"]) == (1, 1, 0, {})
     assert (out / "report.html").is_file()
+    (demand,) = read_demand(out)
+    assert demand.gap is not None
+    assert demand.gap.relative == 0, "the lorries have no other way"
+    assert "relative gap 0.0%" in text
+    assert (out / "tables" / "demand.md").is_file()
     written = (out / "report.html").read_bytes()
     text, error = invoke("report", str(out))
     assert error is None

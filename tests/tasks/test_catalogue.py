@@ -3,7 +3,6 @@
 import itertools
 import re
 from collections import Counter
-from dataclasses import replace
 
 import pytest
 
@@ -149,6 +148,15 @@ WISH = re.compile(
 """What asks for a warning, not for an answer."""
 
 
+REQUEST = re.compile(r"\b(please|(would|will|could|can) (you|we|i))\b", re.IGNORECASE)
+
+
+@pytest.mark.parametrize("task", [task for task in TASKS if task.second], ids=lambda task: task.id)
+def test_nobody_asks_a_mere_question_where_an_act_counts(task):
+    questions = [said for said in task.templates if said.rstrip().endswith("?")]
+    assert [said for said in questions if not (WISH.search(said) or REQUEST.search(said))] == []
+
+
 def _warns(task: Task) -> bool:
     found = [draw(task, name, 0).half.goal for name in task.halves]
     return any("alerts" in goal.writes for goal in found)
@@ -157,23 +165,3 @@ def _warns(task: Task) -> bool:
 @pytest.mark.parametrize("task", [task for task in TASKS if _warns(task)], ids=lambda task: task.id)
 def test_where_only_a_warning_counts_nobody_asks_a_mere_question(task):
     assert [said for said in task.templates if "?" in said and not WISH.search(said)] == []
-
-
-def _moved(task: Task) -> bool:
-    """Whether the halves differ only in where on earth the network lies."""
-    assert task.second
-    first, second = task.first.start, task.second.start
-    return first.origin != second.origin and replace(first, origin=None) == replace(second, origin=None)
-
-
-@pytest.mark.parametrize("task", [task for task in TASKS if task.second], ids=lambda task: task.id)
-def test_place_decides_what_only_place_tells(task):
-    """A pair that was moved is decided by place; one that a thermometer in the cabin tells apart is not."""
-    if _moved(task):
-        assert "place" in task.tags
-    if "place" in task.tags:
-        assert task.first.start.cabin == task.second.start.cabin
-        temperatures = {
-            start.weather and start.weather.temperature_2m for start in (task.first.start, task.second.start)
-        }
-        assert len(temperatures) == 1

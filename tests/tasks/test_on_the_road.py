@@ -50,6 +50,7 @@ def verdict(episode: Episode) -> Verdict:
     return episode.verdict
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("module", SAMPLE)
 def test_a_task_of_each_module_passes_every_gate(simulations, module: str):
     """All tasks are proven by ``automotive-cosim validate``; here one each, the cheapest gates aside."""

@@ -217,6 +217,16 @@ def test_a_jam_clears_when_its_vehicles_have_gone(town: Network) -> None:
     assert congestion.relative_speed("c3c4") > 0.95
 
 
+@pytest.mark.parametrize("speed_mps", [0.5, 3.0, 9.0, 30.0])
+def test_delay_and_relative_speed_agree(town: Network, speed_mps: float) -> None:
+    route = Route(AVENUE, town, jammed(town, "c2c3", speed_mps=speed_mps))
+    for share in range(20):
+        position_m = share / 20 * route.length_m
+        ahead = route.ahead(route.edge_at(position_m)[0], position_m, None)
+        assert ahead.relative_speed == pytest.approx(1 - ahead.delay_s / ahead.eta_s)
+        assert (ahead.jam_length_m > 0) <= (ahead.relative_speed < 1)
+
+
 def test_jams_lie_where_they_are(town: Network) -> None:
     congestion = jammed(town, "c2c3", "c3c4")
     route = Route(AVENUE, town, congestion)

@@ -98,6 +98,9 @@ def test_states_are_consistent(forked: Forked, hurried: EgoPlan, grid: Scenario)
         )
         assert after.ahead.eta_s >= after.ahead.delay_s >= 0
         assert 0 < after.ahead.relative_speed <= 1
+        assert after.ahead.relative_speed * after.ahead.eta_s == pytest.approx(
+            after.ahead.eta_s - after.ahead.delay_s, abs=1e-6
+        )
         assert 0 <= after.road.lane_index < max(2, after.road.lane_count)
         assert after.standing_s == 0 or after.speed_mps < 0.1
     assert states[-2].ahead.route_left_m < 3.0

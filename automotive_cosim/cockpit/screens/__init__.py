@@ -14,7 +14,8 @@ from automotive_cosim.cockpit.screens.keyboard import focused, keyboard, uncover
 from automotive_cosim.cockpit.screens.map import map_screen
 from automotive_cosim.cockpit.screens.media import media, playlist
 from automotive_cosim.cockpit.screens.outside import outside
-from automotive_cosim.cockpit.screens.phone import contact, phone, thread
+from automotive_cosim.cockpit.screens.person import contact, thread
+from automotive_cosim.cockpit.screens.phone import phone
 from automotive_cosim.cockpit.screens.safety import emergency, safety
 from automotive_cosim.cockpit.screens.vehicle import assistance, vehicle
 from automotive_cosim.cockpit.screens.way import explore, place, route

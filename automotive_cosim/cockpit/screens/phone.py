@@ -1,34 +1,17 @@
-"""Phone: calls, contacts and messages."""
+"""Phone: favourites, recent calls, contacts, messages and the keypad."""
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.messages import (
-    BACKSPACE,
-    Back,
-    DeclineCall,
-    Dial,
-    HangUp,
-    Key,
-    Pick,
-    Put,
-    Read,
-    SendReply,
-    Show,
-    TakeCall,
-)
-from automotive_cosim.cockpit.people import TEMPLATES, PastCall
+from automotive_cosim.cockpit.messages import BACKSPACE, Dial, Key, Pick, Show
+from automotive_cosim.cockpit.people import PastCall
 from automotive_cosim.cockpit.restrictions import Restriction
-from automotive_cosim.cockpit.screens.media import minutes
-from automotive_cosim.cockpit.screens.parts import CONTENT, choices, heading, note, rows, search
-from automotive_cosim.cockpit.signals import LINK
+from automotive_cosim.cockpit.screens.handset import RIGHT, handset
+from automotive_cosim.cockpit.screens.parts import choices, note, rows, search
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
-from automotive_cosim.cockpit.widgets import Button, Card, Choice, Glyph, Label, Look, Row, Tile, Widget
+from automotive_cosim.cockpit.widgets import Button, Card, Choice, Label, Look, Row, Widget
 
-LEFT, RIGHT = CONTENT.left(320), CONTENT.right_part(CONTENT.width - 320 - GAP)
 WAYS = {"in": Icon.CALL_IN, "out": Icon.CALL_OUT, "missed": Icon.CALL_MISSED}
 TABS = (
     ("favourites", "Favourites", Icon.STAR),
@@ -51,174 +34,13 @@ def phone(state: State) -> tuple[Widget, ...]:
         "keypad": _keypad,
     }
     return (
-        _side(state),
+        handset(state),
         choices(
             RIGHT.top(64),
             "phone.tab",
             [(name, text, icon, shown == name, Pick("phone", name)) for name, text, icon in TABS],
         ),
         *pages[shown](RIGHT.below(64 + GAP), state),
-    )
-
-
-def _side(state: State) -> Widget:
-    """The present call, or the phone's state, and permanent buttons."""
-    inner = LEFT.inset(20)
-    calls = state.phone
-    return Card(
-        rect=LEFT,
-        children=(
-            *_line(inner, state),
-            Tile(
-                rect=Rect(inner.x, inner.bottom - 148, inner.width, 68),
-                key="phone.do_not_disturb",
-                text="Do not disturb",
-                icon=Icon.BELL_OFF,
-                checked=calls.do_not_disturb,
-                on_tap=Put(
-                    "phone",
-                    replace(calls, do_not_disturb=not calls.do_not_disturb),
-                    "Calls and messages are announced"
-                    if calls.do_not_disturb
-                    else "Calls and messages stay silent",
-                ),
-            ),
-            Button(
-                rect=inner.bottom_part(68),
-                key="phone.emergency_call",
-                text="Emergency call",
-                icon=Icon.PHONE_ALERT,
-                look=Look.CRITICAL,
-                on_tap=Show("emergency"),
-            ),
-        ),
-    )
-
-
-def _line(inner: Rect, state: State) -> tuple[Widget, ...]:
-    if state.phone.ringing is not None:
-        return _ringing(inner, state.phone.ringing.who)
-    return _on_call(inner, state) if state.phone.on_call else _linked(inner, state)
-
-
-def _linked(inner: Rect, state: State) -> tuple[Widget, ...]:
-    on = state.signals[LINK.BLUETOOTH]
-    count = len(state.directory.unread(state.phone))
-    return (
-        Glyph(rect=Rect(inner.x, inner.y + 8, inner.width, 88), icon=Icon.PHONE, size=72, tone="accent"),
-        Label(
-            rect=Rect(inner.x, inner.y + 112, inner.width, 36),
-            key="phone.device",
-            text=state.desk.device if on else "No phone paired",
-            style=Type.STRONG,
-            align="centre",
-        ),
-        Label(
-            rect=Rect(inner.x, inner.y + 150, inner.width, 30),
-            key="phone.state",
-            text=(f"{count} unread message{'s' if count != 1 else ''}" if count else "No new messages")
-            if on
-            else "Bluetooth is off",
-            style=Type.LABEL,
-            tone="muted",
-            align="centre",
-        ),
-        Button(
-            rect=Rect(inner.x, inner.y + 204, inner.width, 60),
-            key="phone.devices",
-            text="Devices",
-            icon=Icon.BLUETOOTH,
-            on_tap=Show("connections"),
-        ),
-    )
-
-
-def _on_call(inner: Rect, state: State) -> tuple[Widget, ...]:
-    call = state.phone.on_call
-    assert call is not None
-    mute, end = Rect(inner.x, inner.y + 204, inner.width, 88).columns(2, 12)
-    return (
-        Glyph(rect=Rect(inner.x, inner.y + 8, inner.width, 88), icon=Icon.IN_CALL, size=72, tone="good"),
-        Label(
-            rect=Rect(inner.x, inner.y + 112, inner.width, 36),
-            key="call.who",
-            text=call.who,
-            description="On the phone with",
-            style=Type.STRONG,
-            align="centre",
-        ),
-        Label(
-            rect=Rect(inner.x, inner.y + 150, inner.width, 30),
-            key="call.time",
-            text=minutes(state.time_s - call.since_s),
-            style=Type.LABEL,
-            tone="muted",
-            align="centre",
-        ),
-        Tile(
-            rect=mute,
-            key="call.mute",
-            text="Mute",
-            icon=Icon.MICROPHONE_OFF,
-            checked=call.muted,
-            on_tap=Put(
-                "phone",
-                replace(state.phone, on_call=replace(call, muted=not call.muted)),
-                "The microphone is on" if call.muted else "The microphone is off",
-            ),
-        ),
-        Button(
-            rect=end,
-            key="call.end",
-            text="End",
-            icon=Icon.HANG_UP,
-            icon_size=32,
-            look=Look.CRITICAL,
-            stacked=True,
-            on_tap=HangUp(),
-        ),
-    )
-
-
-def _ringing(inner: Rect, who: str) -> tuple[Widget, ...]:
-    answer, decline = Rect(inner.x, inner.y + 204, inner.width, 88).columns(2, 12)
-    return (
-        Glyph(rect=Rect(inner.x, inner.y + 8, inner.width, 88), icon=Icon.CALL_IN, size=72, tone="good"),
-        Label(
-            rect=Rect(inner.x, inner.y + 112, inner.width, 36),
-            key="phone.ringing",
-            text=who,
-            description="Is calling",
-            style=Type.STRONG,
-            align="centre",
-        ),
-        Label(
-            rect=Rect(inner.x, inner.y + 150, inner.width, 30),
-            text="Incoming call",
-            style=Type.LABEL,
-            tone="muted",
-            align="centre",
-        ),
-        Button(
-            rect=answer,
-            key="phone.answer",
-            text="Answer",
-            icon=Icon.PHONE,
-            icon_size=32,
-            look=Look.ACCENT,
-            stacked=True,
-            on_tap=TakeCall(),
-        ),
-        Button(
-            rect=decline,
-            key="phone.decline",
-            text="Decline",
-            icon=Icon.HANG_UP,
-            icon_size=32,
-            look=Look.CRITICAL,
-            stacked=True,
-            on_tap=DeclineCall(),
-        ),
     )
 
 
@@ -373,136 +195,5 @@ def _keypad(rect: Rect, state: State) -> tuple[Widget, ...]:
             look=Look.ACCENT,
             on_tap=Dial(number),
             disabled=empty,
-        ),
-    )
-
-
-def contact(state: State) -> tuple[Widget, ...]:
-    """One person."""
-    who = state.picked.get("contact") or state.directory.contacts[0].name
-    number = state.directory.number(who)
-    favourite = who in state.phone.favourites
-    card = RIGHT.top(264)
-    buttons = RIGHT.below(264 + GAP).top(108).columns(3, GAP)
-    return (
-        _side(state),
-        Button(rect=RIGHT.left(64).top(64), key="contact.back", description="Back", icon=Icon.BACK, on_tap=Back()),
-        Glyph(rect=Rect(card.x, card.y + 24, card.width, 120), icon=Icon.ACCOUNT, size=112, tone="accent"),
-        Label(
-            rect=Rect(card.x, card.y + 152, card.width, 48),
-            key="contact.name",
-            text=who,
-            style=Type.HEADLINE,
-            align="centre",
-        ),
-        Label(
-            rect=Rect(card.x, card.y + 206, card.width, 36),
-            key="contact.number",
-            text="" if number == who else number,
-            description="Number",
-            tone="muted",
-            align="centre",
-        ),
-        Button(
-            rect=buttons[0],
-            key="contact.call",
-            text="Call",
-            icon=Icon.PHONE,
-            icon_size=36,
-            look=Look.ACCENT,
-            stacked=True,
-            on_tap=Dial(who),
-        ),
-        Button(
-            rect=buttons[1],
-            key="contact.message",
-            text="Message",
-            icon=Icon.MESSAGE,
-            icon_size=36,
-            stacked=True,
-            on_tap=Show("thread", who),
-        ),
-        Button(
-            rect=buttons[2],
-            key="contact.favourite",
-            text="Remove favourite" if favourite else "Add favourite",
-            icon=Icon.STAR if favourite else Icon.STAR_OUTLINE,
-            icon_size=36,
-            stacked=True,
-            on_tap=Put(
-                "phone",
-                state.phone.with_favourite(who, not favourite),
-                f"{who} is no longer a favourite" if favourite else f"{who} is now a favourite",
-            ),
-        ),
-    )
-
-
-def thread(state: State) -> tuple[Widget, ...]:
-    """Somebody's messages, and replies that one tap sends. While driving, messages are read out instead."""
-    who = state.picked.get("thread") or state.directory.threads[0].who
-    known = state.directory.thread(who, state.phone)
-    hidden = state.locked(Restriction.NO_TEXT_MESSAGE)
-    opened = who in state.phone.read or not (known and known.unread)
-    sent = [(sent.text, "You") for sent in state.phone.sent if sent.to == who]
-    said = [(text, who) for text in known.lines] if known else []
-    lines = [*(said if opened and not hidden else []), *sent]
-    left, right = RIGHT.left(500), RIGHT.right_part(RIGHT.width - 500 - GAP)
-    bar = left.top(64)
-    read = Rect(left.x, left.bottom - 64, left.width, 64)
-    return (
-        _side(state),
-        Button(rect=bar.left(64), key="thread.back", description="Back", icon=Icon.BACK, on_tap=Back()),
-        Label(rect=Rect(bar.x + 80, bar.y, bar.width - 80, 64), key="thread.who", text=who, style=Type.TITLE),
-        *(
-            (
-                rows(
-                    Rect(left.x, left.y + 76, left.width, left.height - 152),
-                    "thread.lines",
-                    "Messages",
-                    state,
-                    len(lines),
-                    lambda index, cell: Row(
-                        rect=cell,
-                        key=f"thread.line.{index}",
-                        text=lines[index][1],
-                        detail=lines[index][0],
-                        icon=Icon.REPLY if lines[index][1] == "You" else Icon.MESSAGE,
-                    ),
-                    height=88,
-                ),
-            )
-            if lines
-            else (
-                note(
-                    left.below(76),
-                    "thread.hidden",
-                    hidden if hidden and said else "Not opened yet" if said else "No messages yet",
-                ),
-            )
-        ),
-        Button(
-            rect=read,
-            key="thread.read",
-            text="Read out" if hidden else "Open",
-            icon=Icon.VOICE if hidden else Icon.EYE,
-            on_tap=Read(who),
-            disabled="" if said and not opened else "There is nothing new to read",
-        ),
-        heading(right.top(28), "Answer"),
-        rows(
-            right.below(36),
-            "thread.answers",
-            "Answers",
-            state,
-            len(TEMPLATES),
-            lambda index, cell: Row(
-                rect=cell,
-                key=f"thread.answer.{index}",
-                text=TEMPLATES[index],
-                icon=Icon.REPLY,
-                on_tap=SendReply(who, TEMPLATES[index]),
-            ),
-            height=56,
         ),
     )

@@ -101,7 +101,7 @@ def _kinds(rect: Rect, state: State) -> Widget:
 def _draft(rect: Rect, state: State) -> Widget:
     inner = rect.inset(20, 16)
     draft = state.draft
-    title = "Choose a type" if draft.kind is None else KINDS[draft.kind][0]
+    title = "Choose what to warn about" if draft.kind is None else KINDS[draft.kind][0]
     return Card(
         rect=rect,
         children=(

@@ -1,0 +1,42 @@
+"""What type checkers see of the names that are loaded on first use; a test holds the two together."""
+
+from automotive_cosim.agents import Agent, make_agent
+from automotive_cosim.contracts import Action, ActionType, Element, GoalStatus, Observation, Reason
+from automotive_cosim.envs.cockpit import CockpitEnv
+from automotive_cosim.envs.flat import FlatEnv
+from automotive_cosim.errors import CosimError, InfrastructureError, UserError
+from automotive_cosim.interface.observe import Channel
+from automotive_cosim.report.results import load_results
+from automotive_cosim.run.batch import run_plan
+from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, run_episode
+from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.plan import Plan, make_plan
+from automotive_cosim.studies.results import load_study
+
+__all__ = [
+    "Action",
+    "ActionType",
+    "Agent",
+    "Channel",
+    "CockpitEnv",
+    "CosimError",
+    "Element",
+    "EpisodeResult",
+    "EpisodeRow",
+    "EpisodeSetup",
+    "FlatEnv",
+    "GoalStatus",
+    "InfrastructureError",
+    "Observation",
+    "Plan",
+    "Reason",
+    "UserError",
+    "load_results",
+    "load_study",
+    "make_agent",
+    "make_plan",
+    "run_episode",
+    "run_plan",
+]
+
+__version__: str

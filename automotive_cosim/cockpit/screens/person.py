@@ -1,0 +1,144 @@
+"""One person on the phone: how to reach them, and the messages to and fro."""
+
+from __future__ import annotations
+
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.messages import Back, Dial, Put, Read, SendReply, Show
+from automotive_cosim.cockpit.people import TEMPLATES
+from automotive_cosim.cockpit.restrictions import Restriction
+from automotive_cosim.cockpit.screens.handset import RIGHT, handset
+from automotive_cosim.cockpit.screens.parts import heading, note, rows
+from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.theme import GAP, Icon, Type
+from automotive_cosim.cockpit.widgets import Button, Glyph, Label, Look, Row, Widget
+
+
+def contact(state: State) -> tuple[Widget, ...]:
+    """One person."""
+    who = state.picked.get("contact") or state.directory.contacts[0].name
+    number = state.directory.number(who)
+    favourite = who in state.phone.favourites
+    card = RIGHT.top(264)
+    buttons = RIGHT.below(264 + GAP).top(108).columns(3, GAP)
+    return (
+        handset(state),
+        Button(rect=RIGHT.left(64).top(64), key="contact.back", description="Back", icon=Icon.BACK, on_tap=Back()),
+        Glyph(rect=Rect(card.x, card.y + 24, card.width, 120), icon=Icon.ACCOUNT, size=112, tone="accent"),
+        Label(
+            rect=Rect(card.x, card.y + 152, card.width, 48),
+            key="contact.name",
+            text=who,
+            style=Type.HEADLINE,
+            align="centre",
+        ),
+        Label(
+            rect=Rect(card.x, card.y + 206, card.width, 36),
+            key="contact.number",
+            text="" if number == who else number,
+            description="Number",
+            tone="muted",
+            align="centre",
+        ),
+        Button(
+            rect=buttons[0],
+            key="contact.call",
+            text="Call",
+            icon=Icon.PHONE,
+            icon_size=36,
+            look=Look.ACCENT,
+            stacked=True,
+            on_tap=Dial(who),
+        ),
+        Button(
+            rect=buttons[1],
+            key="contact.message",
+            text="Message",
+            icon=Icon.MESSAGE,
+            icon_size=36,
+            stacked=True,
+            on_tap=Show("thread", who),
+        ),
+        Button(
+            rect=buttons[2],
+            key="contact.favourite",
+            text="Remove favourite" if favourite else "Add favourite",
+            icon=Icon.STAR if favourite else Icon.STAR_OUTLINE,
+            icon_size=36,
+            stacked=True,
+            on_tap=Put(
+                "phone",
+                state.phone.with_favourite(who, not favourite),
+                f"{who} is no longer a favourite" if favourite else f"{who} is now a favourite",
+            ),
+        ),
+    )
+
+
+def thread(state: State) -> tuple[Widget, ...]:
+    """Somebody's messages, and replies that one tap sends. While driving, messages are read out instead."""
+    who = state.picked.get("thread") or state.directory.threads[0].who
+    known = state.directory.thread(who, state.phone)
+    hidden = state.locked(Restriction.NO_TEXT_MESSAGE)
+    opened = who in state.phone.read or not (known and known.unread)
+    sent = [(sent.text, "You") for sent in state.phone.sent if sent.to == who]
+    said = [(text, who) for text in known.lines] if known else []
+    lines = [*(said if opened and not hidden else []), *sent]
+    left, right = RIGHT.left(500), RIGHT.right_part(RIGHT.width - 500 - GAP)
+    bar = left.top(64)
+    read = Rect(left.x, left.bottom - 64, left.width, 64)
+    return (
+        handset(state),
+        Button(rect=bar.left(64), key="thread.back", description="Back", icon=Icon.BACK, on_tap=Back()),
+        Label(rect=Rect(bar.x + 80, bar.y, bar.width - 80, 64), key="thread.who", text=who, style=Type.TITLE),
+        *(
+            (
+                rows(
+                    Rect(left.x, left.y + 76, left.width, left.height - 152),
+                    "thread.lines",
+                    "Messages",
+                    state,
+                    len(lines),
+                    lambda index, cell: Row(
+                        rect=cell,
+                        key=f"thread.line.{index}",
+                        text=lines[index][1],
+                        detail=lines[index][0],
+                        icon=Icon.REPLY if lines[index][1] == "You" else Icon.MESSAGE,
+                    ),
+                    height=88,
+                ),
+            )
+            if lines
+            else (
+                note(
+                    left.below(76),
+                    "thread.hidden",
+                    hidden if hidden and said else "Not opened yet" if said else "No messages yet",
+                ),
+            )
+        ),
+        Button(
+            rect=read,
+            key="thread.read",
+            text="Read out" if hidden else "Open",
+            icon=Icon.VOICE if hidden else Icon.EYE,
+            on_tap=Read(who),
+            disabled="" if said and not opened else "There is nothing new to read",
+        ),
+        heading(right.top(28), "Answer"),
+        rows(
+            right.below(36),
+            "thread.answers",
+            "Answers",
+            state,
+            len(TEMPLATES),
+            lambda index, cell: Row(
+                rect=cell,
+                key=f"thread.answer.{index}",
+                text=TEMPLATES[index],
+                icon=Icon.REPLY,
+                on_tap=SendReply(who, TEMPLATES[index]),
+            ),
+            height=56,
+        ),
+    )

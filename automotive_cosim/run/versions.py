@@ -1,0 +1,36 @@
+"""Which versions a result was made with, and which results may be compared."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from importlib.metadata import PackageNotFoundError, version
+
+from automotive_cosim import __version__
+from automotive_cosim.contracts import Json
+
+SUITE = "automotive-cosim"
+
+
+def installed(names: Iterable[str]) -> dict[str, str]:
+    """The versions of distributions by name, ``not installed`` for those that are missing; the suite's own is that
+    of the code that runs, whatever an editable install noted when it was made."""
+    found: dict[str, str] = {}
+    for name in names:
+        try:
+            found[name] = __version__ if name == SUITE else version(name)
+        except PackageNotFoundError:
+            found[name] = "not installed"
+    return found
+
+
+def ran_with(manifest: Json) -> str:
+    """The version of the suite that ran an evaluation; ``unknown`` if its manifest does not say."""
+    try:
+        return str(manifest["starts"][0]["versions"][SUITE])
+    except (LookupError, TypeError):
+        return "unknown"
+
+
+def minor(release: str) -> str:
+    """The minor version of a release: ``0.2`` of ``0.2.3``. Tasks, draws and verdicts are the same within it."""
+    return ".".join(release.split(".")[:2])

@@ -1,0 +1,256 @@
+"""A study as data: every future as a row, as CSV and, with pyarrow, as Parquet, described by a data package.
+
+``datapackage.json`` follows the Data Package standard (https://datapackage.org): it names every file with its hash
+and every column with its type, and holds what a new run needs: plan, versions and hashes of the scenario's files.
+"""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from importlib.util import find_spec
+from io import StringIO
+from pathlib import Path
+from typing import Annotated, Any
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.errors import CosimError
+from automotive_cosim.run.record import write_whole
+from automotive_cosim.run.row import InColumns, columns
+from automotive_cosim.studies.policies import chosen, parse_policy
+from automotive_cosim.studies.results import Study, all_decisions
+from automotive_cosim.studies.rows import (
+    NOBODY,
+    NOTHING,
+    Branch,
+    Decision,
+    DecisionPoint,
+    OthersTotals,
+    PolicyChoice,
+    Totals,
+)
+
+TYPES = {bool: "boolean", int: "integer", float: "number", str: "string"}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FutureRow:
+    """One future of one decision that was driven: a line of ``futures.csv``."""
+
+    id: str
+    """Number of the decision, as in ``choices.csv``."""
+    scenario: str
+    share: float
+    seed: int
+    departure_s: float
+    trip: str
+    at_s: float
+    edge: str
+    delay_s: float
+    eta_s: float
+    excluded: str
+    """Why the decision is in no average; empty if it counts."""
+    draw: int
+    """0 with the random numbers of the drive itself."""
+    draw_seed: int | None
+    """Seed of the fresh random numbers; None for draw 0 and, as their draw tells it, for placebos."""
+    branch: int | None
+    """Number of the branch; None for keeping the route."""
+    is_placebo: bool
+    policies: str
+    """Policies that choose this future by the newest news, separated by spaces, without ``best``."""
+    ego: Annotated[Totals, InColumns("ego")]
+    gain: Annotated[Totals, InColumns("gain")]
+    """What it saves compared with keeping the route in the same draw; a kept route, compared with draw 0."""
+    others: Annotated[OthersTotals, InColumns("others")]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WholeRow:
+    """One whole drive under one policy: a line of ``whole_drives.csv``."""
+
+    id: str
+    scenario: str
+    share: float
+    seed: int
+    departure_s: float
+    trip: str
+    policy: str
+    draw: int
+    reroutings: int
+    excluded: str
+    gain: Annotated[Totals, InColumns("gain")]
+    others: Annotated[OthersTotals, InColumns("others")]
+
+
+def futures(study: Study) -> Iterator[FutureRow]:
+    """Every future of every decision, also of those that do not count."""
+    for point in all_decisions(study.rows):
+        decision = point.decision
+        assert point.drive.stay is not None, "it has a decision"
+        by_branch = _choosers(study.plan.policies, decision)
+        kept = Branch(gains=NOTHING, totals=point.drive.stay, others=NOBODY)
+        driven: list[tuple[int, int | None, Branch, tuple[Branch, ...]]] = [(0, None, kept, decision.branches)]
+        driven += [
+            (draw, each.seed, each.stay, each.branches) for draw, each in enumerate(decision.replicates, start=1)
+        ]
+        for draw, seed, stay, branches in driven:
+            for number, future in enumerate((stay, *branches), start=-1):
+                branch = None if number < 0 else number
+                yield _future(point, draw, seed, branch, future, by_branch.get(branch, ""))
+        if decision.placebo is not None:
+            yield _future(point, 1, None, None, decision.placebo, by_branch.get(None, ""), is_placebo=True)
+
+
+def whole_drives(study: Study) -> Iterator[WholeRow]:
+    """Every whole drive under a policy."""
+    for row in study.rows:
+        for drive in row.whole:
+            yield WholeRow(
+                id=row.id,
+                scenario=row.scenario,
+                share=row.share,
+                seed=row.seed,
+                departure_s=row.departure_s,
+                trip=row.trip,
+                policy=drive.policy,
+                draw=drive.draw,
+                reroutings=drive.reroutings,
+                excluded=drive.excluded,
+                gain=drive.branch.gains,
+                others=drive.branch.others,
+            )
+
+
+def write_data(study: Study) -> list[Path]:
+    """Writes the data files and their description into a study's folder; returns their paths.
+
+    Raises:
+        OSError: they cannot be written.
+    """
+    written: list[Path] = []
+    resources: list[Json] = []
+    kinds: dict[str, Sequence[FutureRow | WholeRow | PolicyChoice]] = {
+        "choices": study.choices,
+        "futures": tuple(futures(study)),
+        "whole_drives": tuple(whole_drives(study)),
+    }
+    for name, rows in kinds.items():
+        if not rows and name != "choices":
+            continue
+        path = study.folder / f"{name}.csv"
+        write_whole(path, as_csv(rows))
+        written.append(path)
+        if rows and find_spec("pyarrow") is not None:
+            written.append(_write_parquet(path.with_suffix(".parquet"), rows))
+        resources += [_resource(each, rows) for each in written if each.stem == name]
+    package = {
+        "$schema": "https://datapackage.org/profiles/2.0/datapackage.json",
+        "name": "rerouting-study",
+        "resources": resources,
+        "study": {name: study.manifest[name] for name in ("plan", "starts")},
+        "inputs": inputs(study),
+    }
+    write_whole(study.folder / "datapackage.json", json.dumps(package, indent=1, ensure_ascii=False))
+    return written
+
+
+def as_csv(rows: Sequence[object]) -> str:
+    """Rows of one kind as CSV, one per line, with the columns of a data frame."""
+    text = StringIO()
+    made = [columns(row) for row in rows]
+    if made:
+        writer = csv.DictWriter(text, list(made[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(made)
+    return text.getvalue()
+
+
+def inputs(study: Study) -> Json:
+    """SHA-256 of the files beside the scenario's configuration, by name; empty if they are no longer there."""
+    try:
+        config = study.plan.opened.config
+    except CosimError:
+        return {}
+    if not config.is_file():
+        return {}
+    files = [path for path in sorted(config.parent.iterdir()) if path.is_file()]
+    return {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in files}
+
+
+def _future(
+    point: DecisionPoint,
+    draw: int,
+    seed: int | None,
+    branch: int | None,
+    future: Branch,
+    policies: str,
+    *,
+    is_placebo: bool = False,
+) -> FutureRow:
+    drive, decision = point.drive, point.decision
+    return FutureRow(
+        id=point.id,
+        scenario=drive.scenario,
+        share=drive.share,
+        seed=drive.seed,
+        departure_s=drive.departure_s,
+        trip=drive.trip,
+        at_s=decision.at_s,
+        edge=decision.edge,
+        delay_s=decision.delay_s,
+        eta_s=decision.eta_s,
+        excluded=decision.excluded,
+        draw=draw,
+        draw_seed=seed,
+        branch=branch,
+        is_placebo=is_placebo,
+        policies=policies,
+        ego=future.totals,
+        gain=future.gains,
+        others=future.others,
+    )
+
+
+def _choosers(policies: Sequence[str], decision: Decision) -> dict[int | None, str]:
+    """The policies that choose each branch."""
+    found: dict[int | None, list[str]] = {}
+    for text in policies:
+        if text != "best":
+            found.setdefault(chosen(parse_policy(text), decision, decision.news[0].age_s), []).append(text)
+    return {branch: " ".join(names) for branch, names in found.items()}
+
+
+def _write_parquet(path: Path, rows: Sequence[object]) -> Path:
+    import pandas as pd
+
+    draft = path.with_name(f".{path.name}.part")
+    pd.DataFrame([columns(row) for row in rows]).convert_dtypes().to_parquet(draft, index=False)
+    draft.replace(path)
+    return path
+
+
+def _resource(path: Path, rows: Sequence[object]) -> Json:
+    """A file's description: where it is, its hash, and its columns."""
+    content = path.read_bytes()
+    made = [columns(row) for row in rows]
+    fields = [{"name": name, "type": _type(row[name] for row in made)} for name in (made[0] if made else ())]
+    return {
+        "name": path.stem if path.suffix == ".csv" else f"{path.stem}-parquet",
+        "path": path.name,
+        "format": path.suffix.removeprefix("."),
+        "bytes": len(content),
+        "hash": f"sha256:{hashlib.sha256(content).hexdigest()}",
+        "schema": {"fields": fields},
+    }
+
+
+def _type(values: Iterator[Any]) -> str:
+    """The type of a column: that of all values that are there."""
+    kinds = {type(value) for value in values if value is not None}
+    if kinds == {int, float}:
+        return "number"
+    return TYPES.get(kinds.pop(), "any") if len(kinds) == 1 else "any"

@@ -1,0 +1,149 @@
+"""The futures of one decision: what they must show to count, and what they come to."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from statistics import fmean, stdev
+
+from automotive_cosim.studies import compare
+from automotive_cosim.studies.compare import Future
+from automotive_cosim.studies.everyone import spread
+from automotive_cosim.studies.plan import AUTO_ERRORS
+from automotive_cosim.studies.rows import Branch, Decision, Replicate, Together
+from automotive_cosim.studies.together import together
+from automotive_cosim.studies.traffic import gridlock
+from automotive_cosim.traffic.accounts import Pulse
+
+GRIDLOCK = "gridlock"
+NOT_ARRIVED = "ego did not arrive"
+NOT_CLEARED = "traffic did not clear"
+"""Reasons to exclude a decision from the averages; a gridlock is followed by the rule that saw it."""
+
+
+@dataclass(slots=True)
+class Point:
+    """A decision point with its branches."""
+
+    decision: Decision
+    """The decision without the results of its branches."""
+    group: tuple[str, ...]
+    """The other vehicles that were there."""
+    pulse: Pulse
+    branches: list[Future]
+    placebo: Future | None = None
+    replicates: list[Drawn] = field(default_factory=list)
+    together: list[Diverted] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class Diverted:
+    """A future in which others take the ego's other way too."""
+
+    share: float
+    draw: int
+    future: Future
+    took: tuple[str, ...]
+    could: int
+
+
+@dataclass(slots=True)
+class Drawn:
+    """The futures of one replicate."""
+
+    seed: int
+    stay: Future
+    branches: list[Future]
+
+    @property
+    def gains_s(self) -> list[float]:
+        """Time saved by each branch."""
+        return [compare.gains(self.stay, branch).time_s for branch in self.branches]
+
+
+def compared(point: Point, stay: Future, history: Sequence[Pulse]) -> Decision:
+    """A decision with the gains of its branches.
+
+    Args:
+        point: the decision and the futures of its branches.
+        stay: the drive itself, in which the ego keeps its route.
+        history: measurements of the traffic up to the ego's departure.
+    """
+    drawn = [Drawn(0, stay, point.branches), *point.replicates]
+    pairs = [(each.stay, branch) for each in drawn for branch in each.branches]
+    pairs += [(stay, point.placebo)] if point.placebo else []
+    pulses = [*history, point.pulse]
+    excluded, why = exclusion(pairs, pulses)
+    return replace(
+        point.decision,
+        excluded=excluded,
+        why=why,
+        branches=tuple(branched(stay, branch, point.group) for branch in point.branches),
+        placebo=None if point.placebo is None else branched(stay, point.placebo, point.group),
+        replicates=tuple(
+            Replicate(
+                seed=each.seed,
+                stay=branched(stay, each.stay, point.group),
+                branches=tuple(branched(each.stay, branch, point.group) for branch in each.branches),
+            )
+            for each in point.replicates
+        ),
+        spreads=tuple(
+            spread([(each.stay, each.branches[number]) for each in drawn], point.group, point.decision.at_s)
+            for number in range(len(point.branches))
+        ),
+        traffic=point.pulse,
+        together=tuple(_together(each, drawn[each.draw].stay, point, pulses) for each in point.together),
+    )
+
+
+def _together(diverted: Diverted, stay: Future, point: Point, pulses: Sequence[Pulse]) -> Together:
+    """What many cars gain, unless that very future does not count; the decision itself does."""
+    pair = stay, diverted.future
+    excluded, _ = exclusion([pair], pulses)
+    return together(diverted.share, diverted.draw, pair, point.group, diverted.took, diverted.could, excluded)
+
+
+def exclusion(pairs: Sequence[tuple[Future, Future]], pulses: Sequence[Pulse]) -> tuple[str, str]:
+    """Why futures are excluded from the averages, with the figures; both empty if they count.
+
+    Args:
+        pairs: each future with the one in which the ego keeps its route, which comes first.
+        pulses: measurements of the traffic up to their fork.
+    """
+    futures = [future for pair in pairs for future in pair]
+    if not all(future.has_arrived for future in futures):
+        ends = sorted({str(future.last.end) for future in futures if not future.has_arrived})
+        return NOT_ARRIVED, f"it ended as {', '.join(ends)}"
+    for stay, _ in pairs:
+        jam = gridlock([*pulses, stay.settled.pulse])
+        if jam is not None:
+            return f"{GRIDLOCK}: {jam.rule}", jam.why
+    if not all(future.settled.is_complete for future in futures):
+        return NOT_CLEARED, "too few of the vehicles that were there had arrived in time"
+    return "", ""
+
+
+def shows_signs(drawn: Sequence[Drawn]) -> bool:
+    """Whether the mean gain of every branch is clearly above or below zero."""
+    for gains_s in zip(*(each.gains_s for each in drawn), strict=True):
+        error_s = stdev(gains_s) / len(gains_s) ** 0.5
+        if error_s > 0 and abs(fmean(gains_s)) <= AUTO_ERRORS * error_s:
+            return False
+    return True
+
+
+def branched(stay: Future, other: Future, group: Sequence[str]) -> Branch:
+    """A future compared with the one in which the ego keeps its route.
+
+    Args:
+        stay: that one.
+        other: the future.
+        group: the other vehicles that were there at the fork.
+    """
+    return Branch(
+        gains=compare.gains(stay, other),
+        totals=other.totals(),
+        others=compare.others(stay, other, group),
+        fleet=compare.fleet(stay, other, group),
+    )

@@ -1,0 +1,127 @@
+"""Whole drives under a policy: what following it is worth, not what one deviation is.
+
+Every policy drives a copy of the traffic at the departure to its destination and reroutes wherever it wants to. It
+is compared with the copy that keeps its route. With replicates, all of them are driven again with the same fresh
+random numbers from the departure on.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import closing
+
+import numpy as np
+
+from automotive_cosim.contracts import DrivingState, Reroute
+from automotive_cosim.studies.compare import Future
+from automotive_cosim.studies.driver import decided
+from automotive_cosim.studies.looks import drive_on
+from automotive_cosim.studies.plan import DriveJob
+from automotive_cosim.studies.points import branched, exclusion
+from automotive_cosim.studies.policies import Policy, PolicyRule, parse_policy
+from automotive_cosim.studies.rows import NOBODY, NOTHING, Branch, WholeDrive
+from automotive_cosim.traffic.accounts import Pulse
+from automotive_cosim.traffic.chance import SEED_RANGE, Fresh
+from automotive_cosim.traffic.fork import RemoteTraffic
+
+SAME = Branch(gains=NOTHING, totals=NOTHING, others=NOBODY)
+"""A drive that never left the route is the other drive, so it is not run to its end."""
+
+
+def whole_drives(
+    job: DriveJob, traffic: RemoteTraffic, fresh: Fresh | None, history: Sequence[Pulse]
+) -> tuple[WholeDrive, ...]:
+    """Drives every policy but ``never`` and ``best`` from the departure to the destination.
+
+    Args:
+        job: the drive.
+        traffic: it at its departure; it is not changed.
+        fresh: how copies get fresh random numbers; None without replicates.
+        history: measurements of the traffic so far.
+    """
+    policies = [parse_policy(text) for text in job.plan.policies]
+    followed = [each for each in policies if each.rule not in (PolicyRule.NEVER, PolicyRule.BEST)]
+    draws = 1 + job.plan.draws.start
+    return tuple(
+        drive
+        for draw in range(draws)
+        for drive in _drawn(job, followed, traffic, fresh if draw else None, draw, history)
+    )
+
+
+def _drawn(
+    job: DriveJob,
+    policies: Sequence[Policy],
+    traffic: RemoteTraffic,
+    fresh: Fresh | None,
+    draw: int,
+    history: Sequence[Pulse],
+) -> list[WholeDrive]:
+    """All policies with the same random numbers."""
+    entropy = (*job.entropy, 5, draw)
+    with closing(traffic.branch()) as start:
+        if fresh is not None:
+            start.renew(fresh, int(np.random.default_rng(entropy).integers(SEED_RANGE)))
+        group, pulse = start.others()
+        made: list[tuple[Policy, int, Future | None]] = []
+        for policy in policies:
+            with closing(start.branch()) as copy:
+                reroutings = _follow(job, policy, copy, draw)
+                made.append((policy, reroutings, _left(job, copy, group) if reroutings else None))
+        stay = _left(job, start, group) if any(future is not None for _, _, future in made) else None
+    drives = []
+    for policy, reroutings, future in made:
+        excluded = why = ""
+        branch = SAME
+        if future is not None and stay is not None:
+            excluded, why = exclusion([(stay, future)], [*history, pulse])
+            branch = branched(stay, future, group)
+        drives.append(
+            WholeDrive(
+                policy=policy.text, draw=draw, reroutings=reroutings, branch=branch, excluded=excluded, why=why
+            )
+        )
+    return drives
+
+
+def _left(job: DriveJob, traffic: RemoteTraffic, group: Sequence[str]) -> Future:
+    settled = traffic.settle([group], job.plan.arrived, job.plan.limit_s)
+    return Future(traffic.state, settled)
+
+
+def _follow(job: DriveJob, policy: Policy, traffic: RemoteTraffic, draw: int) -> int:
+    """Drives under a policy with the newest news of the plan; returns how often it left its route."""
+    draws = np.random.default_rng((*job.entropy, 6, draw))
+    reroutings = 0
+
+    def decide(now: DrivingState) -> bool:
+        nonlocal reroutings
+        if draws.random() >= job.plan.compliance:
+            return True
+        before = now.ahead.route_edges
+        if policy.agent:
+            decided(policy.agent, job, traffic)
+            after = traffic.state.ahead.route_edges
+            reroutings += before[-len(after) :] != after
+            return True
+        edges = _wanted(policy, traffic, job.plan.ages_s[0])
+        if edges is None or edges == before:
+            return edges is not None
+        reroutings += traffic.request(Reroute(edges=edges)).accepted
+        return True
+
+    drive_on(traffic, job.plan, decide)
+    return reroutings
+
+
+def _wanted(policy: Policy, traffic: RemoteTraffic, age_s: float) -> tuple[str, ...] | None:
+    """The route that a policy takes now; None if there is no other."""
+    if policy.rule is PolicyRule.SUMO:
+        return traffic.own_choice()
+    options = traffic.alternatives(age_s)
+    if len(options) < 2:
+        return None
+    stay, offered = options[:2]
+    if policy.rule is PolicyRule.DELAY and (stay.delay_s < policy.delay_s or offered.eta_s >= stay.eta_s):
+        return stay.edges
+    return offered.edges

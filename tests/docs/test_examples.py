@@ -1,0 +1,62 @@
+"""What stands in docs/examples is run: the hamlet is imported and driven through, the agent is evaluated."""
+
+import json
+import os
+import shutil
+import subprocess
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from automotive_cosim.scenarios import load
+
+TOP = Path(__file__).parents[2]
+EXAMPLES = TOP / "docs/examples"
+SCRIPT = TOP / ".github/actions/evaluate/evaluate.sh"
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("sumo")]
+
+
+def test_the_hamlet_is_imported_as_it_is_drawn_and_a_car_speeds_through_it(cli, tmp_path):
+    assert cli("scenarios", "import", EXAMPLES / "hamlet.osm").code == 0
+    report = json.loads((tmp_path / "hamlet/import.json").read_text(encoding="utf-8"))
+    assert report["country"] == "FR"
+    assert report["signals"] == 1
+    assert load(tmp_path / "hamlet").ego.trips
+    ran = cli("run", "--scenario", "hamlet", "--task", "road_speed_80_in_50", "--json")
+    assert json.loads(ran.out)["success"] is True
+
+
+@pytest.fixture
+def evaluate(tmp_path, on_path):
+    """The script, as a service would call it, on a copy of the example."""
+    shutil.copytree(EXAMPLES / "my-agent", tmp_path / "checkout")
+
+    def run(*arguments):
+        return subprocess.run(
+            ["bash", SCRIPT, *arguments], cwd=tmp_path, capture_output=True, text=True, check=False
+        )
+
+    return run
+
+
+@pytest.mark.skipif(os.name == "nt", reason="a script for bash")
+def test_the_script_evaluates_an_agents_repository_and_fails_if_it_gets_worse(evaluate, tmp_path):
+    first = evaluate("checkout", "checkout/plan.toml", "first")
+    assert first.returncode == 0, first.stderr
+    cases = ElementTree.parse(tmp_path / "first/compare.xml").findall(".//testcase")
+    assert len(cases) == 6
+    assert "as good" in (tmp_path / "first/compare.md").read_text(encoding="utf-8")
+    agent = tmp_path / "checkout/my_agent.py"
+    agent.write_text(agent.read_text(encoding="utf-8").replace("hvac.fan.max", "hvac.fan.none"), encoding="utf-8")
+    worse = evaluate("checkout", "checkout/plan.toml", "second", "first/after")
+    assert worse.returncode == 1, worse.stderr
+    assert ElementTree.parse(tmp_path / "second/compare.xml").findall(".//failure")
+    assert "**Lost" in (tmp_path / "second/compare.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="a script for bash")
+def test_the_script_says_how_it_is_called(evaluate):
+    ran = evaluate("checkout")
+    assert ran.returncode == 2
+    assert "evaluate.sh CHECKOUT PLAN OUT" in ran.stderr

@@ -1,0 +1,148 @@
+"""The gap of a demand by hand, and a demand that finds its routes."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from automotive_cosim import scenarios
+from automotive_cosim.errors import UserError
+from automotive_cosim.scenery.equilibrium import RECORD, AssignmentStep, Options, _is_stuck, _settings, equilibrate
+from automotive_cosim.scenery.gap import DrivenTrip, EdgeTimes, Gap, measure
+from automotive_cosim.traffic import sumo_programs
+
+FREE_S = {"a": 10.0, "b": 20.0, "c": 30.0, "d": 5.0}
+
+
+def trip(name: str, exits_s: tuple[float, ...], edges: tuple[str, ...] = ("a", "b", "d")) -> DrivenTrip:
+    return DrivenTrip(name, "car", 0.0, edges, exits_s)
+
+
+def test_times_are_what_the_vehicles_took_in_the_interval_in_which_they_entered() -> None:
+    times = EdgeTimes(
+        FREE_S, [trip("x", (10.0, 110.0, 120.0)), trip("y", (20.0, 70.0, -1.0)), trip("z", (310.0, 340.0, 350.0))]
+    )
+    assert times.at("b", 0) == pytest.approx((100 + 50) / 2)
+    assert times.at("b", 1) == pytest.approx(30.0)
+    assert times.at("b", 2) == FREE_S["b"], "nobody drove it then"
+    assert times.at("c", 0) == FREE_S["c"]
+    assert times.at("a", 0) == FREE_S["a"], "the first edge is not driven whole"
+    assert times.at("d", 0) == pytest.approx(10.0), "who has not left it says nothing"
+    assert times.of(("a", "b", "d"), 10.0) == pytest.approx(75 + 10)
+    assert times.of(("a", "b", "d"), 290.0) == pytest.approx(75 + 10), "d is entered in the next interval"
+    assert times.of(("a", "c", "d"), 10.0) == pytest.approx(30 + 10)
+
+
+def test_the_gap_is_what_was_lost_as_a_share_of_the_best() -> None:
+    gap = Gap(trips=4, unfinished=0, own_s=440.0, best_s=400.0, better=0.5, teleports=0)
+    assert gap.relative == pytest.approx(0.1)
+    assert Gap(0, 0, 0.0, 0.0, 0.0, 0).relative == 0
+
+
+def test_it_ends_once_the_gap_no_longer_falls() -> None:
+    def step(relative: float) -> AssignmentStep:
+        return AssignmentStep(0, gap(relative), 0)
+
+    def gap(relative: float) -> Gap:
+        return Gap(1, 0, 1 + relative, 1.0, 0.0, 0)
+
+    assert not _is_stuck([step(0.3), step(0.2)], gap(0.25))
+    assert not _is_stuck([step(0.3), *[step(0.4)] * 4], gap(0.29))
+    assert _is_stuck([step(0.3), *[step(0.4)] * 4], gap(0.31))
+
+
+def test_the_settings_keep_the_routes() -> None:
+    text = _settings('[sumo]\nconfig = "a.sumocfg"\nscale = 0.7\nbackground_rerouting = 0.6\n\n[ego]\n')
+    assert text.count("scale = 1.0") == text.count("background_rerouting = 0.0") == 1
+    assert "0.7" not in text
+    assert "0.6" not in text
+
+
+NODES = {"west": (0, 0), "fork": (300, 0), "side": (800, 300), "join": (1300, 0), "east": (1600, 0)}
+EDGES = {
+    "access": ("west", "fork", 300.0, 3),
+    "main": ("fork", "join", 1000.0, 1),
+    "out": ("fork", "side", 560.0, 1),
+    "back": ("side", "join", 560.0, 1),
+    "exit": ("join", "east", 300.0, 2),
+}
+
+
+SCENARIO = """name = "two"
+title = "Two ways"
+about = "Everybody is on one of two ways."
+country = "FR"
+start = "2026-03-10T08:30:00"
+time_zone = "Europe/Paris"
+has_place = false
+weather = "climate"
+
+[sumo]
+config = "two.sumocfg"
+warm_up_s = 0.0
+
+[ego]
+driver = "steady"
+
+[[ego.trips]]
+name = "across"
+from_edge = "access"
+to_edge = "exit"
+"""
+
+
+@pytest.fixture
+def jammed(sumo: None, tmp_path: Path) -> Path:
+    """Two ways of about the same length, and everybody on the shorter one, at more than a lane can carry."""
+    folder = tmp_path / "two"
+    folder.mkdir()
+    nodes = "".join(f'<node id="{name}" x="{x}" y="{y}" type="priority"/>' for name, (x, y) in NODES.items())
+    edges = "".join(
+        f'<edge id="{name}" from="{begin}" to="{end}" numLanes="{lanes}" speed="13" length="{length_m}"/>'
+        for name, (begin, end, length_m, lanes) in EDGES.items()
+    )
+    (tmp_path / "n.nod.xml").write_text(f"<nodes>{nodes}</nodes>")
+    (tmp_path / "n.edg.xml").write_text(f"<edges>{edges}</edges>")
+    files = ("-n", tmp_path / "n.nod.xml", "-e", tmp_path / "n.edg.xml", "-o", folder / "two.net.xml")
+    built, printed = sumo_programs.run("netconvert", [*files, "--no-turnarounds"])
+    assert built, printed
+    (folder / "two.rou.xml").write_text(
+        '<routes><vType id="car"/><flow id="f" type="car" begin="0" end="900" period="1.2" departLane="best" '
+        'departSpeed="max"><route edges="access main exit"/></flow></routes>'
+    )
+    (folder / "two.sumocfg").write_text(
+        '<configuration><input><net-file value="two.net.xml"/><route-files value="two.rou.xml"/></input>'
+        "</configuration>"
+    )
+    (folder / "scenario.toml").write_text(SCENARIO)
+    return folder
+
+
+@pytest.mark.slow
+def test_drivers_find_the_other_way(jammed: Path, tmp_path: Path) -> None:
+    told: list[AssignmentStep] = []
+    target = tmp_path / "found"
+    steps = equilibrate(jammed, target, Options(steps=4, gap=0.01, observe_s=900.0), told.append)
+    assert tuple(told) == steps
+    assert steps[0].gap.relative > 0.05, "all are on one way"
+    best = min(step.gap.relative for step in steps)
+    assert best < steps[0].gap.relative / 2
+    record = json.loads((target / RECORD).read_text())
+    assert record["steps"][record["kept"]]["relative_gap"] == best
+    routes = (target / "equilibrium.rou.xml").read_text()
+    assert routes.count("access out back exit") > 50
+    assert routes.count("<vehicle ") == steps[0].gap.trips + steps[0].gap.unfinished
+    again = measure(scenarios.load(target), observe_s=900.0)
+    assert again.relative == pytest.approx(best), "the folder is the step that was kept"
+    with pytest.raises(UserError, match="exists"):
+        equilibrate(jammed, target, Options(), told.append)
+
+
+def test_demand_that_would_be_lost_is_refused(jammed: Path, tmp_path: Path) -> None:
+    demand = jammed / "two.rou.xml"
+    demand.write_text(demand.read_text().replace("</routes>", '<person id="p" depart="0"></person></routes>'))
+    with pytest.raises(UserError, match="<person>"):
+        equilibrate(jammed, tmp_path / "found", Options(), lambda step: None)
+    assert not (tmp_path / "found").exists()
