@@ -42,8 +42,8 @@ TRIAL_STEP_S = 1.0
 """The search starts with steps this long: nearly as strict as 0.1 s, and faster."""
 
 SHORT_TRIAL_S = 600.0
-"""Traffic that flowed for all of the time with long steps must flow this long with the scenario's own, and in a quick
-import with long ones; locked junctions show within minutes."""
+"""Traffic that flowed for all of the time with long steps must flow this long with the scenario's own, and in a
+quick import with long ones; locked junctions show within minutes."""
 
 QUICK_DENSITY = 0.5
 """Share of the requested density with which a quick import starts."""
