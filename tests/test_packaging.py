@@ -1,6 +1,7 @@
 """What is in the checkout is in the distribution."""
 
 import importlib
+import re
 import subprocess
 import sys
 import tomllib
@@ -112,3 +113,10 @@ def test_the_first_section_of_the_changelog_is_this_version_and_older_ones_follo
     sections = [line.removeprefix("## ") for line in text.splitlines() if line.startswith("## ")]
     assert sections[0] == automotive_cosim.__version__
     assert sections == sorted(sections, key=lambda each: [*map(int, each.split("."))], reverse=True)
+
+
+def test_every_extra_is_explained(project):
+    text = (ROOT / "docs/install.md").read_text(encoding="utf-8")
+    assert set(project["project"]["optional-dependencies"]) == set(
+        re.findall(r"`(\w+)`", "".join(line.split("|")[1] for line in text.splitlines() if line.startswith("| `")))
+    )

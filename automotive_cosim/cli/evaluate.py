@@ -160,11 +160,13 @@ def evaluate(
     folder = out or _folder(plan)
     where = executor_of(executor, workers, ray_address, ray_send)
     console = Console(stderr=as_json, highlight=False)
-    plan.check()
+    lacks = plan.check(dry=dry_run)
     tell_notes(map(open_scenario, plan.scenarios))
     _announce(console, plan, folder)
     if dry_run:
         console.print(_time_in_words(plan, workers or 1), soft_wrap=True)
+        for lack in lacks:
+            console.print(f"before it can run: {lack}", soft_wrap=True, markup=False)
         return
     with where, ProgressView(console, "episodes", _said) as view:
         try:

@@ -58,6 +58,8 @@ class Live(Watcher):
         self._said_s: float | None = None
         self._begins: Moment | None = None
         """When the next action begins."""
+        self._held: list[str] = []
+        """What was said of the drive since then: the action is known at its end, and its line comes first."""
 
     def loading(self, scenario: Scenario) -> None:
         """What is loaded, and what was assumed of it."""
@@ -90,7 +92,9 @@ class Live(Watcher):
             self._show(self._panel(moment))
         elif self._said_s is None or moment.time_s - self._said_s >= PLAIN_EVERY_S:
             self._said_s = moment.time_s
-            self._console.print(f"{self._clock(moment)}  {_drive(moment)}", soft_wrap=True)
+            self._held.append(f"{self._clock(moment)}  {_drive(moment)}")
+            if self._begins is None:
+                self._release()
 
     def handed_over(self, episode: Episode, shot: Shot) -> None:
         """The driver's words."""
@@ -108,7 +112,8 @@ class Live(Watcher):
         step = shot.step
         self._action = f"{step.number}  {action_in_words(step.action, shot.seen)}"
         self._thought = shot.thought
-        if step.action is not None and step.action.action_type is ActionType.STATUS:
+        declares = step.action is not None and step.action.action_type is ActionType.STATUS
+        if declares:
             self._title = "after the end: how the drive continues"
         if self._console.is_terminal:
             self._show(self._panel(step.moment))
@@ -116,14 +121,21 @@ class Live(Watcher):
             because = f" ({self._thought})" if self._thought else ""
             began = self._begins or step.moment
             self._console.print(f"{self._clock(began)}  step {self._action}{because}", soft_wrap=True)
-        self._begins = step.moment
+            self._release()
+        self._begins = None if declares else step.moment
 
     def finished(self, result: EpisodeResult) -> None:
         """The verdict and the timeline."""
         if self._display is not None:
             self._display.stop()
+        self._release()
         if result.steps or result.verdict:
             self._console.print(_verdict(result), soft_wrap=True)
+
+    def _release(self) -> None:
+        for line in self._held:
+            self._console.print(line, soft_wrap=True)
+        self._held.clear()
 
     def _show(self, what: RenderableType) -> None:
         if self._display is None:

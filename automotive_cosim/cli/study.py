@@ -226,6 +226,75 @@ def reroute(
 
 
 @app.command()
+def suite(
+    scenarios: Annotated[
+        str,
+        typer.Option(help="Names or folders of scenarios, .sumocfg or .net.xml, separated by commas."),
+    ] = "grid,paris_centre",
+    departures: Annotated[str, typer.Option(help="When the ego departs, in seconds after the warm-up.")] = "0,300",
+    seeds: Annotated[str, typer.Option(help="Seeds of the traffic.")] = "0-9",
+    policies: Annotated[
+        str, typer.Option(help="Policies; the table shows always and best.")
+    ] = "never,always,delay:60,best",
+    delay: Annotated[float, typer.Option(help="Expected delay, in seconds, from which a decision is due.")] = 30.0,
+    per_drive: Annotated[
+        int, typer.Option(help="Maximum number of decisions per drive.", metavar="N", parser=whole_number(1, 50))
+    ] = 2,
+    replicates: Annotated[str, typer.Option(help="How often each future is driven, or auto.")] = "2",
+    workers: Workers = None,
+    out: Annotated[Path, typer.Option(help="Folder for all studies; existing ones are resumed.")] = Path(
+        "runs/suite"
+    ),
+    as_json: AsJson = False,
+) -> None:
+    """Run the same study on several networks and put them into one table.
+
+    Rerun the command to resume a stopped suite.
+    """
+    from automotive_cosim.cli.console import Console
+    from automotive_cosim.studies.batch import run_study
+    from automotive_cosim.studies.demand import measure_demand
+    from automotive_cosim.studies.page import write_study
+    from automotive_cosim.studies.plan import StudyPlan
+    from automotive_cosim.studies.results import read_study
+    from automotive_cosim.studies.suite import folder_name, networks, write_networks
+
+    values: dict[str, Any] = {
+        "departures_s": tuple(_numbers("departures", departures)),
+        "seeds": tuple(seeds_in(seeds)),
+        "policies": tuple(words("policies", policies)),
+        "replicates": _replicates(replicates),
+    }
+    plans = [
+        StudyPlan(name, least_delay_s=delay, per_drive=per_drive, **values)
+        for name in words("scenarios", scenarios)
+    ]
+    for plan in plans:
+        plan.check()
+    where = executor_of("processes", workers, None, None)
+    console = Console(stderr=as_json, highlight=False)
+    found = []
+    with where:
+        for number, plan in enumerate(plans, start=1):
+            folder = out / folder_name(number, plan.scenario)
+            console.print(f"{plan.scenario}: {counted(len(plan.jobs()), 'drive')}", soft_wrap=True)
+            run_study(plan, folder, executor=where)
+            measure_demand(plan, folder)
+            write_study(folder)
+            found.append(read_study(folder))
+    table = networks(found)
+    page = write_networks(table, out)
+    console.print(table.markdown(), soft_wrap=True)
+    console.print(f"{page} written; every study has its own report beside it", soft_wrap=True)
+    if as_json:
+        rows = [dict(zip(table.columns, map(str, row), strict=True)) for row in table.rows]
+        typer.echo(json.dumps({"networks": rows, "out": str(out)}, ensure_ascii=False))
+    errors = sum(len(study.errors) for study in found)
+    if errors:
+        raise InfrastructureError(f"{counted(errors, 'drive')} ended in an error; rerun the command to retry them")
+
+
+@app.command()
 @reads_results
 def report(folder: Annotated[Path, typer.Argument(help="Results folder of a study.", show_default=False)]) -> None:
     """Write report.html, choices.csv, tables and plots into a study's folder."""

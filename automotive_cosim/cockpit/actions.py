@@ -69,7 +69,7 @@ FIELDS: Mapping[ActionType, Takes] = {
     ActionType.DOUBLE_TAP: Takes("tap it twice", target=True),
     ActionType.LONG_PRESS: Takes("press and hold it", target=True),
     ActionType.INPUT_TEXT: Takes(
-        "type into a text field", target=True, required=("text",), optional=("clear_text",)
+        "type up to 120 characters into a text field", target=True, required=("text",), optional=("clear_text",)
     ),
     ActionType.SCROLL: Takes(
         "show what lies in that direction, on the screen or in one list",
@@ -88,7 +88,8 @@ FIELDS: Mapping[ActionType, Takes] = {
     ActionType.OPEN_APP: Takes("open a screen by its name", required=("app_name",)),
     ActionType.WAIT: Takes("let 1 to 10 seconds pass", optional=("seconds",)),
     ActionType.ANSWER: Takes(
-        "say something to the driver, which warns nobody: in up to 120 characters", required=("text",)
+        "say something to the driver, in up to 120 characters: an answer to a question, which warns nobody",
+        required=("text",),
     ),
     ActionType.STATUS: Takes(
         "declare that you are done: complete; or that you decline, with a reason: infeasible if it must not or "
@@ -97,7 +98,8 @@ FIELDS: Mapping[ActionType, Takes] = {
         optional=("reason",),
     ),
     ActionType.SHOW_ALERT: Takes(
-        "warn the driver on screen and by voice, as a wish to be warned or told of danger or limits asks for",
+        "warn the driver on screen and by voice, as a wish to be warned or told of danger or limits asks for; "
+        "a text has up to 120 characters",
         required=("kind",),
         optional=("severity", "text", "speed_kmh"),
     ),

@@ -22,6 +22,7 @@ import numpy.typing as npt
 from automotive_cosim.cockpit import deeds, desk, language, media, people, places, update, vhal
 from automotive_cosim.cockpit.arrivals import Arrival, timeline
 from automotive_cosim.cockpit.cabin import CabinStart
+from automotive_cosim.cockpit.changes import CarChange, schedule
 from automotive_cosim.cockpit.content import content
 from automotive_cosim.cockpit.display import Display
 from automotive_cosim.cockpit.map import road_map
@@ -30,6 +31,7 @@ from automotive_cosim.cockpit.navigation import Navigation
 from automotive_cosim.cockpit.readings import readings
 from automotive_cosim.cockpit.restrictions import REASONS, Restriction
 from automotive_cosim.cockpit.screens import APPS, SCREENS, picture
+from automotive_cosim.cockpit.screens.lookout import sights
 from automotive_cosim.cockpit.sensing import sense
 from automotive_cosim.cockpit.signals import (
     HMI,
@@ -52,6 +54,7 @@ from automotive_cosim.contracts import (
     FeedbackCode,
     RoadNetwork,
     RoadRequest,
+    Sight,
     Surroundings,
     VehicleState,
 )
@@ -101,7 +104,10 @@ class Cockpit:
         cabin: Mapping[str, Any] | None = None,
         signals: Mapping[str, Any] | None = None,
         arrivals: Sequence[Arrival] = (),
+        changes: Sequence[CarChange] = (),
         sign_camera: bool = True,
+        lookout: bool = False,
+        driven_s: float = 0.0,
         width: int = SCREEN_WIDTH,
     ) -> None:
         """A cockpit before its first ``sense``.
@@ -113,13 +119,16 @@ class Cockpit:
             signals: VSS paths and values before departure; actuators also set what is coupled to them, in the given
                 order.
             arrivals: incoming calls and messages while driving.
+            changes: changes of the car while driving that nobody commands.
             sign_camera: whether it reads limit signs; without it, the status bar shows no sign.
+            lookout: whether home and map show what the car notices around, ahead and aboard.
+            driven_s: how long the driver had been driving without a break before departure.
             width: width of the screenshot in pixels; the height follows from 16 to 9.
 
         Raises:
             UnknownNameError: no such signal or initial condition.
             SignalError: an illegal value, or one the car refuses.
-            UserError: an arrival is impossible.
+            UserError: an arrival or a change is impossible.
         """
         roads = road_map(network)
         library, atlas, directory = media.library(rng), places.atlas(roads, rng), people.directory(rng)
@@ -137,6 +146,8 @@ class Cockpit:
             CabinStart.read(cabin or {}),
         )
         self._state.expected = timeline(arrivals, directory, rng)
+        self._state.changes = schedule(changes)
+        self._state.lookout, self._state.driven_s = lookout, driven_s
         self._state.picked = {**self._state.picked, "media.show": library.shows[0]}
         self._display = Display(width)
         for path, value in (signals or {}).items():
@@ -411,6 +422,11 @@ class Cockpit:
     def vehicle_state(self) -> VehicleState:
         """The readings of the car's sensors and switches."""
         return readings(self._state)
+
+    @property
+    def sights(self) -> tuple[Sight, ...]:
+        """What the car notices now; empty without a lookout."""
+        return sights(self._state)
 
     # --- inside -------------------------------------------------------------------------------------------
 

@@ -7,8 +7,10 @@ from datetime import datetime
 
 from automotive_cosim.cockpit.cabin import Air, Cabin
 from automotive_cosim.cockpit.calls import receive
+from automotive_cosim.cockpit.changes import CarChange, step
 from automotive_cosim.cockpit.desk import FILM_S
 from automotive_cosim.cockpit.errands import odometer, play_on
+from automotive_cosim.cockpit.reach import NEWS_EVERY_S, RADAR_M
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.signals import (
     ADAS,
@@ -22,6 +24,8 @@ from automotive_cosim.cockpit.signals import (
     OUTSIDE,
     SEAT,
     TYRE,
+    LeafKind,
+    named,
 )
 from automotive_cosim.cockpit.sky import feel
 from automotive_cosim.cockpit.state import State
@@ -32,8 +36,6 @@ from automotive_cosim.cockpit.warmth import display_contrast, seat_after
 from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, OtherVehicle, Surroundings, Weather
 
 MOVING_MPS = 0.1
-RADAR_M = 150.0
-"""Reach of the forward radar; a typical long-range one."""
 TYRES = (TYRE.FRONT_LEFT, TYRE.FRONT_RIGHT, TYRE.REAR_LEFT, TYRE.REAR_RIGHT)
 RAIN_FULL_MM_H = 10.0
 """Heavy rain (WMO: 10 mm/h and more is heavy) covers the rain sensor."""
@@ -44,8 +46,11 @@ def sense(state: State, surroundings: Surroundings, dt_s: float) -> None:
     before, state.outside = state.outside, surroundings
     driving, weather = surroundings.driving, surroundings.weather
     _motion(state, surroundings)
-    if state.injected.get(LINK.ONLINE.path, state.signals[LINK.ONLINE]):
+    online = bool(state.injected.get(LINK.ONLINE.path, state.signals[LINK.ONLINE]))
+    if online:
         state.heard = surroundings
+    if state.lookout and online and (state.news is None or driving.time_s - state.news.time_s >= NEWS_EVERY_S):
+        state.news = driving
     _road(state, driving)
     sun = surroundings.sun_elevation_deg
     state.vehicle.follow_light(driving.road.in_tunnel or (sun is not None and sun < DARK_BELOW_DEG))
@@ -59,6 +64,7 @@ def sense(state: State, surroundings: Surroundings, dt_s: float) -> None:
     else:
         _prepare_climate(state, before.local_time, surroundings.local_time)
     _end_film(state)
+    _change(state, dt_s)
     receive(state)
     state.signals[DRIVE.HORN] = False
     if Restriction.NO_KEYBOARD in state.restrictions:
@@ -147,6 +153,29 @@ def _end_film(state: State) -> None:
     film = state.desk.film
     if film is not None and (Restriction.NO_VIDEO in state.restrictions or state.time_s - film[1] >= FILM_S):
         state.desk = replace(state.desk, film=None)
+
+
+def _change(state: State, dt_s: float) -> None:
+    """Makes the changes that are due."""
+    going_on = []
+    for change in state.changes:
+        since_s = round(state.time_s - state.departed_s - change.at_s, 6)
+        if since_s >= 0:
+            _make(state, change, since_s, dt_s)
+        if since_s < change.over_s:
+            going_on.append(change)
+    state.changes = tuple(going_on)
+
+
+def _make(state: State, change: CarChange, since_s: float, dt_s: float) -> None:
+    """Turns a switch as from inside the car, even one that is locked while driving; sets what is measured."""
+    signal, signals = named(change.path), state.signals
+    if signal in TYRES and state.tyres is not None:
+        state.tyres = state.tyres.changed(TYRES.index(signal), lambda cold: step(change, cold, since_s, dt_s))
+    else:
+        value = step(change, signals[signal], since_s, dt_s)
+        if signal.kind is not LeafKind.ACTUATOR or state.vehicle.command(signal, value):
+            signals[signal] = signal.check(value)
 
 
 def _minute(time: datetime) -> float:

@@ -9,6 +9,7 @@ from typing import Any
 
 from automotive_cosim.cockpit.arrivals import Arrival
 from automotive_cosim.cockpit.cabin import Cabin, CabinStart
+from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.desk import Desk
 from automotive_cosim.cockpit.map import RoadMap
 from automotive_cosim.cockpit.media import Library, Listening
@@ -24,6 +25,7 @@ from automotive_cosim.cockpit.vehicle import Vehicle
 from automotive_cosim.contracts import (
     Alert,
     AlertKind,
+    DrivingState,
     Feedback,
     FeedbackCode,
     RoadRequest,
@@ -108,6 +110,12 @@ class State:
     outside: Surroundings | None = None
     heard: Surroundings | None = None
     """The surroundings when the car was last online, from which it knows the live traffic."""
+    lookout: bool = False
+    """Whether the car shows what it notices around, ahead and aboard (``screens.lookout``)."""
+    news: DrivingState | None = None
+    """The road at the last report of the traffic service, for the lookout."""
+    driven_s: float = 0.0
+    """How long the driver had been driving without a break before departure."""
     screen: str = "home"
     past: tuple[tuple[str, str], ...] = ()
     """Screens to go back to, with their items."""
@@ -136,6 +144,8 @@ class State:
     pending: tuple[RoadRequest, ...] = ()
     expected: tuple[Arrival, ...] = ()
     """Calls and messages still to come."""
+    changes: tuple[CarChange, ...] = ()
+    """Changes of the car that are still to come or going on."""
     departed_s: float = 0.0
     """Simulation time of the first ``sense``."""
     played_s: float = 0.0

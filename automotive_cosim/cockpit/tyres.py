@@ -7,6 +7,7 @@ tau dT/dt = T_air + warming * speed - T         first order
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 COLD_C = 20.0
@@ -32,6 +33,11 @@ class Tyres:
         settled_c = air_c + WARMING_K_PER_KMH * speed_kmh
         left = math.exp(-dt_s / SETTLING_S)
         return replace(self, temperature_c=settled_c + (self.temperature_c - settled_c) * left)
+
+    def changed(self, tyre: int, pressure_kpa: Callable[[float], float]) -> Tyres:
+        """The tyres with another cold pressure in one of them, given its present one."""
+        cold = self.cold_kpa
+        return replace(self, cold_kpa=(*cold[:tyre], float(pressure_kpa(cold[tyre])), *cold[tyre + 1 :]))
 
     @property
     def pressures_kpa(self) -> tuple[float, ...]:

@@ -59,6 +59,7 @@ from automotive_cosim.contracts.requests import (
     SlowDown,
 )
 from automotive_cosim.contracts.roads import Road, RoadNetwork
+from automotive_cosim.contracts.sight import Sight, SightKind
 from automotive_cosim.contracts.snapshot import LaneShape, RoadShapes, RoadSnapshot, SeenVehicle, SumoSignal
 
 __all__ = [
@@ -105,6 +106,8 @@ __all__ = [
     "RouteOption",
     "SeenVehicle",
     "Severity",
+    "Sight",
+    "SightKind",
     "SlowDown",
     "SumoSignal",
     "Surroundings",

@@ -21,6 +21,8 @@ class Road:
     in_tunnel: bool
     shape_m: tuple[tuple[float, float], ...]
     """Centre line, network coordinates (x, y)."""
+    school_zone: bool = False
+    """Whether it runs beside a school."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,6 +11,7 @@ from automotive_cosim.cosim.moment import Moment, around
 from automotive_cosim.geo.connectivity import Modem
 from automotive_cosim.geo.gps import Gps
 from automotive_cosim.geo.locate import Geo
+from automotive_cosim.geo.signs import LocalSigns
 from automotive_cosim.scenarios import WeatherAt, weather_at
 from automotive_cosim.traffic.base import Event, Traffic
 
@@ -33,6 +34,8 @@ class Car:
     departure: datetime
     """Local time, zone-aware."""
     departure_s: float
+    signs: LocalSigns | None = None
+    """How limits are signed where a network was moved to; None reads them as the network has them."""
     alternatives: tuple[RouteOption, ...] = ()
     alternatives_asked_s: float | None = None
     """Simulation time at which the navigation last looked for them."""
@@ -54,6 +57,8 @@ class Car:
             dt_s: seconds since the previous moment; 0 for the first.
         """
         driving = traffic.state
+        if self.signs is not None:
+            driving, passed = self.signs.on(driving), tuple(map(self.signs.on, passed))
         elapsed_s = driving.time_s - self.departure_s
         local_time = (self.departure.astimezone(UTC) + timedelta(seconds=elapsed_s)).astimezone(
             self.departure.tzinfo
@@ -78,6 +83,7 @@ class Car:
             context=self.geo.locate(driving, gps, weather, local_time),
             signals=self.cockpit.signals.snapshot(),
             commands=self.cockpit.commands(),
+            sights=self.cockpit.sights,
         )
 
     def _is_asking(self, now_s: float) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
-from automotive_cosim.contracts import Connectivity, DrivingState, GpsFix, Surroundings, Weather
+from automotive_cosim.contracts import Connectivity, DrivingState, GpsFix, Sight, Surroundings, Weather
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.sun import elevation_deg
 from automotive_cosim.traffic.base import Event
@@ -33,6 +33,8 @@ class Moment:
     """Every VSS path and its value."""
     commands: Mapping[str, Any]
     """Everything that can be commanded: actuator signals, app data, sent messages and requests."""
+    sights: tuple[Sight, ...] = ()
+    """What the car notices and shows by itself; empty if it has no such equipment."""
 
     @property
     def surroundings(self) -> Surroundings:

@@ -20,6 +20,7 @@ from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.geo.connectivity import Modem
 from automotive_cosim.geo.gps import Gps
 from automotive_cosim.geo.locate import Geo
+from automotive_cosim.geo.signs import signs_of
 from automotive_cosim.scenarios import LinkAt, Scenario, WeatherAt
 from automotive_cosim.traffic.base import Traffic
 from automotive_cosim.traffic.shadow import SharedTraffic
@@ -105,9 +106,16 @@ def couple(
         departure: local time of the traffic's present state, zone-aware.
         links: the best available link over time, in seconds after departure.
     """
-    state = traffic.state
+    state, geo = traffic.state, Geo()
     car = Car(
-        cockpit, Gps(gps_rng) if scenario.has_place else None, Modem(links), Geo(), weather, departure, state.time_s
+        cockpit,
+        Gps(gps_rng) if scenario.has_place else None,
+        Modem(links),
+        geo,
+        weather,
+        departure,
+        state.time_s,
+        None if scenario.origin is None else signs_of(geo.atlas.place(*scenario.origin).law),
     )
     shared = SharedTraffic(traffic, scenario.sumo.step_length_s)
     return CoSimulation(shared, car, car.sense(shared, (state,), (), 0.0))

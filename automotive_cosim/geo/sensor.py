@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from automotive_cosim.contracts import Connectivity, DrivingState, GpsFix
+from automotive_cosim.contracts import Connectivity, DrivingState, GpsFix, IncidentKind, Sight
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.reckoning import Roads, reckon
 from automotive_cosim.geo.rules import TOPICS
@@ -32,6 +32,12 @@ ANSWER_BYTES = 1000
 """Length limit of an answer; the observation space allows a little more."""
 
 CUSTOMS = ("heat", "cold")
+INCIDENT_WORDS = {
+    IncidentKind.BREAKDOWN: "a broken-down vehicle",
+    IncidentKind.ROADWORKS: "roadworks",
+    IncidentKind.CLOSURE: "a closed road",
+}
+"""Incidents in words, besides jams, which have a line of their own, and schools, which the map knows."""
 
 
 class Known(Protocol):
@@ -60,6 +66,11 @@ class Known(Protocol):
     @property
     def context(self) -> GeoContext:
         """Place and law."""
+        ...
+
+    @property
+    def sights(self) -> tuple[Sight, ...]:
+        """What the car notices by itself."""
         ...
 
 
@@ -171,12 +182,14 @@ def _traffic(drive: Sequence[Known], topics: frozenset[str]) -> Iterator[str]:
         f"{ahead.delay_s / 60:.0f} min of it delay, {ahead.relative_speed:.0%} of the free speed"
     )
     yield _jam(driving) or "Jam on the route: none"
+    yield from _incidents(driving)
 
 
 def _hazards(drive: Sequence[Known], topics: frozenset[str]) -> Iterator[str]:
     known = drive[-1]
     driving, ahead, context = known.driving, known.driving.ahead, known.context
-    found = [_jam(driving)]
+    found = [_jam(driving), *_incidents(driving)]
+    found += [sight.text for sight in known.sights if sight.kind.value in INCIDENT_WORDS]
     if context.weather is not None:
         seen = visibility_class(context.weather.visibility).replace("_", " ")
         found.append(f"Visibility: {context.weather.visibility:.0f} m ({seen})")
@@ -201,6 +214,13 @@ def _jam(driving: DrivingState) -> str:
     if ahead.jam_distance_m is None:
         return ""
     return f"Jam on the route: in {ahead.jam_distance_m:.0f} m, {ahead.jam_length_m:.0f} m long"
+
+
+def _incidents(driving: DrivingState) -> Iterator[str]:
+    """What live traffic reports on the route, besides jams."""
+    route = frozenset(driving.ahead.route_edges)
+    told = (INCIDENT_WORDS.get(one.kind) for one in driving.ahead.incidents if one.edge_id in route)
+    return (f"Reported on the route: {words}" for words in dict.fromkeys(told) if words)
 
 
 def _position(drive: Sequence[Known], topics: frozenset[str], roads: Roads | None = None) -> Iterator[str]:

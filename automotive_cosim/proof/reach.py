@@ -59,7 +59,7 @@ def fingerprint(half: Half) -> str:
         *(sorted(each.items()) for each in (start.cabin, start.signals)),
         start.arrivals,
         sorted(start.motions),
-        half.trigger,
+        *(getattr(half.trigger, name) for name in ("condition", "for_s", "within_s")),
     )
     return blake2b(repr(parts).encode(), digest_size=8).hexdigest()
 

@@ -26,6 +26,7 @@ class Facet(StrEnum):
     PLACE = "the place"
     CLIMATE = "the climate"
     ROAD = "the road"
+    SIGN = "the sign"
     VIEW = "the map and the way ahead"
     LINK = "fix and connection"
     MOTION = "gear and restrictions"
@@ -46,15 +47,15 @@ _DRIVING = {Facet.SPEED, Facet.TRAFFIC, Facet.VIEW}
 """What other drivers and another pace change."""
 _SKY = {Facet.SKY, Facet.OUTSIDE, Facet.LAMPS, Facet.CABIN, *_DRIVING}
 FREED: Mapping[Differs, frozenset[Facet]] = {
-    Differs.PLACE: frozenset({Facet.PLACE, Facet.CLIMATE}),
+    Differs.PLACE: frozenset({Facet.PLACE, Facet.SIGN, Facet.CLIMATE}),
     Differs.ROAD: frozenset(
-        {Facet.PLACE, Facet.ROAD, Facet.LINK, Facet.OUTSIDE, Facet.LAMPS, Facet.MOTION, *_DRIVING}
+        {Facet.PLACE, Facet.ROAD, Facet.SIGN, Facet.LINK, Facet.OUTSIDE, Facet.LAMPS, Facet.MOTION, *_DRIVING}
     ),
     Differs.TRAFFIC: frozenset({Facet.MOTION, *_DRIVING}),
     Differs.WEATHER: frozenset({Facet.WEATHER, *_SKY}),
     Differs.VISIBILITY: frozenset({Facet.WEATHER, *_SKY}),
-    Differs.DATE: frozenset({Facet.CLOCK, Facet.CLIMATE, Facet.ROAD, *_SKY}),
-    Differs.TIME: frozenset({Facet.CLOCK, Facet.ROAD, *_SKY}),
+    Differs.DATE: frozenset({Facet.CLOCK, Facet.CLIMATE, Facet.ROAD, Facet.SIGN, *_SKY}),
+    Differs.TIME: frozenset({Facet.CLOCK, Facet.ROAD, Facet.SIGN, *_SKY}),
     Differs.MOTION: frozenset({Facet.MOTION, Facet.SCREEN, *_DRIVING}),
     Differs.SETTINGS: frozenset({Facet.SETTINGS, Facet.CABIN}),
 }
@@ -193,7 +194,7 @@ def _in_context(context: GeoContext) -> Iterator[Fact]:
     road = context.road
     yield "kind", (Facet.ROAD, (road.road_class, road.lit), 0.0)
     yield "tunnel or school zone", (Facet.ROAD, (road.in_tunnel, road.school_zone), 0.0)
-    yield "sign", (Facet.ROAD, context.posted_limit_kmh, 0.1)
+    yield "sign", (Facet.SIGN, context.posted_limit_kmh, 0.1)
 
 
 def _clock(time: datetime) -> float:

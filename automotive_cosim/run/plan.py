@@ -18,7 +18,7 @@ from automotive_cosim import scenarios
 from automotive_cosim.agents import MODELLED, make_agent
 from automotive_cosim.contracts import Json
 from automotive_cosim.episode.specification import MAX_STEPS, Clock
-from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.errors import SetupError, UnknownNameError, UserError
 from automotive_cosim.formats.annotations import OneOf
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted, read_toml
@@ -104,13 +104,20 @@ class Plan:
         """The plan as a JSON object, for the manifest."""
         return {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(self).items()}
 
-    def check(self) -> None:
+    def check(self, *, dry: bool = False) -> tuple[str, ...]:
         """Checks every value and name before anything runs.
+
+        Args:
+            dry: nothing will run, so that no key, address or package of a model is needed.
+
+        Returns:
+            What this machine lacks to run it, which is an error unless it is dry.
 
         Raises:
             UserError: a name does not exist, a model cannot be used, an agent needs a person, or there is
                 nothing to run.
         """
+        lacks: list[str] = []
         make_plan(self.as_json())
         for name in self.scenarios:
             open_scenario(name)
@@ -122,7 +129,13 @@ class Plan:
             if ":" in agent:
                 check_agent(agent)
             else:
-                make_agent(agent, model)
+                try:
+                    make_agent(agent, model)
+                except SetupError as error:
+                    if not dry:
+                        raise
+                    lacks.append(str(error))
+        return tuple(dict.fromkeys(sorted(lacks)))
 
     def jobs(self) -> tuple[EpisodeJob, ...]:
         """Every episode, grouped by warm simulation, in an order that tells an agent nothing.

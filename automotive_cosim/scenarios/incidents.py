@@ -73,6 +73,8 @@ class Breakdown(Incident):
     """Its front bumper, from the start of the edge."""
     lane: Annotated[int, Ge(0)] = 0
     """Among the edge's lanes for cars, 0 nearest the kerb."""
+    aside: bool = False
+    """Whether it stands beside the lane, so that others can pass."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -177,7 +179,7 @@ class Pedestrians(Incident):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EmergencyVehicle(EgoIncident):
-    """An ambulance with blue lights comes up from behind on the ego's route.
+    """An ambulance with blue lights comes up from behind on the ego's route, or a plain van as fast.
 
     Other drivers form a corridor for it only if ``[sumo] lateral_resolution_m`` enables SUMO's sublane model.
     """
@@ -187,6 +189,8 @@ class EmergencyVehicle(EgoIncident):
     """Distance behind the ego at which it appears, out of sight on the ego's route."""
     speed_ratio: Annotated[float, Gt(0)] = 1.5
     """Its factor on the limit, where traffic allows."""
+    blue_light: bool = True
+    """False for a van: others need not make way for it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -206,6 +210,22 @@ class BrakingLeader(EgoIncident):
     """How long it keeps that speed before it drives on."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AheadIncident(EgoIncident):
+    """An incident on the ego's route some way ahead, wherever that is by then, as far as a road there has room."""
+
+    kind: Literal["ahead"] = "ahead"
+    what: Literal["breakdown", "roadworks", "jam", "tractor"]
+    """A car stands with its hazard lights on, on the verge where there is one lane; a lower limit is signed; a
+    queue; a slow vehicle drives a kilometre along the route."""
+    ahead_m: Annotated[float, Gt(0)] = 600.0
+    """Distance from the ego along its route."""
+    length_m: Annotated[float, Gt(0)] = 100.0
+    """Of the queue, at first."""
+    other_way: bool = False
+    """Whether it is on the carriageway of the other direction, where it concerns others."""
+
+
 AnyIncident = Annotated[
     Breakdown
     | Roadworks
@@ -216,7 +236,8 @@ AnyIncident = Annotated[
     | Tractor
     | Pedestrians
     | EmergencyVehicle
-    | BrakingLeader,
+    | BrakingLeader
+    | AheadIncident,
     TaggedBy("kind"),
 ]
 """One of ``[[incidents]]``."""

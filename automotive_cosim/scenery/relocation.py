@@ -14,8 +14,9 @@ from automotive_cosim.traffic.options import read_configuration
 def relocated(scenario: Scenario, origin: tuple[float, float]) -> Scenario:
     """The scenario with the middle of its network at ``origin`` (longitude, latitude, degrees).
 
-    The local time stays the same, in the zone of that place. The weather is drawn from its climate. Roads, signs
-    and the driving side stay the network's; ``notes`` say so if the country drives on the other side.
+    The local time stays the same, in the zone of that place. The weather is drawn from its climate. Roads and the
+    driving side stay the network's, signs show the country's round figures (``geo.signs``); ``notes`` say so if the
+    country drives on the other side.
 
     Raises:
         UserError: ``origin`` is not a position on earth.

@@ -14,6 +14,7 @@ batch      drives in parallel, resumed, until the interval is narrow enough
 results    reads stored results, as data frames
 intervals  means with bootstrap intervals over seeds
 everyone   how an effect is spread over everyone
+suite      the same study on several networks
 demand     how far the demand is from an equilibrium
 data       every future as a row, as files
 tables, effects, context, charts, page    the report

@@ -173,9 +173,8 @@ class _Drive:
             diverted: list[Diverted] = []
             if offered is not None and not self.points:
                 ways_apart = section(now.ahead.route_edges, _offered(news))
-                diverted = self._diverted(
-                    begun[offered], ways_apart, [0, *(each.seed for each in replicates)], group
-                )
+                seeds = [0, *(each.seed for each in replicates[: plan.draws.start])]
+                diverted = self._diverted(begun[offered], ways_apart, seeds, group)
             branches = [self._left(branch, group) for branch in begun]
         decision = Decision(
             at_s=now.time_s,
@@ -188,6 +187,7 @@ class _Drive:
             own=numbers.get(own),
             agents=agents,
             agents_rerouted=tuple(turned),
+            planned_draws=1 + plan.draws.start,
         )
         point = Point(decision, group, pulse, branches, replicates=replicates, together=diverted)
         if not self.points and self._has_placebo() and not replicates:
@@ -219,7 +219,7 @@ class _Drive:
     def _diverted(
         self, begun: RemoteTraffic, ways: tuple[Edges, Edges], seeds: Sequence[int], group: Sequence[str]
     ) -> list[Diverted]:
-        """The futures in which others take the way that the ego has begun, in every draw."""
+        """The futures in which others take the way that the ego has begun, in the scored draws."""
         found: list[Diverted] = []
         old, new = ways
         for share in self.job.plan.together if old else ():

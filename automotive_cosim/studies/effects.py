@@ -137,8 +137,9 @@ def many(study: Study) -> Table:
         "At the first decision of each drive with another route, whatever the news predicts: the ego takes it, and "
         "with it that share of the cars whose routes pass both ends of the section in which the two ways differ. "
         "The same cars, traffic and random numbers at every share, so the rows differ by the share alone. "
-        f"{counted(left_out, 'decision')} left out because some share did not arrive or clear in time."
     )
+    if left_out:
+        note += f"{counted(left_out, 'decision')} left out because some share did not arrive or clear in time."
     return Table("many", "When many take the other way at once", columns, tuple(rows), note, heads=2)
 
 
@@ -239,7 +240,7 @@ def fleet(study: Study) -> Table:
         by_class: dict[str, list[tuple[int, list[FleetClass]]]] = {}
         for choice, _ in found:
             decision = decisions[choice.id]
-            drawn = [decision.drawn(draw, choice.branch) for draw in range(decision.draws)]
+            drawn = [decision.drawn(draw, choice.branch) for draw in decision.scored]
             parts = [part for branch in drawn if branch is not None for part in branch.fleet]
             for name in dict.fromkeys(part.emission_class for part in parts):
                 same = [part for part in parts if part.emission_class == name]

@@ -70,6 +70,7 @@ def compared(point: Point, stay: Future, history: Sequence[Pulse]) -> Decision:
         history: measurements of the traffic up to the ego's departure.
     """
     drawn = [Drawn(0, stay, point.branches), *point.replicates]
+    scored = drawn[: point.decision.planned_draws or len(drawn)]
     pairs = [(each.stay, branch) for each in drawn for branch in each.branches]
     pairs += [(stay, point.placebo)] if point.placebo else []
     pulses = [*history, point.pulse]
@@ -89,7 +90,7 @@ def compared(point: Point, stay: Future, history: Sequence[Pulse]) -> Decision:
             for each in point.replicates
         ),
         spreads=tuple(
-            spread([(each.stay, each.branches[number]) for each in drawn], point.group, point.decision.at_s)
+            spread([(each.stay, each.branches[number]) for each in scored], point.group, point.decision.at_s)
             for number in range(len(point.branches))
         ),
         traffic=point.pulse,

@@ -100,7 +100,7 @@ def drawn_choices(policy: Policy, decision: Decision, age_s: float) -> tuple[int
 
 
 def hindsight(decision: Decision) -> tuple[int | None, ...]:
-    """The best choice for each draw, made by all the others.
+    """The best choice for each draw, made by all the others, those included that no mean is taken over.
 
     Chosen and scored by the same draw, the best of several equal futures would gain by luck. A single draw has no
     others, so it is chosen by itself.

@@ -129,15 +129,15 @@ def choices_at(point: DecisionPoint, policies: Sequence[str]) -> Iterator[Policy
 
 def _choice(point: DecisionPoint, policy: Policy, news: News) -> PolicyChoice:
     drive, decision = point.drive, point.decision
-    numbers = drawn_choices(policy, decision, news.age_s)
-    draws = range(decision.draws)
+    numbers = drawn_choices(policy, decision, news.age_s)[: len(decision.scored)]
+    draws = decision.scored
     gains = [decision.gain(draw, number) for draw, number in enumerate(numbers)]
     ideal = hindsight(decision)
     regrets_s = [decision.gain(draw, ideal[draw]).time_s - gains[draw].time_s for draw in draws]
     branch, _ = Counter(numbers).most_common(1)[0]
     driven = [decision.drawn(draw, number) for draw, number in enumerate(numbers)]
     others = [NOBODY if each is None else each.others for each in driven]
-    signs = [_sign(decision, draw, number) for draw, number in enumerate(numbers)] if len(draws) > 1 else []
+    signs = [_sign(decision, draw, number) for draw, number in enumerate(numbers)] if decision.draws > 1 else []
     assert drive.stay is not None, "it has a decision"
     return PolicyChoice(
         id=point.id,
@@ -165,11 +165,11 @@ def _choice(point: DecisionPoint, policy: Policy, news: News) -> PolicyChoice:
         others_changed=_mean(each.changed for each in others),
         unfinished_stay=_mean(each.unfinished_stay for each in others),
         unfinished=_mean(each.unfinished for each in others),
-        draws=len(draws),
-        gain_error_s=standard_error([gain.time_s for gain in gains]),
+        draws=decision.draws,
+        gain_error_s=standard_error([decision.gain(draw, branch).time_s for draw in range(decision.draws)]),
         won=signs.count(1) / len(signs) if signs else None,
         lost=signs.count(-1) / len(signs) if signs else None,
-        chose_best=_mean(one == other for one, other in zip(numbers, ideal, strict=True)) if signs else None,
+        chose_best=_mean(one == other for one, other in zip(numbers, ideal, strict=False)) if signs else None,
     )
 
 

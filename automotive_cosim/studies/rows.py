@@ -212,6 +212,8 @@ class Decision:
     """The route kept once more, with fresh random numbers; None if not drawn. Replicates contain it."""
     replicates: tuple[Replicate, ...] = ()
     """Further draws of all futures; the drive itself and ``branches`` are draw 0."""
+    planned_draws: int = 0
+    """Number of draws that did not depend on what they showed; 0 for all."""
     spreads: tuple[Spread, ...] = ()
     """How each branch affects everyone."""
     traffic: Pulse | None = None
@@ -229,6 +231,15 @@ class Decision:
         """How often each future was driven."""
         return 1 + len(self.replicates)
 
+    @property
+    def scored(self) -> range:
+        """The draws that means are taken over.
+
+        Draws that were added until the gain showed its sign choose and tell the sign, but are in no mean: stopping
+        there would move it away from zero.
+        """
+        return range(self.planned_draws or self.draws)
+
     def drawn(self, draw: int, branch: int | None) -> Branch | None:
         """A branch in one draw; None for keeping the route."""
         if branch is None:
@@ -241,8 +252,8 @@ class Decision:
         return NOTHING if found is None else found.gains
 
     def gains(self, branch: int | None) -> Totals:
-        """The mean savings of a branch over all draws; zero for keeping the route."""
-        return Totals.mean([self.gain(draw, branch) for draw in range(self.draws)])
+        """The mean savings of a branch over the scored draws; zero for keeping the route."""
+        return Totals.mean([self.gain(draw, branch) for draw in self.scored])
 
     @property
     def unchanged(self) -> tuple[Branch, ...]:

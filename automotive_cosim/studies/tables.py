@@ -100,10 +100,13 @@ def _how_judged(study: Study, floor: Noise) -> str:
             "--replicates."
         )
     draws = [point.decision.draws for point in study.decisions]
+    times = " to ".join(map(str, sorted({min(draws, default=0), max(draws, default=0)})))
+    fixed = 1 + study.plan.draws.start
+    added = f" Means are over the first {fixed}." if study.plan.replicates == "auto" else ""
     return (
-        f"Each future was driven {min(draws, default=0)} to {max(draws, default=0)} times. Best, better and regret "
-        "are cross-fitted: the other draws choose and each draw scores, so a regret may be negative. A draw is won "
-        "or lost if the mean of the others has the same sign; the counts are sums of such shares."
+        f"Each future was driven {times} times.{added} Best, better and "
+        "regret are cross-fitted: the other draws choose and each draw scores, so a regret may be negative. A draw "
+        "is won or lost if the mean of the others has the same sign; the counts are sums of such shares."
     )
 
 

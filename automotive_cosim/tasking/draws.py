@@ -37,6 +37,8 @@ class Purpose(StrEnum):
     """The order in which trips are tried."""
     WATCH = "watch"
     """When a watch begins, and what arrives during it."""
+    DRIVE = "drive"
+    """The plan of a drive."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime
-from typing import Protocol
+from typing import Annotated, Protocol
+
+from annotated_types import Ge
 
 from automotive_cosim.contracts import (
     Answer,
@@ -23,9 +25,19 @@ from automotive_cosim.contracts import (
     RouteOption,
 )
 from automotive_cosim.scenarios import Trip, WeatherAt
+from automotive_cosim.scenarios.incidents import AnyIncident
 
 WarmUpProgress = Callable[[float, float], None]
 """Called with the simulated seconds of the warm-up that are done, and their total."""
+
+
+@dataclass(frozen=True, slots=True)
+class DriverAt:
+    """How the ego is driven from ``at_s`` on (seconds after its departure), until the next."""
+
+    at_s: Annotated[float, Ge(0)]
+    driver: str
+    """Name of a driver profile."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +57,13 @@ class EgoPlan:
     """SUMO's emission class of the ego, such as ``Energy/default`` for an electric one; empty leaves SUMO's own."""
     wait_s: float = 0.0
     """Additional traffic time before it departs, so that it meets other cars and other signals."""
+    onward: tuple[Trip, ...] = ()
+    """Trips that it drives next, one after another and over again, each where one can go on from it
+    (``rounds.Round``)."""
+    moods: tuple[DriverAt, ...] = ()
+    """Changes of the way it is driven, in the order of their times. Acceleration and gap when standing stay."""
+    incidents: tuple[AnyIncident, ...] = ()
+    """Staged on this drive besides the scenario's own; their times count from its departure."""
 
 
 @dataclass(frozen=True, slots=True)

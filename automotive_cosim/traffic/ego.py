@@ -196,6 +196,9 @@ class Driver:
     _corridor_until_s: float = math.inf
     _condition: RoadCondition = DRY
     _forecast: Forecast | None = None
+    _departed_s: float = math.nan
+    _moods: int = 0
+    """How many changes of the plan's have come."""
 
     def __post_init__(self) -> None:
         self._profile = profile(self.plan.driver)
@@ -234,6 +237,9 @@ class Driver:
         events: tuple[Event, ...] = ()
         if self._forecast is None:
             self._forecast = Forecast(self.plan.weather, now.time_s)
+            self._departed_s = now.time_s
+        if self._moods < len(self.plan.moods):
+            self._change_mood(now.time_s - self._departed_s)
         if now.time_s >= self._forecast.until_s:
             self._meet(self._forecast.read(now.time_s))
         if self._intents:
@@ -341,6 +347,19 @@ class Driver:
         if wanted_kmh < state.speed_mps * KMH_PER_MPS:
             return Event(state.time_s, "driver_slows", f"driver slows to {wanted_kmh:.0f} km/h, {after}")
         return Event(state.time_s, "driver_holds", f"driver goes no faster than {wanted_kmh:.0f} km/h, {after}")
+
+    def _change_mood(self, since_s: float) -> None:
+        """Drives in another way once that is due; what an alert had brought about is forgotten."""
+        mood = self.plan.moods[self._moods]
+        if since_s < mood.at_s - 1e-9:
+            return
+        self._moods += 1
+        self._profile = profile(mood.driver)
+        self._law_abiding, self._easing_mps2 = False, EASING_MPS2
+        self._headway_s = self._profile.headway_s
+        self._choose_speed()
+        self.pedals.set_headway(self._headway_s * self._adapted(self._condition.headway_ratio))
+        self.pedals.set_imperfection(self._profile.imperfection)
 
     # --- weather ------------------------------------------------------------------------------------------
 

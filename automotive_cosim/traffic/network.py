@@ -396,6 +396,7 @@ def road_of(edge: Edge) -> Road:
         limit_source=edge.limit_source,
         in_tunnel=edge.in_tunnel,
         shape_m=edge.shape_m,
+        school_zone=edge.school_zone,
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from datetime import datetime
 from typing import Any, Protocol
@@ -15,6 +15,7 @@ from automotive_cosim.traffic.congestion import JAM_BELOW
 from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.posted import TimedLimit
 from automotive_cosim.traffic.stage import CAR_TYPE, IncidentStage
+from automotive_cosim.traffic.steering import PARKING
 from automotive_cosim.traffic.sumo import HAZARD_SIGNAL
 
 AUTHORITY = ("authority",)
@@ -28,6 +29,14 @@ SCHOOL_DAYS = frozenset(range(1, 6))
 NARROW_PLACE_M = 10.0
 """Distance from the head of a jam to the end of its last edge."""
 
+SHORTEST_M = 40.0
+"""An incident ahead of the ego is staged on no shorter road."""
+
+NEAR_M = 50.0
+"""How near its intended place it must be: more than the car drives in a second."""
+
+TRACTOR_WAY_M = 1000.0
+"""How far a tractor drives that was staged ahead of the ego."""
 
 _CROSSING = re.compile(r":.+_c\d+")
 """Netconvert's ids of pedestrian crossings."""
@@ -87,7 +96,8 @@ class _Breakdown(_Scene):
         position_m = incident.position_m
         self._car = stage.car("breakdown", (incident.edge,), self._lane, position_m, "0")
         lane = int(self._lane.rpartition("_")[2])
-        stage.sumo.set_stop(self._car, incident.edge, position_m, lane, incident.to_s - incident.from_s, 0)
+        flags = PARKING if incident.aside else 0
+        stage.sumo.set_stop(self._car, incident.edge, position_m, lane, incident.to_s - incident.from_s, flags)
         stage.sumo.set_signals(self._car, HAZARD_SIGNAL)
         return f"a car has broken down{_on(stage.edge(incident.edge))}"
 
@@ -338,7 +348,7 @@ class _Pedestrians(_Scene):
 
 
 class _EmergencyVehicle(_Scene):
-    """An ambulance on the route behind the ego."""
+    """An ambulance, or a van, on the route behind the ego."""
 
     def __init__(self, stage: IncidentStage, incident: incidents.EmergencyVehicle) -> None:
         self._stage, self._incident = stage, incident
@@ -351,16 +361,20 @@ class _EmergencyVehicle(_Scene):
             return ""
         self._sent = True
         index, on_edge_m = sensor.route.edge_at(sensor.position_m - self._incident.behind_m)
-        kind = stage.kind("ambulance")
+        what = "ambulance" if self._incident.blue_light else "van"
+        kind = stage.kind(what)
         types = stage.sumo.type
-        types.setVehicleClass(kind, "emergency")
-        types.setShapeClass(kind, "emergency")
+        if self._incident.blue_light:
+            types.setVehicleClass(kind, "emergency")
+            types.setShapeClass(kind, "emergency")
+            types.setParameter(kind, "has.bluelight.device", "true")
+        else:
+            types.setShapeClass(kind, "delivery")
         types.setLength(kind, 6.5)
         types.setSpeedFactor(kind, self._incident.speed_ratio)
         types.setSpeedDeviation(kind, 0.0)
-        types.setParameter(kind, "has.bluelight.device", "true")
         types.setParameter(kind, "has.rerouting.device", "false")
-        stage.car("ambulance", sensor.route.edge_ids[index:], "", on_edge_m, "max", kind)
+        stage.car(what, sensor.route.edge_ids[index:], "", on_edge_m, "max", kind)
         return ""
 
 
@@ -419,6 +433,84 @@ class _BrakingLeader(_Scene):
         self._braking, self._left_s = "", -1.0
 
 
+class _Ahead(_Scene):
+    """Another scene, on a road that is chosen when the time has come."""
+
+    def __init__(self, stage: IncidentStage, incident: incidents.AheadIncident) -> None:
+        self._stage, self._incident = stage, incident
+        self._scene: Scene | None = None
+        self._tail: RoadIncident | None = None
+
+    def tick(self, local_time: datetime) -> str:
+        if self._scene is not None:
+            return self._scene.tick(local_time)
+        chosen = self._chosen()
+        if chosen is None:
+            return ""
+        self._scene = scene_of(self._stage, chosen)
+        return self._scene.begin()
+
+    def end(self) -> str:
+        return "" if self._scene is None else self._scene.end()
+
+    def reported(self, slow: Mapping[str, float]) -> RoadIncident | None:
+        """A queue is reported where its tail was at first, however slow the whole road is."""
+        return self._tail or (None if self._scene is None else self._scene.reported(slow))
+
+    def _chosen(self) -> incidents.Incident | None:
+        """The incident on its road; None as long as there is no room for it."""
+        sensor, network, incident = self._stage.sensor, self._stage.network, self._incident
+        assert sensor is not None
+        place_m = sensor.position_m + incident.ahead_m
+        if place_m > sensor.route.length_m:
+            return None
+        index, on_edge_m = sensor.route.edge_at(place_m)
+        way = sensor.route.edge_ids[index:]
+        if incident.other_way:
+            back = network.opposite.get(way[0])
+            if back is None:
+                return None
+            way, on_edge_m = (back,), 0.0
+        edges = [network.edges[edge] for edge in way]
+        if edges[0].length_m < SHORTEST_M or edges[0].in_tunnel:
+            return None
+        from_s, to_s = incident.from_s, incident.to_s
+        if incident.what == "breakdown":
+            at_m = round(min(max(on_edge_m, SHORTEST_M / 2), edges[0].length_m - 5.0), 1)
+            aside = len(edges[0].lane_ids) == 1
+            return incidents.Breakdown(edge=way[0], position_m=at_m, aside=aside, from_s=from_s, to_s=to_s)
+        if incident.what == "jam":
+            return self._jam(way, edges, on_edge_m)
+        if on_edge_m > NEAR_M:  # they begin where their road does
+            return None
+        if incident.what == "roadworks":
+            limit_kmh = max(20.0, 10.0 * round(0.06 * edges[0].speed_mps * KMH_PER_MPS))
+            return incidents.Roadworks(edge=way[0], limit_kmh=limit_kmh, from_s=from_s, to_s=to_s)
+        count = _covering(edges, TRACTOR_WAY_M) or len(way)
+        return incidents.Tractor(from_edge=way[0], to_edge=way[count - 1], from_s=from_s, to_s=to_s)
+
+    def _jam(self, way: Sequence[str], edges: Sequence[Edge], tail_m: float) -> incidents.Jam | None:
+        """A queue whose tail is about there."""
+        incident, length_m = self._incident, self._incident.length_m
+        count = _covering(edges, tail_m + length_m + NARROW_PLACE_M)
+        room_m = sum(edge.length_m for edge in edges[:count]) - NARROW_PLACE_M - length_m
+        if not count or (not incident.other_way and room_m - tail_m > NEAR_M):
+            return None
+        self._tail = RoadIncident(IncidentKind.JAM, way[0], room_m)
+        jammed = tuple(way[:count])
+        return incidents.Jam(edges=jammed, length_m=length_m, from_s=incident.from_s, to_s=incident.to_s)
+
+
+def _covering(edges: Sequence[Edge], length_m: float) -> int:
+    """How many of the edges, from the first, have that length together; 0 if all of them have less."""
+    left_m = length_m
+    for count, edge in enumerate(edges, start=1):
+        left_m -= edge.length_m
+        if left_m <= 0:
+            return count
+    return 0
+
+
 SCENES: Mapping[type[incidents.Incident], Callable[[IncidentStage, Any], Scene]] = {
     incidents.Breakdown: _Breakdown,
     incidents.Roadworks: _Roadworks,
@@ -430,6 +522,7 @@ SCENES: Mapping[type[incidents.Incident], Callable[[IncidentStage, Any], Scene]]
     incidents.Pedestrians: _Pedestrians,
     incidents.EmergencyVehicle: _EmergencyVehicle,
     incidents.BrakingLeader: _BrakingLeader,
+    incidents.AheadIncident: _Ahead,
 }
 """The scene of each kind of incident."""
 

@@ -48,8 +48,13 @@ class Situations:
         return self._stage.signs.follow_the_clock or any(not entry.is_over for entry in self._entries)
 
     def set_off(self, plan: EgoPlan, sensor: Sensor, now_s: float) -> None:
-        """Takes note of the ego's departure: from now on its trip, its route and its clock count."""
+        """Takes note of the ego's departure: from now on its trip, its route and its clock count.
+
+        Raises:
+            ScenarioError: an incident of the plan does not fit the network.
+        """
         self._stage.sensor = sensor
+        self._entries += [_Entry(incident, scene_of(self._stage, incident)) for incident in plan.incidents]
         self._zero_s = now_s
         self._start = plan.start or self._start
         self._trip = plan.trip.name

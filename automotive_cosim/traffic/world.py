@@ -24,6 +24,7 @@ from automotive_cosim.traffic.network import read_network
 from automotive_cosim.traffic.options import Setup, command_line, read_configuration, run_options
 from automotive_cosim.traffic.profiles import DriverProfile, profile
 from automotive_cosim.traffic.road_weather import G_MPS2, Forecast, Surface
+from automotive_cosim.traffic.rounds import ONWARD_M, Round, planned
 from automotive_cosim.traffic.router import Router
 from automotive_cosim.traffic.sensing import Sensor
 from automotive_cosim.traffic.situations import Situations
@@ -118,7 +119,9 @@ class World:
             self.step()
             if beat is not None:
                 beat()
-        self._add_ego(self._trip_edges(plan.trip), driver_profile, parked=plan.parked)
+        round_ = planned(self.network, plan.trip, plan.onward) if plan.onward else None
+        edges = round_.first if round_ else self._trip_edges(plan.trip)
+        self._add_ego(edges, driver_profile, parked=plan.parked)
         if plan.emission_class:
             try:
                 self._sumo.vehicle.setEmissionClass(EGO, plan.emission_class)
@@ -140,10 +143,11 @@ class World:
             self._sumo, EGO, self.network, self.congestion, self._reported, self._emergency, self.step_s
         )
         self._situations.set_off(plan, sensor, self._sumo.time())
+        self._has_incidents = self._has_incidents or bool(plan.incidents)
         if self._situations.take_changes():
             sensor.refresh()
         pedals = SumoPedals(self._sumo, EGO, self.network, sensor, self._router)
-        road = EgoRoad(self, self._sumo, sensor, pedals)
+        road = EgoRoad(self, self._sumo, sensor, pedals, round_)
         return EgoDrive(road, Driver(plan, pedals, self.step_s), road.now)
 
     def step(self) -> bool:
@@ -246,8 +250,10 @@ class World:
 class EgoRoad:
     """The road of the ego: steps the world and reads the ego's state."""
 
-    def __init__(self, world: World, sumo: LibSumo, sensor: Sensor, pedals: SumoPedals) -> None:
-        """Takes over once the ego is on the road."""
+    def __init__(
+        self, world: World, sumo: LibSumo, sensor: Sensor, pedals: SumoPedals, round_: Round | None = None
+    ) -> None:
+        """Takes over once the ego is on the road; with a round, it drives on at each destination."""
         self._world = world
         self._sumo = sumo
         self._sensor = sensor
@@ -257,6 +263,9 @@ class EgoRoad:
         self._lookout = Lookout(sumo, EGO)
         self._look_steps = max(1, round(LOOK_S / self.step_s))
         self._steps = 0
+        self._round = round_
+        self._leg = 0
+        """The next leg of the round."""
         self.now: Instant = KnownInstant(sensor.read(hazard_lights=False, vehicle_count=world.vehicle_count).state)
         """The newest instant."""
 
@@ -269,6 +278,8 @@ class EgoRoad:
         self._steps += 1
         if end is None:
             try:
+                if self._round is not None and self._steps % self._look_steps == 0:
+                    sampled = self._go_on(self._round) or sampled
                 if sampled:
                     self._sensor.refresh()
                 now = self._sensor.read(hazard_lights=hazard_lights, vehicle_count=self._world.vehicle_count)
@@ -291,6 +302,19 @@ class EgoRoad:
     def shapes(self) -> RoadShapes:
         """See ``drive.Stepper``."""
         return read_shapes(self._sumo)
+
+    def _go_on(self, round_: Round) -> bool:
+        """Sets the next destination near the present one; true if it did."""
+        sumo, route = self._sumo, self._sensor.route
+        here = sumo.edge_of(EGO)
+        if route.length_m - self._sensor.position_m > ONWARD_M or here.startswith(":"):
+            return False
+        rest = route.edge_ids[sumo.route_index(EGO) :]
+        way = round_.following(self._world.network, rest[-1], self._leg)
+        self._leg += 1
+        if way:
+            sumo.set_route(EGO, (*rest, *way[1:]))
+        return bool(way)
 
     def _mishaps(self) -> tuple[EgoEnd | None, tuple[Event, ...]]:
         """Why the ego's drive ended in this step, if it did, and events of other vehicles."""

@@ -181,3 +181,15 @@ def test_a_folder_that_is_no_evaluation_is_told(cli, tmp_path, plan, said):
         ran = cli(*command)
         assert (ran.code, ran.err.count("\n")) == (2, 1)
         assert said in ran.err
+
+
+def test_a_dry_run_needs_no_key_and_says_how_long_and_what_is_missing(cli, monkeypatch):
+    monkeypatch.delenv("NOWHERE_API_KEY", raising=False)
+    plan = ("--agents", "t3a", "--models", "nowhere/m", "--tasks", "hvac_fan_max", "--scenarios", "grid")
+    ran = cli("eval", *plan, "--dry-run")
+    assert (ran.code, ran.err) == (0, "")
+    assert "time: less than a minute with 1 worker" in ran.out
+    assert "before it can run: model 'nowhere/m' requires a key in NOWHERE_API_KEY" in ran.out
+    refused = cli("eval", *plan)
+    assert refused.code == 2
+    assert "NOWHERE_API_KEY" in refused.err

@@ -1,5 +1,6 @@
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -156,3 +157,14 @@ def test_a_kill_keeps_the_steps_and_leaves_no_process(long_run, tmp_path, until,
     for line in (tmp_path / "out" / "steps.jsonl").read_text(encoding="utf-8").splitlines()[:-1]:
         json.loads(line)
     until(lambda: not session(long_run.pid))
+
+
+@pytest.mark.usefixtures("warm")
+def test_the_lines_of_a_drive_are_in_the_order_of_their_times(cli, tmp_path):
+    (tmp_path / "wait.jsonl").write_text('{"action_type": "wait", "seconds": 10}\n' * 5, encoding="utf-8")
+    told = cli("run", "--scenario", "grid", "--task", "hvac_fan_max", "--actions", "wait.jsonl").out
+    live = told.partition("the driver says")[2].partition("not solved")[0]
+    times = [float(found) for found in re.findall(r"^ *([+-]\d+\.\d) s  ", live, re.MULTILINE)]
+    assert len(times) > 5
+    assert times == sorted(times)
+    assert live.index("step 1") < live.index("km/h")

@@ -13,7 +13,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from automotive_cosim.contracts import Connectivity, DrivingState, GpsFix, Limit, LimitSource, OtherVehicle, Weather
+from automotive_cosim.contracts import (
+    Connectivity,
+    DrivingState,
+    GpsFix,
+    IncidentKind,
+    Limit,
+    LimitSource,
+    OtherVehicle,
+    RoadIncident,
+    Sight,
+    SightKind,
+    Weather,
+)
 from automotive_cosim.geo import sensor
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.earth import METRES_PER_DEGREE, metres_per_degree_east
@@ -35,6 +47,7 @@ class Instant:
     gps: GpsFix | None = None
     connectivity: Connectivity = ONLINE
     time_s: float = 0.0
+    sights: tuple[Sight, ...] = ()
 
 
 @pytest.fixture(scope="module")
@@ -99,6 +112,27 @@ def test_hazards_are_what_lies_ahead(instant: Callable[..., Instant], weather: C
         "Road surface: friction 0.50, dry is 1",
     ):
         assert line in text.splitlines()
+
+
+def test_an_incident_on_the_route_is_told_by_hazards_and_traffic(instant: Callable[..., Instant]) -> None:
+    known = instant()
+    told = (
+        RoadIncident(IncidentKind.ROADWORKS, "on", 0.0),
+        RoadIncident(IncidentKind.BREAKDOWN, "off", 0.0),
+        RoadIncident(IncidentKind.ROADWORKS, "on", 50.0),
+    )
+    ahead = replace(known.driving.ahead, route_edges=("here", "on"), incidents=told)
+    sights = (
+        Sight(SightKind.ROADWORKS, "Roadworks in 640 m", 640.0),
+        Sight(SightKind.TYRE, "Rear left tyre: 1.5 bar"),
+    )
+    met = replace(known, driving=replace(known.driving, ahead=ahead), sights=sights)
+    for query in ("hazards", "traffic"):
+        lines = ask(query, [met]).text.splitlines()
+        assert lines.count("Reported on the route: roadworks") == 1
+        assert not any("broken-down" in line or "tyre" in line for line in lines)
+    assert "Roadworks in 640 m" in ask("hazards", [met]).text.splitlines()
+    assert not any("Reported" in line for line in ask("hazards traffic", [known]).text.splitlines())
 
 
 def test_what_is_not_known_names_what_is(instant: Callable[..., Instant]) -> None:

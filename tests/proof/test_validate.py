@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -60,17 +61,27 @@ TASKS = (
 """
 
 
+def words(tasks, *more, only="oracle,start,residue"):
+    return [*PROGRAM, "--tasks-from", "tasks", "--tasks", tasks, "--gates", only, *more]
+
+
 @pytest.fixture
 def command(tmp_path, monkeypatch):
     """The command's words, for an empty folder beside one with tasks."""
     (tmp_path / "tasks").mkdir()
     (tmp_path / "tasks" / "own.py").write_text(OWN)
     monkeypatch.chdir(tmp_path)
-
-    def words(tasks, *more, only="oracle,start,residue"):
-        return [*PROGRAM, "--tasks-from", "tasks", "--tasks", tasks, "--gates", only, *more]
-
     return words
+
+
+@pytest.fixture(scope="module")
+def whole(sumo, tmp_path_factory):
+    """Two tasks proven with two seeds by one worker: what was told, and the folder."""
+    home = tmp_path_factory.mktemp("proven")
+    (home / "tasks").mkdir()
+    (home / "tasks" / "own.py").write_text(OWN)
+    asked = words("own_one,own_two", "--seeds", "2", "--json", "--out", "whole")
+    return subprocess.run(asked, cwd=home, capture_output=True, text=True, check=False), home / "whole"
 
 
 @pytest.fixture
@@ -85,44 +96,47 @@ def told(ran):
     return {name: value for name, value in json.loads(ran.stdout).items() if name != "seconds"}
 
 
-@pytest.mark.long
 @pytest.mark.sumo
 @pytest.mark.slow
-def test_neither_workers_nor_a_stop_show_and_what_is_proven_is_not_proven_again(validate, tmp_path):
-    whole = validate("own_one,own_two", "--seeds", "2", "--json", "--out", "whole")
-    assert whole.returncode == 0, whole.stderr
-    assert told(whole)["gates"].keys() == {"oracle", "start", "residue"}
-    assert {entry["checked"] for entry in told(whole)["gates"].values()} == {4}
-    assert [line.split()[1] for line in whole.stderr.splitlines()] == ["1/4", "2/4", "3/4", "4/4"]
+def test_neither_workers_nor_a_stop_show_and_what_is_proven_is_not_proven_again(validate, whole, tmp_path):
+    alone, folder = whole
+    assert alone.returncode == 0, alone.stderr
+    assert told(alone)["gates"].keys() == {"oracle", "start", "residue"}
+    assert {entry["checked"] for entry in told(alone)["gates"].values()} == {4}
+    head, *lines = alone.stderr.splitlines()
+    assert head.startswith("4 proofs by 3 gates, ")
+    assert [line.split()[1] for line in lines] == ["1/4", "2/4", "3/4", "4/4"]
+    assert {path.name for path in folder.parent.iterdir()} == {"tasks", "whole"}
     shared = validate("own_one,own_two", "--seeds", "2", "--json", "--workers", "2")
-    assert told(shared) == told(whole)
-    assert {path.name for path in tmp_path.iterdir()} == {"tasks", "whole"}
+    assert told(shared) == told(alone)
+    assert {path.name for path in tmp_path.iterdir()} == {"tasks"}
 
     cut = tmp_path / "cut"
     cut.mkdir()
-    (cut / "manifest.json").write_bytes((tmp_path / "whole" / "manifest.json").read_bytes())
-    lines = (tmp_path / "whole" / "episodes.jsonl").read_bytes().splitlines(keepends=True)
+    (cut / "manifest.json").write_bytes((folder / "manifest.json").read_bytes())
+    lines = (folder / "episodes.jsonl").read_bytes().splitlines(keepends=True)
     (cut / "episodes.jsonl").write_bytes(lines[0] + lines[1][:40])
     again = validate("own_one,own_two", "--seeds", "2", "--json", "--out", "cut")
-    assert told(again) == told(whole)
+    assert told(again) == told(alone)
     written = (cut / "episodes.jsonl").read_bytes().splitlines(keepends=True)
     assert written[0] == lines[0]
     assert len(written) == 4
-    assert [line.split()[1] for line in again.stderr.splitlines()] == ["1/4", "2/4", "3/4", "4/4"]
+    assert [line.split()[1] for line in again.stderr.splitlines()[1:]] == ["1/4", "2/4", "3/4", "4/4"]
 
 
 @pytest.mark.sumo
 @pytest.mark.slow
-def test_another_plan_or_a_changed_task_wants_another_folder(validate, tmp_path):
-    assert validate("own_one", "--seeds", "1", "--out", "f").returncode == 0
-    other = validate("own_one", "--seeds", "2", "--out", "f")
+def test_another_plan_or_a_changed_task_wants_another_folder(validate, whole, tmp_path):
+    _, folder = whole
+    shutil.copytree(folder, tmp_path / "f")
+    other = validate("own_one,own_two", "--seeds", "1", "--out", "f")
     assert other.returncode == 2
-    assert "begun with other plan: seeds was [0] and is [0, 1]" in other.stderr
+    assert "begun with other plan: seeds was [0, 1] and is [0]" in other.stderr
     (tmp_path / "tasks" / "own.py").write_text(OWN.replace("Split it.", "Part it."))
-    changed = validate("own_one", "--seeds", "1", "--out", "f")
+    changed = validate("own_one,own_two", "--seeds", "2", "--out", "f")
     assert (changed.returncode, changed.stderr.count("\n")) == (2, 1)
     assert "other plan: task_files was" in changed.stderr
-    assert len(read_rows(tmp_path / "f", Proof)) == 1
+    assert len(read_rows(tmp_path / "f", Proof)) == 4
 
 
 @pytest.mark.long
@@ -175,7 +189,7 @@ def test_a_task_that_breaks_the_proof_costs_that_one_alone_and_is_tried_again(va
 def test_a_gate_that_fails_is_told_beneath_its_task_and_sets_the_exit_code(validate):
     ran = validate("own_twice", "--seeds", "1", "--json")
     assert ran.returncode == 1
-    first, *faults = ran.stderr.splitlines()
+    _, first, *faults = ran.stderr.splitlines()
     assert first.endswith("1/1 own_twice, seed 0")
     (failed,) = told(ran)["gates"]["oracle"]["failed"]
     assert faults == [f"    oracle: {failed['why']}"]

@@ -134,6 +134,26 @@ def test_every_figure_is_the_mean_over_the_draws() -> None:
     assert outcomes([each, each, each], Noise(0, 0.0, 0.0)) == pytest.approx((2, 1, 0))
 
 
+def test_draws_that_were_added_for_the_sign_are_in_no_mean() -> None:
+    """Added until the mean shows its sign, they would move it away from zero; they choose and tell the sign."""
+    more = drawn((10.0,), (-4.0,), (90.0,), (90.0,), planned_draws=2)
+    (each,) = choices([drive(more)], ("always",))
+    assert (each.gain.time_s, each.draws) == (3.0, 4)
+    assert (each.won, each.lost) == (0.5, 0.0)
+    assert each.gain_error_s == pytest.approx(np.std([10, -4, 90, 90], ddof=1) / 2, abs=1e-3)
+    (best_of,) = choices([drive(more)], ("best",))
+    assert best_of.gain.time_s == 3.0, "all others choose the branch for both scored draws"
+    rng = np.random.default_rng(0)
+    means = []
+    for _ in range(400):
+        gains_s = list(rng.normal(8.0, 20.0, 5))
+        while len(gains_s) < 14 and abs(np.mean(gains_s)) < 2 * np.std(gains_s, ddof=1) / len(gains_s) ** 0.5:
+            gains_s.append(rng.normal(8.0, 20.0))
+        row = drawn(*((float(gain_s),) for gain_s in gains_s), planned_draws=5)
+        means.append(row.gains(0).time_s)
+    assert abs(np.mean(means) - 8.0) < 3 * 20 / np.sqrt(5 * 400)
+
+
 def test_one_draw_is_judged_by_the_noise_floor() -> None:
     (each,) = choices([drive(decision(30.0))], ("always",))
     assert (each.draws, each.won, each.lost, each.chose_best, each.gain_error_s) == (1, None, None, None, None)
@@ -343,6 +363,12 @@ def ends(made: Future, at_s: float) -> Future:
         ({"policies": ("agent:asurado",)}, "asurada"),
         ({"policies": ("agent:asurada/nothing",)}, "nothing"),
         ({"policies": ("agent:human",)}, "person"),
+        ({"replicates": 0}, "--replicates is 0"),
+        ({"replicates": "many"}, "'auto'"),
+        ({"together": (1.5,)}, "--together"),
+        ({"together": (0.5, 0.5)}, "twice"),
+        ({"arrived": 0.1}, "--arrived"),
+        ({"ego_class": "Energy default"}, "emission class"),
     ],
 )
 def test_a_plan_that_cannot_be_run_is_refused(wrong: Json, word: str) -> None:
@@ -353,6 +379,10 @@ def test_a_plan_that_cannot_be_run_is_refused(wrong: Json, word: str) -> None:
 def test_plans_come_back_from_their_manifest() -> None:
     plan = StudyPlan("grid", shares=(0.0, 1.0), half_width_s=3.0, policies=("never", "agent:asurada"))
     assert make_study(plan.as_json()) == plan
+    auto = replace(plan, replicates="auto", together=(0.0, 0.5))
+    assert make_study(auto.as_json()) == auto
+    assert (auto.draws.start, auto.draws.stop) == (4, 14)
+    assert [replace(plan, replicates=count).draws.stop for count in (1, 4)] == [0, 3]
     with pytest.raises(UserError, match="no rerouting study"):
         make_study({"agents": ["oracle"]})
 

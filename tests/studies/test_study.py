@@ -28,7 +28,7 @@ from automotive_cosim.studies.results import load_study, read_study
 from automotive_cosim.studies.rows import NOTHING, DriveRow
 from automotive_cosim.traffic.chance import Fresh
 
-from .conftest import MORE_TRIPS, Draw
+from .conftest import EDGES, MORE_TRIPS, Draw
 
 JAMMED = """<routes>
     <vType id="car" vClass="passenger" sigma="0"/>
@@ -422,6 +422,40 @@ def test_the_command(two_ways: Draw, tmp_path: Path) -> None:
     assert "choices.csv" in text
     report(out)
     assert (out / "report.html").read_bytes() == written
+
+
+@pytest.mark.slow
+def test_several_networks_in_one_table(two_ways: Draw, tmp_path: Path) -> None:
+    """Each row is what its own study says; a second network may have trips with nothing to decide."""
+    names = ",".join(str(two_ways(more=more)) for more in ("", MORE_TRIPS))
+    words = [
+        "suite",
+        "--scenarios",
+        names,
+        "--departures",
+        "0",
+        "--seeds",
+        "0",
+        "--per-drive",
+        "1",
+        "--workers",
+        "1",
+    ]
+    text, error = invoke(*words, "--replicates", "1", "--out", str(tmp_path / "suite"), "--json")
+    assert error is None, text
+    told = json.loads(text.strip().splitlines()[-1])["networks"]
+    with (tmp_path / "suite" / "networks.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert rows == told
+    assert len(rows) == 2
+    for row, folder in zip(
+        rows, sorted(path for path in (tmp_path / "suite").iterdir() if path.is_dir()), strict=True
+    ):
+        study = read_study(folder)
+        (always,) = [each for each in study.choices if each.policy == "always"]
+        assert row["Always saves, s"] == f"{always.gain.time_s:+.1f}"
+        assert row["Edges"] == str(len(EDGES))
+        assert (folder / "report.html").is_file()
 
 
 def test_the_command_says_when_nothing_counts(two_ways: Draw, tmp_path: Path) -> None:

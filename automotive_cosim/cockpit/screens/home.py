@@ -7,6 +7,7 @@ from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.map import camera_of
 from automotive_cosim.cockpit.mapscene import ego
 from automotive_cosim.cockpit.messages import Set, Show, Skip
+from automotive_cosim.cockpit.screens import lookout
 from automotive_cosim.cockpit.screens.map import map_view, next_turn, street
 from automotive_cosim.cockpit.screens.notices import NOTICED
 from automotive_cosim.cockpit.screens.outside import PHENOMENA
@@ -53,7 +54,9 @@ def _map_card(rect: Rect, state: State) -> Widget:
     plate = Rect(rect.x + 20, rect.bottom - 84, rect.width - 40, 64)
     words = Rect(plate.x + 62, plate.y, plate.width - 190, plate.height)
     camera = camera_of(state.roads, ego(state), METRES_PER_PIXEL)
-    view = map_view(rect, "home.map", state, camera, (plate,), Show("map"))
+    noticed = lookout.plate(rect.x + 20, rect.y + 20, rect.width - 40, state)
+    over = (plate, *(card.rect for card in noticed))
+    view = map_view(rect, "home.map", state, camera, over, Show("map"))
     ahead = None if state.outside is None else state.outside.driving.ahead
     way = "" if ahead is None else distance(state.signals, ahead.route_left_m)
     turn = next_turn(state)
@@ -62,6 +65,7 @@ def _map_card(rect: Rect, state: State) -> Widget:
         look="none",
         children=(
             view,
+            *noticed,
             Card(
                 rect=plate,
                 look="plate",

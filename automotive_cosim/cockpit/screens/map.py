@@ -11,6 +11,7 @@ from automotive_cosim.cockpit.mapscene import box_of, ego, goal, incidents, jam,
 from automotive_cosim.cockpit.messages import Follow, Guide, Message, Pick, Set, Show, Zoom
 from automotive_cosim.cockpit.navigation import Turn, turns
 from automotive_cosim.cockpit.restrictions import ENTRIES_LIMIT
+from automotive_cosim.cockpit.screens import lookout
 from automotive_cosim.cockpit.screens.parts import CONTENT, choices, distance, heading, rows, search
 from automotive_cosim.cockpit.signals import VOICE
 from automotive_cosim.cockpit.state import State
@@ -55,7 +56,8 @@ def sight(state: State) -> Widget:
     ahead = next_turn(state)
     north = Rect(rect.right - 84, rect.y + 20, 64, 64)
     closer_in = Zoom(-1) if state.zoom else None
-    over = (plate, voice, closer, further, north, *((turn,) if ahead else ()))
+    noticed = lookout.plate(rect.x + 20, turn.bottom + 12 if ahead else turn.y, 440, state)
+    over = (plate, voice, closer, further, north, *((turn,) if ahead else ()), *(card.rect for card in noticed))
     silent = state.signals[VOICE.GUIDANCE] == "MUTED"
     return Card(
         rect=rect,
@@ -63,6 +65,7 @@ def sight(state: State) -> Widget:
         children=(
             map_view(rect, "map.view", state, map_camera(state), over, None, closer_in, pans=True),
             *((_turn_plate(turn, ahead, state),) if ahead else ()),
+            *noticed,
             _street_plate(plate, state),
             _orientation(north, state),
             Button(

@@ -1,0 +1,82 @@
+"""Departs on a drive: a plan becomes a running co-simulation."""
+
+from __future__ import annotations
+
+from datetime import datetime
+
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cosim.simulation import CoSimulation, couple
+from automotive_cosim.drives.plan import DrivePlan
+from automotive_cosim.episode.listener import Listener
+from automotive_cosim.scenarios import Scenario
+from automotive_cosim.scenery import open_scenario
+from automotive_cosim.tasking.draws import SEED_LIMIT, Draws, Purpose
+from automotive_cosim.traffic.base import EgoPlan
+from automotive_cosim.traffic.fork import Simulations
+
+
+def depart(plan: DrivePlan, simulations: Simulations, listener: Listener | None = None) -> CoSimulation:
+    """The drive at its first instant; whoever takes it over must close it.
+
+    Args:
+        plan: the drive.
+        simulations: warm traffic, shared with others.
+        listener: notified of progress.
+
+    Raises:
+        UnknownNameError: no such scenario, trip or driver.
+        ScenarioError: the scenario cannot be read, its trips cannot be driven in turn, or an incident does not fit.
+        SignalError: a signal's value is illegal.
+        NoRoomError: no gap opened for the car.
+        TrafficError: the traffic simulation failed.
+    """
+    listener = listener or Listener()
+    scenario = open_scenario(plan.scenario, origin=plan.origin)
+    draws = Draws(plan.family, plan.seed)
+    ego = _ego_plan(plan, scenario, draws)
+    listener.loading(scenario)
+
+    def warming(done_s: float, total_s: float) -> None:
+        listener.warming(scenario.title, done_s, total_s)
+
+    with simulations.held(scenario, plan.seed % SEED_LIMIT, warming) as simulation:
+        traffic = simulation.depart(ego)
+    try:
+        cockpit = Cockpit(
+            traffic.network,
+            rng=draws.rng(Purpose.CONTENT),
+            signals=plan.signals,
+            arrivals=plan.arrivals,
+            changes=plan.changes,
+            lookout=True,
+            driven_s=plan.driven_s,
+        )
+        world = couple(
+            traffic,
+            cockpit,
+            scenario,
+            gps_rng=draws.rng(Purpose.RECEIVER),
+            weather=plan.weather,
+            departure=ego.start or scenario.start,
+            links=scenario.connectivity,
+        )
+    except BaseException:
+        traffic.close()
+        raise
+    if listener.looks:
+        world.onlooker = listener.looked
+    return world
+
+
+def _ego_plan(plan: DrivePlan, scenario: Scenario, draws: Draws) -> EgoPlan:
+    first, *others = (scenario.trip(name) for name in plan.trips)
+    return EgoPlan(
+        first,
+        plan.driver,
+        draws.seed(Purpose.DRIVER),
+        plan.weather,
+        datetime.fromisoformat(plan.start).replace(tzinfo=scenario.start.tzinfo),
+        onward=(*others, first),
+        moods=plan.moods,
+        incidents=plan.incidents,
+    )

@@ -1,0 +1,15 @@
+"""The drive families over all shipped scenarios. They are fixed: another one gets another id."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from automotive_cosim.drives.families.country import COUNTRY
+from automotive_cosim.drives.families.motorways import MOTORWAYS
+from automotive_cosim.drives.families.towns import TOWNS
+from automotive_cosim.drives.family import Family
+
+FAMILIES: Mapping[str, Family] = {family.id: family for family in (*COUNTRY, *MOTORWAYS, *TOWNS)}
+"""Every family by its id."""
+
+__all__ = ["FAMILIES"]

@@ -1,0 +1,138 @@
+"""A family of drives: one place, season and cast of stunts, and any number of drives by seed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+import numpy as np
+
+from automotive_cosim.cockpit.arrivals import Arrival
+from automotive_cosim.contracts import Weather
+from automotive_cosim.drives.plan import APART_S, LONGEST_S, QUIET_S, SHORTEST_S, DrivePlan, Staged
+from automotive_cosim.drives.staging import ONCE, STUNTS, Cue, Spell
+from automotive_cosim.scenarios import WeatherAt
+from automotive_cosim.tasking.draws import Draws, Purpose
+
+FIRST_S = 60.0
+"""Nothing is staged before: the car is on its way and its glass, lamps and tyres have settled."""
+LAST_S = 60.0
+"""Nothing is staged later than this before the end, so that each deadline lies in the drive."""
+SPREAD_S = 25.0
+"""How far the time between two stunts is drawn above its minimum."""
+FEWEST, MOST = 4, 8
+"""Events that a drive stages, and as many baits."""
+DISTRACTORS = 3
+"""Most calls and messages."""
+
+
+class Season(StrEnum):
+    """When in the year, north and south."""
+
+    SUMMER = "summer"
+    WINTER = "winter"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Family:
+    """Draws plans. Each kind of its cast that is drawn is staged twice, as an event and as a bait, in any order.
+    What cannot be undone (``staging.ONCE``) comes in addition, in half the drives, and is either at equal rates."""
+
+    id: str
+    """Name by which commands refer to it."""
+    about: str
+    """For human readers, a sentence."""
+    season: Season
+    scenario: str
+    trips: tuple[str, ...]
+    """Trips of the scenario, driven in turn; a drive begins with any of them."""
+    starts: tuple[str, ...]
+    """Local dates and times at departure, one of which is drawn."""
+    weather: Weather
+    """The usual weather; the drawn one differs by a degree or two."""
+    cast: tuple[str, ...]
+    """Kinds of events that may be staged (``staging.STUNTS``)."""
+    driver: str = "average"
+    origin: tuple[float, float] | None = None
+    """Longitude and latitude that the network is moved to."""
+
+    def draw(self, seed: int) -> DrivePlan:
+        """The drive of a seed."""
+        rng = Draws(self.id, seed).rng(Purpose.DRIVE)
+        kinds = [kind for kind in self.cast if kind not in ONCE]
+        drawn = rng.permutation(len(kinds))[: int(rng.integers(FEWEST, MOST))]
+        roles = [(kinds[index], is_bait) for index in drawn for is_bait in (False, True)]
+        once = [kind for kind in self.cast if kind in ONCE]
+        if once and rng.random() < 0.5:
+            roles.append((once[int(rng.integers(len(once)))], bool(rng.random() < 0.5)))
+        order = [roles[index] for index in rng.permutation(len(roles))]
+        times_s, quiet_s, end_s = _times_s(len(order), rng)
+        staged = tuple(Staged(kind, at_s, bait) for (kind, bait), at_s in zip(order, times_s, strict=True))
+        warmer = round(float(rng.uniform(-1.5, 1.5)), 1)
+        weather = replace(self.weather, temperature_2m=round(self.weather.temperature_2m + warmer, 1))
+        props = [STUNTS[one.kind](Cue(one.at_s, one.is_bait, self.driver, weather, rng)) for one in staged]
+        turned = int(rng.integers(len(self.trips)))
+        return DrivePlan(
+            family=self.id,
+            seed=seed,
+            scenario=self.scenario,
+            trips=self.trips[turned:] + self.trips[:turned],
+            duration_s=end_s,
+            start=self.starts[int(rng.integers(len(self.starts)))],
+            weather=_timeline(weather, [spell for each in props for spell in each.spells]),
+            origin=self.origin,
+            driver=self.driver,
+            moods=tuple(sorted((mood for each in props for mood in each.moods), key=lambda mood: mood.at_s)),
+            changes=tuple(change for each in props for change in each.changes),
+            arrivals=_arrivals(rng, end_s),
+            incidents=tuple(incident for each in props for incident in each.incidents),
+            driven_s=max(each.driven_s for each in props),
+            staged=staged,
+            quiet_s=quiet_s,
+        )
+
+
+def _times_s(count: int, rng: np.random.Generator) -> tuple[list[float], tuple[float, float], float]:
+    """The times of the stunts, the quiet spell among them, and the end."""
+    quiet_before = int(rng.integers(1, count))
+    length_s = QUIET_S + float(round(rng.uniform(0, 60)))
+    times_s: list[float] = []
+    now_s, quiet_s = FIRST_S, (0.0, 0.0)
+    for index in range(count):
+        if index == quiet_before:
+            quiet_s = (now_s, now_s + length_s)
+            now_s += length_s
+        times_s.append(now_s)
+        now_s += APART_S + float(round(rng.uniform(0, SPREAD_S)))
+    end_s = max(SHORTEST_S, now_s + LAST_S)
+    assert end_s <= LONGEST_S, end_s
+    return times_s, quiet_s, end_s
+
+
+def _arrivals(rng: np.random.Generator, end_s: float) -> tuple[Arrival, ...]:
+    """Calls and messages that ask nothing of a watch."""
+    times_s = sorted(
+        float(round(rng.uniform(FIRST_S, end_s - LAST_S))) for _ in range(int(rng.integers(1, DISTRACTORS + 1)))
+    )
+    return tuple(Arrival("message" if rng.random() < 0.7 else "call", at_s) for at_s in times_s)
+
+
+def _timeline(usual: Weather, spells: Sequence[Spell]) -> tuple[WeatherAt, ...]:
+    """The usual weather and the spells in it; where two overlap, the one that began later counts."""
+    edges_s = sorted({0.0, *(spell.from_s for spell in spells), *(spell.to_s for spell in spells)})
+
+    def at(time_s: float) -> Weather:
+        on = [spell for spell in spells if spell.from_s <= time_s < spell.to_s]
+        return max(on, key=lambda spell: spell.from_s).weather if on else usual
+
+    entries = [WeatherAt(time_s, at(time_s)) for time_s in edges_s]
+    return tuple(_changing(entries))
+
+
+def _changing(entries: Iterable[WeatherAt]) -> Iterable[WeatherAt]:
+    before: Weather | None = None
+    for entry in entries:
+        if entry.weather != before:
+            yield entry
+        before = entry.weather

@@ -1,0 +1,230 @@
+"""What a drive can stage: each kind of event with its bait, which looks like it and asks for nothing.
+
+A stunt only sets causes: a switch, a driver's mood, weather, a vehicle. Whether an event comes of it is found on
+the drive itself, where the same causes may also lie in the road.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from automotive_cosim.cockpit.changes import CarChange
+from automotive_cosim.cockpit.signals import BODY, CABIN, ENERGY, HVAC, LIGHTS, SEAT, TYRE, Signal
+from automotive_cosim.contracts import Weather
+from automotive_cosim.drives.sky import drizzle, fog, rain, sleet
+from automotive_cosim.scenarios.incidents import AheadIncident, AnyIncident, BrakingLeader, EmergencyVehicle
+from automotive_cosim.traffic.base import DriverAt
+
+
+@dataclass(frozen=True, slots=True)
+class Spell:
+    """Other weather for a while."""
+
+    from_s: float
+    to_s: float
+    weather: Weather
+
+
+@dataclass(frozen=True, slots=True)
+class Props:
+    """What one stunt adds to a plan."""
+
+    moods: tuple[DriverAt, ...] = ()
+    changes: tuple[CarChange, ...] = ()
+    incidents: tuple[AnyIncident, ...] = ()
+    spells: tuple[Spell, ...] = ()
+    driven_s: float = 0.0
+    """How long the driver had been driving before departure."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cue:
+    """When and in what a stunt is staged."""
+
+    at_s: float
+    """Seconds after departure."""
+    is_bait: bool
+    driver: str
+    """The profile that the driver returns to."""
+    weather: Weather
+    """What the weather is otherwise."""
+    rng: np.random.Generator
+
+
+Stunt = Callable[[Cue], Props]
+
+MOOD_S = 40.0
+"""How long a driver keeps a mood."""
+LEADER_WITHIN_S = 40.0
+"""A leader that has not been found by then does not brake, lest it do so during the next stunt."""
+SPELL_S = 120.0
+"""Length of a bank of fog or a shower."""
+AHEAD_S = 420.0
+"""How long an incident on the road lasts."""
+AHEAD_M = 1400.0
+"""How far ahead it is staged: news that is a minute old is heard in time at 80 km/h."""
+BREAK_AFTER_S = 2 * 3600.0
+"""The Highway Code, rule 91: a break of at least 15 minutes after every two hours of driving."""
+
+
+# --- the driver ---------------------------------------------------------------------------------------------
+
+
+def _mood(of_event: str, of_bait: str) -> Stunt:
+    def stage(cue: Cue) -> Props:
+        mood = of_bait if cue.is_bait else of_event
+        return Props(moods=(DriverAt(cue.at_s, mood), DriverAt(cue.at_s + MOOD_S, cue.driver)))
+
+    return stage
+
+
+def _fatigue(cue: Cue) -> Props:
+    """Two hours without a break are full at that time; as a bait, one and a half."""
+    full_s = 0.75 * BREAK_AFTER_S if cue.is_bait else BREAK_AFTER_S
+    return Props(driven_s=full_s - cue.at_s)
+
+
+def _belt(cue: Cue) -> Props:
+    """The driver opens the belt; as a bait, only pulls it straight."""
+    return Props(changes=_turned(SEAT.DRIVER_BELT, cue, False, 2.0 if cue.is_bait else 90.0))
+
+
+# --- the car ------------------------------------------------------------------------------------------------
+
+
+def _turned(signal: Signal[bool], cue: Cue, value: bool, for_s: float) -> tuple[CarChange, ...]:
+    return (CarChange(cue.at_s, signal.path, value), CarChange(cue.at_s + for_s, signal.path, not value))
+
+
+def _set(cue: Cue, *values: tuple[Signal[bool] | Signal[str], bool | str]) -> tuple[CarChange, ...]:
+    return tuple(CarChange(cue.at_s, signal.path, value) for signal, value in values)
+
+
+def _door(cue: Cue) -> Props:
+    """The tailgate springs open; as a bait, somebody opens a window."""
+    if cue.is_bait:
+        return Props(changes=(CarChange(cue.at_s, CABIN.REAR_LEFT_WINDOW.path, 30.0),))
+    return Props(changes=_turned(CABIN.TRUNK, cue, True, 180.0))
+
+
+def _tyre(cue: Cue) -> Props:
+    """A tyre loses a third of its air in four minutes; as a bait, a twentieth."""
+    tyre = (TYRE.FRONT_LEFT, TYRE.FRONT_RIGHT, TYRE.REAR_LEFT, TYRE.REAR_RIGHT)[int(cue.rng.integers(4))]
+    return Props(changes=(CarChange(cue.at_s, tyre.path, 237.0 if cue.is_bait else 165.0, 240.0),))
+
+
+def _range(cue: Cue) -> Props:
+    """A cell fails and ten kilometres are left; as a bait, a hundred."""
+    return Props(changes=(CarChange(cue.at_s, ENERGY.LEVEL.path, 25.0 if cue.is_bait else 2.5, 20.0),))
+
+
+def _lamps(cue: Cue) -> Props:
+    """The driver switches the lamps off; as a bait, to dipped beam by hand."""
+    return Props(changes=_set(cue, (LIGHTS.SWITCH, "BEAM" if cue.is_bait else "OFF")))
+
+
+def _high_beam(cue: Cue) -> Props:
+    """The driver leaves high beam on; as a bait, flashes once."""
+    to_beam = _set(cue, (LIGHTS.SWITCH, "BEAM"))
+    return Props(changes=(*to_beam, *_turned(LIGHTS.HIGH_BEAM, cue, True, 1.0 if cue.is_bait else 90.0)))
+
+
+def _fog_lamps(cue: Cue) -> Props:
+    """The rear fog lamp in clear air; as a bait, in fog as thick as it is for."""
+    on = CarChange(cue.at_s + (20.0 if cue.is_bait else 0.0), LIGHTS.REAR_FOG.path, True)
+    off = CarChange(cue.at_s + 100.0, LIGHTS.REAR_FOG.path, False)
+    spells = (Spell(cue.at_s, cue.at_s + SPELL_S, fog(cue.weather, 40.0)),) if cue.is_bait else ()
+    return Props(changes=(*_set(cue, (LIGHTS.SWITCH, "BEAM")), on, off), spells=spells)
+
+
+def _glass_fog(cue: Cue) -> Props:
+    """The air is recirculated, with the fan low, for good; as a bait, for half a minute."""
+    closed = _turned(HVAC.RECIRCULATION, cue, True, 30.0) if cue.is_bait else _set(cue, (HVAC.RECIRCULATION, True))
+    return Props(changes=(CarChange(cue.at_s, HVAC.AIR_CONDITIONING.path, False), *closed))
+
+
+# --- the sky ------------------------------------------------------------------------------------------------
+
+
+def _wipers(cue: Cue) -> Props:
+    """Rain sets in, and the wipers are off; as a bait, the sensor drives them."""
+    mode = "RAIN_SENSOR" if cue.is_bait else "OFF"
+    return Props(
+        changes=_set(cue, (BODY.FRONT_WIPER, mode)),
+        spells=(Spell(cue.at_s + 5.0, cue.at_s + 5.0 + SPELL_S, rain(cue.weather)),),
+    )
+
+
+def _weather_speed(cue: Cue) -> Props:
+    """A bank of dense fog that the driver takes no notice of; as a bait, mist."""
+    until_s = cue.at_s + SPELL_S
+    careless = (DriverAt(cue.at_s, "careless"), DriverAt(until_s, cue.driver))
+    visibility_m = 1600.0 if cue.is_bait else float(round(cue.rng.uniform(30, 46)))
+    return Props(moods=careless, spells=(Spell(cue.at_s, until_s, fog(cue.weather, visibility_m)),))
+
+
+def _slippery(cue: Cue) -> Props:
+    """Freezing rain or snow that the driver takes no notice of; as a bait, a trace of drizzle."""
+    until_s = cue.at_s + SPELL_S
+    careless = (DriverAt(cue.at_s, "careless"), DriverAt(until_s, cue.driver))
+    fallen = drizzle(cue.weather) if cue.is_bait else sleet(cue.weather)
+    return Props(moods=careless, spells=(Spell(cue.at_s, until_s, fallen),))
+
+
+# --- the road -----------------------------------------------------------------------------------------------
+
+
+def _blue_light(cue: Cue) -> Props:
+    """An ambulance comes up from behind; as a bait, a van as fast."""
+    return Props(incidents=(EmergencyVehicle(from_s=cue.at_s, blue_light=not cue.is_bait),))
+
+
+def _leader_brakes(cue: Cue) -> Props:
+    """The vehicle ahead brakes hard; as a bait, it slows down gently."""
+    hard_mps2, to_kmh = (0.8, 25.0) if cue.is_bait else (6.0, 10.0)
+    until_s = cue.at_s + LEADER_WITHIN_S
+    brakes = BrakingLeader(from_s=cue.at_s, to_s=until_s, ahead_m=50.0, deceleration_mps2=hard_mps2, to_kmh=to_kmh)
+    return Props(incidents=(brakes,))
+
+
+def _ahead(what: Literal["breakdown", "roadworks", "jam", "tractor"]) -> Stunt:
+    """On the way; as a bait, on the other carriageway."""
+
+    def stage(cue: Cue) -> Props:
+        until_s = cue.at_s + AHEAD_S
+        incident = AheadIncident(what=what, from_s=cue.at_s, to_s=until_s, ahead_m=AHEAD_M, other_way=cue.is_bait)
+        return Props(incidents=(incident,))
+
+    return stage
+
+
+STUNTS: Mapping[str, Stunt] = {
+    "over_limit": _mood("hurried", "brisk"),
+    "leader_close": _mood("pressing", "calm"),
+    "fatigue": _fatigue,
+    "belt": _belt,
+    "door": _door,
+    "tyre": _tyre,
+    "range": _range,
+    "lamps": _lamps,
+    "high_beam": _high_beam,
+    "fog_lamps": _fog_lamps,
+    "glass_fog": _glass_fog,
+    "wipers": _wipers,
+    "weather_speed": _weather_speed,
+    "slippery": _slippery,
+    "blue_light": _blue_light,
+    "leader_brakes": _leader_brakes,
+    "breakdown": _ahead("breakdown"),
+    "roadworks": _ahead("roadworks"),
+    "jam_tail": _ahead("jam"),
+    "tractor": _ahead("tractor"),
+}
+"""The stunts by the kind of event that they stage."""
+
+ONCE = frozenset({"fatigue", "range"})
+"""Kinds that a drive stages as an event or as a bait, not both: a battery does not fill up again."""

@@ -1,0 +1,95 @@
+"""Trips driven one after another, over and over, for drives that last longer than any trip."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from automotive_cosim.errors import ScenarioError
+from automotive_cosim.scenarios import Trip
+from automotive_cosim.traffic.network import Network
+from automotive_cosim.traffic.ways import way_through, ways_from
+
+ONWARD_M = 300.0
+"""Distance to the destination at which the driver enters the next one: some twenty seconds in a town, so that there
+is time to reach the lane of the next turn."""
+
+
+@dataclass(frozen=True, slots=True)
+class Round:
+    """Where to drive next. A trip that ends where there is no way back, as at the rim of a network, is driven up to
+    the last edge from which one can return; what lies before such edges likewise only the first time."""
+
+    first: tuple[str, ...]
+    """Edges of the first trip."""
+    legs: tuple[tuple[str, ...], ...]
+    """Edges of the trips after it, in their order; one can go on from the end of each to the start of each."""
+
+    def following(self, network: Network, here: str, leg: int) -> tuple[str, ...]:
+        """The edges from the present destination to the end of a leg; empty if no way leads there."""
+        edges = self.legs[leg % len(self.legs)]
+        way = (here,) if here == edges[0] else way_through(network, (here, edges[0]))
+        return (*way, *edges[1:]) if way else ()
+
+
+def planned(network: Network, first: Trip, onward: Sequence[Trip]) -> Round:
+    """The round of some trips on a network.
+
+    Raises:
+        ScenarioError: one of them has no route, or one cannot go on from it to the others.
+    """
+    ways = [_way(network, trip) for trip in (first, *onward)]
+    core = _core(network, ways[0])
+    parts = [_within(way, core) for way in ways]
+    for trip, part in zip((first, *onward), parts, strict=True):
+        if not part:
+            raise ScenarioError(
+                f"no way leads on from trip {trip.name!r} to the others and back; leave it out of the round"
+            )
+    begun = ways[0][: ways[0].index(parts[0][-1]) + 1]
+    return Round(begun, tuple(parts[1:]))
+
+
+def _way(network: Network, trip: Trip) -> tuple[str, ...]:
+    way = way_through(network, (trip.from_edge, *trip.via, trip.to_edge))
+    if not way:
+        raise ScenarioError(f"trip {trip.name!r} has no route for a car")
+    return way
+
+
+def _within(way: Sequence[str], core: frozenset[str]) -> tuple[str, ...]:
+    """The part of a way from its first to its last edge in the core."""
+    places = [index for index, edge in enumerate(way) if edge in core]
+    return tuple(way[places[0] : places[-1] + 1]) if places else ()
+
+
+def _core(network: Network, way: Iterable[str]) -> frozenset[str]:
+    """The largest set of edges that can all be reached from one another and has part in a way."""
+    back = _reversed(network)
+    best: frozenset[str] = frozenset()
+    seen: set[str] = set()
+    for edge in way:
+        if edge not in seen:
+            ahead = ways_from(network, edge).length_m.keys()
+            part = frozenset(ahead & _reached(back, edge))
+            seen |= part
+            best = max(best, part, key=len)
+    return best if len(best) > 1 else frozenset()
+
+
+def _reversed(network: Network) -> Mapping[str, Sequence[str]]:
+    back: dict[str, list[str]] = {}
+    for here, ways in network.crossings.items():
+        for there in ways:
+            back.setdefault(there, []).append(here)
+    return back
+
+
+def _reached(ways: Mapping[str, Sequence[str]], start: str) -> set[str]:
+    reached, left = {start}, [start]
+    while left:
+        for following in ways.get(left.pop(), ()):
+            if following not in reached:
+                reached.add(following)
+                left.append(following)
+    return reached

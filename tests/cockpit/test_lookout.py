@@ -1,0 +1,135 @@
+"""What the car notices by itself is shown on home and map, in picture and tree; without a lookout, nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+
+from automotive_cosim.cockpit.changes import CarChange
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cockpit.language import said
+from automotive_cosim.cockpit.reach import HORIZON_M, NEWS_EVERY_S
+from automotive_cosim.cockpit.screens.lookout import ICONS, LINES
+from automotive_cosim.cockpit.signals import CABIN, ENERGY, HMI, SEAT, TYRE
+from automotive_cosim.contracts import (
+    Connectivity,
+    IncidentKind,
+    OtherVehicle,
+    RoadIncident,
+    Sight,
+    SightKind,
+    Surroundings,
+)
+
+Make = Callable[..., Cockpit]
+BLUE = OtherVehicle("ambulance", 120.0, 25.0, 10.0)
+VAN = OtherVehicle("van", 45.0, 20.0, 7.0)
+AHEAD = OtherVehicle("car", 24.0, 10.0, None)
+
+
+def full(around: Surroundings) -> Surroundings:
+    """Everything at once."""
+    incidents = tuple(
+        RoadIncident(IncidentKind(kind), "n7_6", 10.0) for kind in ("breakdown", "roadworks", "closure")
+    )
+    driving = around.driving
+    ahead = replace(driving.ahead, incidents=incidents, tunnel_distance_m=700.0)
+    others = replace(driving.around, leader=AHEAD, follower=VAN, emergency_behind=BLUE)
+    road = replace(driving.road, school_zone=True)
+    return replace(around, driving=replace(driving, ahead=ahead, around=others, road=road))
+
+
+def shown(cockpit: Cockpit, screen: str) -> dict[str, str]:
+    cockpit.open_app(screen)
+    found = [one for one in cockpit.elements() if one.resource_id.startswith("ahead.")]
+    return {element.resource_id.removeprefix("ahead."): element.text for element in found}
+
+
+def by_kind(cockpit: Cockpit) -> dict[SightKind, Sight]:
+    return {sight.kind: sight for sight in cockpit.sights}
+
+
+def test_without_a_lookout_nothing_is_shown(make: Make, around: Surroundings) -> None:
+    cockpit = make(surroundings=full(around), signals={SEAT.DRIVER_BELT.path: False})
+    assert cockpit.sights == ()
+    assert shown(cockpit, "home") == shown(cockpit, "map") == {}
+
+
+@pytest.mark.parametrize("screen", ["home", "map"])
+def test_the_screens_show_each_sight_and_no_other(make: Make, around: Surroundings, screen: str) -> None:
+    cockpit = make(surroundings=full(around), lookout=True)
+    told = {str(sight.kind): sight.text for sight in cockpit.sights}
+    assert shown(cockpit, screen) == told
+    assert len(told) == LINES
+    assert told["emergency_vehicle"] == "Emergency vehicle 120 m behind"
+    assert told["vehicle_behind"] == "Vehicle 45 m behind comes closer"
+    assert told["vehicle_ahead"] == "Vehicle ahead: 24 m"
+    assert told["school_zone"] == "In a school zone"
+
+
+def test_every_kind_has_a_look(make: Make) -> None:
+    assert ICONS.keys() == set(SightKind)
+
+
+def test_what_is_aboard(make: Make, around: Surroundings) -> None:
+    signals = {CABIN.TRUNK.path: True, ENERGY.CHARGE_FLAP.path: True, TYRE.REAR_LEFT.path: 160.0}
+    cockpit = make(surroundings=around, lookout=True, driven_s=2 * 3600.0 + 300.0, signals=signals)
+    cockpit.inject(SEAT.DRIVER_BELT.path, False)
+    told = {kind: sight.text for kind, sight in by_kind(cockpit).items()}
+    assert told[SightKind.DRIVER_BELT] == "Driver's belt is open"
+    assert told[SightKind.TAILGATE] == "Tailgate is open"
+    assert told[SightKind.CHARGE_FLAP] == "Charging flap is open"
+    assert told[SightKind.TYRE] == "Rear left tyre: 1.5 bar"
+    assert told[SightKind.DRIVING_TIME] == "Driving for 2 h 05 min"
+
+
+def test_what_is_well_aboard_is_not_mentioned(make: Make, around: Surroundings) -> None:
+    kinds = by_kind(make(surroundings=around, lookout=True)).keys()
+    assert not kinds & {SightKind.DRIVER_BELT, SightKind.TAILGATE, SightKind.TYRE, SightKind.DRIVING_TIME}
+
+
+def test_distances_are_in_the_driver_s_unit(make: Make, around: Surroundings) -> None:
+    cockpit = make(surroundings=full(around), lookout=True, signals={HMI.DISTANCE_UNIT.path: "MILES"})
+    told = by_kind(cockpit)
+    assert told[SightKind.VEHICLE_AHEAD].text == "Vehicle ahead: 79 ft"
+    assert told[SightKind.VEHICLE_AHEAD].distance_m == 24.0
+
+
+def test_nothing_beyond_the_horizon(make: Make, around: Surroundings) -> None:
+    for away_m, seen in ((HORIZON_M - 1, True), (HORIZON_M + 1, False)):
+        ahead = replace(around.driving.ahead, tunnel_distance_m=away_m)
+        cockpit = make(surroundings=replace(around, driving=replace(around.driving, ahead=ahead)), lookout=True)
+        assert (SightKind.TUNNEL in by_kind(cockpit)) is seen
+
+
+def test_an_incident_elsewhere_is_not_ahead(make: Make, around: Surroundings) -> None:
+    ahead = replace(around.driving.ahead, incidents=(RoadIncident(IncidentKind.ROADWORKS, "e0_0", 10.0),))
+    cockpit = make(surroundings=replace(around, driving=replace(around.driving, ahead=ahead)), lookout=True)
+    assert SightKind.ROADWORKS not in by_kind(cockpit)
+
+
+def test_news_comes_once_a_minute_and_only_online(make: Make, around: Surroundings) -> None:
+    cockpit = make(surroundings=around, lookout=True)
+    news = replace(
+        around.driving.ahead, incidents=(RoadIncident(IncidentKind.BREAKDOWN, "n7_6", 10.0),), jam_distance_m=None
+    )
+
+    def sense(second: float, *, online: bool = True) -> bool:
+        driving = replace(around.driving, time_s=around.driving.time_s + second, ahead=news)
+        link = around.connectivity if online else Connectivity(False, "none", 0)
+        cockpit.sense(replace(around, driving=driving, connectivity=link), 1.0)
+        return SightKind.BREAKDOWN in by_kind(cockpit)
+
+    assert not sense(1.0)
+    assert not sense(NEWS_EVERY_S - 1)
+    assert not sense(NEWS_EVERY_S, online=False)
+    assert sense(NEWS_EVERY_S + 1)
+
+
+@pytest.mark.parametrize("language", ["fr", "de", "ja"])
+def test_every_sight_is_translated(make: Make, around: Surroundings, language: str) -> None:
+    cockpit = make(surroundings=full(around), lookout=True, changes=[CarChange(0.0, CABIN.TRUNK.path, True)])
+    for sight in cockpit.sights:
+        assert said(language, sight.text) != sight.text or sight.text.startswith("Tunnel")

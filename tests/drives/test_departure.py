@@ -1,0 +1,176 @@
+"""Drives in SUMO: they depart as planned, never arrive, and can be copied."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from hashlib import sha256
+from itertools import pairwise
+from typing import Any
+
+import pytest
+
+from automotive_cosim.cockpit.arrivals import Arrival
+from automotive_cosim.cockpit.changes import CarChange
+from automotive_cosim.cockpit.signals import CABIN, CALL, SEAT
+from automotive_cosim.contracts import KMH_PER_MPS, Alert, AlertKind, IncidentKind, Weather
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.cosim.simulation import CoSimulation
+from automotive_cosim.drives.departure import depart
+from automotive_cosim.drives.families import FAMILIES
+from automotive_cosim.drives.plan import DrivePlan
+from automotive_cosim.errors import ScenarioError, UnknownNameError
+from automotive_cosim.interface.trace import canonical, plain
+from automotive_cosim.scenarios import WeatherAt
+from automotive_cosim.scenarios.incidents import AheadIncident, EmergencyVehicle
+from automotive_cosim.traffic.base import DriverAt
+from automotive_cosim.traffic.fork import Simulations
+
+DRY = Weather(16.0, 60.0, 0.0, 1, 20.0, 24000.0, 8.0)
+LAPS = DrivePlan(
+    family="laps",
+    seed=1,
+    scenario="grid",
+    trips=("tunnel", "round", "avenue"),
+    duration_s=600.0,
+    start="2026-06-09T08:30:00",
+    weather=(WeatherAt(0.0, DRY),),
+)
+
+
+@contextmanager
+def departed(plan: DrivePlan, simulations: Simulations) -> Iterator[CoSimulation]:
+    world = depart(plan, simulations)
+    try:
+        yield world
+    finally:
+        world.close()
+
+
+def driven(plan: DrivePlan, simulations: Simulations, for_s: float) -> tuple[Moment, ...]:
+    with departed(plan, simulations) as world:
+        return (world.moment, *world.advance(for_s))
+
+
+def digest(moments: tuple[Moment, ...]) -> str:
+    parts = (canonical([plain(moment.driving), dict(moment.signals), plain(moment.sights)]) for moment in moments)
+    return sha256(b"".join(parts)).hexdigest()
+
+
+@pytest.mark.slow
+def test_the_car_drives_on_at_every_destination(simulations: Simulations) -> None:
+    moments = driven(LAPS, simulations, 900.0)
+    assert len(moments) == 901
+    assert all(moment.driving.end is None for moment in moments)
+    goals = dict.fromkeys(moment.driving.ahead.route_edges[-1] for moment in moments)
+    assert len(goals) == 3
+    assert max(moment.driving.standing_s for moment in moments) < 60
+    assert all(here.driving.distance_m <= there.driving.distance_m for here, there in pairwise(moments))
+
+
+@pytest.mark.slow
+def test_the_same_plan_gives_the_same_trace(simulations: Simulations) -> None:
+    plan = replace(FAMILIES["grid_june"].draw(3), seed=1)
+    assert digest(driven(plan, simulations, 400.0)) == digest(driven(plan, simulations, 400.0))
+
+
+@pytest.mark.slow
+def test_a_branch_and_a_shadow_go_on_as_the_drive_does(simulations: Simulations) -> None:
+    plan = replace(FAMILIES["grid_january"].draw(2), seed=1)
+    with departed(plan, simulations) as world:
+        world.advance(200.0)
+        branch, shadow = world.branch(), world.shadow()
+        try:
+            own = digest(world.advance(300.0))
+            assert digest(branch.advance(300.0)) == own
+            assert digest(shadow.advance(300.0)) == own
+        finally:
+            branch.close()
+            shadow.close()
+
+
+@pytest.mark.slow
+def test_what_is_planned_comes_at_its_time(simulations: Simulations) -> None:
+    rain = replace(DRY, precipitation=4.0, weather_code=63, cloud_cover=100.0, visibility=6000.0)
+    plan = replace(
+        LAPS,
+        changes=(CarChange(30.0, SEAT.DRIVER_BELT.path, False), CarChange(40.0, CABIN.TRUNK.path, True)),
+        arrivals=(Arrival("call", 50.0),),
+        weather=(WeatherAt(0.0, DRY), WeatherAt(60.0, rain)),
+        moods=(DriverAt(70.0, "hurried"), DriverAt(100.0, "calm")),
+    )
+    moments = driven(plan, simulations, 140.0)
+
+    def first(holds: Callable[[Moment], Any]) -> int:
+        return next(second for second, moment in enumerate(moments) if holds(moment))
+
+    assert first(lambda moment: not moment.signals[SEAT.DRIVER_BELT.path]) == 30
+    assert first(lambda moment: moment.signals[CABIN.TRUNK.path]) == 40
+    assert first(lambda moment: moment.signals[CALL.RINGING.path]) in (50, 51)
+    assert first(lambda moment: moment.weather == rain) in (60, 61)
+
+    def over_kmh(moment: Moment) -> float:
+        return (moment.driving.speed_mps - (moment.driving.road.limit.mps or 0.0)) * KMH_PER_MPS
+
+    assert max(map(over_kmh, moments[:70])) < 3
+    assert max(map(over_kmh, moments[71:100])) > 8
+    assert max(map(over_kmh, moments[125:])) < 3
+
+
+@pytest.mark.slow
+def test_a_mood_that_comes_ends_what_an_alert_had_brought_about(simulations: Simulations) -> None:
+    plan = replace(LAPS, driver="hurried", moods=(DriverAt(120.0, "hurried"),))
+    with departed(plan, simulations) as world:
+        world.advance(20.0)
+        world.traffic.request(Alert(AlertKind.SPEED))
+        after = world.advance(200.0)
+    fast = [moment.driving.speed_mps > (moment.driving.road.limit.mps or 99.0) + 1 for moment in after]
+    assert not any(fast[30:98])
+    assert any(fast[102:])
+
+
+@pytest.mark.slow
+def test_a_van_is_no_ambulance(simulations: Simulations) -> None:
+    for blue_light in (True, False):
+        comes = EmergencyVehicle(from_s=60.0, behind_m=150.0, blue_light=blue_light)
+        moments = driven(replace(LAPS, scenario="beauce", trips=("plain",), incidents=(comes,)), simulations, 150.0)
+        seen = [moment.driving.around.emergency_behind is not None for moment in moments]
+        closing = [
+            follower is not None and follower.speed_mps > moment.driving.speed_mps + 3
+            for moment in moments
+            for follower in (moment.driving.around.follower,)
+        ]
+        assert any(seen) is blue_light
+        assert any(closing)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("what", ["breakdown", "roadworks", "jam"])
+def test_an_incident_ahead_is_on_the_way_and_its_bait_is_not(simulations: Simulations, what: Any) -> None:
+    for other_way in (False, True):
+        incident = AheadIncident(what=what, from_s=20.0, to_s=490.0, ahead_m=1500.0, other_way=other_way)
+        plan = replace(LAPS, scenario="beauce", trips=("plain",), incidents=(incident,))
+        moments = driven(plan, simulations, 500.0)
+        told = [one for moment in moments for one in moment.driving.ahead.incidents]
+        assert {one.kind for one in told} == {IncidentKind(what)}
+        noticed = [sight for moment in moments for sight in moment.sights if str(sight.kind) == what]
+        assert bool(noticed) is not other_way
+        assert not noticed or max(sight.distance_m or 0.0 for sight in noticed) < 1600
+
+
+@pytest.mark.parametrize(
+    ("change", "error", "told"),
+    [
+        ({"trips": ("nowhere",)}, UnknownNameError, "nowhere"),
+        ({"scenario": "atlantis"}, UnknownNameError, "atlantis"),
+        ({"driver": "nobody"}, UnknownNameError, "nobody"),
+        ({"scenario": "tokyo", "trips": ("avenues", "yamate_tunnel")}, ScenarioError, "yamate_tunnel"),
+    ],
+)
+@pytest.mark.slow
+def test_what_cannot_be_driven_is_refused(
+    simulations: Simulations, change: dict[str, Any], error: type[Exception], told: str
+) -> None:
+    with pytest.raises(error, match=told):
+        depart(replace(LAPS, **change), simulations)

@@ -1,0 +1,142 @@
+"""Laws over all drive families, without SUMO."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from datetime import datetime
+from itertools import pairwise
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from automotive_cosim.drives.families import FAMILIES
+from automotive_cosim.drives.family import FEWEST, MOST, Season
+from automotive_cosim.drives.plan import APART_S, LONGEST_S, QUIET_S, SHORTEST_S, DrivePlan, plan_json, read_plan
+from automotive_cosim.drives.staging import ONCE, STUNTS
+from automotive_cosim.errors import UserError
+from automotive_cosim.proof.world import implausible
+from automotive_cosim.scenarios import load, shipped
+from automotive_cosim.scenery import open_scenario
+from automotive_cosim.scenery.opening import network_of
+from automotive_cosim.traffic.georeference import GeoReference
+from automotive_cosim.traffic.profiles import PROFILES
+
+SEEDS = range(12)
+EVERY = [pytest.param(family, id=family.id) for family in FAMILIES.values()]
+
+
+def plans(family: Any) -> tuple[DrivePlan, ...]:
+    return tuple(family.draw(seed) for seed in SEEDS)
+
+
+def test_every_scenario_has_a_drive_in_summer_and_in_winter() -> None:
+    assert len(FAMILIES) >= 24
+    for scenario in shipped():
+        seasons = {family.season for family in FAMILIES.values() if family.scenario == scenario}
+        assert seasons == set(Season), scenario
+
+
+def test_every_stunt_is_in_a_cast_and_every_cast_is_of_stunts() -> None:
+    assert {kind for family in FAMILIES.values() for kind in family.cast} == set(STUNTS)
+    for family in FAMILIES.values():
+        assert len(set(family.cast)) == len(family.cast) > FEWEST
+
+
+@pytest.mark.parametrize("family", EVERY)
+def test_a_seed_gives_one_drive_and_another_seed_another(family: Any) -> None:
+    drawn = plans(family)
+    assert drawn == plans(family)
+    assert len({plan_json(plan) for plan in drawn}) == len(drawn)
+
+
+@pytest.mark.parametrize("family", EVERY)
+def test_a_plan_is_written_and_read(family: Any) -> None:
+    for plan in plans(family):
+        assert read_plan(plan_json(plan)) == plan
+
+
+@pytest.mark.parametrize("family", EVERY)
+def test_what_is_staged_lies_apart_and_leaves_a_quiet_spell(family: Any) -> None:
+    for plan in plans(family):
+        assert SHORTEST_S <= plan.duration_s <= LONGEST_S
+        times_s = [one.at_s for one in plan.staged]
+        assert all(later - earlier >= APART_S for earlier, later in pairwise(times_s))
+        assert times_s[-1] <= plan.duration_s - APART_S
+        begins_s, ends_s = plan.quiet_s
+        assert ends_s - begins_s >= QUIET_S
+        assert not any(begins_s <= at_s < ends_s for at_s in times_s)
+
+
+@pytest.mark.parametrize("family", EVERY)
+def test_events_and_baits_come_at_equal_rates(family: Any) -> None:
+    for plan in plans(family):
+        events = Counter(one.kind for one in plan.staged if not one.is_bait)
+        baits = Counter(one.kind for one in plan.staged if one.is_bait)
+        assert {kind: n for kind, n in events.items() if kind not in ONCE} == {
+            kind: n for kind, n in baits.items() if kind not in ONCE
+        }
+        assert FEWEST <= sum(events.values()) <= MOST
+
+
+@pytest.mark.parametrize("kind", sorted(ONCE))
+def test_what_is_staged_once_is_an_event_as_often_as_a_bait(kind: str) -> None:
+    drawn = [
+        one for family in FAMILIES.values() for plan in plans(family) for one in plan.staged if one.kind == kind
+    ]
+    baits = sum(one.is_bait for one in drawn)
+    assert abs(baits - len(drawn) / 2) < 2 * len(drawn) ** 0.5
+
+
+@pytest.mark.parametrize("family", EVERY)
+def test_a_plan_asks_only_for_what_there_is(family: Any) -> None:
+    scenario = load(family.scenario)
+    for plan in plans(family):
+        assert [scenario.trip(name).name for name in plan.trips] == list(plan.trips)
+        assert {plan.driver, *(mood.driver for mood in plan.moods)} <= PROFILES.keys()
+        assert [mood.at_s for mood in plan.moods] == sorted(mood.at_s for mood in plan.moods)
+        assert plan.weather[0].at_s == 0.0
+        assert all(here.at_s < there.at_s for here, there in pairwise(plan.weather))
+        assert all(here.weather != there.weather for here, there in pairwise(plan.weather))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("family", EVERY)
+def test_the_weather_is_of_its_place_and_season(family: Any) -> None:
+    scenario = open_scenario(family.scenario, origin=family.origin)
+    network = network_of(scenario).map
+    x_min, y_min, x_max, y_max = network.bounds_m
+    lon_deg, lat_deg = GeoReference(network).lon_lat((x_min + x_max) / 2, (y_min + y_max) / 2)
+    for plan in plans(family):
+        start = datetime.fromisoformat(plan.start).replace(tzinfo=scenario.start.tzinfo)
+        for entry in plan.weather:
+            driving = SimpleNamespace(lon_deg=lon_deg, lat_deg=lat_deg)
+            moment: Any = SimpleNamespace(weather=entry.weather, driving=driving, local_time=start)
+            assert list(implausible(moment)) == [], plan.seed
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"duration_s": 60.0}, "duration_s"),
+        ({"trips": []}, "trips"),
+        ({"start": "tomorrow"}, "start"),
+        ({"speed": 3}, "speed"),
+        ({"changes": [{"at_s": 1.0, "path": "Vehicle.Sped", "value": True}]}, "Vehicle.Speed"),
+        ({"incidents": [{"kind": "meteor"}]}, "meteor"),
+    ],
+)
+def test_a_wrong_plan_is_refused_in_one_line(change: dict[str, Any], told: str) -> None:
+    values = json.loads(plan_json(FAMILIES["grid_june"].draw(0))) | change
+    with pytest.raises(UserError) as refused:
+        read_plan(json.dumps(values), "drive.json")
+    assert told in str(refused.value)
+    assert str(refused.value).startswith("drive.json")
+    assert len(str(refused.value).splitlines()) == 1
+
+
+@pytest.mark.parametrize("text", ["", "[1", "null", "3", '"drive"', "[]"])
+def test_what_is_no_plan_is_refused(text: str) -> None:
+    with pytest.raises(UserError):
+        read_plan(text)
