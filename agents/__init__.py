@@ -15,6 +15,7 @@ from automotive_cosim.agents.native import FORMATS, NativeAgent, chosen
 from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.agents.settings import PROFILES, AgentPart, AgentSettings
 from automotive_cosim.agents.trivial import AlwaysAlert, NoOp, PressEverything, Random
+from automotive_cosim.drives.watchers import AlertAll, AlertOften, AlertOnWake, RulePerfect, Silent
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.models import ChatModel, make_model
 
@@ -46,12 +47,17 @@ __all__ = [
 ]
 
 SIMPLE: Mapping[str, Callable[[AgentSettings], Agent]] = {
+    "alert-all": lambda settings: AlertAll(),
+    "alert-often": lambda settings: AlertOften(),
+    "alert-on-wake": lambda settings: AlertOnWake(),
     "always-alert": lambda settings: AlwaysAlert(),
     "human": lambda settings: Human(),
     "no-op": lambda settings: NoOp(),
     "oracle": lambda settings: Oracle(),
     "press-everything": lambda settings: PressEverything(),
     "random": lambda settings: Random(settings.seed),
+    "rule-perfect": lambda settings: RulePerfect(),
+    "silent": lambda settings: Silent(),
 }
 """Agents without a model."""
 

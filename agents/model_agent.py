@@ -13,13 +13,16 @@ from automotive_cosim.agents.base import StageName
 from automotive_cosim.agents.marks import marked, png
 from automotive_cosim.agents.memory import Memory, Strategy, where, why
 from automotive_cosim.agents.settings import AgentProfile, AgentSettings
-from automotive_cosim.contracts import Action, Observation
+from automotive_cosim.contracts import Action, ActionType, Observation
+from automotive_cosim.drives.order import STANDING_ORDER
 from automotive_cosim.errors import ActionError
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.models.base import ChatModel
 
 LONGEST_LESSON, LONGEST_PLAN = 300, 2000
 """Characters of its own text that it carries over to the next turn."""
+WATCH_HISTORY = 20
+"""Lines of history in a watch, which lasts for hundreds of turns."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +81,7 @@ class ModelAgent:
     def reset(self, goal: str) -> None:
         """Forgets the previous episode, except for what the memory keeps."""
         self._asking.reset()
+        self._keeps_watch = goal == STANDING_ORDER
         self._history: list[str] = []
         self._done: list[str] = []
         self._recalled: tuple[str, ...] = ()
@@ -124,7 +128,8 @@ class ModelAgent:
         self._asking.note(StageName.REMEMBER, observation, "\n".join(self._recalled) or "nothing of this place")
 
     def _look_back(self, last: _Turn, now: Observation) -> None:
-        lesson = self._reflect(last, now) if self._profile.reflects else ""
+        has_waited = self._keeps_watch and last.action is not None and last.action.action_type is ActionType.WAIT
+        lesson = self._reflect(last, now) if self._profile.reflects and not has_waited else ""
         done = prompt.action_words(last.action, last.seen)
         line = prompt.summary(
             len(self._history) + 1, last.action, now.feedback, prompt.target(last.action, last.seen), lesson
@@ -147,7 +152,8 @@ class ModelAgent:
         if self._sees and seen.screenshot is not None:
             with_marks = _marked(seen)
             pictures = (png(seen.screenshot), *([] if with_marks is None else [with_marks]))
-        text = prompt.turn(self._profile, seen, self._history, plan, self._recalled, bool(pictures))
+        history = self._history[-WATCH_HISTORY:] if self._keeps_watch else self._history
+        text = prompt.turn(self._profile, seen, history, plan, self._recalled, bool(pictures))
         self._asking.note(StageName.PERCEIVE, seen, text)
         reply, asked = self._asking.ask(text, pictures)
         try:

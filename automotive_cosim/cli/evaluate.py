@@ -24,6 +24,7 @@ from automotive_cosim.cli.batches import (
     words,
 )
 from automotive_cosim.cli.options import AsJson, TasksFrom, number, whole_number
+from automotive_cosim.cli.watches import watch
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.errors import InfrastructureError
 
@@ -132,10 +133,17 @@ def evaluate(
         ),
     ] = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Show the plan and exit.")] = False,
+    drives: Annotated[
+        str | None,
+        typer.Option(
+            help="Drives instead of tasks: families, patterns, scenarios, seasons or all; separated by commas.",
+            show_default=False,
+        ),
+    ] = None,
     tasks_from: TasksFrom = None,
     as_json: AsJson = False,
 ) -> None:
-    """Run agents over tasks, scenarios and seeds. Rerun the command to resume."""
+    """Run agents over tasks, scenarios and seeds, or over drives. Rerun the command to resume."""
     from automotive_cosim.cli.console import Console
     from automotive_cosim.errors import UnknownNameError
     from automotive_cosim.report.results import read_results, standings
@@ -156,6 +164,10 @@ def evaluate(
     values |= {"repeats": repeats} if repeats is not None else {}
     values |= {"held_out": True} if held_out else {}
     values |= {"everywhere": True} if everywhere else {}
+    if drives is not None:
+        where = executor_of(executor, workers, ray_address, ray_send)
+        watch(values | {"drives": words("drives", drives)}, out, where, retries, dry_run=dry_run, as_json=as_json)
+        return
     plan = make_plan(values)
     folder = out or _folder(plan)
     where = executor_of(executor, workers, ray_address, ray_send)

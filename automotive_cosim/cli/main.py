@@ -21,6 +21,7 @@ from automotive_cosim.cli import (
     compare,
     context,
     doctor,
+    drive,
     evaluate,
     mcp,
     memory,
@@ -53,6 +54,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 app.command()(run.run)
+app.command()(drive.drive)
 app.command()(validate.validate)
 app.command("eval")(evaluate.evaluate)
 app.command()(results.report)

@@ -16,14 +16,18 @@ Folder = Annotated[Path, typer.Argument(help="Results folder of `eval`.", show_d
 
 @reads_results
 def report(folder: Folder, tasks_from: TasksFrom = None) -> None:
-    """Write report.html, tables and plots into the folder of an evaluation or a study."""
+    """Write report.html, tables and plots into the folder of an evaluation, of tasks or drives, or a study."""
+    from automotive_cosim.report.drives import write_drives
     from automotive_cosim.report.evaluation import write_report
     from automotive_cosim.report.results import read_results
     from automotive_cosim.run.store import read_manifest
     from automotive_cosim.studies.page import write_study
 
-    if "study" in read_manifest(folder)["plan"]:
+    plan = read_manifest(folder)["plan"]
+    if "study" in plan:
         page = write_study(folder)
+    elif "drives" in plan:
+        page = write_drives(folder)
     else:
         page = write_report(folder)
         typer.echo(str(read_results(folder).coverage))

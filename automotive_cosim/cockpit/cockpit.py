@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from copy import copy
+from datetime import timedelta
 from difflib import get_close_matches
 from typing import Any, TypeVar
 
@@ -25,6 +26,7 @@ from automotive_cosim.cockpit.cabin import CabinStart
 from automotive_cosim.cockpit.changes import CarChange, schedule
 from automotive_cosim.cockpit.content import content
 from automotive_cosim.cockpit.display import Display
+from automotive_cosim.cockpit.fresh import put_back
 from automotive_cosim.cockpit.map import road_map
 from automotive_cosim.cockpit.messages import Ask, CallEmergency, Deed, Message, Pan, Set, WarnDriver
 from automotive_cosim.cockpit.navigation import Navigation
@@ -171,6 +173,15 @@ class Cockpit:
         for path, value in self._state.injected.items():
             self.signals[named(path)] = value
         self._tree = None
+
+    def freshened(
+        self, departed: Cockpit, surroundings: Surroundings, way: timedelta, *, with_air: bool
+    ) -> Cockpit:
+        """A copy as if it had just departed here, for the arguments of ``fresh.put_back``."""
+        twin = self.copy()
+        put_back(twin._state, departed._state, surroundings, way, with_air=with_air)
+        twin._tree = None
+        return twin
 
     def inject(self, path: str, value: Any) -> None:
         """Sets a signal directly, bypassing switches and physics, for tests and studies.

@@ -45,6 +45,27 @@ class Car:
         gps = None if self.gps is None else self.gps.copy()
         return replace(self, cockpit=self.cockpit.copy(), gps=gps, modem=self.modem.copy())
 
+    def freshened(self, departed: Cockpit, now: Moment, *, with_air: bool) -> tuple[Car, Moment]:
+        """The same car at the same spot as if it had just departed there, at its departure's time of day. The road
+        keeps its own: what is posted for certain hours goes by that.
+
+        Args:
+            departed: its cockpit at its departure.
+            now: its present moment.
+            with_air: whether air, glass, seats and tyres are put back too.
+
+        Returns:
+            The car, and the moment as that car has it.
+        """
+        way = timedelta(seconds=now.time_s - self.departure_s)
+        earlier = now.earlier(way)
+        cockpit = self.cockpit.freshened(departed, earlier.surroundings, way, with_air=with_air)
+        departure = (self.departure.astimezone(UTC) - way).astimezone(self.departure.tzinfo)
+        signals, commands = cockpit.signals.snapshot(), cockpit.commands()
+        return replace(self, cockpit=cockpit, departure=departure), replace(
+            earlier, signals=signals, commands=commands
+        )
+
     def sense(
         self, traffic: Traffic, passed: tuple[DrivingState, ...], events: tuple[Event, ...], dt_s: float
     ) -> Moment:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from datetime import datetime
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime, timedelta
 from typing import Any
 
 from automotive_cosim.contracts import Connectivity, DrivingState, GpsFix, Sight, Surroundings, Weather
@@ -35,6 +35,11 @@ class Moment:
     """Everything that can be commanded: actuator signals, app data, sent messages and requests."""
     sights: tuple[Sight, ...] = ()
     """What the car notices and shows by itself; empty if it has no such equipment."""
+
+    def earlier(self, by: timedelta) -> Moment:
+        """The same at an earlier time of day; what the car has sensed is not changed."""
+        clock = (self.local_time.astimezone(UTC) - by).astimezone(self.local_time.tzinfo)
+        return replace(self, local_time=clock, context=replace(self.context, local_time=clock))
 
     @property
     def surroundings(self) -> Surroundings:

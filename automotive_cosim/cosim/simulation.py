@@ -7,7 +7,7 @@ advance:  road -> receiver and sky -> cockpit -> place and law, once every simul
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 
 import numpy as np
@@ -68,6 +68,11 @@ class CoSimulation:
             moments.append(self.moment)
             left_s -= tick_s
         return tuple(moments)
+
+    def freshened(self, departed: Cockpit, *, with_air: bool) -> CoSimulation:
+        """This drive with the car as if it had just departed here (``Car.freshened``); the road is the same one."""
+        car, moment = self.car.freshened(departed, self.moment, with_air=with_air)
+        return replace(self, car=car, moment=moment)
 
     def branch(self) -> CoSimulation:
         """An exact copy that is independent from this instant."""

@@ -5,4 +5,10 @@ staging    what can be staged, each kind with its bait
 family     draws plans from a seed
 families/  the families over all scenarios
 departure  a plan -> a running co-simulation
+events/    kinds of events, found on the drive itself
+wakes      what wakes an agent that waits
+watch      an agent's session on a drive
+judge      what became of each event, and what each act was
+score      what that comes to
+watchers   the rule-perfect watcher, and trivial ones
 """

@@ -185,10 +185,9 @@ class Session:
 
     def _proceed(self, action: Action | None, feedback: Feedback, cost_s: float = 0.0) -> None:
         """Lets the action's time pass, plus ``cost_s``."""
-        waited_s = action.seconds if action and action.action_type is ActionType.WAIT else None
-        self._advance(self.conditions.action_cost_s * (waited_s or 1) + cost_s)
+        feedback = self._spend(action, feedback, cost_s)
         self.elements, self.observation = _seen(
-            self.world, self.goal, self.conditions, self.shown, self.moments[0].time_s, feedback
+            self.world, self.goal, self._channels(action), self.shown, self.moments[0].time_s, feedback
         )
         self.steps.append(
             trace.Step(len(self.steps), self.world.moment, self.elements, action, feedback, self.thought_s)
@@ -197,6 +196,16 @@ class Session:
         end = self._ended()
         if end is not None:
             self._finish(end)
+
+    def _spend(self, action: Action | None, feedback: Feedback, cost_s: float) -> Feedback:
+        """Lets an action's time pass, and returns what the agent is told of its result."""
+        waited_s = action.seconds if action and action.action_type is ActionType.WAIT else None
+        self._advance(self.conditions.action_cost_s * (waited_s or 1) + cost_s)
+        return feedback
+
+    def _channels(self, action: Action | None) -> frozenset[Channel]:
+        """The channels of the observation after an action."""
+        return self.conditions.given
 
     def _advance(self, duration_s: float) -> None:
         self.moments += self._heard(self.world.advance(duration_s))
@@ -227,7 +236,7 @@ def beginning(
     first = world.moment
     told = shown(conditions.geo, Geo(), drive[0] if drive else first)
     feedback = Feedback(FeedbackCode.NONE, "")
-    elements, observation = _seen(world, goal, conditions, told, first.time_s, feedback)
+    elements, observation = _seen(world, goal, conditions.given, told, first.time_s, feedback)
     return {
         "world": world,
         "goal": goal,
@@ -243,9 +252,14 @@ def beginning(
 
 
 def _seen(
-    world: CoSimulation, goal: str, conditions: Conditions, told: Shown, begun_s: float, feedback: Feedback
+    world: CoSimulation,
+    goal: str,
+    channels: frozenset[Channel],
+    told: Shown,
+    begun_s: float,
+    feedback: Feedback,
 ) -> tuple[tuple[Element, ...], Observation]:
     """The elements on the screen, and the agent's observation."""
     elements = world.cockpit.elements()
-    seen = observe(world, goal, begun_s, elements, feedback, conditions.given)
+    seen = observe(world, goal, begun_s, elements, feedback, channels)
     return elements, told.observation(seen, world.moment)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from datetime import datetime
+from datetime import datetime, timedelta
 from itertools import product
 from typing import Any
 
@@ -115,7 +115,7 @@ class SituationFinder:
             for trip, wait_s in product(trips, waits_s):
                 plan, traffic = self._depart(simulation, half, trip, draws, wait_s)
                 try:
-                    drive = self._drive_up(self._couple(traffic, half, plan, draws), half)
+                    drive = self._drive_up(_Drive.begun(self._couple(traffic, half, plan, draws)), half)
                     if drive is not None:
                         return self._handed_over(draws, simulation, half, plan, drive)
                 except BaseException:
@@ -192,20 +192,30 @@ class SituationFinder:
             world.onlooker = self._listener.looked
         return world
 
-    def _drive_up(self, world: CoSimulation, half: Half) -> _Drive | None:
+    def _drive_up(self, begun: _Drive, half: Half) -> _Drive | None:
         """The drive up to the trigger; None if that does not hold within its time limit."""
-        trigger = half.trigger
+        trigger, world = half.trigger, begun.world
         moments = [world.moment]
         departed_s, since_s = world.moment.time_s, None
         while (now := world.moment).time_s - departed_s < trigger.within_s and now.driving.end is None:
             self._has_signs = self._has_signs or now.driving.road.limit.is_posted
-            is_due = now.time_s - departed_s >= trigger.after_s
-            is_so = _motion(now) in half.start.motions and trigger.condition(now)
-            holds = is_due and is_so and self._rests(half, now)
+            holds = now.time_s - departed_s >= trigger.after_s and self._holds(half, now)
             since_s = (now.time_s if since_s is None else since_s) if holds else None
             if since_s is not None and now.time_s - since_s >= trigger.for_s:
-                return _Drive(world, tuple(moments))
+                return replace(begun, moments=tuple(moments))
             moments += self._advanced(world)
+        return None
+
+    def _holds(self, half: Half, moment: Moment) -> bool:
+        is_so = _motion(moment) in half.start.motions and half.trigger.condition(moment)
+        return is_so and self._rests(half, moment)
+
+    def _freshness(self, half: Half, drive: _Drive) -> bool | None:
+        """Whether the situation still holds in the car as it departed: with its air (true), or without, if that is
+        what the trigger waits for (false); None if it waits for battery or clock."""
+        for with_air in (True, False):
+            if self._holds(half, drive.world.freshened(drive.departed, with_air=with_air).moment):
+                return with_air
         return None
 
     def _rests(self, half: Half, moment: Moment) -> bool:
@@ -222,11 +232,13 @@ class SituationFinder:
     def _handed_over(
         self, draws: Draws, simulation: Simulation, half: Half, plan: EgoPlan, drive: _Drive
     ) -> HandOver:
-        trigger_s = drive.moments[-1].time_s
+        trigger_s, freshness = drive.moments[-1].time_s, self._freshness(half, drive)
         rule = "" if self._has_own_law else bound(half, drive.moments[-1].context)
         if self._spec.mode is Mode.MONITORING:
             drive.world.close()
             drive = self._watch(simulation, half, plan, draws, drive)
+        if freshness is not None:
+            drive = drive.freshened(freshness)
         instance = replace(self._draw(draws, drive.world.cockpit.content), rule=rule)
         if self._spec.mode is Mode.MONITORING:
             after_s = trigger_s - drive.world.moment.time_s
@@ -248,14 +260,14 @@ class SituationFinder:
         lure = Arrival("message", whole_s - lead_s * (1 - lure_share))
         traffic = simulation.depart(plan)
         try:
-            world = self._couple(traffic, half, plan, draws, (lure,))
-            moments = [world.moment]
+            begun = _Drive.begun(self._couple(traffic, half, plan, draws, (lure,)))
+            world, moments = begun.world, list(begun.moments)
             while world.moment.time_s < trigger_s - lead_s - 1e-9:
                 moments += self._advanced(world)
         except BaseException:
             traffic.close()
             raise
-        return _Drive(world, tuple(moments))
+        return replace(begun, moments=tuple(moments))
 
     def _advanced(self, world: CoSimulation) -> tuple[Moment, ...]:
         moments = world.advance(TICK_S)
@@ -272,7 +284,20 @@ class _Drive:
     """A running drive, and its moments from departure to now."""
 
     world: CoSimulation
+    departed: Cockpit
+    """The cockpit at departure."""
     moments: tuple[Moment, ...]
+
+    @classmethod
+    def begun(cls, world: CoSimulation) -> _Drive:
+        return cls(world, world.cockpit.copy(), (world.moment,))
+
+    def freshened(self, with_air: bool) -> _Drive:
+        """The same with the car as if it had just departed where it is now; the way there has the earlier clock."""
+        way = timedelta(seconds=self.moments[-1].time_s - self.moments[0].time_s)
+        world = self.world.freshened(self.departed, with_air=with_air)
+        before = (moment.earlier(way) for moment in self.moments[:-1])
+        return replace(self, world=world, moments=(*before, world.moment))
 
 
 def _motion(moment: Moment) -> Motion:

@@ -42,6 +42,8 @@ class Page:
     plan: str
     result: str
     """Code of the last result."""
+    told: str
+    """Its words."""
     gps: str
     memory: tuple[str, ...]
     before: tuple[str, ...]
@@ -65,6 +67,7 @@ class Page:
             done=lines("Done so far"),
             plan=sections.get("Your plan", ""),
             result=sections.get("Last result", "").partition(":")[0],
+            told=sections.get("Last result", "").partition(": ")[2],
             gps=sections.get("Where the car is", ""),
             memory=lines("What worked here before"),
             before=lines("The screen before"),

@@ -52,8 +52,10 @@ def _answer(page: Page) -> str:
     if isinstance(decided, Decline):
         return _say(decided.because, _status(decided.status, decided.reason))
     if isinstance(decided, Wait):
-        return _say(decided.because, {"action_type": "wait", "seconds": decided.seconds})
-    return _go_on(page, decided.because, (*decided.moves, ("status", "complete", "none")), 0)
+        wait: dict[str, object] = {"action_type": "wait"}
+        return _say(decided.because, wait if decided.seconds is None else wait | {"seconds": decided.seconds})
+    end = (("status", "complete", "none"),) if decided.declares else ()
+    return _go_on(page, decided.because, (*decided.moves, *end), 0)
 
 
 def _decide(page: Page) -> Course | Decline | Wait:

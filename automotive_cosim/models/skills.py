@@ -9,6 +9,7 @@ returns one of them. The words are taken from a task's first phrasings; its last
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -30,6 +31,8 @@ class Course:
 
     because: str
     moves: tuple[SkillMove, ...]
+    declares: bool = True
+    """Whether it is complete with the last move; a watch goes on."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +49,8 @@ class Wait:
     """Nothing has to be done yet."""
 
     because: str
-    seconds: int = 1
+    seconds: int | None = 1
+    """None waits until something changes, as only a watch does."""
 
 
 SkillDecision = Course | Decline | Wait
@@ -109,6 +113,36 @@ def _watch_speed(page: Page) -> SkillDecision:
     return Decline("not_needed", "already_so", f"{speed:.0f} km/h is within the limit of {limit:.0f}.")
 
 
+TELLS: tuple[tuple[str, str], ...] = (
+    (r"belt: driver's belt open", "seat_belt"),
+    (r"behind: blue light", "yield"),
+    (r"breakdown: in \d{1,3} m", "move_over"),
+    (r"(jam|roadworks): in \d{1,3} m", "traffic"),
+    (r"vehicle ahead: .* 0\.\d s", "distance"),
+    (r"open: .*(trunk|flap)", "vehicle"),
+    (r"tyre: lowest 1\d\d kPa", "vehicle"),
+    (r"(glass|rain): .* [2-9]\d\.\d%", "visibility"),
+    (r"weather: .*(snow|freezing|rime)", "slippery"),
+    (r"driving time: [2-9]\.", "fatigue"),
+)
+"""What may have changed on a watch, and the alert that it asks for."""
+
+
+def _keep_watch(page: Page) -> SkillDecision:
+    """Tells what has just changed, if it is something to tell."""
+    changed = page.told.split("; ")
+    speed, limit = page.number("speed_kmh"), page.limit_kmh()
+    too_fast = speed is not None and limit is not None and speed > limit + SPEEDING_MARGIN_KMH
+    if too_fast and any(change.startswith(("speed: ", "limit: ")) for change in changed):
+        because = f"{speed:.0f} km/h where {limit:.0f} is the limit."
+        return Course(because, (call("show_alert", kind="speed"),), declares=False)
+    for change in changed:
+        kind = next((kind for pattern, kind in TELLS if re.match(pattern, change)), None)
+        if kind is not None:
+            return Course(f"The car says: {change}.", (call("show_alert", kind=kind),), declares=False)
+    return Wait("Nothing has to be done now.", seconds=None)
+
+
 def _tell_limit(page: Page) -> SkillDecision:
     limit = page.limit_kmh()
     if limit is None:
@@ -159,6 +193,7 @@ _FRONT_FOG = r"(front fogs?\b|fog lights at the front)"
 _HIGH_BEAM = r"((high|full|main) (beam|lights)|far lights|high lights|full headlights|\bbrights\b)"
 
 SKILLS: tuple[Skill, ...] = (
+    Skill((r"^keep watch while i drive",), _keep_watch),
     Skill(
         (
             rf"(still burning|leave|keep|put it out|flashed).*{_REAR_FOG}",

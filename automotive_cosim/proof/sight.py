@@ -1,21 +1,24 @@
 """What tells the halves of a pair apart at first sight, and what their declared difference may change.
 
-A pair declares kinds of difference (``tasking.task.Differs``). Each frees some facets of the first observation. All
-others have to be the same, or an agent could tell the halves apart by what has nothing to do with the task.
+A pair declares kinds of difference (``tasking.task.Differs``). Each frees some facets of the first observation. A
+fact of an observation follows from one facet or several; unless one of them is free, it has to be the same in both
+halves to the last digit, or an agent could tell them apart by what has nothing to do with the task.
 """
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping
+from dataclasses import fields, replace
 from datetime import datetime
 from enum import StrEnum
 from typing import Any
 
+from automotive_cosim.cockpit.screens.notices import LOW_KPA, NOTICED, TYRES
 from automotive_cosim.cockpit.signals import GLASS
-from automotive_cosim.contracts import Element, Observation, VehicleState
+from automotive_cosim.contracts import BoundingBox, Element, Observation, VehicleState
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.geo.context import GeoContext
+from automotive_cosim.geo.rules import Rule
 from automotive_cosim.tasking.task import Differs
 
 
@@ -24,105 +27,119 @@ class Facet(StrEnum):
 
     WORDS = "what the driver says"
     PLACE = "the place"
-    CLIMATE = "the climate"
     ROAD = "the road"
     SIGN = "the sign"
-    VIEW = "the map and the way ahead"
+    VIEW = "where on the road"
     LINK = "fix and connection"
-    MOTION = "gear and restrictions"
+    GEAR = "gear and restrictions"
     SPEED = "the speed"
     TRAFFIC = "the car in front"
     CLOCK = "the clock"
-    SKY = "light and sun"
+    LIGHT = "the light"
     WEATHER = "the weather"
-    OUTSIDE = "what reaches the car from outside"
-    LAMPS = "the lamps"
     CABIN = "air and glass of the cabin"
     SETTINGS = "the settings"
-    BATTERY = "the battery"
-    SCREEN = "the screen"
+    CAR = "the rest of the car"
 
 
 _DRIVING = {Facet.SPEED, Facet.TRAFFIC, Facet.VIEW}
-"""What other drivers and another pace change."""
-_SKY = {Facet.SKY, Facet.OUTSIDE, Facet.LAMPS, Facet.CABIN, *_DRIVING}
+"""What another pace changes: where on the road the situation comes about, and with whom."""
 FREED: Mapping[Differs, frozenset[Facet]] = {
-    Differs.PLACE: frozenset({Facet.PLACE, Facet.SIGN, Facet.CLIMATE}),
-    Differs.ROAD: frozenset(
-        {Facet.PLACE, Facet.ROAD, Facet.SIGN, Facet.LINK, Facet.OUTSIDE, Facet.LAMPS, Facet.MOTION, *_DRIVING}
-    ),
-    Differs.TRAFFIC: frozenset({Facet.MOTION, *_DRIVING}),
-    Differs.WEATHER: frozenset({Facet.WEATHER, *_SKY}),
-    Differs.VISIBILITY: frozenset({Facet.WEATHER, *_SKY}),
-    Differs.DATE: frozenset({Facet.CLOCK, Facet.CLIMATE, Facet.ROAD, Facet.SIGN, *_SKY}),
-    Differs.TIME: frozenset({Facet.CLOCK, Facet.ROAD, Facet.SIGN, *_SKY}),
-    Differs.MOTION: frozenset({Facet.MOTION, Facet.SCREEN, *_DRIVING}),
+    Differs.PLACE: frozenset({Facet.PLACE, Facet.SIGN}),
+    Differs.ROAD: frozenset({Facet.PLACE, Facet.ROAD, Facet.SIGN, Facet.LINK, *_DRIVING}),
+    Differs.TRAFFIC: frozenset({*_DRIVING}),
+    Differs.WEATHER: frozenset({Facet.WEATHER, Facet.CABIN, *_DRIVING}),
+    Differs.VISIBILITY: frozenset({Facet.WEATHER, *_DRIVING}),
+    Differs.DATE: frozenset({Facet.CLOCK, Facet.LIGHT, Facet.SIGN, *_DRIVING}),
+    Differs.TIME: frozenset({Facet.CLOCK, Facet.LIGHT, Facet.SIGN, *_DRIVING}),
+    Differs.MOTION: frozenset({Facet.GEAR, *_DRIVING}),
     Differs.SETTINGS: frozenset({Facet.SETTINGS, Facet.CABIN}),
 }
-"""What each kind of difference may change. A road has its tunnels; the rules that the context names follow from all
-of it and are free."""
+"""What each kind of difference changes by itself; what follows from that names it among its causes."""
 
-READINGS: Mapping[str, tuple[Facet, float]] = {
-    "speed_kmh": (Facet.SPEED, 0.1),
-    "gear": (Facet.MOTION, 0.0),
-    "restrictions": (Facet.MOTION, 0.0),
-    "ambient_temperature_c": (Facet.WEATHER, 0.1),
-    "cabin_temperature_c": (Facet.CABIN, 1.0),
-    "cabin_humidity_pct": (Facet.CABIN, 6.0),
-    "rain_intensity_pct": (Facet.OUTSIDE, 1.0),
-    "driver_temperature_set_c": (Facet.SETTINGS, 0.0),
-    "fan_speed_pct": (Facet.SETTINGS, 0.0),
-    "is_low_beam_on": (Facet.LAMPS, 0.0),
-    "is_high_beam_on": (Facet.LAMPS, 0.0),
-    "is_front_fog_on": (Facet.LAMPS, 0.0),
-    "is_rear_fog_on": (Facet.LAMPS, 0.0),
-    "is_hazard_on": (Facet.LAMPS, 0.0),
-    "energy_level_pct": (Facet.BATTERY, 1.5),
-    "range_km": (Facet.BATTERY, 6.0),
-    "speed_limit_sign_kmh": (Facet.ROAD, 0.0),
-    "leader_gap_m": (Facet.TRAFFIC, 0.0),
-    "leader_time_to_collision_s": (Facet.TRAFFIC, 0.0),
+READINGS: Mapping[str, frozenset[Facet]] = {
+    name: frozenset(causes)
+    for name, causes in {
+        "speed_kmh": {Facet.SPEED},
+        "gear": {Facet.GEAR},
+        "restrictions": {Facet.GEAR, Facet.SPEED},
+        "ambient_temperature_c": {Facet.WEATHER},
+        "cabin_temperature_c": {Facet.CABIN},
+        "cabin_humidity_pct": {Facet.CABIN},
+        "rain_intensity_pct": {Facet.WEATHER, Facet.ROAD},
+        "driver_temperature_set_c": {Facet.SETTINGS},
+        "fan_speed_pct": {Facet.SETTINGS},
+        "is_low_beam_on": {Facet.LIGHT, Facet.ROAD, Facet.SETTINGS},
+        "is_high_beam_on": {Facet.SETTINGS},
+        "is_front_fog_on": {Facet.SETTINGS},
+        "is_rear_fog_on": {Facet.SETTINGS},
+        "is_hazard_on": {Facet.SETTINGS},
+        "energy_level_pct": {Facet.CAR},
+        "range_km": {Facet.CAR},
+        "speed_limit_sign_kmh": {Facet.SIGN},
+        "leader_gap_m": {Facet.TRAFFIC},
+        "leader_time_to_collision_s": {Facet.TRAFFIC},
+    }.items()
 }
-"""Facet of each reading, and by how much it may differ all the same: what one or two minutes of driving make, by
-which the same situation comes earlier or later."""
-_ELEMENTS: Mapping[str, Facet] = {
-    "home.map": Facet.VIEW,
-    "map.": Facet.VIEW,
-    "home.street": Facet.VIEW,
-    "home.turn": Facet.VIEW,
-    "home.route": Facet.VIEW,
-    "home.speed": Facet.SPEED,
-    "status.speed": Facet.SPEED,
-    "status.gear": Facet.MOTION,
-    "status.clock": Facet.CLOCK,
-    "status.limit_sign": Facet.ROAD,
-    "status.connectivity": Facet.LINK,
-    "status.gps": Facet.LINK,
-    "status.outside_temperature": Facet.WEATHER,
-    "status.low_beam": Facet.LAMPS,
-    "status.high_beam": Facet.LAMPS,
-    "home.outside": Facet.OUTSIDE,
-    "home.cabin": Facet.CABIN,
-    "home.battery": Facet.BATTERY,
-    "home.range": Facet.BATTERY,
-    "status.battery": Facet.BATTERY,
-    "dock.": Facet.SETTINGS,
+"""What each reading follows from. In a tunnel no rain falls, and lamps on auto come on."""
+_ELEMENTS: Mapping[str, frozenset[Facet]] = {
+    begin: frozenset(causes)
+    for begin, causes in {
+        "home.map": {Facet.VIEW},
+        "map.": {Facet.VIEW},
+        "home.street": {Facet.VIEW, Facet.ROAD},
+        "home.turn": {Facet.VIEW},
+        "home.route": {Facet.VIEW},
+        "home.speed": {Facet.SPEED},
+        "status.speed": {Facet.SPEED},
+        "status.gear": {Facet.GEAR},
+        "status.clock": {Facet.CLOCK},
+        "status.limit_sign": {Facet.SIGN},
+        "status.connectivity": {Facet.LINK},
+        "status.gps": {Facet.LINK},
+        "status.outside_temperature": {Facet.WEATHER},
+        "status.low_beam": {Facet.LIGHT, Facet.ROAD, Facet.SETTINGS},
+        "status.": {Facet.CAR},
+        "home.outside": {Facet.WEATHER, Facet.ROAD, Facet.LIGHT},
+        "home.cabin": {Facet.CABIN},
+        "dock.": {Facet.SETTINGS},
+        "": {Facet.CAR},
+    }.items()
 }
-"""Facet of elements by the beginning of their resource id; all others belong to the screen."""
-_EXACT = frozenset({Facet.SCREEN, Facet.SETTINGS})
-"""Facets whose elements are compared with their numbers; those of the others are the readings'."""
-_FOLLOWS = ("home.media.", "home.cabin_note", "status.notifications")
-"""Elements that follow from others: the song from the clock, the note and the notices from the car's readings."""
-_LINES: Mapping[str, Facet] = {
-    "place": Facet.PLACE,
-    "climate": Facet.CLIMATE,
+"""What elements follow from, by the beginning of their resource id; the first that fits."""
+_MAP = frozenset({Facet.VIEW})
+"""Elements without a name: the streets on the map."""
+_LINES: Mapping[str, frozenset[Facet]] = {
+    "place": frozenset({Facet.PLACE}),
+    "gps": frozenset({Facet.PLACE, Facet.VIEW}),
+    "road": frozenset({Facet.ROAD, Facet.SIGN, Facet.VIEW, Facet.PLACE}),
+    "motion": frozenset({Facet.SPEED, Facet.VIEW, Facet.PLACE}),
+    "sky": frozenset({Facet.CLOCK, Facet.PLACE, Facet.VIEW}),
+    "weather": frozenset({Facet.WEATHER, Facet.PLACE}),
+    "climate": frozenset({Facet.PLACE, Facet.CLOCK}),
 }
-"""Facet of the lines of the geo-context by their source; the motion and the position are read from the car."""
-CLOCKS_WITHIN_S = 300.0
-"""How far apart the local times of hand-overs may be; a later departure into the same traffic makes two minutes."""
-FOG_WITHIN = 0.2
-"""How much the share of fogged glass may differ."""
-_NUMBER = re.compile(r"-?\d+(?:[.,:]\d+)*")
+"""What the lines of the geo-context follow from, by their source: many are in the place's units, and the line of
+the road has its name here. Whatever they are made of is compared by itself too."""
+_LAW: Mapping[str, frozenset[Facet]] = {
+    "streets": frozenset({Facet.ROAD, Facet.VIEW}),
+    "inside": frozenset({Facet.VIEW}),
+    "season": frozenset({Facet.CLOCK}),
+    "since": frozenset({Facet.CLOCK}),
+}
+"""What the words of a rule follow from (``geo.situation.CONDITIONS``) by which it is stated or not; all others of
+them follow from the kind of road."""
+_MATTERS: Mapping[str, frozenset[Facet]] = {
+    "front_fog": frozenset({Facet.WEATHER}),
+    "rear_fog": frozenset({Facet.WEATHER}),
+    "high_beam": frozenset({Facet.LIGHT, Facet.ROAD, Facet.WEATHER}),
+    "idling": frozenset({Facet.SPEED}),
+    "winter_tyres": frozenset({Facet.WEATHER}),
+    "studs": frozenset({Facet.WEATHER}),
+    "cold": frozenset({Facet.WEATHER}),
+    "heat": frozenset({Facet.WEATHER}),
+}
+"""What decides whether a topic can matter here and now (``geo.relevance``), or is left to a query; of all others,
+the kind of road does."""
 
 
 def undeclared(
@@ -137,78 +154,108 @@ def undeclared(
     """
     free = frozenset[Facet]().union(*(FREED[kind] for kind in differs))
     seen, as_well = (dict(_facts(*each)) for each in (one, other))
-    for name, (facet, _, tolerance) in {**seen, **as_well}.items():
-        if facet in free:
-            continue
+    for name, (causes, _) in {**seen, **as_well}.items():
         has, had = (facts[name][1] if name in facts else None for facts in (seen, as_well))
-        if not _alike(has, had, tolerance):
-            yield f"{facet}, {name}: {_shown(has)} in one half, {_shown(had)} in the other"
+        if not causes & free and has != had:
+            told = ", ".join(sorted(causes))
+            yield f"{told}, {name}: {_shown(has)} in one half, {_shown(had)} in the other"
 
 
-Fact = tuple[str, tuple[Facet, Any, float]]
+_NOWHERE = BoundingBox(0, 0, 0, 0)
+Fact = tuple[str, tuple[frozenset[Facet], Any]]
+"""Its name, what it follows from, and what it says."""
 
 
 def _facts(observation: Observation, moment: Moment) -> Iterator[Fact]:
-    """Each with its name, facet and tolerance."""
-    yield "the goal", (Facet.WORDS, observation.goal, 0.0)
-    yield "the local time", (Facet.CLOCK, _clock(moment.local_time), CLOCKS_WITHIN_S)
-    yield "a position fix", (Facet.LINK, observation.gps is not None and observation.gps.has_fix, 0.0)
-    yield "the connection", (Facet.LINK, moment.connectivity.online, 0.0)
-    yield "as given", (Facet.WEATHER, moment.weather, 0.0)
     assert observation.vehicle is not None
     assert observation.elements is not None
+    yield "the goal", (frozenset({Facet.WORDS}), observation.goal)
+    yield "the local time", (frozenset({Facet.CLOCK}), _clock(moment.local_time))
+    yield "the weather", (frozenset({Facet.WEATHER}), moment.weather)
+    yield "the connection", (frozenset({Facet.LINK}), moment.connectivity)
+    yield from _fix(observation)
     yield from _readings(observation.vehicle)
-    for glass in (GLASS.WINDSHIELD_FOG, GLASS.REAR_FOG):
-        yield glass.path, (Facet.CABIN, moment.signals[glass.path], FOG_WITHIN)
-    yield from _on_screen(observation.elements)
+    yield from _on_screen(observation.elements, moment.signals)
     yield from _in_context(moment.context)
 
 
+def _fix(observation: Observation) -> Iterator[Fact]:
+    gps = observation.gps
+    yield "a position fix", (frozenset({Facet.LINK}), gps is not None and gps.has_fix)
+    if gps is not None:
+        quality = {"accuracy_m", "age_s", "has_fix"}
+        for field in fields(gps):
+            causes = {Facet.LINK} if field.name in quality else {Facet.PLACE, Facet.VIEW, Facet.LINK}
+            yield f"gps {field.name}", (frozenset(causes), getattr(gps, field.name))
+
+
 def _readings(vehicle: VehicleState) -> Iterator[Fact]:
-    for name, (facet, tolerance) in READINGS.items():
-        yield name, (facet, getattr(vehicle, name), tolerance)
+    for name, causes in READINGS.items():
+        yield name, (causes, getattr(vehicle, name))
 
 
-def _on_screen(elements: tuple[Element, ...]) -> Iterator[Fact]:
+def _on_screen(elements: tuple[Element, ...], signals: Mapping[str, Any]) -> Iterator[Fact]:
     counts: dict[str, int] = {}
     for element in elements:
         name = element.resource_id
-        if not name or name.startswith(_FOLLOWS):
-            continue  # without a name: the streets on the map
         counts[name] = counts.get(name, 0) + 1
-        facet = next((facet for begin, facet in _ELEMENTS.items() if name.startswith(begin)), Facet.SCREEN)
-        words = f"{element.text} {element.content_description}".strip()
-        words = words if facet in _EXACT else _NUMBER.sub("#", words)
-        state = (element.is_enabled, element.is_checked, element.is_selected)
-        yield f"{name} {counts[name]}", (facet, (words, *state), 0.0)
+        causes = next(found for begin, found in _ELEMENTS.items() if name.startswith(begin)) if name else _MAP
+        told = f"{name or 'map'} {counts[name]}"
+        yield f"box of {told}", (causes | {Facet.PLACE}, element.bbox_pixels)  # the driver's side
+        element = replace(element, bbox_pixels=_NOWHERE)
+        if name == "status.notifications":
+            words, _, count = element.content_description.rpartition(" ")
+            yield from _notices(int(count), signals)
+            element = replace(element, content_description=words)
+        yield told, (causes, element)
+
+
+def _notices(count: int, signals: Mapping[str, Any]) -> Iterator[Fact]:
+    """The number on the badge, apart from the notices that follow from the air outside and inside."""
+    soft = any(signals[tyre.path] < LOW_KPA for tyre in TYRES)
+    fogged = signals[GLASS.WINDSHIELD_FOG.path] >= NOTICED
+    yield "notice of a soft tyre", (frozenset({Facet.WEATHER}), soft)
+    yield "notice of fogged glass", (frozenset({Facet.CABIN}), fogged)
+    yield "number of other notices", (frozenset({Facet.CAR}), count - soft - fogged)
 
 
 def _in_context(context: GeoContext) -> Iterator[Fact]:
-    sun = context.sun
+    sun, road = context.sun, context.road
     if sun is not None:
-        yield "the darkness", (Facet.SKY, sun.darkness, 0.0)
-        yield "glare of the sun", (Facet.SKY, sun.glares(context.heading_deg), 0.0)
-    for facet in set(_LINES.values()):
-        lines = tuple(line.text for line in context.lines if _LINES.get(line.source) is facet)
-        yield f"{facet} in the context", (facet, lines, 0.0)
-    road = context.road
-    yield "kind", (Facet.ROAD, (road.road_class, road.lit), 0.0)
-    yield "tunnel or school zone", (Facet.ROAD, (road.in_tunnel, road.school_zone), 0.0)
-    yield "sign", (Facet.SIGN, context.posted_limit_kmh, 0.1)
+        yield "the darkness", (frozenset({Facet.LIGHT}), sun.darkness)
+        yield "glare of the sun", (frozenset({Facet.LIGHT, Facet.VIEW}), sun.glares(context.heading_deg))
+    kind = (road.road_class, road.lane_count, road.lit, road.built_up, road.centre_line)
+    yield "kind of road", (frozenset({Facet.ROAD}), kind)
+    yield "tunnel or school zone", (frozenset({Facet.ROAD}), (road.in_tunnel, road.school_zone))
+    yield "limit", (frozenset({Facet.SIGN}), (road.limit, road.limit_hours))
+    rules = {
+        found.rule.id: found.rule for found in (*context.default_limits, *context.reduced_limits, *context.rules)
+    }
+    counts: dict[str, int] = {}
+    for line in context.lines:
+        counts[line.source] = counts.get(line.source, 0) + 1
+        causes = _LINES[line.source] if line.source in _LINES else _of(rules[line.source])
+        yield f"line of {line.source} {counts[line.source]}", (causes, line.text)
+    for line in context.shown:
+        if rule := rules.get(line.source):
+            causes = _of(rule) | _MATTERS.get(rule.topic, frozenset({Facet.ROAD}))
+            yield f"whether {rule.id} is shown", (causes, True)
 
 
-def _clock(time: datetime) -> float:
-    """Seconds of the local clock and calendar."""
-    return time.replace(tzinfo=None).timestamp()
+def _of(rule: Rule) -> frozenset[Facet]:
+    """What a rule's line follows from: whose law it is, and where and when it applies; a lower limit also from what
+    is posted."""
+    words = (test.word for test in rule.tests if test.fixed)
+    causes = frozenset[Facet]().union(*(_LAW.get(word, {Facet.ROAD}) for word in words))
+    return causes | {Facet.PLACE} | ({Facet.SIGN} if rule.topic == "limit" else set())
 
 
-def _alike(one: Any, other: Any, tolerance: float) -> bool:
-    if tolerance and isinstance(one, float) and isinstance(other, float):
-        return bool(abs(one - other) <= tolerance)
-    return bool(one == other)
+def _clock(time: datetime) -> datetime:
+    """The local clock and calendar."""
+    return time.replace(tzinfo=None)
 
 
 def _shown(value: Any) -> str:
-    if isinstance(value, float):
-        return f"{value:.1f}"
+    if isinstance(value, Element):
+        return f"{value.text} {value.content_description}".strip() or "nothing"
     return "; ".join(map(str, value)) if isinstance(value, tuple) else str(value)

@@ -28,6 +28,11 @@ NOT_RANKED = {
     "random": "negative control",
     "press-everything": "negative control",
     "always-alert": "negative control",
+    "silent": "negative control",
+    "alert-all": "negative control",
+    "alert-often": "negative control",
+    "alert-on-wake": "negative control",
+    "rule-perfect": "told the rules",
 }
 """References and negative controls: they measure the benchmark, not themselves."""
 

@@ -151,7 +151,7 @@ class Plan:
                 f"the plan has {most:,} runs of tasks; give fewer seeds or repeats, at most {MOST_RUNS:,}"
             )
         jobs = {job.id: job for job in self._each()}
-        return tuple(sorted(jobs.values(), key=lambda job: (_digest(job.simulation), _digest(job.id))))
+        return tuple(sorted(jobs.values(), key=lambda job: (digest(job.simulation), digest(job.id))))
 
     def left_out(self) -> tuple[str, ...]:
         """Ids of the chosen tasks that cannot run in any of the scenarios."""
@@ -281,10 +281,11 @@ class EpisodeJob:
             *([f"latency{setup.latency_s:g}"] if setup.latency_s else []),
         )  # fmt: skip
         words = "-".join(re.sub(r"[^A-Za-z0-9_.]+", "_", Path(word).name) for word in exactly)
-        return f"{words[:150]}-{_digest(exactly)[:8]}"
+        return f"{words[:150]}-{digest(exactly)[:8]}"
 
 
-def _digest(value: object) -> str:
+def digest(value: object) -> str:
+    """A digest of plain values."""
     return hashlib.sha256(canonical(value)).hexdigest()
 
 

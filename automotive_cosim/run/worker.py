@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import closing, contextmanager
+from contextlib import AbstractContextManager, closing, contextmanager
 from dataclasses import replace
 from pathlib import Path
 
 from automotive_cosim.agents import Agent, AgentSettings, make_agent
 from automotive_cosim.agents.settings import geo_input
 from automotive_cosim.errors import CosimError
+from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.run.collect import Collector, Pictures, failed
 from automotive_cosim.run.episode import run_episode
 from automotive_cosim.run.episode_row import EpisodeRow
@@ -17,7 +18,7 @@ from automotive_cosim.run.executor import Runner
 from automotive_cosim.run.moments import write_judged
 from automotive_cosim.run.nursery import Nursery
 from automotive_cosim.run.outside import OutsideAgent, is_outside
-from automotive_cosim.run.plan import EpisodeJob
+from automotive_cosim.run.plan import EpisodeJob, Limits
 from automotive_cosim.run.road_recorder import RoadRecorder
 from automotive_cosim.run.store import write_trace
 from automotive_cosim.traffic.fork import Simulations
@@ -63,20 +64,31 @@ def run_job(
     return collector.row(job, result)
 
 
+def agent_of(job: EpisodeJob, nursery: Nursery) -> AbstractContextManager[Agent]:
+    """The agent of a job; see ``agent_for``."""
+    setup = job.setup
+    return agent_for(setup.agent, job.model, setup.geo, setup.seed, job.limits, nursery)
+
+
 @contextmanager
-def agent_of(job: EpisodeJob, nursery: Nursery) -> Iterator[Agent]:
-    """The agent of a job, in a process of its own unless it is a reference or a negative control.
+def agent_for(name: str, model: str, geo: GeoInput, seed: int, limits: Limits, nursery: Nursery) -> Iterator[Agent]:
+    """An agent, in a process of its own unless it is a reference or a negative control.
+
+    Args:
+        name: as in ``make_agent``, like the model.
+        model: its model.
+        geo: what it is told of the place.
+        seed: of an agent that draws.
+        limits: of its process and its tokens.
+        nursery: starts its process.
 
     Raises:
         UserError: there is no such agent or model.
     """
-    setup, limits = job.setup, job.limits
-    settings = AgentSettings(geo_input(setup.geo), most_tokens=limits.tokens)
-    if not is_outside(setup.agent):
-        yield make_agent(setup.agent, settings=replace(settings, seed=setup.seed))
+    settings = AgentSettings(geo_input(geo), most_tokens=limits.tokens)
+    if not is_outside(name):
+        yield make_agent(name, settings=replace(settings, seed=seed))
         return
-    outside = OutsideAgent(
-        nursery, setup.agent, job.model, settings, step_s=limits.agent_step_s, episode_s=limits.agent_s
-    )
+    outside = OutsideAgent(nursery, name, model, settings, step_s=limits.agent_step_s, episode_s=limits.agent_s)
     with closing(outside) as agent:
         yield agent

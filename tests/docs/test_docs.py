@@ -109,6 +109,8 @@ TREATED: list[tuple[str, tuple[str, ...], str]] = [
         "takes ten seconds in its own scenario; tests/cli/test_run.py runs it",
     ),
     (r"validate", ("--gates", "start", "--seeds", "1"), "all gates take minutes; tests/proof tries them"),
+    (r"drive [a-z]", HELP, "takes a minute; tests/drives drives"),
+    (r"report runs/drives", HELP, "needs drives of minutes; tests/run/test_watches.py reports on some"),
     (r"(serve|mcp)", HELP, "serves until it is stopped; tests/serve and tests/doors ask it"),
     (r"bench", HELP, "measures for a minute; tests/cli/test_bench.py runs it"),
     (r"scenarios (check|day|download)", HELP, "takes minutes, counts or the network; tests/osm has them"),

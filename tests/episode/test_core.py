@@ -2,10 +2,12 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from datetime import timedelta
 
 import numpy as np
 import pytest
 
+from automotive_cosim.cockpit.signals import ENERGY, HVAC, TYRE
 from automotive_cosim.contracts import Action, ActionType, AlertKind, FeedbackCode, GoalStatus
 from automotive_cosim.cosim.simulation import TICK_S
 from automotive_cosim.episode.episode import Episode
@@ -72,6 +74,28 @@ def test_a_mode_that_does_not_exist_is_told():
 def test_a_general_task_is_not_monitored(simulations):
     with pytest.raises(UserError, match="only safety tasks can be monitored"):
         SituationFinder(replace(SPEC, mode=Mode.MONITORING), simulations)
+
+
+def test_at_the_hand_over_the_car_is_as_it_departed(simulations):
+    """However long the way took; and the way there leads up to that clock."""
+    finder = SituationFinder(SPEC, simulations)
+    hand_over = finder.find(SeedSource(0).next())
+    departed, *_, before, now = hand_over.drive
+    world = hand_over.world
+    assert now is world.moment
+    assert now.time_s > departed.time_s + 2.0
+    assert now.local_time == finder.scenario.start
+    assert now.local_time - before.local_time == timedelta(seconds=now.time_s - before.time_s)
+    assert now.context.local_time == now.local_time
+    for signal in (ENERGY.LEVEL, ENERGY.RANGE, HVAC.CABIN_TEMPERATURE, HVAC.CABIN_HUMIDITY, TYRE.FRONT_LEFT):
+        assert now.signals[signal.path] == departed.signals[signal.path] == world.cockpit.signals[signal]
+    assert now.driving.distance_m > departed.driving.distance_m  # the road knows the way
+    clock = world.cockpit.elements()[0]
+    assert (clock.resource_id, clock.text) == ("status.clock", f"{finder.scenario.start:%H:%M}")
+    later = world.advance(2.0)[-1]
+    assert later.local_time - now.local_time == timedelta(seconds=2)
+    assert later.signals[ENERGY.LEVEL.path] < now.signals[ENERGY.LEVEL.path]
+    world.close()
 
 
 def test_the_loop_steps_refuses_and_tells_every_observer(begin):

@@ -2,12 +2,22 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
+from datetime import timedelta
 
 import pytest
 
 from automotive_cosim.agents.trivial import Random
-from automotive_cosim.cockpit.signals import ADAS, HVAC, SEAT
-from automotive_cosim.contracts import Action, ActionType, AlertKind, GoalStatus, PullOver, Reason, VehicleState
+from automotive_cosim.cockpit.signals import ADAS, ENERGY, HVAC, SEAT
+from automotive_cosim.contracts import (
+    Action,
+    ActionType,
+    AlertKind,
+    BoundingBox,
+    GoalStatus,
+    PullOver,
+    Reason,
+    VehicleState,
+)
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.proof import gates, sight
 from automotive_cosim.proof.ground import Ground, Script
@@ -269,7 +279,18 @@ def test_a_pair_that_can_always_be_declined_is_seen(ground):
         (replace(GRID, signals={HVAC.DRIVER_TEMPERATURE.path: 16.0}), "weather and date", "the settings"),
         (replace(GRID, start="2026-03-10T20:30:00"), "road", "the local time"),
         (replace(GRID, start="2026-03-10T20:30:00"), "date", ""),
-        (replace(GRID, sign_camera=False), "weather", "the road"),
+        (replace(GRID, sign_camera=False), "weather", "the sign"),
+        (
+            replace(GRID, signals={ENERGY.LEVEL.path: 71.9}),
+            "place, road, date, weather and motion",
+            "energy_level_pct",
+        ),
+        (replace(GRID, cabin={"humidity_pct": 40.1}), "place, road, date and motion", "cabin_humidity_pct"),
+        (
+            replace(GRID, weather=None, start="2026-03-10T08:30:01"),
+            "place, road, weather and motion",
+            "the local time",
+        ),
     ],
 )
 def test_a_pair_that_gives_itself_away_is_seen(ground, start, differs, seen):
@@ -277,6 +298,62 @@ def test_a_pair_that_gives_itself_away_is_seen(ground, start, differs, seen):
     wrong = list(gates.sight({half: ground(pair, half) for half in pair.halves}))
     assert bool(wrong) == bool(seen)
     assert seen in "; ".join(wrong)
+
+
+def test_whatever_an_observation_tells_is_compared(ground):
+    """Every field that differs alone gives a pair away that declares nothing."""
+    taken = ground(SOUND, "first")
+    seen, moment = taken.episode.observation, taken.episode.moments[0]
+    assert list(sight.undeclared(frozenset(), (seen, moment), (seen, moment))) == []
+    others = [replace(seen, goal="Else."), replace(seen, elements=seen.elements[:-1])]
+    others += [replace(seen, vehicle=replace(seen.vehicle, **change)) for change in _changes(seen.vehicle)]
+    others += [replace(seen, gps=replace(seen.gps, **change)) for change in _changes(seen.gps)]
+    for place, element in enumerate(seen.elements):
+        for change in _changes(element):
+            changed = replace(element, **change)
+            others.append(replace(seen, elements=(*seen.elements[:place], changed, *seen.elements[place + 1 :])))
+    for other in others:
+        assert list(sight.undeclared(frozenset(), (seen, moment), (other, moment))), other
+
+
+def test_whatever_a_line_of_the_context_is_made_of_is_compared(ground):
+    taken = ground(SOUND, "first")
+    seen, moment = taken.episode.observation, taken.episode.moments[0]
+    road, limit = moment.context.road, moment.context.road.limit
+    for there in (
+        replace(road, road_class="motorway"), replace(road, lane_count=7), replace(road, in_tunnel=True),
+        replace(road, name="Elsewhere"), replace(road, school_zone=True),
+        replace(road, limit=replace(limit, mps=7.0)),
+        replace(road, built_up=not road.built_up), replace(road, limit_hours="40 km/h Mo"),
+    ):  # fmt: skip
+        driving = replace(moment.driving, road=there)
+        context = replace(moment.context, driving=driving)
+        assert list(sight.undeclared(frozenset(), (seen, moment), (seen, replace(moment, context=context)))), there
+    later = replace(moment, local_time=moment.local_time + timedelta(seconds=1))
+    assert list(sight.undeclared(frozenset(), (seen, moment), (seen, later)))
+    for change in _changes(moment.weather):
+        other = replace(moment, weather=replace(moment.weather, **change))
+        assert list(sight.undeclared(frozenset(), (seen, moment), (seen, other))), change
+    for change in _changes(moment.connectivity):
+        other = replace(moment, connectivity=replace(moment.connectivity, **change))
+        assert list(sight.undeclared(frozenset(), (seen, moment), (seen, other))), change
+
+
+def _changes(what):
+    """Another value of each field."""
+    for field in fields(what):
+        value = getattr(what, field.name)
+        match value:
+            case bool():
+                yield {field.name: not value}
+            case int() | float():
+                yield {field.name: value + 0.001}
+            case str():
+                yield {field.name: value + " 1"}
+            case None:
+                yield {field.name: 1.0}
+            case BoundingBox():
+                yield {field.name: replace(value, x_min=value.x_min + 1)}
 
 
 LYON, LEEDS = (4.85, 45.75), (-1.55, 53.80)

@@ -1,0 +1,109 @@
+"""``automotive-cosim drive``: one drive with many events, watched by an agent."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from automotive_cosim.cli.options import AsJson, number, print_json, whole_number
+from automotive_cosim.errors import UserError
+
+if TYPE_CHECKING:
+    from automotive_cosim.cli.console import Console
+    from automotive_cosim.run.watch_row import WatchRow
+
+
+def drive(
+    name: Annotated[str, typer.Argument(help="Family of drives; --list lists them.")] = "",
+    seed: Annotated[
+        int,
+        typer.Option(
+            help="Seed; the same seed gives the same drive.", metavar="N", parser=whole_number(0, 2**31 - 1)
+        ),
+    ] = 0,
+    agent: Annotated[str, typer.Option(help="Agent; `agents` lists them.")] = "rule-perfect",
+    model: Annotated[str, typer.Option(help="Model for the agent.")] = "rules",
+    clock: Annotated[
+        str,
+        typer.Option(help="Whether the seconds that the model takes pass on the road: fixed (no) or model (yes)."),
+    ] = "fixed",
+    latency: Annotated[
+        float,
+        typer.Option(
+            help="Simulated seconds that every answer takes besides.", metavar="SECONDS", parser=number(0, 600)
+        ),
+    ] = 0.0,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for the row, the steps and the timeline.", show_default=False)
+    ] = None,
+    list_them: Annotated[bool, typer.Option("--list", help="List the families of drives and exit.")] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Run one drive of ten to thirty minutes, in which an agent keeps watch."""
+    from automotive_cosim.agents import AgentSettings, make_agent
+    from automotive_cosim.cli.console import Console
+    from automotive_cosim.drives.families import FAMILIES
+    from automotive_cosim.episode.specification import clock_of
+    from automotive_cosim.run.row import as_json as row_json
+    from automotive_cosim.run.watch import WatchSetup, run_watch
+
+    console = Console(highlight=False)
+    if list_them:
+        listed = [{"id": family.id, "season": family.season, "about": family.about} for family in FAMILIES.values()]
+        if as_json:
+            print_json(listed)
+        else:
+            for family in listed:
+                console.print(f"{family['id']:24} {family['season']:7} {family['about']}", soft_wrap=True)
+        return
+    if not name:
+        raise UserError(f"drive needs the name of a family, such as {next(iter(FAMILIES))}; --list lists them")
+    if out is not None and (out / "row.json").exists():
+        raise UserError(f"{out} holds the results of a drive; give another folder to --out")
+    player = make_agent(agent, model, AgentSettings(seed=seed))
+    setup = WatchSetup(name, seed, player.name, player.model, clock=clock_of(clock), latency_s=latency)
+    record = run_watch(f"{name}-s{seed}-{player.name}", setup, player)
+    if out is not None:
+        out.mkdir(parents=True, exist_ok=True)
+        (out / "row.json").write_text(json.dumps(row_json(record.row), indent=1) + "\n", "utf-8")
+        (out / "timeline.json").write_text(json.dumps(record.timeline) + "\n", "utf-8")
+        (out / "steps.jsonl").write_text("".join(json.dumps(step) + "\n" for step in record.steps), "utf-8")
+    if as_json:
+        print_json(row_json(record.row))
+    else:
+        _tell(console, record.row)
+        if out is not None:
+            console.print(f"Recorded in {out}", soft_wrap=True)
+
+
+def _tell(console: Console, row: WatchRow) -> None:
+    """The drive's events and acts in the order of time, and its score."""
+    from automotive_cosim.drives.judge import Worth
+
+    lines = [
+        (
+            event.observable_s,
+            f"{'bait ' if event.bait else 'event'}  {event.kind}: {event.words}",
+            event.outcome.value,
+        )
+        for event in row.events
+    ]
+    lines += [
+        (act.time_s, f"  act  {act.words}", act.worth.value) for act in row.acts if act.worth is not Worth.NEUTRAL
+    ]
+    for time_s, words, became in sorted(lines):
+        console.print(
+            f"{int(time_s) // 60:3}:{int(time_s) % 60:02}  {words}  [{became}]", markup=False, soft_wrap=True
+        )
+    found = row.score
+    assert found is not None
+    recall = "no events" if found.recall is None else f"{found.met} of {found.events} events met"
+    console.print(
+        f"{row.family}, seed {row.seed}, {row.agent} ({row.model}): score {found.value:.0f}; {recall}, "
+        f"{found.false_alarms_per_h:.1f} false alarms and {found.nuisances_per_h:.1f} nuisances an hour, "
+        f"{row.steps} steps in {found.driven_s / 60:.0f} min",
+        soft_wrap=True,
+    )

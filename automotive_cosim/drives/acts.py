@@ -1,0 +1,44 @@
+"""An agent's acts on a drive, from what the car carried out, by whatever way it was asked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from automotive_cosim.cockpit.messages import Deed, Set, SetAll, WarnDriver
+from automotive_cosim.contracts import Action, ActionType, Alert
+from automotive_cosim.drives.events.base import WatchAct
+
+BOOKKEEPING = frozenset({"alerts", "requests"})
+"""Commands that only say that something was asked for."""
+
+
+def acts_of(deeds: Sequence[Deed]) -> Iterator[WatchAct]:
+    """The acts in what was commanded, in order; preparations such as a typed text are none."""
+    for deed in deeds:
+        if not deed.aims:
+            continue
+        message = deed.message
+        asked = tuple(request for request, _ in deed.answers)
+        alert = next((request for request in asked if isinstance(request, Alert)), None)
+        if isinstance(message, WarnDriver):
+            alert = alert or message.alert
+        if alert is not None:
+            yield WatchAct(deed.time_s, alert.kind, alert.severity, alert.speed_kmh)
+            continue
+        yield WatchAct(deed.time_s, requests=asked, writes=tuple(_writes(deed)))
+
+
+def _writes(deed: Deed) -> Iterator[tuple[str, Any]]:
+    message = deed.message
+    if isinstance(message, Set):
+        yield message.signal.path, message.value
+    elif isinstance(message, SetAll):
+        yield from ((signal.path, value) for signal, value in message.values)
+    else:
+        yield from ((path, None) for path in sorted(deed.aims - BOOKKEEPING))
+
+
+def spoken(action: Action, time_s: float) -> WatchAct | None:
+    """What an action says to the driver besides alerts."""
+    return WatchAct(time_s, said=action.text or "") if action.action_type is ActionType.ANSWER else None

@@ -1,0 +1,135 @@
+"""What an event is: what a kind finds at one instant, and which acts settle it.
+
+    observable  the first instant at which what is needed stands in a channel that an agent is given
+    obliged     the rule's predicate has held for its time
+    deadline    the last instant at which an act still helps
+    ends        the last instant at which it was there
+
+An event is found on the drive itself, from its moments; nothing of how the drive was staged is read.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from automotive_cosim.contracts import AlertKind, RoadRequest, Severity
+from automotive_cosim.cosim.moment import Moment
+
+Wanted = Callable[[Any], bool]
+"""Whether a value written to a signal settles an event."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sighting:
+    """What a kind of event finds at one instant."""
+
+    words: str
+    """What there is, for reports."""
+    subject: str = ""
+    """Tells one occurrence of a kind from another, e.g. the limit that is exceeded."""
+    due: bool = False
+    """Whether something ought to be done now."""
+    hold_s: float = 0.0
+    """How long it must have been due until it is an obligation."""
+    bait: bool = False
+    """Whether it only looks like an event: here no act is right."""
+    severity: float = 1.0
+    """How bad it is, 1 at the threshold; a repeated alert is right once it has risen."""
+    left_s: float | None = None
+    """Seconds until it is too late; None leaves that to the kind's ``grace_s``."""
+    value: float | None = None
+    """What an act is measured against, e.g. the limit in km/h."""
+
+
+@dataclass(frozen=True, slots=True)
+class WatchAct:
+    """Something that an agent did and that reaches the driver, the car or the road."""
+
+    time_s: float
+    """Simulation time."""
+    alert: AlertKind | None = None
+    severity: Severity = Severity.WARNING
+    speed_kmh: float | None = None
+    """The speed that the alert advises; None means the limit."""
+    requests: tuple[RoadRequest, ...] = ()
+    """What it asked of the driver or the router, other than the alert."""
+    writes: tuple[tuple[str, Any], ...] = ()
+    """Signals and app data that it commanded, with their values; None for app data."""
+    said: str = ""
+    """Words spoken to the driver."""
+
+    @property
+    def words(self) -> str:
+        """In words, for reports."""
+        if self.alert is not None:
+            return f"alert {self.alert}"
+        if self.requests:
+            return ", ".join(type(request).__name__ for request in self.requests)
+        if self.writes:
+            return ", ".join(_written(path, value) for path, value in self.writes)
+        return "said something"
+
+
+class EventKind(ABC):
+    """One kind of event. An instance has no state: everything comes from the moments."""
+
+    name: ClassVar[str]
+    about: ClassVar[str]
+    """What is due and why, in one sentence."""
+    bait: ClassVar[str]
+    """What looks like it, in a few words."""
+    source: ClassVar[str]
+    """Where the times come from."""
+    weight: ClassVar[float] = 1.0
+    """Worth of one event of this kind: 2 where somebody may be hurt within seconds, 0.5 for advice."""
+    grace_s: ClassVar[float] = 10.0
+    """Seconds from obligation to deadline, if no sighting says how long is left."""
+    alerts: ClassVar[frozenset[AlertKind]]
+    """Kinds of alerts that settle it."""
+    requests: ClassVar[tuple[type, ...]] = ()
+    """Requests to the road that settle it, whatever they say."""
+    writes: ClassVar[Mapping[str, Wanted]] = {}
+    """Signals that settle it, by path, and which values do."""
+
+    @abstractmethod
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """What there is at the last moment of a drive; at most one sighting per subject.
+
+        Args:
+            drive: the moments so far, at least one.
+        """
+        ...
+
+    def settles(self, act: WatchAct, value: float | None) -> bool:
+        """Whether an act is one that is right for an event.
+
+        Args:
+            act: the act.
+            value: the event's ``Sighting.value``.
+        """
+        if act.alert is not None:
+            return act.alert in self.alerts
+        if any(isinstance(request, self.requests) for request in act.requests):
+            return True
+        return any(path in self.writes and self.writes[path](written) for path, written in act.writes)
+
+    def concerns(self, act: WatchAct) -> bool:
+        """Whether an act touches what the kind is about, rightly or not."""
+        return any(path in self.writes for path, _ in act.writes)
+
+
+def _written(path: str, value: Any) -> str:
+    return path.removeprefix("Vehicle.") + ("" if value is None else f" = {value}")
+
+
+def on(value: Any) -> bool:
+    """A switch that is on."""
+    return value is True
+
+
+def off(value: Any) -> bool:
+    """A switch that is off."""
+    return value is False

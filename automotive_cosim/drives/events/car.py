@@ -1,0 +1,118 @@
+"""Events of the car itself: belt, flap, tyre, range."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from automotive_cosim.cockpit.screens.notices import LOW_KPA, TYRES
+from automotive_cosim.cockpit.signals import CABIN, ENERGY, SEAT
+from automotive_cosim.contracts import AlertKind, PullOver, Reroute
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.drives.events.base import EventKind, Sighting
+from automotive_cosim.drives.events.law import speed_kmh
+
+BELT_KMH = 25.0
+"""Speed from which the second, audible belt warning is due (UN R16, 8.4.2.4)."""
+ROLLING_KMH = 5.0
+WARM_KPA = 225.0
+"""Between this and 200 kPa a tyre is low, but needs no warning."""
+WINDOWS = (
+    CABIN.DRIVER_WINDOW,
+    CABIN.PASSENGER_WINDOW,
+    CABIN.REAR_LEFT_WINDOW,
+    CABIN.REAR_RIGHT_WINDOW,
+    CABIN.SUNROOF,
+)
+RESERVE_M = 2000.0
+"""A range that ends this much after the destination is short."""
+
+
+class Belt(EventKind):
+    """The driver is not belted."""
+
+    name = "belt"
+    about = "the driver drives without a belt"
+    bait = "an open belt while the car stands"
+    source = "UN R16, 8.4.2.4: from 25 km/h; deadline: 15 s"
+    weight = 1.5
+    grace_s = 15.0
+    alerts = frozenset({AlertKind.SEAT_BELT})
+    requests = (PullOver,)
+
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """By the buckle's switch."""
+        now = drive[-1]
+        if now.signals[SEAT.DRIVER_BELT.path]:
+            return
+        kmh = speed_kmh(now)
+        if kmh < 1.0:
+            yield Sighting("the driver's belt is open, the car stands", bait=True)
+        else:
+            yield Sighting(f"the driver's belt is open at {kmh:.0f} km/h", due=kmh >= BELT_KMH, hold_s=2.0)
+
+
+class FlapOpen(EventKind):
+    """Trunk or charging flap open while the car moves."""
+
+    name = "door"
+    about = "the trunk or the charging flap is open while the car moves"
+    bait = "a window or the sunroof open while the car moves"
+    source = "UN R11 asks for a warning of doors not shut; 2 s; deadline: 20 s"
+    grace_s = 20.0
+    alerts = frozenset({AlertKind.VEHICLE})
+    requests = (PullOver,)
+
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """By the latches' switches."""
+        signals = drive[-1].signals
+        if speed_kmh(drive[-1]) < ROLLING_KMH:
+            return
+        for part, words in ((CABIN.TRUNK, "the trunk is open"), (ENERGY.CHARGE_FLAP, "the charging flap is open")):
+            if signals[part.path]:
+                yield Sighting(f"{words} while driving", part.path, due=True, hold_s=2.0)
+        if any(float(signals[part.path]) > 0 for part in WINDOWS):
+            yield Sighting("a window is open", "window", bait=True)
+
+
+class Tyre(EventKind):
+    """A tyre loses its air."""
+
+    name = "tyre"
+    about = "a tyre has lost a fifth of its pressure"
+    bait = "a tyre that is a little low"
+    source = "UN R141 (and R64): at 20 % below, 200 kPa here; deadline: 60 s of the ten minutes that it allows"
+    weight = 1.5
+    grace_s = 60.0
+    alerts = frozenset({AlertKind.VEHICLE})
+    requests = (PullOver,)
+
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """By the lowest tyre."""
+        lowest_kpa = min(float(drive[-1].signals[tyre.path]) for tyre in TYRES)
+        words = f"a tyre at {lowest_kpa:.0f} kPa"
+        if lowest_kpa < LOW_KPA:
+            yield Sighting(words, due=True, hold_s=5.0, severity=LOW_KPA / max(lowest_kpa, 1.0))
+        elif lowest_kpa < WARM_KPA:
+            yield Sighting(words, bait=True)
+
+
+class RangeShort(EventKind):
+    """The battery ends before the destination."""
+
+    name = "range"
+    about = "the battery's range ends before the destination"
+    bait = "a low battery that still reaches the destination"
+    source = "a reserve of 2 km; deadline: 120 s, while ways to a charger are still open"
+    grace_s = 120.0
+    alerts = frozenset({AlertKind.VEHICLE})
+    requests = (Reroute,)
+
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """By the range that the car shows."""
+        now = drive[-1]
+        range_m, left_m = float(now.signals[ENERGY.RANGE.path]), now.driving.ahead.route_left_m
+        words = f"range {range_m / 1000:.1f} km, {left_m / 1000:.1f} km to go"
+        if range_m < left_m + RESERVE_M:
+            yield Sighting(words, due=True, hold_s=5.0)
+        elif float(now.signals[ENERGY.LEVEL.path]) < 20.0:
+            yield Sighting(words, bait=True)

@@ -1,0 +1,73 @@
+"""What law and measurement say at one moment, as the kinds of events need it. Only verified rules oblige."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from automotive_cosim.contracts import KMH_PER_MPS, Sight, SightKind
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.geo.applied import AppliedRule
+from automotive_cosim.geo.breaches import BindingLimit, binding_limit
+from automotive_cosim.geo.context import GeoContext
+from automotive_cosim.geo.rules import Status
+
+SLOW_KMH = 20.0
+"""Below this speed, intelligent speed assistance need not act (Regulation (EU) 2021/1958, annex I)."""
+HOLDS_S = ((1.3, 3.0), (1.2, 4.0), (1.1, 5.0), (1.0, 6.0))
+"""(ratio of speed to limit, seconds) after which the tone of the same annex sounds."""
+REACTION_S = 1.1
+"""Mean time from a warning to the brake (lognormal in the road's model of the driver)."""
+BRAKING_MPS2 = 3.4
+"""Comfortable deceleration of most drivers (AASHTO Green Book, stopping sight distance)."""
+
+
+def speed_kmh(moment: Moment) -> float:
+    """The car's speed."""
+    return moment.driving.speed_mps * KMH_PER_MPS
+
+
+def margin_kmh(limit_kmh: float) -> float:
+    """By how much a limit is exceeded for certain: 3 km/h up to 100, 3 % above, the error limit of type-approved
+    speed meters (OIML R 91)."""
+    return max(3.0, 0.03 * limit_kmh)
+
+
+def hold_s(ratio: float) -> float:
+    """Seconds for which a ratio of speed to limit must last."""
+    return next((seconds for least, seconds in HOLDS_S if ratio >= least), HOLDS_S[-1][1])
+
+
+def limit_here(moment: Moment) -> BindingLimit | None:
+    """The limit that binds, from a sign or a verified rule; None if there is none."""
+    limit = binding_limit(moment.context)
+    return limit if limit is not None and limit.status is Status.VERIFIED else None
+
+
+def is_reduced(context: GeoContext, limit: BindingLimit) -> bool:
+    """Whether weather, light or hour lowered it."""
+    return any(found.rule.id == limit.rule for found in context.reduced_limits)
+
+
+def certain(context: GeoContext, topic: str) -> Iterator[AppliedRule]:
+    """The verified rules on a topic that certainly apply here and now."""
+    return (
+        found
+        for found in context.rules
+        if found.rule.topic == topic and found.certain and found.rule.status is Status.VERIFIED
+    )
+
+
+def says(context: GeoContext, topic: str, word: str) -> bool:
+    """Whether a verified rule on a topic certainly says ``required`` or ``forbidden``."""
+    return any(found.value == word for found in certain(context, topic))
+
+
+def seen(moment: Moment, kind: SightKind) -> Sight | None:
+    """What the car notices of a kind, as its screens show it; None if nothing."""
+    return next((sight for sight in moment.sights if sight.kind is kind), None)
+
+
+def time_left_s(distance_m: float, speed_mps: float, end_mps: float = 0.0) -> float:
+    """Seconds until a driver who is warned then no longer gets down to a speed comfortably at that distance."""
+    braking_m = max(0.0, speed_mps**2 - end_mps**2) / (2 * BRAKING_MPS2)
+    return (distance_m - braking_m) / max(speed_mps, 0.1) - REACTION_S

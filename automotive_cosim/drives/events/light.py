@@ -1,0 +1,109 @@
+"""Events of lamps: lamps that law or darkness requires, high beam at others, fog lamps where they dazzle."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import ClassVar
+
+from automotive_cosim.cockpit.signals import LIGHTS
+from automotive_cosim.contracts import STANDING_BELOW_MPS, AlertKind
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, WatchAct, off, on
+from automotive_cosim.drives.events.law import says
+
+LAMP_S = 2.0
+"""How long an automatic switch may take to light the dipped beam (UN R48, 6.2.7)."""
+DARK_DEG = -6.0
+"""The end of civil twilight."""
+LOW_SUN_DEG = 6.0
+PRECEDING_M = 100.0
+"""An automatic high beam must notice a vehicle ahead at least this far (UN R48, 6.1.9.3.1.2)."""
+CLEAR_M = 150.0
+"""Reach of the forward radar: nobody is seen ahead beyond."""
+
+
+class LampsMissing(EventKind):
+    """No dipped beam where law or darkness requires it."""
+
+    name = "lamps"
+    about = "the dipped beam is off in the dark, in a tunnel, or where the law requires it"
+    bait = "a low sun or drizzle, in which the law requires no lamps"
+    source = "UN R48, 6.2.7: 2 s; deadline: 10 s"
+    alerts = frozenset({AlertKind.VISIBILITY})
+    writes: ClassVar[Mapping[str, Wanted]] = {
+        LIGHTS.LOW_BEAM.path: on,
+        LIGHTS.SWITCH.path: lambda value: value in ("BEAM", "AUTO"),
+    }
+
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """While moving without dipped or high beam."""
+        now = drive[-1]
+        signals = now.signals
+        lit = signals[LIGHTS.LOW_BEAM.path] or signals[LIGHTS.HIGH_BEAM.path]
+        if lit or now.driving.speed_mps < STANDING_BELOW_MPS:
+            return
+        sun = now.context.sun
+        dark = now.driving.road.in_tunnel or (sun is not None and sun.elevation_deg < DARK_DEG)
+        if dark or says(now.context, "dipped_beam", "required"):
+            why = "in a tunnel" if now.driving.road.in_tunnel else "in the dark" if dark else "where the law asks"
+            yield Sighting(f"no dipped beam {why}", due=True, hold_s=LAMP_S, value=1.0 if dark else 0.0)
+        elif (sun is not None and sun.elevation_deg < LOW_SUN_DEG) or now.weather.precipitation > 0:
+            yield Sighting("no dipped beam by a low sun or in rain", bait=True, value=0.0)
+
+    def settles(self, act: WatchAct, value: float | None) -> bool:
+        """By day an automatic switch lights nothing."""
+        by_day_auto = value == 0.0 and (LIGHTS.SWITCH.path, "AUTO") in act.writes
+        return super().settles(act, value) and not by_day_auto
+
+
+class HighBeam(EventKind):
+    """High beam at somebody ahead, or where the law forbids it."""
+
+    name = "high_beam"
+    about = "the high beam dazzles a driver ahead, or is on where the law forbids it"
+    bait = "high beam on an empty road where it is allowed"
+    source = "UN R48, 6.1.9.3: 100 m to a vehicle ahead, 2 s; deadline: 6 s, one more vehicle met"
+    grace_s = 6.0
+    alerts = frozenset({AlertKind.VISIBILITY, AlertKind.DISTRACTION})
+    writes: ClassVar[Mapping[str, Wanted]] = {LIGHTS.HIGH_BEAM.path: off}
+
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """While the high beam is on."""
+        now = drive[-1]
+        if not now.signals[LIGHTS.HIGH_BEAM.path]:
+            return
+        leader = now.driving.around.leader
+        gap_m = CLEAR_M if leader is None else leader.gap_m
+        if gap_m <= PRECEDING_M:
+            yield Sighting(f"high beam at a car {gap_m:.0f} m ahead", due=True, hold_s=LAMP_S)
+        elif says(now.context, "high_beam", "forbidden"):
+            yield Sighting("high beam where the law forbids it", due=True, hold_s=LAMP_S)
+        elif gap_m >= CLEAR_M:
+            yield Sighting("high beam on an empty road", bait=True)
+
+
+class FogLamps(EventKind):
+    """Fog lamps where the law forbids them."""
+
+    name = "fog_lamps"
+    about = "a fog lamp is on where the law forbids it, so that it dazzles"
+    bait = "fog lamps in fog"
+    source = "the law of the place; UN R48, 6.2.7: 2 s; deadline: 10 s"
+    weight = 0.5
+    alerts = frozenset({AlertKind.VISIBILITY})
+    writes: ClassVar[Mapping[str, Wanted]] = {LIGHTS.FRONT_FOG.path: off, LIGHTS.REAR_FOG.path: off}
+
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """While a fog lamp is on and the car moves."""
+        now = drive[-1]
+        if now.driving.speed_mps < STANDING_BELOW_MPS:
+            return
+        lit = {
+            topic
+            for topic, lamp in (("front_fog", LIGHTS.FRONT_FOG), ("rear_fog", LIGHTS.REAR_FOG))
+            if now.signals[lamp.path]
+        }
+        if any(says(now.context, topic, "forbidden") for topic in lit):
+            yield Sighting("a fog lamp where the law forbids it", due=True, hold_s=LAMP_S)
+        elif lit:
+            yield Sighting("a fog lamp where it is allowed", bait=True)

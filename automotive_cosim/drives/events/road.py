@@ -1,0 +1,272 @@
+"""Events on the road: tunnel, jam, what stands ahead, blue light, the vehicle ahead."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import ClassVar
+
+from automotive_cosim.cockpit.reach import RADAR_M
+from automotive_cosim.cockpit.signals import ADAS, LIGHTS
+from automotive_cosim.contracts import (
+    KMH_PER_MPS,
+    AlertKind,
+    IncidentKind,
+    OtherVehicle,
+    PullOver,
+    Reroute,
+    SightKind,
+    SlowDown,
+)
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, on
+from automotive_cosim.drives.events.law import REACTION_S, certain, seen, speed_kmh, time_left_s
+
+NEAR_M = 500.0
+"""A tunnel is announced on the map from this distance."""
+PORTAL_S = 10.0
+JAM_M = 1500.0
+JAM_FROM_KMH = 40.0
+JAM_DUE_S = 15.0
+"""A queue's tail is announced 300 to 400 m ahead at 80 km/h by warning vehicles and gantries."""
+BLUE_DUE_M = 150.0
+STANDS_DUE_S = 12.0
+"""A warning triangle stands 100 m and more before a stopped vehicle outside towns: 4.5 s at 80 km/h; warnings on
+the screen come before it."""
+PASS_SHARE = 0.6
+"""A car passes what stands at the roadside at this share of its speed."""
+CLOSE_S = 1.0
+"""A time gap below this leaves no time to react (mean reaction 1.1 s)."""
+GAP_HOLD_S = 3.0
+"""Time to reopen a gap after another vehicle cuts in; our choice, as in the checks of law."""
+GAP_FROM_KMH = 30.0
+HARD_MPS2 = 3.4
+"""Deceleration to avoid a crash from which a conflict is serious (Archer, 2005: 3.35)."""
+TRACTOR_KMH = (8.0, 40.0)
+FAST_ROAD_KMH = 65.0
+TRACTOR_DUE_S = 8.0
+
+
+class TunnelAhead(EventKind):
+    """A tunnel ahead, with the lamps off."""
+
+    name = "tunnel"
+    about = "a tunnel comes and the lamps would stay off in it"
+    bait = "a tunnel that is still a kilometre away"
+    source = "10 s before the portal; deadline: the portal, less 1 s to switch"
+    alerts = frozenset({AlertKind.TUNNEL, AlertKind.VISIBILITY})
+    writes: ClassVar[Mapping[str, Wanted]] = {
+        LIGHTS.LOW_BEAM.path: on,
+        LIGHTS.SWITCH.path: lambda value: value in ("BEAM", "AUTO"),
+    }
+
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """By the map, on the route."""
+        now = drive[-1]
+        away_m, mps = now.driving.ahead.tunnel_distance_m, now.driving.speed_mps
+        if away_m is None or mps < 2.0 or now.driving.road.in_tunnel:
+            return
+        words = f"a tunnel in {away_m:.0f} m"
+        if away_m > NEAR_M:
+            if away_m <= 3 * NEAR_M:
+                yield Sighting(words, "far", bait=True)
+            return
+        dark = not now.signals[LIGHTS.LOW_BEAM.path] and now.signals[LIGHTS.SWITCH.path] != "AUTO"
+        left_s = away_m / mps
+        yield Sighting(f"{words}, lamps off", due=dark and left_s <= PORTAL_S, left_s=left_s - 1.0)
+
+
+class JamTail(EventKind):
+    """The tail of a queue ahead, at speed."""
+
+    name = "jam_tail"
+    about = "the car approaches the tail of a jam at speed"
+    bait = "traffic that flows slowly, but flows"
+    source = "15 s before the tail; deadline: reaction 1.1 s and braking at 3.4 m/s2 (AASHTO) end there"
+    weight = 2.0
+    alerts = frozenset({AlertKind.TRAFFIC, AlertKind.COLLISION, AlertKind.DISTANCE, AlertKind.SPEED})
+    requests = (SlowDown,)
+    writes: ClassVar[Mapping[str, Wanted]] = {LIGHTS.HAZARD.path: on}
+
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """By the live traffic on the route."""
+        now = drive[-1]
+        tail, mps = seen(now, SightKind.JAM), now.driving.speed_mps
+        away_m = None if tail is None else tail.distance_m
+        if away_m is None:
+            if now.driving.around.relative_speed < 0.6 and mps > 2.0:
+                yield Sighting(f"traffic at {now.driving.around.relative_speed:.0%}", bait=True)
+            return
+        if not 0 < away_m <= JAM_M or speed_kmh(now) < JAM_FROM_KMH:
+            return
+        yield Sighting(
+            f"a jam in {away_m:.0f} m at {speed_kmh(now):.0f} km/h",
+            due=away_m <= JAM_DUE_S * mps,
+            left_s=time_left_s(away_m, mps),
+        )
+
+
+class StandsAhead(EventKind):
+    """Something that stands ahead on the route and that the traffic service reports."""
+
+    sights: ClassVar[SightKind]
+    weight = 1.5
+    source = (
+        "12 s before it; deadline: reaction 1.1 s and braking at 3.4 m/s2 (AASHTO) to three fifths of the speed"
+    )
+    requests = (SlowDown, Reroute)
+
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """By the reports: on the route, or anywhere else."""
+        now = drive[-1]
+        there, mps = seen(now, self.sights), now.driving.speed_mps
+        if there is None or there.distance_m is None:
+            kind = IncidentKind(self.sights.value)
+            if any(incident.kind is kind for incident in now.driving.ahead.incidents):
+                yield Sighting(f"{kind.value.replace('_', ' ')} reported elsewhere", bait=True)
+        elif mps > 5.0:
+            yield Sighting(
+                there.text,
+                due=there.distance_m <= STANDS_DUE_S * mps,
+                left_s=time_left_s(there.distance_m, mps, PASS_SHARE * mps),
+            )
+
+
+class BreakdownAhead(StandsAhead):
+    """A broken-down vehicle ahead."""
+
+    name = "breakdown"
+    about = "a broken-down vehicle stands ahead on the route"
+    bait = "one that is reported on another road or the other carriageway"
+    sights = SightKind.BREAKDOWN
+    alerts = frozenset({AlertKind.MOVE_OVER, AlertKind.TRAFFIC, AlertKind.COLLISION, AlertKind.SPEED})
+
+
+class RoadworksAhead(StandsAhead):
+    """Roadworks ahead."""
+
+    name = "roadworks"
+    about = "roadworks narrow the road ahead on the route"
+    bait = "roadworks that are reported on another road or the other carriageway"
+    weight = 1.0
+    sights = SightKind.ROADWORKS
+    alerts = frozenset({AlertKind.TRAFFIC, AlertKind.MOVE_OVER, AlertKind.LANE, AlertKind.SPEED})
+
+
+class BlueLight(EventKind):
+    """An emergency vehicle behind, with its blue light on."""
+
+    name = "blue_light"
+    about = "an emergency vehicle with blue light comes from behind and wants to pass"
+    bait = "a plain van close behind"
+    source = "150 m: 8 s at a closing speed of 70 km/h; deadline: 8 s"
+    weight = 2.0
+    grace_s = 8.0
+    alerts = frozenset({AlertKind.YIELD, AlertKind.CORRIDOR, AlertKind.MOVE_OVER})
+    requests = (PullOver,)
+
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """By the radio message that such a vehicle sends, or the radar."""
+        now = drive[-1]
+        behind, follower = seen(now, SightKind.EMERGENCY_VEHICLE), seen(now, SightKind.VEHICLE_BEHIND)
+        if behind is not None and behind.distance_m is not None:
+            due = behind.distance_m <= BLUE_DUE_M
+            yield Sighting(f"a blue light {behind.distance_m:.0f} m behind", due=due, hold_s=1.0)
+        elif follower is not None:
+            yield Sighting(f"a car {follower.distance_m or 0:.0f} m behind comes closer", bait=True)
+
+
+class LeaderClose(EventKind):
+    """Too close behind the vehicle ahead."""
+
+    name = "leader_close"
+    about = "the gap to the vehicle ahead is shorter than the law asks, or than a driver needs to react"
+    bait = "a gap a little longer than that"
+    source = "the law of the place, else 1 s; 3 s to reopen a gap; deadline: 6 s"
+    grace_s = 6.0
+    alerts = frozenset({AlertKind.DISTANCE, AlertKind.COLLISION})
+    requests = (SlowDown,)
+    writes: ClassVar[Mapping[str, Wanted]] = {
+        ADAS.CRUISE_GAP.path: lambda value: isinstance(value, float) and value >= 2.0
+    }
+
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """Above 30 km/h, within the radar's reach."""
+        now = drive[-1]
+        leader, mps = _in_sight(now), now.driving.speed_mps
+        if leader is None or speed_kmh(now) < GAP_FROM_KMH:
+            return
+        least_s = max([CLOSE_S, *_lawful_s(now)])
+        gap_s = leader.gap_m / mps
+        words = f"{gap_s:.1f} s behind the vehicle ahead, {least_s:.1f} s are asked"
+        if gap_s < least_s:
+            yield Sighting(words, due=True, hold_s=GAP_HOLD_S, severity=least_s / max(gap_s, 0.1))
+        elif gap_s < least_s + 0.5:
+            yield Sighting(words, bait=True)
+
+
+def _lawful_s(now: Moment) -> Iterator[float]:
+    """The time gaps that verified law asks for here."""
+    mps = max(now.driving.speed_mps, 1.0)
+    for found in certain(now.context, "following_distance"):
+        if isinstance(found.value, float):
+            yield found.value if found.rule.unit == "s" else found.value / mps
+
+
+class LeaderBrakes(EventKind):
+    """The vehicle ahead brakes so hard that only hard braking helps."""
+
+    name = "leader_brakes"
+    about = "only hard braking avoids the vehicle ahead"
+    bait = "a vehicle ahead that slows down, with room to brake gently"
+    source = "ISO 15623: by needed deceleration, 3.4 m/s2 (Archer, 2005); deadline: time to collision less 1.1 s"
+    weight = 2.0
+    alerts = frozenset({AlertKind.COLLISION, AlertKind.DISTANCE})
+    requests = (SlowDown,)
+
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """From half that deceleration."""
+        leader = _in_sight(drive[-1])
+        if leader is None or leader.drac_mps2 is None or leader.time_to_collision_s is None:
+            return
+        words = f"{leader.drac_mps2:.1f} m/s2 needed, {leader.time_to_collision_s:.1f} s to the vehicle ahead"
+        if leader.drac_mps2 >= HARD_MPS2:
+            left_s = leader.time_to_collision_s - REACTION_S
+            yield Sighting(words, due=True, left_s=left_s, severity=leader.drac_mps2 / HARD_MPS2)
+        elif leader.drac_mps2 >= HARD_MPS2 / 2:
+            yield Sighting(words, bait=True)
+
+
+class TractorAhead(EventKind):
+    """A slow vehicle ahead on a fast road."""
+
+    name = "tractor"
+    about = "the car comes up fast behind a slow vehicle on a fast road"
+    bait = "a slow vehicle ahead in a town"
+    source = "8 s to the vehicle ahead; deadline: reaction 1.1 s and braking at 3.4 m/s2 (AASHTO)"
+    alerts = frozenset(
+        {AlertKind.TRAFFIC, AlertKind.DISTANCE, AlertKind.COLLISION, AlertKind.SPEED, AlertKind.MOVE_OVER}
+    )
+    requests = (SlowDown,)
+
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """By the radar and the road's limit."""
+        now = drive[-1]
+        leader, mps = _in_sight(now), now.driving.speed_mps
+        limit_kmh = now.driving.road.limit.kmh
+        if leader is None or limit_kmh is None:
+            return
+        closing_mps = mps - leader.speed_mps
+        slow, fast = TRACTOR_KMH
+        if not slow <= leader.speed_mps * KMH_PER_MPS <= fast or closing_mps < 3.0:
+            return
+        words = f"a vehicle at {leader.speed_mps * KMH_PER_MPS:.0f} km/h {leader.gap_m:.0f} m ahead"
+        if limit_kmh < FAST_ROAD_KMH:
+            yield Sighting(words, bait=True)
+            return
+        left_s = time_left_s(leader.gap_m, closing_mps)
+        yield Sighting(words, leader.vehicle_id, due=leader.gap_m <= TRACTOR_DUE_S * closing_mps, left_s=left_s)
+
+
+def _in_sight(now: Moment) -> OtherVehicle | None:
+    leader = now.driving.around.leader
+    return leader if leader is not None and leader.gap_m <= RADAR_M else None

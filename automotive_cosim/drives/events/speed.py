@@ -1,0 +1,193 @@
+"""Events of speed: over the limit, a limit that falls, a school zone, weather that lowers what is lawful."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from automotive_cosim.cockpit.signals import ADAS
+from automotive_cosim.contracts import AlertKind, Cruise, PullOver, SlowDown
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.drives.events.base import EventKind, Sighting, WatchAct
+from automotive_cosim.drives.events.law import (
+    REACTION_S,
+    SLOW_KMH,
+    hold_s,
+    is_reduced,
+    limit_here,
+    margin_kmh,
+    speed_kmh,
+    time_left_s,
+)
+
+AHEAD_M = 500.0
+"""How far ahead the navigation announces a limit: the horizon that ADASIS-based map systems send at least."""
+COASTING_MPS2 = 1.0
+"""Deceleration of a car that coasts in gear: a driver who lifts the foot now just arrives at the new limit."""
+KEEPERS = frozenset({ADAS.CRUISE_SPEED.path, ADAS.LIMITER_SPEED.path})
+SWITCHES = frozenset({ADAS.CRUISE_ACTIVE.path, ADAS.LIMITER_ACTIVE.path})
+
+
+class SpeedKind(EventKind):
+    """An event that a lower speed settles; its value is the highest right speed in km/h."""
+
+    def settles(self, act: WatchAct, value: float | None) -> bool:
+        """An alert that advises no more than the right speed, a request for it, or a limiter set to it."""
+        most_kmh = 1000.0 if value is None else value + 1.0
+        if act.alert is not None:
+            return act.alert in self.alerts and (act.speed_kmh is None or act.speed_kmh <= most_kmh)
+        for request in act.requests:
+            if isinstance(request, PullOver):
+                return False
+            if isinstance(request, SlowDown | Cruise) and request.speed_kmh is not None:
+                return request.speed_kmh <= most_kmh
+        return any(
+            (path in KEEPERS and isinstance(written, float) and written <= most_kmh)
+            or (path in SWITCHES and written is True)
+            for path, written in act.writes
+        )
+
+    def concerns(self, act: WatchAct) -> bool:
+        """Whether it touches what keeps the speed."""
+        return any(path in KEEPERS | SWITCHES for path, _ in act.writes)
+
+
+class OverLimit(SpeedKind):
+    """Faster than the sign or the law of the road allows."""
+
+    name = "over_limit"
+    about = "the car is faster than the sign or the law of the road allows"
+    bait = "a little above the limit, within the error limit of speed meters: 52 in a 50"
+    source = "Regulation (EU) 2021/1958, annex I: the tone after 3 to 6 s by ratio; deadline: the tone's 5 s twice"
+    grace_s = 10.0
+    alerts = frozenset({AlertKind.SPEED})
+
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """From one kilometre an hour above the limit."""
+        now = drive[-1]
+        limit, kmh = limit_here(now), speed_kmh(now)
+        if limit is None or kmh < SLOW_KMH or is_school_time(now) or is_reduced(now.context, limit):
+            return
+        yield from _over(kmh, limit.kmh, f"{kmh:.0f} km/h where {limit.kmh:.0f} apply")
+
+
+def _over(kmh: float, limit_kmh: float, words: str) -> Iterator[Sighting]:
+    """The sighting of a speed above a limit: a bait within the margin, due above it."""
+    excess_kmh = kmh - limit_kmh
+    if excess_kmh <= 1.0:
+        return
+    subject = f"{limit_kmh:.0f}"
+    if excess_kmh <= margin_kmh(limit_kmh):
+        yield Sighting(words, subject, bait=True, value=limit_kmh)
+        return
+    hold = hold_s(kmh / limit_kmh)
+    severity = max(1.0, excess_kmh / 10)
+    yield Sighting(words, subject, due=True, hold_s=hold, severity=severity, value=limit_kmh)
+
+
+class LimitFalls(SpeedKind):
+    """A lower limit ahead that the car approaches too fast to coast down to."""
+
+    name = "limit_falls"
+    about = "the limit falls ahead, and the car no longer gets down to it by coasting"
+    bait = "a lower limit ahead that the car already keeps"
+    source = "coasting 1 m/s2; deadline: reaction 1.1 s and braking at 3.4 m/s2 (AASHTO) end at the sign"
+    weight = 0.5
+    alerts = frozenset({AlertKind.SPEED, AlertKind.SCHOOL})
+
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """Within the map's horizon, of posted limits only."""
+        now = drive[-1]
+        ahead, here, kmh = now.driving.ahead, limit_here(now), speed_kmh(now)
+        following, away_m = ahead.next_limit, ahead.next_limit_distance_m
+        if following is None or away_m is None or away_m > AHEAD_M or kmh < SLOW_KMH:
+            return
+        if not following.is_posted or following.kmh is None or following.mps is None:
+            return
+        if here is not None and following.kmh > here.kmh - 9.0:
+            return
+        words, subject = f"{following.kmh:.0f} km/h in {away_m:.0f} m at {kmh:.0f} km/h", f"{following.kmh:.0f}"
+        if kmh <= following.kmh + 1.0:
+            yield Sighting(words, subject, bait=True, value=following.kmh)
+            return
+        right_mps = following.mps + margin_kmh(following.kmh) / 3.6
+        mps = now.driving.speed_mps
+        if mps <= right_mps:
+            return
+        coasting_m = (mps**2 - right_mps**2) / (2 * COASTING_MPS2) + mps * REACTION_S
+        left_s = time_left_s(away_m, mps, right_mps)
+        yield Sighting(words, subject, due=away_m <= coasting_m, left_s=left_s, value=following.kmh)
+
+
+def is_school_time(moment: Moment) -> bool:
+    """Whether the car is in a school zone whose hours are on."""
+    road = moment.driving.road
+    return road.school_zone and road.limit_by_clock and road.limit.posted_mps is not None
+
+
+class SchoolHours(SpeedKind):
+    """Too fast in a school zone at its hours."""
+
+    name = "school_zone"
+    about = "the car is in a school zone at its hours, faster than its sign"
+    bait = "a school zone outside its hours"
+    source = "Regulation (EU) 2021/1958, annex I, the tone after 3 s; deadline: 8 s, 100 m at 50 km/h"
+    weight = 2.0
+    grace_s = 8.0
+    alerts = frozenset({AlertKind.SCHOOL, AlertKind.SPEED})
+
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """In the zone, in motion."""
+        now = drive[-1]
+        road, kmh = now.driving.road, speed_kmh(now)
+        if not road.school_zone or kmh < SLOW_KMH:
+            return
+        limit_kmh = road.limit.kmh
+        if not is_school_time(now) or limit_kmh is None:
+            if road.limit_hours:
+                yield Sighting("a school zone outside its hours", road.name, bait=True, value=limit_kmh)
+            return
+        over_kmh = kmh - limit_kmh - margin_kmh(limit_kmh)
+        yield Sighting(
+            f"{kmh:.0f} km/h in a school zone of {limit_kmh:.0f}",
+            road.name,
+            due=over_kmh > 0,
+            hold_s=3.0,
+            severity=max(1.0, over_kmh / 10),
+            value=limit_kmh,
+        )
+
+
+class WeatherSpeed(SpeedKind):
+    """Faster than weather or sight allows."""
+
+    name = "weather_speed"
+    about = "rain, fog or snow lowers the limit by law, or the car cannot stop within what its driver sees"
+    bait = "a road whose limit is lower in rain or fog, in dry clear weather"
+    source = "the law of the place; Vienna Convention, art. 13; times as over the limit"
+    weight = 1.5
+    grace_s = 10.0
+    alerts = frozenset({AlertKind.SPEED, AlertKind.VISIBILITY, AlertKind.WEATHER, AlertKind.SLIPPERY})
+
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """From the law first, else from the stopping distance."""
+        now = drive[-1]
+        context, kmh, limit = now.context, speed_kmh(now), limit_here(now)
+        if kmh < SLOW_KMH:
+            return
+        if limit is not None and is_reduced(context, limit):
+            words = f"{kmh:.0f} km/h where {limit.kmh:.0f} apply {limit.text}"
+            for sighting in _over(kmh, limit.kmh, words):
+                if not sighting.bait:
+                    yield sighting
+            return
+        mps, friction = now.driving.speed_mps, max(now.driving.road.friction, 0.1)
+        stopping_m = mps * REACTION_S + mps**2 / (2 * friction * 9.81)
+        if not now.driving.road.in_tunnel and stopping_m > now.weather.visibility:
+            words = f"needs {stopping_m:.0f} m to stop and sees {now.weather.visibility:.0f} m"
+            yield Sighting(words, "sight", due=True, hold_s=3.0, severity=stopping_m / now.weather.visibility)
+            return
+        for reduced in context.reduced_limits:
+            value = reduced.rule.cases[0].value
+            if reduced.value is None and isinstance(value, float) and kmh > value + margin_kmh(value):
+                yield Sighting(f"{reduced.rule.text}, which it is not", bait=True, value=value)
+                return

@@ -1,0 +1,100 @@
+"""The tracker: folds the moments of a drive into events."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.drives.events.base import EventKind, Sighting
+
+CLOSE_S = 3.0
+"""Out of sight for longer, an event has ended: a flickering reading is one event."""
+REOPEN_S = 30.0
+"""The same subject again within this time is the same event."""
+
+
+@dataclass(slots=True)
+class DriveEvent:
+    """One event of a drive; all times are simulation times. It grows while it lasts."""
+
+    kind: str
+    subject: str
+    words: str
+    bait: bool
+    weight: float
+    observable_s: float
+    last_s: float
+    """The last instant at which it was there."""
+    value: float | None = None
+    due_since_s: float | None = None
+    """Since when something is due without interruption; None while nothing is."""
+    due_until_s: float | None = None
+    """The last instant at which something was due."""
+    obliged_s: float | None = None
+    deadline_s: float | None = None
+    ended: bool = False
+    severities: list[tuple[float, float]] = field(default_factory=list)
+    """Instants at which it became worse, and how bad."""
+
+    def severity_at(self, time_s: float) -> float:
+        """How bad it had been at the worst, up to that time."""
+        return max((severity for at_s, severity in self.severities if at_s <= time_s), default=0.0)
+
+
+class Tracker:
+    """Finds the events of one drive as it goes."""
+
+    def __init__(self, kinds: Mapping[str, EventKind]) -> None:
+        """Of these kinds."""
+        self._kinds = kinds
+        self._latest: dict[tuple[str, str, bool], DriveEvent] = {}
+        self.events: list[DriveEvent] = []
+        """All events so far, by the instant at which they became observable."""
+
+    def see(self, drive: Sequence[Moment]) -> tuple[DriveEvent, ...]:
+        """Takes the last moment of a drive, and returns the events that became observable at it."""
+        now_s = drive[-1].time_s
+        opened = []
+        for kind in self._kinds.values():
+            seen = {(kind.name, sighting.subject, sighting.bait): sighting for sighting in kind.sight(drive)}
+            for key, sighting in seen.items():
+                event = self._latest.get(key)
+                if event is None or (event.ended and now_s - event.last_s > REOPEN_S):
+                    event = self._open(kind, sighting, now_s)
+                    opened.append(event)
+                self._update(event, kind, sighting, now_s)
+            for key, event in self._latest.items():
+                if key[0] == kind.name and key not in seen and not event.ended:
+                    event.due_since_s = None
+                    event.ended = now_s - event.last_s > CLOSE_S
+        return tuple(opened)
+
+    def _open(self, kind: EventKind, sighting: Sighting, now_s: float) -> DriveEvent:
+        event = DriveEvent(
+            kind=kind.name,
+            subject=sighting.subject,
+            words=sighting.words,
+            bait=sighting.bait,
+            weight=kind.weight,
+            observable_s=now_s,
+            last_s=now_s,
+            value=sighting.value,
+        )
+        self._latest[kind.name, sighting.subject, sighting.bait] = event
+        self.events.append(event)
+        return event
+
+    def _update(self, event: DriveEvent, kind: EventKind, sighting: Sighting, now_s: float) -> None:
+        event.last_s, event.ended = now_s, False
+        if sighting.severity > event.severity_at(now_s):
+            event.severities.append((now_s, sighting.severity))
+        if not sighting.due or sighting.bait:
+            event.due_since_s = None
+            return
+        event.due_until_s = now_s
+        event.due_since_s = now_s if event.due_since_s is None else event.due_since_s
+        if event.obliged_s is None and now_s - event.due_since_s >= sighting.hold_s:
+            event.obliged_s = now_s
+            event.deadline_s = now_s + (kind.grace_s if sighting.left_s is None else max(0.0, sighting.left_s))
+            event.words = sighting.words

@@ -1,0 +1,103 @@
+"""Events of weather: glass that fogs, rain on the windshield, a slippery road."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import ClassVar
+
+from automotive_cosim.cockpit.screens.notices import NOTICED
+from automotive_cosim.cockpit.signals import BODY, DRIVE, GLASS, HVAC
+from automotive_cosim.contracts import AlertKind, PullOver, SlowDown
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, off, on
+from automotive_cosim.drives.events.law import SLOW_KMH, speed_kmh
+
+ICY = 0.5
+"""Friction of snow, slush and ice (Wallman and Astrom, VTI 911A, 2001); a wet road has 0.7 to 0.8."""
+ICY_FROM_KMH = 40.0
+"""Faster than this, stopping on packed snow (0.25) takes over 30 m."""
+COLD_C = 4.0
+"""Cars warn of possible ice from this temperature."""
+
+
+class GlassFogs(EventKind):
+    """The windshield fogs."""
+
+    name = "glass_fog"
+    about = "the windshield fogs inside while the car moves"
+    bait = "a breath of mist on the glass, that no screen speaks of"
+    source = "a fifth of the light is lost, as the screens say; deadline: 20 s, what a defroster takes"
+    grace_s = 20.0
+    alerts = frozenset({AlertKind.VISIBILITY})
+    writes: ClassVar[Mapping[str, Wanted]] = {
+        HVAC.FRONT_DEFROSTER.path: on,
+        HVAC.MAX_DEFROST.path: on,
+        HVAC.AIR_CONDITIONING.path: on,
+        HVAC.RECIRCULATION.path: off,
+        HVAC.AIR_DISTRIBUTION.path: lambda value: value == "UP",
+        HVAC.FAN_SPEED.path: lambda value: isinstance(value, float) and value >= 50,
+    }
+
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """From a twentieth of the light lost."""
+        now = drive[-1]
+        fog = float(now.signals[GLASS.WINDSHIELD_FOG.path])
+        if fog < NOTICED / 4 or speed_kmh(now) < 1.0:
+            return
+        words = f"windshield fogged by {fog:.0%}"
+        if fog < NOTICED:
+            yield Sighting(words, bait=True)
+        else:
+            yield Sighting(words, due=True, hold_s=3.0, severity=fog / NOTICED)
+
+
+class Wipers(EventKind):
+    """Rain on the windshield that nobody wipes."""
+
+    name = "wipers"
+    about = "rain covers the windshield and the wipers are off"
+    bait = "a few drops that cover less than a fifth of the glass"
+    source = "a fifth of the light is lost; deadline: 10 s"
+    alerts = frozenset({AlertKind.VISIBILITY, AlertKind.WEATHER})
+    writes: ClassVar[Mapping[str, Wanted]] = {BODY.FRONT_WIPER.path: lambda value: value != "OFF"}
+
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """While the wipers are off and something falls."""
+        now = drive[-1]
+        film = float(now.signals[GLASS.WINDSHIELD_FILM.path])
+        dry = float(now.signals[BODY.RAIN_INTENSITY.path]) <= 0
+        if now.signals[BODY.FRONT_WIPER.path] != "OFF" or dry or speed_kmh(now) < 1.0:
+            return
+        words = f"windshield covered by {film:.0%}, wipers off"
+        if film < NOTICED:
+            yield Sighting(words, bait=True)
+        else:
+            yield Sighting(words, due=True, hold_s=3.0, severity=film / NOTICED)
+
+
+class Slippery(EventKind):
+    """Snow or ice on the road, at speed."""
+
+    name = "slippery"
+    about = "the road has the grip of snow or ice and the car is fast"
+    bait = "cold, but a dry road"
+    source = "friction: VTI meddelande 911A; deadline: 20 s, 450 m at 80 km/h"
+    weight = 1.5
+    grace_s = 20.0
+    alerts = frozenset({AlertKind.SLIPPERY, AlertKind.WEATHER})
+    requests = (SlowDown, PullOver)
+    writes: ClassVar[Mapping[str, Wanted]] = {DRIVE.MODE.path: lambda value: value == "SNOW"}
+
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """Of the lane under the car."""
+        now = drive[-1]
+        friction, kmh = now.driving.road.friction, speed_kmh(now)
+        if kmh < SLOW_KMH or now.driving.road.in_tunnel:
+            return
+        if friction < ICY:
+            words = f"{kmh:.0f} km/h on a road with friction {friction:.2f}"
+            yield Sighting(words, due=kmh > ICY_FROM_KMH, hold_s=5.0, severity=ICY / friction)
+        elif friction < 0.9:
+            yield Sighting(f"a wet road, friction {friction:.2f}", "wet")
+        elif now.weather.temperature_2m <= COLD_C:
+            yield Sighting(f"{now.weather.temperature_2m:.0f} degrees and dry", bait=True)

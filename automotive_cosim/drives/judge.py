@@ -1,0 +1,312 @@
+"""The judge: what became of each event of a drive, and what each act was.
+
+Each event is judged against the agent's own drive; one that never became an obligation there is compared with a
+copy of the drive that was forked when the event became observable, with nobody at its cockpit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+from automotive_cosim.contracts import AlertKind
+from automotive_cosim.drives.events.base import EventKind, WatchAct
+from automotive_cosim.drives.events.tracker import DriveEvent
+
+REPEAT_S = 60.0
+"""An alert about the same event within this time is a nuisance unless it has become worse."""
+WORSE = 1.25
+"""Ratio of severities from which an event has become worse."""
+SELF_ENDED_S = 1.5
+"""An event that was over earlier than this before its deadline had passed by itself: a tick and a half."""
+CHANCE_S = 2.0
+"""An event whose deadline comes sooner than this after it became observable could be met by nobody: one glance
+(NHTSA 2013)."""
+PREPARE_S = 15.0
+"""An act earlier than this before the obligation does not prepare for it: a driver has forgotten it by then."""
+CAUSED_S = 10.0
+"""An event that becomes observable within this time of the agent's own contrary act is of its own making."""
+PASSED_S = 3.0
+"""Who speaks of an event this soon after its end still speaks of it."""
+LATE_S = 30.0
+"""How long after a deadline an act still counts as late and not as a nuisance."""
+
+
+class EventOutcome(StrEnum):
+    """What became of an event."""
+
+    HIT = "hit"
+    """A right act between obligation and deadline."""
+    PREPARED = "prepared"
+    """A right act before the obligation, which then came."""
+    PREVENTED = "prevented"
+    """A right act, after which the obligation did not come; without the agent it would have."""
+    LATE = "late"
+    """The first right act came after the deadline."""
+    MISSED = "missed"
+    """No right act."""
+    CAUSED = "caused"
+    """The agent's own doing: counts as missed, whatever it did then."""
+    VOID = "void"
+    """Nothing ever had to be done, or it passed by itself before the deadline, or came too suddenly for anybody."""
+    AVOIDED = "avoided"
+    """A look-alike that the agent left alone."""
+    TAKEN = "taken"
+    """A look-alike that the agent acted on."""
+
+    @property
+    def is_credited(self) -> bool:
+        """Whether the agent did what was right in time."""
+        return self in (EventOutcome.HIT, EventOutcome.PREPARED, EventOutcome.PREVENTED)
+
+    @property
+    def counts(self) -> bool:
+        """Whether recall counts it: an event in which something had to be done."""
+        return self.is_credited or self in (EventOutcome.LATE, EventOutcome.MISSED, EventOutcome.CAUSED)
+
+
+class Worth(StrEnum):
+    """What an act was."""
+
+    RIGHT = "right"
+    """It settled an event, or prepared for one."""
+    LATE = "late"
+    """It would have settled an event before its deadline."""
+    NEUTRAL = "neutral"
+    """Neither asked for nor false: something that could be known supported it, or it set back what was changed."""
+    BAIT = "bait"
+    """A look-alike was taken for an event."""
+    WRONG = "wrong"
+    """Something was due, but not this."""
+    FALSE = "false"
+    """Nothing that could be known supported it."""
+    REPEAT = "repeat"
+    """The driver had just been told."""
+
+    @property
+    def is_false(self) -> bool:
+        """Whether it is a false alarm."""
+        return self in (Worth.BAIT, Worth.WRONG, Worth.FALSE)
+
+    @property
+    def is_nuisance(self) -> bool:
+        """Whether it costs: a false alarm or a repeat."""
+        return self.is_false or self is Worth.REPEAT
+
+
+@dataclass(frozen=True, slots=True)
+class JudgedEvent:
+    """One event and what became of it; times in simulation seconds."""
+
+    kind: str
+    words: str
+    bait: bool
+    weight: float
+    outcome: EventOutcome
+    observable_s: float
+    obliged_s: float | None
+    deadline_s: float | None
+    ends_s: float
+    acted_s: float | None = None
+    """When the act came that settled it."""
+
+    @property
+    def delay_s(self) -> float | None:
+        """From the instant at which it could be known to the act."""
+        return None if self.acted_s is None else self.acted_s - self.observable_s
+
+    @property
+    def credit(self) -> float:
+        """1 until three seconds after the obligation, falling to 0 at the deadline; -1 if nothing came in time;
+        0 for what does not count."""
+        if not self.outcome.is_credited:
+            return -1.0 if self.outcome.counts else 0.0
+        if self.outcome is not EventOutcome.HIT or self.acted_s is None:
+            return 1.0
+        assert self.obliged_s is not None
+        assert self.deadline_s is not None
+        full_s = self.obliged_s + FULL_S
+        if self.acted_s <= full_s or self.deadline_s <= full_s:
+            return 1.0
+        return (self.deadline_s - self.acted_s) / (self.deadline_s - full_s)
+
+
+FULL_S = 3.0
+"""Time after the obligation in which an act earns full credit."""
+
+
+@dataclass(frozen=True, slots=True)
+class JudgedAct:
+    """One act and what it was."""
+
+    time_s: float
+    words: str
+    worth: Worth
+    about: str = ""
+    """The kind of event that it was about."""
+
+
+@dataclass(frozen=True, slots=True)
+class Judgement:
+    """Everything that was judged of one drive."""
+
+    events: tuple[JudgedEvent, ...]
+    acts: tuple[JudgedAct, ...]
+
+
+@dataclass(slots=True)
+class _Case:
+    """An event while it is judged."""
+
+    event: DriveEvent
+    kind: EventKind
+    answered_s: float | None = None
+    told_s: float | None = None
+    told_severity: float = 0.0
+    is_named: bool = False
+    """Whether an alert was about it in the first place; one may settle others along with it."""
+    caused: bool = False
+    taken: bool = False
+
+    def is_open(self, time_s: float) -> bool:
+        """Whether an act at that time can be about it."""
+        event = self.event
+        until_s = max(event.last_s, min(event.deadline_s or 0.0, event.last_s + LATE_S))
+        return event.observable_s <= time_s <= until_s + PASSED_S
+
+
+def judge(
+    kinds: Mapping[str, EventKind],
+    events: Sequence[DriveEvent],
+    acts: Sequence[WatchAct],
+    due_anyway: Mapping[int, float | None],
+    at_start: Mapping[str, Any] | None = None,
+) -> Judgement:
+    """What became of events, and what acts were.
+
+    Args:
+        kinds: the kinds by name.
+        events: those of the agent's own drive.
+        acts: what the agent did, in chronological order.
+        due_anyway: by the index of an event, when its obligation arose in the copy of the drive that was forked
+            when it became observable; None if it did not.
+        at_start: the signals at departure; to set one back is no nuisance.
+    """
+    cases = [_Case(event, kinds[event.kind]) for event in events]
+    for case in cases:
+        case.caused = not case.event.bait and any(_contrary(case, act) for act in acts)
+    written: set[str] = set()
+    judged = []
+    for act in acts:
+        judged.append(_act(act, cases, written, at_start or {}))
+        written |= {path for path, _ in act.writes}
+    outcomes = [_event(case, due_anyway.get(index)) for index, case in enumerate(cases)]
+    return Judgement(tuple(outcomes), tuple(judged))
+
+
+def _contrary(case: _Case, act: WatchAct) -> bool:
+    """Whether an act brought an event about: it wrote what the kind watches, the wrong way, just before."""
+    before_s = case.event.observable_s - act.time_s
+    return 0.0 <= before_s <= CAUSED_S and case.kind.concerns(act) and not case.kind.settles(act, case.event.value)
+
+
+def _act(act: WatchAct, cases: Sequence[_Case], written: set[str], at_start: Mapping[str, Any]) -> JudgedAct:
+    there = [case for case in cases if case.is_open(act.time_s)]
+    true = [case for case in there if not case.event.bait]
+    right = [case for case in true if case.kind.settles(act, case.event.value)]
+    if right:
+        return JudgedAct(act.time_s, act.words, _told(act, right), right[0].event.kind)
+    if act.alert is None and _sets_back(act, written, at_start):
+        return JudgedAct(act.time_s, act.words, Worth.NEUTRAL)
+    if act.alert is None and not act.requests and true and (act.said or any(c.kind.concerns(act) for c in true)):
+        return JudgedAct(act.time_s, act.words, Worth.NEUTRAL, true[0].event.kind)
+    baits = [case for case in there if case.event.bait and case.kind.settles(act, case.event.value)]
+    for case in baits:
+        case.taken = True
+    if baits:
+        return JudgedAct(act.time_s, act.words, Worth.BAIT, baits[0].event.kind)
+    due = [case for case in true if case.answered_s is None and case.event.obliged_s is not None]
+    worth = Worth.WRONG if any((case.event.obliged_s or 0.0) <= act.time_s for case in due) else Worth.FALSE
+    return JudgedAct(act.time_s, act.words, worth)
+
+
+def _told(act: WatchAct, cases: Sequence[_Case]) -> Worth:
+    """Notes an act that is right for some open events; the best that it is for any of them."""
+    worths = []
+    unnamed = [case for case in cases if not case.is_named]
+    for case in cases:
+        event = case.event
+        if event.obliged_s is not None and act.time_s < event.obliged_s - PREPARE_S:
+            worths.append(Worth.NEUTRAL)
+            continue
+        if case.answered_s is None:
+            case.answered_s = act.time_s
+            late = event.deadline_s is not None and act.time_s > event.deadline_s
+            worths.append(Worth.LATE if late else Worth.RIGHT)
+        elif act.alert is None:
+            worths.append(Worth.NEUTRAL)
+        else:
+            severity = event.severity_at(act.time_s)
+            recent = case.told_s is not None and act.time_s - case.told_s < REPEAT_S
+            again = recent and not unnamed and severity < WORSE * case.told_severity
+            worths.append(Worth.REPEAT if again else Worth.NEUTRAL)
+        if act.alert is not None:
+            case.told_s, case.told_severity = act.time_s, event.severity_at(act.time_s)
+    if unnamed and act.alert is not None:
+        unnamed[-1].is_named = True
+    return min(worths, key=(Worth.RIGHT, Worth.LATE, Worth.NEUTRAL, Worth.REPEAT).index)
+
+
+def _sets_back(act: WatchAct, written: set[str], at_start: Mapping[str, Any]) -> bool:
+    """Whether an act only sets back what the agent itself had changed."""
+    return bool(act.writes) and all(
+        path in written and path in at_start and at_start[path] == value for path, value in act.writes
+    )
+
+
+def _event(case: _Case, due_anyway_s: float | None) -> JudgedEvent:
+    event = case.event
+    outcome = _outcome(case, due_anyway_s)
+    obliged_s = due_anyway_s if event.obliged_s is None else event.obliged_s
+    return JudgedEvent(
+        kind=event.kind,
+        words=event.words,
+        bait=event.bait,
+        weight=event.weight,
+        outcome=outcome,
+        observable_s=event.observable_s,
+        obliged_s=obliged_s,
+        deadline_s=event.deadline_s,
+        ends_s=event.last_s,
+        acted_s=case.answered_s if not event.bait else None,
+    )
+
+
+def _outcome(case: _Case, due_anyway_s: float | None) -> EventOutcome:
+    event, acted_s = case.event, case.answered_s
+    if event.bait:
+        return EventOutcome.TAKEN if case.taken else EventOutcome.AVOIDED
+    if event.obliged_s is None:
+        in_time = acted_s is not None and due_anyway_s is not None
+        return EventOutcome.PREVENTED if in_time and not case.caused else EventOutcome.VOID
+    if case.caused:
+        return EventOutcome.CAUSED
+    assert event.deadline_s is not None
+    assert event.due_until_s is not None
+    if acted_s is not None and acted_s <= event.deadline_s:
+        return EventOutcome.PREPARED if acted_s < event.obliged_s else EventOutcome.HIT
+    if event.deadline_s - event.observable_s < CHANCE_S or event.due_until_s < event.deadline_s - SELF_ENDED_S:
+        return EventOutcome.VOID
+    return EventOutcome.LATE if acted_s is not None else EventOutcome.MISSED
+
+
+def most_frequent(judgement: Judgement, kinds: Mapping[str, EventKind]) -> AlertKind | None:
+    """The kind of alert that would have settled most of the events; None without events."""
+    counts: dict[AlertKind, int] = {}
+    for event in judgement.events:
+        if event.outcome.counts:
+            for alert in sorted(kinds[event.kind].alerts):
+                counts[alert] = counts.get(alert, 0) + 1
+    return max(counts, key=lambda alert: counts[alert], default=None)

@@ -1,0 +1,161 @@
+"""What a watcher reads from an observation: the lines of the context, the car's readings, what woke it.
+
+It uses nothing but the text and the numbers that every agent gets, read as any agent could read them.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from automotive_cosim.contracts import Observation, VehicleState
+
+KM_PER_MILE = 1.609344
+_SPEED = re.compile(r"(\d+(?:\.\d+)?) (km/h|mph)")
+_AWAY = re.compile(r"(\d+) m\b")
+_SNOW = ("snow", "freezing", "rime")
+_FALLING = ("rain", "drizzle", "snow", "thunderstorm", "hail")
+
+
+@dataclass(frozen=True, slots=True)
+class LawLine:
+    """One line of the context that states a rule."""
+
+    text: str
+    kmh: float | None
+    is_verified: bool
+
+
+@dataclass(slots=True)
+class Gathered:
+    """What is known at one observation."""
+
+    time_s: float
+    vehicle: VehicleState
+    road: str = ""
+    limit_kmh: float | None = None
+    """The sign's limit, else the law's where one line states it."""
+    is_posted: bool = False
+    hours_kmh: float | None = None
+    """The limit that is posted here for certain hours."""
+    reduced: tuple[LawLine, ...] = ()
+    law: Mapping[str, LawLine] = field(default_factory=dict)
+    """Lines of other topics, by their label."""
+    sun_deg: float | None = None
+    weather: str = ""
+    visibility_m: float = 20_000.0
+    rain_mm_h: float = 0.0
+    changes: dict[str, tuple[float, str]] = field(default_factory=dict)
+    """The last words of each thing that wakes, and when they came; without what is over."""
+
+    @property
+    def speed_kmh(self) -> float:
+        """Of the car."""
+        return self.vehicle.speed_kmh
+
+    @property
+    def mps(self) -> float:
+        """Of the car."""
+        return self.vehicle.speed_kmh / 3.6
+
+    @property
+    def in_tunnel(self) -> bool:
+        """Whether the road is one."""
+        return self.road.endswith("tunnel") or ", tunnel" in self.road
+
+    @property
+    def phenomena(self) -> frozenset[str]:
+        """The weather in the words of traffic law."""
+        found = {word for word in ("fog", "rain", "snow") if word in self.weather}
+        if any(word in self.weather for word in _FALLING):
+            found.add("precipitation")
+        elif self.visibility_m < 1000 and "dust" not in self.weather:
+            found.add("fog")
+        if "rain" in found and ("heavy" in self.weather or self.rain_mm_h >= 7.6):
+            found.add("heavy rain")
+        if "snow" in found and "heavy" in self.weather:
+            found.add("heavy snow")
+        return frozenset(found)
+
+    @property
+    def is_icy(self) -> bool:
+        """Whether the road has snow or ice."""
+        return not self.in_tunnel and any(word in self.weather for word in _SNOW)
+
+    def away_m(self, name: str) -> float | None:
+        """Distance to what a change spoke of, less what has been driven since; None without one."""
+        if name not in self.changes:
+            return None
+        at_s, words = self.changes[name]
+        found = _AWAY.search(words)
+        return None if found is None else float(found[1]) - self.mps * (self.time_s - at_s)
+
+
+def read(seen: Observation, changes: dict[str, tuple[float, str]]) -> Gathered | None:
+    """What an observation says; None for an agent without the car's readings or the context.
+
+    Args:
+        seen: the observation.
+        changes: as in ``Gathered``, of the observations before; it is brought up to date.
+    """
+    if seen.vehicle is None or seen.context is None:
+        return None
+    for part in seen.feedback.text.split("; "):
+        name, _, words = part.partition(": ")
+        if words == "over":
+            changes.pop(name, None)
+        elif words:
+            changes[name] = seen.time_s, words
+    known = Gathered(seen.time_s, seen.vehicle, changes=changes)
+    defaults, reduced, law = [], [], {}
+    for line in seen.context.splitlines():
+        label, _, text = line.partition(": ")
+        match label:
+            case "Road":
+                known.road = text
+            case "Speed limit here" if "posted on" in text:
+                known.limit_kmh, known.is_posted = _kmh(text), True
+            case "Speed limit here" if text == "none":
+                known.is_posted = True
+            case "Posted for certain hours":
+                known.hours_kmh = _kmh(text)
+            case "Default limit":
+                defaults.append(_law(text))
+            case "Reduced limit":
+                reduced.append(_law(text))
+            case "Time":
+                known.sun_deg = _sun_deg(text)
+            case "Weather":
+                _read_weather(known, text)
+            case _:
+                law[label] = _law(text)
+    if not known.is_posted and len(defaults) == 1 and defaults[0].is_verified:
+        known.limit_kmh = defaults[0].kmh
+    known.reduced, known.law = tuple(reduced), law
+    return known
+
+
+def _law(text: str) -> LawLine:
+    start = _SPEED.match(text)
+    return LawLine(text, None if start is None else _kmh(start[0]), ", verified " in text)
+
+
+def _kmh(text: str) -> float | None:
+    found = _SPEED.search(text)
+    if found is None:
+        return None
+    return float(found[1]) * (KM_PER_MILE if found[2] == "mph" else 1.0)
+
+
+def _sun_deg(text: str) -> float | None:
+    found = re.search(r"sun (\d+)° (above|below)", text)
+    return None if found is None else float(found[1]) * (1 if found[2] == "above" else -1)
+
+
+def _read_weather(known: Gathered, text: str) -> None:
+    known.weather = text.partition(",")[0]
+    if (seen := re.search(r"visibility (\d+) m", text)) is not None:
+        known.visibility_m = float(seen[1])
+    if (rain := re.search(r"(\d+\.\d) mm/h", text)) is not None:
+        known.rain_mm_h = float(rain[1])

@@ -1,0 +1,145 @@
+"""The score of one drive, and of many.
+
+    U = sum of weight x credit over the events - NUISANCE per nuisance
+    score = 100 (U - U_noop) / (U_perfect - U_noop)
+
+Doing nothing misses every event (credit -1), a rule-perfect watcher meets each at once (credit 1) and does nothing
+else; both are taken over the events that arose on the agent's own drive, since it diverges from any other after the
+first act.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from statistics import median
+
+from automotive_cosim.drives.judge import EventOutcome, Judgement, Worth
+
+NUISANCE = 1.0
+"""Cost of a nuisance: as much as a miss, as in the standard profile of the Numenta Anomaly Benchmark (2015). At a
+fifth of that, an alert of the most frequent kind twice a minute would pay."""
+LEAST_WORTH = 1.0
+"""Scale of a drive without events, so that silence is 100 there and a false alarm costs."""
+
+
+@dataclass(frozen=True, slots=True)
+class Score:
+    """What one drive, or several together, came to."""
+
+    driven_s: float
+    events: int
+    """Events in which something had to be done."""
+    hits: int
+    prepared: int
+    prevented: int
+    late: int
+    missed: int
+    caused: int
+    void: int
+    baits: int
+    baits_taken: int
+    acts: int
+    false_alarms: int
+    nuisances: int
+    """False alarms and repeats."""
+    gained: float
+    """Sum of weight x credit, without nuisances."""
+    worth: float
+    """Sum of the weights of the events that count."""
+    delays_s: tuple[float, ...]
+    """From the instant at which an event could be known to the act, of those that were met."""
+    delays_due_s: tuple[float, ...]
+    """From the obligation to the act, of those met after it."""
+
+    @property
+    def met(self) -> int:
+        """Events that were met in time."""
+        return self.hits + self.prepared + self.prevented
+
+    @property
+    def recall(self) -> float | None:
+        """Share of the events that were met in time; None without events."""
+        return self.met / self.events if self.events else None
+
+    @property
+    def precision(self) -> float | None:
+        """Share of what told or did something that was not a nuisance; None if nothing was."""
+        told = self.met + self.late + self.nuisances
+        return self.met / told if told else None
+
+    @property
+    def false_alarms_per_h(self) -> float:
+        """False alarms per driving hour."""
+        return _per_h(self.false_alarms, self.driven_s)
+
+    @property
+    def nuisances_per_h(self) -> float:
+        """Nuisances per driving hour."""
+        return _per_h(self.nuisances, self.driven_s)
+
+    @property
+    def median_delay_s(self) -> float | None:
+        """Median of ``delays_s``."""
+        return median(self.delays_s) if self.delays_s else None
+
+    @property
+    def value(self) -> float:
+        """0 is doing nothing, 100 the rule-perfect watcher; a drive without events is 100 in silence."""
+        worth = self.worth or LEAST_WORTH
+        without_nuisances = self.gained + self.worth if self.worth else 2 * LEAST_WORTH
+        return 100 * (without_nuisances - NUISANCE * self.nuisances) / (2 * worth)
+
+
+def score(judgement: Judgement, driven_s: float) -> Score:
+    """The score of one judged drive.
+
+    Args:
+        judgement: its events and acts.
+        driven_s: how long it lasted.
+    """
+    events, acts = judgement.events, judgement.acts
+    counts = {outcome: sum(event.outcome is outcome for event in events) for outcome in EventOutcome}
+    met = [event for event in events if event.outcome.is_credited]
+    return Score(
+        driven_s=driven_s,
+        events=sum(event.outcome.counts for event in events),
+        hits=counts[EventOutcome.HIT],
+        prepared=counts[EventOutcome.PREPARED],
+        prevented=counts[EventOutcome.PREVENTED],
+        late=counts[EventOutcome.LATE],
+        missed=counts[EventOutcome.MISSED],
+        caused=counts[EventOutcome.CAUSED],
+        void=counts[EventOutcome.VOID],
+        baits=sum(event.bait for event in events),
+        baits_taken=counts[EventOutcome.TAKEN],
+        acts=sum(act.worth is not Worth.NEUTRAL for act in acts),
+        false_alarms=sum(act.worth.is_false for act in acts),
+        nuisances=sum(act.worth.is_nuisance for act in acts),
+        gained=sum(event.weight * event.credit for event in events),
+        worth=sum(event.weight for event in events if event.outcome.counts),
+        delays_s=tuple(event.delay_s for event in met if event.delay_s is not None),
+        delays_due_s=tuple(
+            event.acted_s - event.obliged_s
+            for event in met
+            if event.outcome is EventOutcome.HIT and event.acted_s is not None and event.obliged_s is not None
+        ),
+    )
+
+
+def together(scores: Sequence[Score]) -> Score:
+    """Several drives as one: every count and every second added up."""
+    total = {
+        name: sum(getattr(each, name) for each in scores)
+        for name in Score.__dataclass_fields__
+        if not name.startswith("delays")
+    }
+    return Score(
+        **total,
+        delays_s=tuple(delay for each in scores for delay in each.delays_s),
+        delays_due_s=tuple(delay for each in scores for delay in each.delays_due_s),
+    )
+
+
+def _per_h(count: int, seconds: float) -> float:
+    return 3600 * count / seconds if seconds > 0 else 0.0

@@ -1,0 +1,232 @@
+"""A watch: an agent's session on a drive of many minutes.
+
+    wait  ->  the road goes on, second by second, until something wakes or a minute has passed
+    act   ->  as in any session
+
+The driver has given one standing order. Nothing ends the watch but the end of the drive, and nothing says which
+change is an event.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, Self
+
+from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCode
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.cosim.simulation import TICK_S, CoSimulation
+from automotive_cosim.drives.acts import acts_of, spoken
+from automotive_cosim.drives.events import KINDS, DriveEvent, Tracker, WatchAct
+from automotive_cosim.drives.harm import Harm, harm
+from automotive_cosim.drives.judge import Judgement, judge
+from automotive_cosim.drives.order import STANDING_ORDER
+from automotive_cosim.drives.wakes import LONGEST_S, Alarm, Noticed
+from automotive_cosim.episode.baseline import Baseline
+from automotive_cosim.episode.listener import Listener
+from automotive_cosim.episode.session import Session, beginning
+from automotive_cosim.episode.specification import ROUNDING_S, Conditions, End
+from automotive_cosim.interface.observe import Channel
+
+TWIN_S = 120.0
+"""How long a do-nothing copy is driven at most to see whether its event becomes an obligation."""
+
+
+@dataclass(slots=True)
+class Twin:
+    """A do-nothing copy of the drive from the instant at which an event became observable."""
+
+    index: int
+    """Number of the event."""
+    event: DriveEvent
+    world: CoSimulation
+    drive: list[Moment]
+    tracker: Tracker
+    due_s: float | None = None
+    """When the obligation arose in it."""
+
+    def follow(self, time_s: float) -> bool:
+        """Drives to that simulation time; returns whether there is more to see.
+
+        Raises:
+            TrafficError: the traffic simulation failed.
+        """
+        while self.drive[-1].time_s < time_s - ROUNDING_S:
+            passed = self.world.advance(TICK_S)
+            if not passed:
+                return False
+            for moment in passed:
+                self.drive.append(moment)
+                self.tracker.see(self.drive)
+        same = [event for event in self.tracker.events if event.subject == self.event.subject and not event.bait]
+        self.due_s = next((event.obliged_s for event in same if event.obliged_s is not None), None)
+        over = bool(same) and all(event.ended for event in same)
+        return self.due_s is None and not over and time_s - self.event.observable_s < TWIN_S
+
+
+@dataclass(kw_only=True)
+class Watch(Session):
+    """A session on a drive. Make one with ``depart_with``."""
+
+    baseline: Baseline
+    """The same drive from departure with nobody at the cockpit, for comparison."""
+    tracker: Tracker
+    alarm: Alarm
+    acts: list[WatchAct] = field(default_factory=list)
+    """What the agent did so far that reaches driver, car or road."""
+    twins: list[Twin] = field(default_factory=list)
+    due_anyway: dict[int, float | None] = field(default_factory=dict)
+    """By number of an event, when its obligation arose in its do-nothing copy."""
+    changes: list[Noticed] = field(default_factory=list)
+    """What has changed since the last observation."""
+    waits: int = 0
+    wakes: int = 0
+    judgement: Judgement | None = None
+    """The judgement; None until the drive is over."""
+    _deeds: int = 0
+
+    @classmethod
+    def depart_with(
+        cls,
+        world: CoSimulation,
+        conditions: Conditions,
+        listener: Listener | None = None,
+    ) -> Self:
+        """The watch that begins at the present moment of a drive, and takes it over.
+
+        Args:
+            world: the running drive.
+            conditions: the agent's input, and the duration as ``max_sim_s``.
+            listener: notified of every second that passes.
+
+        Raises:
+            TrafficError: the traffic simulation failed.
+        """
+        begun: dict[str, Any] = beginning(world, STANDING_ORDER, conditions, (), listener)
+        watch = cls(**begun, baseline=Baseline(world.shadow()), tracker=Tracker(KINDS), alarm=Alarm())
+        watch._note(world.moment)
+        return watch
+
+    @property
+    def events(self) -> Sequence[DriveEvent]:
+        """The events so far, for reports and reference; no agent is told."""
+        return self.tracker.events
+
+    @property
+    def baseline_moments(self) -> tuple[Moment, ...]:
+        """The do-nothing drive from departure to now."""
+        return self.baseline.until(self.moments[-1].time_s)
+
+    @property
+    def harms(self) -> tuple[Harm, Harm]:
+        """The harm on this drive, and on the do-nothing drive of the same length."""
+        return harm(self.moments), harm(self.baseline_moments)
+
+    def step(self, action: Action) -> None:
+        """As in a session; a spoken answer is noted, and a declared status ends nothing."""
+        said = spoken(action, self.world.moment.time_s)
+        if said is not None:
+            self.acts.append(said)
+        super().step(action)
+
+    def close(self) -> None:
+        """Ends the drive and all its copies; may be called again."""
+        for twin in self.twins:
+            twin.world.close()
+        self.twins.clear()
+        self.baseline.close()
+        self.world.close()
+
+    # --- inside -------------------------------------------------------------------------------------------
+
+    def _spend(self, action: Action | None, feedback: Feedback, cost_s: float) -> Feedback:
+        """Lets an action's time pass: a wait lasts until something wakes."""
+        self._note_acts()
+        if action is None or action.action_type is not ActionType.WAIT:
+            feedback = super()._spend(action, feedback, cost_s)
+            goes_on = action is not None and action.action_type is ActionType.STATUS
+            return self._told(
+                feedback.code, "the watch goes on; wait for what changes" if goes_on else feedback.text
+            )
+        self.waits += 1
+        begun_s, longest_s = self.world.moment.time_s, float(action.seconds or LONGEST_S)
+        left_s = min(longest_s, self._left_s())
+        while left_s > ROUNDING_S and not self._is_woken and self.world.moment.driving.end is None:
+            self._advance(min(TICK_S, left_s))
+            left_s = min(longest_s - (self.world.moment.time_s - begun_s), self._left_s())
+        passed_s = self.world.moment.time_s - begun_s
+        return self._told(FeedbackCode.OK, f"{passed_s:.0f} s passed")
+
+    def _told(self, code: FeedbackCode, text: str) -> Feedback:
+        self.wakes += self._is_woken
+        changed = [change.words for change in self.changes]
+        self.changes.clear()
+        return Feedback(code, "; ".join([text, *changed] if text else changed))
+
+    @property
+    def _is_woken(self) -> bool:
+        return any(change.wakes for change in self.changes)
+
+    def _left_s(self) -> float:
+        most_s = self.conditions.max_sim_s
+        return float("inf") if most_s is None else most_s - self.seconds
+
+    def _channels(self, action: Action | None) -> frozenset[Channel]:
+        """After a wait there is no picture: an agent that wants one looks at a screen."""
+        waited = action is not None and action.action_type is ActionType.WAIT
+        return self.conditions.given - {Channel.SCREENSHOT} if waited else self.conditions.given
+
+    def _advance(self, duration_s: float) -> None:
+        """Advances second by second, together with the copies."""
+        left_s = duration_s
+        while left_s > ROUNDING_S and self.world.moment.driving.end is None:
+            tick_s = min(TICK_S, left_s)
+            self.baseline.start(self.world.moment.time_s + tick_s)
+            for moment in self._heard(self.world.advance(tick_s)):
+                self.moments.append(moment)
+                self._note(moment)
+            self.baseline.follow(self.world.moment.time_s)
+            self._follow()
+            left_s -= tick_s
+
+    def _note(self, moment: Moment) -> None:
+        self.changes += self.alarm.see(moment)
+        for event in self.tracker.see(self.moments):
+            if not event.bait and event.obliged_s is None:
+                index = len(self.tracker.events) - 1 - self.tracker.events[::-1].index(event)
+                tracker = Tracker({event.kind: KINDS[event.kind]})
+                drive = list(self.moments)
+                tracker.see(drive)
+                self.twins.append(Twin(index, event, self.world.shadow(), drive, tracker))
+
+    def _follow(self) -> None:
+        kept = []
+        for twin in self.twins:
+            if twin.event.obliged_s is None and twin.follow(self.world.moment.time_s):
+                kept.append(twin)
+            else:
+                self.due_anyway[twin.index] = twin.due_s
+                twin.world.close()
+        self.twins = kept
+
+    def _note_acts(self) -> None:
+        deeds = self.world.cockpit.deeds
+        self.acts += acts_of(deeds[self._deeds :])
+        self._deeds = len(deeds)
+
+    def _ended(self) -> End | None:
+        end = super()._ended()
+        if end is End.DECLARED:
+            most_s = self.conditions.max_sim_s
+            self.declared = self.reason = None
+            end = End.WATCH_OVER if most_s is not None and self.seconds >= most_s - ROUNDING_S else None
+        return End.WATCH_OVER if end is End.OUT_OF_TIME else end
+
+    def _finish(self, end: End) -> None:
+        """An agent that stops acting leaves the rest of the drive to itself."""
+        if end not in (End.DRIVE_ENDED, End.WATCH_OVER) and self.conditions.max_sim_s is not None:
+            self._advance(max(0.0, self._left_s()))
+        for twin in self.twins:
+            self.due_anyway[twin.index] = twin.due_s
+        self.judgement = judge(KINDS, self.events, self.acts, self.due_anyway, self.moments[0].commands)
+        super()._finish(end)

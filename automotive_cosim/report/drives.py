@@ -1,0 +1,304 @@
+"""``report.html`` of an evaluation of drives: tables by agent, kind and family, and a timeline of each drive."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.drives.events import KINDS
+from automotive_cosim.drives.score import Score, together
+from automotive_cosim.errors import UserError
+from automotive_cosim.report.charts import INK
+from automotive_cosim.report.drivechart import timeline_chart
+from automotive_cosim.report.stats import CONFIDENCE, Interval
+from automotive_cosim.report.tables import Cell, Table, TableRow
+from automotive_cosim.report.templates import render
+from automotive_cosim.run.record import write_whole
+from automotive_cosim.run.store import cannot_write, read_manifest, read_rows
+from automotive_cosim.run.watch_row import WatchRow
+from automotive_cosim.run.watches import TIMELINES
+
+DRAWS = 2000
+"""Bootstrap samples of whole drives, at which the second digit of a bound is stable."""
+LEAST_DRIVES = 5
+"""Fewer drives give no interval: drives are the clusters, and so few say little about others."""
+SHOWN = 8
+"""Timelines on the page; all of them are files."""
+
+Figure = Callable[[Sequence[WatchRow]], float | None]
+"""A figure of several drives together; None if there is nothing to divide by."""
+
+
+@dataclass(frozen=True, slots=True)
+class WatchedBy:
+    """Who watched, and under which conditions: one line of the tables."""
+
+    agent: str
+    model: str
+    geo: str
+    clock: str
+    latency_s: float
+
+    @property
+    def label(self) -> str:
+        """In words."""
+        parts = [self.agent if self.model == "none" else f"{self.agent} ({self.model})"]
+        parts += [f"geo {self.geo}"] if self.geo != "full" else []
+        parts += [f"{self.clock} clock"] if self.clock != "fixed" else []
+        parts += [f"{self.latency_s:g} s later"] if self.latency_s else []
+        return ", ".join(parts)
+
+
+def watcher_of(row: WatchRow) -> WatchedBy:
+    """Who watched a drive."""
+    return WatchedBy(row.agent, row.model, str(row.geo), str(row.clock), row.latency_s)
+
+
+def grouped(rows: Iterable[WatchRow]) -> dict[WatchedBy, list[WatchRow]]:
+    """The judged drives of each watcher, the best first."""
+    found: dict[WatchedBy, list[WatchRow]] = {}
+    for row in rows:
+        if row.score is not None:
+            found.setdefault(watcher_of(row), []).append(row)
+    return dict(sorted(found.items(), key=lambda entry: -whole(entry[1]).value))
+
+
+def whole(rows: Sequence[WatchRow]) -> Score:
+    """The drives together."""
+    return together([row.score for row in rows if row.score is not None])
+
+
+def standings(rows: Iterable[WatchRow]) -> list[str]:
+    """A line for each watcher."""
+    lines = []
+    for each, mine in grouped(rows).items():
+        total = whole(mine)
+        recall = "no events" if total.recall is None else f"{total.recall:.0%} of {total.events} events met"
+        lines.append(
+            f"{each.label}: score {told(mine, _value, '.0f')}; {recall}, "
+            f"{total.false_alarms_per_h:.1f} false alarms and {total.nuisances_per_h:.1f} nuisances an hour, "
+            f"{len(mine)} drives"
+        )
+    return lines
+
+
+# --- figures of several drives ----------------------------------------------------------------------------------
+
+
+def _value(rows: Sequence[WatchRow]) -> float | None:
+    return whole(rows).value
+
+
+def _share(of: Callable[[Score], float | None]) -> Figure:
+    def figure(rows: Sequence[WatchRow]) -> float | None:
+        found = of(whole(rows))
+        return None if found is None else 100 * found
+
+    return figure
+
+
+def _saved(of: Callable[[Any], float]) -> Figure:
+    """Share of the do-nothing drives' harm that did not come about."""
+
+    def figure(rows: Sequence[WatchRow]) -> float | None:
+        pairs = [(row.harm, row.baseline_harm) for row in rows if row.harm and row.baseline_harm]
+        nobodys = sum(of(baseline) for _, baseline in pairs)
+        return 100 * (nobodys - sum(of(mine) for mine, _ in pairs)) / nobodys if nobodys else None
+
+    return figure
+
+
+def _per_hour(of: Callable[[WatchRow], float]) -> Figure:
+    def figure(rows: Sequence[WatchRow]) -> float | None:
+        driven_s = whole(rows).driven_s
+        return 3600 * sum(map(of, rows)) / driven_s if driven_s else None
+
+    return figure
+
+
+FIGURES: tuple[tuple[str, Figure, str], ...] = (
+    ("Score", _value, ".0f"),
+    ("Recall %", _share(lambda score: score.recall), ".0f"),
+    ("Precision %", _share(lambda score: score.precision), ".0f"),
+    ("False alarms/h", lambda rows: whole(rows).false_alarms_per_h, ".1f"),
+    ("Nuisances/h", lambda rows: whole(rows).nuisances_per_h, ".1f"),
+    ("Median delay s", lambda rows: whole(rows).median_delay_s, ".1f"),
+    ("Overspeed saved %", _saved(lambda harm: float(harm.over_limit_m)), ".0f"),
+    ("Short TTC saved %", _saved(lambda harm: float(harm.short_ttc_s)), ".0f"),
+    ("Distraction s/h", _per_hour(lambda row: row.distraction_s), ".0f"),
+    ("Steps/h", _per_hour(lambda row: row.steps), ".0f"),
+    ("Model calls/h", _per_hour(lambda row: row.calls), ".0f"),
+    ("Tokens/h", _per_hour(lambda row: row.tokens_in + row.tokens_out), ".0f"),
+    ("Model s/h", _per_hour(lambda row: row.model_seconds), ".0f"),
+)
+"""Columns of the first table: name, figure, format."""
+WITH_INTERVAL = 5
+"""The first of them have intervals."""
+
+
+def interval(rows: Sequence[WatchRow], figure: Figure) -> Interval | None:
+    """Bounds from resampling whole drives, the repeats of one together; None with fewer than ``LEAST_DRIVES``."""
+    clusters: dict[tuple[str, int], list[WatchRow]] = {}
+    for row in rows:
+        clusters.setdefault((row.family, row.seed), []).append(row)
+    groups = list(clusters.values())
+    if len(groups) < LEAST_DRIVES:
+        return None
+    rng = np.random.default_rng(0)
+    found = []
+    for picks in rng.integers(len(groups), size=(DRAWS, len(groups))):
+        value = figure([row for pick in picks for row in groups[pick]])
+        if value is not None:
+            found.append(value)
+    if not found:
+        return None
+    tail = 100 * (1 - CONFIDENCE) / 2
+    low, high = np.percentile(found, (tail, 100 - tail))
+    return Interval(float(low), float(high))
+
+
+def told(rows: Sequence[WatchRow], figure: Figure, form: str, *, bounded: bool = True) -> str:
+    """A figure with its interval, as text."""
+    value = figure(rows)
+    if value is None:
+        return "–"
+    text = f"{value:{form}}"
+    bounds = interval(rows, figure) if bounded else None
+    if bounds is not None:
+        text += f" ({bounds.low:{form}} to {bounds.high:{form}})"
+    return text.replace("-", "−")
+
+
+# --- tables --------------------------------------------------------------------------------------------------
+
+
+def tables(rows: Sequence[WatchRow]) -> list[Table]:
+    """Every table of the report, the most important first."""
+    groups = grouped(rows)
+    return [table for table in (_watchers(groups), _kinds(groups), _families(groups), _errors(rows)) if table.rows]
+
+
+def _watchers(groups: dict[WatchedBy, list[WatchRow]]) -> Table:
+    lines: tuple[TableRow, ...] = tuple(
+        (
+            each.label,
+            str(len(mine)),
+            f"{whole(mine).driven_s / 3600:.1f}",
+            *(
+                Cell(told(mine, figure, form, bounded=number < WITH_INTERVAL), tuple(row.id for row in mine))
+                for number, (_, figure, form) in enumerate(FIGURES)
+            ),
+        )
+        for each, mine in groups.items()
+    )
+    return Table(
+        "watchers",
+        "Watchers",
+        ("Watcher", "Drives", "Hours", *(name for name, _, _ in FIGURES)),
+        lines,
+        "Score: 0 is doing nothing, 100 the rule-perfect watcher; a nuisance costs as much as "
+        "a miss. In brackets 95 % intervals from resampling whole drives. Saved: compared with the same "
+        "drives with nobody at the cockpit.",
+    )
+
+
+def _kinds(groups: dict[WatchedBy, list[WatchRow]]) -> Table:
+    """Events met of each kind, and look-alikes left alone."""
+    lines = []
+    for name, kind in KINDS.items():
+        cells = []
+        for mine in groups.values():
+            events = [event for row in mine for event in row.events if event.kind == name]
+            real = [event for event in events if event.outcome.counts]
+            baits = [event for event in events if event.bait]
+            met, left = sum(e.outcome.is_credited for e in real), sum(e.outcome == "avoided" for e in baits)
+            cells.append(f"{met}/{len(real)}, {left}/{len(baits)}" if events else "–")
+        if any(cell != "–" for cell in cells):
+            lines.append((name, kind.about, *cells))
+    return Table(
+        "kinds",
+        "Kinds of events",
+        ("Kind", "What is due", *(each.label for each in groups)),
+        tuple(lines),
+        "Events met, of those in which something had to be done; then look-alikes left alone, of all.",
+        heads=2,
+    )
+
+
+def _families(groups: dict[WatchedBy, list[WatchRow]]) -> Table:
+    families = dict.fromkeys(row.family for mine in groups.values() for row in mine)
+    lines = []
+    for family in families:
+        of = [[row for row in mine if row.family == family] for mine in groups.values()]
+        lines.append((family, *(told(rows, _value, ".0f", bounded=False) if rows else "–" for rows in of)))
+    return Table("families", "Score by family", ("Family", *(each.label for each in groups)), tuple(lines))
+
+
+def _errors(rows: Sequence[WatchRow]) -> Table:
+    return Table(
+        "errors",
+        "Drives that ended in an error",
+        ("Drive", "Error"),
+        tuple((row.id, f"{row.error_kind}: {row.error}") for row in rows if row.error is not None),
+    )
+
+
+# --- the page ------------------------------------------------------------------------------------------------
+
+
+def write_drives(folder: Path) -> Path:
+    """Writes ``report.html``, ``tables/`` and ``plots/`` into the folder of an evaluation of drives.
+
+    Raises:
+        UserError: no drive has ended yet, or the folder cannot be written.
+        SetupError: the extra ``report`` is not installed.
+    """
+    rows = list(read_rows(folder, WatchRow).values())
+    if not rows:
+        raise UserError(f"{folder} has no drives yet; rerun its `eval --drives` command to resume")
+    manifest = read_manifest(folder)
+    made = tables(rows)
+    try:
+        for name in ("tables", "plots"):
+            (folder / name).mkdir(exist_ok=True)
+        for table in made:
+            for suffix, text in (("md", table.markdown()), ("csv", table.csv()), ("tex", table.latex())):
+                write_whole(folder / "tables" / f"{table.name}.{suffix}", text)
+        plots: dict[str, tuple[str, str, str]] = {}
+        for row in sorted(rows, key=lambda row: (row.value is None, row.value or 0.0)):
+            timeline = folder / TIMELINES / f"{row.id}.json"
+            if row.score is None or not timeline.is_file():
+                continue
+            drawn = timeline_chart(row, _read(timeline))
+            write_whole(folder / "plots" / f"{row.id}.svg", drawn[0].replace("currentColor", INK))
+            if len(plots) < SHOWN:
+                plots[row.id] = (f"{row.family}, seed {row.seed}: {watcher_of(row).label}", *drawn)
+        page = folder / "report.html"
+        write_whole(
+            page,
+            render(
+                "report/drives.html",
+                rows=rows,
+                errors=sum(row.error is not None for row in rows),
+                standings=standings(rows),
+                tables=made,
+                plots=plots,
+                plan=manifest["plan"],
+                starts=manifest["starts"],
+                stand_in=any(row.model == "rules" for row in rows),
+            ),
+        )
+    except OSError as error:
+        raise cannot_write(folder, error) from error
+    return page
+
+
+def _read(path: Path) -> Json:
+    made: Json = json.loads(path.read_text("utf-8"))
+    return made

@@ -1,0 +1,244 @@
+"""Runs one drive with an agent, from departure to its row."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import ExitStack, closing
+from dataclasses import dataclass, replace
+from typing import Any
+
+from automotive_cosim.agents import Agent, Thinker
+from automotive_cosim.contracts import KMH_PER_MPS, Element, Json
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.drives.departure import depart
+from automotive_cosim.drives.families import FAMILIES
+from automotive_cosim.drives.family import Family
+from automotive_cosim.drives.harm import distraction_s
+from automotive_cosim.drives.judge import JudgedEvent
+from automotive_cosim.drives.plan import DrivePlan
+from automotive_cosim.drives.score import score
+from automotive_cosim.drives.watch import Watch
+from automotive_cosim.episode.listener import Listener
+from automotive_cosim.episode.loop import play
+from automotive_cosim.episode.specification import Clock, Conditions
+from automotive_cosim.errors import UnknownNameError
+from automotive_cosim.geo.breaches import limit_at
+from automotive_cosim.interface.controls import GeoInput
+from automotive_cosim.interface.trace import plain
+from automotive_cosim.models.base import ModelReply
+from automotive_cosim.run.episode import Replayed, Timed
+from automotive_cosim.run.watch_row import WatchRow
+from automotive_cosim.traffic.fork import Simulations
+
+MOST_STEPS = 100_000
+"""Far more than a drive has seconds."""
+
+
+@dataclass(frozen=True, slots=True)
+class WatchSetup:
+    """One drive to run, by name."""
+
+    family: str
+    seed: int = 0
+    agent: str = ""
+    model: str = "none"
+    geo: GeoInput = GeoInput.FULL
+    clock: Clock = Clock.FIXED
+    latency_s: float = 0.0
+    repeat: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class WatchRecord:
+    """What a drive leaves behind."""
+
+    row: WatchRow
+    timeline: Json
+    """Speed, limit and the do-nothing drive's speed, one value a second."""
+    steps: tuple[Json, ...]
+    """Action, thinking time and result of each step."""
+
+
+def family_named(name: str) -> Family:
+    """The family of drives by name.
+
+    Raises:
+        UnknownNameError: there is none.
+    """
+    if name not in FAMILIES:
+        raise UnknownNameError("family of drives", name, FAMILIES, "automotive-cosim drive --list")
+    return FAMILIES[name]
+
+
+def planned_row(job_id: str, setup: WatchSetup) -> WatchRow:
+    """The row of a drive before it has run."""
+    family = family_named(setup.family)
+    return WatchRow(
+        id=job_id,
+        family=family.id,
+        seed=setup.seed,
+        scenario=family.scenario,
+        season=family.season,
+        agent=setup.agent,
+        model=setup.model,
+        geo=setup.geo,
+        clock=setup.clock,
+        latency_s=setup.latency_s,
+        repeat=setup.repeat,
+    )
+
+
+def run_watch(
+    job_id: str,
+    setup: WatchSetup,
+    agent: Agent,
+    *,
+    simulations: Simulations | None = None,
+    listener: Listener | None = None,
+    plan: DrivePlan | None = None,
+) -> WatchRecord:
+    """Runs a drive to its end and judges it.
+
+    Args:
+        job_id: id of its row.
+        setup: what to run.
+        agent: who watches.
+        simulations: warm simulations to use; by default its own, closed with the drive.
+        listener: notified of progress.
+        plan: used instead of the family's plan for the seed.
+
+    Raises:
+        UserError: something in the setup does not exist.
+        InfrastructureError: traffic or model failed.
+    """
+    planned = planned_row(job_id, setup)
+    drive = plan or family_named(setup.family).draw(setup.seed)
+    with ExitStack() as ends:
+        own = simulations or ends.enter_context(closing(Simulations()))
+        world = depart(drive, own, listener)
+        try:
+            conditions = Conditions(agent.channels, setup.geo, MOST_STEPS, drive.duration_s)
+            watch = Watch.depart_with(world, conditions, listener)
+        except BaseException:
+            world.close()
+            raise
+        ends.callback(watch.close)
+        meter = _Meter(setup, agent)
+        agent.reset(watch.goal)
+        end = play(watch, agent, (meter.stepped,), meter.thought_s)
+        return WatchRecord(
+            row=replace(planned, end=end, **_figures(watch), **meter.totals()),
+            timeline=_timeline(watch),
+            steps=tuple(_steps(watch)),
+        )
+
+
+class _Meter:
+    """What the agent's answers cost."""
+
+    def __init__(self, setup: WatchSetup, agent: Agent) -> None:
+        self._setup, self._agent = setup, agent
+        self._replies: list[ModelReply] = []
+        self._thought_s = 0.0
+
+    def thought_s(self) -> float:
+        """Simulated seconds of the last answer."""
+        seconds = self._setup.latency_s
+        agent = self._agent
+        if isinstance(agent, Replayed):
+            seconds = agent.thought_s
+        elif self._setup.clock is Clock.MODEL and isinstance(agent, Timed):
+            seconds += agent.answer_s
+        elif self._setup.clock is Clock.MODEL and isinstance(agent, Thinker):
+            seconds += sum(stage.reply.seconds for stage in agent.stages if stage.reply is not None)
+        seconds = round(seconds, 1)
+        self._thought_s += seconds
+        return seconds
+
+    def stepped(self, session: Watch, seen: Sequence[Element]) -> None:
+        """Notes the model's replies of a step."""
+        if isinstance(self._agent, Thinker):
+            self._replies += [stage.reply for stage in self._agent.stages if stage.reply is not None]
+
+    def totals(self) -> dict[str, Any]:
+        """The fields of the row."""
+        replies = self._replies
+        return {
+            "calls": len(replies),
+            "thought_s": round(self._thought_s, 3),
+            "tokens_in": sum(reply.tokens_in for reply in replies),
+            "tokens_out": sum(reply.tokens_out for reply in replies),
+            "cost_usd": sum(reply.cost_usd for reply in replies),
+            "model_seconds": round(sum(reply.seconds for reply in replies), 3),
+        }
+
+
+def _figures(watch: Watch) -> dict[str, Any]:
+    judgement = watch.judgement
+    assert judgement is not None
+    begun_s = watch.moments[0].time_s
+    found = score(judgement, watch.seconds)
+    mine, nobodys = watch.harms
+    texts = [str(step.action.text) for step in watch.steps if step.action is not None and step.action.text]
+    return {
+        "agent_error": watch.failure,
+        "score": found,
+        "value": found.value,
+        "harm": mine,
+        "baseline_harm": nobodys,
+        "distraction_s": distraction_s(watch.acts, texts),
+        "events": tuple(_since(event, begun_s) for event in judgement.events),
+        "acts": tuple(replace(act, time_s=round(act.time_s - begun_s, 3)) for act in judgement.acts),
+        "steps": len(watch.steps) - 1,
+        "waits": watch.waits,
+        "wakes": watch.wakes,
+        "trace_sha256": watch.trace_sha256,
+    }
+
+
+def _since(event: JudgedEvent, begun_s: float) -> JudgedEvent:
+    """The event with times since departure."""
+
+    def since(time_s: float | None) -> float | None:
+        return None if time_s is None else round(time_s - begun_s, 3)
+
+    return replace(
+        event,
+        observable_s=round(event.observable_s - begun_s, 3),
+        obliged_s=since(event.obliged_s),
+        deadline_s=since(event.deadline_s),
+        ends_s=round(event.ends_s - begun_s, 3),
+        acted_s=since(event.acted_s),
+    )
+
+
+def _timeline(watch: Watch) -> Json:
+    def speeds(moments: Sequence[Moment]) -> list[float]:
+        return [round(moment.driving.speed_mps * KMH_PER_MPS, 1) for moment in moments]
+
+    limits = [limit_at(moment.context).kmh for moment in watch.moments]
+    begun_s = watch.moments[0].time_s
+    return {
+        "time_s": [round(moment.time_s - begun_s, 1) for moment in watch.moments],
+        "speed_kmh": speeds(watch.moments),
+        "limit_kmh": [None if limit is None else round(limit, 1) for limit in limits],
+        "baseline_kmh": speeds(watch.baseline_moments),
+    }
+
+
+def _steps(watch: Watch) -> list[Json]:
+    begun_s = watch.moments[0].time_s
+    return [
+        {
+            "step": step.number,
+            "time_s": round(step.moment.time_s - begun_s, 3),
+            "action": None if step.action is None else _given(plain(step.action)),
+            "thought_s": step.thought_s,
+            "feedback": plain(step.feedback),
+        }
+        for step in watch.steps
+    ]
+
+
+def _given(action: Json) -> Json:
+    return {name: value for name, value in action.items() if value is not None}

@@ -1,0 +1,175 @@
+"""Every kind of event is found where it is, and its look-alike is told from it."""
+
+from collections.abc import Mapping
+from datetime import datetime
+from typing import Any
+from zoneinfo import ZoneInfo
+
+import pytest
+
+from automotive_cosim.cockpit.signals import BODY, CABIN, ENERGY, GLASS, LIGHTS, SEAT, TYRE
+from automotive_cosim.contracts import AlertKind, IncidentKind, RoadIncident, Sight, SightKind, SlowDown
+from automotive_cosim.drives.events import KINDS, WatchAct
+from automotive_cosim.drives.events.tracker import CLOSE_S, REOPEN_S
+from tests.drives.scenes import NOON, found, limit, moment, stream, vehicle
+
+PARIS_TIME = ZoneInfo("Europe/Paris")
+NIGHT = datetime(2026, 6, 9, 1, 0, tzinfo=PARIS_TIME)
+DUSK = datetime(2026, 6, 9, 21, 35, tzinfo=PARIS_TIME)
+UNLIT = {LIGHTS.LOW_BEAM.path: False, LIGHTS.SWITCH.path: "OFF"}
+SCHOOL = {"school_zone": True, "limit": limit(30), "limit_hours": "30 km/h Mo-Fr 13:00-14:00"}
+MOTORWAY = {"road_class": "motorway", "lane_count": 2, "limit": limit(130)}
+RAIN = {"weather_code": 63, "precipitation": 4.0}
+
+
+def sight(kind: SightKind, away_m: float | None, value: float | None = None) -> dict[str, Any]:
+    """What the car notices."""
+    return {"sights": (Sight(kind, kind.value, away_m, value),)}
+
+
+def elsewhere(kind: IncidentKind) -> dict[str, Any]:
+    """An incident that is reported, but not on the route."""
+    return {"incidents": (RoadIncident(kind, "x", 0.0),)}
+
+
+SCENES: Mapping[str, tuple[dict[str, Any], dict[str, Any]]] = {
+    "over_limit": ({"kmh": 60}, {"kmh": 52}),
+    "limit_falls": (
+        {"kmh": 80, "limit": limit(80), "next_limit": limit(50), "next_limit_distance_m": 150.0},
+        {"kmh": 49, "limit": limit(80), "next_limit": limit(50), "next_limit_distance_m": 150.0},
+    ),
+    "school_zone": ({"kmh": 45, "limit_by_clock": True, **SCHOOL}, {"kmh": 45, **SCHOOL, "limit": limit(50)}),
+    "weather_speed": ({"kmh": 128, **MOTORWAY, **RAIN}, {"kmh": 128, **MOTORWAY}),
+    "lamps": ({"signals": UNLIT, "at": NIGHT}, {"signals": UNLIT, "at": DUSK}),
+    "high_beam": (
+        {"signals": {LIGHTS.HIGH_BEAM.path: True}, "at": NIGHT, "leader": vehicle(60.0)},
+        {"signals": {LIGHTS.HIGH_BEAM.path: True}, "at": NIGHT},
+    ),
+    "fog_lamps": (
+        {"signals": {LIGHTS.REAR_FOG.path: True}},
+        {"signals": {LIGHTS.REAR_FOG.path: True}, "weather_code": 45, "visibility": 80.0},
+    ),
+    "glass_fog": (
+        {"signals": {GLASS.WINDSHIELD_FOG.path: 0.3}},
+        {"signals": {GLASS.WINDSHIELD_FOG.path: 0.1}},
+    ),
+    "wipers": (
+        {
+            "signals": {
+                GLASS.WINDSHIELD_FILM.path: 0.4,
+                BODY.FRONT_WIPER.path: "OFF",
+                BODY.RAIN_INTENSITY.path: 40.0,
+            }
+        },
+        {"signals": {GLASS.WINDSHIELD_FILM.path: 0.1, BODY.FRONT_WIPER.path: "OFF", BODY.RAIN_INTENSITY.path: 4.0}},
+    ),
+    "slippery": (
+        {"friction": 0.25, "weather_code": 75, "temperature_2m": -3.0},
+        {"temperature_2m": 2.0},
+    ),
+    "tunnel": ({"tunnel_distance_m": 110.0, "signals": UNLIT}, {"tunnel_distance_m": 900.0, "signals": UNLIT}),
+    "jam_tail": ({"kmh": 90, **sight(SightKind.JAM, 300.0)}, {"kmh": 50, "relative_speed": 0.4}),
+    "breakdown": (
+        {"kmh": 80, **sight(SightKind.BREAKDOWN, 250.0)},
+        {"incidents": (RoadIncident(IncidentKind.BREAKDOWN, "x", 0.0),)},
+    ),
+    "roadworks": (
+        {"kmh": 80, **sight(SightKind.ROADWORKS, 250.0)},
+        {"incidents": (RoadIncident(IncidentKind.ROADWORKS, "x", 0.0),)},
+    ),
+    "fatigue": ({**sight(SightKind.DRIVING_TIME, None, 2.1)}, {**sight(SightKind.DRIVING_TIME, None, 1.4)}),
+    "blue_light": (sight(SightKind.EMERGENCY_VEHICLE, 100.0), sight(SightKind.VEHICLE_BEHIND, 30.0)),
+    "leader_close": ({"kmh": 50, "leader": vehicle(12.0)}, {"kmh": 50, "leader": vehicle(32.0)}),
+    "leader_brakes": (
+        {"leader": vehicle(15.0, 10, time_to_collision_s=3.5, drac_mps2=4.1)},
+        {"leader": vehicle(30.0, 10, time_to_collision_s=4.0, drac_mps2=2.0)},
+    ),
+    "tractor": (
+        {"kmh": 80, "limit": limit(80), "leader": vehicle(90.0, 25)},
+        {"kmh": 50, "limit": limit(50), "leader": vehicle(40.0, 25)},
+    ),
+    "belt": ({"signals": {SEAT.DRIVER_BELT.path: False}}, {"kmh": 0, "signals": {SEAT.DRIVER_BELT.path: False}}),
+    "door": ({"signals": {CABIN.TRUNK.path: True}}, {"signals": {CABIN.DRIVER_WINDOW.path: 50.0}}),
+    "tyre": ({"signals": {TYRE.REAR_LEFT.path: 180.0}}, {"signals": {TYRE.REAR_LEFT.path: 220.0}}),
+    "range": (
+        {"signals": {ENERGY.RANGE.path: 9_000.0, ENERGY.LEVEL.path: 3.0}},
+        {"signals": {ENERGY.RANGE.path: 60_000.0, ENERGY.LEVEL.path: 15.0}},
+    ),
+}
+"""By kind, a scene in which something is due, and one that only looks like it."""
+
+
+def test_every_kind_has_its_scenes() -> None:
+    assert SCENES.keys() == KINDS.keys()
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_an_event_is_found_with_its_three_instants(name: str) -> None:
+    truth, _ = SCENES[name]
+    event, *others = [event for event in found(stream(20, **truth), name) if not event.bait]
+    assert not others
+    assert event.observable_s == 0.0
+    assert event.obliged_s is not None
+    assert event.deadline_s is not None
+    assert 0.0 <= event.obliged_s <= 6.0
+    assert event.obliged_s < event.deadline_s
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_a_look_alike_obliges_to_nothing(name: str) -> None:
+    _, bait = SCENES[name]
+    events = found(stream(20, **bait), name)
+    assert [event.bait for event in events] == [True]
+    assert events[0].obliged_s is None
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_an_ordinary_moment_is_neither(name: str) -> None:
+    assert not found(stream(10), name)
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_only_its_own_alerts_settle_a_kind(name: str) -> None:
+    kind = KINDS[name]
+    settled = {alert for alert in AlertKind if kind.settles(WatchAct(0.0, alert), 30.0)}
+    assert settled == kind.alerts
+    assert 0 < len(settled) < len(AlertKind) / 2
+
+
+def test_an_event_that_flickers_is_one() -> None:
+    drive = [moment(float(s), kmh=40.0 if 10 < s < 10 + CLOSE_S else 70.0) for s in range(20)]
+    assert len(found(drive, "over_limit")) == 1
+
+
+def test_the_same_limit_again_much_later_is_another_event() -> None:
+    def speed(second: int) -> float:
+        return 70.0 if second < 10 or second > 15 + REOPEN_S else 40.0
+
+    drive = [moment(float(second), kmh=speed(second)) for second in range(60)]
+    assert len(found(drive, "over_limit")) == 2
+
+
+def test_the_obligation_comes_sooner_the_faster_the_car() -> None:
+    due = [found(stream(12, kmh=kmh), "over_limit")[0].obliged_s for kmh in (54, 56, 61, 66)]
+    assert due == [6.0, 5.0, 4.0, 3.0]
+
+
+def test_an_advised_speed_above_the_limit_settles_nothing() -> None:
+    kind = KINDS["over_limit"]
+    assert kind.settles(WatchAct(0.0, AlertKind.SPEED, speed_kmh=50.0), 50.0)
+    assert not kind.settles(WatchAct(0.0, AlertKind.SPEED, speed_kmh=70.0), 50.0)
+    assert kind.settles(WatchAct(0.0, requests=(SlowDown(48.0),)), 50.0)
+    assert not kind.settles(WatchAct(0.0, requests=(SlowDown(90.0),)), 50.0)
+
+
+def test_an_automatic_switch_lights_nothing_by_day() -> None:
+    kind, act = KINDS["lamps"], WatchAct(0.0, writes=((LIGHTS.SWITCH.path, "AUTO"),))
+    assert kind.settles(act, 1.0)
+    assert not kind.settles(act, 0.0)
+
+
+def test_rules_that_are_not_verified_oblige_to_nothing() -> None:
+    """The French rule on dipped beam by day is secondary, the Swiss one verified."""
+    snow = {"weather_code": 75, "visibility": 600.0, "signals": UNLIT, "at": NOON}
+    assert not [event for event in found(stream(10, **snow), "lamps") if not event.bait]
+    assert [event for event in found(stream(10, position=(8.6, 46.6), **snow), "lamps") if not event.bait]

@@ -1,0 +1,214 @@
+"""What becomes of events and what acts are, on events made by hand."""
+
+from dataclasses import replace
+
+import pytest
+
+from automotive_cosim.cockpit.signals import LIGHTS
+from automotive_cosim.contracts import AlertKind, PullOver, SlowDown
+from automotive_cosim.drives.events import KINDS, DriveEvent, WatchAct
+from automotive_cosim.drives.judge import EventOutcome, Judgement, Worth, judge
+from automotive_cosim.drives.score import NUISANCE, score, together
+
+SPEEDING = DriveEvent(
+    kind="over_limit",
+    subject="50",
+    words="60 where 50 apply",
+    bait=False,
+    weight=1.0,
+    observable_s=100.0,
+    last_s=140.0,
+    value=50.0,
+    due_until_s=140.0,
+    obliged_s=104.0,
+    deadline_s=114.0,
+    severities=[(100.0, 1.0)],
+)
+BAIT = replace(SPEEDING, bait=True, obliged_s=None, deadline_s=None, due_until_s=None)
+APPROACH = replace(
+    SPEEDING, kind="tunnel", subject="", value=None, obliged_s=None, deadline_s=None, due_until_s=None
+)
+
+
+def judged(
+    *acts: WatchAct, events: tuple[DriveEvent, ...] = (SPEEDING,), due: dict[int, float | None] | None = None
+) -> Judgement:
+    return judge(KINDS, events, acts, due or {}, {LIGHTS.HIGH_BEAM.path: False})
+
+
+def warn(time_s: float, kind: AlertKind = AlertKind.SPEED) -> WatchAct:
+    return WatchAct(time_s, kind)
+
+
+@pytest.mark.parametrize(
+    ("at_s", "outcome", "worth", "credit"),
+    [
+        (99.0, EventOutcome.MISSED, Worth.FALSE, -1.0),
+        (101.0, EventOutcome.PREPARED, Worth.RIGHT, 1.0),
+        (106.0, EventOutcome.HIT, Worth.RIGHT, 1.0),
+        (110.5, EventOutcome.HIT, Worth.RIGHT, 0.5),
+        (114.0, EventOutcome.HIT, Worth.RIGHT, 0.0),
+        (115.0, EventOutcome.LATE, Worth.LATE, -1.0),
+    ],
+)
+def test_an_alert_is_worth_what_its_time_is_worth(
+    at_s: float, outcome: EventOutcome, worth: Worth, credit: float
+) -> None:
+    found = judged(warn(at_s))
+    assert found.events[0].outcome is outcome
+    assert found.events[0].credit == pytest.approx(credit)
+    assert found.acts[0].worth is worth
+
+
+def test_nobody_at_the_cockpit_misses_it() -> None:
+    assert judged().events[0].outcome is EventOutcome.MISSED
+
+
+def test_an_act_long_before_the_obligation_does_not_prepare_for_it() -> None:
+    far = replace(SPEEDING, obliged_s=130.0, deadline_s=140.0)
+    assert judged(warn(101.0), events=(far,)).events[0].outcome is EventOutcome.MISSED
+    assert judged(warn(101.0), events=(far,)).acts[0].worth is Worth.NEUTRAL
+    assert judged(warn(101.0), warn(118.0), events=(far,)).events[0].outcome is EventOutcome.PREPARED
+
+
+def test_a_request_to_the_driver_settles_it_too() -> None:
+    assert judged(WatchAct(105.0, requests=(SlowDown(50.0),))).events[0].outcome is EventOutcome.HIT
+
+
+def test_another_alert_is_wrong_while_something_is_due() -> None:
+    found = judged(warn(106.0, AlertKind.FATIGUE))
+    assert found.acts[0].worth is Worth.WRONG
+    assert found.events[0].outcome is EventOutcome.MISSED
+
+
+def test_an_alert_for_nothing_is_false() -> None:
+    assert judged(warn(300.0)).acts[0].worth is Worth.FALSE
+
+
+def test_an_act_on_a_look_alike_is_a_false_alarm() -> None:
+    found = judged(warn(110.0), events=(BAIT,))
+    assert found.acts[0].worth is Worth.BAIT
+    assert found.events[0].outcome is EventOutcome.TAKEN
+    assert judged(events=(BAIT,)).events[0].outcome is EventOutcome.AVOIDED
+
+
+def test_a_repeat_within_a_minute_is_a_nuisance_unless_it_has_become_worse() -> None:
+    assert [act.worth for act in judged(warn(105.0), warn(130.0)).acts] == [Worth.RIGHT, Worth.REPEAT]
+    worse = replace(SPEEDING, severities=[(100.0, 1.0), (120.0, 2.0)])
+    assert [act.worth for act in judged(warn(105.0), warn(130.0), events=(worse,)).acts] == [
+        Worth.RIGHT,
+        Worth.NEUTRAL,
+    ]
+    long = replace(SPEEDING, last_s=300.0)
+    assert [act.worth for act in judged(warn(105.0), warn(170.0), events=(long,)).acts][1] is Worth.NEUTRAL
+
+
+def test_what_passes_by_itself_before_its_deadline_is_void() -> None:
+    short = replace(SPEEDING, last_s=108.0, due_until_s=108.0)
+    assert judged(events=(short,)).events[0].outcome is EventOutcome.VOID
+    assert judged(warn(105.0), events=(short,)).events[0].outcome is EventOutcome.HIT
+
+
+def test_what_nobody_could_have_met_is_void() -> None:
+    sudden = replace(SPEEDING, obliged_s=100.0, deadline_s=101.0)
+    assert judged(events=(sudden,)).events[0].outcome is EventOutcome.VOID
+
+
+def test_an_obligation_that_comes_only_without_the_agent_is_prevented() -> None:
+    act = WatchAct(101.0, AlertKind.TUNNEL)
+    assert judged(act, events=(APPROACH,), due={0: 110.0}).events[0].outcome is EventOutcome.PREVENTED
+    assert judged(act, events=(APPROACH,), due={0: None}).events[0].outcome is EventOutcome.VOID
+    assert judged(events=(APPROACH,), due={0: 110.0}).events[0].outcome is EventOutcome.VOID
+    # what is void is no false alarm either: the tunnel could be known
+    assert judged(act, events=(APPROACH,), due={0: None}).acts[0].worth is Worth.RIGHT
+
+
+def test_an_event_of_the_agents_own_making_earns_nothing() -> None:
+    """The cheat of switching lamps off in order to switch them on."""
+    dark = replace(SPEEDING, kind="lamps", subject="", value=1.0)
+    off, on = (
+        WatchAct(at_s, writes=((LIGHTS.LOW_BEAM.path, lit),)) for at_s, lit in ((99.0, False), (105.0, True))
+    )
+    found = judged(off, on, events=(dark,))
+    assert found.events[0].outcome is EventOutcome.CAUSED
+    assert found.events[0].credit == -1.0
+    assert found.acts[0].worth is Worth.FALSE
+
+
+def test_a_switch_set_back_is_no_nuisance_but_one_turned_for_nothing_is() -> None:
+    lit, unlit = (
+        WatchAct(at_s, writes=((LIGHTS.HIGH_BEAM.path, on),)) for at_s, on in ((10.0, True), (20.0, False))
+    )
+    assert [act.worth for act in judged(lit, unlit).acts] == [Worth.FALSE, Worth.NEUTRAL]
+
+
+def test_words_without_a_reason_and_stops_without_a_reason_are_nuisances() -> None:
+    said, stopped = WatchAct(10.0, said="All is well"), WatchAct(12.0, requests=(PullOver(),))
+    assert [act.worth for act in judged(said, stopped).acts] == [Worth.FALSE, Worth.FALSE]
+    assert judged(WatchAct(105.0, said="Slow down a little")).acts[0].worth is Worth.NEUTRAL
+
+
+def test_one_alert_settles_all_that_it_is_about() -> None:
+    other = replace(SPEEDING, kind="school_zone", subject="a")
+    assert [event.outcome for event in judged(warn(105.0), events=(SPEEDING, other)).events] == [
+        EventOutcome.HIT
+    ] * 2
+
+
+def test_a_second_alert_may_be_about_a_second_event() -> None:
+    """The tyre and the tailgate share a kind of alert: two alerts for two events are no repeat, a third is."""
+    tyre = replace(SPEEDING, kind="tyre", subject="", value=None)
+    door = replace(tyre, kind="door")
+    acts = [warn(at_s, AlertKind.VEHICLE) for at_s in (105.0, 108.0, 111.0)]
+    assert [act.worth for act in judged(*acts, events=(tyre, door)).acts] == [
+        Worth.RIGHT,
+        Worth.NEUTRAL,
+        Worth.REPEAT,
+    ]
+
+
+# --- the score -----------------------------------------------------------------------------------------------
+
+
+def test_doing_nothing_is_0_and_perfection_100() -> None:
+    assert score(judged(), 600.0).value == 0.0
+    assert score(judged(warn(105.0)), 600.0).value == 100.0
+
+
+def test_each_nuisance_costs_the_same() -> None:
+    one, two = (score(judged(warn(105.0), *(warn(300.0 + 100 * i) for i in range(n))), 600.0) for n in (1, 2))
+    assert 100.0 - one.value == pytest.approx(100 * NUISANCE / 2)
+    assert one.value - two.value == pytest.approx(100.0 - one.value)
+
+
+def test_a_drive_without_events_is_won_by_silence() -> None:
+    assert score(judged(events=(BAIT,)), 600.0).value == 100.0
+    assert score(judged(warn(110.0), events=(BAIT,)), 600.0).value < 100.0
+    assert score(judged(events=()), 600.0).recall is None
+
+
+def test_an_alert_of_any_kind_every_ten_seconds_falls_below_0() -> None:
+    kinds = tuple(AlertKind)
+    acts = [warn(10.0 * i, kinds[i % len(kinds)]) for i in range(60)]
+    assert score(judged(*acts), 600.0).value < 0.0
+
+
+def test_drives_together_count_as_one() -> None:
+    good, bad = score(judged(warn(105.0)), 600.0), score(judged(), 1200.0)
+    both = together((good, bad))
+    assert (both.events, both.met, both.driven_s) == (2, 1, 1800.0)
+    assert both.recall == 0.5
+    assert both.value == 50.0
+
+
+@pytest.mark.parametrize("delay_s", [0.0, 3.0, 9.0, 13.0, 20.0])
+def test_a_delay_loses_exactly_the_events_whose_deadline_it_passes(delay_s: float) -> None:
+    events = tuple(
+        replace(SPEEDING, kind=kind, observable_s=at_s, obliged_s=at_s + 4, deadline_s=at_s + 4 + left_s,
+                last_s=at_s + 100, due_until_s=at_s + 100)
+        for kind, at_s, left_s in (("over_limit", 100.0, 4.0), ("tyre", 300.0, 60.0), ("belt", 500.0, 10.0))
+    )  # fmt: skip
+    alerts = (AlertKind.SPEED, AlertKind.VEHICLE, AlertKind.SEAT_BELT)
+    acts = [warn(event.observable_s + delay_s, alert) for event, alert in zip(events, alerts, strict=True)]
+    lost = [event.outcome is EventOutcome.LATE for event in judged(*acts, events=events).events]
+    assert lost == [event.observable_s + delay_s > (event.deadline_s or 0.0) for event in events]

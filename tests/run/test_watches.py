@@ -1,0 +1,135 @@
+"""Evaluations of drives: the plan, the rows, resuming, and the report."""
+
+import json
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from automotive_cosim.cli.main import app
+from automotive_cosim.drives.families import FAMILIES
+from automotive_cosim.drives.score import together
+from automotive_cosim.errors import UserError
+from automotive_cosim.report.drives import LEAST_DRIVES, grouped, interval, tables, told, write_drives
+from automotive_cosim.run.processes import Processes
+from automotive_cosim.run.row import as_json, from_json, steady
+from automotive_cosim.run.store import read_rows
+from automotive_cosim.run.watch_row import WatchRow
+from automotive_cosim.run.watches import families_named, make_watch_plan, run_watch_plan
+
+
+def test_families_are_named_by_id_pattern_scenario_or_season() -> None:
+    assert families_named(("grid_june",)) == ("grid_june",)
+    assert set(families_named(("grid_*",))) == set(families_named(("grid",)))
+    assert set(families_named(("summer", "winter"))) == set(families_named(("all",))) == set(FAMILIES)
+
+
+@pytest.mark.parametrize(
+    ("values", "named"),
+    [
+        ({"drives": ["grid_jun"], "agents": ["silent"]}, "grid_june"),
+        ({"drives": ["all"]}, "--agents"),
+        ({"drives": [], "agents": ["silent"]}, "drives"),
+        ({"drives": ["all"], "agents": ["human"]}, "human"),
+        ({"drives": ["all"], "agents": ["rule-perfct"]}, "rule-perfect"),
+        ({"drives": ["all"], "agents": ["silent"], "latency": [-1.0]}, "latency"),
+    ],
+)
+def test_a_wrong_plan_is_refused_by_name(values: dict[str, object], named: str) -> None:
+    with pytest.raises(UserError, match=named):
+        make_watch_plan(values).check()
+
+
+def test_every_drive_has_its_own_id_and_is_run_with_others_of_its_traffic() -> None:
+    plan = make_watch_plan(
+        {"drives": ["grid"], "agents": ["silent", "asurada"], "seeds": [0, 1], "latency": [0.0, 3.0], "repeats": 2}
+    )
+    jobs = plan.jobs()
+    assert len(jobs) == len({job.id for job in jobs}) == 2 * 2 * 2 * 2 * 2
+    order = [job.simulation for job in jobs]
+    assert len([1 for before, now in pairwise(order) if before != now]) == len(set(order)) - 1
+
+
+def test_drives_take_nothing_that_belongs_to_tasks() -> None:
+    given = ["eval", "--drives", "all", "--agents", "silent", "--tasks", "hvac_fan_max"]
+    result = CliRunner().invoke(app, given)
+    assert isinstance(result.exception, UserError)
+    assert "tasks" in str(result.exception)
+
+
+# --- on a drive ----------------------------------------------------------------------------------------------
+
+PLAN = {"drives": ["grid_june"], "agents": ["rule-perfect", "silent"], "seeds": [1]}
+
+
+@pytest.fixture(scope="module")
+def folder(sumo: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """An evaluation of one drive by two watchers."""
+    made = tmp_path_factory.mktemp("drives") / "made"
+    end = run_watch_plan(make_watch_plan(PLAN), made, executor=Processes(1), retries=0)
+    assert (end.judged, end.errors) == (2, 0)
+    return made
+
+
+def rows_of(folder: Path) -> dict[str, WatchRow]:
+    return {row.agent: row for row in read_rows(folder, WatchRow).values()}
+
+
+@pytest.mark.slow
+def test_rows_tell_who_watched_better_and_are_read_back(folder: Path) -> None:
+    rows = rows_of(folder)
+    perfect, silent = rows["rule-perfect"], rows["silent"]
+    assert perfect.value is not None
+    assert silent.value == 0.0
+    assert perfect.value > 60.0
+    assert silent.harm == silent.baseline_harm
+    assert perfect.baseline_harm == silent.harm
+    assert from_json(WatchRow, json.loads(json.dumps(as_json(perfect)))) == perfect
+
+
+@pytest.mark.slow
+def test_a_finished_drive_is_not_run_again(folder: Path) -> None:
+    before = (folder / "episodes.jsonl").read_bytes()
+    end = run_watch_plan(make_watch_plan(PLAN), folder, executor=Processes(1), retries=0)
+    assert (end.ran, end.done) == (0, 2)
+    assert (folder / "episodes.jsonl").read_bytes() == before
+
+
+@pytest.mark.slow
+def test_the_same_plan_gives_the_same_rows(folder: Path, tmp_path: Path) -> None:
+    only = PLAN | {"agents": ["rule-perfect"]}
+    run_watch_plan(make_watch_plan(only), tmp_path / "again", executor=Processes(1), retries=0)
+    (again,) = read_rows(tmp_path / "again", WatchRow).values()
+    assert steady(again) == steady(rows_of(folder)["rule-perfect"])
+
+
+@pytest.mark.slow
+def test_the_report_has_a_timeline_of_each_drive(folder: Path) -> None:
+    page = write_drives(folder).read_text("utf-8")
+    rows = rows_of(folder)
+    assert {path.stem for path in (folder / "plots").iterdir()} == {row.id for row in rows.values()}
+    assert "rule-perfect" in page
+    assert page.count("<svg ") == 2 * len(rows)
+    assert (folder / "tables" / "watchers.csv").read_text("utf-8").startswith("Watcher,Drives,Hours,Score")
+
+
+@pytest.mark.slow
+def test_intervals_come_from_whole_drives(folder: Path) -> None:
+    perfect, silent = (rows_of(folder)[name] for name in ("rule-perfect", "silent"))
+
+    def value(rows: list[WatchRow]) -> float:
+        return together([row.score for row in rows if row.score is not None]).value
+
+    few = [replace(perfect, id=str(number), seed=number) for number in range(LEAST_DRIVES - 1)]
+    assert interval(few, value) is None  # type: ignore[arg-type]
+    assert told(few, value, ".0f") == f"{value(few):.0f}"  # type: ignore[arg-type]
+    mixed = [replace(row, seed=number) for number, row in enumerate([perfect, silent] * LEAST_DRIVES)]
+    bounds = interval(mixed, value)  # type: ignore[arg-type]
+    assert bounds is not None
+    assert bounds.low < value(mixed) < bounds.high
+    repeated = [replace(row, repeat=number) for number, row in enumerate([perfect, silent] * LEAST_DRIVES)]
+    assert interval(repeated, value) is None  # type: ignore[arg-type]
+    assert [table.name for table in tables(mixed)] == ["watchers", "kinds", "families"]
+    assert len(grouped(mixed)) == 2
