@@ -97,7 +97,7 @@ def _scale(unit: str) -> float:
 
 
 def main() -> None:
-    """Prints the disagreements and how many limits were compared."""
+    """Prints the disagreements, how many limits were compared, and which places could not be."""
     if len(sys.argv) != 2:
         raise SystemExit("give the table: python benchmarks/default_limits.py legal_default_speeds.json")
     table = json.loads(Path(sys.argv[1]).read_text(encoding="utf-8"))
@@ -107,6 +107,8 @@ def main() -> None:
         if one.outcome != "same":
             print(one)
     print(", ".join(f"{outcome}: {count}" for outcome, count in outcomes.most_common()))
+    missing = sorted(set(table["speedLimitsByCountryCode"]) - set(shipped().codes()))
+    print(f"{len(missing)} countries and regions of the table have no rules here: {', '.join(missing)}")
     print(f"table of {table['meta'].get('timestamp', 'an unknown date')}, {table['meta'].get('source', '')}")
 
 

@@ -99,10 +99,21 @@ def _speed(known: Gathered) -> Iterator[Concern]:
     if limit_kmh is not None and known.speed_kmh > limit_kmh + 1:
         alert = AlertKind.SCHOOL if school else AlertKind.SPEED
         yield Concern(f"{alert} {limit_kmh:.0f}", alert, known.speed_kmh > _above(limit_kmh))
-    grip = 0.25 if known.is_icy else 0.7 if "rain" in known.weather else 1.0
-    stopping_m = known.mps * 1.1 + known.mps**2 / (2 * grip * 9.81)
+    stopping_m = known.mps * 1.1 + known.mps**2 / (2 * _grip(known) * 9.81)
     if not known.in_tunnel and stopping_m > known.visibility_m:
         yield Concern("sight", AlertKind.VISIBILITY)
+
+
+GRIPS = (("freezing", 0.15), ("rime", 0.15), ("heavy snow", 0.25), ("snow", 0.35), ("heavy rain", 0.7))
+"""Friction by the words of the weather (Wallman and Astrom, VTI 911A, 2001), the worst first."""
+
+
+def _grip(known: Gathered) -> float:
+    """The friction that this weather leaves."""
+    found = next((grip for words, grip in GRIPS if words in known.weather), None)
+    if found is not None:
+        return found
+    return 0.75 if known.phenomena & {"precipitation"} else 1.0
 
 
 def _reduced_kmh(known: Gathered) -> float | None:
@@ -133,7 +144,8 @@ def _limit_ahead(known: Gathered) -> Iterator[Concern]:
     if away_m is None or found is None or known.speed_kmh < 20 or away_m < 0:
         return
     limit_kmh = float(found[1])
-    if known.limit_kmh is not None and limit_kmh > known.limit_kmh - 9:
+    here = [each for each in (known.limit_kmh, _reduced_kmh(known)) if each is not None]
+    if here and limit_kmh > min(here) - 9:
         return
     if known.speed_kmh > _above(limit_kmh) + 1:
         right_mps = _above(limit_kmh) / 3.6

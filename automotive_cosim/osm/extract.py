@@ -264,8 +264,9 @@ def _cars_may(tags: Mapping[str, str]) -> bool:
 def _read_nodes(file: Any, wanted: set[int]) -> dict[int, Node]:
     osmium = _osmium()
     nodes: dict[int, Node] = {}
-    for node in osmium.FileProcessor(file, osmium.osm.NODE).with_filter(osmium.filter.IdFilter(wanted)):
-        if node.location.valid():
+    # No IdFilter: its bitmap of all ids up to the highest takes a gigabyte.
+    for node in osmium.FileProcessor(file, osmium.osm.NODE):
+        if node.id in wanted and node.location.valid():
             tags = {tag.k: tag.v for tag in node.tags}
             nodes[node.id] = Node(Position(node.location.lon, node.location.lat), tags)
     return nodes

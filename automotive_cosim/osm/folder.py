@@ -88,6 +88,7 @@ def write_config(target: Path, net: str, routes: str, sumo: Sumo, begin_s: float
             "time-to-teleport": 300,
         },
         "routing": {
+            "routing-algorithm": "astar",
             "device.rerouting.probability": sumo.background_rerouting,
             "device.rerouting.period": 120,
             "device.rerouting.pre-period": 60,

@@ -41,8 +41,9 @@ TRIALS = 8
 TRIAL_STEP_S = 1.0
 """The search starts with steps this long: nearly as strict as 0.1 s, and faster."""
 
-TRIAL_S = 600.0
-"""Traffic must flow this long in a trial with long steps; locked junctions show within minutes."""
+SHORT_TRIAL_S = 600.0
+"""Traffic that flowed for all of the time with long steps must flow this long with the scenario's own, and in a
+quick import with long ones; locked junctions show within minutes."""
 
 QUICK_DENSITY = 0.5
 """Share of the requested density with which a quick import starts."""
@@ -214,10 +215,12 @@ class _Search:
         """
         self._write_demand()
         scale = QUICK_DENSITY if self._options.quick else 1.0
-        flow = self._until_it_flows(scale, TRIAL_STEP_S, min(TRIAL_S, self._options.stable_for_s))
+        whole_s = self._options.stable_for_s
+        short_s = min(SHORT_TRIAL_S, whole_s)
+        flow = self._until_it_flows(scale, TRIAL_STEP_S, short_s if self._options.quick else whole_s)
         if not self._options.quick:
             own_s = self._scenario(flow.scale).sumo.step_length_s
-            flow = self._until_it_flows(flow.scale, own_s, self._options.stable_for_s)
+            flow = self._until_it_flows(flow.scale, own_s, short_s)
         self._scenario(flow.scale)
         return flow, self._journeys, tuple(self._stuck)
 

@@ -14,7 +14,7 @@ import pytest
 from automotive_cosim.errors import ImportMapError
 from automotive_cosim.geo.place import Place
 from automotive_cosim.osm import importer
-from automotive_cosim.osm.importer import HALTED_SHARE_AIM, SCALE_MIN, TRIALS, ImportOptions
+from automotive_cosim.osm.importer import HALTED_SHARE_AIM, SCALE_MIN, SHORT_TRIAL_S, TRIALS, ImportOptions
 from automotive_cosim.traffic.stability import Stability, Stuck
 
 OWN_STEP_S = 0.1
@@ -62,7 +62,8 @@ def test_the_search_is_bounded_and_ends_near_the_answer(scale_max: float, monkey
     assert 0.4 * scale_max <= flow.scale <= scale_max
     assert flow.step_length_s == OWN_STEP_S
     assert len(searched.trials) <= TRIALS
-    assert searched.trials[-1][2] == ImportOptions().stable_for_s
+    assert searched.trials[-1] == (flow.scale, OWN_STEP_S, SHORT_TRIAL_S)
+    assert (flow.scale, 1.0, ImportOptions().stable_for_s) in searched.trials, "half an hour, in long steps"
     assert (len(journeys), stuck) == (1000, ())
 
 
