@@ -141,6 +141,12 @@ def test_an_event_that_flickers_is_one() -> None:
     assert len(found(drive, "over_limit")) == 1
 
 
+def test_a_red_light_does_not_end_an_open_belt() -> None:
+    open_belt = {SEAT.DRIVER_BELT.path: False}
+    drive = [moment(float(s), kmh=0.0 if 10 < s < 60 else 50.0, signals=open_belt) for s in range(80)]
+    assert [event.bait for event in found(drive, "belt")] == [False]
+
+
 def test_the_same_limit_again_much_later_is_another_event() -> None:
     def speed(second: int) -> float:
         return 70.0 if second < 10 or second > 15 + REOPEN_S else 40.0

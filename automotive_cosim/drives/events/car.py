@@ -13,6 +13,8 @@ from automotive_cosim.drives.events.law import speed_kmh
 
 BELT_KMH = 25.0
 """Speed from which the second, audible belt warning is due (UN R16, 8.4.2.4)."""
+HALT_S = 90
+"""A shorter halt, as at a red light, does not end an event."""
 ROLLING_KMH = 5.0
 WARM_KPA = 225.0
 """Between this and 200 kPa a tyre is low, but needs no warning."""
@@ -45,7 +47,7 @@ class Belt(EventKind):
         if now.signals[SEAT.DRIVER_BELT.path]:
             return
         kmh = speed_kmh(now)
-        if kmh < 1.0:
+        if all(speed_kmh(moment) < 1.0 for moment in drive[-HALT_S:]):
             yield Sighting("the driver's belt is open, the car stands", bait=True)
         else:
             yield Sighting(f"the driver's belt is open at {kmh:.0f} km/h", due=kmh >= BELT_KMH, hold_s=2.0)
