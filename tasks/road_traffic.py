@@ -133,7 +133,7 @@ ALIGNED: tuple[Task, ...] = (
         ),
         silent(LONDON, Trigger(All((Standing(), RedLight(60.0))), 2.0, 300.0), "GB.horn"),
         honked(LONDON, replace(ROLLING, after_s=40.0), "GB.horn"),
-        "traffic: standing at a red light, where British law forbids the horn, or rolling by day",
+        "traffic and road: standing at a red light, where British law forbids the horn, or rolling by day",
         tags=PLACE,
     ),
     pair(

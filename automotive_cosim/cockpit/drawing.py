@@ -127,7 +127,7 @@ class Canvas:
         self.image.paste(picture, (left, top), mask)
 
     def _line(self, line: Rect, box: Rect, text: str, style: Type, colour: Colour, align: str, cut: bool) -> None:
-        size = round(style.size * self.scale)
+        size = int(style.size * self.scale)  # never wider than measured
         mask, left, top, wide = _mask(text, style.weight, size)
         x = line.x * self.scale
         if align == "centre":
