@@ -36,7 +36,6 @@ class Oracle:
         self._moves: deque[Move] = deque()
         self._end = Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE)
         self._pressed = 0
-        self._from_s = 0.0
         self._lists_seen: set[str] = set()
         self._list = ""
 
@@ -50,7 +49,6 @@ class Oracle:
     def brief(self, instance: Instance, moves: Sequence[Move] | None = None) -> None:
         """Takes the instance's reference solution, or another of its solutions, one tap per action."""
         self._moves.clear()
-        self._from_s = instance.trigger_after_s
         for move in instance.moves if moves is None else moves:
             repeats = move.times if isinstance(move, Tap) else 1
             self._moves.extend([move] * repeats)
@@ -59,8 +57,6 @@ class Oracle:
 
     def act(self, observation: Observation) -> Action:
         """The next move, or the declaration after the last."""
-        if observation.time_s < self._from_s:
-            return Action(ActionType.WAIT, seconds=1)
         elements = observation.elements or ()
         while self._moves and _is_reached(self._moves[0], elements):
             self._moves.popleft()

@@ -23,7 +23,7 @@ from automotive_cosim.cli.batches import (
     time_left,
     words,
 )
-from automotive_cosim.cli.options import AsJson, TasksFrom, number, whole_number
+from automotive_cosim.cli.options import AsJson, NoMode, TasksFrom, number, whole_number
 from automotive_cosim.cli.watches import watch
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.errors import InfrastructureError
@@ -80,12 +80,7 @@ def evaluate(
             show_default="full",
         ),
     ] = None,
-    modes: Annotated[
-        str | None,
-        typer.Option(
-            help="When agents are called, separated by commas: prompted, monitoring.", show_default="prompted"
-        ),
-    ] = None,
+    mode: NoMode = None,
     clock: Annotated[
         str | None,
         typer.Option(
@@ -155,7 +150,7 @@ def evaluate(
 
     if pictures not in set(Pictures):
         raise UnknownNameError("choice of pictures", pictures, Pictures)
-    named = {"agents": agents, "models": models, "tasks": tasks, "scenarios": scenarios, "geo": geo, "modes": modes}
+    named = {"agents": agents, "models": models, "tasks": tasks, "scenarios": scenarios, "geo": geo}
     values: dict[str, Any] = read_plan(plan_file) if plan_file else {}
     values |= {name: words(name, text) for name, text in named.items() if text is not None}
     values |= {"seeds": seeds_in(seeds)} if seeds is not None else {}
@@ -245,7 +240,6 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
         )
     table.add_row("seeds", ", ".join(map(str, plan.seeds)))
     table.add_row("geo controls", ", ".join(plan.geo))
-    table.add_row("modes", ", ".join(plan.modes))
     table.add_row("clock", f"{plan.clock}; latency {', '.join(f'{each:g}' for each in plan.latency)} s")
     table.add_row("repeats", str(plan.repeats))
     table.add_row("phrasings", "held out" if plan.held_out else "any")

@@ -37,6 +37,17 @@ TasksFrom = Annotated[
 """For every command that names tasks; its callback handles the value, so the command ignores it."""
 
 
+def _refuse_mode(mode: str | None) -> None:
+    if mode is not None:
+        from automotive_cosim.run.former import INSTEAD
+
+        raise UserError(f"there are no modes any more; {INSTEAD}")
+
+
+NoMode = Annotated[str | None, typer.Option("--mode", "--modes", hidden=True, callback=_refuse_mode)]
+"""What earlier versions took; its callback says what took its place."""
+
+
 def reads_results(command: Callable[P, None]) -> Callable[P, None]:
     """For a command that reads what another wrote and someone may have changed since: whatever is wrong with it is
     one error for the user, and ``--debug`` shows its cause."""

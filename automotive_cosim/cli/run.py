@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from automotive_cosim.cli.options import AsJson, TasksFrom, lon_lat, number, whole_number
+from automotive_cosim.cli.options import AsJson, NoMode, TasksFrom, lon_lat, number, whole_number
 from automotive_cosim.errors import InfrastructureError, UserError
 
 HEADLINE = (
@@ -42,10 +42,7 @@ def run(
         str, typer.Option(help="Model for the agent: rules, replay/FOLDER, openai/NAME or PROVIDER/NAME.")
     ] = "rules",
     tasks_from: TasksFrom = None,
-    mode: Annotated[
-        str,
-        typer.Option(help="When the agent is called: prompted, at the trigger; monitoring, up to a minute before."),
-    ] = "prompted",
+    mode: NoMode = None,
     geo: Annotated[
         str,
         typer.Option(help="What the agent is told of the place: full, gps, context, wrong, irrelevant or none."),
@@ -132,18 +129,16 @@ def run(
     from automotive_cosim.agents.settings import geo_input, parts
     from automotive_cosim.cli.console import Console
     from automotive_cosim.cli.live import Live, Notes
-    from automotive_cosim.episode.specification import clock_of, mode_of
+    from automotive_cosim.episode.specification import clock_of
     from automotive_cosim.report.film import Film
     from automotive_cosim.report.page import write_page
     from automotive_cosim.run.episode import EpisodeSetup, run_episode
-    from automotive_cosim.run.plan import most_steps
     from automotive_cosim.run.record import Recorder, check_folder, default_folder
     from automotive_cosim.run.road_recorder import RoadRecorder
     from automotive_cosim.run.script import read_script
 
     if scenario == "":
         raise UserError("--scenario is empty; name a scenario, or omit the option to use the task's own")
-    called = mode_of(mode)
     off = parts(name.strip() for name in without.split(",") if name.strip())
     settings = AgentSettings(geo_input(geo), off, memory, seed, most_tokens, float(most_seconds))
     player = read_script(actions) if actions else make_agent(agent, model, settings)
@@ -157,8 +152,6 @@ def run(
         to_place=to_place,
         seed=seed,
         geo=settings.geo,
-        mode=called,
-        max_steps=most_steps(called),
         agent=player.name,
         model=player.model,
         without=tuple(sorted(off)),

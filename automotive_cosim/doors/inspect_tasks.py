@@ -26,11 +26,11 @@ from inspect_ai.tool import ToolDef, ToolError
 from automotive_cosim.agents.settings import geo_input
 from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Json
-from automotive_cosim.episode.specification import EpisodeSpec, mode_of
+from automotive_cosim.episode.specification import EpisodeSpec
 from automotive_cosim.errors import InfrastructureError, UserError
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.report.stats import Interval, wilson
-from automotive_cosim.run.plan import choose, most_steps
+from automotive_cosim.run.plan import choose
 from automotive_cosim.run.row import from_json
 from automotive_cosim.service import EpisodeService
 from automotive_cosim.service.episodes import ServiceLimits
@@ -61,7 +61,6 @@ def _cockpit(
     seeds: int | str | list[int] = 0,
     scenario: str | None = None,
     geo: str = "full",
-    mode: str = "prompted",
     pictures: bool = True,
 ) -> Task:
     """The tasks at the cockpit.
@@ -71,18 +70,17 @@ def _cockpit(
         seeds: one, or several separated by commas.
         scenario: in place of the tasks' own.
         geo: what the agent is told of where it is.
-        mode: ``prompted`` or ``monitoring``, for safety tasks.
         pictures: whether it sees the screen.
     """
-    called, numbers = mode_of(mode), _words(seeds)
+    numbers = _words(seeds)
     if not all(number.isdecimal() for number in numbers):
         raise UserError(f"seeds are {', '.join(numbers)}; give whole numbers from 0, separated by commas")
-    named = {"scenario": scenario, "geo": str(geo_input(geo)), "mode": str(called)}
+    named = {"scenario": scenario, "geo": str(geo_input(geo))}
     samples = [
         Sample(
             id=f"{each}-{half}-seed{seed}",
             input="The driver speaks when the situation arises.",
-            metadata={"task": each, "half": half, "seed": int(seed), "max_steps": most_steps(called), **named},
+            metadata={"task": each, "half": half, "seed": int(seed), **named},
         )
         for each in choose(_words(tasks))
         for half in CATALOGUE[each].halves
@@ -104,7 +102,7 @@ def _driver(pictures: bool = True) -> Solver:
     async def solve(state: TaskState, generate: Generate) -> TaskState:
         service = shared_service()
         named = state.metadata
-        spec = EpisodeSpec(**named | {"mode": mode_of(named["mode"]), "geo": geo_input(named["geo"])})
+        spec = EpisodeSpec(**named | {"geo": geo_input(named["geo"])})
         turn = await asyncio.to_thread(service.start, spec, channels)
         state.messages = [ChatMessageSystem(content=INSTRUCTIONS), ChatMessageUser(content=_content(turn))]
         state.tools = [_act(service, turn.episode_id)]

@@ -23,10 +23,10 @@ from automotive_cosim.agents.settings import geo_input
 from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Json
 from automotive_cosim.episode.listener import Listener
-from automotive_cosim.episode.specification import EpisodeSpec, mode_of
+from automotive_cosim.episode.specification import EpisodeSpec
 from automotive_cosim.errors import CosimError, InfrastructureError, UnknownNameError
 from automotive_cosim.interface.observe import ALL, Channel
-from automotive_cosim.run.plan import choose, most_steps
+from automotive_cosim.run.plan import choose
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.service import EpisodeService, EpisodeTurn
 from automotive_cosim.tasks import CATALOGUE
@@ -97,9 +97,6 @@ class _Tools:
         task: Annotated[str, Field(description="Id of the task; `list_tasks` lists them.")],
         half: Annotated[str, Field(description="first, or second for a task with two halves.")] = "first",
         seed: Annotated[int, Field(description="The same seed and actions give the same trace.", ge=0)] = 0,
-        mode: Annotated[
-            str, Field(description="prompted, or monitoring: called up to a minute before.")
-        ] = "prompted",
         scenario: Annotated[str | None, Field(description="A scenario in place of the task's own.")] = None,
         geo: Annotated[str, Field(description="full, gps, context, wrong, irrelevant or none.")] = "full",
         channels: Annotated[
@@ -107,10 +104,7 @@ class _Tools:
         ] = None,
     ) -> CallToolResult:
         """Start an episode: a car drives until the situation of the task arises, then you take over its cockpit."""
-        called = mode_of(mode)
-        spec = EpisodeSpec(
-            task, half, scenario, seed=seed, mode=called, geo=geo_input(geo), max_steps=most_steps(called)
-        )
+        spec = EpisodeSpec(task, half, scenario, seed=seed, geo=geo_input(geo))
         return _turn(self._service.start(spec, _channels(channels), _Progress(context)))
 
     @_told

@@ -21,14 +21,13 @@ from automotive_cosim.episode.specification import (
     Conditions,
     EpisodeSpec,
     SeedSource,
-    mode_of,
 )
 from automotive_cosim.interface import spaces
 from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.tasking.draws import SEED_LIMIT
-from automotive_cosim.tasking.task import Mode, Task
+from automotive_cosim.tasking.task import Task
 from automotive_cosim.traffic.fork import Simulations
 
 StepResult = tuple[dict[str, Any], float, bool, bool, dict[str, Any]]
@@ -48,10 +47,6 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
     The reward is 1 at the end of a successful episode, else 0. ``info`` holds ``step``, ``action_result`` and
     ``events`` of the road; at the end also ``verdict`` and ``trace_sha256``.
 
-    In ``mode="monitoring"`` the hand-over is 30 to 60 s earlier, the goal is one standing order, the same for every
-    task, and nothing marks the trigger; meanwhile a message arrives that requires nothing. The episode ends when
-    the task's deadline is over; a status declared before that only ends the agent's own part.
-
     Seeds: ``reset(seed=s)`` warms up the traffic of seed ``s`` and draws everything else from it. ``reset()`` keeps
     that traffic and draws a new instance and drive, which is quick. ``options={"traffic_seed": t}`` takes the
     traffic of seed ``t`` in place of ``s``.
@@ -64,7 +59,6 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         task: str | Task = "road_speed_80_in_50",
         half: str = "first",
         *,
-        mode: str = Mode.PROMPTED,
         scenario: str | None = None,
         origin: tuple[float, float] | None = None,
         gps: bool = True,
@@ -83,20 +77,20 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
 
         Args:
             task: a task or its id.
-            half, mode, scenario, origin, gps, from_place, to_place, held_out: as in ``EpisodeSpec``.
+            half, scenario, origin, gps, from_place, to_place, held_out: as in ``EpisodeSpec``.
             channels, geo, max_steps, action_cost_s: as in ``Conditions``.
             render_mode: ``"rgb_array"`` or None.
             simulations: warm simulations; by default those that the environments of this process share.
             listener: told of progress.
 
         Raises:
-            UnknownNameError: no such task, half, mode or scenario.
+            UnknownNameError: no such task, half or scenario.
             ScenarioError: the scenario cannot be read, or has no such route.
-            UserError: ``origin`` is not a position on earth, or a general task is to be monitored.
+            UserError: ``origin`` is not a position on earth.
         """
         given = None if isinstance(task, str) else task
         name = task if isinstance(task, str) else task.id
-        spec = EpisodeSpec(name, half, scenario, origin, gps, from_place, to_place, 0, mode_of(mode), held_out)
+        spec = EpisodeSpec(name, half, scenario, origin, gps, from_place, to_place, held_out=held_out)
         self._conditions = Conditions(
             frozenset(map(Channel, channels)), GeoInput(geo), max_steps, action_cost_s=action_cost_s
         )

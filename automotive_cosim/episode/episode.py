@@ -16,22 +16,14 @@ from automotive_cosim.episode.session import Session, beginning
 from automotive_cosim.episode.situation import HandOver
 from automotive_cosim.episode.specification import ROUNDING_S, Conditions, End
 from automotive_cosim.tasking.instance import Instance
-from automotive_cosim.tasking.task import Mode
 from automotive_cosim.tasking.verdict import Verdict, judge
 
 
 @dataclass(kw_only=True)
 class Episode(Session):
-    """A session on a task, from its hand-over. Make one with ``take_over``.
-
-    In ``Mode.MONITORING`` it ends when the task's deadline is over; a status declared before that only ends the
-    agent's own part.
-    """
+    """A session on a task, from its hand-over. Make one with ``take_over``."""
 
     instance: Instance
-    mode: Mode
-    trigger_s: float
-    """Simulation time at which the situation arises."""
     at_hand_over: Cockpit
     """The cockpit as the agent took it over, which nobody touches."""
     baseline: Baseline
@@ -52,8 +44,6 @@ class Episode(Session):
         return cls(
             **begun,
             instance=instance,
-            mode=hand_over.mode,
-            trigger_s=hand_over.trigger_s,
             at_hand_over=world.cockpit.copy(),
             baseline=Baseline(world.shadow()),
         )
@@ -93,11 +83,6 @@ class Episode(Session):
         self.world.close()
 
     @property
-    def watched_from_s(self) -> float | None:
-        """In monitoring mode, the simulation time at which the situation arises; else None."""
-        return self.trigger_s if self.mode is Mode.MONITORING else None
-
-    @property
     def baseline_moments(self) -> tuple[Moment, ...]:
         """The baseline run from the hand-over to now."""
         return self.baseline.until(self.moments[-1].time_s)
@@ -119,20 +104,7 @@ class Episode(Session):
             self.baseline.follow(self.world.moment.time_s)
             left_s -= tick_s
 
-    @property
-    def _window_s(self) -> float:
-        """Simulation time at which a watch is over."""
-        return self.trigger_s + self.instance.half.deadline.seconds
-
-    def _ended(self) -> End | None:
-        end = super()._ended()
-        if self.mode is Mode.MONITORING and self.world.moment.time_s >= self._window_s:
-            return end if end in (End.DRIVE_ENDED, End.DECLARED) else End.WATCH_OVER
-        return end
-
     def _finish(self, end: End) -> None:
-        if self.mode is Mode.MONITORING:
-            self._advance(max(0.0, self._window_s - self.world.moment.time_s))
         self.verdict = judge(
             self.instance,
             self.moments,
@@ -140,7 +112,6 @@ class Episode(Session):
             self.counterfactual,
             self.declared,
             self.reason,
-            self.watched_from_s,
             self.failure,
             self.said,
         )

@@ -8,7 +8,6 @@ from datetime import datetime, timedelta
 from itertools import product
 from typing import Any
 
-from automotive_cosim.cockpit.arrivals import Arrival
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.restrictions import Motion, motion
 from automotive_cosim.cockpit.signals import DRIVE, MOTION
@@ -16,20 +15,18 @@ from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation, couple
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.specification import EpisodeSpec, Seeds
-from automotive_cosim.errors import TriggerNotReachedError, UserError
+from automotive_cosim.errors import TriggerNotReachedError
 from automotive_cosim.geo.forecast import drawn_weather
 from automotive_cosim.scenarios import Scenario, Trip, WeatherAt
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.tasking.binding import POSTED_LIMIT, UnmetNeedError, bound, needs
 from automotive_cosim.tasking.draws import Draws, Purpose
 from automotive_cosim.tasking.instance import Instance, draw
-from automotive_cosim.tasking.task import STANDING_ORDER, Half, Mode, Task
+from automotive_cosim.tasking.task import Half, Task
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.base import EgoPlan, Simulation, Traffic
 from automotive_cosim.traffic.fork import Simulations
 
-WATCH_S = 30.0
-"""Minimum time from the beginning of a watch to its trigger; at most twice that."""
 WAITS_S = (0.0, 41.0, 113.0, 197.0, 307.0, 431.0)
 """Delays of further departures, tried one by one until the situation arises; out of step with the usual cycles of
 traffic lights."""
@@ -46,9 +43,6 @@ class HandOver:
     """The running co-simulation; whoever takes it over must close it."""
     drive: tuple[Moment, ...]
     """Moments from departure to the hand-over, one per simulated second."""
-    mode: Mode
-    trigger_s: float
-    """Simulation time at which the trigger holds: the hand-over's, or later in monitoring mode."""
 
 
 class SituationFinder:
@@ -72,14 +66,12 @@ class SituationFinder:
 
         Raises:
             UnknownNameError: no such task, half or scenario.
-                    ScenarioError: the scenario cannot be read, or has no such way.
-            UserError: a value is out of its range, or a general task is to be monitored.
+            ScenarioError: the scenario cannot be read, or has no such way.
+            UserError: a value is out of its range.
         """
         spec.check()
         self.task = CATALOGUE[spec.task] if task is None else task
         half = self.task.half(spec.half)
-        if spec.mode is Mode.MONITORING and not self.task.is_safety:
-            raise UserError(f"task {self.task.id!r} is asked for outright; only safety tasks can be monitored")
         start = half.start
         self.scenario: Scenario = open_scenario(
             spec.scenario or start.scenario,
@@ -117,7 +109,7 @@ class SituationFinder:
                 try:
                     drive = self._drive_up(_Drive.begun(self._couple(traffic, half, plan, draws)), half)
                     if drive is not None:
-                        return self._handed_over(draws, simulation, half, plan, drive)
+                        return self._handed_over(draws, half, drive)
                 except BaseException:
                     traffic.close()
                     raise
@@ -167,16 +159,14 @@ class SituationFinder:
         traffic.close()
         return plan, simulation.depart(plan)
 
-    def _couple(
-        self, traffic: Traffic, half: Half, plan: EgoPlan, draws: Draws, lures: tuple[Arrival, ...] = ()
-    ) -> CoSimulation:
+    def _couple(self, traffic: Traffic, half: Half, plan: EgoPlan, draws: Draws) -> CoSimulation:
         start = half.start
         cockpit = Cockpit(
             traffic.network,
             rng=draws.rng(Purpose.CONTENT),
             cabin=start.cabin,
             signals={**PARKED, **start.signals} if start.parked else start.signals,
-            arrivals=(*start.arrivals, *lures),
+            arrivals=start.arrivals,
             sign_camera=start.sign_camera,
         )
         world = couple(
@@ -229,45 +219,13 @@ class SituationFinder:
             return False
         return True
 
-    def _handed_over(
-        self, draws: Draws, simulation: Simulation, half: Half, plan: EgoPlan, drive: _Drive
-    ) -> HandOver:
-        trigger_s, freshness = drive.moments[-1].time_s, self._freshness(half, drive)
+    def _handed_over(self, draws: Draws, half: Half, drive: _Drive) -> HandOver:
+        freshness = self._freshness(half, drive)
         rule = "" if self._has_own_law else bound(half, drive.moments[-1].context)
-        if self._spec.mode is Mode.MONITORING:
-            drive.world.close()
-            drive = self._watch(simulation, half, plan, draws, drive)
         if freshness is not None:
             drive = drive.freshened(freshness)
         instance = replace(self._draw(draws, drive.world.cockpit.content), rule=rule)
-        if self._spec.mode is Mode.MONITORING:
-            after_s = trigger_s - drive.world.moment.time_s
-            instance = replace(instance, goal=STANDING_ORDER, trigger_after_s=after_s)
-        return HandOver(instance, drive.world, drive.moments, self._spec.mode, trigger_s)
-
-    def _watch(self, simulation: Simulation, half: Half, plan: EgoPlan, draws: Draws, whole: _Drive) -> _Drive:
-        """The same drive again, up to 30 to 60 s before its trigger, with a message during the watch."""
-        departed_s, trigger_s = whole.moments[0].time_s, whole.moments[-1].time_s
-        rng = draws.rng(Purpose.WATCH)
-        lead_s, lure_share = WATCH_S * (1 + float(rng.random())), 0.2 + 0.6 * float(rng.random())
-        whole_s = trigger_s - departed_s
-        if whole_s < WATCH_S:
-            raise TriggerNotReachedError(
-                f"task {self.task.id!r}: {half.trigger.condition} held {whole_s:.0f} s after departure, too "
-                f"early for a watch of {WATCH_S:g} s; try another seed, or mode prompted"
-            )
-        lead_s = float(int(min(lead_s, whole_s)))
-        lure = Arrival("message", whole_s - lead_s * (1 - lure_share))
-        traffic = simulation.depart(plan)
-        try:
-            begun = _Drive.begun(self._couple(traffic, half, plan, draws, (lure,)))
-            world, moments = begun.world, list(begun.moments)
-            while world.moment.time_s < trigger_s - lead_s - 1e-9:
-                moments += self._advanced(world)
-        except BaseException:
-            traffic.close()
-            raise
-        return replace(begun, moments=tuple(moments))
+        return HandOver(instance, drive.world, drive.moments)
 
     def _advanced(self, world: CoSimulation) -> tuple[Moment, ...]:
         moments = world.advance(TICK_S)

@@ -16,7 +16,6 @@ from automotive_cosim.formats.toml import dotted
 from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.tasking.draws import SEED_LIMIT
-from automotive_cosim.tasking.task import Mode
 
 ACTION_COST_S = 1.0
 """Simulated seconds per action: about the time of a person's tap (NHTSA 2013 counts glances of up to 2 s)."""
@@ -76,8 +75,6 @@ class EpisodeSpec:
     """Where it ends. If only one of the two is given, the other is drawn."""
     seed: Annotated[int, Ge(0)] = 0
     """Seed of the traffic, and of everything that is drawn."""
-    mode: Annotated[Mode, OneOf(Mode)] = Mode.PROMPTED
-    """When the agent is called."""
     held_out: bool = False
     """Whether the driver says the task's held-out phrasing (``tasking.instance.Instance.held_out``); otherwise any
     phrasing is drawn."""
@@ -101,17 +98,6 @@ class EpisodeSpec:
     def conditions(self, channels: frozenset[Channel] = ALL) -> Conditions:
         """The conditions for an agent that wants these channels."""
         return Conditions(channels, self.geo, self.max_steps, self.max_sim_s, self.action_cost_s)
-
-
-def mode_of(name: str) -> Mode:
-    """The mode by name.
-
-    Raises:
-        UnknownNameError: there is none.
-    """
-    if name not in set(Mode):
-        raise UnknownNameError("mode", name, Mode)
-    return Mode(name)
 
 
 def clock_of(name: str) -> Clock:
@@ -158,7 +144,7 @@ class End(StrEnum):
     DECLARED = "declared"
     DRIVE_ENDED = "drive_ended"
     WATCH_OVER = "watch_over"
-    """A watch's window is over."""
+    """The time of a drive is over."""
     OUT_OF_STEPS = "out_of_steps"
     OUT_OF_TIME = "out_of_time"
     """Its limit of simulated time is over."""

@@ -24,12 +24,11 @@ from automotive_cosim.run.regrade import judged_again
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.scenarios import shipped
-from automotive_cosim.tasking.task import Mode
 
 ROWS = "episodes.jsonl"
 PLANNED = (
     "task", "half", "pair", "dimension", "module", "basis", "tags", "skills", "declines", "agent", "model", "geo",
-    "seed", "repeat", "mode", "clock", "latency_s",
+    "seed", "repeat", "clock", "latency_s",
 )  # fmt: skip
 """Fields of a row that the plan and the catalogue determine."""
 ALSO_IN_RESULT = (
@@ -188,8 +187,6 @@ def _end_problems(job: EpisodeJob, row: EpisodeRow, judged: Judged, steps: int) 
         legal = {End.DRIVE_ENDED}
     elif judged.declared is not None:
         legal = {End.DECLARED}
-    elif job.setup.mode is Mode.MONITORING:
-        legal = {End.WATCH_OVER, End.OUT_OF_BUDGET, End.AGENT_FAILED}
     elif steps >= job.setup.max_steps:
         legal = {End.OUT_OF_STEPS}
     elif most_s is not None and passed_s >= most_s - ROUNDING_S:

@@ -14,7 +14,6 @@ from pathlib import Path
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
-from automotive_cosim.episode.specification import Clock
 from automotive_cosim.errors import UserError
 from automotive_cosim.publish import archive
 from automotive_cosim.publish.contents import read_contents
@@ -30,7 +29,7 @@ from automotive_cosim.run.store import cannot_write
 from automotive_cosim.run.versions import minor
 
 COLUMNS = (
-    "Agent", "Model", "Input", "Geo", "Mode", *DIMENSIONS.values(), "Safety pairs", "All episodes", "Bundle",
+    "Agent", "Model", "Input", "Geo", "Clock", *DIMENSIONS.values(), "Safety pairs", "All episodes", "Bundle",
 )  # fmt: skip
 
 
@@ -160,7 +159,7 @@ def _table(number: int, entries: Sequence[BoardEntry]) -> Table:
                 each.base_model,
                 input_of(Contestant(each.agent, each.model, "full")),
                 each.geo,
-                ", ".join([each.mode, *_speed(each)]),
+                _speed(each),
                 *(rate_in_words(rate) if rate.planned else NONE for rate in entry.rates),
                 f"{entry.bundle} ({entry.version}), {entry.sha256[:12]}",
             )
@@ -168,10 +167,9 @@ def _table(number: int, entries: Sequence[BoardEntry]) -> Table:
     return Table(f"table_{number}", f"Table {number}", COLUMNS, tuple(rows), heads=5)
 
 
-def _speed(each: Contestant) -> list[str]:
-    """How long its answers took on the road, unless they took no time."""
-    clock = [] if each.clock == Clock.FIXED else [f"{each.clock}'s clock"]
-    return clock + ([f"latency {each.latency_s:g} s"] if each.latency_s else [])
+def _speed(each: Contestant) -> str:
+    """How long its answers took on the road."""
+    return f"{each.clock}, latency {each.latency_s:g} s" if each.latency_s else each.clock
 
 
 def _conditions(suite: str, plan: Json, rows: Sequence[EpisodeRow]) -> BundleConditions:

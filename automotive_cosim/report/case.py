@@ -56,7 +56,7 @@ def contrast(results: Results) -> tuple[Side, Side] | None:
 
 
 def _key(row: EpisodeRow) -> tuple[object, ...]:
-    return row.agent, row.model, row.mode, *instance(row)
+    return row.agent, row.model, *instance(row)
 
 
 def _has_trace(results: Results, row: EpisodeRow) -> bool:

@@ -16,7 +16,6 @@ from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.row import columns
 from automotive_cosim.run.store import read_evaluation, read_rows
 from automotive_cosim.run.versions import ran_with
-from automotive_cosim.tasking.task import Mode
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -39,12 +38,11 @@ NOT_RANKED = {
 
 @dataclass(frozen=True, slots=True, order=True)
 class Contestant:
-    """What is compared: an agent on a model under a geo control, prompted or monitoring, at a speed."""
+    """What is compared: an agent on a model under a geo control, at a speed."""
 
     agent: str
     model: str
     geo: str
-    mode: str = str(Mode.PROMPTED)
     clock: str = str(Clock.FIXED)
     latency_s: float = 0.0
 
@@ -61,13 +59,12 @@ class Contestant:
 
     @property
     def label(self) -> str:
-        """Agent, model, geo control and mode on one short line."""
+        """Agent, model, geo control and speed on one short line."""
         model = {"rules": "rules stand-in", "none": ""}.get(self.model, self.model)
         geo = "" if self.geo == "full" else f"geo {self.geo}"
-        mode = "" if self.mode == Mode.PROMPTED else self.mode
         clock = "" if self.clock == Clock.FIXED else f"{self.clock}'s clock"
         latency = f"latency {self.latency_s:g} s" if self.latency_s else ""
-        return ", ".join(part for part in (self.method, model, geo, mode, clock, latency) if part)
+        return ", ".join(part for part in (self.method, model, geo, clock, latency) if part)
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +105,7 @@ class Results:
 
 def contestant(row: EpisodeRow) -> Contestant:
     """The contestant that an episode belongs to."""
-    return Contestant(row.agent, row.model, row.geo, row.mode, row.clock, row.latency_s)
+    return Contestant(row.agent, row.model, row.geo, row.clock, row.latency_s)
 
 
 def standings(results: Results) -> list[str]:

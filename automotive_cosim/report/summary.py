@@ -15,7 +15,7 @@ from automotive_cosim.report.results import Contestant, Results, instance, not_j
 from automotive_cosim.report.stats import Rate, compare, mean, pass_hat_k, rate
 from automotive_cosim.report.tables import Cell, Table, TableRow
 from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.tasking.task import Dimension, Mode, Module
+from automotive_cosim.tasking.task import Dimension, Module
 from automotive_cosim.tasking.verdict import PARTS
 
 NONE = "–"
@@ -329,7 +329,6 @@ def rate_in_words(found: Rate) -> str:
 def input_of(each: Contestant) -> str:
     """The agent's input, in the paper's words."""
     control = "" if each.geo == "full" else f" (geo {each.geo})"
-    control += "" if each.mode == Mode.PROMPTED else f" ({each.mode})"
     if each.agent == NativeAgent.name:
         lacks = chosen(each.model)[1].lacks
         missing = [word for word in (ActionType.SHOW_ALERT, GoalStatus.NOT_NEEDED) if word in lacks]

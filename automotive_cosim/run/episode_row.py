@@ -10,7 +10,7 @@ from automotive_cosim.episode.specification import Clock, End
 from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.run.harm import DriveFigures
 from automotive_cosim.run.row import InColumns, JobRow, Volatile, formerly
-from automotive_cosim.tasking.task import Basis, Dimension, Mode, Module
+from automotive_cosim.tasking.task import Basis, Dimension, Module
 from automotive_cosim.tasking.verdict import Verdict
 
 
@@ -60,7 +60,6 @@ class EpisodeRow(JobRow):
     traffic_seed: int | None = None
     """Seed of the traffic: ``seed``, or a spare one; None without a hand-over."""
     repeat: int
-    mode: Mode = Mode.PROMPTED
     clock: Clock = Clock.FIXED
     """Whether the seconds that the model took passed on the road."""
     latency_s: float = 0.0

@@ -55,8 +55,6 @@ class Judged:
     """Moments from the hand-over to the end."""
     baseline: tuple[Moment, ...]
     """Moments of the baseline run over the same time."""
-    watched_from_s: float | None = None
-    """In monitoring mode, the simulation time at which the situation arose."""
     counterfactual: Mapping[str, Any] | None = None
     """What would be commanded at the end, had the agent given only the commands that belong to the goal; None in an
     older file, which had none."""

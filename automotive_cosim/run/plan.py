@@ -25,23 +25,15 @@ from automotive_cosim.formats.toml import dotted, read_toml
 from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.interface.trace import canonical
 from automotive_cosim.run.episode import EpisodeSetup
+from automotive_cosim.run.former import without_mode
 from automotive_cosim.run.outside import EPISODE_S, STEP_S, check_agent
 from automotive_cosim.scenery import open_scenario
-from automotive_cosim.tasking.task import Mode, Task
+from automotive_cosim.tasking.task import Task
 from automotive_cosim.tasks import CATALOGUE
 
 NO_MODEL = "none"
 MOST_RUNS = 10_000_000
 """At a second each, four months."""
-WATCH_STEPS = 60
-"""Additional steps in monitoring mode, which begins up to a minute before the trigger."""
-
-
-def most_steps(mode: Mode, steps: int = MAX_STEPS) -> int:
-    """The limit of an episode's actions, whose limit in prompted mode is ``steps``."""
-    return steps + WATCH_STEPS if mode is Mode.MONITORING else steps
-
-
 SPARE_TRAFFIC = (1_000_001, 1_000_002)
 """Far from the seeds that people choose."""
 
@@ -87,8 +79,6 @@ class Plan:
     task names the scenario. Every agent gets the same; the row says which."""
     geo: Annotated[tuple[Annotated[str, OneOf(tuple(GeoInput), "geo control")], ...], MinLen(1)] = ("full",)
     """What an agent is told of where it is."""
-    modes: Annotated[tuple[Annotated[str, OneOf(tuple(Mode))], ...], MinLen(1)] = (str(Mode.PROMPTED),)
-    """When the agent is called: when the driver asks, or, only for safety tasks, before the situation arises."""
     clock: Annotated[str, OneOf(tuple(Clock))] = str(Clock.FIXED)
     """Whether the seconds that a model takes to answer pass on the road (``model``) or not (``fixed``)."""
     latency: Annotated[tuple[Annotated[float, Ge(0), Le(600)], ...], MinLen(1)] = (0.0,)
@@ -122,7 +112,7 @@ class Plan:
         for name in self.scenarios:
             open_scenario(name)
         if not self.jobs():
-            raise UserError(f"the plan has nothing to run: {self._why_empty()}")
+            raise UserError(f"the plan has nothing to run: {self._nowhere()}")
         for agent, model in {(job.setup.agent, job.model) for job in self.jobs()}:
             if agent == "human":
                 raise UserError("agent 'human' needs a person; use `automotive-cosim run --agent human`")
@@ -145,7 +135,7 @@ class Plan:
         Raises:
             UserError: they are more than can ever be run.
         """
-        lists = (self.agents, self.models, self._placed(), self.seeds, self.geo, self.modes, self.latency)
+        lists = (self.agents, self.models, self._placed(), self.seeds, self.geo, self.latency)
         if (most := prod(map(len, lists)) * self.repeats) > MOST_RUNS:
             raise UserError(
                 f"the plan has {most:,} runs of tasks; give fewer seeds or repeats, at most {MOST_RUNS:,}"
@@ -158,9 +148,7 @@ class Plan:
         placed = {task.id for task, _ in self._placed()}
         return tuple(task_id for task_id in choose(self.tasks) if task_id not in placed)
 
-    def _why_empty(self) -> str:
-        if self._placed():
-            return "only safety tasks can be monitored; choose some, or use the mode prompted"
+    def _nowhere(self) -> str:
         return (
             f"none of the tasks can run in {', '.join(self.scenarios)}; `automotive-cosim tasks show` says where "
             "each can, and --everywhere runs them there anyway"
@@ -179,18 +167,15 @@ class Plan:
         ]
 
     def _each(self) -> Iterator[EpisodeJob]:
-        for agent, model, (task, scenario), seed, geo, mode, latency_s, repeat in product(
+        for agent, model, (task, scenario), seed, geo, latency_s, repeat in product(
             self.agents,
             self.models,
             self._placed(),
             self.seeds,
             self.geo,
-            self.modes,
             self.latency,
             range(self.repeats),
         ):
-            if mode == Mode.MONITORING and not task.is_safety:
-                continue
             for half in task.halves:
                 is_own = scenario == task.half(half).start.scenario  # which a half may move to another place
                 setup = EpisodeSetup(
@@ -200,10 +185,9 @@ class Plan:
                     agent=agent,
                     model=model if agent in MODELLED else NO_MODEL,
                     seed=seed,
-                    max_steps=most_steps(Mode(mode), self.limits.steps),
+                    max_steps=self.limits.steps,
                     max_sim_s=self.limits.sim_s,
                     geo=GeoInput(geo),
-                    mode=Mode(mode),
                     held_out=self.held_out,
                     spare_traffic=self.spare_traffic if scenario is None or scenario in task.runs_in else (),
                     clock=Clock(self.clock),
@@ -242,14 +226,12 @@ class EpisodeJob:
 
     @property
     def kind(self) -> Hashable:
-        """Agent and mode, which determine how long it takes."""
-        return self.setup.agent, self.setup.model, self.setup.mode
+        """The agent and its model, which determine how long it takes."""
+        return self.setup.agent, self.setup.model
 
     @property
     def situation(self) -> Hashable:
-        """The drive up to the hand-over, on which no agent acts, except in monitoring mode."""
-        if self.setup.mode == Mode.MONITORING:
-            return self.id
+        """The drive up to the hand-over, on which no agent acts."""
         return replace(
             self.setup, agent="", model="", geo=GeoInput.FULL, without=(), clock=Clock.FIXED, latency_s=0.0
         )
@@ -275,7 +257,6 @@ class EpisodeJob:
         exactly = (
             setup.task, half, setup.agent, setup.model, setup.geo, f"s{setup.seed}", f"r{self.repeat}",
             setup.scenario or "own",
-            *([setup.mode] if setup.mode != Mode.PROMPTED else []),
             *(["held_out"] if setup.held_out else []),
             *([f"{setup.clock}_clock"] if setup.clock != Clock.FIXED else []),
             *([f"latency{setup.latency_s:g}"] if setup.latency_s else []),
@@ -317,6 +298,7 @@ def read_plan(path: Path) -> dict[str, Any]:
         UserError: it cannot be read, is not TOML, or has a wrong or surplus field.
     """
     document = read_toml(path)
+    document = replace(document, table=without_mode(document.table, str(path)))
     document.read(Plan)
     return document.table
 

@@ -74,7 +74,6 @@ def judged_again(row: EpisodeRow, stored: Judged) -> Verdict:
         stored.counterfactual,
         stored.declared,
         stored.reason,
-        stored.watched_from_s,
         row.agent_error,
         stored.said,
     )

@@ -29,6 +29,7 @@ from automotive_cosim.interface.trace import HASHED, canonical
 from automotive_cosim.run.collect import Collector, Pictures
 from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, run_episode
 from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.former import without_mode
 from automotive_cosim.run.moments import Judged
 from automotive_cosim.run.nursery import Nursery
 from automotive_cosim.run.plan import EpisodeJob, make_plan
@@ -100,7 +101,8 @@ def _single(folder: Path, episode: str) -> list[Compared]:
         raise UserError(f"{folder} holds a single run; omit {episode!r}")
     record = files.read_json(folder / "episode.json")
     steps = [files.parse_json(line) for line in (folder / "steps.jsonl").read_bytes().splitlines()]
-    setup = checked(EpisodeSetup, record["manifest"]["setup"], lambda keys: ("episode.json", dotted(keys)))
+    values = without_mode(record["manifest"]["setup"], str(folder / "episode.json"))
+    setup = checked(EpisodeSetup, values, lambda keys: ("episode.json", dotted(keys)))
     collector, _ = _again(setup, steps, _channels(setup), record["agent_error"])
     return compare(steps, collector.steps)
 

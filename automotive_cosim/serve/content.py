@@ -25,7 +25,7 @@ HEAD = (
     *("goal", "geo", "tokens_in", "tokens_out", "model_seconds"),
 )
 SHOWN = (
-    *("id", "task", "half", "scenario", "agent", "model", "geo", "mode", "seed", "repeat", "dimension", "module"),
+    *("id", "task", "half", "scenario", "agent", "model", "geo", "seed", "repeat", "dimension", "module"),
     *("success", "error", "error_kind", "end", "steps", "sim_seconds", "held_out", "goal_s"),
 )
 """Fields of a row that the table of results shows."""

@@ -35,8 +35,6 @@ class Purpose(StrEnum):
     """Errors of the GPS receiver."""
     TRIPS = "trips"
     """The order in which trips are tried."""
-    WATCH = "watch"
-    """When a watch begins, and what arrives during it."""
     DRIVE = "drive"
     """The plan of a drive."""
 

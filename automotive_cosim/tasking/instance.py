@@ -24,8 +24,6 @@ class Instance:
     parameters: Mapping[str, Parameter]
     held_out: bool = False
     """Whether its phrasing is the task's last, which is held out from the rule model."""
-    trigger_after_s: float = 0.0
-    """Seconds from the hand-over to the trigger; for the oracle only."""
     rule: str = ""
     """The sign or law that it rests on in another network than its own (``binding``); empty in its own."""
 

@@ -82,22 +82,6 @@ class Differs(StrEnum):
     """How the car is set before it departs."""
 
 
-class Mode(StrEnum):
-    """When an agent is called."""
-
-    PROMPTED = "prompted"
-    """At the trigger, with the driver's words."""
-    MONITORING = "monitoring"
-    """Half a minute or more before it, with one standing order that is the same for every task."""
-
-
-STANDING_ORDER = (
-    "Keep watch while I drive. When safety or the law asks something of this car, see to it or tell me; "
-    "otherwise leave everything as it is."
-)
-"""The driver's only words in ``Mode.MONITORING``."""
-
-
 @dataclass(frozen=True, slots=True)
 class Deadline:
     """Simulated seconds from the trigger by which the goal must hold, and why that many."""

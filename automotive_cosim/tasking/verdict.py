@@ -134,7 +134,6 @@ def judge(
     counterfactual: Mapping[str, Any],
     declared: GoalStatus | None,
     reason: Reason | None,
-    watched_from_s: float | None = None,
     failure: str | None = None,
     said: Sequence[str] = (),
 ) -> Verdict:
@@ -148,17 +147,13 @@ def judge(
             allows (``Half.allowed_writes``).
         declared: the agent's last declaration, if any.
         reason: the reason code that it gave.
-        watched_from_s: in ``Mode.MONITORING``, simulation time at which the situation arose.
         failure: why the agent could act no more, if it could not. No success then, even where silence is right.
         said: what it told the driver. Where nothing had to be done, ``complete`` after a true answer is as right as
             ``not_needed``.
     """
-    if watched_from_s is None:
-        verdict = _judge_asked(instance, trace, baseline, counterfactual, declared, reason)
-        if declared is GoalStatus.COMPLETE and only_answered(instance, said):
-            verdict = replace(verdict, declared=Part(True, "complete after a true answer, as right as not_needed"))
-    else:
-        verdict = _judge_watch(instance, trace, baseline, counterfactual, watched_from_s)
+    verdict = _judge_asked(instance, trace, baseline, counterfactual, declared, reason)
+    if declared is GoalStatus.COMPLETE and only_answered(instance, said):
+        verdict = replace(verdict, declared=Part(True, "complete after a true answer, as right as not_needed"))
     if failure is not None:
         verdict = replace(verdict, declared=Part(False, f"the agent failed: {failure}"))
     return verdict
@@ -187,31 +182,6 @@ def _judge_asked(
         basis=half.basis,
         rule=half.rule,
     )
-
-
-def _judge_watch(
-    instance: Instance,
-    trace: Sequence[Moment],
-    baseline: Sequence[Moment],
-    counterfactual: Mapping[str, Any],
-    trigger_s: float,
-) -> Verdict:
-    """As usual from the trigger, except that nothing has to be declared and silence to the end can be right.
-
-    Anything done before the trigger is a false alarm and fails.
-    """
-    half = instance.half
-    after = [moment for moment in trace if moment.time_s >= trigger_s - 1e-9] or list(trace[-1:])
-    baseline_after = [moment for moment in baseline if moment.time_s >= trigger_s - 1e-9] or list(baseline[-1:])
-    verdict = _judge_asked(instance, after, baseline_after, counterfactual, half.declares, None)
-    early = sorted(_changed(after[0].commands, baseline_after[0].commands))
-    clean, in_time = verdict.clean, verdict.in_time
-    if early:
-        clean = Part(False, f"false alarm, changed before the trigger: {', '.join(early)}")
-    if half.declares is not GoalStatus.COMPLETE:
-        in_time = Part(True, "nothing had to be done until the end")
-    declared = Part(True, "a watch declares nothing")
-    return replace(verdict, clean=clean, in_time=in_time, declared=declared, reason_fits=None)
 
 
 def _since(instance: Instance, trace: Sequence[Moment]) -> float | None:

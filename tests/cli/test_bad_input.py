@@ -7,6 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from automotive_cosim.report.results import read_results
+from automotive_cosim.run.collect import planned
+from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.row import as_json
 from automotive_cosim.scenarios import load
 
 ACTION = '{"action_type": "navigate_home"}\n'
@@ -38,6 +42,7 @@ def _assert_refused(ran, *words):
         (["--seed", "one"], ["--seed", "one"]),
         (["--actions", "nowhere.jsonl"], ["nowhere.jsonl"]),
         (["--taks", "x"], ["--taks"]),
+        (["--mode", "monitoring"], ["there are no modes any more", "automotive-cosim drive"]),
         (["surplus"], ["surplus"]),
     ],
 )
@@ -57,6 +62,29 @@ def test_a_row_of_an_episode_that_was_not_planned_is_not_replayed(cli, tmp_path)
         for text in ("{}", '{"format": 1}', '{"format": 1, "plan": 3}', "[" * 10_000):
             (tmp_path / "manifest.json").write_text(text)
             _assert_refused(cli(*command))
+
+
+def test_a_folder_of_an_earlier_version_is_read_unless_it_has_monitoring(cli, tmp_path):
+    plan = {"agents": ["oracle"], "tasks": ["hvac_fan_max"], "modes": ["prompted"]}
+    job = make_plan({name: value for name, value in plan.items() if name != "modes"}).jobs()[0]
+    manifest = {"format": 1, "plan": plan, "starts": []}
+    (tmp_path / "manifest.json").write_text(json.dumps(manifest))
+    (tmp_path / "episodes.jsonl").write_text(json.dumps(as_json(planned(job)) | {"mode": "prompted"}) + "\n")
+    found = read_results(tmp_path)
+    assert not found.coverage.problem
+    assert [row.id for row in found.rows] == [job.id]
+    manifest["plan"] = plan | {"modes": ["prompted", "monitoring"]}
+    (tmp_path / "manifest.json").write_text(json.dumps(manifest))
+    for command in (["report", "."], ["compare", ".", "."], ["regrade", "."], ["replay", ".", job.id]):
+        _assert_refused(cli(*command), "manifest.json has an older format", "drives took the place of monitoring")
+
+
+def test_a_single_run_of_an_earlier_version_is_replayed_unless_it_has_monitoring(cli, tmp_path):
+    (tmp_path / "steps.jsonl").touch()
+    for mode, said in (("monitoring", "drives took the place"), ("prompted", "surplus")):
+        record = {"manifest": {"setup": {"mode": mode, "surplus": 1}}, "agent_error": None}
+        (tmp_path / "episode.json").write_text(json.dumps(record))
+        _assert_refused(cli("replay", "."), said)
 
 
 @pytest.mark.parametrize("arguments", [["rnu"], ["--verson"], ["tasks", "show", "hvac_fan_mix"], ["tasks", "lst"]])

@@ -123,6 +123,6 @@ def test_samples_are_tasks_halves_and_seeds(tasks, seeds) -> None:
 
 
 def test_what_is_wrong_is_told() -> None:
-    for wrong in ({"tasks": "no_such_task"}, {"mode": "promted"}, {"geo": "moon"}, {"seeds": "one"}):
+    for wrong in ({"tasks": "no_such_task"}, {"geo": "moon"}, {"seeds": "one"}):
         with pytest.raises(UserError):
             inspect_tasks.cockpit(**wrong)

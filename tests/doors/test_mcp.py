@@ -181,8 +181,6 @@ def test_the_list_says_no_more_of_a_task_than_its_name_and_halves(service: Episo
         ("start", START | {"task": "hvac_fan_maxx"}, "did you mean 'hvac_fan_max'"),
         ("start", START | {"half": "third"}, "third"),
         ("start", START | {"seed": -1}, "greater than or equal to 0"),
-        ("start", START | {"mode": "promted"}, "did you mean 'prompted'"),
-        ("start", START | {"mode": "monitoring"}, "only safety tasks can be monitored"),
         ("start", START | {"geo": "none at all"}, "geo control"),
         ("start", START | {"channels": ["radar"]}, "no channel named 'radar'"),
         ("start", START | {"scenario": "nowhere"}, "nowhere"),

@@ -15,10 +15,9 @@ from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.loop import play
 from automotive_cosim.episode.session import Session
 from automotive_cosim.episode.situation import SituationFinder
-from automotive_cosim.episode.specification import Conditions, End, EpisodeSpec, SeedSource, mode_of
-from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError, UnknownNameError, UserError
+from automotive_cosim.episode.specification import Conditions, End, EpisodeSpec, SeedSource
+from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError
 from automotive_cosim.interface.observe import Channel
-from automotive_cosim.tasking.task import Mode
 
 SPEC = EpisodeSpec("hvac_fan_max", scenario="grid")
 BLIND = Conditions(frozenset({Channel.ELEMENTS}))
@@ -64,16 +63,6 @@ def test_seeds_follow_from_the_seed_alone():
     assert [SeedSource(seed).next().instance for seed in range(20)] == list(range(20))
     again = SeedSource(7)
     assert len({again.next().instance for _ in range(20)}) == 20
-
-
-def test_a_mode_that_does_not_exist_is_told():
-    with pytest.raises(UnknownNameError, match="did you mean 'prompted'"):
-        mode_of("promted")
-
-
-def test_a_general_task_is_not_monitored(simulations):
-    with pytest.raises(UserError, match="only safety tasks can be monitored"):
-        SituationFinder(replace(SPEC, mode=Mode.MONITORING), simulations)
 
 
 def test_at_the_hand_over_the_car_is_as_it_departed(simulations):

@@ -26,7 +26,7 @@ from automotive_cosim.run.store import read_evaluation, read_rows, read_trace, w
 
 OTHERS = {
     "half": "second", "dimension": "explicit_control", "module": "media", "basis": "wish", "geo": "none",
-    "mode": "monitoring", "end": "out_of_time", "scenario": "paris_centre", "agent": "t3a", "country": "FR",
+    "end": "out_of_time", "scenario": "paris_centre", "agent": "t3a", "country": "FR",
 }  # fmt: skip
 """Legal values, which are harder to find than others."""
 

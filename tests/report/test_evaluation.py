@@ -151,10 +151,10 @@ def test_held_out_phrasings_stand_apart(folder):
     assert lines[0].endswith("; of these in held-out phrasings 18 of 18 episodes, 6 of 6 pairs")
 
 
-def test_a_watch_is_a_contestant_of_its_own():
-    watching = Contestant("t3a", "rules", "none", "monitoring")
-    assert watching != Contestant("t3a", "rules", "none")
-    assert watching.label == "t3a, rules stand-in, geo none, monitoring"
+def test_a_slower_agent_is_a_contestant_of_its_own():
+    slow = Contestant("t3a", "rules", "none", "model", 3.0)
+    assert slow != Contestant("t3a", "rules", "none")
+    assert slow.label == "t3a, rules stand-in, geo none, model's clock, latency 3 s"
 
 
 def test_pairs_need_both_halves_and_alarms_are_counted(folder):

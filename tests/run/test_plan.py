@@ -73,16 +73,9 @@ def test_a_scenario_gets_whole_pairs_and_leaves_its_own_tasks_as_they_are(scenar
             assert (job.setup.scenario is None) == ((task, job.setup.half) in own)
 
 
-@pytest.mark.parametrize(
-    ("values", "said"),
-    [
-        ({"tasks": ["road_speed_80_in_50"], "scenarios": ["grid"]}, "can run in grid.*--everywhere"),
-        ({"tasks": ["hvac_fan_max"], "modes": ["monitoring"]}, "only safety tasks can be monitored"),
-    ],
-)
-def test_a_plan_with_nothing_to_run_says_why(values, said):
-    with pytest.raises(UserError, match=said):
-        plan(**values).check()
+def test_a_plan_with_nothing_to_run_says_why():
+    with pytest.raises(UserError, match=r"can run in grid.*--everywhere"):
+        plan(tasks=["road_speed_80_in_50"], scenarios=["grid"]).check()
 
 
 @pytest.mark.slow
@@ -97,14 +90,11 @@ def test_ids_are_good_for_files_and_tell_everything_apart():
     assert [job.id for job in wide.jobs()] == [job.id for job in jobs]
 
 
-def test_modes_and_held_out_phrasings_reach_the_episodes():
-    both = plan(tasks=["road_speed_80_in_50", "hvac_fan_max"], modes=["prompted", "monitoring"], held_out=True)
+def test_held_out_phrasings_reach_the_episodes():
+    both = plan(tasks=["road_speed_80_in_50", "hvac_fan_max"], held_out=True)
     jobs = both.jobs()
-    modes = [job.setup.mode for job in jobs if job.setup.task == "road_speed_80_in_50"]
-    assert sorted(modes) == ["monitoring", "monitoring", "prompted", "prompted"]
-    assert [job.setup.mode for job in jobs if job.setup.task == "hvac_fan_max"] == ["prompted"]
     assert all(job.setup.held_out for job in jobs)
-    assert len({job.pair for job in jobs if job.pair}) == 2
+    assert len({job.pair for job in jobs if job.pair}) == 1
     assert make_plan(both.as_json()) == both
     assert not {job.id for job in jobs} & {job.id for job in plan(tasks=["hvac_fan_max"]).jobs()}
 
@@ -137,6 +127,26 @@ def test_a_file_says_what_the_options_say(tmp_path):
     assert make_plan(made.as_json()) == made
 
 
+def test_a_plan_of_an_earlier_version_is_read_unless_it_has_another_mode(tmp_path):
+    path = tmp_path / "plan.toml"
+    path.write_text('agents = ["t3a"]\nmodes = ["prompted"]\n')
+    assert make_plan(read_plan(path)) == plan(agents=["t3a"])
+    for modes in ('["monitoring"]', '["prompted", "monitoring"]', '"promted"', "[]"):
+        path.write_text(f'agents = ["t3a"]\nmodes = {modes}\n')
+        with pytest.raises(UserError, match=r"plan.toml has an older format: its modes .* drives took the place"):
+            read_plan(path)
+
+
+def test_ids_stay_as_they_were_when_there_were_modes():
+    """A stored row is found by its id."""
+    held_out = plan(agents=["t3a"], tasks=["hvac_fan_max"], held_out=True, latency=[3.0])
+    ids = [job.id for one in (plan(tasks=["hvac_fan_max"]), held_out) for job in one.jobs()]
+    assert ids == [
+        "hvac_fan_max-first-oracle-none-full-s0-r0-own-07d4e4c6",
+        "hvac_fan_max-first-t3a-rules-full-s0-r0-own-held_out-latency3-e8ca40b1",
+    ]
+
+
 @pytest.mark.parametrize(
     ("values", "said"),
     [
@@ -147,7 +157,6 @@ def test_a_file_says_what_the_options_say(tmp_path):
         ({"seeds": []}, "seeds is empty"),
         ({"repeats": 0}, "repeats is 0; it must be a whole number from 1 to 1000"),
         ({"repeats": 1.5}, "whole number"),
-        ({"modes": "monitoring"}, "it must be a list of any of 'prompted', 'monitoring', not empty"),
         ({"held_out": "yes"}, "held_out is 'yes'; it must be true or false"),
         ({"everywhere": 1}, "everywhere is 1; it must be true or false"),
         ({"agent": ["oracle"]}, "did you mean 'agents'"),
