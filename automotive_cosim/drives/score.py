@@ -17,7 +17,7 @@ from statistics import median
 from automotive_cosim.drives.judge import EventOutcome, Judgement, Worth
 
 NUISANCE = 1.0
-"""Cost of a nuisance: as much as a miss, as in the standard profile of the Numenta Anomaly Benchmark (2015). At a
+"""Cost of a nuisance: as much as a miss of weight 1, which is our choice. At a
 fifth of that, an alert of the most frequent kind twice a minute would pay."""
 LEAST_WORTH = 1.0
 """Scale of a drive without events, so that silence is 100 there and a false alarm costs."""
