@@ -69,6 +69,9 @@ AGENTS = tuple(sorted([*SIMPLE, *MODELLED]))
 
 
 ABOUT: Mapping[str, str] = {
+    "alert-all": "negative control on drives: gives every kind of alert in turn",
+    "alert-often": "negative control on drives: warns of speed twice a minute",
+    "alert-on-wake": "negative control on drives: warns of speed whenever something changes",
     "always-alert": "negative control: warns at once, whatever happens",
     "asurada": "elements, screenshots, GPS, geo-context; can query rules and remember (as the paper's)",
     "human": "you, with numbered elements on the terminal",
@@ -78,6 +81,8 @@ ABOUT: Mapping[str, str] = {
     "oracle": "reference: is told the task and plays its reference solution",
     "press-everything": "negative control: presses every button",
     "random": "negative control: random actions",
+    "rule-perfect": "reference on drives: knows the rules and reads only what any agent may observe",
+    "silent": "negative control on drives: waits",
     "t3a": "elements as text (after AndroidWorld's T3A)",
 }
 """What each agent sees or does, in a line."""

@@ -116,7 +116,7 @@ def test_a_single_run_is_replayed_and_a_change_is_found(cli, tmp_path):
     again = cli("replay", "one")
     assert (again.code, again.out.count("the same")) == (
         0,
-        len((tmp_path / "one/steps.jsonl").open().readlines()) + 1,
+        len((tmp_path / "one/steps.jsonl").read_text(encoding="utf-8").splitlines()) + 1,
     )
     assert "replay one" in (tmp_path / "one/summary.html").read_text(encoding="utf-8")
     refused = cli("replay", "one", "hvac")

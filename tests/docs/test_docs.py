@@ -8,6 +8,7 @@ import re
 import shlex
 import shutil
 import subprocess
+import sys
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -97,6 +98,7 @@ TREATED: list[tuple[str, tuple[str, ...], str]] = [
     (r"eval .*--executor ray", HELP, "needs a cluster; tests/run/test_on_ray.py has one"),
     (r"eval ", DRY, "takes minutes; `ran` below is an evaluation on the grid"),
     (r"study reroute --scenario resco", HELP, "needs the scenario of others"),
+    (r"study suite", HELP, "needs a network of the reader's; tests/studies run one"),
     (r"study reroute", DRY, "takes minutes; tests/studies run studies"),
     (r"run .*--model", HELP, "asks a language model"),
     (r"run .*(city|my|any)\.(net|sumocfg)", HELP, "needs a network of the reader's"),
@@ -114,6 +116,7 @@ TREATED: list[tuple[str, tuple[str, ...], str]] = [
     (r"(serve|mcp)", HELP, "serves until it is stopped; tests/serve and tests/doors ask it"),
     (r"bench", HELP, "measures for a minute; tests/cli/test_bench.py runs it"),
     (r"scenarios (check|day|download)", HELP, "takes minutes, counts or the network; tests/osm has them"),
+    (r"scenarios equilibrate", HELP, "takes minutes; tests/scenery/test_equilibrium.py tries it"),
     (r"scenarios import city", HELP, "needs a map of the reader's; the hamlet is imported"),
     (r"scenarios import", ("--force",), ""),
     (r"replay", AS_IT_IS, ""),
@@ -164,6 +167,7 @@ def reader(cli, place, monkeypatch):
     monkeypatch.chdir(place)
     monkeypatch.setenv(VARIABLE, "")
     monkeypatch.syspath_prepend(str(place))
+    monkeypatch.delitem(sys.modules, "my_agents", raising=False)  # another test's
     return cli
 
 

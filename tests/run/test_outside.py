@@ -275,7 +275,7 @@ def test_nonsense_on_the_wire_is_the_agents_failure_or_its_step(outside, mine, t
 
 def test_a_pickle_on_the_wire_runs_nothing(outside, mine):
     (mine / "told").write_text('"' + "cos\\nsystem\\n(S'touch ran'\\ntR." + '"')
-    with pytest.raises(AgentError, match="no answer"):
+    with pytest.raises(AgentError, match="not an answer"):
         outside("Asks", step_s=1.0).act(None)
     assert not (mine / "ran").exists()
 
