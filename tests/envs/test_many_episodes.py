@@ -8,8 +8,8 @@ import sys
 
 import pytest
 
-GROWTH_MB = 8.0
-"""Over 160 episodes: far under what one more episode kept alive would add (a simulation has tens of megabytes to
+GROWTH_MB = 6.0
+"""Over 120 episodes: far under what one more episode kept alive would add (a simulation has tens of megabytes to
 itself), above the noise of an allocator."""
 
 PROGRAM = """
@@ -19,7 +19,8 @@ from automotive_cosim.run import memory
 from automotive_cosim.traffic.fork import Simulations
 
 EPISODES = 200
-SETTLED_AFTER = 40  # caches (fonts, pictures, places, laws) have filled by then
+SETTLED_AFTER = 80  # caches (fonts, pictures, places, laws) have filled by then
+EVERY = 40
 
 def seen():
     gc.collect()
@@ -35,7 +36,7 @@ for number in range(EPISODES):
     env.render()
     if number % 2:
         env.step({"action_type": "status", "goal_status": "complete"})
-    if number >= SETTLED_AFTER and number % SETTLED_AFTER == SETTLED_AFTER - 1:
+    if number + 1 >= SETTLED_AFTER and number % EVERY == EVERY - 1:
         figures.append(seen())
 env.close()
 simulations.close()
