@@ -273,7 +273,7 @@ class _Source:
     def departed(self, plan: EgoPlan, calls: Sequence[Call] = ()) -> RemoteTraffic:
         """A drive in a process of its own, after the calls."""
         with self._lock:
-            process = self._taken() if self.by_replay else self._ready().fork(self._next_outputs())
+            process = self._taken() if self.by_replay else self._copied()
         try:
             state = process.call("depart", plan)
             if calls:
@@ -297,7 +297,7 @@ class _Source:
     def sampled(self, seed: int) -> Trial:
         """What a seed makes of a copy of the warm traffic."""
         with self._lock:
-            copy = self._ready().fork(self._next_outputs())
+            copy = self._copied()
         with closing(copy):
             sample: Trial = copy.call("prove_fresh", seed)
             return sample
@@ -317,6 +317,16 @@ class _Source:
         except OSError:  # it has died, or the platform does not say
             return 0
         return int(pages) * os.sysconf("SC_PAGE_SIZE")
+
+    def _copied(self) -> RemoteProcess:
+        """A copy of the warm process, which is started again if it turns out to have died."""
+        warm = self._ready()
+        try:
+            return warm.fork(self._next_outputs())
+        except TrafficError:
+            if not warm.is_broken:  # the copy died, not its source
+                raise
+        return self._ready().fork(self._next_outputs())
 
     def _ready(self) -> RemoteProcess:
         """The warm process, started again if it has died."""
