@@ -68,7 +68,7 @@ def main() -> None:
     parser.add_argument("--spread", type=float, default=0.6)
     parser.add_argument("--level", type=float, default=1.0)
     parser.add_argument("--share", type=float, default=0.25)
-    parser.add_argument("--rounds", type=int, default=6)
+    parser.add_argument("--rounds", type=int, default=8)
     given = parser.parse_args()
     scenario = scenarios.load(given.scenario)
     print("seed  sites  set         unfitted                          calibrated")
@@ -80,7 +80,7 @@ def main() -> None:
             sites = write_counts(scenario, twin, counts, given.share, rng)
             begun_s = time.monotonic()
             options = Options(rounds=given.rounds, seed=seed)
-            found = calibrate(scenario.folder, counts, Path(folder) / "out", options, lambda _: None)
+            found = calibrate(scenario, counts, Path(folder) / "out", options, lambda _: None)
         for held_out, name in ((False, "calibrated"), (True, "held out")):
             before, after = found.met(held_out=held_out, unfitted=True), found.met(held_out=held_out)
             print(f"{seed:4}  {sites:5}  {name:10}  {_shown(before)}  {_shown(after)}")

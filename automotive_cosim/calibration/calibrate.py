@@ -19,7 +19,8 @@ from automotive_cosim.calibration.result import RECORD, Calibration, Carried, Me
 from automotive_cosim.calibration.search import Round, World, search
 from automotive_cosim.calibration.sites import Mapped, map_sites
 from automotive_cosim.errors import CountsError, ScenarioError
-from automotive_cosim.scenarios import Scenario, load
+from automotive_cosim.osm.network import Built
+from automotive_cosim.scenarios import Scenario
 from automotive_cosim.scenery import variant
 from automotive_cosim.scenery.gap import vehicle_types
 from automotive_cosim.traffic.network import read_network
@@ -57,7 +58,7 @@ class Options:
     """When the ego departs; None is the first hour."""
     hold_out: float = 0.3
     """Share of the sites that the fit does not see."""
-    rounds: int = 6
+    rounds: int = 8
     """Most rounds of fit and simulation."""
     seed: int = 0
     """Seed of what is held out, of the routes and of SUMO."""
@@ -67,12 +68,12 @@ Tell = Callable[[str], None]
 
 
 def calibrate(
-    folder: Path, counts_file: Path, target: Path, options: Options, tell: Tell, *, force: bool = False
+    scenario: Scenario, counts_file: Path, target: Path, options: Options, tell: Tell, *, force: bool = False
 ) -> Calibration:
     """Writes a copy of a scenario whose demand carries the counts. A demand that gridlocks is not written.
 
     Args:
-        folder: the scenario's.
+        scenario: what to calibrate.
         counts_file: hourly counts, see ``counts``.
         target: the copy's, new or empty; it appears once it is complete.
         options: the user's options.
@@ -82,11 +83,10 @@ def calibrate(
     Raises:
         CountsError: the counts cannot be used.
         UserError: the target exists, or the demand has stops or persons.
-        ScenarioError: it is no scenario, or SUMO refuses it.
+        ScenarioError: SUMO refuses the scenario, or it has no demand.
         SetupError: eclipse-sumo is not installed.
     """
     variant.check_target(target, RECORD, force=force)
-    scenario = load(folder)
     configuration = read_configuration(scenario.config)
     variant.check_demand(configuration)
     zone = scenario.start.tzinfo
@@ -165,6 +165,7 @@ class _Calibration:
             raise ScenarioError(f"{self.scenario.folder} has no demand to begin with; import a map, or add trips")
         free_s = defaultdict(lambda: OTHER_EDGE_S)
         free_s |= {name: edge.length_m / max(0.1, edge.speed_mps) for name, edge in network.edges.items()}
+        border = Built(network, signals=0, roundabouts=0)
         world = World(
             clock,
             self.configuration.net,
@@ -172,6 +173,7 @@ class _Calibration:
             vehicle_types(given_options, ["route-files"]),
             free_s,
             capacity,
+            (tuple(sorted(border.entries())), tuple(sorted(border.exits()))),
             known,
             self.options.seed,
             partial(self._drive, clock, self.options.seed),

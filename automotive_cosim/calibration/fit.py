@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 Floats = npt.NDArray[np.float64]
 
 STEEPEST = 12.0
-"""Largest logarithm of a factor on the prior from one count."""
+"""Largest multiplier, the logarithm of a count's factor on the prior. A count that would need more is an outlier,
+and what is missing stays missing."""
 
 MOST_STEPS = 500
 
@@ -50,7 +51,7 @@ def fit(problem: Problem, bounded_by: csr_array, bounds: Floats) -> Floats:
         bounded_by: (k, n), share of each flow that each of k bounds concerns.
         bounds: (k,).
     """
-    from scipy.optimize import minimize
+    from scipy.optimize import Bounds, minimize
     from scipy.sparse import vstack
 
     seen: Any = vstack([problem.counted_by, -bounded_by]).tocsr()
@@ -66,8 +67,8 @@ def fit(problem: Problem, bounded_by: csr_array, bounds: Floats) -> Floats:
         value = x.sum() - multipliers @ targets + 0.5 * variances @ multipliers**2
         return float(value), np.asarray(scale * (seen @ x - targets + variances * multipliers))
 
-    low = np.concatenate([np.full(len(problem.counts), -STEEPEST), np.zeros(len(bounds))])
-    limits = np.column_stack([low, np.full(len(targets), STEEPEST)]) / scale[:, None]
+    least = np.concatenate([np.full(len(problem.counts), -STEEPEST), np.zeros(len(bounds))])
+    limits = Bounds(least / scale, STEEPEST / scale)
     found = minimize(
         dual, np.zeros(len(targets)), jac=True, method="L-BFGS-B", bounds=limits, options={"maxiter": MOST_STEPS}
     )

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from automotive_cosim.calibration.candidates import Candidate, Candidates, Passes, passes
+from automotive_cosim.calibration.candidates import Candidate, Candidates, End, Passes, passes
 from automotive_cosim.calibration.capacity import USABLE, Capacity, Turn
 from automotive_cosim.calibration.driving import HOUR_S, Clock, Drive
 from automotive_cosim.calibration.fit import Floats, Problem, fit
@@ -24,10 +24,14 @@ COUNT_ERROR = 0.02
 ENOUGH_SITES = 5
 """With fewer sites, the total of all traffic stays the given demand's: they say too little of it."""
 
-EXTRA_SHARE = 0.2
-"""Share of the prior's traffic between pairs of edges that the given demand does not have."""
+OTHER_SHARE, THROUGH_SHARE, COUNTED_SHARE = 0.2, 0.3, 0.1
+"""Traffic that the prior has beside the given demand, as a share of it: between starts and ends of different trips,
+from border to border of the map, and by way of counted edges."""
 
-THROUGH = 40
+THROUGH_TRIPS = 2000
+"""Most routes from border to border."""
+
+BY_WAY = 40
 """Routes that are drawn through every counted edge."""
 
 FEW = 5
@@ -67,6 +71,8 @@ class World:
     """Those that the new demand must bring, as SUMO's XML."""
     free_s: Mapping[str, float]
     capacity: Capacity
+    border: tuple[tuple[str, ...], tuple[str, ...]]
+    """Edges by which traffic enters the map, and by which it leaves."""
     counts: FloatsOf
     """The counts to meet."""
     seed: int
@@ -105,7 +111,7 @@ def search(world: World, given: Drive, per_h: float, rounds: int) -> Iterator[Ro
     found = Candidates.of(trips)
     times = EdgeTimes(world.free_s, map(_ended(clock.end_s), given.trips))
     _add_others(found, trips, times, world, rng)
-    _add_through(found, trips, times, world, rng)
+    _add_by_way(found, trips, times, world, rng)
     passing = Counter(edge for route in found.routes for edge in set(route.edges))
     thin = tuple(sorted({edge for edge, _ in world.counts if passing[edge] < FEW}))
     learned = Learned()
@@ -160,26 +166,46 @@ def _ended(end_s: float) -> Callable[[DrivenTrip], DrivenTrip]:
 def _add_others(
     found: Candidates, trips: Sequence[DrivenTrip], times: EdgeTimes, world: World, rng: np.random.Generator
 ) -> None:
-    """Routes between starts and ends of different trips."""
-    count = len(trips)
-    starts, goals = rng.integers(count, size=count), rng.integers(count, size=count)
+    """Routes between starts and ends of different trips, and straight through the map."""
+    total, count = sum(found.weights.values()), len(trips)
+    starts, goals = rng.integers(count, size=(2, count)).tolist()
+    ends = [(trips[start].edges[0], trips[goal].edges[-1]) for start, goal in zip(starts, goals, strict=True)]
+    _add_between(found, ends, total * OTHER_SHARE, trips, times, world, rng)
+    entries, exits = world.border
+    if entries and exits:
+        pairs = rng.integers((len(entries), len(exits)), size=(min(THROUGH_TRIPS, len(entries) * len(exits)), 2))
+        ends = [(entries[start], exits[goal]) for start, goal in pairs.tolist()]
+        _add_between(found, ends, total * THROUGH_SHARE, trips, times, world, rng)
+
+
+def _add_between(
+    found: Candidates,
+    ends: Sequence[End],
+    weight: float,
+    trips: Sequence[DrivenTrip],
+    times: EdgeTimes,
+    world: World,
+    rng: np.random.Generator,
+) -> None:
+    """The quickest routes between some edges, which share a weight."""
+    like = rng.integers(len(trips), size=len(ends)).tolist()
     asked = [
-        _asked(number, trips[a], trips[a].edges[0], trips[b].edges[-1], world.clock, rng)
-        for number, (a, b) in enumerate(zip(starts.tolist(), goals.tolist(), strict=True))
-        if trips[a].edges[0] != trips[b].edges[-1]
+        _asked(number, trips[index], start, goal, world.clock, rng)
+        for number, (index, (start, goal)) in enumerate(zip(like, ends, strict=True))
+        if start != goal
     ]
-    weight = EXTRA_SHARE * sum(found.weights.values()) / max(1, len(asked))
-    _add(found, asked, quickest(asked, times, world.net, world.types, world.scratch), weight)
+    routes = quickest(asked, times, world.net, world.types, world.scratch)
+    _add(found, asked, routes, weight / max(1, len(asked)))
 
 
-def _add_through(
+def _add_by_way(
     found: Candidates, trips: Sequence[DrivenTrip], times: EdgeTimes, world: World, rng: np.random.Generator
 ) -> None:
     """Routes through counted edges."""
     edges = sorted({edge for edge, _ in world.counts})
     asked, via = [], {}
     for edge in edges:
-        for _ in range(THROUGH):
+        for _ in range(BY_WAY):
             a, b = rng.integers(len(trips), size=2).tolist()
             trip = _asked(len(asked), trips[a], trips[a].edges[0], trips[b].edges[-1], world.clock, rng)
             if edge not in trip.edges:
@@ -187,7 +213,7 @@ def _add_through(
                 via[trip.id] = edge
     routes = quickest(asked, times, world.net, world.types, world.scratch, via)
     simple = {name: route for name, route in routes.items() if len(set(route)) == len(route)}
-    weight = 0.5 * EXTRA_SHARE * sum(found.weights.values()) / max(1, len(asked))
+    weight = COUNTED_SHARE * sum(found.weights.values()) / max(1, len(asked))
     _add(found, asked, simple, weight)
 
 

@@ -119,12 +119,13 @@ def _contradictions(counts: Counts, edges: Mapping[str, str], network: Network) 
     before: dict[str, list[str]] = {}
     for edge, followers in network.crossings.items():
         for follower in followers:
-            before.setdefault(follower, []).append(edge)
+            if follower != network.opposite.get(edge):
+                before.setdefault(follower, []).append(edge)
     site_of = {edge: site for site, edge in edges.items()}
     for site, edge in edges.items():
         follower = edge
         for _ in range(len(network.edges)):
-            after = list(network.crossings.get(follower, {}))
+            after = [edge for edge in network.crossings.get(follower, {}) if edge != network.opposite.get(follower)]
             if len(after) != 1 or before.get(after[0], []) != [follower]:
                 break
             follower = after[0]

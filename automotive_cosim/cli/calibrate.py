@@ -18,7 +18,9 @@ HOURS = re.compile(r"(\d{1,2})(?:-(\d{1,2}))?")
 
 
 def calibrate_scenario(
-    folder: Annotated[Path, typer.Argument(help="Folder of a scenario.", show_default=False)],
+    scenario: Annotated[
+        str, typer.Argument(help="A scenario's folder, or a shipped one's name.", show_default=False)
+    ],
     counts: Annotated[
         Path,
         typer.Option(
@@ -53,11 +55,11 @@ def calibrate_scenario(
     ] = 0.3,
     rounds: Annotated[
         int, typer.Option(parser=whole_number(1, 50), metavar="N", help="Maximum rounds of fit and simulation.")
-    ] = 6,
+    ] = 8,
     seed: Annotated[
         int, typer.Option(parser=whole_number(0, 2**31 - 2), metavar="N", help="Seed of everything random.")
     ] = 0,
-    out: Annotated[Path | None, typer.Option(help="Folder to create.", show_default="FOLDER_calibrated")] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder to create.", show_default="SCENARIO_calibrated")] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an earlier calibration.")] = False,
     as_json: AsJson = False,
 ) -> None:
@@ -68,13 +70,13 @@ def calibrate_scenario(
     """
     from automotive_cosim.calibration import Options, calibrate
     from automotive_cosim.report.calibration import require_plots, write_page
+    from automotive_cosim.scenarios import load
 
-    if not (folder / "scenario.toml").is_file():
-        raise UserError(f"{folder} is no scenario's folder: it has no scenario.toml")
     require_plots()
-    target = out or folder.with_name(f"{folder.resolve().name}_calibrated")
+    given = load(scenario)
+    target = out or (Path() if given.name == scenario else given.folder.parent) / f"{given.folder.name}_calibrated"
     options = Options(sites, times, _span(hours), at, hold_out, rounds, seed)
-    found = calibrate(folder, counts, target, options, lambda said: typer.echo(said, err=True), force=force)
+    found = calibrate(given, counts, target, options, lambda said: typer.echo(said, err=True), force=force)
     page = None if found.gridlock else write_page(target)
     if as_json:
         print_json({"out": None if found.gridlock else str(target), **found.record()})
