@@ -163,7 +163,7 @@ class _Calibration:
         given = drive(self.scenario.config.name, given_options, clock, self.scratch)
         if not given.trips:
             raise ScenarioError(f"{self.scenario.folder} has no demand to begin with; import a map, or add trips")
-        free_s = defaultdict(lambda: OTHER_EDGE_S)
+        free_s: defaultdict[str, float] = defaultdict(lambda: OTHER_EDGE_S)
         free_s |= {name: edge.length_m / max(0.1, edge.speed_mps) for name, edge in network.edges.items()}
         border = Built(network, signals=0, roundabouts=0)
         world = World(

@@ -23,6 +23,9 @@ UNSEEN = 0.5
 End = tuple[str, str]
 """First and last edge."""
 
+Passing = tuple[str | Turn, int]
+"""An edge or turn, and the hour in which it is left."""
+
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
@@ -112,7 +115,7 @@ class Passes:
 
 def passes(
     routes: Sequence[Candidate],
-    wanted: Mapping[tuple[str | Turn, int], int],
+    wanted: Mapping[Passing, int],
     times: EdgeTimes,
     free_s: Mapping[str, float],
     clock: Clock,
@@ -146,7 +149,7 @@ def passes(
 
 def _spread(
     found: Passes,
-    wanted: Mapping[tuple[str | Turn, int], int],
+    wanted: Mapping[Passing, int],
     name: str | Turn,
     hour: int,
     column: int,

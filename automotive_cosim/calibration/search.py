@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from automotive_cosim.calibration.candidates import Candidate, Candidates, End, Passes, passes
+from automotive_cosim.calibration.candidates import Candidate, Candidates, End, Passes, Passing, passes
 from automotive_cosim.calibration.capacity import USABLE, Capacity, Turn
 from automotive_cosim.calibration.driving import HOUR_S, Clock, Drive
 from automotive_cosim.calibration.fit import Floats, Problem, fit
@@ -203,7 +203,8 @@ def _add_by_way(
 ) -> None:
     """Routes through counted edges."""
     edges = sorted({edge for edge, _ in world.counts})
-    asked, via = [], {}
+    asked: list[DrivenTrip] = []
+    via: dict[str, str] = {}
     for edge in edges:
         for _ in range(BY_WAY):
             a, b = rng.integers(len(trips), size=2).tolist()
@@ -255,10 +256,10 @@ def _fit(
     clock, routes = world.clock, found.routes
     learned.costs_s = _smoothed(learned.costs_s, found.costs_s(times, world.free_s, clock))
     shares = found.prior(learned.costs_s)
-    rows = {key: number for number, key in enumerate(world.counts)}
+    rows: dict[Passing, int] = {key: number for number, key in enumerate(world.counts)}
     counts = np.array(list(world.counts.values()))
     seen = _matrix(passes(routes, rows, times, world.free_s, clock), len(rows), shares.size)
-    trust = np.array([learned.seen.get(key, 1.0) for key in rows])
+    trust = np.array([learned.seen.get(key, 1.0) for key in world.counts])
     level = _levels(world.counts, seen @ (per_h * shares).ravel(), clock.hours)
     problem = Problem(
         prior=np.maximum(per_h * level[:, None] * shares, 1e-9).ravel(),
@@ -266,10 +267,11 @@ def _fit(
         counts=counts,
         variances=np.maximum(COUNT_ERROR * counts, 1.0),
     )
-    names = [*world.capacity.edges, *world.capacity.turns]
+    names: list[str | Turn] = [*world.capacity.edges, *world.capacity.turns]
     most = USABLE * np.array([*world.capacity.edges.values(), *world.capacity.turns.values()])
     crossed = _crossed(routes, names)
-    bounds: dict[tuple[str | Turn, int], float] = dict(learned.bounds)
+    bounds: dict[Passing, float] = {**learned.bounds}
+    flows = shares
     for _ in range(TIGHTENINGS):
         bound_rows = {key: number for number, key in enumerate(bounds)}
         limited = _matrix(passes(routes, bound_rows, times, world.free_s, clock), len(bounds), shares.size)
@@ -280,7 +282,7 @@ def _fit(
         if not new:
             break
         bounds |= new
-    return flows, dict(zip(rows, (seen @ flows.ravel()).tolist(), strict=True))
+    return flows, dict(zip(world.counts, (seen @ flows.ravel()).tolist(), strict=True))
 
 
 def _smoothed(before: Floats | None, now: Floats) -> Floats:
