@@ -131,7 +131,7 @@ def search(world: World, given: Drive, per_h: float, rounds: int) -> Iterator[Ro
 class Learned:
     """What the simulations taught."""
 
-    bounds: dict[tuple[Turn, int], float] = field(default_factory=dict)
+    bounds: dict[Passing, float] = field(default_factory=dict)
     """Turn and hour -> what it carried when more came."""
     costs_s: Floats | None = None
     """Times of the routes, (hours, routes)."""
@@ -141,8 +141,9 @@ class Learned:
     def learn(self, drive: Drive, fitted: FloatsOf, world: World) -> None:
         """Adds a simulation. In a gridlock a road carries far less than it could, so bounds give way again."""
         full = drive.full_turns(world.clock, world.free_s)
-        self.bounds = {key: RELAXED * most for key, most in self.bounds.items() if key not in full}
-        self.bounds |= {key: max(1.0, float(served)) for key, served in full.items()}
+        self.bounds = {each: RELAXED * most for each, most in self.bounds.items() if each not in full}
+        for turn, served in full.items():
+            self.bounds[turn] = max(1.0, float(served))
         if drive.teleports > CALM_SHARE * len(drive.trips):
             return  # what did not arrive says nothing of what should be sent
         for key, expected in fitted.items():
@@ -270,7 +271,7 @@ def _fit(
     names: list[str | Turn] = [*world.capacity.edges, *world.capacity.turns]
     most = USABLE * np.array([*world.capacity.edges.values(), *world.capacity.turns.values()])
     crossed = _crossed(routes, names)
-    bounds: dict[Passing, float] = {**learned.bounds}
+    bounds = dict(learned.bounds)
     flows = shares
     for _ in range(TIGHTENINGS):
         bound_rows = {key: number for number, key in enumerate(bounds)}
