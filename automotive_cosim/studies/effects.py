@@ -8,6 +8,7 @@ from statistics import fmean
 
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.report.tables import Table, TableRow
+from automotive_cosim.studies.compare import CONSUMED
 from automotive_cosim.studies.everyone import CLASSES_S, HORIZONS, NOTICED_S
 from automotive_cosim.studies.intervals import SeedMean, seed_mean
 from automotive_cosim.studies.results import Study
@@ -248,7 +249,7 @@ def fleet(study: Study) -> Table:
         for name, here in sorted(by_class.items()):
             cells = [
                 told_mean(seed_mean((seed, _mean_of(parts, what)) for seed, parts in here), form)
-                for what, form in (("co2_g", "+.0f"), ("nox_g", "+.2f"), ("fuel_g", "+.0f"), ("energy_wh", "+.1f"))
+                for what, form in zip(CONSUMED, ("+.0f", "+.2f", "+.0f", "+.1f", "+.0f"), strict=True)
             ]
             vehicles = fmean(part.count for _, parts in here for part in parts)
             rows.append((*heads, name, f"{vehicles:.0f}", *cells))
@@ -262,11 +263,13 @@ def fleet(study: Study) -> Table:
         "NOx saved, g",
         "Fuel saved, g",
         "Electricity saved, Wh",
+        "Noise saved, s",
     )
     note = (
         "Sums over the vehicles of the class that arrived in both futures, per decision in which the policy "
         "reroutes. Classes are those that the demand's vehicle types declare (emissionClass), else SUMO's own for "
-        "the kind of vehicle; --ego-class declares the ego's."
+        "the kind of vehicle; --ego-class declares the ego's. Noise is sound energy at the vehicles (Harmonoise), "
+        "as seconds of a car at 50 km/h, 65 dB(A)."
     )
     return Table("fleet", "Emissions and consumption of everyone", columns, tuple(rows), note, heads=4)
 

@@ -69,6 +69,8 @@ class FleetClass:
     nox_g: float
     fuel_g: float
     energy_wh: float
+    noise_s: float = 0.0
+    """Sound energy, as seconds of a car at 50 km/h (``traffic.accounts.LOUD_DB``)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
