@@ -77,6 +77,8 @@ class StudyPlan:
     """SUMO's step length."""
     scale: Annotated[float, Ge(0.01), Le(100)] | None = None
     """Factor on the demand; None takes the scenario's."""
+    warm_up_s: Annotated[float, Ge(0), Le(86_400)] | None = None
+    """Traffic before the first departure; None takes the scenario's."""
     equilibrium_gap: float | None = None
     """Relative gap of the assignment (duaIterate) that produced the demand's routes; None without one."""
     half_width_s: Annotated[float, Ge(0.1), Le(3_600)] | None = None
@@ -139,7 +141,9 @@ class StudyPlan:
         sumo = replace(scenario.sumo, step_length_s=self.step_s, background_rerouting=share)
         sumo = replace(sumo, action_step_length_s=max(self.step_s, sumo.action_step_length_s))
         sumo = replace(sumo, redraws_trips=self.redraw or sumo.redraws_trips)
-        return replace(scenario, sumo=sumo if self.scale is None else replace(sumo, scale=self.scale))
+        sumo = replace(sumo, scale=sumo.scale if self.scale is None else self.scale)
+        sumo = replace(sumo, warm_up_s=sumo.warm_up_s if self.warm_up_s is None else self.warm_up_s)
+        return replace(scenario, sumo=sumo)
 
     @property
     def agents(self) -> tuple[str, ...]:

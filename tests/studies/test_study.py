@@ -440,6 +440,8 @@ def test_several_networks_in_one_table(two_ways: Draw, tmp_path: Path) -> None:
         "1",
         "--workers",
         "1",
+        "--warm-ups",
+        "0,30",
     ]
     text, error = invoke(*words, "--replicates", "1", "--out", str(tmp_path / "suite"), "--json")
     assert error is None, text
@@ -447,7 +449,7 @@ def test_several_networks_in_one_table(two_ways: Draw, tmp_path: Path) -> None:
     with (tmp_path / "suite" / "networks.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert rows == told
-    assert len(rows) == 2
+    assert [row["Warm-up, s"] for row in rows] == ["0", "30"] * 2
     for row, folder in zip(
         rows, sorted(path for path in (tmp_path / "suite").iterdir() if path.is_dir()), strict=True
     ):
