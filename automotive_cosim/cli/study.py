@@ -107,6 +107,13 @@ def reroute(
             show_default="none",
         ),
     ] = None,
+    close: Annotated[
+        str,
+        typer.Option(
+            help="Also close a road at the first decision of each drive: an edge, or `ahead` for one on the route.",
+            show_default="none",
+        ),
+    ] = "",
     emissions: Annotated[
         bool, typer.Option("--emissions", help="Measure what every vehicle emits and consumes, by emission class.")
     ] = False,
@@ -193,6 +200,7 @@ def reroute(
         every_s=every,
         arrived=arrived,
         whole_drives=whole_drives,
+        close=close,
         redraw=redraw,
         emissions=emissions,
         ego_class=ego_class,

@@ -12,7 +12,7 @@ from automotive_cosim.studies.compare import CONSUMED
 from automotive_cosim.studies.everyone import CLASSES_S, HORIZONS, NOTICED_S
 from automotive_cosim.studies.intervals import SeedMean, seed_mean
 from automotive_cosim.studies.results import Study
-from automotive_cosim.studies.rows import FleetClass, PolicyChoice, Spread, Together, WholeDrive
+from automotive_cosim.studies.rows import Closed, FleetClass, PolicyChoice, Spread, Together, WholeDrive
 from automotive_cosim.studies.tables import NONE, goes_by_news, groups, told, told_mean
 
 SpreadOf = tuple[PolicyChoice, Spread]
@@ -20,7 +20,15 @@ SpreadOf = tuple[PolicyChoice, Spread]
 
 def effects(study: Study) -> list[Table]:
     """All of these tables."""
-    return [whole(study), many(study), everyone(study), by_trip(study), horizons(study), fleet(study)]
+    return [
+        whole(study),
+        many(study),
+        closed(study),
+        everyone(study),
+        by_trip(study),
+        horizons(study),
+        fleet(study),
+    ]
 
 
 def whole(study: Study) -> Table:
@@ -142,6 +150,51 @@ def many(study: Study) -> Table:
     if left_out:
         note += f"{counted(left_out, 'decision')} left out because some share did not arrive or clear in time."
     return Table("many", "When many take the other way at once", columns, tuple(rows), note, heads=2)
+
+
+def closed(study: Study) -> Table:
+    """What it costs when a road is closed at the fork."""
+    columns = (
+        "Share rerouting",
+        "Decisions",
+        "Excluded",
+        "Ego loses, s",
+        "On the other way, s",
+        "Other way saves, open, s",
+        "Other way saves, closed, s",
+        "Others lose, s",
+        "Others later",
+    )
+    rows: list[TableRow] = []
+    for share in sorted({row.share for row in study.rows}):
+        points = [point for point in study.decisions if point.drive.share == share and point.decision.closed]
+        kept = [
+            (point.drive.seed, point.decision.closed)
+            for point in points
+            if not any(each.excluded for each in point.decision.closed)
+        ]
+        if points:
+            cells = [
+                told_mean(seed_mean((seed, fmean(map(of, draws))) for seed, draws in kept), "+.1f")
+                for of in _CLOSED
+            ]
+            rows.append((f"{share:.0%}", str(len(kept)), str(len(points) - len(kept)), *cells))
+    note = (
+        "At the first decision of each drive with another route, a road is closed in both futures (--close), and each "
+        "is compared with itself while the road is open. Who keeps to a route with that road goes round it. Others: "
+        "if the ego keeps its route; later by 1 s or more."
+    )
+    return Table("closed", "When a road is closed at the fork", columns, tuple(rows), note)
+
+
+_CLOSED: tuple[Callable[[Closed], float], ...] = (
+    lambda each: each.stay_loss_s,
+    lambda each: each.other_loss_s,
+    lambda each: each.open_gain_s,
+    lambda each: each.gain_s,
+    lambda each: each.others_loss_s,
+    lambda each: each.others_later,
+)
 
 
 def everyone(study: Study) -> Table:

@@ -283,6 +283,30 @@ def test_many_at_once_start_from_the_one(two_ways: Draw, tmp_path: Path) -> None
     assert (tmp_path / "many" / "tables" / "many.md").read_text().count("\n| 0% |") == 2
 
 
+@pytest.mark.slow
+def test_a_closure_costs_who_would_have_driven_there(two_ways: Draw, tmp_path: Path) -> None:
+    """With the other way closed, the ego that wanted to take it drives as if it had not."""
+    plan = StudyPlan(str(two_ways()), (0.0,), seeds=(0,), per_drive=1, placebo_every=0, close="back")
+    run_study(plan, tmp_path / "closed")
+    (row,) = read_study(tmp_path / "closed").rows
+    (decision,) = row.decisions
+    (found,) = decision.closed
+    assert not found.excluded
+    assert (found.edge, found.draw) == ("back", 0)
+    assert (found.stay_loss_s, found.others_loss_s, found.others_later) == (0, 0, 0), "nobody else drives there"
+    assert found.open_gain_s == decision.branches[0].gains.time_s > 0
+    assert found.other_loss_s == pytest.approx(found.open_gain_s - found.gain_s)
+    assert found.gain_s == pytest.approx(0, abs=5), "both end up on the main road"
+    write_study(tmp_path / "closed")
+    assert (tmp_path / "closed" / "tables" / "closed.md").read_text().count("\n| 0% | 1 | 0 |") == 1
+
+
+def test_a_closure_needs_an_edge(two_ways: Draw) -> None:
+    StudyPlan(str(two_ways()), close="ahead").check()
+    with pytest.raises(UserError, match="no edge for cars 'mian'.*main"):
+        StudyPlan(str(two_ways()), close="mian").check()
+
+
 def test_emissions_are_of_everyone_by_class_and_the_ego_can_be_electric(two_ways: Draw, tmp_path: Path) -> None:
     plan = StudyPlan(
         str(two_ways()),
