@@ -20,15 +20,8 @@ SpreadOf = tuple[PolicyChoice, Spread]
 
 def effects(study: Study) -> list[Table]:
     """All of these tables."""
-    return [
-        whole(study),
-        many(study),
-        closed(study),
-        everyone(study),
-        by_trip(study),
-        horizons(study),
-        fleet(study),
-    ]
+    made = (whole, many, closed, everyone, by_trip, horizons, fleet)
+    return [each(study) for each in made]
 
 
 def whole(study: Study) -> Table:
@@ -180,9 +173,9 @@ def closed(study: Study) -> Table:
             ]
             rows.append((f"{share:.0%}", str(len(kept)), str(len(points) - len(kept)), *cells))
     note = (
-        "At the first decision of each drive with another route, a road is closed in both futures (--close), and each "
-        "is compared with itself while the road is open. Who keeps to a route with that road goes round it. Others: "
-        "if the ego keeps its route; later by 1 s or more."
+        "At the first decision of each drive with another route, a road is closed in both futures (--close), and "
+        "each is compared with itself while the road is open. Who has that road on the route goes round it. "
+        "Others: if the ego keeps its route; later by 1 s or more."
     )
     return Table("closed", "When a road is closed at the fork", columns, tuple(rows), note)
 

@@ -303,7 +303,7 @@ def test_a_closure_costs_who_would_have_driven_there(two_ways: Draw, tmp_path: P
 
 def test_a_closure_needs_an_edge(two_ways: Draw) -> None:
     StudyPlan(str(two_ways()), close="ahead").check()
-    with pytest.raises(UserError, match="no edge for cars 'mian'.*main"):
+    with pytest.raises(UserError, match=r"no edge for cars 'mian'.*main"):
         StudyPlan(str(two_ways()), close="mian").check()
 
 
