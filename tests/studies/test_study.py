@@ -289,6 +289,7 @@ def test_a_closure_costs_who_would_have_driven_there(two_ways: Draw, tmp_path: P
     plan = StudyPlan(str(two_ways()), (0.0,), seeds=(0,), per_drive=1, placebo_every=0, close="back")
     run_study(plan, tmp_path / "closed")
     (row,) = read_study(tmp_path / "closed").rows
+    assert not row.error
     (decision,) = row.decisions
     (found,) = decision.closed
     assert not found.excluded
@@ -303,7 +304,7 @@ def test_a_closure_costs_who_would_have_driven_there(two_ways: Draw, tmp_path: P
 
 def test_a_closure_needs_an_edge(two_ways: Draw) -> None:
     StudyPlan(str(two_ways()), close="ahead").check()
-    with pytest.raises(UserError, match=r"no edge for cars 'mian'.*main"):
+    with pytest.raises(UserError, match=r"no edge for cars named 'mian'.*main"):
         StudyPlan(str(two_ways()), close="mian").check()
 
 
