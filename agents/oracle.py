@@ -46,14 +46,16 @@ class Oracle:
         self._lists_seen.clear()
         self._list = ""
 
-    def brief(self, instance: Instance, moves: Sequence[Move] | None = None) -> None:
-        """Takes the instance's reference solution, or another of its solutions, one tap per action."""
+    def brief(
+        self, instance: Instance, moves: Sequence[Move] | None = None, declares: GoalStatus | None = None
+    ) -> None:
+        """Takes the instance's reference solution, or other moves, one tap per action, and what to declare then."""
         self._moves.clear()
         for move in instance.moves if moves is None else moves:
             repeats = move.times if isinstance(move, Tap) else 1
             self._moves.extend([move] * repeats)
         reason = min(instance.half.reasons, default=None)
-        self._end = Action(ActionType.STATUS, goal_status=instance.half.declares, reason=reason)
+        self._end = Action(ActionType.STATUS, goal_status=declares or instance.half.declares, reason=reason)
 
     def act(self, observation: Observation) -> Action:
         """The next move, or the declaration after the last."""

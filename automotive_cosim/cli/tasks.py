@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from automotive_cosim.cli.options import AsJson, TasksFrom, print_json, whole_number
+from automotive_cosim.cli.options import AsJson, SuiteName, TasksFrom, print_json, whole_number
 from automotive_cosim.contracts.plain import counted
 
 if TYPE_CHECKING:
@@ -34,13 +34,14 @@ Words = Annotated[
 @app.command("list")
 def list_(
     tasks: Words = "all",
+    suite: SuiteName = "standard",
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON list and nothing else.")] = False,
     tasks_from: TasksFrom = None,
 ) -> None:
     """List the tasks, one per line, then their numbers by module and dimension."""
     from automotive_cosim.tasking.catalogue import described
 
-    chosen = _chosen(tasks)
+    chosen = _chosen(tasks, suite)
     if as_json:
         print_json([described(task) for task in chosen])
         return
@@ -56,13 +57,14 @@ def list_(
 def export(
     path: Annotated[Path, typer.Argument(help="A .json or .csv file.", show_default=False)],
     tasks: Words = "all",
+    suite: SuiteName = "standard",
     tasks_from: TasksFrom = None,
 ) -> None:
     """Write the catalogue to a file, one row per task."""
     from automotive_cosim.errors import UserError
     from automotive_cosim.tasking.catalogue import described
 
-    rows = [described(task) for task in _chosen(tasks)]
+    rows = [described(task) for task in _chosen(tasks, suite)]
     if path.suffix == ".json":
         text = json.dumps(rows, ensure_ascii=False, indent=1) + "\n"
     elif path.suffix == ".csv":
@@ -120,7 +122,7 @@ def show(
         print_json(described(entry) | {"halves": halves})
         return
     steps = counted(entry.optimal_steps, "step")
-    typer.echo(f"{entry.id}  ({entry.module}, {entry.dimension}, {entry.difficulty}, {steps})")
+    typer.echo(f"{entry.id}  ({entry.suite} suite, {entry.module}, {entry.dimension}, {entry.difficulty}, {steps})")
     for words in entry.templates:
         typer.echo(f"  “{words}”")
     for name, choices in entry.parameters.items():
@@ -150,11 +152,11 @@ def _draw(task: Task, picture: Path, seed: int) -> None:
         raise UserError(f"cannot write {picture}: {error.strerror}") from error
 
 
-def _chosen(words: str) -> list[Task]:
+def _chosen(words: str, suite: str) -> list[Task]:
     from automotive_cosim.run.plan import choose
     from automotive_cosim.tasks import CATALOGUE
 
-    return [CATALOGUE[task_id] for task_id in choose(word.strip() for word in words.split(","))]
+    return [CATALOGUE[task_id] for task_id in choose((word.strip() for word in words.split(",")), suite)]
 
 
 def _cells(tasks: list[Task]) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from automotive_cosim.cli.batches import words
-from automotive_cosim.cli.options import AsJson, TasksFrom, whole_number
+from automotive_cosim.cli.options import AsJson, SuiteName, TasksFrom, whole_number
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import InfrastructureError
 
@@ -26,6 +26,7 @@ def validate(
         str,
         typer.Option(help="Ids, patterns, tags, modules, dimensions, general, safety or all; separated by commas."),
     ] = "all",
+    suite: SuiteName = "standard",
     seeds: Annotated[
         int,
         typer.Option(help="How many seeds to prove each task with.", metavar="N", parser=whole_number(1, 1000)),
@@ -68,7 +69,7 @@ def validate(
 
     chosen = GATES if gates == "all" else tuple(words("gates", gates))
     asked = words("tasks", tasks)
-    task_ids = choose(asked)
+    task_ids = choose(asked, suite)
     numbers = tuple(range(first_seed, first_seed + seeds))
     before = None if against is None else read_traces(against)
     console = Console(stderr=True, markup=True)
@@ -90,7 +91,7 @@ def validate(
         )
 
     try:
-        proofs = prove(asked, numbers, chosen, workers=workers, out=out, begun=begun, tell=tell)
+        proofs = prove(asked, numbers, chosen, suite=suite, workers=workers, out=out, begun=begun, tell=tell)
     except KeyboardInterrupt:
         if out is not None:
             typer.echo(f"finished proofs are in {out}; rerun the command to resume", err=True)

@@ -67,7 +67,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         channels: Iterable[str] = ALL,
         geo: str = GeoInput.FULL,
         held_out: bool = False,
-        max_steps: int = 20,
+        max_steps: int | None = None,
         action_cost_s: float = ACTION_COST_S,
         render_mode: str | None = None,
         simulations: Simulations | None = None,

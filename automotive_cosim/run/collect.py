@@ -152,6 +152,7 @@ def planned(job: EpisodeJob) -> EpisodeRow:
         dimension=task.dimension,
         module=task.module,
         basis=half.basis,
+        suite=task.suite,
         tags=tuple(sorted(task.tags)),
         skills=tuple(sorted(task.skills)),
         declines=not half.moves,
@@ -164,6 +165,7 @@ def planned(job: EpisodeJob) -> EpisodeRow:
         clock=setup.clock,
         latency_s=setup.latency_s,
         held_out=setup.held_out,
+        split=job.split,
     )
 
 

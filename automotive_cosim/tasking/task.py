@@ -13,6 +13,8 @@ from enum import StrEnum
 from typing import Any
 
 from automotive_cosim.cockpit.arrivals import Arrival
+from automotive_cosim.cockpit.belongings import NOTHING, Belongings
+from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.restrictions import Motion
 from automotive_cosim.contracts import GoalStatus, Reason, Weather
 from automotive_cosim.errors import UnknownNameError
@@ -49,6 +51,20 @@ class Dimension(StrEnum):
         return self in (Dimension.DRIVING_ALIGNMENT, Dimension.ENVIRONMENT_ALERTS)
 
 
+class Suite(StrEnum):
+    """A set of tasks that is chosen, run and reported by itself."""
+
+    STANDARD = "standard"
+    """The 185 tasks of the paper's size and kind, and more of them."""
+    HARD = "hard"
+    """Tasks of ten actions and more: values carried between apps, an order that counts, interruptions."""
+
+    @property
+    def max_steps(self) -> int:
+        """Default limit of actions per episode."""
+        return {Suite.STANDARD: 20, Suite.HARD: 40}[self]
+
+
 class Basis(StrEnum):
     """What a verdict rests on."""
 
@@ -80,6 +96,8 @@ class Differs(StrEnum):
     """Parked or moving."""
     SETTINGS = "settings"
     """How the car is set before it departs."""
+    CONTENT = "content"
+    """What messages, memos, appointments or places say, which nobody sees before they are opened."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,6 +131,10 @@ class Start:
     arrivals: tuple[Arrival, ...] = ()
     """Incoming calls and messages, in seconds after departure; ``CALL.RINGING`` and ``CALL.UNREAD`` reflect
     them."""
+    belongings: Belongings = NOTHING
+    """People, messages, appointments, memos and places in the cockpit besides those that are drawn."""
+    interruptions: tuple[Arrival | CarChange, ...] = ()
+    """Calls, messages and changes of the car that nobody commands, in seconds after the hand-over."""
     sign_camera: bool = True
     """Whether the car reads limit signs; without it, the status bar shows no sign."""
     motions: frozenset[Motion] = frozenset(Motion)
@@ -140,6 +162,8 @@ class Half:
     to a command need not be named."""
     ways: tuple[tuple[Move, ...], ...] = ()
     """Other reference solutions: to every further end state that the goal accepts, or in another order."""
+    slips: tuple[tuple[Move, ...], ...] = ()
+    """What is usually done wrong here, as public actions before ``complete``: each must fail."""
 
     @property
     def allowed_writes(self) -> frozenset[str]:
@@ -167,6 +191,12 @@ class Task:
     """Further properties, e.g. ``preference``, ``conflict``, ``place`` (place decides)."""
     scenarios: tuple[str, ...] = ()
     """Other scenarios in which it can run, in addition to its own."""
+    suite: Suite = Suite.STANDARD
+
+    @property
+    def max_steps(self) -> int:
+        """Default limit of actions per episode."""
+        return self.suite.max_steps
 
     def half(self, name: str) -> Half:
         """The half ``first`` or ``second``.
