@@ -96,6 +96,8 @@ class Differs(StrEnum):
     """Parked or moving."""
     SETTINGS = "settings"
     """How the car is set before it departs."""
+    EVENTS = "events"
+    """Calls, messages and changes of the car after the hand-over."""
     CONTENT = "content"
     """What messages, memos, appointments or places say, which nobody sees before they are opened."""
 

@@ -38,7 +38,7 @@ class Sentence:
 SENTENCES: Mapping[str, Sentence] = {
     "arrive": Sentence("I'll be there at {}", "Arrival", 12 * 60, 5, 60, 1439),
     "late": Sentence("I'll be {} minutes late", "Delay", 0, 5, 30, 600),
-    "left": Sentence("I still have {} km to go", "Distance", 0, 1, 10, 990),
+    "driven": Sentence("I have driven {} km", "Distance", 0, 1, 10, 990),
     "used": Sentence("I used {} kWh per 100 km", "Use", 15.0, 0.1, 1, 99),
     "level": Sentence("The battery has {} %", "Battery", 50, 1, 10, 100),
     "paid": Sentence("I paid {}", "Price", 0, 0.1, 1, 200),
