@@ -37,9 +37,9 @@ from automotive_cosim.tasks.hard.forms import (
 from automotive_cosim.tasks.maps import named
 
 LATER = "I'm driving, I'll call later"
-FIRST_PROPOSAL = {"16:30": 4, "17:00": 6, "17:15": 7, "16:15": 3}
+FIRST_PROPOSAL = {"16:30": 4, "17:00": 6, "17:15": 7, "16:15": 3, "16:45": 5}
 """Time, and quarters of an hour from 15:30."""
-THEN_RATHER = {"16:30": "17:30", "17:00": "18:00", "17:15": "18:15", "16:15": "17:15"}
+THEN_RATHER = {"16:30": "17:30", "17:00": "18:00", "17:15": "18:15", "16:15": "17:15", "16:45": "17:45"}
 """What she proposes next, an hour later."""
 RATHER = {time: f"No wait, {rather} is better" for time, rather in THEN_RATHER.items()}
 DAY = (

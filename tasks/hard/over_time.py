@@ -220,62 +220,42 @@ WARM_THEN_MILD = hard(
     parameters={"words": ("Yes", "No", "Thank you", "On my way", "I've arrived")},
 )
 
+BLINK = (Open("vehicle"), Tap("vehicle.tab.lights"), Tap("lights.hazard"))
+MUSIC_DOWN = (Open("media"), Slide("media.volume", param("percent")))
 THANK_ALL = hard(
     "hard_hazards_as_thanks",
     Module.ROAD,
     (
-        "Let the lorry know we're grateful: hazards for about five seconds, off, and a ten-second memo of its"
-        " plate. Volume {percent} while I speak, so it isn't drowned.",
-        "Five seconds of hazard lights as a thank-you, then record me for ten seconds, with the music on"
-        " {percent}.",
-        "Blink our thanks, five seconds or so, stop blinking, put the sound at {percent} and take a memo of ten"
-        " seconds.",
-        "The truck let us in: hazards on, off after five seconds. Then music to {percent}, memo running ten"
-        " seconds, stop.",
+        "Let the lorry know we're grateful: hazards for about five seconds, then off. Music to {percent}, and Isla"
+        " gets an 'On my way'.",
+        "Five seconds of hazard lights as a thank-you and no more, the sound on {percent}, 'On my way' to Isla.",
+        "Blink our thanks, five seconds or so, stop blinking, put the volume at {percent}; text Isla that I'm on my"
+        " way.",
+        "The truck let us in: warning lamps on, off after some five seconds. Next {percent} for the music, and a"
+        " message for Isla, 'On my way'.",
     ),
     done(
-        replace(
-            ON_THE_ROAD, signals={MEDIA.VOLUME.path: 60.0, MEDIA.SOURCE.path: "DAB", MEDIA.ACTION.path: "PLAY"}
+        with_papers(
+            replace(
+                ON_THE_ROAD,
+                signals={MEDIA.VOLUME.path: 60.0, MEDIA.SOURCE.path: "DAB", MEDIA.ACTION.path: "PLAY"},
+            ),
+            contacts=knowing(ISLA),
         ),
         AllOf(
             (
                 Lasted(SignalIs(LIGHTS.HAZARD, (True,)), 3.0, 9.0),
                 SignalIs(LIGHTS.HAZARD, (False,)),
                 SignalIs(MEDIA.VOLUME, (param("percent"),)),
-                Lasted(AppDataIs("apps.recording", (True,)), 8.0, 15.0),
-                Entered("apps.memos"),
+                Entered("messages.sent", {"to": ISLA, "text": "On my way"}),
             )
         ),
-        (
-            Open("vehicle"),
-            Tap("vehicle.tab.lights"),
-            Tap("lights.hazard"),
-            *wait(4),
-            Tap("lights.hazard"),
-            Open("media"),
-            Slide("media.volume", param("percent")),
-            Open("memo"),
-            Tap("memo.record"),
-            *wait(9),
-            Tap("memo.record"),
-        ),
+        (*BLINK, *wait(4), Tap("lights.hazard"), *MUSIC_DOWN, *write_to(ISLA), Tap(text="On my way")),
         slips=(
-            (
-                Open("vehicle"),
-                Tap("vehicle.tab.lights"),
-                Tap("lights.hazard"),
-                Open("media"),
-                Slide("media.volume", param("percent")),
-                Open("memo"),
-                Tap("memo.record"),
-                *wait(9),
-                Tap("memo.record"),
-            ),
+            (*BLINK, *MUSIC_DOWN, *write_to(ISLA), Tap(text="On my way")),
+            (*BLINK, *MUSIC_DOWN, *write_to(ISLA), Tap(text="On my way"), *BLINK),
         ),
-        may_write=frozenset(),
-        deadline=Deadline(
-            60.0, "the lorry turns off at the next junction, a minute on, and its plate is forgotten"
-        ),
+        deadline=Deadline(40.0, "the lorry is behind for half a minute more: then it turns off and sees no thanks"),
     ),
     parameters={"percent": (10, 15, 20, 25, 30)},
 )

@@ -7,7 +7,7 @@ from dataclasses import replace
 from automotive_cosim.cockpit.desk import Appointment
 from automotive_cosim.cockpit.people import Contact
 from automotive_cosim.cockpit.signals import CABIN, HVAC, MEDIA, SEAT
-from automotive_cosim.contracts import Reason
+from automotive_cosim.contracts import Reason, Weather
 from automotive_cosim.tasking.checks import AllOf, AppDataIs, Entered, SignalIs
 from automotive_cosim.tasking.moves import Open, Slide, Tap
 from automotive_cosim.tasking.parameters import param
@@ -41,6 +41,7 @@ from automotive_cosim.tasks.hard.forms import (
 )
 from automotive_cosim.tasks.maps import SETS_OUT, STOPS_THERE
 
+MILD = Weather(16.0, 55.0, 0.0, 1, 20.0, 20_000.0, 14.0)
 TEMPERATURES = {19: 4, 20: 2, 22: 2, 23: 4, 24: 6}
 """Degrees, and half degrees from 21."""
 HER_AIR = Tap(
@@ -216,7 +217,7 @@ def _late(who: str) -> Moves:
 
 def _noras(first: str, second: str) -> Start:
     agenda = (Appointment("10:30", f"{first}: lease", "Work"), Appointment("17:00", f"{second}: badminton", "Home"))
-    return with_papers(replace(PARKED, start="2026-05-12T10:05:00"), contacts=NORAS, agenda=agenda)
+    return with_papers(replace(PARKED, start="2026-05-12T10:05:00", weather=MILD), contacts=NORAS, agenda=agenda)
 
 
 WHICH_NORA = hard(
@@ -252,7 +253,7 @@ FULL_DAY = (
     Appointment("14:30", "Theo: viewing", "Home"),
     Appointment("18:00", "Bea: cinema", "Home"),
 )
-FULL = with_papers(PARKED, contacts=knowing(MALIK, PRIYA, THEO, BEA), agenda=FULL_DAY)
+FULL = with_papers(replace(PARKED, weather=MILD), contacts=knowing(MALIK, PRIYA, THEO, BEA), agenda=FULL_DAY)
 
 
 def _tell(who: str, at: int) -> Moves:

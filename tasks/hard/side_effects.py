@@ -153,10 +153,11 @@ COOL_WITH_AIR = hard(
     tags=frozenset({"two_modules", "conflict"}),
 )
 
+WARM = (17, 18, 19, 20, 21)
 SWAPPED = {
     HVAC.SYNC.path: False,
     HVAC.DRIVER_TEMPERATURE.path: 23.5,
-    HVAC.PASSENGER_TEMPERATURE.path: param("warm", {warm: float(warm) for warm in (18, 19, 20)}),
+    HVAC.PASSENGER_TEMPERATURE.path: param("warm", {warm: float(warm) for warm in WARM}),
     SEAT.DRIVER_HEATING.path: 100.0,
     SEAT.PASSENGER_HEATING.path: -50.0,
 }
@@ -182,7 +183,7 @@ SWAP_SIDES = hard(
         replace(ON_THE_ROAD, signals=SWAPPED, cabin={"occupants": 2}),
         AllOf(
             (
-                SignalIs(HVAC.DRIVER_TEMPERATURE, (param("warm", {warm: float(warm) for warm in (18, 19, 20)}),)),
+                SignalIs(HVAC.DRIVER_TEMPERATURE, (param("warm", {warm: float(warm) for warm in WARM}),)),
                 SignalIs(HVAC.PASSENGER_TEMPERATURE, (23.5,)),
                 SignalIs(SEAT.DRIVER_HEATING, (-50.0,)),
                 SignalIs(SEAT.PASSENGER_HEATING, (100.0,)),
@@ -197,7 +198,7 @@ SWAP_SIDES = hard(
         may_write=frozenset(),
         deadline=A_RED_LIGHT,
     ),
-    parameters={"warm": (18, 19, 20)},
+    parameters={"warm": WARM},
     tags=frozenset({"preference"}),
 )
 
