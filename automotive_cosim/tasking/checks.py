@@ -252,7 +252,7 @@ class RoadAsked:
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
+class AskedFirst:
     """The driver was asked exactly once, before anything was changed, and the question names every alternative."""
 
     topic: Topic
@@ -292,7 +292,7 @@ class NotAsked:
 
 def asked_in(check: Check) -> Iterator[Topic]:
     """The topics of a goal that the driver has to be asked about."""
-    if isinstance(check, Asked):
+    if isinstance(check, AskedFirst):
         yield check.topic
     for part in getattr(check, "checks", ()):
         yield from asked_in(part)

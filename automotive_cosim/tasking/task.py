@@ -81,6 +81,8 @@ class Differs(StrEnum):
     """Parked or moving."""
     SETTINGS = "settings"
     """How the car is set before it departs."""
+    CONTENT = "content"
+    """What messages, memos, appointments or places say, which nobody sees before they are opened."""
 
 
 @dataclass(frozen=True, slots=True)
