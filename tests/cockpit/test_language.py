@@ -26,7 +26,7 @@ TEXTS = ("text", "description", "disabled", "locked", "hint", "detail", "trail",
 LATIN = re.compile(r"[A-Za-zÀ-ÿ]{2,}")
 INTERNATIONAL = frozenset(
     LATIN.findall(
-        "km mi mm min kWh kW µg dB bar kPa psi mph MHz GPS DAB FM USB Bluetooth Wi-Fi SOS UTC Live "
+        "km mi mm min kg kWh kW µg dB bar kPa psi mph MHz GPS DAB FM USB Bluetooth Wi-Fi SOS UTC Live "
         "English Français Deutsch"
     )
 )
