@@ -8,6 +8,7 @@ An ``Occupant`` is how a task or a drive says it before departure. From then on 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
@@ -147,4 +148,4 @@ def breath(signals: Signals, without: Seat | None = None) -> float:
         without: a seat that is left out, as the driver's once the driver has gone.
     """
     bodies = (one for one in seated(signals) if one.kind is not Kind.OBJECT and one.seat is not without)
-    return sum(((one.weight_kg or 0.0) / USUAL_KG[Kind.ADULT]) ** 0.75 for one in bodies)
+    return sum(math.pow((one.weight_kg or 0.0) / USUAL_KG[Kind.ADULT], 0.75) for one in bodies)
