@@ -10,8 +10,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from automotive_cosim.contracts import AlertKind
-from automotive_cosim.drives.events.law import hold_s, margin_kmh
-from automotive_cosim.drives.events.light import LAMP_S
+from automotive_cosim.drives.margins import LAMP_S, hold_s, margin_kmh
 from automotive_cosim.drives.reading import Gathered
 
 LOOK_S = 2
