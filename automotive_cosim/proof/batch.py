@@ -17,7 +17,6 @@ from automotive_cosim.run.executor import Runner
 from automotive_cosim.run.plan import choose
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.store import opened
-from automotive_cosim.tasking.task import Suite
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.tasks.folder import digest
 
@@ -35,14 +34,11 @@ class ProofPlan:
     """Ids, patterns, tags and so on, as for ``run.plan.choose``."""
     seeds: tuple[int, ...]
     gates: tuple[str, ...] = GATES
-    suite: str = Suite.STANDARD
-    """The suite that the tasks are chosen from, as for ``run.plan.choose``."""
 
     def as_json(self) -> Json:
         """The plan as a JSON object, for the manifest; proofs of other files say nothing about these."""
         return {
             "tasks": list(self.tasks),
-            "suite": str(self.suite),
             "seeds": list(self.seeds),
             "gates": [gate for gate in GATES if gate in self.gates],
             "task_files": digest(),
@@ -57,13 +53,13 @@ class ProofPlan:
         for gate in self.gates:
             if gate not in GATES:
                 raise UnknownNameError("gate", gate, GATES)
-        choose(self.tasks, self.suite)
+        choose(self.tasks)
 
     def jobs(self) -> tuple[ProofJob, ...]:
         """Every task with every seed, grouped by simulation."""
         by_traffic: dict[tuple[str, int], list[str]] = {}
         for seed in self.seeds:
-            for task_id in choose(self.tasks, self.suite):
+            for task_id in choose(self.tasks):
                 by_traffic.setdefault((CATALOGUE[task_id].first.start.scenario, seed), []).append(task_id)
         return tuple(
             ProofJob(task_id, seed, (f"{scenario} {at // PIECE}", seed), task_ids[at - 1] if at % PIECE else "")
@@ -110,7 +106,6 @@ def prove(
     seeds: Sequence[int],
     chosen: Sequence[str] = GATES,
     *,
-    suite: str = Suite.STANDARD,
     workers: int = 1,
     out: Path | None = None,
     begun: Callable[[int], None] = lambda planned: None,
@@ -122,7 +117,6 @@ def prove(
         tasks: ids of the catalogue, or anything else that ``run.plan.choose`` accepts.
         seeds: each determines traffic, drive, phrasing and parameters.
         chosen: gates to try.
-        suite: the suite that they are chosen from, or ``all``.
         workers: number of processes, which does not affect the result.
         out: folder of the proofs, from which the same call resumes; None keeps nothing.
         begun: called once with the number of proofs, before the first.
@@ -136,7 +130,7 @@ def prove(
         InfrastructureError: no worker becomes available.
         KeyboardInterrupt: passed on; only the running proofs are lost.
     """
-    plan = ProofPlan(tuple(tasks), tuple(seeds), tuple(chosen), suite)
+    plan = ProofPlan(tuple(tasks), tuple(seeds), tuple(chosen))
     plan.check()
     jobs = plan.jobs()
     with (
