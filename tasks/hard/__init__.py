@@ -1,6 +1,7 @@
 """The hard suite: tasks of ten actions and more that are hard for good reasons, one module per reason."""
 
-from automotive_cosim.tasks.hard import carried, interrupted, over_time, several, side_effects
+from automotive_cosim.tasks.hard import carried, dialogue, errands, interrupted, over_time, several, side_effects
 
-TASKS = (*carried.TASKS, *interrupted.TASKS, *side_effects.TASKS, *over_time.TASKS, *several.TASKS)
+_MODULES = (carried, interrupted, side_effects, over_time, several, dialogue, errands)
+TASKS = tuple(task for module in _MODULES for task in module.TASKS)
 """All of them."""

@@ -138,14 +138,7 @@ SEAT_FROM_MEMO = hard(
         ),
         may_write=frozenset(),
     ),
-    left(
-        with_papers(ON_THE_ROAD, memos=(param("lumbar", PHYSIO_MEMO),)),
-        Reason.SAFETY,
-        Reason.NOT_POSSIBLE,
-    ),
-    "motion: parked, or moving, where the driver's seat is locked",
     parameters={"lumbar": tuple(PHYSIO)},
-    tags=frozenset({"locked"}),
 )
 
 TRAILER = {30: 45, 40: 60, 55: 85, 60: 95, 65: 100}

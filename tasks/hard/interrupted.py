@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from automotive_cosim.cockpit.aboard import company
 from automotive_cosim.cockpit.arrivals import Arrival
 from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.desk import Appointment
@@ -180,7 +181,7 @@ WINDOW_COMES_DOWN = hard(
         replace(
             ON_THE_ROAD,
             signals=AIRED,
-            cabin={"occupants": 4},
+            aboard=company(4),
             interruptions=(CarChange(6.0, CABIN.REAR_LEFT_WINDOW.path, 60.0),),
         ),
         AllOf(

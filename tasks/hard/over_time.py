@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from automotive_cosim.cockpit.aboard import company
 from automotive_cosim.cockpit.signals import CALL, HMI, LIGHTS, LINK, MEDIA, SEAT, VOICE
 from automotive_cosim.contracts import Action, ActionType
 from automotive_cosim.tasking.checks import AllOf, AppDataIs, Entered, SignalIs
@@ -184,7 +185,7 @@ WARM_THEN_MILD = hard(
         " '{words}'.",
     ),
     done(
-        with_papers(replace(ON_THE_ROAD, cabin={"temperature_c": 8.0, "occupants": 2}), contacts=knowing(OSKAR)),
+        with_papers(replace(ON_THE_ROAD, cabin={"temperature_c": 8.0}, aboard=company(2)), contacts=knowing(OSKAR)),
         AllOf(
             (
                 Lasted(SignalIs(SEAT.DRIVER_HEATING, (100.0,)), 24.0, 45.0),
@@ -244,7 +245,7 @@ THANK_ALL = hard(
         ),
         AllOf(
             (
-                Lasted(SignalIs(LIGHTS.HAZARD, (True,)), 3.0, 9.0),
+                Lasted(SignalIs(LIGHTS.HAZARD, (True,)), 3.0, 7.5),
                 SignalIs(LIGHTS.HAZARD, (False,)),
                 SignalIs(MEDIA.VOLUME, (param("percent"),)),
                 Entered("messages.sent", {"to": ISLA, "text": "On my way"}),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from automotive_cosim.cockpit.aboard import company
 from automotive_cosim.cockpit.desk import Appointment
 from automotive_cosim.cockpit.people import Contact
 from automotive_cosim.cockpit.signals import CABIN, HVAC, MEDIA, SEAT
@@ -78,7 +79,7 @@ WITHOUT_MUSIC = hard(
                     MEDIA.SOURCE.path: "DAB",
                     MEDIA.ACTION.path: "PLAY",
                 },
-                cabin={"occupants": 2},
+                aboard=company(2),
             ),
             ISLA,
             *WISHES,

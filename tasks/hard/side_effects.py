@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from automotive_cosim.cockpit.aboard import company
 from automotive_cosim.cockpit.desk import Appointment
 from automotive_cosim.cockpit.signals import BODY, CABIN, HMI, HVAC, LINK, MEDIA, MIRROR, SEAT, VOICE
 from automotive_cosim.cockpit.vehicle import WINDOWS
@@ -180,7 +181,7 @@ SWAP_SIDES = hard(
         "Correct yourself: her setting is on my side and mine on hers, air and seats alike.",
     ),
     done(
-        replace(ON_THE_ROAD, signals=SWAPPED, cabin={"occupants": 2}),
+        replace(ON_THE_ROAD, signals=SWAPPED, aboard=company(2)),
         AllOf(
             (
                 SignalIs(HVAC.DRIVER_TEMPERATURE, (param("warm", {warm: float(warm) for warm in WARM}),)),
@@ -340,7 +341,7 @@ CAR_WASH = hard(
         replace(
             PARKED,
             signals={window.path: 30.0 for window in WINDOWS[:2]} | {CABIN.SUNROOF.path: 50.0},
-            cabin={"occupants": param("people")},
+            aboard=param("people", {people: company(people) for people in (1, 2, 3, 4, 5)}),
         ),
         AllOf(
             (
