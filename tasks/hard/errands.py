@@ -238,6 +238,7 @@ OFF_OR_LATER = hard(
     parameters={"time": tuple(LATER_THAN_14)},
 )
 
+THINGS = ("Candles", "Lemons", "Coffee", "Matches", "Rice")
 SHOPPING = ("Call the plumber", "Bread", "Oat milk", "{thing}", "Book the ferry")
 GOT = (*letter(OSKAR), Open("memo"))
 
@@ -245,7 +246,13 @@ GOT = (*letter(OSKAR), Open("memo"))
 def _shopping(line: str, kept: tuple[str, ...], deletes: Moves, wrong: Moves) -> Half:
     start = with_letter(PARKED, OSKAR, "In the shop now.", line, memos=SHOPPING)
     goal = AllOf(
-        (AppDataIs("apps.memos", (list(kept),)), Entered("messages.sent", {"to": OSKAR, "text": "Thank you"}))
+        (
+            AppDataIs(
+                "apps.memos",
+                (param("thing", {thing: [each.format(thing=thing) for each in kept] for thing in THINGS}),),
+            ),
+            Entered("messages.sent", {"to": OSKAR, "text": "Thank you"}),
+        )
     )
     thanks = (*write_to(OSKAR), Tap(text="Thank you"))
     return done(start, goal, (*GOT, *deletes, *thanks), slips=((*GOT, *wrong, *thanks),))
@@ -274,7 +281,7 @@ SHOPPING_DONE = hard(
         BREAD_MILK,
     ),
     "content: he has one or the other",
-    parameters={"thing": ("Candles", "Lemons", "Coffee", "Matches", "Rice")},
+    parameters={"thing": THINGS},
 )
 
 TUNING = {-4: "bass -4", -2: "bass -2", 3: "bass 3", 5: "bass 5", 7: "bass 7"}
