@@ -204,16 +204,16 @@ def _guided(kind: str, name: object) -> Moves:
     )
 
 
-ELSEWHERE = (*_guided("cafe", param("museum", AFTER)), *write_to(BEA), Tap(text="On my way"))
-MUSEUM = (*_guided("museum", "{museum}"), *write_to(BEA), Tap(text="On my way"))
+ELSEWHERE = (*_guided("cafe", param("museum", AFTER)), *write_to(BEA), Tap(text="{words}"))
+MUSEUM = (*_guided("museum", "{museum}"), *write_to(BEA), Tap(text="{words}"))
 RATHER_THE_CAFE = hard(
     "hard_rather_the_cafe",
     Module.MAPS,
     (
-        "Navigate to {museum} and text Bea 'On my way'.",
-        "Off to {museum}: guidance first, then tell Bea that I'm on my way.",
-        "Bea waits for me at {museum}. Set it as the goal and send her 'On my way'.",
-        "{museum} is where we're going, start the route; Bea gets an 'On my way' next.",
+        "Navigate to {museum} and text Bea '{words}'.",
+        "Off to {museum}: guidance first, then a '{words}' to Bea.",
+        "Bea waits for me at {museum}. Set it as the goal and send her '{words}'.",
+        "{museum} is where we're going, start the route; Bea gets a '{words}' next.",
     ),
     speaking(
         done(
@@ -221,7 +221,7 @@ RATHER_THE_CAFE = hard(
             AllOf(
                 (
                     AppDataIs("navigation.destination", (param("museum", AFTER),)),
-                    Entered("messages.sent", {"to": BEA, "text": "On my way"}),
+                    Entered("messages.sent", {"to": BEA, "text": "{words}"}),
                 )
             ),
             (*_guided("museum", "{museum}"), Hear("the café"), *ELSEWHERE),
@@ -244,10 +244,10 @@ RATHER_THE_CAFE = hard(
             AllOf(
                 (
                     AppDataIs("navigation.destination", ("{museum}",)),
-                    Entered("messages.sent", {"to": BEA, "text": "On my way"}),
+                    Entered("messages.sent", {"to": BEA, "text": "{words}"}),
                 )
             ),
-            (*_guided("museum", "{museum}"), Hear("the café"), *write_to(BEA), Tap(text="On my way")),
+            (*_guided("museum", "{museum}"), Hear("the café"), *write_to(BEA), Tap(text="{words}")),
             slips=((*_guided("museum", "{museum}"), *ELSEWHERE),),
         ),
         Says(
@@ -262,7 +262,7 @@ RATHER_THE_CAFE = hard(
         ),
     ),
     "events: the driver changes the goal once it is set, or only talks about another day",
-    parameters={"museum": MUSEUMS},
+    parameters={"museum": MUSEUMS, "words": ("On my way", "Where are you?")},
     tags=frozenset({"two_modules"}),
 )
 
