@@ -7,7 +7,6 @@ from typing import Any
 
 from automotive_cosim.cockpit.desk import Appointment, TripMeter
 from automotive_cosim.cockpit.signals import ADAS, ENERGY, MEDIA, MIRROR
-from automotive_cosim.contracts import Reason
 from automotive_cosim.tasking.checks import AllOf, AppDataIs, Counted, Entered, Filed, SignalIs
 from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil
 from automotive_cosim.tasking.parameters import param
@@ -30,7 +29,6 @@ from automotive_cosim.tasks.hard.forms import (
     figure,
     hard,
     knowing,
-    left,
     letter,
     with_letter,
     with_papers,
@@ -453,10 +451,14 @@ ZONE_FROM_ISLA = hard(
     "hard_zone_from_isla",
     Module.APPS,
     (
-        "Isla knows the zone here and how long we'll be. Pay as she says and thank her by text.",
-        "Get the parking ticket from what Isla wrote, nothing else will do, then send her a thank you.",
-        "Zone and time are in Isla's message: pay for exactly that, and write 'Thank you' back.",
-        "Please buy the ticket Isla describes; once it's paid she gets our thanks.",
+        "Isla knows the zone here and how long we'll be. Pay as she says and text her 'Thank you'; 'No' if the car"
+        " can't pay there.",
+        "Get the parking ticket that Isla describes, nothing else will do, then send her a thank you. Not among the"
+        " zones? Then she gets a plain No.",
+        "Zone and time are in Isla's message: pay for exactly that and write 'Thank you' back, or 'No' should that"
+        " zone be missing.",
+        "Please buy what Isla wrote; once it's paid she gets our thank you. If it can't be bought in this car, tell"
+        " her no.",
     ),
     done(
         with_letter(PARKED, ISLA, "You're in zone {zone}.", "We'll need {stay}"),
@@ -478,10 +480,11 @@ ZONE_FROM_ISLA = hard(
         ),
         slips=(_park("a"),),
     ),
-    left(
+    done(
         with_letter(PARKED, ISLA, "You're in zone {elsewhere}.", "We'll need {stay}"),
-        Reason.NOT_POSSIBLE,
-        slips=(_park("a", THANKS), _park("b", THANKS), _park("c", THANKS)),
+        Entered("messages.sent", {"to": ISLA, "text": "No"}),
+        (*letter(ISLA), Open("parking"), *write_to(ISLA), Tap(text="No")),
+        slips=(_park("a", THANKS), _park("b", THANKS), _park("c", THANKS), (*letter(ISLA), *THANKS)),
     ),
     "content: a zone that the car can pay for, or one that is not among its three",
     parameters={"stay": tuple(STAYS), "zone": ("B", "C"), "elsewhere": ("F", "K", "R")},
@@ -502,66 +505,54 @@ MINE = {pan: f"mirror.driver.pan.{'increase' if pan > 0 else 'decrease'}" for pa
 OTHER_WAY = {pan: f"mirror.passenger.pan.{'increase' if pan > 60 else 'decrease'}" for pan in LEFT_PAN}
 
 
+FOLD = (Tap("mirror.driver.fold"), Tap("mirror.passenger.fold"))
+FOLDED = AllOf((SignalIs(MIRROR.DRIVER_FOLDED, (True,)), SignalIs(MIRROR.PASSENGER_FOLDED, (True,))))
+AS_NOTED = {
+    MIRROR.DRIVER_PAN: param("pan", {pan: float(pan) for pan in LEFT_PAN}),
+    MIRROR.DRIVER_TILT: 20.0,
+    MIRROR.PASSENGER_PAN: 30.0,
+    MIRROR.PASSENGER_TILT: -20.0,
+}
+PUT_BACK = (
+    Open("memo"),
+    *MIRRORS,
+    TapUntil(param("pan", MINE), "mirror.driver.pan.value", param("pan", SIGNED)),
+    TapUntil("mirror.driver.tilt.decrease", "mirror.driver.tilt.value", "+20"),
+    TapUntil("mirror.passenger.pan.decrease", "mirror.passenger.pan.value", "+30"),
+    TapUntil("mirror.passenger.tilt.decrease", "mirror.passenger.tilt.value", "-20"),
+)
+CROSSED = (
+    Open("memo"),
+    *MIRRORS,
+    TapUntil(param("pan", OTHER_WAY), "mirror.passenger.pan.value", param("pan", SIGNED)),
+    TapUntil("mirror.passenger.tilt.increase", "mirror.passenger.tilt.value", "+20"),
+    TapUntil("mirror.driver.pan.increase", "mirror.driver.pan.value", "+30"),
+    TapUntil("mirror.driver.tilt.decrease", "mirror.driver.tilt.value", "-20"),
+)
 MIRRORS_FROM_MEMO = hard(
     "hard_mirrors_from_memo",
     Module.SYSTEM,
     (
-        "The garage has turned my mirrors. The right values, sideways then up, are in the memos: put them back.",
-        "Set both outside mirrors as my note has them (pan, then tilt), someone has fiddled with them.",
-        "I wrote down my mirror positions, first across, then height. Restore those after the car wash's doing.",
-        "Mirrors are off! Look up what I noted, pan before tilt, mine and the other, and adjust them to that.",
+        "The garage has turned my mirrors. The right values, sideways then up, are in the memos: put them back, and"
+        " fold both for the night.",
+        "Set both outside mirrors as my note has them (pan, then tilt), someone has fiddled with them; fold them in"
+        " afterwards.",
+        "I wrote down my mirror positions, first across, then height. Restore those after the car wash's"
+        " doing, then"
+        " in with the two of them.",
+        "Mirrors are off! Look up what I noted, pan before tilt, mine and the other, adjust them to that and fold"
+        " them.",
     ),
     done(
         with_papers(replace(PARKED, signals=MOVED_MIRRORS), memos=(param("pan", MIRROR_MEMO), "Dentist on Friday")),
-        AllOf(
-            (
-                SignalIs(MIRROR.DRIVER_PAN, (param("pan", {pan: float(pan) for pan in LEFT_PAN}),)),
-                SignalIs(MIRROR.DRIVER_TILT, (20.0,)),
-                SignalIs(MIRROR.PASSENGER_PAN, (30.0,)),
-                SignalIs(MIRROR.PASSENGER_TILT, (-20.0,)),
-            )
-        ),
-        (
-            Open("memo"),
-            *MIRRORS,
-            TapUntil(param("pan", MINE), "mirror.driver.pan.value", param("pan", SIGNED)),
-            TapUntil("mirror.driver.tilt.decrease", "mirror.driver.tilt.value", "+20"),
-            TapUntil("mirror.passenger.pan.decrease", "mirror.passenger.pan.value", "+30"),
-            TapUntil("mirror.passenger.tilt.decrease", "mirror.passenger.tilt.value", "-20"),
-        ),
-        slips=(
-            (
-                Open("memo"),
-                *MIRRORS,
-                TapUntil(param("pan", OTHER_WAY), "mirror.passenger.pan.value", param("pan", SIGNED)),
-                TapUntil("mirror.passenger.tilt.increase", "mirror.passenger.tilt.value", "+20"),
-                TapUntil("mirror.driver.pan.increase", "mirror.driver.pan.value", "+30"),
-                TapUntil("mirror.driver.tilt.decrease", "mirror.driver.tilt.value", "-20"),
-            ),
-        ),
+        AllOf((*(SignalIs(signal, (value,)) for signal, value in AS_NOTED.items()), FOLDED)),
+        (*PUT_BACK, *FOLD),
+        slips=((*CROSSED, *FOLD), (*MIRRORS, *FOLD), PUT_BACK),
         may_write=frozenset(),
-    ),
-    replace(
-        left(
-            with_papers(
-                replace(
-                    PARKED,
-                    signals={
-                        MIRROR.DRIVER_PAN.path: param("pan", {pan: float(pan) for pan in LEFT_PAN}),
-                        MIRROR.DRIVER_TILT.path: 20.0,
-                        MIRROR.PASSENGER_PAN.path: 30.0,
-                        MIRROR.PASSENGER_TILT.path: -20.0,
-                    },
-                ),
-                memos=(param("pan", MIRROR_MEMO), "Dentist on Friday"),
-            ),
-            Reason.ALREADY_SO,
-            needed=False,
-            slips=((*MIRRORS, Tap("mirror.driver.pan.increase")),),
+        deadline=Deadline(
+            120.0, "at 2.5 s a tap (Card, Moran and Newell 1983) forty taps take 100 s; he locks up then"
         ),
-        may_write=frozenset(),
     ),
-    "settings: the mirrors stand elsewhere, or already as the memo has them",
     parameters={"pan": LEFT_PAN},
 )
 

@@ -8,8 +8,7 @@ from typing import Any
 
 from automotive_cosim.cockpit.belongings import Belongings
 from automotive_cosim.cockpit.people import Contact, Thread
-from automotive_cosim.contracts import GoalStatus, Reason
-from automotive_cosim.tasking.checks import Check, NothingDone
+from automotive_cosim.tasking.checks import Check
 from automotive_cosim.tasking.moves import Move, Open, Tap
 from automotive_cosim.tasking.parameters import Choices
 from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Suite, Task
@@ -94,30 +93,6 @@ def done(
     """A half in which the wish is carried out."""
     trigger = trigger or (AT_REST if start.parked else UNDER_WAY)
     return Half(start, trigger, goal, moves, deadline, Basis.WISH, may_write=may_write, ways=ways, slips=slips)
-
-
-def left(
-    start: Start,
-    *reasons: Reason,
-    slips: tuple[Moves, ...] = (),
-    needed: bool = True,
-    deadline: Deadline = BEFORE_LEAVING,
-    trigger: Trigger | None = None,
-) -> Half:
-    """A half in which everything is left as it is, which shows only once something has been read."""
-    trigger = trigger or (AT_REST if start.parked else UNDER_WAY)
-    return Half(
-        start,
-        trigger,
-        NothingDone(),
-        (),
-        deadline,
-        Basis.WISH,
-        declares=GoalStatus.INFEASIBLE if needed else GoalStatus.NOT_NEEDED,
-        reasons=frozenset(reasons),
-        may_write=READ,
-        slips=slips,
-    )
 
 
 def hard(

@@ -8,7 +8,7 @@ from automotive_cosim.cockpit.aboard import company
 from automotive_cosim.cockpit.desk import Appointment
 from automotive_cosim.cockpit.people import Contact
 from automotive_cosim.cockpit.signals import CABIN, HVAC, MEDIA, SEAT
-from automotive_cosim.contracts import Reason, Weather
+from automotive_cosim.contracts import Weather
 from automotive_cosim.tasking.checks import AllOf, AppDataIs, Entered, SignalIs
 from automotive_cosim.tasking.moves import Open, Slide, Tap
 from automotive_cosim.tasking.parameters import param
@@ -33,7 +33,6 @@ from automotive_cosim.tasks.hard.forms import (
     figure,
     hard,
     knowing,
-    left,
     letter,
     with_letter,
     with_papers,
@@ -326,14 +325,13 @@ STILL_OPEN = hard(
     Module.MAPS,
     (
         "Malik says when he needs his drops. Drive to the pharmacy that's still open by then, and tell him 'On my"
-        " way'.",
+        " way'; if none is, 'No'.",
         "See Malik's message, find a pharmacy that hasn't closed at that hour and go; text him that I'm on my way."
-        " If all are shut by then, leave it.",
-        "I'm to fetch something for Malik at the hour he writes. Whichever pharmacy has its doors open then:"
-        " take me"
-        " there and send 'On my way'.",
+        " All shut by then? Just a No to him.",
+        "I'm to fetch something for Malik at the hour he writes. Whichever pharmacy has its doors open then: take"
+        " me there and send 'On my way'. Without any, send 'No'.",
         "Pharmacy run for Malik. He tells when; pick one that's open at that time, start the guidance, let him know"
-        " I'm coming.",
+        " I'm on my way. Should every one be closed, tell him no.",
     ),
     done(
         with_letter(
@@ -362,14 +360,22 @@ STILL_OPEN = hard(
             ),
         ),
     ),
-    left(
+    done(
         with_letter(
             CITY,
             MALIK,
             "I get the prescription at {hour}.",
             details=param("name", {n: OTHERS_CLOSED | {n: "Open until 17:00"} for n in PHARMACIES}),
         ),
-        Reason.NOT_POSSIBLE,
+        Entered("messages.sent", {"to": MALIK, "text": "No"}),
+        (
+            *letter(MALIK),
+            Open("map"),
+            Tap("map.list.explore"),
+            Tap("explore.kind.pharmacy"),
+            *write_to(MALIK),
+            Tap(text="No"),
+        ),
         slips=(_pharmacy("{name}"),),
     ),
     "content: one pharmacy is open late, or all are closed by then",
