@@ -34,14 +34,16 @@ def test_a_mistake_is_not_a_solution(task: Task):
 
 @ONE_BY_ONE
 def test_it_takes_many_actions_and_fits_the_limit(task: Task):
-    """Where something has to be done; a value that is pressed until it is right counts as two."""
+    """In one of its halves at least; a value that is pressed until it is right counts as two."""
+    counts = []
     for name in task.halves:
         half = draw(task, name, 0).half
         taps = (
             move.times if isinstance(move, Tap) else 2 if isinstance(move, TapUntil) else 1 for move in half.moves
         )
-        if half.declares is GoalStatus.COMPLETE:
-            assert 8 <= 1 + sum(taps) <= task.max_steps - 5
+        counts.append(1 + sum(taps))
+    assert max(counts) >= 8
+    assert max(counts) <= task.max_steps - 5
 
 
 @ONE_BY_ONE

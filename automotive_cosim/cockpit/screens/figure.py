@@ -41,6 +41,7 @@ SENTENCES: Mapping[str, Sentence] = {
     "driven": Sentence("I have driven {} km", "Distance", 0, 1, 10, 990),
     "used": Sentence("I used {} kWh per 100 km", "Use", 15.0, 0.1, 1, 99),
     "level": Sentence("The battery has {} %", "Battery", 50, 1, 10, 100),
+    "pressure": Sentence("The tyre has {} psi", "Tyre", 30, 1, 10, 60),
     "paid": Sentence("I paid {}", "Price", 0, 0.1, 1, 200),
 }
 """By key; the distance is in kilometres whatever the display's unit."""
