@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from automotive_cosim.contracts import GoalStatus
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasking.moves import Do, Tap, TapUntil
 from automotive_cosim.tasking.task import Suite, Task
@@ -48,10 +47,11 @@ def test_it_takes_many_actions_and_fits_the_limit(task: Task):
 
 @ONE_BY_ONE
 def test_a_person_has_the_time(task: Task):
-    """At least a second and a half for each action and each second of waiting, and no more than twelve."""
+    """A second and a half at least for each action, and for each second of waiting one; at most twelve, but where a
+    mere warning is right."""
     for name in task.halves:
         half = draw(task, name, 0).half
-        if half.declares is not GoalStatus.COMPLETE:
+        if len(half.moves) < 6:
             continue
         waits = sum(move.action.seconds or 0 for move in half.moves if isinstance(move, Do))
         taps = (
