@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from automotive_cosim.cockpit.arrivals import Arrival
+from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.tasking.binding import needs
 from automotive_cosim.tasking.moves import Consult, Hear, Open, Slide, Tap, TapUntil, TypeText, Warn
 from automotive_cosim.tasking.parameters import Choices, FromCockpit
@@ -48,6 +49,12 @@ def half_in_words(half: Half) -> Iterable[tuple[str, str]]:
     yield "basis", f"{half.basis}: {half.rule}" if half.rule else str(half.basis)
     for need in needs(half):
         yield "elsewhere", need
+
+
+def _coming(coming: Arrival | CarChange) -> str:
+    if isinstance(coming, Arrival):
+        return f"{coming.kind} from {coming.who}"
+    return f"{coming.path} {coming.value}"
 
 
 def _move(move: object) -> str:
