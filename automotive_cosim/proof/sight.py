@@ -57,6 +57,7 @@ FREED: Mapping[Differs, frozenset[Facet]] = {
     Differs.SETTINGS: frozenset({Facet.SETTINGS, Facet.CABIN}),
     Differs.ABOARD: frozenset({Facet.ABOARD, Facet.CABIN}),
     Differs.VOICE: frozenset({Facet.WORDS}),
+    Differs.CONTENT: frozenset(),
 }
 """What each kind of difference changes by itself; what follows from that names it among its causes."""
 
