@@ -58,7 +58,7 @@ def evaluate(
     tasks: Annotated[
         str | None,
         typer.Option(
-            help="Ids, patterns, tags, modules, dimensions, general, safety or all; separated by commas.",
+            help="Ids, patterns, tags, modules, dimensions, subsets, general, safety, all; by commas.",
             show_default="all",
         ),
     ] = None,
@@ -67,6 +67,12 @@ def evaluate(
         typer.Option(
             help="Scenarios, separated by commas, instead of the tasks' own, for tasks that can run there.",
             show_default=False,
+        ),
+    ] = None,
+    preset: Annotated[
+        str | None,
+        typer.Option(
+            help="Limits as others set them: 2026, ten steps as in the authors' newer edition.", show_default=False
         ),
     ] = None,
     everywhere: Annotated[
@@ -144,7 +150,7 @@ def evaluate(
     from automotive_cosim.report.results import read_results, standings
     from automotive_cosim.run.batch import run_plan
     from automotive_cosim.run.collect import Pictures
-    from automotive_cosim.run.plan import make_plan, read_plan
+    from automotive_cosim.run.plan import make_plan, read_plan, with_preset
     from automotive_cosim.run.store import megabytes
     from automotive_cosim.scenery import open_scenario
 
@@ -159,6 +165,7 @@ def evaluate(
     values |= {"repeats": repeats} if repeats is not None else {}
     values |= {"held_out": True} if held_out else {}
     values |= {"everywhere": True} if everywhere else {}
+    values = with_preset(values, preset) if preset is not None else values
     if drives is not None:
         where = executor_of(executor, workers, ray_address, ray_send)
         watch(values | {"drives": words("drives", drives)}, out, where, retries, dry_run=dry_run, as_json=as_json)

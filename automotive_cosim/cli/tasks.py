@@ -26,7 +26,8 @@ app = typer.Typer(help="List, show and export tasks.", no_args_is_help=True)
 Words = Annotated[
     str,
     typer.Option(
-        "--tasks", help="Ids, patterns, tags, modules, dimensions, general, safety or all; separated by commas."
+        "--tasks",
+        help="Ids, patterns, tags, modules, dimensions, subsets, general, safety, all; by commas.",
     ),
 ]
 
@@ -34,13 +35,20 @@ Words = Annotated[
 @app.command("list")
 def list_(
     tasks: Words = "all",
+    subset: Annotated[
+        str | None,
+        typer.Option(
+            help="Only those of a subset: general or safety, explicit or implicit, as in safety-implicit.",
+            show_default=False,
+        ),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON list and nothing else.")] = False,
     tasks_from: TasksFrom = None,
 ) -> None:
     """List the tasks, one per line, then their numbers by module and dimension."""
     from automotive_cosim.tasking.catalogue import described
 
-    chosen = _chosen(tasks)
+    chosen = _chosen(tasks) if subset is None else _within(_chosen(tasks), subset)
     if as_json:
         print_json([described(task) for task in chosen])
         return
@@ -120,7 +128,7 @@ def show(
         print_json(described(entry) | {"halves": halves})
         return
     steps = counted(entry.optimal_steps, "step")
-    typer.echo(f"{entry.id}  ({entry.module}, {entry.dimension}, {entry.difficulty}, {steps})")
+    typer.echo(f"{entry.id}  ({entry.module}, {entry.dimension}, {entry.subset}, {entry.difficulty}, {steps})")
     for words in entry.templates:
         typer.echo(f"  “{words}”")
     for name, choices in entry.parameters.items():
@@ -155,6 +163,19 @@ def _chosen(words: str) -> list[Task]:
     from automotive_cosim.tasks import CATALOGUE
 
     return [CATALOGUE[task_id] for task_id in choose(word.strip() for word in words.split(","))]
+
+
+def _within(tasks: list[Task], subset: str) -> list[Task]:
+    """Those of a subset."""
+    from automotive_cosim.errors import UnknownNameError, UserError
+    from automotive_cosim.tasking.task import Subset
+
+    if subset not in set(Subset):
+        raise UnknownNameError("subset", subset, Subset)
+    found = [task for task in tasks if task.subset == subset]
+    if not found:
+        raise UserError(f"none of the tasks chosen is in the subset {subset}; choose others, or another subset")
+    return found
 
 
 def _cells(tasks: list[Task]) -> str:

@@ -31,6 +31,8 @@ from automotive_cosim.scenery import open_scenario
 from automotive_cosim.tasking.task import Task
 from automotive_cosim.tasks import CATALOGUE
 
+PRESETS: Mapping[str, Json] = {"2026": {"limits": {"steps": 10}}}
+"""Values of a plan by the name of who evaluates so: the authors' newer edition allows ten steps."""
 NO_MODEL = "none"
 MOST_RUNS = 10_000_000
 """At a second each, four months."""
@@ -64,7 +66,7 @@ class Plan:
     agents: tuple[str, ...] = ()
     """Agents; ``package.module:Class`` is one of your own. At least one, here or with ``--agents``."""
     tasks: Annotated[tuple[str, ...], MinLen(1)] = ("all",)
-    """Ids, patterns such as ``hvac_*``, tags, modules, dimensions, ``general``, ``safety`` or ``all``."""
+    """Ids, patterns such as ``hvac_*``, tags, modules, dimensions, subsets, ``general``, ``safety`` or ``all``."""
     models: Annotated[tuple[str, ...], MinLen(1)] = ("rules",)
     """Models for the agents that use one."""
     scenarios: tuple[str, ...] = ()
@@ -288,7 +290,7 @@ def choose(asked: Iterable[str]) -> tuple[str, ...]:
 
 def _words(task: Task) -> frozenset[str]:
     kind = "safety" if task.dimension.is_safety else "general"
-    return task.tags | {"all", kind, str(task.module), str(task.dimension)}
+    return task.tags | {"all", kind, str(task.module), str(task.dimension), str(task.subset)}
 
 
 def read_plan(path: Path) -> dict[str, Any]:
@@ -301,6 +303,18 @@ def read_plan(path: Path) -> dict[str, Any]:
     document = replace(document, table=without_mode(document.table, str(path)))
     document.read(Plan)
     return document.table
+
+
+def with_preset(values: Mapping[str, Any], name: str) -> dict[str, Any]:
+    """The values of a plan, with those of a preset in place of its own.
+
+    Raises:
+        UnknownNameError: there is no such preset.
+    """
+    if name not in PRESETS:
+        raise UnknownNameError("preset", name, PRESETS)
+    preset = PRESETS[name]
+    return {**values, **preset, "limits": {**values.get("limits", {}), **preset["limits"]}}
 
 
 def make_plan(values: Mapping[str, Any]) -> Plan:
