@@ -7,7 +7,7 @@ model's prompt is generated from it (``grammar``), so the two cannot diverge.
 from __future__ import annotations
 
 import json
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from dataclasses import fields as dataclass_fields
 from enum import StrEnum
@@ -263,20 +263,21 @@ def perform(action: Action, cockpit: Cockpit, elements: tuple[Element, ...]) -> 
     Args:
         action: a checked action.
         cockpit: the cockpit, which decides what is possible and says why not.
-        elements: the list that the agent saw, to which an index refers.
+        elements: the list that the agent saw, to which an index refers; empty if it was given none.
 
     Returns:
         The result. A wrong action changes nothing.
     """
     kind = action.action_type
+    if action.index is not None and not elements:
+        return Feedback(FeedbackCode.NO_SUCH_ELEMENT, "there is no list of elements; give x and y")
     if action.index is not None and not 0 <= action.index < len(elements):
         return Feedback(
             FeedbackCode.NO_SUCH_ELEMENT,
             f"there is no element {action.index}; the list goes from 0 to {len(elements) - 1}",
         )
     if FIELDS[kind].target:
-        x, y = _point(action, elements)
-        return _touch(action, cockpit, x, y)
+        return _touch(action, cockpit, *point(action, elements))
     match kind:
         case ActionType.SCROLL:
             target = None if action.index is None else elements[action.index]
@@ -332,7 +333,8 @@ def _touch(action: Action, cockpit: Cockpit, x: int, y: int) -> Feedback:
             return cockpit.type_text(action.text or "", clear=bool(action.clear_text))
 
 
-def _point(action: Action, elements: tuple[Element, ...]) -> tuple[int, int]:
+def point(action: Action, elements: Sequence[Element]) -> tuple[int, int]:
+    """The pixel that an action with a target touches: the one it gives, or the middle of the element it names."""
     if action.index is None:
         return action.x or 0, action.y or 0
     box = elements[action.index].bbox_pixels
