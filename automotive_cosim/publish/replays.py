@@ -59,7 +59,7 @@ def _channels(job: EpisodeJob, steps: Sequence[Json]) -> list[frozenset[Channel]
     """The channels that its agent may have had; no foreign agent is loaded to be asked for them."""
     setup = job.setup
     if ":" not in setup.agent:
-        settings = AgentSettings(geo_input(setup.geo), seed=setup.seed, see=setup.see)
+        settings = AgentSettings(geo_input(setup.geo), seed=setup.seed)
         return [frozenset(make_agent(setup.agent, "rules", settings).channels)]  # whatever its model
     asks = any(step["action"] and step["action"]["action_type"] == ActionType.QUERY for step in steps)
     return [ALL, ALL - {Channel.GPS}, ALL - {Channel.CONTEXT}] if asks else [ALL]

@@ -15,7 +15,7 @@ from typing import Annotated, Any
 from annotated_types import Ge, Gt, Le, MinLen
 
 from automotive_cosim import scenarios
-from automotive_cosim.agents import MODELLED, make_agent
+from automotive_cosim.agents import MODELLED, AgentSettings, make_agent
 from automotive_cosim.contracts import Json
 from automotive_cosim.episode.specification import MAX_STEPS, Clock, Conditions
 from automotive_cosim.errors import SetupError, UnknownNameError, UserError
@@ -128,7 +128,7 @@ class Plan:
                 check_agent(agent)
             else:
                 try:
-                    made = make_agent(agent, model)
+                    made = make_agent(agent, model, AgentSettings(see=see))
                     Conditions(frozenset(made.channels), see=see)
                 except SetupError as error:
                     if not dry:

@@ -110,7 +110,7 @@ def _single(folder: Path, episode: str) -> list[Compared]:
 def _channels(setup: EpisodeSetup) -> frozenset[Channel]:
     """What its agent was given; none of its models is asked for."""
     if setup.agent in PROFILES:
-        settings = AgentSettings(geo_input(setup.geo), parts(setup.without), see=setup.see)
+        settings = AgentSettings(geo_input(setup.geo), parts(setup.without))
         return PROFILES[setup.agent].under(settings).channels
     if setup.agent == ScriptedAgent.name:
         return ALL

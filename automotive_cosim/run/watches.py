@@ -89,7 +89,7 @@ class WatchPlan:
             if ":" in agent:
                 check_agent(agent)
             else:
-                Conditions(frozenset(make_agent(agent, model).channels), see=see)
+                Conditions(frozenset(make_agent(agent, model, AgentSettings(see=see)).channels), see=see)
 
     def jobs(self) -> tuple[WatchJob, ...]:
         """Every drive, grouped by warm simulation.
