@@ -47,6 +47,7 @@ def tables(results: Results) -> list[Table]:
         safety(results),
         held_out(results),
         conduct(results),
+        taps(results),
         comparisons(results),
         by(results, "Module", lambda row: row.module, list(Module)),
         by(results, "Scenario", lambda row: row.scenario),
@@ -168,6 +169,9 @@ def conduct(results: Results) -> Table:
                 _mean_cell(mine, 1, lambda row: row.interaction_s),
                 rate_cell(mine, of=lambda row: row.within_guideline),
                 _mean_cell(mine, 1, lambda row: row.steps),
+                _mean_cell(mine, 2, lambda row: row.questions),
+                _mean_cell(mine, 2, lambda row: row.unneeded_questions),
+                _mean_cell(mine, 1, lambda row: row.question_s),
                 _mean_cell(mine, 0, lambda row: row.tokens_in),
                 _mean_cell(mine, 0, lambda row: row.tokens_out),
                 _mean_cell(mine, 2, lambda row: row.model_seconds),
@@ -181,6 +185,9 @@ def conduct(results: Results) -> Table:
         "Driver's interaction, s",
         "Within 2 s / 12 s",
         "Steps",
+        "Questions",
+        "Unneeded",
+        "Talk, s",
         "Tokens in",
         "Tokens out",
         "Model, s",
@@ -189,9 +196,28 @@ def conduct(results: Results) -> Table:
     note = (
         "Means over judged episodes, from the hand-over to 12 s after the end. Speed-limit compliance is 1 minus "
         "the mean overspeed over 2.23 m/s (nuPlan). Interaction and reading while moving compare with NHTSA's 2 s "
-        "and 12 s. Tokens of rules are estimates at four characters each."
+        "and 12 s. Questions to the driver, those whose answer could be found out otherwise, and the seconds they "
+        "took. Tokens of rules are estimates at four characters each."
     )
     return Table("conduct", "Drive, driver and cost", columns, tuple(rows), note)
+
+
+def taps(results: Results) -> Table:
+    """How well taps by pixel hit what can be tapped; empty if none were given."""
+    rows: list[TableRow] = []
+    for each in results.contestants:
+        given = [row.taps for row in results.of(each) if row.taps is not None]
+        count = sum(taps.count for taps in given)
+        if count:
+            margin_px = sum(taps.margin_px * taps.count for taps in given) / count
+            hits = sum(taps.hits for taps in given)
+            rows.append((each.label, Cell(f"{count:,}"), Cell(f"{hits / count:.1%}"), Cell(f"{margin_px:+.1f}")))
+    columns = ("Contestant", "Taps by pixel", "Inside a clickable element", "Mean margin, px")
+    note = (
+        "The margin is the distance from the edge of the element that was hit, or was nearest: positive inside, "
+        "negative outside. Taps by an element's number are not counted."
+    )
+    return Table("taps", "Taps by pixel", columns, tuple(rows), note)
 
 
 def comparisons(results: Results) -> Table:

@@ -12,6 +12,7 @@ from automotive_cosim.interface.feedback import FeedbackDetail
 from automotive_cosim.interface.observe import See
 from automotive_cosim.run.harm import DriveFigures
 from automotive_cosim.run.row import InColumns, JobRow, Volatile, formerly
+from automotive_cosim.run.taps import PixelTaps
 from automotive_cosim.tasking.task import Basis, Dimension, Module
 from automotive_cosim.tasking.verdict import Verdict
 
@@ -89,6 +90,12 @@ class EpisodeRow(JobRow):
     """For a declined task, whether the reason code fits."""
     alerts: int | None = None
     """Number of alerts that the agent gave to the driver."""
+    questions: int | None = None
+    """Number of questions that it asked the driver."""
+    unneeded_questions: int | None = None
+    """Those of them whose answer could be found out otherwise, or had been given."""
+    question_s: float | None = None
+    """Seconds that questions and answers took from the driver's attention."""
     steps: int = 0
     sim_seconds: float = 0.0
     """From the hand-over to the end."""
@@ -105,6 +112,8 @@ class EpisodeRow(JobRow):
     """The driver's, while the car moved."""
     within_guideline: bool | None = None
     """Whether the load on the driver is within NHTSA's 2 s per glance and 12 s in total."""
+    taps: Annotated[PixelTaps | None, InColumns("taps")] = None
+    """Taps that were given as pixels; None without one."""
     prompt_tokens: tuple[int, ...] = ()
     """Tokens of each call of the model."""
     tokens_in: int = 0

@@ -293,6 +293,7 @@ def _alone(result: Json) -> Iterable[Json]:
             "seen": [seen],
             "lights": {},
             **{name: sample[name] for name in OWN_ROAD},
+            "speed_unit": sample.get("speed_unit", "km/h"),
             "local_time": "",
             "sun_deg": 45.0,
             "weather_code": None,
