@@ -86,6 +86,19 @@ def evaluate(
             show_default="full",
         ),
     ] = None,
+    see: Annotated[
+        str | None,
+        typer.Option(
+            help="How the agent sees the screen, separated by commas: tree, picture, both.", show_default="both"
+        ),
+    ] = None,
+    feedback: Annotated[
+        str | None,
+        typer.Option(
+            help="What the agent is told of its last action, separated by commas: quiet, verbose.",
+            show_default="quiet",
+        ),
+    ] = None,
     mode: NoMode = None,
     clock: Annotated[
         str | None,
@@ -157,6 +170,7 @@ def evaluate(
     if pictures not in set(Pictures):
         raise UnknownNameError("choice of pictures", pictures, Pictures)
     named = {"agents": agents, "models": models, "tasks": tasks, "scenarios": scenarios, "geo": geo}
+    named |= {"see": see, "feedback": feedback}
     values: dict[str, Any] = read_plan(plan_file) if plan_file else {}
     values |= {name: words(name, text) for name, text in named.items() if text is not None}
     values |= {"seeds": seeds_in(seeds)} if seeds is not None else {}
@@ -247,6 +261,7 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
         )
     table.add_row("seeds", ", ".join(map(str, plan.seeds)))
     table.add_row("geo controls", ", ".join(plan.geo))
+    table.add_row("screen", f"as {', '.join(plan.see)}; feedback {', '.join(plan.feedback)}")
     table.add_row("clock", f"{plan.clock}; latency {', '.join(f'{each:g}' for each in plan.latency)} s")
     table.add_row("repeats", str(plan.repeats))
     table.add_row("phrasings", "held out" if plan.held_out else "any")
