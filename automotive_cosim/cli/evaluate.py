@@ -58,7 +58,7 @@ def evaluate(
     tasks: Annotated[
         str | None,
         typer.Option(
-            help="Ids, patterns, tags, modules, dimensions, general, safety or all; separated by commas.",
+            help="Ids, patterns, tags, modules, dimensions, subsets, general, safety, all; by commas.",
             show_default="all",
         ),
     ] = None,
@@ -83,6 +83,12 @@ def evaluate(
             show_default=False,
         ),
     ] = None,
+    preset: Annotated[
+        str | None,
+        typer.Option(
+            help="Limits as others set them: 2026, ten steps as in the authors' newer edition.", show_default=False
+        ),
+    ] = None,
     everywhere: Annotated[
         bool, typer.Option("--everywhere", help="Also run tasks in scenarios that they do not name.")
     ] = False,
@@ -92,6 +98,19 @@ def evaluate(
         typer.Option(
             help="Geo controls, separated by commas: full, gps, context, wrong, irrelevant, none.",
             show_default="full",
+        ),
+    ] = None,
+    see: Annotated[
+        str | None,
+        typer.Option(
+            help="How the agent sees the screen, separated by commas: tree, picture, both.", show_default="both"
+        ),
+    ] = None,
+    feedback: Annotated[
+        str | None,
+        typer.Option(
+            help="What the agent is told of its last action, separated by commas: quiet, verbose.",
+            show_default="quiet",
         ),
     ] = None,
     mode: NoMode = None,
@@ -158,13 +177,14 @@ def evaluate(
     from automotive_cosim.report.results import read_results, standings
     from automotive_cosim.run.batch import run_plan
     from automotive_cosim.run.collect import Pictures
-    from automotive_cosim.run.plan import make_plan, read_plan
+    from automotive_cosim.run.plan import make_plan, read_plan, with_preset
     from automotive_cosim.run.store import megabytes
     from automotive_cosim.scenery import open_scenario
 
     if pictures not in set(Pictures):
         raise UnknownNameError("choice of pictures", pictures, Pictures)
     named = {"agents": agents, "models": models, "tasks": tasks, "scenarios": scenarios, "geo": geo}
+    named |= {"see": see, "feedback": feedback}
     values: dict[str, Any] = read_plan(plan_file) if plan_file else {}
     values |= {name: words(name, text) for name, text in named.items() if text is not None}
     values |= {"seeds": seeds_in(seeds)} if seeds is not None else {}
@@ -175,6 +195,7 @@ def evaluate(
     values |= {"repeats": repeats} if repeats is not None else {}
     values |= {"held_out": True} if held_out else {}
     values |= {"everywhere": True} if everywhere else {}
+    values = with_preset(values, preset) if preset is not None else values
     if drives is not None:
         where = executor_of(executor, workers, ray_address, ray_send)
         watch(values | {"drives": words("drives", drives)}, out, where, retries, dry_run=dry_run, as_json=as_json)
@@ -256,6 +277,7 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
         )
     table.add_row("seeds", ", ".join(map(str, plan.seeds)))
     table.add_row("geo controls", ", ".join(plan.geo))
+    table.add_row("screen", f"as {', '.join(plan.see)}; feedback {', '.join(plan.feedback)}")
     table.add_row("clock", f"{plan.clock}; latency {', '.join(f'{each:g}' for each in plan.latency)} s")
     table.add_row("repeats", str(plan.repeats))
     table.add_row("phrasings", "held out" if plan.held_out else "any")

@@ -26,7 +26,8 @@ app = typer.Typer(help="List, show and export tasks.", no_args_is_help=True)
 Words = Annotated[
     str,
     typer.Option(
-        "--tasks", help="Ids, patterns, tags, modules, dimensions, general, safety or all; separated by commas."
+        "--tasks",
+        help="Ids, patterns, tags, modules, dimensions, subsets, general, safety, all; by commas.",
     ),
 ]
 
@@ -35,6 +36,13 @@ Words = Annotated[
 def list_(
     tasks: Words = "all",
     suite: SuiteName = "standard",
+    subset: Annotated[
+        str | None,
+        typer.Option(
+            help="Only those of a subset: general or safety, explicit or implicit, as in safety-implicit.",
+            show_default=False,
+        ),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON list and nothing else.")] = False,
     tasks_from: TasksFrom = None,
 ) -> None:
@@ -42,6 +50,7 @@ def list_(
     from automotive_cosim.tasking.catalogue import described
 
     chosen = _chosen(tasks, suite)
+    chosen = chosen if subset is None else _within(chosen, subset)
     if as_json:
         print_json([described(task) for task in chosen])
         return
@@ -122,7 +131,8 @@ def show(
         print_json(described(entry) | {"halves": halves})
         return
     steps = counted(entry.optimal_steps, "step")
-    typer.echo(f"{entry.id}  ({entry.suite} suite, {entry.module}, {entry.dimension}, {entry.difficulty}, {steps})")
+    kind = f"{entry.suite} suite, {entry.module}, {entry.dimension}, {entry.subset}"
+    typer.echo(f"{entry.id}  ({kind}, {entry.difficulty}, {steps})")
     for words in entry.templates:
         typer.echo(f"  “{words}”")
     for name, choices in entry.parameters.items():
@@ -157,6 +167,19 @@ def _chosen(words: str, suite: str) -> list[Task]:
     from automotive_cosim.tasks import CATALOGUE
 
     return [CATALOGUE[task_id] for task_id in choose((word.strip() for word in words.split(",")), suite)]
+
+
+def _within(tasks: list[Task], subset: str) -> list[Task]:
+    """Those of a subset."""
+    from automotive_cosim.errors import UnknownNameError, UserError
+    from automotive_cosim.tasking.task import Subset
+
+    if subset not in set(Subset):
+        raise UnknownNameError("subset", subset, Subset)
+    found = [task for task in tasks if task.subset == subset]
+    if not found:
+        raise UserError(f"none of the tasks chosen is in the subset {subset}; choose others, or another subset")
+    return found
 
 
 def _cells(tasks: list[Task]) -> str:

@@ -24,7 +24,7 @@ FAILED = 1
 def validate(
     tasks: Annotated[
         str,
-        typer.Option(help="Ids, patterns, tags, modules, dimensions, general, safety or all; separated by commas."),
+        typer.Option(help="Ids, patterns, tags, modules, dimensions, subsets, general, safety, all; by commas."),
     ] = "all",
     suite: SuiteName = "standard",
     part: Annotated[

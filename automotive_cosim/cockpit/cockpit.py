@@ -21,7 +21,7 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from automotive_cosim.cockpit import deeds, desk, language, media, people, places, update, vhal
+from automotive_cosim.cockpit import accessibility, deeds, desk, language, media, people, places, update, vhal
 from automotive_cosim.cockpit.aboard import Occupant, take_seats
 from automotive_cosim.cockpit.arrivals import Arrival, timeline
 from automotive_cosim.cockpit.belongings import NOTHING, Belongings, with_details, with_papers, with_people
@@ -443,9 +443,17 @@ class Cockpit:
         """The accessibility tree as a list."""
         return self._display.elements(self._screen)
 
+    def drawn(self) -> tuple[Element, ...]:
+        """The same list with only the texts that the picture shows, for a reference that works by pixels."""
+        return accessibility.drawn(self._screen, self._scale)
+
     def screenshot(self) -> npt.NDArray[np.uint8]:
         """The display, (height, width, 3), RGB, read-only; the same array as long as nothing changes."""
         return self._display.screenshot(self._screen)
+
+    def touched(self, x: int, y: int) -> Widget | None:
+        """The widget that a tap at a pixel of the screenshot would reach."""
+        return self._screen.at(*self._logical(x, y))
 
     @property
     def content(self) -> dict[str, tuple[str, ...]]:

@@ -143,7 +143,7 @@ class Ground:
         """The agent, after being told the goal."""
         agent.reset(self.instance.goal)
         if isinstance(agent, Privileged):
-            agent.brief(self.instance)
+            agent.brief(self.instance, drawn=self.episode.world.cockpit.drawn)
         return agent
 
     def declares(self, status: GoalStatus) -> Played:

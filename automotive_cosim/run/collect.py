@@ -169,6 +169,8 @@ def planned(job: EpisodeJob) -> EpisodeRow:
         repeat=job.repeat,
         clock=setup.clock,
         latency_s=setup.latency_s,
+        see=setup.see,
+        feedback=setup.feedback,
         held_out=setup.held_out,
         split=job.split,
     )

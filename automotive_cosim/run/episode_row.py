@@ -8,6 +8,8 @@ from typing import Annotated, Any
 
 from automotive_cosim.episode.specification import Clock, End
 from automotive_cosim.interface.controls import GeoInput
+from automotive_cosim.interface.feedback import FeedbackDetail
+from automotive_cosim.interface.observe import See
 from automotive_cosim.run.harm import DriveFigures
 from automotive_cosim.run.row import InColumns, JobRow, Volatile, formerly
 from automotive_cosim.run.taps import PixelTaps
@@ -67,6 +69,10 @@ class EpisodeRow(JobRow):
     """Whether the seconds that the model took passed on the road."""
     latency_s: float = 0.0
     """Simulated seconds that each answer took besides."""
+    see: See = See.BOTH
+    """How the agent saw the screen."""
+    feedback: FeedbackDetail = FeedbackDetail.VERBOSE
+    """What it was told of its last action."""
     thought_s: float = 0.0
     """Simulated seconds that all answers took."""
     parameters: Mapping[str, Any] | None = None

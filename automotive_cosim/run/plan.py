@@ -15,14 +15,16 @@ from typing import Annotated, Any
 from annotated_types import Ge, Gt, Le, MinLen
 
 from automotive_cosim import scenarios
-from automotive_cosim.agents import MODELLED, make_agent
+from automotive_cosim.agents import MODELLED, AgentSettings, make_agent
 from automotive_cosim.contracts import Json
-from automotive_cosim.episode.specification import Clock
+from automotive_cosim.episode.specification import Clock, Conditions
 from automotive_cosim.errors import SetupError, UnknownNameError, UserError
 from automotive_cosim.formats.annotations import OneOf
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted, read_toml
 from automotive_cosim.interface.controls import GeoInput
+from automotive_cosim.interface.feedback import FeedbackDetail
+from automotive_cosim.interface.observe import See
 from automotive_cosim.interface.trace import canonical
 from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.former import without_mode
@@ -32,6 +34,8 @@ from automotive_cosim.tasking.split import Split, split_of
 from automotive_cosim.tasking.task import Suite, Task
 from automotive_cosim.tasks import CATALOGUE
 
+PRESETS: Mapping[str, Json] = {"2026": {"limits": {"steps": 10}}}
+"""Values of a plan by the name of who evaluates so: the authors' newer edition allows ten steps."""
 NO_MODEL = "none"
 MOST_RUNS = 10_000_000
 """At a second each, four months."""
@@ -70,7 +74,7 @@ class Plan:
     agents: tuple[str, ...] = ()
     """Agents; ``package.module:Class`` is one of your own. At least one, here or with ``--agents``."""
     tasks: Annotated[tuple[str, ...], MinLen(1)] = ("all",)
-    """Ids, patterns such as ``hvac_*``, tags, modules, dimensions, ``general``, ``safety`` or ``all``."""
+    """Ids, patterns such as ``hvac_*``, tags, modules, dimensions, subsets, ``general``, ``safety`` or ``all``."""
     suite: Annotated[str, OneOf(SUITES, "suite")] = str(Suite.STANDARD)
     """The suite that these are chosen from: ``standard``, ``hard`` or ``all``. An id names its task in any."""
     models: Annotated[tuple[str, ...], MinLen(1)] = ("rules",)
@@ -91,6 +95,12 @@ class Plan:
     """Whether the seconds that a model takes to answer pass on the road (``model``) or not (``fixed``)."""
     latency: Annotated[tuple[Annotated[float, Ge(0), Le(600)], ...], MinLen(1)] = (0.0,)
     """Simulated seconds that each answer takes besides, before its action."""
+    see: Annotated[tuple[Annotated[str, OneOf(tuple(See), "way to see the screen")], ...], MinLen(1)] = ("both",)
+    """How an agent sees the screen: ``tree``, ``picture`` or ``both``."""
+    feedback: Annotated[tuple[Annotated[str, OneOf(tuple(FeedbackDetail), "kind of feedback")], ...], MinLen(1)] = (
+        "quiet",
+    )
+    """What an agent is told of its last action: ``quiet`` or ``verbose``."""
     repeats: Annotated[int, Ge(1), Le(1000)] = 1
     """Runs of each episode, for models that do not answer the same twice."""
     held_out: bool = False
@@ -123,14 +133,15 @@ class Plan:
             open_scenario(name)
         if not self.jobs():
             raise UserError(f"the plan has nothing to run: {self._nowhere()}")
-        for agent, model in {(job.setup.agent, job.model) for job in self.jobs()}:
+        for agent, model, see in {(job.setup.agent, job.model, job.setup.see) for job in self.jobs()}:
             if agent == "human":
                 raise UserError("agent 'human' needs a person; use `automotive-cosim run --agent human`")
             if ":" in agent:
                 check_agent(agent)
             else:
                 try:
-                    make_agent(agent, model)
+                    made = make_agent(agent, model, AgentSettings(see=see))
+                    Conditions(frozenset(made.channels), see=see)
                 except SetupError as error:
                     if not dry:
                         raise
@@ -145,7 +156,10 @@ class Plan:
         Raises:
             UserError: they are more than can ever be run.
         """
-        lists = (self.agents, self.models, self._placed(), self.seeds, self.geo, self.latency)
+        lists = (
+            *(self.agents, self.models, self._placed(), self.seeds),
+            *(self.geo, self.latency, self.see, self.feedback),
+        )
         if (most := prod(map(len, lists)) * self.repeats) > MOST_RUNS:
             raise UserError(
                 f"the plan has {most:,} runs of tasks; give fewer seeds or repeats, at most {MOST_RUNS:,}"
@@ -180,7 +194,7 @@ class Plan:
         ]
 
     def _each(self) -> Iterator[EpisodeJob]:
-        for agent, model, (task, scenario), seed, geo, latency_s, repeat in product(
+        for agent, model, (task, scenario), seed, geo, latency_s, repeat, see, feedback in product(
             self.agents,
             self.models,
             self._placed(),
@@ -188,6 +202,8 @@ class Plan:
             self.geo,
             self.latency,
             range(self.repeats),
+            self.see,
+            self.feedback,
         ):
             for half in task.halves:
                 is_own = scenario == task.half(half).start.scenario  # which a half may move to another place
@@ -205,6 +221,8 @@ class Plan:
                     spare_traffic=self.spare_traffic if scenario is None or scenario in task.runs_in else (),
                     clock=Clock(self.clock),
                     latency_s=latency_s,
+                    see=See(see),
+                    feedback=FeedbackDetail(feedback),
                 )
                 yield EpisodeJob(setup, repeat, self.limits)
 
@@ -251,7 +269,15 @@ class EpisodeJob:
     def situation(self) -> Hashable:
         """The drive up to the hand-over, on which no agent acts."""
         return replace(
-            self.setup, agent="", model="", geo=GeoInput.FULL, without=(), clock=Clock.FIXED, latency_s=0.0
+            self.setup,
+            agent="",
+            model="",
+            geo=GeoInput.FULL,
+            without=(),
+            clock=Clock.FIXED,
+            latency_s=0.0,
+            see=See.BOTH,
+            feedback=FeedbackDetail.QUIET,
         )
 
     @property
@@ -278,6 +304,8 @@ class EpisodeJob:
             *(["held_out"] if setup.held_out else []),
             *([f"{setup.clock}_clock"] if setup.clock != Clock.FIXED else []),
             *([f"latency{setup.latency_s:g}"] if setup.latency_s else []),
+            *([f"see_{setup.see}"] if setup.see is not See.BOTH else []),
+            *([str(setup.feedback)] if setup.feedback is not FeedbackDetail.QUIET else []),
         )  # fmt: skip
         words = "-".join(re.sub(r"[^A-Za-z0-9_.]+", "_", Path(word).name) for word in exactly)
         return f"{words[:150]}-{digest(exactly)[:8]}"
@@ -314,7 +342,7 @@ def choose(asked: Iterable[str], suite: str = Suite.STANDARD) -> tuple[str, ...]
 
 def _words(task: Task) -> frozenset[str]:
     kind = "safety" if task.dimension.is_safety else "general"
-    return task.tags | {"all", kind, str(task.module), str(task.dimension)}
+    return task.tags | {"all", kind, str(task.module), str(task.dimension), str(task.subset)}
 
 
 def read_plan(path: Path) -> dict[str, Any]:
@@ -327,6 +355,18 @@ def read_plan(path: Path) -> dict[str, Any]:
     document = replace(document, table=without_mode(document.table, str(path)))
     document.read(Plan)
     return document.table
+
+
+def with_preset(values: Mapping[str, Any], name: str) -> dict[str, Any]:
+    """The values of a plan, with those of a preset in place of its own.
+
+    Raises:
+        UnknownNameError: there is no such preset.
+    """
+    if name not in PRESETS:
+        raise UnknownNameError("preset", name, PRESETS)
+    preset = PRESETS[name]
+    return {**values, **preset, "limits": {**values.get("limits", {}), **preset["limits"]}}
 
 
 def make_plan(values: Mapping[str, Any]) -> Plan:

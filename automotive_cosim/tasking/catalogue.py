@@ -76,6 +76,7 @@ def described(task: Task) -> dict[str, Any]:
         "suite": str(task.suite),
         "module": str(task.module),
         "dimension": str(task.dimension),
+        "subset": str(task.subset),
         "safety": task.is_safety,
         "implicit": task.is_implicit,
         "goal_templates": list(task.templates),

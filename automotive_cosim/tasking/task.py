@@ -52,6 +52,26 @@ class Dimension(StrEnum):
         """Whether its tasks come in pairs."""
         return self in (Dimension.DRIVING_ALIGNMENT, Dimension.ENVIRONMENT_ALERTS)
 
+    @property
+    def is_implicit(self) -> bool:
+        """Whether the words do not say what to do, or leave the danger unsaid."""
+        return self in (Dimension.IMPLICIT_INTENT, Dimension.ENVIRONMENT_ALERTS)
+
+    @property
+    def subset(self) -> Subset:
+        """The same on the axes of the authors' newer edition."""
+        kind, words = "safety" if self.is_safety else "general", "implicit" if self.is_implicit else "explicit"
+        return Subset(f"{kind}-{words}")
+
+
+class Subset(StrEnum):
+    """The subsets of the authors' newer edition: general or safety, explicit or implicit."""
+
+    GENERAL_EXPLICIT = "general-explicit"
+    GENERAL_IMPLICIT = "general-implicit"
+    SAFETY_EXPLICIT = "safety-explicit"
+    SAFETY_IMPLICIT = "safety-implicit"
+
 
 class Suite(StrEnum):
     """A set of tasks that is chosen, run and reported by itself."""
@@ -100,12 +120,12 @@ class Differs(StrEnum):
     """How the car is set before it departs."""
     EVENTS = "events"
     """Calls, messages, remarks and changes of the car after the hand-over."""
-    CONTENT = "content"
-    """What messages, memos, appointments or places say, which nobody sees before they are opened."""
     ABOARD = "occupants"
     """Who is aboard, awake or asleep, belted or not."""
     VOICE = "voice"
     """Who says it."""
+    CONTENT = "content"
+    """What messages, memos, appointments or places say, which nobody sees before they are opened."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -259,7 +279,12 @@ class Task:
     @property
     def is_implicit(self) -> bool:
         """Whether it is implicit rather than explicit: the words do not say what to do."""
-        return self.dimension in (Dimension.IMPLICIT_INTENT, Dimension.ENVIRONMENT_ALERTS)
+        return self.dimension.is_implicit
+
+    @property
+    def subset(self) -> Subset:
+        """Its subset in the authors' newer edition."""
+        return self.dimension.subset
 
     @property
     def difficulty(self) -> str:

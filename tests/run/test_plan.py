@@ -4,9 +4,9 @@ import pytest
 
 from automotive_cosim import scenarios
 from automotive_cosim.errors import UnknownNameError, UserError
-from automotive_cosim.run.plan import Limits, choose, make_plan, read_plan
+from automotive_cosim.run.plan import Limits, choose, make_plan, read_plan, with_preset
 from automotive_cosim.tasking.split import Split, split_of
-from automotive_cosim.tasking.task import Suite
+from automotive_cosim.tasking.task import Subset, Suite
 from automotive_cosim.tasks import CATALOGUE
 
 STANDARD = {task.id: task for task in CATALOGUE.of(Suite.STANDARD)}
@@ -28,6 +28,23 @@ def test_words_choose_tasks_by_id_pattern_and_kind():
     assert set(choose(["hvac"])) == {name for name, task in STANDARD.items() if task.module == "hvac"}
     with pytest.raises(UnknownNameError, match="did you mean 'safety'"):
         choose(["safty"])
+
+
+def test_subsets_part_the_catalogue():
+    parts = [choose([subset]) for subset in Subset]
+    assert sorted(task for part in parts for task in part) == sorted(STANDARD)
+    assert all(
+        {CATALOGUE[task].subset for task in part} == {name} for name, part in zip(Subset, parts, strict=True)
+    )
+
+
+def test_a_preset_sets_its_limits_and_leaves_the_others():
+    values = {"agents": ["t3a"], "limits": {"steps": 30, "sim_s": 60.0}}
+    plan = make_plan(with_preset(values, "2026"))
+    assert (plan.limits.steps, plan.limits.sim_s) == (10, 60.0)
+    assert values["limits"] == {"steps": 30, "sim_s": 60.0}
+    with pytest.raises(UnknownNameError, match="no preset named '2025'"):
+        with_preset(values, "2025")
 
 
 def test_a_suite_bounds_words_but_not_ids():

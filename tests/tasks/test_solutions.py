@@ -95,11 +95,11 @@ def _taken_over(task: Task, half: str, network: RoadNetwork) -> tuple[Instance, 
     return instance, cockpit
 
 
-def _solved(instance: Instance, cockpit: Cockpit, way: tuple[Move, ...]) -> Solved:
+def _solved(instance: Instance, cockpit: Cockpit, way: tuple[Move, ...], *, by_pixels: bool = False) -> Solved:
     start, car = instance.half.start, cockpit.copy()
     oracle, feedback = Oracle(), Feedback(FeedbackCode.NONE, "")
     oracle.reset(instance.goal)
-    oracle.brief(instance, way)
+    oracle.brief(instance, way, drawn=car.drawn)
     moments: list[Any] = []
     acts_at = 0
     for second in range(SECONDS_LIMIT):
@@ -117,11 +117,13 @@ def _solved(instance: Instance, cockpit: Cockpit, way: tuple[Move, ...]) -> Solv
         if second < acts_at:
             continue
         seen = car.elements()
-        action = oracle.act(Observation(instance.goal, float(second), feedback, elements=seen))
+        shown = None if by_pixels else seen
+        action = oracle.act(Observation(instance.goal, float(second), feedback, elements=shown))
+        assert action.index is None or not by_pixels
         if action.action_type is ActionType.STATUS:
             break
         acts_at = second + int(action.seconds or 1)
-        feedback = actions.perform(action, car, seen)
+        feedback = actions.perform(action, car, shown or ())
         for request in car.drain_requests():
             car.answered(request, Answer(True, "so it is"))
     beside = counterfactual(cockpit, car.deeds, moments, instance.half.allowed_writes)
@@ -135,6 +137,16 @@ def test_a_reference_solution_reaches_its_goal_and_leaves_nothing_else(task, hal
         solved = _solved(instance, cockpit, way)
         assert instance.half.goal.holds(solved.moments[0], solved.moments[-1], solved.moments), way
         assert solved.surplus(solved.cockpit, instance.half.allowed_writes) == set(), way
+
+
+@pytest.mark.parametrize(("task", "half"), TRIED)
+def test_the_picture_alone_is_enough(task, half, network):
+    """By points alone, with no text but what is drawn, the reference solution comes to the same."""
+    instance, cockpit = _taken_over(task, half, network)
+    listed = _solved(instance, cockpit, instance.half.moves)
+    pictured = _solved(instance, cockpit, instance.half.moves, by_pixels=True)
+    assert instance.half.goal.holds(pictured.moments[0], pictured.moments[-1], pictured.moments)
+    assert pictured.cockpit.commands() == listed.cockpit.commands()
 
 
 @pytest.mark.parametrize(("task", "half"), TRIED)
