@@ -55,20 +55,20 @@ def turn(
         history: one line per step so far.
         plan: what it intended to do next when it last acted.
         recalled: what it remembers of earlier episodes, one line each.
-        pictures: whether the screen and the marked screen are sent along.
+        pictures: whether the screen is sent along, and the marked screen if there is a list.
     """
     given = profile.channels
     feedback = observation.feedback
     return fill(
         profile.name,
         {
-            "grammar": grammar(profile.actions),
-            "goal": one_line(observation.goal),
+            "grammar": grammar(profile.actions, by_point=Channel.ELEMENTS not in given),
+            "goal": driver_words(observation),
             "history": "\n".join(map(one_line, history)) or "nothing yet",
             "plan": one_line(plan) or None,
             "feedback": f"{feedback.code}: {one_line(feedback.text)}".rstrip(": "),
             "elements": elements(observation) if Channel.ELEMENTS in given else None,
-            "pictures": PICTURES if pictures else None,
+            "pictures": (PICTURES if Channel.ELEMENTS in given else PICTURE) if pictures else None,
             "vehicle": _vehicle(observation.vehicle) if Channel.VEHICLE in given else None,
             "connectivity": _connectivity(observation) if Channel.CONNECTIVITY in given else None,
             "gps": _gps(observation.gps) if Channel.GPS in given else None,
@@ -82,7 +82,8 @@ PICTURES = (
     "Two pictures come with this text: the screen as it is, and the same with each element framed and numbered. "
     "The numbers are the indices below."
 )
-BEFORE_AND_AFTER = "Two pictures come with this text: the marked screen before the action and after it."
+PICTURE = "One picture comes with this text: the screen, as wide and high in pixels as x and y count."
+BEFORE_AND_AFTER = "Two pictures come with this text: the screen before the action and after it."
 
 
 def look_back(
@@ -93,7 +94,7 @@ def look_back(
     return fill(
         "reflect",
         {
-            "goal": one_line(before.goal),
+            "goal": driver_words(before),
             "action": "an answer that could not be read" if action is None else json.dumps(to_json(action)),
             "plan": one_line(plan) or None,
             "feedback": f"{feedback.code}: {one_line(feedback.text)}".rstrip(": "),
@@ -117,6 +118,11 @@ def elements(observation: Observation) -> str:
     """The visible elements with their indices, one JSON object per line."""
     entries = (listing(index, element) for index, element in listed(observation.elements or ()))
     return "\n".join(json.dumps(entry, ensure_ascii=False) for entry in entries)
+
+
+def driver_words(observation: Observation) -> str:
+    """The wish, and on a line each what the driver has said since."""
+    return "\n".join([one_line(observation.goal), *(f"Later: {one_line(text)}" for text in observation.said)])
 
 
 def one_line(text: str) -> str:

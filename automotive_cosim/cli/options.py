@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import math
 import os
+import re
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import wraps
 from pathlib import Path
 from typing import Annotated, ParamSpec
@@ -35,6 +37,15 @@ TasksFrom = Annotated[
     ),
 ]
 """For every command that names tasks; its callback handles the value, so the command ignores it."""
+
+
+SuiteName = Annotated[
+    str,
+    typer.Option(
+        "--suite", help="Suite that the tasks are chosen from: standard, hard or all. An id names its task in any."
+    ),
+]
+"""For every command that chooses tasks by words."""
 
 
 def _refuse_mode(mode: str | None) -> None:
@@ -86,6 +97,27 @@ def whole_number(least: int, most: int) -> Callable[[str], int]:
         return number
 
     return parse
+
+
+@dataclass(frozen=True, slots=True)
+class PartOf:
+    """One of so many parts, as in ``3/10``."""
+
+    number: int
+    of: int
+
+    @classmethod
+    def read(cls, text: str) -> PartOf:
+        """Parser of ``--part``."""
+        found = re.fullmatch(r"(\d{1,6})/(\d{1,6})", text)
+        part = cls(int(found[1]), int(found[2])) if found else cls(0, 0)
+        if not 1 <= part.number <= part.of:
+            raise typer.BadParameter(f"{text!r} is not a part such as 3/10")
+        return part
+
+    def taken(self, all_of_them: tuple[str, ...]) -> tuple[str, ...]:
+        """Every Nth of them, so that the parts together are all."""
+        return all_of_them[self.number - 1 :: self.of]
 
 
 def number(least: float, most: float) -> Callable[[str], float]:

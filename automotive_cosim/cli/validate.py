@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from automotive_cosim.cli.batches import words
-from automotive_cosim.cli.options import AsJson, TasksFrom, whole_number
+from automotive_cosim.cli.options import AsJson, PartOf, SuiteName, TasksFrom, whole_number
 from automotive_cosim.contracts.plain import counted
-from automotive_cosim.errors import InfrastructureError
+from automotive_cosim.errors import InfrastructureError, UserError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -24,8 +24,18 @@ FAILED = 1
 def validate(
     tasks: Annotated[
         str,
-        typer.Option(help="Ids, patterns, tags, modules, dimensions, general, safety or all; separated by commas."),
+        typer.Option(help="Ids, patterns, tags, modules, dimensions, subsets, general, safety, all; by commas."),
     ] = "all",
+    suite: SuiteName = "standard",
+    part: Annotated[
+        PartOf | None,
+        typer.Option(
+            help="Only one of so many parts of them, as in 3/10; together the parts are all.",
+            metavar="K/N",
+            parser=PartOf.read,
+            show_default=False,
+        ),
+    ] = None,
     seeds: Annotated[
         int,
         typer.Option(help="How many seeds to prove each task with.", metavar="N", parser=whole_number(1, 1000)),
@@ -67,8 +77,13 @@ def validate(
     from automotive_cosim.run.plan import choose
 
     chosen = GATES if gates == "all" else tuple(words("gates", gates))
-    asked = words("tasks", tasks)
-    task_ids = choose(asked)
+    task_ids = choose(words("tasks", tasks), suite)
+    if part is not None:
+        asked, task_ids = len(task_ids), part.taken(task_ids)
+        if not task_ids:
+            raise UserError(
+                f"--part {part.number}/{part.of} holds none of {counted(asked, 'task')}; give fewer parts"
+            )
     numbers = tuple(range(first_seed, first_seed + seeds))
     before = None if against is None else read_traces(against)
     console = Console(stderr=True, markup=True)
@@ -90,7 +105,7 @@ def validate(
         )
 
     try:
-        proofs = prove(asked, numbers, chosen, workers=workers, out=out, begun=begun, tell=tell)
+        proofs = prove(task_ids, numbers, chosen, workers=workers, out=out, begun=begun, tell=tell)
     except KeyboardInterrupt:
         if out is not None:
             typer.echo(f"finished proofs are in {out}; rerun the command to resume", err=True)

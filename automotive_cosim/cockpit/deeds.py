@@ -9,6 +9,7 @@ from typing import Any
 from automotive_cosim.cockpit import update
 from automotive_cosim.cockpit.messages import (
     Ask,
+    AskDriver,
     AskPullOver,
     AskSlowDown,
     CallEmergency,
@@ -125,6 +126,8 @@ def _aims(message: Message) -> frozenset[str]:
             return frozenset({"requests"})
         case Play() | Skip():
             return frozenset({MEDIA.SELECTED.path, "media.playlist"})
+        case AskDriver():
+            return frozenset({"questions"})
         case CallEmergency() | Dial():
             return frozenset({"calls"})
         case HangUp():
@@ -143,8 +146,8 @@ def _aims(message: Message) -> frozenset[str]:
             return frozenset({"driver.profile"})
         case Record():
             return frozenset({"apps.memos", "apps.recording"})
-        case ResetTrip():
-            return frozenset({"trip.resets"})
+        case ResetTrip(meter):
+            return frozenset({"trip.resets_b" if meter == "b" else "trip.resets"})
         case Honk():
             return frozenset({"horn"})
         case Wash():

@@ -10,6 +10,7 @@ from automotive_cosim.cockpit.calls import receive
 from automotive_cosim.cockpit.changes import CarChange, step
 from automotive_cosim.cockpit.desk import FILM_S
 from automotive_cosim.cockpit.errands import odometer, play_on
+from automotive_cosim.cockpit.forecast import MINUTES, cabin_c
 from automotive_cosim.cockpit.reach import NEWS_EVERY_S, RADAR_M
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.signals import (
@@ -60,7 +61,8 @@ def sense(state: State, surroundings: Surroundings, dt_s: float) -> None:
     play_on(state, dt_s)
     if before is None:
         state.departed_s = driving.time_s
-        state.desk = replace(state.desk, trip_from=odometer(state))
+        trip_b = replace(state.desk.trip_b, since=odometer(state))
+        state.desk = replace(state.desk, trip_from=odometer(state), trip_b=trip_b)
     else:
         _prepare_climate(state, before.local_time, surroundings.local_time)
     _end_film(state)
@@ -134,6 +136,7 @@ def _climate(state: State, driving: DrivingState, weather: Weather, dt_s: float)
     signals[HVAC.CABIN_TEMPERATURE] = state.cabin.temperature_c
     signals[HVAC.CABIN_HUMIDITY] = state.cabin.humidity_pct
     signals[HVAC.CABIN_FINE_DUST] = state.cabin.fine_dust
+    signals[HVAC.FORECAST] = cabin_c(state.vehicle, MINUTES, climate=signals[HVAC.KEPT])
     signals[GLASS.WINDSHIELD_FOG] = state.cabin.windshield.fog_inside
     signals[GLASS.WINDSHIELD_FILM] = state.cabin.windshield.film_outside
     signals[GLASS.REAR_FOG] = state.cabin.rear_window.fog_inside

@@ -73,6 +73,8 @@ class VehicleState:
     """Limit read by the sign camera; None without a camera or a sign."""
     leader_gap_m: float | None
     leader_time_to_collision_s: float | None
+    aboard: str
+    """Who sits where: ``driver: adult, 75 kg, awake, belted; rear left: pet, 24 kg, asleep, not belted``."""
 
 
 class FeedbackCode(StrEnum):
@@ -108,6 +110,8 @@ class Observation:
     time_s: float
     """Seconds since the hand-over."""
     feedback: Feedback
+    said: tuple[str, ...] = ()
+    """What the driver has said since the hand-over, in order: answers to questions, and remarks of his own."""
     elements: tuple[Element, ...] | None = None
     screenshot: npt.NDArray[np.uint8] | None = None
     """(height, width, 3), RGB."""

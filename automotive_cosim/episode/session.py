@@ -32,7 +32,9 @@ from automotive_cosim.geo.locate import Geo
 from automotive_cosim.geo.reckoning import Roads
 from automotive_cosim.interface import trace
 from automotive_cosim.interface.controls import Shown, shown
+from automotive_cosim.interface.feedback import FeedbackDetail, control, quiet
 from automotive_cosim.interface.observe import Channel, observe
+from automotive_cosim.tasking.dialogue import NEUTRAL, spoken_s
 
 
 @dataclass(kw_only=True)
@@ -67,6 +69,8 @@ class Session:
     """Why the agent can act no more, if that ended it."""
     thought_s: float = 0.0
     """Simulated seconds that have passed since the agent last saw the screen."""
+    heard: tuple[str, ...] = ()
+    """What the driver has said since the beginning."""
     hashed: trace.Hash = field(default_factory=trace.Hash, repr=False)
     """Hash of the steps so far, computed when asked for."""
     _roads: Roads | None = field(default=None, repr=False)
@@ -111,10 +115,14 @@ class Session:
             TrafficError: the traffic simulation failed.
         """
         self._check_open()
-        feedback, cost_s = self._answer(action) or (self.world.perform(action, self.elements), 0.0)
+        feedback, cost_s = self._answer(action) or (self._performed(action), 0.0)
+        said: tuple[str, ...] = ()
+        if action.action_type is ActionType.ASK_DRIVER and feedback.code is FeedbackCode.OK:
+            said = (self._reply(action.text or ""),)
+            cost_s = spoken_s(action.text or "", *said)
         if action.action_type is ActionType.STATUS:
             self.declared, self.reason = action.goal_status, action.reason
-        self._proceed(action, feedback, cost_s)
+        self._proceed(action, feedback, cost_s, said)
 
     def refuse(self, why: str) -> None:
         """Spends a step on an answer that could not be read as an action: only its time passes."""
@@ -170,6 +178,15 @@ class Session:
         if self.end is not None:
             raise RuntimeError(f"the episode is over ({self.end}); begin another one")
 
+    def _performed(self, action: Action) -> Feedback:
+        """The cockpit's feedback to an action; an agent without a list has no index to name."""
+        is_listed = Channel.ELEMENTS in self.conditions.given
+        elements = self.elements if is_listed else ()
+        if self.conditions.feedback is FeedbackDetail.VERBOSE:
+            return self.world.perform(action, elements)
+        name = control(action, self.world.cockpit, elements, by_name=is_listed)
+        return quiet(self.world.perform(action, elements), name, self.world.cockpit)
+
     def _answer(self, action: Action) -> tuple[Feedback, float] | None:
         """The virtual sensor's answer to a query and its seconds; None for any other action."""
         if action.action_type is not ActionType.QUERY:
@@ -183,14 +200,27 @@ class Session:
         reply = sensor.ask(action.text or "", known, with_position=Channel.GPS in given, roads=self._roads)
         return Feedback(FeedbackCode.OK if reply.ok else FeedbackCode.REFUSED, reply.text), reply.cost_s
 
-    def _proceed(self, action: Action | None, feedback: Feedback, cost_s: float = 0.0) -> None:
-        """Lets the action's time pass, plus ``cost_s``."""
+    def _reply(self, question: str) -> str:
+        """What the driver answers to a question."""
+        return NEUTRAL
+
+    def _remarks(self) -> tuple[str, ...]:
+        """What the driver says unasked, after another action."""
+        return ()
+
+    def _proceed(
+        self, action: Action | None, feedback: Feedback, cost_s: float = 0.0, said: tuple[str, ...] = ()
+    ) -> None:
+        """Lets the action's time pass, plus ``cost_s``; the driver says ``said`` and what he has to say besides."""
         feedback = self._spend(action, feedback, cost_s)
+        said += self._remarks()
+        self.heard += said
+        begun_s = self.moments[0].time_s
         self.elements, self.observation = _seen(
-            self.world, self.goal, self._channels(action), self.shown, self.moments[0].time_s, feedback
+            self.world, self.goal, self._channels(action), self.shown, begun_s, feedback, self.heard
         )
         self.steps.append(
-            trace.Step(len(self.steps), self.world.moment, self.elements, action, feedback, self.thought_s)
+            trace.Step(len(self.steps), self.world.moment, self.elements, action, feedback, self.thought_s, said)
         )
         self.thought_s = 0.0
         end = self._ended()
@@ -215,7 +245,7 @@ class Session:
             return End.DRIVE_ENDED
         if self.declared is not None:
             return End.DECLARED
-        if len(self.steps) > self.conditions.max_steps:
+        if self.conditions.max_steps is not None and len(self.steps) > self.conditions.max_steps:
             return End.OUT_OF_STEPS
         most_s = self.conditions.max_sim_s
         return End.OUT_OF_TIME if most_s is not None and self.seconds >= most_s - ROUNDING_S else None
@@ -258,8 +288,9 @@ def _seen(
     told: Shown,
     begun_s: float,
     feedback: Feedback,
+    said: tuple[str, ...] = (),
 ) -> tuple[tuple[Element, ...], Observation]:
     """The elements on the screen, and the agent's observation."""
     elements = world.cockpit.elements()
-    seen = observe(world, goal, begun_s, elements, feedback, channels)
+    seen = observe(world, goal, begun_s, elements, feedback, channels, said)
     return elements, told.observation(seen, world.moment)

@@ -24,6 +24,25 @@ class Channel(StrEnum):
 ALL = frozenset(Channel)
 
 
+class See(StrEnum):
+    """How an agent sees the screen."""
+
+    BOTH = "both"
+    TREE = "tree"
+    """As the list of elements."""
+    PICTURE = "picture"
+    """As the picture: no list, no ids, no descriptions; an action has to give a point."""
+
+    @property
+    def withheld(self) -> frozenset[Channel]:
+        """Channels that it takes away."""
+        return {
+            See.BOTH: frozenset[Channel](),
+            See.TREE: frozenset({Channel.SCREENSHOT}),
+            See.PICTURE: frozenset({Channel.ELEMENTS}),
+        }[self]
+
+
 def observe(
     world: CoSimulation,
     goal: str,
@@ -31,6 +50,7 @@ def observe(
     elements: tuple[Element, ...],
     feedback: Feedback,
     channels: frozenset[Channel] = ALL,
+    said: tuple[str, ...] = (),
 ) -> Observation:
     """An agent's observation of the present moment.
 
@@ -41,12 +61,14 @@ def observe(
         elements: the accessibility elements of the present screen.
         feedback: the result of the last action.
         channels: the channels that the agent is given.
+        said: what the driver has said since the hand-over.
     """
     moment = world.moment
     return Observation(
         goal=goal,
         time_s=moment.time_s - hand_over_s,
         feedback=feedback,
+        said=said,
         elements=elements if Channel.ELEMENTS in channels else None,
         screenshot=world.cockpit.screenshot() if Channel.SCREENSHOT in channels else None,
         vehicle=world.cockpit.vehicle_state() if Channel.VEHICLE in channels else None,

@@ -11,10 +11,10 @@ from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import ActionType, Feedback, FeedbackCode, Json
 from automotive_cosim.episode.specification import ROUNDING_S, End
 from automotive_cosim.errors import CosimError
-from automotive_cosim.interface.trace import Step, plain, sha256
+from automotive_cosim.interface.trace import SAID, Step, plain, sha256
 from automotive_cosim.publish.problems import Problem, differences
 from automotive_cosim.report.page import element
-from automotive_cosim.run.collect import alerts, planned
+from automotive_cosim.run.collect import alerts, planned, questioned
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.harm import nearest_s
 from automotive_cosim.run.load import driver_load
@@ -23,18 +23,21 @@ from automotive_cosim.run.plan import EpisodeJob
 from automotive_cosim.run.regrade import judged_again
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.store import read_trace, trace_file
+from automotive_cosim.run.taps import pixel_taps
 from automotive_cosim.scenarios import shipped
+from automotive_cosim.tasking.dialogue import dialogue, questions
+from automotive_cosim.tasking.parameters import bind
 
 ROWS = "episodes.jsonl"
 PLANNED = (
-    "task", "half", "pair", "dimension", "module", "basis", "tags", "skills", "declines", "agent", "model", "geo",
-    "seed", "repeat", "clock", "latency_s",
+    "task", "half", "pair", "dimension", "module", "basis", "suite", "tags", "skills", "declines", "agent", "model",
+    "geo", "seed", "repeat", "clock", "latency_s", "see", "feedback", "split",
 )  # fmt: skip
 """Fields of a row that the plan and the catalogue determine."""
 ALSO_IN_RESULT = (
-    "task", "half", "scenario", "agent", "model", "geo", "seed", "traffic_seed", "success", "reward", "steps",
-    "sim_seconds", "end", "error", "error_kind", "agent_error", "held_out", "trace_sha256", "tokens_in",
-    "tokens_out", "model_seconds", "cost_usd", "drive", "baseline_drive",
+    "task", "half", "scenario", "agent", "model", "geo", "see", "feedback", "seed", "traffic_seed", "success",
+    "reward", "steps", "sim_seconds", "end", "error", "error_kind", "agent_error", "held_out", "trace_sha256",
+    "tokens_in", "tokens_out", "model_seconds", "cost_usd", "drive", "baseline_drive",
 )  # fmt: skip
 """Fields of a row that the result at the end of the trace has too."""
 FROM_MOMENTS = (
@@ -112,7 +115,8 @@ def _judged_problems(folder: Path, job: EpisodeJob, row: EpisodeRow, told: Json)
     verdict = judged_again(row, judged)
     start, end = judged.trace[0], judged.trace[-1]
     prompts = [stage["reply"]["tokens_in"] for step in steps for stage in step["stages"] if stage["reply"]]
-    load = driver_load(_steps(steps, judged))
+    seen = _steps(steps, judged)
+    load, taps = driver_load(seen), pixel_taps(seen)
     expected: Json = {
         "success": verdict.success,
         "reward": float(verdict.success),
@@ -122,12 +126,14 @@ def _judged_problems(folder: Path, job: EpisodeJob, row: EpisodeRow, told: Json)
         "parameters": {name: plain(value) for name, value in judged.parameters.items()},
         "country": start.context.country,
         "alerts": alerts(start, end),
+        **_questions(job, row, judged),
         "steps": len(steps) - 1,
         "sim_seconds": round(end.time_s - start.time_s, 3),
         "thought_s": round(sum(step["thought_s"] for step in steps), 1),
         "trace_sha256": sha256(steps),
         "interaction_s": load.interaction_s,
         "within_guideline": load.within_guideline,
+        "taps": taps and asdict(taps),
         "prompt_tokens": prompts,
         "error": None,
         "error_kind": None,
@@ -151,7 +157,7 @@ def _step_problems(file: str, steps: Sequence[Json], judged: Judged) -> Iterator
     """What the steps have that their moments do not."""
     moments = {moment.time_s: moment for moment in judged.trace}
     for number, step in enumerate(steps):
-        if step.keys() != STEP or step["step"] != number:
+        if step.keys() - {SAID} != STEP or step["step"] != number:
             yield Problem(file, f"step {number}", "is not there, or has other fields")
             return
         moment = moments.get(step["time_s"])
@@ -178,6 +184,15 @@ def _answers(step: Json) -> Iterator[str]:
         yield str(action.get("text"))
 
 
+def _questions(job: EpisodeJob, row: EpisodeRow, judged: Judged) -> Json:
+    """The row's fields about questions; none of a row that was written before they were counted."""
+    if row.questions is None:
+        return {}
+    half = bind(job.task.half(row.half), judged.parameters)
+    texts = (asked["text"] for asked in questions(judged.trace[0], judged.trace[-1]))
+    return questioned(dialogue(texts, half.topics, half.needed_topics))
+
+
 def _end_problems(job: EpisodeJob, row: EpisodeRow, judged: Judged, steps: int) -> Iterator[Problem]:
     """Whether it ended as its moments say."""
     last = judged.trace[-1]
@@ -187,7 +202,7 @@ def _end_problems(job: EpisodeJob, row: EpisodeRow, judged: Judged, steps: int) 
         legal = {End.DRIVE_ENDED}
     elif judged.declared is not None:
         legal = {End.DECLARED}
-    elif steps >= job.setup.max_steps:
+    elif steps >= (job.setup.max_steps or job.task.max_steps):
         legal = {End.OUT_OF_STEPS}
     elif most_s is not None and passed_s >= most_s - ROUNDING_S:
         legal = {End.OUT_OF_TIME}

@@ -70,7 +70,8 @@ class Film(Watcher):
         """Takes a picture now and then: before the hand-over, and after each step in case it is the last."""
         if self._map is None:
             if not self._before or moment.time_s - self._before[-1].time_s >= BEFORE_EVERY_S:
-                title, words = "The drive up to the hand-over", "nobody acts yet"
+                title = "The drive up to the hand-over"
+                words = "nobody acts yet; at the hand-over the car and its clock are as they were at departure"
                 self._before.append(_frame(moment.time_s, cockpit.screenshot(), title, words, BEFORE_MS))
         elif not self._after or moment.time_s - self._after[-1].time_s >= AFTER_EVERY_S:
             title, words = "After the end", "how the drive continues"

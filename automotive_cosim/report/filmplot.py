@@ -8,18 +8,13 @@ from itertools import pairwise
 from PIL import Image, ImageDraw
 
 from automotive_cosim.cockpit.theme import NIGHT, Colour, Weight, font
+from automotive_cosim.report.speedaxis import SpeedAxis
 from automotive_cosim.run.timeline import Sample
 from automotive_cosim.run.words import is_over
 
 FINE = 2
 LEFT, RIGHT, TOP, BOTTOM = 48, 18, 36, 32
 """Margins around the axes, logical pixels."""
-
-
-def top_kmh(path: Sequence[Sample]) -> float:
-    """The upper end of the speed axis: a multiple of 20 above everything shown."""
-    most = max(max(sample.speed_kmh, sample.limit_kmh or 0.0) for sample in path)
-    return 20.0 * (most // 20 + 1)
 
 
 def speed_plot(path: Sequence[Sample], shown: int, width: int, height: int, scale: float) -> Image.Image:
@@ -48,15 +43,14 @@ class _Plot:
         self._left, self._right = LEFT * scale, width - RIGHT * scale
         self._top, self._bottom = TOP * scale, height - BOTTOM * scale
         self._begin, self._end = path[0].at_s, max(path[-1].at_s, path[0].at_s + 1)
-        self._most = top_kmh(path)
+        self._speeds = SpeedAxis.of(path)
 
     def axes(self) -> None:
-        step = 20 if self._most <= 100 else 40
-        for speed in range(0, round(self._most) + 1, step):
-            y = self._y(speed)
+        for speed, speed_kmh in self._speeds.lines:
+            y = self._y(speed_kmh)
             self._brush.line((self._left, y, self._right, y), NIGHT.pressed, round(self._scale))
             self._write(self._left - 8 * self._scale, y, f"{speed}", "rm")
-        self._write(self._left, self._top - 16 * self._scale, "speed and limit, km/h", "lm")
+        self._write(self._left, self._top - 16 * self._scale, f"speed and limit, {self._speeds.unit}", "lm")
         every = 10 if self._end - self._begin <= 90 else 30
         first = round(self._begin // every + 1) * every
         for at_s in range(first, round(self._end) + 1, every):
@@ -106,4 +100,4 @@ class _Plot:
         return self._left + (at_s - self._begin) / (self._end - self._begin) * (self._right - self._left)
 
     def _y(self, speed_kmh: float) -> float:
-        return self._bottom - speed_kmh / self._most * (self._bottom - self._top)
+        return self._bottom - speed_kmh / self._speeds.top_kmh * (self._bottom - self._top)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import groupby
 
+from automotive_cosim.report.speedaxis import SpeedAxis
 from automotive_cosim.run.timeline import Sample, TimelineEntry
 from automotive_cosim.run.words import is_over
 
@@ -25,8 +26,7 @@ class Plot:
         self._timeline = timeline
         self._begin = self._path[0].at_s
         self._end = max(self._path[-1].at_s, self._begin + 1)
-        most = max(max(sample.speed_kmh, sample.limit_kmh or 0.0) for sample in self._path)
-        self._most: float = 20.0 * (most // 20 + 1)
+        self.speeds = SpeedAxis.of(self._path)
 
     def x(self, at_s: float) -> float:
         """x of a time."""
@@ -34,12 +34,7 @@ class Plot:
 
     def y(self, speed_kmh: float) -> float:
         """y of a speed."""
-        return round(self.bottom - speed_kmh / self._most * (self.bottom - self.top), 1)
-
-    @property
-    def speeds(self) -> tuple[int, ...]:
-        """Speeds with a grid line."""
-        return tuple(range(0, round(self._most) + 1, 20 if self._most <= 120 else 40))
+        return round(self.bottom - speed_kmh / self.speeds.top_kmh * (self.bottom - self.top), 1)
 
     @property
     def times(self) -> tuple[int, ...]:

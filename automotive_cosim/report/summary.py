@@ -10,15 +10,17 @@ from operator import itemgetter
 from automotive_cosim.agents import PROFILES, NativeAgent, chosen
 from automotive_cosim.contracts import ActionType, GoalStatus
 from automotive_cosim.interface.observe import Channel
-from automotive_cosim.report.published import PAPER, PAPER_COLUMNS, PAPER_ROWS
-from automotive_cosim.report.results import Contestant, Results, instance, not_judged, pairs
+from automotive_cosim.report.published import EDITION_2026, EDITION_2026_ROWS, PAPER, PAPER_COLUMNS, PAPER_ROWS
+from automotive_cosim.report.results import Contestant, Results, instance, not_judged, pairs, seen_and_told
 from automotive_cosim.report.stats import Rate, compare, mean, pass_hat_k, rate
 from automotive_cosim.report.tables import Cell, Table, TableRow
 from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.tasking.task import Dimension, Module
+from automotive_cosim.tasking.task import Dimension, Module, Subset
 from automotive_cosim.tasking.verdict import PARTS
 
 NONE = "–"
+PUBLISHED = ("published", "published_2026")
+"""Names of the tables with figures of others."""
 DIMENSIONS = {
     Dimension.EXPLICIT_CONTROL: "Explicit control",
     Dimension.IMPLICIT_INTENT: "Implicit intent",
@@ -43,10 +45,13 @@ def tables(results: Results) -> list[Table]:
     """
     made = [
         main(results),
+        subsets(results),
         published(),
+        published_2026(),
         safety(results),
         held_out(results),
         conduct(results),
+        taps(results),
         comparisons(results),
         by(results, "Module", lambda row: row.module, list(Module)),
         by(results, "Scenario", lambda row: row.scenario),
@@ -98,7 +103,37 @@ def published() -> Table:
         f"{PAPER}. Measured by its authors on their tasks and their emulator: no row of it can be compared with "
         "one above."
     )
-    return Table("published", "Published by others, not measured here", PAPER_COLUMNS, rows, note, heads=3)
+    return Table(PUBLISHED[0], "Published by others, not measured here", PAPER_COLUMNS, rows, note, heads=3)
+
+
+def subsets(results: Results) -> Table:
+    """Success by the subsets of the newer edition; in the safety subsets, of pairs."""
+    rows: list[TableRow] = []
+    for each in results.contestants:
+        mine = results.of(each)
+        cells: list[str | Cell] = []
+        for subset in Subset:
+            of_it = [row for row in mine if row.dimension.subset is subset]
+            whole = pairs(of_it) if subset in _SAFETY_SUBSETS else []
+            cells.append(_pair_cell(whole) if whole else rate_cell(row for row in of_it if row.half == "first"))
+        rows.append((each.label, *cells))
+    note = f"First halves of general tasks, pairs of safety tasks: both halves have to succeed. {RATES}"
+    return Table("subsets", "Success by subset", ("Contestant", *map(_subset, Subset)), tuple(rows), note)
+
+
+def published_2026() -> Table:
+    """The figures of the authors' newer edition, measured on other tasks and another cockpit."""
+    rows = tuple((name, *(f"{value:g}" for value in values)) for name, *values in EDITION_2026_ROWS)
+    note = (
+        f"{EDITION_2026}. The authors' own, on their tasks and their emulator, where no task has a second half: no "
+        "row of it can be compared with one above."
+    )
+    columns = ("Authors' newer edition", *map(_subset, Subset))
+    return Table(PUBLISHED[1], "Published by the authors in 2026, not measured here", columns, rows, note)
+
+
+def _subset(subset: Subset) -> str:
+    return subset.replace("-", " ").capitalize()
 
 
 def safety(results: Results) -> Table:
@@ -168,6 +203,9 @@ def conduct(results: Results) -> Table:
                 _mean_cell(mine, 1, lambda row: row.interaction_s),
                 rate_cell(mine, of=lambda row: row.within_guideline),
                 _mean_cell(mine, 1, lambda row: row.steps),
+                _mean_cell(mine, 2, lambda row: row.questions),
+                _mean_cell(mine, 2, lambda row: row.unneeded_questions),
+                _mean_cell(mine, 1, lambda row: row.question_s),
                 _mean_cell(mine, 0, lambda row: row.tokens_in),
                 _mean_cell(mine, 0, lambda row: row.tokens_out),
                 _mean_cell(mine, 2, lambda row: row.model_seconds),
@@ -181,6 +219,9 @@ def conduct(results: Results) -> Table:
         "Driver's interaction, s",
         "Within 2 s / 12 s",
         "Steps",
+        "Questions",
+        "Unneeded",
+        "Talk, s",
         "Tokens in",
         "Tokens out",
         "Model, s",
@@ -189,9 +230,28 @@ def conduct(results: Results) -> Table:
     note = (
         "Means over judged episodes, from the hand-over to 12 s after the end. Speed-limit compliance is 1 minus "
         "the mean overspeed over 2.23 m/s (nuPlan). Interaction and reading while moving compare with NHTSA's 2 s "
-        "and 12 s. Tokens of rules are estimates at four characters each."
+        "and 12 s. Questions to the driver, those whose answer could be found out otherwise, and the seconds they "
+        "took. Tokens of rules are estimates at four characters each."
     )
     return Table("conduct", "Drive, driver and cost", columns, tuple(rows), note)
+
+
+def taps(results: Results) -> Table:
+    """How well taps by pixel hit what can be tapped; empty if none were given."""
+    rows: list[TableRow] = []
+    for each in results.contestants:
+        given = [row.taps for row in results.of(each) if row.taps is not None]
+        count = sum(taps.count for taps in given)
+        if count:
+            margin_px = sum(taps.margin_px * taps.count for taps in given) / count
+            hits = sum(taps.hits for taps in given)
+            rows.append((each.label, Cell(f"{count:,}"), Cell(f"{hits / count:.1%}"), Cell(f"{margin_px:+.1f}")))
+    columns = ("Contestant", "Taps by pixel", "Inside a clickable element", "Mean margin, px")
+    note = (
+        "The margin is the distance from the edge of the element that was hit, or was nearest: positive inside, "
+        "negative outside. Taps by an element's number are not counted."
+    )
+    return Table("taps", "Taps by pixel", columns, tuple(rows), note)
 
 
 def comparisons(results: Results) -> Table:
@@ -328,7 +388,9 @@ def rate_in_words(found: Rate) -> str:
 
 def input_of(each: Contestant) -> str:
     """The agent's input, in the paper's words."""
-    control = "" if each.geo == "full" else f" (geo {each.geo})"
+    words = [] if each.geo == "full" else [f"geo {each.geo}"]
+    words += seen_and_told(each.see, each.feedback)
+    control = f" ({', '.join(words)})" if words else ""
     if each.agent == NativeAgent.name:
         lacks = chosen(each.model)[1].lacks
         missing = [word for word in (ActionType.SHOW_ALERT, GoalStatus.NOT_NEEDED) if word in lacks]
@@ -350,6 +412,7 @@ def input_of(each: Contestant) -> str:
 
 
 _SAFETY = tuple(name for name in DIMENSIONS if name.is_safety)
+_SAFETY_SUBSETS = frozenset(name.subset for name in _SAFETY)
 
 
 def _pair_cell(joined: Sequence[tuple[EpisodeRow, Sequence[EpisodeRow]]]) -> Cell:

@@ -11,7 +11,8 @@ line says ``format`` and what is run; every other line has one of these keys:
                seen       [[number, x, y, heading, speed in m/s, signals], …]; x and y of the front bumper; the car
                           under test is ``ego``; signals are the bits of ``contracts.SumoSignal``
                lights     {light: state} of those that have changed; a lane's ``place`` is that of its letter
-               speed_kmh, limit_kmh, road, local_time, sun_deg (elevation; null without a place), weather_code (WMO)
+               speed_kmh, limit_kmh, speed_unit (of the signs), road, local_time, sun_deg (elevation; null without a
+               place), weather_code (WMO)
                incidents  [[kind, x, y], …]
                events     [text, …]
     baseline   [[at_s, x, y, heading, speed], …]                          the car in the baseline run, once judged

@@ -170,6 +170,7 @@ class _Writer:
                 "lights": lights,
                 "speed_kmh": round(driving.speed_mps * KMH_PER_MPS, 1),
                 "limit_kmh": limit_kmh(limit_at(moment.context)),
+                "speed_unit": moment.context.speed_unit,
                 "road": driving.road.name,
                 "local_time": moment.local_time.isoformat(timespec="seconds"),
                 "sun_deg": None

@@ -15,8 +15,9 @@ def relocated(scenario: Scenario, origin: tuple[float, float]) -> Scenario:
     """The scenario with the middle of its network at ``origin`` (longitude, latitude, degrees).
 
     The local time stays the same, in the zone of that place. The weather is drawn from its climate. Roads and the
-    driving side stay the network's, signs show the country's round figures (``geo.signs``); ``notes`` say so if the
-    country drives on the other side.
+    driving side stay the network's, signs show the country's round figures (``geo.signs``), and streets have names
+    that do not tell where they really lie (``traffic.naming``); ``notes`` say so if the country drives on the other
+    side.
 
     Raises:
         UserError: ``origin`` is not a position on earth.

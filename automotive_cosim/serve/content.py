@@ -22,10 +22,11 @@ from automotive_cosim.serve.shelf import NotHereError, Shelf, ShelfEntry
 
 HEAD = (
     *("task", "half", "scenario", "agent", "model", "seed", "success", "steps", "sim_seconds", "end", "error"),
-    *("goal", "geo", "tokens_in", "tokens_out", "model_seconds"),
+    *("goal", "geo", "see", "feedback", "tokens_in", "tokens_out", "model_seconds"),
 )
 SHOWN = (
-    *("id", "task", "half", "scenario", "agent", "model", "geo", "seed", "repeat", "dimension", "module"),
+    *("id", "task", "half", "scenario", "agent", "model", "geo", "see", "feedback", "seed", "repeat"),
+    *("dimension", "module"),
     *("success", "error", "error_kind", "end", "steps", "sim_seconds", "held_out", "goal_s"),
 )
 """Fields of a row that the table of results shows."""
@@ -292,6 +293,7 @@ def _alone(result: Json) -> Iterable[Json]:
             "seen": [seen],
             "lights": {},
             **{name: sample[name] for name in OWN_ROAD},
+            "speed_unit": sample.get("speed_unit", "km/h"),
             "local_time": "",
             "sun_deg": 45.0,
             "weather_code": None,

@@ -33,6 +33,7 @@ from automotive_cosim.contracts import KMH_PER_MPS, Limit, LimitSource, Road, Ro
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats.files import opened
 from automotive_cosim.traffic import georeference
+from automotive_cosim.traffic.naming import neutral_names
 from automotive_cosim.traffic.posted import TimedLimit, timed_limits
 
 NO_LIMIT_FROM_MPS = 39.0
@@ -144,8 +145,18 @@ class Network:
     """Whether it was moved from the position in its file."""
 
     def at(self, origin: tuple[float, float]) -> Network:
-        """The same network with its middle at another place: (longitude, latitude)."""
-        return replace(self, map=georeference.moved(self.map, origin), unplaced="", moved=True)
+        """The same network with its middle at another place: (longitude, latitude).
+
+        If it has a place of its own, its streets get names that do not tell it (``naming.neutral_names``).
+        """
+        there = replace(self, map=georeference.moved(self.map, origin), unplaced="", moved=True)
+        return there if self.unplaced else there._neutral()
+
+    def _neutral(self) -> Network:
+        names = neutral_names((edge.name, edge.road_class) for edge in self.edges.values())
+        edges = {edge_id: replace(edge, name=names.get(edge.name, "")) for edge_id, edge in self.edges.items()}
+        roads = tuple(replace(road, name=names.get(road.name, "")) for road in self.map.roads)
+        return replace(self, edges=edges, map=replace(self.map, roads=roads))
 
 
 @dataclass(slots=True)

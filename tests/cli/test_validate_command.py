@@ -1,7 +1,10 @@
 """``automotive-cosim validate`` refuses what it cannot prove; ``tests/proof`` has what it proves."""
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
+from automotive_cosim.cli.options import PartOf
 from automotive_cosim.cli.validate import _summary
 from automotive_cosim.proof.prover import GATES, Proof
 
@@ -13,6 +16,10 @@ from automotive_cosim.proof.prover import GATES, Proof
         (("--gates", ","), "--gates is empty"),
         (("--tasks", "nothing_*"), "no task"),
         (("--workers", "0"), "whole number"),
+        (("--part", "0/10"), "'0/10' is not a part such as 3/10"),
+        (("--part", "11/10"), "not a part"),
+        (("--part", "third"), "not a part"),
+        (("--tasks", "hvac_fan_max", "--part", "2/10"), "--part 2/10 holds none of 1 task"),
         (("--out", "file"), "file is a file"),
     ],
 )
@@ -22,6 +29,14 @@ def test_bad_input_is_one_line(cli, tmp_path, words, said):
     assert (ran.code, ran.err.count("\n")) == (2, 1)
     assert ran.err.startswith("error: ")
     assert said in ran.err
+
+
+@given(st.integers(0, 40), st.integers(1, 12))
+def test_the_parts_together_are_all(tasks, parts):
+    ids = tuple(map(str, range(tasks)))
+    taken = [PartOf(number, parts).taken(ids) for number in range(1, parts + 1)]
+    assert sorted(sum(taken, ())) == sorted(ids)
+    assert max(map(len, taken)) - min(map(len, taken)) <= 1
 
 
 def test_what_is_printed_fits_a_narrow_terminal_and_names_what_failed():

@@ -1,10 +1,12 @@
 import re
 from itertools import pairwise
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from automotive_cosim.report.plot import Plot
+from automotive_cosim.report.speedaxis import SpeedAxis
 from automotive_cosim.run.episode import EpisodeResult
 from automotive_cosim.run.row import from_json
 from automotive_cosim.run.timeline import Sample
@@ -55,3 +57,15 @@ def test_the_first_event_of_a_kind_is_marked(episode):
     plot = Plot(result.path, result.timeline, 960, 300)
     assert [kind for _, kind, _ in plot.marks] == ["alert", "declared", "limit"]
     assert plot.marks[0][0] == plot.x(1.0)
+
+
+@given(samples, st.sampled_from([("km/h", 1.0), ("mph", 1.609344)]))
+def test_the_axis_counts_in_the_unit_of_the_signs(rows, unit):
+    name, kmh_per_unit = unit
+    path = [Sample(float(i), speed, limit, "", 0.0, 0.0, 0.0, name) for i, (speed, limit) in enumerate(rows)]
+    axis = SpeedAxis.of(path)
+    assert axis.unit == name
+    assert all(kmh == pytest.approx(figure * kmh_per_unit) for figure, kmh in axis.lines)
+    assert axis.top_kmh >= max(max(speed, limit or 0.0) for speed, limit in rows)
+    assert 2 <= len(axis.lines) <= 8
+    assert axis.lines[-1][1] <= axis.top_kmh + 1e-9

@@ -7,7 +7,10 @@ from collections.abc import Callable
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.language import translated
 from automotive_cosim.cockpit.screens import apps, body, settings, tools
+from automotive_cosim.cockpit.screens.cabin import cabin
 from automotive_cosim.cockpit.screens.climate import climate, comfort
+from automotive_cosim.cockpit.screens.diary import appointment
+from automotive_cosim.cockpit.screens.figure import figure
 from automotive_cosim.cockpit.screens.frame import APPS, DOCK, PART_OF, dock, status_bar
 from automotive_cosim.cockpit.screens.home import home
 from automotive_cosim.cockpit.screens.keyboard import focused, keyboard, uncovered
@@ -17,6 +20,7 @@ from automotive_cosim.cockpit.screens.outside import outside
 from automotive_cosim.cockpit.screens.person import contact, thread
 from automotive_cosim.cockpit.screens.phone import phone
 from automotive_cosim.cockpit.screens.safety import emergency, safety
+from automotive_cosim.cockpit.screens.tripb import trip_b
 from automotive_cosim.cockpit.screens.vehicle import assistance, vehicle
 from automotive_cosim.cockpit.screens.way import explore, place, route
 from automotive_cosim.cockpit.signals import HMI
@@ -32,6 +36,7 @@ SCREENS: dict[str, Callable[[State], tuple[Widget, ...]]] = {
     "route": route,
     "climate": climate,
     "comfort": comfort,
+    "cabin": cabin,
     "safety": safety,
     "emergency": emergency,
     "vehicle": vehicle,
@@ -46,6 +51,7 @@ SCREENS: dict[str, Callable[[State], tuple[Widget, ...]]] = {
     "phone": phone,
     "contact": contact,
     "thread": thread,
+    "figure": figure,
     "apps": apps.apps,
     "store": apps.store,
     "charging": tools.charging,
@@ -53,7 +59,9 @@ SCREENS: dict[str, Callable[[State], tuple[Widget, ...]]] = {
     "manual": tools.manual,
     "memo": tools.memo,
     "trip": tools.trip,
+    "trip_b": trip_b,
     "calendar": tools.calendar,
+    "appointment": appointment,
     "notifications": apps.notifications,
     "settings": settings.settings,
     "sound": settings.sound,

@@ -38,7 +38,7 @@ DOCK: dict[str, tuple[str, Icon]] = {
     "settings": ("Settings", Icon.SETTINGS),
 }
 """The apps in the dock: name on screen and icon."""
-APPS = (*DOCK, *TOOLS, "store", "notifications")
+APPS = (*DOCK, *TOOLS, "store", "notifications", "cabin")
 """Everything that opens by its name."""
 PART_OF = {
     "assistance": "vehicle",
@@ -54,12 +54,13 @@ PART_OF = {
     "playlist": "media",
     "contact": "phone",
     "thread": "phone",
+    "figure": "phone",
     "sound": "settings",
     "connections": "settings",
     "language": "settings",
     "privacy": "settings",
     "profiles": "settings",
-    **dict.fromkeys((*TOOLS, "store"), "apps"),
+    **dict.fromkeys((*TOOLS, "store", "cabin", "trip_b", "appointment"), "apps"),
 }
 """Screens that belong to an app without being in the dock."""
 

@@ -30,6 +30,13 @@ export function seconds(value) {
   return `${rounded < 0 ? "−" : "+"}${Math.abs(rounded).toFixed(rounded % 1 ? 1 : 0)} s`;
 }
 
+const KM_PER_MILE = 1.609344;
+
+// Speeds are recorded in km/h, with the unit of the signs where they were driven; older records have none.
+export const kmhPerUnit = (unit) => (unit === "mph" ? KM_PER_MILE : 1);
+
+export const speedInWords = (kmh, unit) => `${Math.round(kmh / kmhPerUnit(unit))} ${unit ?? "km/h"}`;
+
 export function outcome(record) {
   if (record.running) return h("span", { class: "pill live" }, "Running");
   if (record.success === true) return h("span", { class: "pill good" }, "Success");

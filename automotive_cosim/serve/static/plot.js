@@ -1,6 +1,6 @@
 // Speed and limit over time; a click jumps there.
 
-import { svg } from "./dom.js";
+import { kmhPerUnit, svg } from "./dom.js";
 
 const [WIDE, HIGH, LEFT, BOTTOM, TOP] = [560, 200, 36, 24, 10];
 
@@ -8,18 +8,22 @@ export function speedPlot(path, jump) {
   const root = svg("svg", { viewBox: `0 0 ${WIDE} ${HIGH}`, role: "img", "aria-label": "Speed and limit over time" });
   if (path.length < 2) return root;
   const [from, to] = [path[0].at_s, path.at(-1).at_s];
-  const most = 20 * (Math.floor(Math.max(...path.map((one) => Math.max(one.speed_kmh, one.limit_kmh ?? 0))) / 20) + 1);
+  const unit = path.at(-1).speed_unit ?? "km/h";
+  const tens = unit === "mph" ? 10 : 20;
+  const most = tens * (Math.floor(Math.max(...path.map((one) => Math.max(one.speed_kmh, one.limit_kmh ?? 0))) / kmhPerUnit(unit) / tens) + 1);
   const x = (at) => LEFT + (at - from) / (to - from || 1) * (WIDE - LEFT - 8);
-  const y = (kmh) => HIGH - BOTTOM - kmh / most * (HIGH - BOTTOM - TOP);
+  const y = (kmh) => HIGH - BOTTOM - kmh / kmhPerUnit(unit) / most * (HIGH - BOTTOM - TOP);
   const text = (at, high, words, anchor) => {
     const label = svg("text", { x: at, y: high, "text-anchor": anchor, class: "tick" });
     label.textContent = words;
     return label;
   };
-  const step = most > 100 ? 40 : 20;
-  for (let kmh = 0; kmh <= most; kmh += step) {
-    root.append(svg("line", { x1: LEFT, x2: WIDE - 8, y1: y(kmh), y2: y(kmh), class: "grid" }), text(LEFT - 6, y(kmh) + 4, String(kmh), "end"));
+  const step = most / tens > 5 ? 2 * tens : tens;
+  for (let figure = 0; figure <= most; figure += step) {
+    const high = y(figure * kmhPerUnit(unit));
+    root.append(svg("line", { x1: LEFT, x2: WIDE - 8, y1: high, y2: high, class: "grid" }), text(LEFT - 6, high + 4, String(figure), "end"));
   }
+  root.append(text(LEFT + 4, TOP + 12, unit, "start"));
   root.append(text(WIDE - 8, HIGH - 4, `+${Math.round(to)} s`, "end"), text(LEFT, HIGH - 4, `${from < 0 ? "−" : "+"}${Math.abs(Math.round(from))} s`, "start"));
   if (from < 0 && to > 0) root.append(svg("line", { x1: x(0), x2: x(0), y1: TOP, y2: HIGH - BOTTOM, class: "mark" }), text(x(0), HIGH - 4, "hand-over", x(0) > WIDE - 110 ? "end" : "middle"));
   let limit = "";

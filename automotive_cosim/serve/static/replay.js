@@ -1,6 +1,6 @@
 // One recorded episode, or one that is running: screen, road, steps and verdict on one time cursor.
 
-import { ask, counted, h, outcome, plain, seconds } from "./dom.js";
+import { ask, counted, h, outcome, plain, seconds, speedInWords } from "./dom.js";
 import { RoadRecord, RoadView, signals } from "./road.js";
 import { speedPlot } from "./plot.js";
 
@@ -96,8 +96,8 @@ export async function replayPage(query, id, episode) {
     const second = road.second(at);
     if (second) {
       const others = second.seen.size - ([...second.seen.keys()].some((number) => road.vehicles.get(number)?.id === "ego") ? 1 : 0);
-      const limit = second.limit_kmh === null ? "no limit known" : `limit ${Math.round(second.limit_kmh)}`;
-      about.replaceChildren(h("b", { class: second.limit_kmh !== null && second.speed_kmh > second.limit_kmh + 1 ? "over" : "" }, `${Math.round(second.speed_kmh)} km/h`),
+      const limit = second.limit_kmh === null ? "no limit known" : `limit ${speedInWords(second.limit_kmh, second.speed_unit).split(" ")[0]}`;
+      about.replaceChildren(h("b", { class: second.limit_kmh !== null && second.speed_kmh > second.limit_kmh + 1 ? "over" : "" }, speedInWords(second.speed_kmh, second.speed_unit)),
         ` ${limit} · ${second.road || "a road without a name"}${second.local_time ? ` · ${second.local_time.slice(11, 16)}` : ""} · `,
         road.alone ? "other vehicles were not recorded" : `${counted(others, "other vehicle")} in sight`,
         view.ghost ? h("span", { class: "ghost" }, "Dashed: the same drive with nobody at the cockpit") : "");
@@ -114,7 +114,7 @@ export async function replayPage(query, id, episode) {
     vehicle.hidden = !found;
     if (!found) return;
     vehicle.replaceChildren(h("b", {}, found.id === "ego" ? "The car under test" : found.id),
-      h("span", { class: "muted" }, [plain(found.kind), `${found.length} m long`, `${Math.round(found.speed * 3.6)} km/h`, signals(found.signals)].filter(Boolean).join(" · ")),
+      h("span", { class: "muted" }, [plain(found.kind), `${found.length} m long`, speedInWords(found.speed * 3.6, road.second(at)?.speed_unit), signals(found.signals)].filter(Boolean).join(" · ")),
       h("button", { type: "button", onclick: () => view.follow(found.id) }, "Follow"));
   }
 
