@@ -19,8 +19,8 @@ from pathlib import Path
 import numpy as np
 
 from automotive_cosim import scenarios
-from automotive_cosim.calibration import Options, calibrate
-from automotive_cosim.calibration.driving import Clock, drive
+from automotive_cosim.calibration import CalibrationOptions, calibrate
+from automotive_cosim.calibration.driving import CountedTime, drive
 from automotive_cosim.calibration.result import Met
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.options import Setup, read_configuration, run_options
@@ -46,7 +46,7 @@ def write_twin(scenario: Scenario, target: Path, spread: float, level: float, rn
 def write_counts(scenario: Scenario, twin: Path, target: Path, share: float, rng: np.random.Generator) -> int:
     """Drives the twin and writes an hour of its counts; returns the number of sites."""
     configuration = read_configuration(scenario.config)
-    clock = Clock(configuration.begin_s, scenario.sumo.warm_up_s, 1)
+    clock = CountedTime(configuration.begin_s, scenario.sumo.warm_up_s, 1)
     scratch = target.parent
     options = run_options(configuration, Setup(scenario, seed=99), scratch)
     options |= {"route-files": str(twin), "step-length": "1", "default.action-step-length": "1"}
@@ -79,8 +79,8 @@ def main() -> None:
             write_twin(scenario, twin, given.spread, given.level, rng)
             sites = write_counts(scenario, twin, counts, given.share, rng)
             begun_s = time.monotonic()
-            options = Options(rounds=given.rounds, seed=seed)
-            found = calibrate(scenario, counts, Path(folder) / "out", options, lambda _: None)
+            options = CalibrationOptions(rounds=given.rounds, seed=seed)
+            found = calibrate(scenario, counts, Path(folder) / "out", options, lambda _said, _share: None)
         for held_out, name in ((False, "calibrated"), (True, "held out")):
             before, after = found.met(held_out=held_out, unfitted=True), found.met(held_out=held_out)
             print(f"{seed:4}  {sites:5}  {name:10}  {_shown(before)}  {_shown(after)}")

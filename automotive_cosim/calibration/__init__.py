@@ -11,7 +11,7 @@ result      the figures
 calibrate   all of it in order; writes the scenario
 """
 
-from automotive_cosim.calibration.calibrate import Options, calibrate
+from automotive_cosim.calibration.calibrate import CalibrationOptions, calibrate
 from automotive_cosim.calibration.result import Calibration, read_calibration
 
-__all__ = ["Calibration", "Options", "calibrate", "read_calibration"]
+__all__ = ["Calibration", "CalibrationOptions", "calibrate", "read_calibration"]

@@ -14,10 +14,11 @@ import numpy as np
 
 from automotive_cosim.calibration.capacity import read_capacity
 from automotive_cosim.calibration.counts import Counts, TravelTime, read_counts, read_travel_times
-from automotive_cosim.calibration.driving import HOUR_S, Clock, Drive, drive
+from automotive_cosim.calibration.driving import HOUR_S, CountedTime, DrivenDemand, drive
 from automotive_cosim.calibration.result import RECORD, Calibration, Carried, Met, SiteHour, TimeRow, Try
-from automotive_cosim.calibration.search import Round, World, search
+from automotive_cosim.calibration.search import FitRound, SearchWorld, search
 from automotive_cosim.calibration.sites import Mapped, map_sites
+from automotive_cosim.contracts import Tell
 from automotive_cosim.errors import CountsError, ScenarioError
 from automotive_cosim.osm.network import Built
 from automotive_cosim.scenarios import Scenario
@@ -45,7 +46,7 @@ COVERED = 0.1
 
 
 @dataclass(frozen=True, slots=True)
-class Options:
+class CalibrationOptions:
     """The user's options."""
 
     sites: Path | None = None
@@ -64,11 +65,14 @@ class Options:
     """Seed of what is held out, of the routes and of SUMO."""
 
 
-Tell = Callable[[str], None]
-
-
 def calibrate(
-    scenario: Scenario, counts_file: Path, target: Path, options: Options, tell: Tell, *, force: bool = False
+    scenario: Scenario,
+    counts_file: Path,
+    target: Path,
+    options: CalibrationOptions,
+    tell: Tell,
+    *,
+    force: bool = False,
 ) -> Calibration:
     """Writes a copy of a scenario whose demand carries the counts. A demand that gridlocks is not written.
 
@@ -111,7 +115,7 @@ def calibrate(
     return found
 
 
-def _hours(counts: Counts, options: Options) -> tuple[int, ...]:
+def _hours(counts: Counts, options: CalibrationOptions) -> tuple[int, ...]:
     """The hours to calibrate, in a row."""
     first, last = options.hours or (counts.hours[0], counts.hours[-1])
     hours = tuple(range(first, last + 1))
@@ -135,11 +139,11 @@ class _Calibration:
     counts: Counts
     measured: Sequence[TravelTime]
     hours: tuple[int, ...]
-    options: Options
+    options: CalibrationOptions
     scratch: Path
     tell: Tell
 
-    def run(self) -> tuple[Calibration, Round]:
+    def run(self) -> tuple[Calibration, FitRound]:
         """The result, and the round that it keeps."""
         network = read_network(self.configuration.net)
         given_options = self._options(self.scenario, self.options.seed)
@@ -158,15 +162,15 @@ class _Calibration:
                 "no site could be placed on the network; give each an edge, or lon,lat and bearing"
                 + "".join(f"\n{site}: {why}" for site, why in list(mapped.unmapped.items())[:10])
             )
-        self.tell("driving the given demand")
-        clock = Clock(self.configuration.begin_s, self.scenario.sumo.warm_up_s, len(self.hours))
+        self.tell("driving the given demand", None)
+        clock = CountedTime(self.configuration.begin_s, self.scenario.sumo.warm_up_s, len(self.hours))
         given = drive(self.scenario.config.name, given_options, clock, self.scratch)
         if not given.trips:
             raise ScenarioError(f"{self.scenario.folder} has no demand to begin with; import a map, or add trips")
         free_s: defaultdict[str, float] = defaultdict(lambda: OTHER_EDGE_S)
         free_s |= {name: edge.length_m / max(0.1, edge.speed_mps) for name, edge in network.edges.items()}
         border = Built(network, signals=0, roundabouts=0)
-        world = World(
+        world = SearchWorld(
             clock,
             self.configuration.net,
             vehicle_types(given_options),
@@ -186,12 +190,12 @@ class _Calibration:
             carried = Carried(found.vehicles, found.routes, *_figures(found.drive))
             rounds.append(found)
             tries.append(Try(met, carried))
-            self.tell(f"round {len(tries)}: {met}; {carried.teleports} teleports, {carried.backlog} waiting")
+            self.tell(f"round {len(tries)}: {met}; {carried.teleports} teleports, {carried.backlog} waiting", None)
             if not carried.gridlock and met.share >= ENOUGH_GOOD and abs(met.total - 1) <= ENOUGH_TOTAL:
                 break
         kept = max(range(len(tries)), key=lambda number: _quality(tries[number]))
         best = rounds[kept]
-        self.tell("driving it with another seed")
+        self.tell("driving it with another seed", None)
         path = self.scratch / "again.rou.xml"
         path.write_text(best.demand, encoding="utf-8")
         again = self._drive(clock, self.options.seed + 1, path)
@@ -238,12 +242,12 @@ class _Calibration:
         sumo = replace(scenario.sumo, step_length_s=STEP_S)
         return run_options(self.configuration, Setup(replace(scenario, sumo=sumo), seed), self.scratch)
 
-    def _drive(self, clock: Clock, seed: int, routes: Path) -> Drive:
+    def _drive(self, clock: CountedTime, seed: int, routes: Path) -> DrivenDemand:
         """Drives a file of vehicles in place of the given demand."""
         options = self._options(variant.with_fixed_routes(self.scenario), seed) | {"route-files": str(routes)}
         return drive(self.scenario.config.name, options, clock, self.scratch)
 
-    def _times(self, given: Drive, kept: Drive, clock: Clock) -> Iterable[TimeRow]:
+    def _times(self, given: DrivenDemand, kept: DrivenDemand, clock: CountedTime) -> Iterable[TimeRow]:
         for each in self.measured:
             hour = each.hour - self.hours[0]
             if 0 <= hour < clock.hours:
@@ -257,7 +261,7 @@ class _Calibration:
                 )
 
 
-def _figures(found: Drive) -> tuple[int, int, float]:
+def _figures(found: DrivenDemand) -> tuple[int, int, float]:
     return found.teleports, found.backlog, round(found.halted_share, 4)
 
 
@@ -265,7 +269,7 @@ def _quality(found: Try) -> tuple[bool, float, float]:
     return not found.carried.gridlock, found.calibrated.share, -found.calibrated.mean_geh
 
 
-def _covered(given: Drive, clock: Clock) -> tuple[int, ...]:
+def _covered(given: DrivenDemand, clock: CountedTime) -> tuple[int, ...]:
     """The hours in which the given demand departs; a demand of one hour is not missing in the next."""
     departed = Counter(clock.hour(trip.departed_s) for trip in given.trips)
     hours = range(clock.hours)
@@ -276,12 +280,12 @@ def _covered(given: Drive, clock: Clock) -> tuple[int, ...]:
     return found
 
 
-def _per_h(given: Drive, clock: Clock, covered: Sequence[int]) -> float:
+def _per_h(given: DrivenDemand, clock: CountedTime, covered: Sequence[int]) -> float:
     departed = Counter(clock.hour(trip.departed_s) for trip in given.trips)
     return sum(departed[hour] for hour in covered) / len(covered)
 
 
-def _unfitted(given: Drive, covered: Sequence[int]) -> Callable[[str, int], float]:
+def _unfitted(given: DrivenDemand, covered: Sequence[int]) -> Callable[[str, int], float]:
     """What the given demand carries, per edge and hour; in hours without demand, as in the others."""
 
     def flow(edge: str, hour: int) -> float:

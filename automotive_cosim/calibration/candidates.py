@@ -9,8 +9,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from automotive_cosim.calibration.capacity import Turn
-from automotive_cosim.calibration.driving import HOUR_S, Clock
+from automotive_cosim.calibration.capacity import Movement
+from automotive_cosim.calibration.driving import HOUR_S, CountedTime
 from automotive_cosim.calibration.fit import Floats
 from automotive_cosim.scenery.gap import INTERVAL_S, DrivenTrip, EdgeTimes
 
@@ -20,10 +20,10 @@ SENSITIVITY = 0.15
 UNSEEN = 0.5
 """Weight of a route that nobody drove in the given demand, in trips."""
 
-End = tuple[str, str]
+Ends = tuple[str, str]
 """First and last edge."""
 
-Passing = tuple[str | Turn, int]
+Passing = tuple[str | Movement, int]
 """An edge or turn, and the hour in which it is left."""
 
 
@@ -38,7 +38,7 @@ class Candidate:
     """How often the given demand has it."""
 
     @property
-    def ends(self) -> End:
+    def ends(self) -> Ends:
         """Its first and last edge."""
         return self.edges[0], self.edges[-1]
 
@@ -48,7 +48,7 @@ class Candidates:
     """All routes; new ones are appended, so that an index stays what it is."""
 
     routes: list[Candidate] = field(default_factory=list)
-    weights: dict[End, float] = field(default_factory=dict)
+    weights: dict[Ends, float] = field(default_factory=dict)
     """Trips of each start and end in the given demand."""
     _known: set[tuple[str, ...]] = field(default_factory=set)
 
@@ -76,7 +76,7 @@ class Candidates:
         self.weights.setdefault(candidate.ends, weight)
         return True
 
-    def costs_s(self, times: EdgeTimes, free_s: Mapping[str, float], clock: Clock) -> Floats:
+    def costs_s(self, times: EdgeTimes, free_s: Mapping[str, float], clock: CountedTime) -> Floats:
         """Travel time of each route that begins in the middle of each hour, (hours, routes)."""
         rows = [
             [
@@ -118,7 +118,7 @@ def passes(
     wanted: Mapping[Passing, int],
     times: EdgeTimes,
     free_s: Mapping[str, float],
-    clock: Clock,
+    clock: CountedTime,
 ) -> Passes:
     """The share of each route's departures of an hour that leaves an edge, or takes a turn, in each hour.
 
@@ -150,7 +150,7 @@ def passes(
 def _spread(
     found: Passes,
     wanted: Mapping[Passing, int],
-    name: str | Turn,
+    name: str | Movement,
     hour: int,
     column: int,
     late_h: float,

@@ -26,7 +26,7 @@ YIELDS = frozenset("mswy")
 USABLE = 0.9
 """Share of a bound that a fit may use: at the bound itself, queues grow without end."""
 
-Turn = tuple[str, str]
+Movement = tuple[str, str]
 """An edge and the next."""
 
 
@@ -36,7 +36,7 @@ class Capacity:
 
     edges: Mapping[str, float]
     """What leaves an edge; edges that end at the map's border have those of their lanes."""
-    turns: Mapping[Turn, float]
+    turns: Mapping[Movement, float]
 
 
 def read_capacity(net: Path, additional: Iterable[Path] = ()) -> Capacity:
@@ -56,7 +56,7 @@ def read_capacity(net: Path, additional: Iterable[Path] = ()) -> Capacity:
             links.append(dict(element.attrib))
         elif element.tag == "tlLogic":
             programs[element.attrib["id"]] = _program(element)
-    turns: dict[Turn, float] = defaultdict(float)
+    turns: dict[Movement, float] = defaultdict(float)
     of_lane: dict[tuple[str, str], float] = defaultdict(float)
     for link in links:
         if link["from"] not in lanes or link.get("to") not in lanes:

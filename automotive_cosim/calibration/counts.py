@@ -54,7 +54,7 @@ def geh(modelled: float, counted: float) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class SitePlace:
     """Where a site stands."""
 
     edge: str = ""
@@ -71,7 +71,7 @@ class Counts:
 
     flows_per_h: Mapping[tuple[str, int], float]
     """Site and local hour (0 to 23) -> vehicles per hour."""
-    places: Mapping[str, Place]
+    places: Mapping[str, SitePlace]
     """Where the sites stand, as far as the files say."""
     about: str
     """A description of their source."""
@@ -111,7 +111,7 @@ def read_counts(path: Path, zone: ZoneInfo, sites: Path | None = None) -> Counts
     """
     rows, columns = _table(path)
     flows: dict[tuple[str, int], list[float]] = defaultdict(list)
-    places: dict[str, Place] = {}
+    places: dict[str, SitePlace] = {}
     if TIME in columns:
         _need(path, columns, (TIME, FLOW, ARC))
         about = f"{path.name}: medians over Mondays to Fridays, local time"
@@ -155,10 +155,10 @@ def read_travel_times(path: Path) -> tuple[TravelTime, ...]:
     return tuple(found)
 
 
-Rows = list[dict[str, str]]
+CsvRows = list[dict[str, str]]
 
 
-def _table(path: Path) -> tuple[Rows, tuple[str, ...]]:
+def _table(path: Path) -> tuple[CsvRows, tuple[str, ...]]:
     """The rows of a CSV file, and its columns."""
     lines = _text(path).splitlines()
     delimiter = ";" if lines and ";" in lines[0] else ","
@@ -189,17 +189,17 @@ def _need(path: Path, columns: Sequence[str], wanted: Sequence[str]) -> None:
         raise CountsError(f"{path} lacks the column {missing[0]!r}; give a CSV with {','.join(wanted)}")
 
 
-def _places(path: Path, rows: Sequence[Mapping[str, str]]) -> dict[str, Place]:
+def _places(path: Path, rows: Sequence[Mapping[str, str]]) -> dict[str, SitePlace]:
     """The place of every site whose row has one."""
-    found: dict[str, Place] = {}
+    found: dict[str, SitePlace] = {}
     for number, row in enumerate(rows, start=2):
         edge = row.get("edge", "").strip()
         lon, lat = (_figure(path, number, name, row.get(name, ""), 180.0, -180.0) for name in ("lon", "lat"))
         bearing = _figure(path, number, "bearing", row.get("bearing", ""), 360.0)
         if edge:
-            place = Place(edge)
+            place = SitePlace(edge)
         elif lon is not None and lat is not None:
-            place = Place(position=(lon, lat), bearing_deg=bearing)
+            place = SitePlace(position=(lon, lat), bearing_deg=bearing)
         else:
             continue
         name = row["site"].strip()

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
-from automotive_cosim.calibration.capacity import Turn
+from automotive_cosim.calibration.capacity import Movement
 from automotive_cosim.scenery.gap import DrivenTrip, read_trips
 from automotive_cosim.traffic.options import command_line
 from automotive_cosim.traffic.stability import FEW_VEHICLES, summary
@@ -21,7 +21,7 @@ FULL_S = 100.0
 
 
 @dataclass(frozen=True, slots=True)
-class Clock:
+class CountedTime:
     """The time that is simulated: a warm-up, then the counted hours in a row."""
 
     begin_s: float
@@ -44,7 +44,7 @@ class Clock:
 
 
 @dataclass(frozen=True, slots=True)
-class Drive:
+class DrivenDemand:
     """What one simulation carried."""
 
     trips: tuple[DrivenTrip, ...]
@@ -57,13 +57,13 @@ class Drive:
     halted_share: float
     """Share of the vehicles that stand, mean of the last half of the last hour."""
 
-    def full_turns(self, clock: Clock, free_s: Mapping[str, float]) -> dict[tuple[Turn, int], int]:
+    def full_turns(self, clock: CountedTime, free_s: Mapping[str, float]) -> dict[tuple[Movement, int], int]:
         """Turn and hour -> vehicles served, for the turns that served fewer than came.
 
         Those whose next edge is just as slow are left out: the queue there began farther on.
         """
-        lost_s: dict[tuple[Turn, int], list[float]] = defaultdict(list)
-        left: Counter[tuple[Turn, int]] = Counter()
+        lost_s: dict[tuple[Movement, int], list[float]] = defaultdict(list)
+        left: Counter[tuple[Movement, int]] = Counter()
         for trip in self.trips:
             entered_s = trip.departed_s
             for turn, left_s in zip(pairwise(trip.edges), trip.exits_s, strict=False):
@@ -82,7 +82,7 @@ class Drive:
             if mean_s > FULL_S and (turn[1], hour) not in slow and 0 <= hour < clock.hours
         }
 
-    def mean_time_s(self, start: str, goal: str, hour: int, clock: Clock) -> float | None:
+    def mean_time_s(self, start: str, goal: str, hour: int, clock: CountedTime) -> float | None:
         """Mean time from the end of one edge to that of another of those who left the first in an hour; None if
         nobody did."""
         found = []
@@ -94,7 +94,7 @@ class Drive:
         return round(sum(found) / len(found), 1) if found else None
 
 
-def drive(config: str, options: Mapping[str, str], clock: Clock, scratch: Path) -> Drive:
+def drive(config: str, options: Mapping[str, str], clock: CountedTime, scratch: Path) -> DrivenDemand:
     """Drives what the options name.
 
     Args:
@@ -128,10 +128,10 @@ def drive(config: str, options: Mapping[str, str], clock: Clock, scratch: Path) 
                 halting += step["halting"]
                 running += max(step["running"], FEW_VEHICLES)
     trips = tuple(sorted(read_trips(driven), key=lambda trip: trip.departed_s))
-    return Drive(trips, passed(trips, clock), teleports - before, backlog, halting / max(1.0, running))
+    return DrivenDemand(trips, passed(trips, clock), teleports - before, backlog, halting / max(1.0, running))
 
 
-def passed(trips: Iterable[DrivenTrip], clock: Clock) -> dict[tuple[str, int], int]:
+def passed(trips: Iterable[DrivenTrip], clock: CountedTime) -> dict[tuple[str, int], int]:
     """Edge and hour -> vehicles that left the edge."""
     found: Counter[tuple[str, int]] = Counter()
     for trip in trips:

@@ -30,7 +30,7 @@ MOST_STEPS = 500
 
 
 @dataclass(frozen=True, slots=True)
-class Problem:
+class CountedFlows:
     """Counts of n candidate flows."""
 
     prior: Floats
@@ -43,7 +43,7 @@ class Problem:
     """(m,)."""
 
 
-def fit(problem: Problem, bounded_by: csr_array, bounds: Floats) -> Floats:
+def fit(problem: CountedFlows, bounded_by: csr_array, bounds: Floats) -> Floats:
     """The flows, (n,), all above zero.
 
     Args:

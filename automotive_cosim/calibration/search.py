@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from automotive_cosim.calibration.candidates import Candidate, Candidates, End, Passes, Passing, passes
-from automotive_cosim.calibration.capacity import USABLE, Capacity, Turn
-from automotive_cosim.calibration.driving import HOUR_S, Clock, Drive
-from automotive_cosim.calibration.fit import Floats, Problem, fit
+from automotive_cosim.calibration.candidates import Candidate, Candidates, Ends, Passes, Passing, passes
+from automotive_cosim.calibration.capacity import USABLE, Capacity, Movement
+from automotive_cosim.calibration.driving import HOUR_S, CountedTime, DrivenDemand
+from automotive_cosim.calibration.fit import CountedFlows, Floats, fit
 from automotive_cosim.scenery import variant
 from automotive_cosim.scenery.gap import DrivenTrip, EdgeTimes, quickest
 
@@ -60,10 +60,10 @@ FloatsOf = Mapping[tuple[str, int], float]
 
 
 @dataclass(frozen=True, slots=True)
-class World:
+class SearchWorld:
     """What a search may use."""
 
-    clock: Clock
+    clock: CountedTime
     net: Path
     types: str
     """All vehicle types, as SUMO's XML."""
@@ -76,27 +76,27 @@ class World:
     counts: FloatsOf
     """The counts to meet."""
     seed: int
-    simulate: Callable[[Path], Drive]
+    simulate: Callable[[Path], DrivenDemand]
     """Drives a file of routes."""
     scratch: Path
 
 
 @dataclass(frozen=True, slots=True)
-class Round:
+class FitRound:
     """One fit and its simulation."""
 
     fitted: FloatsOf
     routes: int
     """Routes with at least one vehicle."""
     vehicles: int
-    drive: Drive
+    drive: DrivenDemand
     demand: str
     """As SUMO's XML."""
     thin: tuple[str, ...]
     """Counted edges that hardly any route passes."""
 
 
-def search(world: World, given: Drive, per_h: float, rounds: int) -> Iterator[Round]:
+def search(world: SearchWorld, given: DrivenDemand, per_h: float, rounds: int) -> Iterator[FitRound]:
     """Fits and drives, up to ``rounds`` times.
 
     Args:
@@ -121,7 +121,7 @@ def search(world: World, given: Drive, per_h: float, rounds: int) -> Iterator[Ro
         path = world.scratch / "fitted.rou.xml"
         path.write_text(demand, encoding="utf-8")
         drive = world.simulate(path)
-        yield Round(fitted, routes, vehicles, drive, demand, thin)
+        yield FitRound(fitted, routes, vehicles, drive, demand, thin)
         times = EdgeTimes(world.free_s, map(_ended(clock.end_s), drive.trips))
         learned.learn(drive, fitted, world)
         _add_quicker(found, flows, times, world, rng)
@@ -138,7 +138,7 @@ class Learned:
     seen: dict[tuple[str, int], float] = field(default_factory=dict)
     """Counted edge and hour -> what passed it as a share of what should have."""
 
-    def learn(self, drive: Drive, fitted: FloatsOf, world: World) -> None:
+    def learn(self, drive: DrivenDemand, fitted: FloatsOf, world: SearchWorld) -> None:
         """Adds a simulation. In a gridlock a road carries far less than it could, so bounds give way again."""
         full = drive.full_turns(world.clock, world.free_s)
         self.bounds = {each: RELAXED * most for each, most in self.bounds.items() if each not in full}
@@ -165,7 +165,7 @@ def _ended(end_s: float) -> Callable[[DrivenTrip], DrivenTrip]:
 
 
 def _add_others(
-    found: Candidates, trips: Sequence[DrivenTrip], times: EdgeTimes, world: World, rng: np.random.Generator
+    found: Candidates, trips: Sequence[DrivenTrip], times: EdgeTimes, world: SearchWorld, rng: np.random.Generator
 ) -> None:
     """Routes between starts and ends of different trips, and straight through the map."""
     total, count = sum(found.weights.values()), len(trips)
@@ -181,11 +181,11 @@ def _add_others(
 
 def _add_between(
     found: Candidates,
-    ends: Sequence[End],
+    ends: Sequence[Ends],
     weight: float,
     trips: Sequence[DrivenTrip],
     times: EdgeTimes,
-    world: World,
+    world: SearchWorld,
     rng: np.random.Generator,
 ) -> None:
     """The quickest routes between some edges, which share a weight."""
@@ -200,7 +200,7 @@ def _add_between(
 
 
 def _add_by_way(
-    found: Candidates, trips: Sequence[DrivenTrip], times: EdgeTimes, world: World, rng: np.random.Generator
+    found: Candidates, trips: Sequence[DrivenTrip], times: EdgeTimes, world: SearchWorld, rng: np.random.Generator
 ) -> None:
     """Routes through counted edges."""
     edges = sorted({edge for edge, _ in world.counts})
@@ -220,7 +220,7 @@ def _add_by_way(
 
 
 def _add_quicker(
-    found: Candidates, flows: Floats, times: EdgeTimes, world: World, rng: np.random.Generator
+    found: Candidates, flows: Floats, times: EdgeTimes, world: SearchWorld, rng: np.random.Generator
 ) -> None:
     """For each route that is used, the one that was quickest in the simulation."""
     used = [(number, hour) for hour, number in zip(*np.nonzero(flows > 0.5), strict=True)]
@@ -235,7 +235,7 @@ def _add_quicker(
 
 
 def _asked(
-    number: int, like: DrivenTrip, start: str, goal: str, clock: Clock, rng: np.random.Generator
+    number: int, like: DrivenTrip, start: str, goal: str, clock: CountedTime, rng: np.random.Generator
 ) -> DrivenTrip:
     departs_s = clock.first_s + rng.random() * (clock.end_s - clock.first_s)
     return DrivenTrip(f"a{number}", like.type_id, departs_s, (start, goal), (departs_s, -1.0))
@@ -251,7 +251,7 @@ def _add(
 
 
 def _fit(
-    world: World, found: Candidates, times: EdgeTimes, per_h: float, learned: Learned
+    world: SearchWorld, found: Candidates, times: EdgeTimes, per_h: float, learned: Learned
 ) -> tuple[Floats, dict[tuple[str, int], float]]:
     """Vehicles of each route and hour, (hours, routes), and what the counted edges then see."""
     clock, routes = world.clock, found.routes
@@ -262,13 +262,13 @@ def _fit(
     seen = _matrix(passes(routes, rows, times, world.free_s, clock), len(rows), shares.size)
     trust = np.array([learned.seen.get(key, 1.0) for key in world.counts])
     level = _levels(world.counts, seen @ (per_h * shares).ravel(), clock.hours)
-    problem = Problem(
+    problem = CountedFlows(
         prior=np.maximum(per_h * level[:, None] * shares, 1e-9).ravel(),
         counted_by=seen.multiply(trust[:, None]).tocsr(),
         counts=counts,
         variances=np.maximum(COUNT_ERROR * counts, 1.0),
     )
-    names: list[str | Turn] = [*world.capacity.edges, *world.capacity.turns]
+    names: list[str | Movement] = [*world.capacity.edges, *world.capacity.turns]
     most = USABLE * np.array([*world.capacity.edges.values(), *world.capacity.turns.values()])
     crossed = _crossed(routes, names)
     bounds = dict(learned.bounds)
@@ -296,7 +296,7 @@ def _smoothed(before: Floats | None, now: Floats) -> Floats:
     return mixed
 
 
-def _crossed(routes: Sequence[Candidate], names: Sequence[str | Turn]) -> Any:
+def _crossed(routes: Sequence[Candidate], names: Sequence[str | Movement]) -> Any:
     """Which routes use which edges and turns, (names, routes)."""
     index = {name: number for number, name in enumerate(names)}
     found = Passes([], [], [])
@@ -326,7 +326,7 @@ def _levels(counts: FloatsOf, expected: Floats, hours: int) -> Floats:
     return np.asarray(np.maximum(totals / max(1.0, totals.max()), LEVELS[0]))
 
 
-def _demand(found: Candidates, flows: Floats, world: World) -> tuple[str, int, int]:
+def _demand(found: Candidates, flows: Floats, world: SearchWorld) -> tuple[str, int, int]:
     """The demand as SUMO's XML, its vehicles, and the number of routes they use."""
     clock = world.clock
     rng = np.random.default_rng(world.seed)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from shapely import LineString, Point, STRtree
 
 from automotive_cosim.calibration.capacity import Capacity
-from automotive_cosim.calibration.counts import GOOD_GEH, Counts, Place, geh
+from automotive_cosim.calibration.counts import GOOD_GEH, Counts, SitePlace, geh
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.network import Edge, Network
 
@@ -79,7 +79,7 @@ class _Nearby:
         self._tree = STRtree(self._lines)
         self._reference = GeoReference(network.map) if network.map.projection else None
 
-    def find(self, place: Place) -> list[Edge] | str:
+    def find(self, place: SitePlace) -> list[Edge] | str:
         """The edge, and others that are about as near; or why there is none."""
         assert place.position is not None
         if self._reference is None:

@@ -68,15 +68,15 @@ def calibrate_scenario(
     Some sites are held out, to see what the fit is worth where nobody counted. The exit code is 1, and nothing is
     written, if the traffic gridlocks.
     """
-    from automotive_cosim.calibration import Options, calibrate
+    from automotive_cosim.calibration import CalibrationOptions, calibrate
     from automotive_cosim.report.calibration import require_plots, write_page
     from automotive_cosim.scenarios import load
 
     require_plots()
     given = load(scenario)
     target = out or (Path() if given.name == scenario else given.folder.parent) / f"{given.folder.name}_calibrated"
-    options = Options(sites, times, _span(hours), at, hold_out, rounds, seed)
-    found = calibrate(given, counts, target, options, lambda said: typer.echo(said, err=True), force=force)
+    options = CalibrationOptions(sites, times, _span(hours), at, hold_out, rounds, seed)
+    found = calibrate(given, counts, target, options, lambda said, _share: typer.echo(said, err=True), force=force)
     page = None if found.gridlock else write_page(target)
     if as_json:
         print_json({"out": None if found.gridlock else str(target), **found.record()})

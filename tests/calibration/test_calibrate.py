@@ -11,9 +11,9 @@ import pytest
 from typer.testing import CliRunner
 
 from automotive_cosim import scenarios
-from automotive_cosim.calibration import Calibration, Options, calibrate, read_calibration, result
+from automotive_cosim.calibration import Calibration, CalibrationOptions, calibrate, read_calibration, result
 from automotive_cosim.calibration.candidates import Candidate, Candidates
-from automotive_cosim.calibration.driving import Clock, Drive, drive, passed
+from automotive_cosim.calibration.driving import CountedTime, DrivenDemand, drive, passed
 from automotive_cosim.calibration.result import RECORD, Carried, Met
 from automotive_cosim.cli.scenarios import app
 from automotive_cosim.errors import CountsError, UserError
@@ -29,7 +29,7 @@ def trip(name: str, exits_s: tuple[float, ...], departed_s: float = 0.0) -> Driv
 
 
 def test_what_passes_is_what_leaves_the_edge_in_the_hour() -> None:
-    clock = Clock(begin_s=0.0, warm_up_s=100.0, hours=2)
+    clock = CountedTime(begin_s=0.0, warm_up_s=100.0, hours=2)
     found = passed([trip("x", (50.0, 150.0, 3800.0)), trip("y", (3699.0, 3700.0, -1.0))], clock)
     assert found == {("b", 0): 1, ("c", 1): 1, ("a", 0): 1, ("b", 1): 1}
 
@@ -37,7 +37,7 @@ def test_what_passes_is_what_leaves_the_edge_in_the_hour() -> None:
 def test_a_full_turn_is_where_the_queue_begins() -> None:
     """Everybody waits on a and b; on c nobody does, so b to c is full, and a to b only waits behind it."""
     trips = tuple(trip(str(number), (500.0, 1000.0, 1010.0)) for number in range(5))
-    found = Drive(trips, {}, 0, 0, 0.0).full_turns(Clock(0.0, 0.0, 1), dict.fromkeys("abc", 10.0))
+    found = DrivenDemand(trips, {}, 0, 0, 0.0).full_turns(CountedTime(0.0, 0.0, 1), dict.fromkeys("abc", 10.0))
     assert found == {(("b", "c"), 0): 5}
 
 
@@ -71,9 +71,8 @@ def made(sumo: None, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Ca
     target = tmp_path_factory.mktemp("calibrated") / "grid"
     times = target.with_name("times.csv")
     times.write_text("from_edge,to_edge,hour,seconds\ncwc0,c4ce,8,70\nnowhere,c4ce,8,70\n")
-    said: list[str] = []
-    options = Options(times=times, rounds=3)
-    return target, calibrate(scenarios.load("grid"), COUNTS, target, options, said.append)
+    options = CalibrationOptions(times=times, rounds=3)
+    return target, calibrate(scenarios.load("grid"), COUNTS, target, options, lambda _said, _share: None)
 
 
 @pytest.mark.slow
@@ -100,7 +99,7 @@ def test_the_folder_carries_what_its_record_says(made: tuple[Path, Calibration],
         "step-length": "1",
         "default.action-step-length": "1",
     }
-    driven = drive(scenario.name, options, Clock(configuration.begin_s, scenario.sumo.warm_up_s, 1), tmp_path)
+    driven = drive(scenario.name, options, CountedTime(configuration.begin_s, scenario.sumo.warm_up_s, 1), tmp_path)
     assert [driven.flows.get((row.edge, 0), 0) for row in found.rows] == [row.simulated for row in found.rows]
     assert len(driven.trips) + driven.backlog == found.carried.vehicles
     assert scenario.start.hour == 8
@@ -141,7 +140,7 @@ def test_what_cannot_be_calibrated_is_refused_before_anything_runs(tmp_path: Pat
     counts.write_text("site,hour,vehicles_per_hour,edge\na,8,10,nowhere\na,10,10,nowhere\n")
 
     def attempt(target: Path = tmp_path / "out", **options: object) -> None:
-        calibrate(grid, counts, target, Options(**options), lambda _: None)  # type: ignore[arg-type]
+        calibrate(grid, counts, target, CalibrationOptions(**options), lambda _said, _share: None)  # type: ignore[arg-type]
 
     with pytest.raises(CountsError, match="no counts of 9 h"):
         attempt()
@@ -169,5 +168,7 @@ def test_only_a_calibrations_folder_is_replaced(tmp_path: Path) -> None:
     folder = tmp_path / "mine"
     shutil.copytree(scenarios.load("grid").folder, folder)
     with pytest.raises(UserError, match="exists"):
-        calibrate(scenarios.load("grid"), COUNTS, folder, Options(), lambda _: None, force=True)
+        calibrate(
+            scenarios.load("grid"), COUNTS, folder, CalibrationOptions(), lambda _said, _share: None, force=True
+        )
     assert not (folder / RECORD).exists()

@@ -10,7 +10,7 @@ from zoneinfo import ZoneInfo
 
 import pytest
 
-from automotive_cosim.calibration.counts import ARC, FLOW, TIME, Place, geh, read_counts, read_travel_times
+from automotive_cosim.calibration.counts import ARC, FLOW, TIME, SitePlace, geh, read_counts, read_travel_times
 from automotive_cosim.errors import CountsError
 
 PARIS = ZoneInfo("Europe/Paris")
@@ -55,7 +55,7 @@ def test_many_detectors_get_their_places_from_a_file_of_sites(tmp_path: Path) ->
     sites = _file(tmp_path, ["site,edge,lon,lat,bearing", "7,,2.3,48.8,90", "4264,street,,,"], "sites.csv")
     counts = read_counts(_file(tmp_path, both), PARIS, sites)
     assert counts.sites == ("4264", "7")
-    assert counts.places == {"7": Place("", (2.3, 48.8), 90.0), "4264": Place("street")}
+    assert counts.places == {"7": SitePlace("", (2.3, 48.8), 90.0), "4264": SitePlace("street")}
 
 
 def test_plain_counts_are_read_also_gzipped_and_rows_of_several_days_have_a_median(tmp_path: Path) -> None:
@@ -63,7 +63,7 @@ def test_plain_counts_are_read_also_gzipped_and_rows_of_several_days_have_a_medi
     path.write_bytes(gzip.compress(f"{PLAIN}\na,8,10,e1\na,8,30,e1\na,8,20,\nb,9,5,e2\na,9,,\n".encode()))
     counts = read_counts(path, PARIS)
     assert counts.flows_per_h == {("a", 8): 20.0, ("b", 9): 5.0}
-    assert counts.places == {"a": Place("e1"), "b": Place("e2")}
+    assert counts.places == {"a": SitePlace("e1"), "b": SitePlace("e2")}
     assert counts.hours == (8, 9)
 
 

@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_array
 
-from automotive_cosim.calibration.fit import Floats, Problem, fit
+from automotive_cosim.calibration.fit import CountedFlows, Floats, fit
 
 NO_BOUNDS = csr_array((0, 3)), np.zeros(0)
 
 
 def flows(
     counted_by: list[list[float]], counts: list[float], prior: tuple[float, ...] = (10.0, 20.0, 30.0)
-) -> Problem:
+) -> CountedFlows:
     size = len(counts)
     matrix = csr_array(np.array(counted_by).reshape(size, len(prior)))
-    return Problem(np.array(prior), matrix, np.array(counts), np.full(size, 1e-3))
+    return CountedFlows(np.array(prior), matrix, np.array(counts), np.full(size, 1e-3))
 
 
 def test_without_counts_it_is_the_prior() -> None:
@@ -57,6 +57,6 @@ def test_many_routes_and_counts_are_met_and_all_routes_stay() -> None:
     truth, prior = rng.lognormal(1.0, 1.0, 2000), rng.lognormal(1.0, 1.0, 2000)
     seen = csr_array((rng.random((60, 2000)) < 0.05).astype(float))
     counts = seen @ truth
-    found = fit(Problem(prior, seen, counts, 0.001 * counts), csr_array((0, 2000)), np.zeros(0))
+    found = fit(CountedFlows(prior, seen, counts, 0.001 * counts), csr_array((0, 2000)), np.zeros(0))
     assert seen @ found == pytest.approx(counts, rel=0.02)
     assert np.all(found > 0.01 * prior)

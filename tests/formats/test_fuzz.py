@@ -78,7 +78,7 @@ ADDITIONAL = (
 )
 PLAN = 'agents = ["oracle"]\nseeds = [0, 1]\nrepeats = 2\n[limits]\nsteps = 5\nsim_s = 60.0\n'
 ACTIONS = '{"action_type": "click", "x": 3, "y": 4}\n{"action_type": "wait", "seconds": 2}\n'
-COUNTS = "hour,vehicles_per_hour,occupancy\n" + "".join(f"{hour},{100 + hour},10\n" for hour in range(24))
+COUNTS = "site,hour,vehicles_per_hour,edge\n" + "".join(f"a,{hour},{100 + hour},e\n" for hour in range(24))
 ROW = {"id": "a", "task": "hvac_fan_max", "half": "first", "pair": "", "dimension": "explicit_control",
        "module": "hvac", "scenario": "grid", "agent": "oracle", "model": "none", "geo": "full", "seed": 0,
        "repeat": 0}  # fmt: skip
