@@ -1,5 +1,5 @@
-"""Golden accessibility lists: what every view of the cockpit lists, in four languages, in left- and right-hand traffic
-and in the three states of motion.
+"""Golden accessibility lists: what every view of the cockpit lists, in four languages, with traffic on the left and
+on the right, in the three states of motion.
 
     python -m tests.cockpit.goldens            # what differs from the stored lists, view by view
     python -m tests.cockpit.goldens --renew    # stores the present ones
