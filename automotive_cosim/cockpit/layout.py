@@ -2,7 +2,6 @@
 
     head, _, body = column(card, 40, GAP, REST)     one above the other
     name, value = row(head, 130, REST)              side by side
-    cells = grid(body, 2, 3, GAP)                   line by line
 
 A part is its size in logical pixels, or ``REST``: what the others leave, in equal shares. Parts follow each other
 without a gap; a gap is a part of its own.
@@ -37,11 +36,6 @@ def row(rect: Rect, *parts: Part) -> tuple[Rect, ...]:
         ValueError: they are wider than the box.
     """
     return tuple(Rect(rect.x + left, rect.y, end - left, rect.height) for left, end in _edges(rect.width, parts))
-
-
-def grid(rect: Rect, lines: int, columns: int, gap: int) -> tuple[Rect, ...]:
-    """Equal boxes line by line, which fill it to the last pixel."""
-    return tuple(cell for line in rect.rows(lines, gap) for cell in line.columns(columns, gap))
 
 
 def _edges(length: int, parts: tuple[Part, ...]) -> tuple[tuple[int, int], ...]:

@@ -79,12 +79,15 @@ def stored() -> dict[str, Listing]:
 
 def differences(known: Mapping[str, Listing], now: Mapping[str, Listing]) -> Iterator[str]:
     """What is gone (-) and what has come (+), under the name of its view."""
-    for name in known.keys() | now.keys():
+    for name in sorted(known.keys() | now.keys()):
         before, after = known.get(name, []), now.get(name, [])
-        if before != after:
-            yield name
-            yield from (f"  - {one}" for one in before if one not in after)
-            yield from (f"  + {one}" for one in after if one not in before)
+        if before == after and name in known and name in now:
+            continue
+        yield name
+        yield from (f"  - {one}" for one in before if one not in after)
+        yield from (f"  + {one}" for one in after if one not in before)
+        if sorted(before) == sorted(after):
+            yield "  in another order"
 
 
 if __name__ == "__main__":

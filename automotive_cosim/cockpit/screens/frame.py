@@ -78,10 +78,10 @@ _SIGNAL = (Icon.SIGNAL_0, Icon.SIGNAL_1, Icon.SIGNAL_2, Icon.SIGNAL_3, Icon.SIGN
 
 
 def status_bar(state: State) -> tuple[Widget, ...]:
-    """Clock, weather, notice, lamps, links, battery, gear, speed and, if the car has a camera, the limit sign."""
+    """What is there on every screen: clock, weather, bell, links, battery, gear and speed."""
     signals = state.signals
     bar = Rect(0, 0, SCREEN_WIDTH, STATUS_HEIGHT)
-    widgets: list[Widget] = [
+    return (
         Label(
             rect=Rect(MARGIN - 4, 0, 76, bar.height),
             key="status.clock",
@@ -106,13 +106,19 @@ def status_bar(state: State) -> tuple[Widget, ...]:
             look=Look.PLAIN,
             on_tap=Back() if state.screen == "notifications" else Show("notifications"),
         ),
-    ]
-    widgets += _lamps(state)
+        *_links(state),
+        *_motion(state),
+    )
+
+
+def callouts(state: State) -> tuple[Widget, ...]:
+    """What comes and goes in the status bar: tell-tales, a caller or a notice, and the limit sign of the camera."""
+    told: tuple[Widget, ...] = ()
     if state.phone.ringing is not None:
-        widgets += _incoming(NOTICE, state.phone.ringing.who, state)
+        told = _incoming(NOTICE, state.phone.ringing.who, state)
     elif state.notice is not None:
-        widgets.append(_pill(NOTICE, state.notice, state))
-    return (*widgets, *_links(state), *_motion(state))
+        told = (_pill(NOTICE, state.notice, state),)
+    return (*_lamps(state), *told, *_limit_sign(state))
 
 
 def _pill(rect: Rect, notice: Notice, state: State) -> Pill:
@@ -232,15 +238,6 @@ def _links(state: State) -> tuple[Widget, ...]:
 
 def _motion(state: State) -> tuple[Widget, ...]:
     signals = state.signals
-    limit = signals[ADAS.LIMIT_SIGN]
-    sign: tuple[Widget, ...] = ()
-    if state.sign_camera and limit is not None:
-        shown = speed(signals, limit)
-        sign = (
-            LimitSign(
-                rect=Rect(1206, 7, 50, 50), key="status.limit_sign", text=shown, description=f"Limit sign {shown}"
-            ),
-        )
     return (
         Label(
             rect=Rect(1020, 14, 36, 36),
@@ -266,7 +263,18 @@ def _motion(state: State) -> tuple[Widget, ...]:
             style=Type.CAPTION,
             tone="muted",
         ),
-        *sign,
+    )
+
+
+def _limit_sign(state: State) -> tuple[Widget, ...]:
+    limit = state.signals[ADAS.LIMIT_SIGN]
+    if not state.sign_camera or limit is None:
+        return ()
+    shown = speed(state.signals, limit)
+    return (
+        LimitSign(
+            rect=Rect(1206, 7, 50, 50), key="status.limit_sign", text=shown, description=f"Limit sign {shown}"
+        ),
     )
 
 
