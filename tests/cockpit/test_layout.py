@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 
 from automotive_cosim.cockpit.geometry import Rect
@@ -15,8 +17,8 @@ def test_the_parts_fill_the_box_in_their_order(parts: tuple[int | None, ...]) ->
     across, down = row(BOX, *parts), column(BOX, *parts)
     assert across[0].x == BOX.x
     assert across[-1].right == BOX.right
-    assert all(one.right == other.x for one, other in zip(across, across[1:], strict=False))
-    assert all(one.bottom == other.y for one, other in zip(down, down[1:], strict=False))
+    assert all(one.right == other.x for one, other in pairwise(across))
+    assert all(one.bottom == other.y for one, other in pairwise(down))
     assert down[-1].bottom == BOX.bottom
     assert {(each.y, each.height) for each in across} == {(BOX.y, BOX.height)}
     assert {(each.x, each.width) for each in down} == {(BOX.x, BOX.width)}
