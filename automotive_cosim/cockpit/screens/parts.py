@@ -42,6 +42,8 @@ CONTENT = Rect(
 """The area of a screen."""
 KEYBOARD = Rect(0, 416, SCREEN_WIDTH, SCREEN_HEIGHT - 416)
 """The area of the on-screen keyboard."""
+HELD_STEPS = 5
+"""Steps of a stepper for one long press."""
 MILE_KM, PSI_KPA = 1.609344, 6.894757
 
 
@@ -95,19 +97,23 @@ def stepper(
     style: Type = Type.TITLE,
     locked: str = "",
 ) -> tuple[Widget, ...]:
-    """Minus, the value, plus."""
+    """Minus, the value, plus; a long press goes ``HELD_STEPS`` at once."""
     value = signals[signal]
     side = min(rect.height, 64)
-    less, more = max(signal.low, value - signal.step), min(signal.high, value + signal.step)
+    less, more, far_less, far_more = (
+        min(signal.high, max(signal.low, value + steps * signal.step)) for steps in (-1, 1, -HELD_STEPS, HELD_STEPS)
+    )
+    by = _step(signal, signals)
     left = Rect(rect.x, rect.y + (rect.height - side) // 2, side, side)
     right = Rect(rect.right - side, left.y, side, side)
     return (
         Button(
             rect=left,
             key=f"{key}.decrease",
-            description=f"{name} lower",
+            description=f"{name} lower by {by}",
             icon=Icon.MINUS,
             on_tap=Set(signal, less),
+            on_hold=Set(signal, far_less),
             disabled="It is at its lowest" if less == value else "",
             locked=locked,
         ),
@@ -122,13 +128,23 @@ def stepper(
         Button(
             rect=right,
             key=f"{key}.increase",
-            description=f"{name} higher",
+            description=f"{name} higher by {by}",
             icon=Icon.PLUS,
             on_tap=Set(signal, more),
+            on_hold=Set(signal, far_more),
             disabled="It is at its highest" if more == value else "",
             locked=locked,
         ),
     )
+
+
+def _step(signal: Signal[float], signals: Signals) -> str:
+    """A stepper's step in the unit of the display."""
+    if signal.unit == "celsius" and signals[HMI.TEMPERATURE_UNIT] == "F":
+        return f"{1.8 * signal.step:.1f}"
+    if signal.unit == "km/h" and signals[HMI.DISTANCE_UNIT] == "MILES":
+        return f"{signal.step / MILE_KM:.1f}"
+    return f"{signal.step:g}"
 
 
 def switch(
