@@ -497,3 +497,21 @@ def test_a_page_is_named_with_its_app_and_nothing_else_is_offered(cockpit: Cockp
     said = cockpit.open_app("Seats")
     assert said.code is FeedbackCode.NO_SUCH_ELEMENT
     assert said.text == "seats is no app; it is a page of vehicle"
+
+
+def test_no_list_begins_where_another_was_scrolled_to(cockpit: Cockpit) -> None:
+    """Another source, another podcast: each list begins at its first row."""
+
+    def press(key: str) -> None:
+        (element,) = (each for each in cockpit.elements() if each.resource_id == key)
+        assert cockpit.tap(*middle(element)).code is OK
+
+    cockpit.open_app("media")
+    for other in ("media.source.usb", "media.source.fm", "media.source.dab", "media.source.bluetooth"):
+        cockpit.scroll("media.entries", Direction.DOWN)
+        press(other)
+        assert shown(cockpit, "media.entry.0"), other
+    press("media.source.internet")
+    cockpit.scroll("media.entries", Direction.DOWN)
+    press("media.show.1")
+    assert shown(cockpit, "media.entry.0")
