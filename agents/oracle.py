@@ -54,14 +54,16 @@ class Oracle:
         self,
         instance: Instance,
         moves: Sequence[Move] | None = None,
+        declares: GoalStatus | None = None,
         *,
         drawn: Callable[[], Sequence[Element]] = tuple[Element, ...],
     ) -> None:
-        """Takes the instance's reference solution, one tap per action.
+        """Takes the instance's reference solution, or other moves, one tap per action.
 
         Args:
             instance: the task.
-            moves: another of its solutions.
+            moves: another of its solutions, or other moves.
+            declares: what to declare then; None for what is right.
             drawn: the boxes of the widgets in the present picture, with the texts that it shows. An agent that sees
                 the picture alone finds its way by them, and acts by points.
         """
@@ -71,7 +73,7 @@ class Oracle:
             repeats = move.times if isinstance(move, Tap) else 1
             self._moves.extend([move] * repeats)
         reason = min(instance.half.reasons, default=None)
-        self._end = Action(ActionType.STATUS, goal_status=instance.half.declares, reason=reason)
+        self._end = Action(ActionType.STATUS, goal_status=declares or instance.half.declares, reason=reason)
 
     def act(self, observation: Observation) -> Action:
         """The next move, or the declaration after the last."""

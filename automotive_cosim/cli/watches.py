@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from automotive_cosim.run.watch_row import WatchRow
     from automotive_cosim.run.watches import WatchPlan
 
-TASKS_ONLY = ("tasks", "scenarios", "everywhere", "held_out", "limits", "spare_traffic")
+TASKS_ONLY = ("tasks", "suite", "split", "scenarios", "everywhere", "held_out", "limits", "spare_traffic")
 """Parts of a plan that drives do not have."""
 
 

@@ -72,7 +72,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         see: str = See.BOTH,
         feedback: str = FeedbackDetail.QUIET,
         held_out: bool = False,
-        max_steps: int = 20,
+        max_steps: int | None = None,
         action_cost_s: float = ACTION_COST_S,
         render_mode: str | None = None,
         simulations: Simulations | None = None,

@@ -245,7 +245,7 @@ class Session:
             return End.DRIVE_ENDED
         if self.declared is not None:
             return End.DECLARED
-        if len(self.steps) > self.conditions.max_steps:
+        if self.conditions.max_steps is not None and len(self.steps) > self.conditions.max_steps:
             return End.OUT_OF_STEPS
         most_s = self.conditions.max_sim_s
         return End.OUT_OF_TIME if most_s is not None and self.seconds >= most_s - ROUNDING_S else None

@@ -20,8 +20,6 @@ from automotive_cosim.tasking.draws import SEED_LIMIT
 
 ACTION_COST_S = 1.0
 """Simulated seconds per action: about the time of a person's tap (NHTSA 2013 counts glances of up to 2 s)."""
-MAX_STEPS = 20
-"""Default limit of actions per episode."""
 ROUNDING_S = 1e-9
 """Tolerance of sums of simulated seconds."""
 
@@ -47,8 +45,8 @@ class Conditions:
     """Channels that the agent wants; ``geo`` and ``see`` may withhold some of them."""
     geo: GeoInput = GeoInput.FULL
     """What the agent is told of where it is."""
-    max_steps: int = MAX_STEPS
-    """Actions after which the episode is cut off."""
+    max_steps: int | None = None
+    """Actions after which the episode is cut off; None takes the task's own limit (``Suite.max_steps``)."""
     max_sim_s: float | None = None
     """Simulated seconds from the hand-over after which it is cut off; None leaves that to ``max_steps``."""
     action_cost_s: float = ACTION_COST_S
@@ -102,8 +100,8 @@ class EpisodeSpec:
     phrasing is drawn."""
     geo: Annotated[GeoInput, OneOf(GeoInput, "geo control")] = GeoInput.FULL
     """What the agent is told of where it is."""
-    max_steps: Annotated[int, Ge(1)] = MAX_STEPS
-    """Actions after which the episode is cut off."""
+    max_steps: Annotated[int, Ge(1)] | None = None
+    """Actions after which the episode is cut off; None takes the task's own limit, 20 or in the hard suite 40."""
     max_sim_s: Annotated[float, Gt(0)] | None = None
     """Simulated seconds from the hand-over after which it is cut off; None leaves that to ``max_steps``."""
     action_cost_s: Annotated[float, Gt(0)] = ACTION_COST_S

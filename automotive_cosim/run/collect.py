@@ -157,6 +157,7 @@ def planned(job: EpisodeJob) -> EpisodeRow:
         dimension=task.dimension,
         module=task.module,
         basis=half.basis,
+        suite=task.suite,
         tags=tuple(sorted(task.tags)),
         skills=tuple(sorted(task.skills)),
         declines=not half.moves,
@@ -171,6 +172,7 @@ def planned(job: EpisodeJob) -> EpisodeRow:
         see=setup.see,
         feedback=setup.feedback,
         held_out=setup.held_out,
+        split=job.split,
     )
 
 

@@ -17,7 +17,7 @@ from annotated_types import Ge, Gt, Le, MinLen
 from automotive_cosim import scenarios
 from automotive_cosim.agents import MODELLED, AgentSettings, make_agent
 from automotive_cosim.contracts import Json
-from automotive_cosim.episode.specification import MAX_STEPS, Clock, Conditions
+from automotive_cosim.episode.specification import Clock, Conditions
 from automotive_cosim.errors import SetupError, UnknownNameError, UserError
 from automotive_cosim.formats.annotations import OneOf
 from automotive_cosim.formats.checked import checked
@@ -30,12 +30,18 @@ from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.former import without_mode
 from automotive_cosim.run.outside import EPISODE_S, STEP_S, check_agent
 from automotive_cosim.scenery import open_scenario
-from automotive_cosim.tasking.task import Task
+from automotive_cosim.tasking.split import Split, split_of
+from automotive_cosim.tasking.task import Suite, Task
 from automotive_cosim.tasks import CATALOGUE
 
+PRESETS: Mapping[str, Json] = {"2026": {"limits": {"steps": 10}}}
+"""Values of a plan by the name of who evaluates so: the authors' newer edition allows ten steps."""
 NO_MODEL = "none"
 MOST_RUNS = 10_000_000
 """At a second each, four months."""
+ALL_SUITES, BOTH = "all", "both"
+SUITES = (*Suite, ALL_SUITES)
+SPLITS = (*Split, BOTH)
 SPARE_TRAFFIC = (1_000_001, 1_000_002)
 """Far from the seeds that people choose."""
 
@@ -44,8 +50,10 @@ SPARE_TRAFFIC = (1_000_001, 1_000_002)
 class Limits:
     """Limits of one episode."""
 
-    steps: Annotated[int, Ge(1), Le(100_000)] = MAX_STEPS
+    steps: Annotated[int, Ge(1), Le(100_000)] = Suite.STANDARD.max_steps
     """Number of actions, including unreadable ones."""
+    hard_steps: Annotated[int, Ge(1), Le(100_000)] = Suite.HARD.max_steps
+    """The same for the tasks of the hard suite."""
     sim_s: Annotated[float, Gt(0)] = 600.0
     """Simulated seconds from the hand-over, after which the episode is judged as it is."""
     wall_s: Annotated[float, Gt(0)] = 900.0
@@ -66,7 +74,9 @@ class Plan:
     agents: tuple[str, ...] = ()
     """Agents; ``package.module:Class`` is one of your own. At least one, here or with ``--agents``."""
     tasks: Annotated[tuple[str, ...], MinLen(1)] = ("all",)
-    """Ids, patterns such as ``hvac_*``, tags, modules, dimensions, ``general``, ``safety`` or ``all``."""
+    """Ids, patterns such as ``hvac_*``, tags, modules, dimensions, subsets, ``general``, ``safety`` or ``all``."""
+    suite: Annotated[str, OneOf(SUITES, "suite")] = str(Suite.STANDARD)
+    """The suite that these are chosen from: ``standard``, ``hard`` or ``all``. An id names its task in any."""
     models: Annotated[tuple[str, ...], MinLen(1)] = ("rules",)
     """Models for the agents that use one."""
     scenarios: tuple[str, ...] = ()
@@ -95,6 +105,8 @@ class Plan:
     """Runs of each episode, for models that do not answer the same twice."""
     held_out: bool = False
     """Whether to use only each task's held-out phrasing; otherwise any phrasing is drawn."""
+    split: Annotated[str, OneOf(SPLITS, "split")] = BOTH
+    """``dev`` or ``test`` for the episodes of one set alone (``tasking.split``); ``both`` for all."""
     limits: Limits = field(default_factory=Limits)
     """Limits of each episode."""
 
@@ -152,15 +164,18 @@ class Plan:
             raise UserError(
                 f"the plan has {most:,} runs of tasks; give fewer seeds or repeats, at most {MOST_RUNS:,}"
             )
-        jobs = {job.id: job for job in self._each()}
+        jobs = {job.id: job for job in self._each() if self.split in (BOTH, job.split)}
         return tuple(sorted(jobs.values(), key=lambda job: (digest(job.simulation), digest(job.id))))
 
     def left_out(self) -> tuple[str, ...]:
         """Ids of the chosen tasks that cannot run in any of the scenarios."""
         placed = {task.id for task, _ in self._placed()}
-        return tuple(task_id for task_id in choose(self.tasks) if task_id not in placed)
+        return tuple(task_id for task_id in choose(self.tasks, self.suite) if task_id not in placed)
 
     def _nowhere(self) -> str:
+        if self._placed():
+            held_out = " in held-out phrasings, which are all test" if self.held_out else ""
+            return f"no episode of these tasks and seeds is of the split {self.split!r}{held_out}"
         return (
             f"none of the tasks can run in {', '.join(self.scenarios)}; `automotive-cosim tasks show` says where "
             "each can, and --everywhere runs them there anyway"
@@ -168,7 +183,7 @@ class Plan:
 
     def _placed(self) -> list[tuple[Task, str | None]]:
         """Each task with each scenario that it runs in; None for its own."""
-        chosen = [CATALOGUE[task_id] for task_id in choose(self.tasks)]
+        chosen = [CATALOGUE[task_id] for task_id in choose(self.tasks, self.suite)]
         if not self.scenarios:
             return [(task, None) for task in chosen]
         shipped = scenarios.shipped()
@@ -199,7 +214,7 @@ class Plan:
                     agent=agent,
                     model=model if agent in MODELLED else NO_MODEL,
                     seed=seed,
-                    max_steps=self.limits.steps,
+                    max_steps=self.limits.hard_steps if task.suite is Suite.HARD else self.limits.steps,
                     max_sim_s=self.limits.sim_s,
                     geo=GeoInput(geo),
                     held_out=self.held_out,
@@ -234,6 +249,11 @@ class EpisodeJob:
     def task(self) -> Task:
         """The catalogue's entry."""
         return CATALOGUE[self.setup.task]
+
+    @property
+    def split(self) -> Split:
+        """The set that it belongs to, by its seed and its phrasing."""
+        return split_of(self.task, self.setup.seed, held_out=self.setup.held_out)
 
     @property
     def simulation(self) -> tuple[str, int]:
@@ -296,17 +316,25 @@ def digest(value: object) -> str:
     return hashlib.sha256(canonical(value)).hexdigest()
 
 
-def choose(asked: Iterable[str]) -> tuple[str, ...]:
+def choose(asked: Iterable[str], suite: str = Suite.STANDARD) -> tuple[str, ...]:
     """Ids of the tasks that any of the words selects, in the catalogue's order.
 
+    Args:
+        asked: ids, patterns, tags and so on.
+        suite: the suite that patterns and tags select from, or ``all``; an id names its task in any.
+
     Raises:
-        UnknownNameError: a word selects none.
+        UnknownNameError: there is no such suite, or a word selects none of its tasks.
     """
+    if suite not in SUITES:
+        raise UnknownNameError("suite", suite, SUITES)
+    there = [task for task in CATALOGUE.values() if suite in (ALL_SUITES, task.suite)]
     chosen: set[str] = set()
     for word in asked:
-        named = {task.id for task in CATALOGUE.values() if fnmatchcase(task.id, word) or word in _words(task)}
+        named = {task.id for task in there if fnmatchcase(task.id, word) or word in _words(task)}
+        named |= {word} & set(CATALOGUE)
         if not named:
-            known = set(CATALOGUE).union(*map(_words, CATALOGUE.values()))
+            known = set(CATALOGUE).union(*map(_words, there))
             raise UnknownNameError("task, pattern or tag", word, known, "automotive-cosim tasks list")
         chosen |= named
     return tuple(task_id for task_id in CATALOGUE if task_id in chosen)
@@ -314,7 +342,7 @@ def choose(asked: Iterable[str]) -> tuple[str, ...]:
 
 def _words(task: Task) -> frozenset[str]:
     kind = "safety" if task.dimension.is_safety else "general"
-    return task.tags | {"all", kind, str(task.module), str(task.dimension)}
+    return task.tags | {"all", kind, str(task.module), str(task.dimension), str(task.subset)}
 
 
 def read_plan(path: Path) -> dict[str, Any]:
@@ -327,6 +355,18 @@ def read_plan(path: Path) -> dict[str, Any]:
     document = replace(document, table=without_mode(document.table, str(path)))
     document.read(Plan)
     return document.table
+
+
+def with_preset(values: Mapping[str, Any], name: str) -> dict[str, Any]:
+    """The values of a plan, with those of a preset in place of its own.
+
+    Raises:
+        UnknownNameError: there is no such preset.
+    """
+    if name not in PRESETS:
+        raise UnknownNameError("preset", name, PRESETS)
+    preset = PRESETS[name]
+    return {**values, **preset, "limits": {**values.get("limits", {}), **preset["limits"]}}
 
 
 def make_plan(values: Mapping[str, Any]) -> Plan:

@@ -86,11 +86,18 @@ def thread(state: State) -> tuple[Widget, ...]:
     lines = [*(said if opened and not hidden else []), *sent]
     left, _, right = row(RIGHT, 500, GAP, REST)
     bar, _, talk, _, read = column(left, 64, 12, REST, 12, 64)
-    back, _, name = row(bar, 64, 16, REST)
+    back, _, name, _, figure = row(bar, 64, 16, REST, 12, 172)
     return (
         handset(state),
         Button(rect=back, key="thread.back", description="Back", icon=Icon.BACK, on_tap=Back()),
         Label(rect=name, key="thread.who", text=who, style=Type.TITLE),
+        Button(
+            rect=figure,
+            key="thread.figure",
+            text="Figure",
+            icon=Icon.CLOCK,
+            on_tap=Show("figure", who),
+        ),
         *(
             (
                 rows(
