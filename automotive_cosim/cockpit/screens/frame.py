@@ -9,6 +9,7 @@ from typing import Any
 from automotive_cosim.cockpit.desk import TOOLS
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.language import translated
+from automotive_cosim.cockpit.layout import REST, row
 from automotive_cosim.cockpit.messages import Back, DeclineCall, Put, Show, TakeCall
 from automotive_cosim.cockpit.screens.notices import wanting
 from automotive_cosim.cockpit.screens.parts import speed, speed_unit, stepper, switch, temperature
@@ -138,11 +139,12 @@ def _pill(rect: Rect, notice: Notice, state: State) -> Pill:
 
 def _incoming(rect: Rect, who: str, state: State) -> tuple[Widget, ...]:
     """The caller, and the possible reactions, on every screen."""
-    answer, decline, message = rect.right_part(3 * 64).columns(3, 8)
+    picture, _, name, _, acts = row(rect, 40, 4, REST, 8, 3 * 64)
+    answer, decline, message = acts.columns(3, 8)
     return (
-        Glyph(rect=Rect(rect.x, rect.y, 40, rect.height), icon=Icon.CALL_IN, size=30, tone="good"),
+        Glyph(rect=picture, icon=Icon.CALL_IN, size=30, tone="good"),
         Label(
-            rect=Rect(rect.x + 44, rect.y, answer.x - rect.x - 52, rect.height),
+            rect=name,
             key="call.incoming",
             text=who,
             description="Incoming call",
@@ -293,7 +295,10 @@ def dock(state: State) -> tuple[Widget, ...]:
 def _dock(here: str, values: tuple[Any, ...], left_hand: bool) -> tuple[Widget, ...]:
     signals = Signals({signal.path: value for signal, value in zip(DOCKED, values, strict=True)})
     bar = Rect(0, SCREEN_HEIGHT - DOCK_HEIGHT, SCREEN_WIDTH, DOCK_HEIGHT)
-    cells = Rect(284, bar.y + 8, 712, 80).columns(len(DOCK), 4)
+    _, left, _, front, _, middle, _, rear, _, right, _ = row(
+        bar, MARGIN, 184, 10, 58, 8, REST, 8, 58, 10, 184, MARGIN
+    )
+    cells = middle.inset(0, 8).columns(len(DOCK), 4)
     apps = tuple(
         Choice(
             rect=cell,
@@ -308,8 +313,7 @@ def _dock(here: str, values: tuple[Any, ...], left_hand: bool) -> tuple[Widget, 
         )
         for cell, (name, (text, icon)) in zip(cells, DOCK.items(), strict=True)
     )
-    left = Rect(MARGIN, bar.y + 22, 184, 52)
-    right = Rect(SCREEN_WIDTH - MARGIN - 184, bar.y + 22, 184, 52)
+    left, front, rear, right = (each.inset(0, 22) for each in (left, front, rear, right))
     driver, passenger = signals[HVAC.DRIVER_TEMPERATURE], signals[HVAC.PASSENGER_TEMPERATURE]
     whole = (
         *stepper(
@@ -321,9 +325,9 @@ def _dock(here: str, values: tuple[Any, ...], left_hand: bool) -> tuple[Widget, 
             temperature(signals, driver),
             Type.LABEL,
         ),
-        _quick(Rect(218, bar.y + 22, 58, 52), "front", Icon.DEFROST_FRONT, signals),
+        _quick(front, "front", Icon.DEFROST_FRONT, signals),
         *apps,
-        _quick(Rect(1004, bar.y + 22, 58, 52), "rear", Icon.DEFROST_REAR, signals),
+        _quick(rear, "rear", Icon.DEFROST_REAR, signals),
         *stepper(
             left if left_hand else right,
             "dock.passenger_temperature",

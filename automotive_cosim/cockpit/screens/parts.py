@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 
 from automotive_cosim.cockpit.desk import Timer
 from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.layout import REST, row
 from automotive_cosim.cockpit.messages import Focus, Message, Put, Set, Show
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.signals import HMI, Signal, Signals
@@ -104,11 +105,10 @@ def stepper(
         min(signal.high, max(signal.low, value + steps * signal.step)) for steps in (-1, 1, -HELD_STEPS, HELD_STEPS)
     )
     by = _step(signal, signals)
-    left = Rect(rect.x, rect.y + (rect.height - side) // 2, side, side)
-    right = Rect(rect.right - side, left.y, side, side)
+    left, middle, right = row(rect, side, REST, side)
     return (
         Button(
-            rect=left,
+            rect=left.middle(side, side),
             key=f"{key}.decrease",
             description=f"{name} lower by {by}",
             icon=Icon.MINUS,
@@ -118,7 +118,7 @@ def stepper(
             locked=locked,
         ),
         Label(
-            rect=Rect(left.right, rect.y, right.x - left.right, rect.height),
+            rect=middle,
             key=f"{key}.value",
             text=shown,
             description=name,
@@ -126,7 +126,7 @@ def stepper(
             align="centre",
         ),
         Button(
-            rect=right,
+            rect=right.middle(side, side),
             key=f"{key}.increase",
             description=f"{name} higher by {by}",
             icon=Icon.PLUS,
@@ -250,14 +250,13 @@ def search(
 
 def title(rect: Rect, icon: Icon, text: str, key: str = "") -> Card:
     """The head of a page: an icon and its name."""
+    picture, _, words = row(rect, 32, 12, REST)
     return Card(
         rect=rect,
         look="none",
         children=(
-            Glyph(rect=Rect(rect.x, rect.y, 32, rect.height), icon=icon, size=28, tone="accent"),
-            Label(
-                rect=Rect(rect.x + 44, rect.y, rect.width - 44, rect.height), key=key, text=text, style=Type.TITLE
-            ),
+            Glyph(rect=picture, icon=icon, size=28, tone="accent"),
+            Label(rect=words, key=key, text=text, style=Type.TITLE),
         ),
     )
 
@@ -369,17 +368,17 @@ def _rest(rect: Rect, key: str, state: State) -> Row:
 
 def time_setter(rect: Rect, key: str, timer: Timer, put: Callable[[Timer], Put]) -> tuple[Widget, ...]:
     """A time of day, earlier and later by half an hour; ``put`` keeps the one that was set."""
-    side = 72
+    earlier, time, later = row(rect, 72, REST, 72)
     return (
         Button(
-            rect=rect.left(side),
+            rect=earlier,
             key=f"{key}.earlier",
             description="Half an hour earlier",
             icon=Icon.MINUS,
             on_tap=put(timer.moved(-30)),
         ),
         Label(
-            rect=Rect(rect.x + side, rect.y, rect.width - 2 * side, rect.height),
+            rect=time,
             key=f"{key}.time",
             text=timer.shown,
             description="Time",
@@ -387,7 +386,7 @@ def time_setter(rect: Rect, key: str, timer: Timer, put: Callable[[Timer], Put])
             align="centre",
         ),
         Button(
-            rect=rect.right_part(side),
+            rect=later,
             key=f"{key}.later",
             description="Half an hour later",
             icon=Icon.PLUS,

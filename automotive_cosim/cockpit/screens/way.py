@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.layout import REST, column
+from automotive_cosim.cockpit.layout import REST, column, row
 from automotive_cosim.cockpit.messages import Back, Guide, Pick, Put, Set, Show, Take
 from automotive_cosim.cockpit.navigation import AVOIDABLE
 from automotive_cosim.cockpit.places import SORTS, Destination, PlaceKind
@@ -53,11 +53,11 @@ def along(state: State, places: Sequence[Destination]) -> tuple[Destination, ...
 
 
 def _head(state: State, text: str, icon: Icon, key: str) -> tuple[Widget, ...]:
-    bar = PANEL.top(56)
+    back, _, picture, _, words = row(PANEL.top(56), 56, 16, 32, 8, REST)
     return (
-        Button(rect=bar.left(56), key=f"{key}.back", description="Back", icon=Icon.BACK, on_tap=Back()),
-        Glyph(rect=Rect(bar.x + 72, bar.y + 12, 32, 32), icon=icon, size=28, tone="accent"),
-        Label(rect=Rect(bar.x + 112, bar.y, bar.width - 112, 56), key=f"{key}.title", text=text, style=Type.TITLE),
+        Button(rect=back, key=f"{key}.back", description="Back", icon=Icon.BACK, on_tap=Back()),
+        Glyph(rect=picture.middle(32, 32), icon=icon, size=28, tone="accent"),
+        Label(rect=words, key=f"{key}.title", text=text, style=Type.TITLE),
     )
 
 
