@@ -17,6 +17,8 @@ FRAME = (255, 64, 160)
 GROUND = (255, 255, 255)
 INK = (0, 0, 0)
 LABEL_PX = 15
+STEPS = 6
+"""Steps of a number along each side of its box."""
 EDGE = 40.0
 """Leap of brightness, of 255, that is a letter's edge rather than that of a surface."""
 
@@ -49,15 +51,12 @@ def marks(screenshot: npt.NDArray[np.uint8], elements: tuple[Element, ...]) -> t
     for index, element in listed(elements):
         tag, box = label(index), element.bbox_pixels
         spots = [_within(spot, width, height) for spot in _around(box, tag.width, tag.height)]
-        spot = min(
-            spots,
-            key=lambda spot: (
-                any(overlap(spot, mark.label) for mark in found),
-                ink.under(spot) > 0,
-                overlap(spot, box),
-                ink.under(spot),
-            ),
-        )
+
+        def faults(spot: BoundingBox, box: BoundingBox = box) -> tuple[bool, bool, bool, int]:
+            leaps = ink.under(spot)
+            return any(overlap(spot, mark.label) for mark in found), leaps > 0, overlap(spot, box), leaps
+
+        spot = next((spot for spot in spots if not any(faults(spot))), None) or min(spots, key=faults)
         found.append(Mark(index, box, spot))
     return tuple(found)
 
@@ -95,8 +94,8 @@ class Ink:
 
 def _around(box: BoundingBox, width: int, height: int) -> Iterator[BoundingBox]:
     """Places for a number of that size: outside the box, then in its corners."""
-    across = (box.x_min, box.x_max - width, (box.x_min + box.x_max - width) // 2)
-    down = (box.y_min, box.y_max - height, (box.y_min + box.y_max - height) // 2)
+    across = [box.x_min + step * (box.x_max - width - box.x_min) // STEPS for step in range(STEPS + 1)]
+    down = [box.y_min + step * (box.y_max - height - box.y_min) // STEPS for step in range(STEPS + 1)]
     corners = [(x, y) for y in (box.y_min - height, box.y_max) for x in across]
     corners += [(x, y) for x in (box.x_min - width, box.x_max) for y in down]
     corners += [(x, y) for y in down for x in across]
