@@ -46,7 +46,7 @@ def marks(screenshot: npt.NDArray[np.uint8], elements: tuple[Element, ...]) -> t
     where that is free, else where it hides least.
     """
     height, width, _ = screenshot.shape
-    ink = Ink(screenshot)
+    ink = Leaps(screenshot)
     found: list[Mark] = []
     for index, element in listed(elements):
         tag, box = label(index), element.bbox_pixels
@@ -75,7 +75,7 @@ def marked(screenshot: npt.NDArray[np.uint8], elements: tuple[Element, ...]) -> 
     return np.array(picture, dtype=np.uint8)
 
 
-class Ink:
+class Leaps:
     """How much is drawn in any part of a picture, from sums over its upper left parts."""
 
     def __init__(self, picture: npt.NDArray[np.uint8]) -> None:

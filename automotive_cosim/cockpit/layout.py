@@ -17,10 +17,10 @@ from automotive_cosim.cockpit.geometry import Rect
 REST: Final = None
 """A part that takes what the others leave."""
 
-Part = int | None
+LayoutPart = int | None
 
 
-def column(rect: Rect, *parts: Part) -> tuple[Rect, ...]:
+def column(rect: Rect, *parts: LayoutPart) -> tuple[Rect, ...]:
     """The boxes of the parts, one above the other.
 
     Raises:
@@ -29,7 +29,7 @@ def column(rect: Rect, *parts: Part) -> tuple[Rect, ...]:
     return tuple(Rect(rect.x, rect.y + top, rect.width, end - top) for top, end in _edges(rect.height, parts))
 
 
-def row(rect: Rect, *parts: Part) -> tuple[Rect, ...]:
+def row(rect: Rect, *parts: LayoutPart) -> tuple[Rect, ...]:
     """The boxes of the parts, side by side.
 
     Raises:
@@ -38,7 +38,7 @@ def row(rect: Rect, *parts: Part) -> tuple[Rect, ...]:
     return tuple(Rect(rect.x + left, rect.y, end - left, rect.height) for left, end in _edges(rect.width, parts))
 
 
-def _edges(length: int, parts: tuple[Part, ...]) -> tuple[tuple[int, int], ...]:
+def _edges(length: int, parts: tuple[LayoutPart, ...]) -> tuple[tuple[int, int], ...]:
     """Beginning and end of each part."""
     left, shares = length - sum(part or 0 for part in parts), sum(part is REST for part in parts)
     if left < 0:

@@ -6,7 +6,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from automotive_cosim.agents.marks import Ink, label, listed, marked, marks, overlap
+from automotive_cosim.agents.marks import Leaps, label, listed, marked, marks, overlap
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.screens import SCREENS
 from automotive_cosim.contracts import BoundingBox
@@ -65,7 +65,7 @@ def test_on_every_screen_numbers_stand_beside_their_boxes_and_cover_no_letter_an
     for screen in SCREENS:
         cockpit.visit(screen)
         shot = cockpit.screenshot()
-        ink, placed = Ink(shot), marks(shot, cockpit.elements())
+        ink, placed = Leaps(shot), marks(shot, cockpit.elements())
         assert len(placed) > 20
         assert not [mark for mark in placed if overlap(mark.label, mark.box)], screen
         assert not [mark for mark in placed if ink.under(mark.label)], screen
