@@ -194,6 +194,10 @@ def test_parquet_holds_the_same(folder: Path) -> None:
         read = pd.read_parquet(folder / f"{name}.parquet")
         assert list(read.columns) == list(pd.read_csv(folder / f"{name}.csv").columns)
         assert read.id.tolist() == pd.read_csv(folder / f"{name}.csv").id.tolist()
+        assert {str(read[each].dtype) for each in ("share", "gain_time_s", "gain_co2_g")} == {"Float64"}, (
+            "also whole"
+        )
+        assert str(read.seed.dtype) == str(read.branch.dtype) == "Int64"
 
 
 EMPTY_HERE = {"gain_error_s", "won", "lost", "chose_best", "draw_seed"}
