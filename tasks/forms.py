@@ -10,9 +10,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 from automotive_cosim.cockpit.arrivals import Arrival
-from automotive_cosim.cockpit.signals import LIGHTS
+from automotive_cosim.cockpit.signals import LIGHTS, Signal
 from automotive_cosim.contracts import GoalStatus, Reason
 from automotive_cosim.tasking.checks import AllOf, AskedFirst, Check, NotAsked, NothingDone
 from automotive_cosim.tasking.dialogue import Topic
@@ -27,6 +28,7 @@ WHEN_WRITTEN = Trigger(Driving(), for_s=3.0, within_s=90.0, after_s=12.0)
 """Late enough for messages to have come in (``wrote``)."""
 PARKED_WHEN_WRITTEN = Trigger(Parked(), for_s=3.0, within_s=40.0, after_s=12.0)
 PARIS = Start("paris_centre", "centre")
+AT_THE_KERB = Start("paris_centre", "centre", parked=True)
 COMFORT = Deadline(30.0, "a wish for comfort: the driver would reach for the knob within half a minute")
 ERRAND = Deadline(60.0, "an errand on the screen: a passenger would have it done within a minute")
 TALK = Deadline(60.0, "an errand: a passenger would have asked, or looked, and done it within a minute")
@@ -200,6 +202,7 @@ def unclear(
     difference: str,
     parameters: Mapping[str, Choices],
     trigger: Trigger = WHEN_WRITTEN,
+    deadline: Deadline = TALK,
     dimension: Dimension = Dimension.EXPLICIT_CONTROL,
     tags: frozenset[str] = frozenset(),
 ) -> Task:
@@ -222,6 +225,7 @@ def unclear(
         difference: what the second half changes, as in ``Task.difference``.
         parameters: what is drawn, among it what is meant.
         trigger: what hands over.
+        deadline: by when, and why.
         dimension: explicit, or implicit if the words do not say what to do.
         tags: what else is true of it.
     """
@@ -230,7 +234,7 @@ def unclear(
         trigger,
         AllOf((AskedFirst(topic), goal)),
         (Consult(question), *moves),
-        TALK,
+        deadline,
         Basis.WISH,
         may_write=LOOKS,
         topics=(topic,),
@@ -247,6 +251,14 @@ def unclear(
         parameters,
         tags | {"asking"},
     )
+
+
+def only(signals: Mapping[str, Signal[Any]], on: Any, off: Any, which: str = "which") -> dict[str, Any]:
+    """Settings in which one of several signals is on: the one whose name the parameter ``which`` has."""
+    return {
+        signal.path: param(which, {name: on if name == own else off for name in signals})
+        for own, signal in signals.items()
+    }
 
 
 def wrote(start: Start, *messages: tuple[str, str]) -> Start:

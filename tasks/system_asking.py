@@ -1,0 +1,208 @@
+"""System, wishes that do not say enough: whose window, which lamp, profile, network, language."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from automotive_cosim.cockpit.signals import CABIN, HMI, LINK
+from automotive_cosim.tasking.checks import AllOf, AppDataIs, SignalIs
+from automotive_cosim.tasking.dialogue import Topic
+from automotive_cosim.tasking.moves import Open, Slide, Tap
+from automotive_cosim.tasking.parameters import param
+from automotive_cosim.tasking.task import Dimension, Module
+from automotive_cosim.tasks.forms import (
+    AT_THE_KERB,
+    ON_THE_WAY,
+    PARIS,
+    PARKED_WHEN_WRITTEN,
+    only,
+    read_out,
+    unclear,
+    wrote,
+)
+from automotive_cosim.tasks.system import CONNECTIONS, DOORS, INSIDE, LANGUAGES
+
+FRONT_WINDOWS = {"driver": CABIN.DRIVER_WINDOW, "passenger": CABIN.PASSENGER_WINDOW}
+READING_LIGHTS = {"driver": CABIN.DRIVER_READING_LIGHT, "passenger": CABIN.PASSENGER_READING_LIGHT}
+DRIVER = ("driver", "driver's", "my", "mine", "your", "yours")
+PASSENGER = ("passenger", "passenger's")
+CHILD_LOCKS = {"left": CABIN.LEFT_CHILD_LOCK, "right": CABIN.RIGHT_CHILD_LOCK}
+
+TASKS = (
+    unclear(
+        "system_ask_which_window",
+        Module.SYSTEM,
+        (
+            "Close that window, there's a draught.",
+            "Shut the window. Just the one, I need some air.",
+            "Window up, please, it howls.",
+            "The window that's open in front, close it.",
+            "Up with the window, I can't hear myself think.",
+        ),
+        Topic(
+            "which window",
+            (DRIVER, PASSENGER),
+            param("which", {"driver": "Mine.", "passenger": "The passenger's."}),
+            ("window", "which", "side"),
+        ),
+        "Which window, the driver's or the passenger's?",
+        SignalIs(param("which", FRONT_WINDOWS), (0.0,)),
+        *DOORS,
+        Slide("window.{which}", 0.0),
+        untold=replace(PARIS, signals={window.path: 40.0 for window in FRONT_WINDOWS.values()}),
+        told=replace(PARIS, signals=only(FRONT_WINDOWS, 40.0, 0.0)),
+        look=DOORS,
+        difference="settings: both front windows are open, or only one of them",
+        parameters={"which": tuple(FRONT_WINDOWS)},
+        trigger=ON_THE_WAY,
+    ),
+    unclear(
+        "system_ask_which_reading_light",
+        Module.SYSTEM,
+        (
+            "Switch the reading light off.",
+            "That reading lamp can go out now.",
+            "Reading light out, please.",
+            "Nobody reads there any more; lamp off.",
+            "The little spot over the seat isn't needed now.",
+        ),
+        Topic(
+            "which reading light",
+            (DRIVER, PASSENGER),
+            param("which", {"driver": "The driver's.", "passenger": "The passenger's."}),
+            ("light", "lamp", "which"),
+        ),
+        "Whose reading light, the driver's or the passenger's?",
+        SignalIs(param("which", READING_LIGHTS), (False,)),
+        *INSIDE,
+        Tap("light.{which}_reading"),
+        untold=replace(PARIS, signals={light.path: True for light in READING_LIGHTS.values()}),
+        told=replace(PARIS, signals=only(READING_LIGHTS, True, False)),
+        look=INSIDE,
+        difference="settings: both reading lights are lit, or only one of them",
+        parameters={"which": tuple(READING_LIGHTS)},
+        trigger=ON_THE_WAY,
+    ),
+    unclear(
+        "system_ask_which_profile",
+        Module.SYSTEM,
+        (
+            "Load the profile that Ada told me to use.",
+            "Ada lends me the car. Switch to the profile I may have, Driver 2 or Guest.",
+            "Change to Driver 2 or Guest, as Ada said.",
+            "The right profile, please. Ada has told me which of hers.",
+            "It's Ada's car, so use the profile she wants me to.",
+        ),
+        Topic(
+            "which profile",
+            (("driver 2", "driver two", "2"), ("guest",)),
+            "{which}.",
+            ("profile", "ada"),
+        ),
+        "Which profile: Driver 2 or Guest?",
+        AppDataIs("driver.profile", ("{which}",)),
+        Open("settings"),
+        Tap("settings.page.profiles"),
+        Tap(text="{which}"),
+        untold=wrote(AT_THE_KERB, ("Ada Lindqvist", "Have fun with my car, and use the profile I told you!")),
+        told=wrote(AT_THE_KERB, ("Ada Lindqvist", "Have fun with my car, and use the profile {which}!")),
+        look=read_out("Ada Lindqvist"),
+        difference="content: Ada reminds of the profile, or names it",
+        parameters={"which": ("Driver 2", "Guest")},
+        trigger=PARKED_WHEN_WRITTEN,
+    ),
+    unclear(
+        "system_ask_which_network",
+        Module.SYSTEM,
+        (
+            "Join the Wi-Fi of this place, Bruno knows its name.",
+            "Wi-Fi on, and into Bruno's network.",
+            "Bruno lets us use his wireless. Get us in, it's Garage or Coffee-Guest.",
+            "Connect to Garage or Coffee-Guest, whichever is Bruno's.",
+            "Onto Bruno's Wi-Fi, please.",
+        ),
+        Topic(
+            "which network",
+            (("garage",), ("coffee guest", "coffee")),
+            param("which", {"Garage": "Garage.", "Coffee-Guest": "Coffee-Guest."}),
+            ("network", "wi fi", "wifi", "bruno"),
+        ),
+        "Which network is Bruno's: Garage or Coffee-Guest?",
+        AllOf((SignalIs(LINK.WIFI, (True,)), AppDataIs("wifi.network", ("{which}",)))),
+        *CONNECTIONS,
+        Tap("link.wifi"),
+        Tap(text="{which}"),
+        untold=wrote(AT_THE_KERB, ("Bruno Keller", "You're welcome to use my Wi-Fi.")),
+        told=wrote(AT_THE_KERB, ("Bruno Keller", "You're welcome to use my Wi-Fi, it's called {which}.")),
+        look=read_out("Bruno Keller"),
+        difference="content: Bruno offers his Wi-Fi, or also names it",
+        parameters={"which": ("Garage", "Coffee-Guest")},
+        trigger=PARKED_WHEN_WRITTEN,
+    ),
+    unclear(
+        "system_ask_which_language",
+        Module.SYSTEM,
+        (
+            "Our guest is to read the screen in his own language: French, German or Japanese.",
+            "Put the display into our guest's language, one of French, German and Japanese.",
+            "Mr Sato's colleague gets in now. German, French or Japanese, whatever he speaks.",
+            "Screens in the language of our visitor, please: Japanese, French or German.",
+            "Make our guest feel at home: his language on the screen, German, French or Japanese.",
+        ),
+        Topic(
+            "which language",
+            (("french",), ("german",), ("japanese",)),
+            "He speaks {which}.",
+            ("language", "guest", "visitor"),
+        ),
+        "Which language does he speak: French, German or Japanese?",
+        SignalIs(HMI.LANGUAGE, (param("which", LANGUAGES),)),
+        Open("settings"),
+        Tap("settings.page.language"),
+        Tap(param("which", {name: f"language.{code}" for name, code in LANGUAGES.items()})),
+        untold=wrote(PARIS, ("Front desk", "Your guest is on the way down.")),
+        told=wrote(PARIS, ("Front desk", "Your guest is on the way down. He speaks only {which}.")),
+        look=read_out("Front desk"),
+        difference="content: the front desk announces the guest, or also says what he speaks",
+        parameters={"which": tuple(LANGUAGES)},
+        dimension=Dimension.IMPLICIT_INTENT,
+    ),
+    unclear(
+        "system_ask_which_child_lock",
+        Module.SYSTEM,
+        (
+            "Child lock on, on Lena's side.",
+            "Lena plays with her door handle behind me. Lock it for children.",
+            "The child safety for the door next to Lena, please.",
+            "Make sure Lena can't open her door from inside.",
+            "Lena's door, the child lock.",
+        ),
+        Topic(
+            "where Lena sits",
+            (("left",), ("right",)),
+            param("which", {"left": "She sits on the left.", "right": "She sits on the right."}),
+            ("lena", "side", "sit", "door"),
+        ),
+        "Does Lena sit on the left or on the right?",
+        SignalIs(param("which", CHILD_LOCKS), (True,)),
+        *DOORS,
+        Tap("door.child_{which}"),
+        untold=wrote(PARIS, ("Rosa Girard", "It's fun back here with Lena and all the luggage!")),
+        told=wrote(
+            PARIS,
+            (
+                "Rosa Girard",
+                param(
+                    "which",
+                    {
+                        "left": "It's fun back here, Lena at the left door and I at the right one!",
+                        "right": "It's fun back here, Lena at the right door and I at the left one!",
+                    },
+                ),
+            ),
+        ),
+        look=read_out("Rosa Girard"),
+        difference="content: Rosa writes from the rear seat, or also says where Lena sits",
+        parameters={"which": tuple(CHILD_LOCKS)},
+    ),
+)
