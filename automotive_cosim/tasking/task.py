@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
 
+from automotive_cosim.cockpit.aboard import Occupant, Seat
 from automotive_cosim.cockpit.arrivals import Arrival
 from automotive_cosim.cockpit.restrictions import Motion
 from automotive_cosim.contracts import GoalStatus, Reason, Weather
@@ -83,6 +84,10 @@ class Differs(StrEnum):
     """How the car is set before it departs."""
     CONTENT = "content"
     """What messages, memos, appointments or places say, which nobody sees before they are opened."""
+    ABOARD = "occupants"
+    """Who is aboard, awake or asleep, belted or not."""
+    VOICE = "voice"
+    """Who says it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,6 +114,10 @@ class Start:
     parked: bool = False
     """Whether the car stays parked where the trip begins, in park and with the brake on."""
     weather: Weather | None = None
+    aboard: tuple[Occupant, ...] = ()
+    """Who is in the car besides the driver."""
+    voice: Seat = Seat.DRIVER
+    """The seat that the wish comes from. An agent hears which, unless it is the driver's."""
     cabin: Mapping[str, Any] = field(default_factory=dict)
     """Initial conditions of the cabin (``cockpit.cabin.CabinStart``)."""
     signals: Mapping[str, Any] = field(default_factory=dict)

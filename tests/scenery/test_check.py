@@ -16,7 +16,14 @@ from automotive_cosim.scenery import open_scenario
 from automotive_cosim.scenery.check import ScenarioProof, check
 from automotive_cosim.traffic import stability
 
-GRID = scenarios.load("grid")
+
+def _coarse(scenario: Scenario, warm_up_s: float | None = None) -> Scenario:
+    """In steps of a second, with a shorter warm-up if asked for."""
+    sumo = scenario.sumo if warm_up_s is None else replace(scenario.sumo, warm_up_s=warm_up_s)
+    return replace(scenario, sumo=replace(sumo, step_length_s=1.0))
+
+
+GRID = _coarse(scenarios.load("grid"), 30.0)
 
 
 def _failing(proof: ScenarioProof) -> dict[str, str]:
@@ -68,7 +75,10 @@ def test_a_street_that_is_otherwise_fails(street: Street, said: str) -> None:
 
 @pytest.mark.sumo
 def test_an_edge_with_another_limit_than_declared_is_named() -> None:
-    mixed = check(replace(scenarios.load("new_york"), streets=(Street("Madison Avenue", ("25 mph",)),)), quick=True)
+    mixed = check(
+        replace(_coarse(scenarios.load("new_york"), 30.0), streets=(Street("Madison Avenue", ("25 mph",)),)),
+        quick=True,
+    )
     assert "has another limit than 25 mph" in _failing(mixed)["street Madison Avenue"]
 
 
@@ -168,9 +178,7 @@ def test_every_shipped_scenario_holds(name: str) -> None:
 
     The hour of traffic is looked at in ``tests/sumo_scenarios``.
     """
-    scenario = open_scenario(name)
-    coarse = replace(scenario, sumo=replace(scenario.sumo, step_length_s=1.0))
-    assert _failing(check(coarse, quick=True)) == {}
+    assert _failing(check(_coarse(open_scenario(name)), quick=True)) == {}
 
 
 @pytest.mark.sumo
