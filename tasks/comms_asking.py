@@ -12,13 +12,22 @@ from automotive_cosim.tasking.moves import Move, Open, Tap
 from automotive_cosim.tasking.parameters import param
 from automotive_cosim.tasking.task import Deadline, Dimension, Module
 from automotive_cosim.tasking.triggers import All, Driving, Not, SignalHas, Trigger
-from automotive_cosim.tasks.forms import AT_THE_KERB, PARIS, PARKED_WHEN_WRITTEN, read_out, unclear, wrote
+from automotive_cosim.tasks.forms import (
+    AT_THE_KERB,
+    ELSEWHERE,
+    FRIENDS,
+    PARIS,
+    PARKED_WHEN_WRITTEN,
+    read_out,
+    unclear,
+    wrote,
+)
 
 PRACTICES = {"dentist": "Dental practice", "optician": "Eye clinic"}
-TODAY, IN_MARCH = "We expect you today at half past four.", "Your next appointment is in March."
+TODAY, IN_MARCH = "We expect you today at half past {hour}.", "Your next appointment is in March."
 PARENTS = {"mum": "Mum", "dad": "Dad"}
 DEVICES = {"second phone": "Second phone", "tablet": "Tablet"}
-MILO = replace(PARIS, arrivals=tuple(Arrival("call", at_s, "Milo Holm") for at_s in (25.0, 80.0, 135.0)))
+MILO = replace(PARIS, arrivals=tuple(Arrival("call", at_s, "{who}") for at_s in (25.0, 80.0, 135.0)))
 """Repeated calls, so that one of them rings while the car moves."""
 MILO_RINGS = Trigger(All((Driving(), Not(SignalHas(CALL.RINGING, "")))), for_s=2.0, within_s=180.0)
 WHILE_IT_RINGS = Deadline(25.0, "a call rings for 30 s at most (ETSI TS 122 082), and has rung for 2 s already")
@@ -30,41 +39,41 @@ def _answer(who: str, text: str) -> tuple[Move, ...]:
 
 TASKS = (
     unclear(
-        "comms_ask_which_jonas",
+        "comms_ask_which_friend",
         Module.COMMS,
         (
-            "Tell Jonas yes.",
-            "Jonas asked me something. Answer him yes.",
-            "Send a yes to Jonas, he's waiting for it.",
-            "Yes for Jonas, please.",
-            "Jonas wants to know, so text him: yes.",
+            "Tell {who} yes.",
+            "{who} asked me something. Answer: yes.",
+            "Send a yes to {who}, she's waiting for it.",
+            "Yes for {who}, please.",
+            "{who} wants to know, so text her: yes.",
         ),
         Topic(
-            "which Jonas",
+            "which {who}",
             (("adler",), ("costa",)),
-            param("which", {"Adler": "Jonas Adler.", "Costa": "Jonas Costa."}),
-            ("jonas", "which"),
+            param("which", {"Adler": "{who} Adler.", "Costa": "{who} Costa."}),
+            ("{who}", "which"),
         ),
-        "Which Jonas: Adler or Costa?",
-        Entered("messages.sent", {"to": "Jonas {which}", "text": "Yes"}),
-        *_answer("Jonas {which}", "Yes"),
+        "Which {who}: Adler or Costa?",
+        Entered("messages.sent", {"to": "{who} {which}", "text": "Yes"}),
+        *_answer("{who} {which}", "Yes"),
         untold=wrote(
-            PARIS, ("Jonas Adler", "Can you come on Friday?"), ("Jonas Costa", "Shall I book the court for us?")
+            PARIS, ("{who} Adler", "Can you come on Friday?"), ("{who} Costa", "Shall I book the court for us?")
         ),
         told=wrote(
             PARIS,
             (
-                "Jonas Adler",
+                "{who} Adler",
                 param("which", {"Adler": "Can you come on Friday?", "Costa": "Thanks for the lovely evening!"}),
             ),
             (
-                "Jonas Costa",
+                "{who} Costa",
                 param("which", {"Adler": "What a match that was!", "Costa": "Shall I book the court for us?"}),
             ),
         ),
-        look=read_out("Jonas Adler", "Jonas Costa"),
-        difference="content: both men have asked something, or only one of them",
-        parameters={"which": ("Adler", "Costa")},
+        look=read_out("{who} Adler", "{who} Costa"),
+        difference="content: both friends have asked something, or only one of them",
+        parameters={"which": ("Adler", "Costa"), "who": FRIENDS},
     ),
     unclear(
         "comms_ask_which_practice",
@@ -97,38 +106,38 @@ TASKS = (
         ),
         look=read_out(*PRACTICES.values()),
         difference="content: neither practice writes when the appointment is, or both do, and one is today",
-        parameters={"which": tuple(PRACTICES)},
+        parameters={"which": tuple(PRACTICES), "hour": ("two", "three", "four", "five")},
         dimension=Dimension.IMPLICIT_INTENT,
     ),
     unclear(
         "comms_ask_yes_or_no",
         Module.COMMS,
         (
-            "Greta asks if we're coming on Sunday. Answer what Hugo decided.",
-            "Reply to Greta, yes or no, as Hugo has it.",
-            "Hugo has settled Sunday. Tell Greta yes or no.",
-            "Give Greta our answer for Sunday; it's up to Hugo.",
-            "Greta needs a yes or a no from us. Whatever Hugo says.",
+            "Greta asks if we're coming on Sunday. Answer what {who} decided.",
+            "Reply to Greta, yes or no, as {who} has it.",
+            "{who} has settled Sunday. Tell Greta yes or no.",
+            "Give Greta our answer for Sunday; it's up to {who}.",
+            "Greta needs a yes or a no from us. Whatever {who} says.",
         ),
         Topic(
             "what to answer",
             (("yes", "coming", "are coming"), ("no", "not", "aren't")),
             param("which", {"Yes": "Say yes.", "No": "Say no."}),
-            ("answer", "sunday", "hugo", "greta"),
+            ("answer", "sunday", "{who}", "greta"),
         ),
-        "What did Hugo decide for Sunday, yes or no?",
-        Entered("messages.sent", {"to": "Greta Novak", "text": "{which}"}),
-        *_answer("Greta Novak", "{which}"),
+        "What did {who} decide for Sunday, yes or no?",
+        Entered("messages.sent", {"to": "Greta", "text": "{which}"}),
+        *_answer("Greta", "{which}"),
         untold=wrote(
             PARIS,
-            ("Greta Novak", "Are you two coming on Sunday?"),
-            ("Hugo Costa", "I've made up my mind about Sunday, we talked about it."),
+            ("Greta", "Are you two coming on Sunday?"),
+            ("{who}", "I've made up my mind about Sunday, we talked about it."),
         ),
         told=wrote(
             PARIS,
-            ("Greta Novak", "Are you two coming on Sunday?"),
+            ("Greta", "Are you two coming on Sunday?"),
             (
-                "Hugo Costa",
+                "{who}",
                 param(
                     "which",
                     {
@@ -138,35 +147,35 @@ TASKS = (
                 ),
             ),
         ),
-        look=read_out("Hugo Costa"),
-        difference="content: Hugo writes that he has decided, or also what",
-        parameters={"which": ("Yes", "No")},
+        look=read_out("{who}"),
+        difference="content: the friend writes that it is decided, or also what",
+        parameters={"which": ("Yes", "No"), "who": FRIENDS},
     ),
     unclear(
         "comms_ask_pick_up_or_not",
         Module.COMMS,
         (
-            "That's Milo. Pick up or turn him down, as he wants it.",
-            "Milo's ringing! He told me whether to answer or decline.",
-            "Take Milo's call or decline it, whichever he asked for.",
-            "Deal with Milo's call the way he said: answer it or not.",
-            "It's Milo again; accept or reject, he has told me which.",
+            "That's {who}. Pick up or turn it down, as agreed.",
+            "{who}'s ringing! I was told whether to answer or decline.",
+            "Take {who}'s call or decline it, whichever was asked for.",
+            "Deal with {who}'s call as requested: answer it or not.",
+            "It's {who} again; accept or reject, I was told which.",
         ),
         Topic(
             "what to do with the call",
             (("pick up", "answer", "accept", "take"), ("decline", "turn", "reject", "not")),
-            param("which", {"answer": "Pick up.", "decline": "Turn him down."}),
-            ("milo", "call"),
+            param("which", {"answer": "Pick up.", "decline": "Decline."}),
+            ("{who}", "call"),
         ),
         "Pick up or decline?",
         EnteredOf(param("which", {"answer": "calls.answered", "decline": "calls.declined"}), CALL.RINGING),
         Open("phone"),
         Tap("phone.{which}"),
-        untold=wrote(MILO, ("Milo Holm", "Did you get my postcard from Norway?")),
+        untold=wrote(MILO, ("{who}", "Did you get my postcard from Norway?")),
         told=wrote(
             MILO,
             (
-                "Milo Holm",
+                "{who}",
                 param(
                     "which",
                     {
@@ -176,9 +185,9 @@ TASKS = (
                 ),
             ),
         ),
-        look=read_out("Milo Holm"),
-        difference="content: Milo has written about something else, or what to do when he rings",
-        parameters={"which": ("answer", "decline")},
+        look=read_out("{who}"),
+        difference="content: the caller has written about something else, or what to do with a call",
+        parameters={"which": ("answer", "decline"), "who": FRIENDS},
         trigger=MILO_RINGS,
         deadline=WHILE_IT_RINGS,
     ),
@@ -186,28 +195,28 @@ TASKS = (
         "comms_ask_which_device",
         Module.COMMS,
         (
-            "Otis has set up one of my gadgets for the car. Pair it.",
-            "Connect the other device, the one that Otis prepared.",
-            "Link the second phone or the tablet, whichever Otis has made ready.",
-            "Bluetooth to what Otis fixed for me, please.",
-            "Pair what Otis was tinkering with, the tablet or the second phone.",
+            "{who} has set up one of my gadgets for the car. Pair it.",
+            "Connect the other device, the one that {who} prepared.",
+            "Link the second phone or the tablet, whichever {who} has made ready.",
+            "Bluetooth to what {who} fixed for me, please.",
+            "Pair what {who} was tinkering with, the tablet or the second phone.",
         ),
         Topic(
             "which device",
             (("second phone", "phone"), ("tablet",)),
             param("which", {"second phone": "The second phone.", "tablet": "The tablet."}),
-            ("device", "gadget", "otis"),
+            ("device", "gadget", "{who}"),
         ),
         "Which one, the second phone or the tablet?",
         AppDataIs("bluetooth.device", (param("which", DEVICES),)),
         Open("phone"),
         Tap("phone.devices"),
         Tap(text=param("which", DEVICES)),
-        untold=wrote(AT_THE_KERB, ("Otis Duval", "Your gadget is ready for the car.")),
-        told=wrote(AT_THE_KERB, ("Otis Duval", "Your {which} is ready for the car.")),
-        look=read_out("Otis Duval"),
-        difference="content: Otis writes that it is ready, or also which one",
-        parameters={"which": tuple(DEVICES)},
+        untold=wrote(AT_THE_KERB, ("{who}", "Your gadget is ready for the car.")),
+        told=wrote(AT_THE_KERB, ("{who}", "Your {which} is ready for the car.")),
+        look=read_out("{who}"),
+        difference="content: the friend writes that it is ready, or also which one",
+        parameters={"which": tuple(DEVICES), "who": FRIENDS},
         trigger=PARKED_WHEN_WRITTEN,
     ),
     unclear(
@@ -242,6 +251,7 @@ TASKS = (
         difference="content: the parents have written good wishes, or one of them who is awake",
         parameters={"which": tuple(PARENTS)},
         trigger=PARKED_WHEN_WRITTEN,
+        scenarios=ELSEWHERE,
         dimension=Dimension.IMPLICIT_INTENT,
     ),
 )

@@ -204,6 +204,7 @@ def unclear(
     parameters: Mapping[str, Choices],
     trigger: Trigger = WHEN_WRITTEN,
     deadline: Deadline = TALK,
+    scenarios: tuple[str, ...] = (),
     dimension: Dimension = Dimension.EXPLICIT_CONTROL,
     tags: frozenset[str] = frozenset(),
 ) -> Task:
@@ -227,6 +228,7 @@ def unclear(
         parameters: what is drawn, among it what is meant.
         trigger: what hands over.
         deadline: by when, and why.
+        scenarios: where else it can run.
         dimension: explicit, or implicit if the words do not say what to do.
         tags: what else is true of it.
     """
@@ -251,7 +253,14 @@ def unclear(
         difference,
         parameters,
         tags | {"asking"},
+        scenarios,
     )
+
+
+FRIENDS = ("Aylin", "Chloe", "Ingrid", "Yasmin")
+"""Women who may have written; nobody in the phone book has one of these names."""
+ELSEWHERE = ("london",)
+"""Another scenario for wishes that have nothing else to draw."""
 
 
 def only(signals: Mapping[str, Signal[Any]], on: Any, off: Any, which: str = "which") -> dict[str, Any]:

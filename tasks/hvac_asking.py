@@ -10,7 +10,16 @@ from automotive_cosim.tasking.dialogue import Topic
 from automotive_cosim.tasking.moves import Open, Tap, TapUntil
 from automotive_cosim.tasking.parameters import param
 from automotive_cosim.tasking.task import Dimension, Module
-from automotive_cosim.tasks.forms import ON_THE_WAY, PARIS, only, read_out, unclear, wrote
+from automotive_cosim.tasks.forms import (
+    ELSEWHERE,
+    FRIENDS,
+    ON_THE_WAY,
+    PARIS,
+    only,
+    read_out,
+    unclear,
+    wrote,
+)
 
 CLIMATE = Open("climate")
 FRONT_SEATS = {"driver": SEAT.DRIVER_HEATING, "passenger": SEAT.PASSENGER_HEATING}
@@ -39,11 +48,11 @@ TASKS = (
         SignalIs(param("which", FRONT_SEATS), (0.0,)),
         CLIMATE,
         Tap("hvac.{which}_seat_heating"),
-        untold=replace(PARIS, signals={seat.path: 100.0 for seat in FRONT_SEATS.values()}),
+        untold=replace(PARIS, signals={seat.path: param("heat") for seat in FRONT_SEATS.values()}),
         told=replace(PARIS, signals=only(FRONT_SEATS, 100.0, 0.0)),
         look=(CLIMATE,),
         difference="settings: both front seats are heated, or only one of them",
-        parameters={"which": tuple(FRONT_SEATS)},
+        parameters={"which": tuple(FRONT_SEATS), "heat": (50.0, 100.0)},
         trigger=ON_THE_WAY,
     ),
     unclear(
@@ -71,16 +80,17 @@ TASKS = (
         difference="settings: both defrosters run, or only one of them",
         parameters={"which": tuple(DEFROSTERS)},
         trigger=ON_THE_WAY,
+        scenarios=ELSEWHERE,
     ),
     unclear(
         "hvac_ask_whose_side",
         Module.HVAC,
         (
-            "One of us is too warm. Give that side 19 degrees.",
-            "19 degrees on the side that's too hot, please.",
-            "It's stuffy for one of us: 19 over there.",
-            "Set the side of whoever is sweating to 19.",
-            "Make it 19 for the one who's melting.",
+            "One of us is too warm. Give that side {degrees} degrees.",
+            "{degrees} degrees on the side that's too hot, please.",
+            "It's stuffy for one of us: {degrees} over there.",
+            "Set the side of whoever is sweating to {degrees}.",
+            "Make it {degrees} for the one who's melting.",
         ),
         Topic(
             "whose side",
@@ -89,14 +99,14 @@ TASKS = (
             ("side", "who", "whose"),
         ),
         "Who is too warm, the driver or the passenger?",
-        SignalIs(param("which", SIDES), (19.0,)),
+        SignalIs(param("which", SIDES), (param("degrees"),)),
         CLIMATE,
-        TapUntil("hvac.{which}_temperature.decrease", "hvac.{which}_temperature", "19.0 °C"),
+        TapUntil("hvac.{which}_temperature.decrease", "hvac.{which}_temperature", "{degrees}.0 °C"),
         untold=replace(PARIS, signals={HVAC.SYNC.path: False, **{side.path: 22.0 for side in SIDES.values()}}),
         told=replace(PARIS, signals={HVAC.SYNC.path: False, **only(SIDES, 26.0, 20.0)}),
         look=(CLIMATE,),
         difference="settings: both sides are set to 22 degrees, or one to 26 and the other to 20",
-        parameters={"which": tuple(SIDES)},
+        parameters={"which": tuple(SIDES), "degrees": (17, 18, 19)},
         trigger=ON_THE_WAY,
         dimension=Dimension.IMPLICIT_INTENT,
     ),
@@ -104,11 +114,11 @@ TASKS = (
         "hvac_ask_where_to_blow",
         Module.HVAC,
         (
-            "Tilda texted where she'd like the air: her feet or the windshield. Do that.",
-            "The air to the feet or to the windshield, as Tilda asked.",
-            "Point the air at the windshield or the feet, whichever Tilda prefers.",
-            "Tilda told us where the air should go, feet or windshield.",
-            "Blow down at the feet or up the windshield, as Tilda would have it.",
+            "{who} texted where the air should go: the feet or the windshield. Do that.",
+            "The air to the feet or to the windshield, as {who} asked.",
+            "Point the air at the windshield or the feet, whichever {who} prefers.",
+            "{who} has a wish for the vents: feet or windshield.",
+            "Blow down at the feet or up the windshield, as {who} would have it.",
         ),
         Topic(
             "where the air goes",
@@ -120,37 +130,37 @@ TASKS = (
         SignalIs(HVAC.AIR_DISTRIBUTION, (param("which", {"feet": "DOWN", "windshield": "UP"}),)),
         CLIMATE,
         Tap(param("which", {"feet": "hvac.air.down", "windshield": "hvac.air.up"})),
-        untold=wrote(PARIS, ("Tilda Holm", "Are we there yet? It's boring in the back.")),
+        untold=wrote(PARIS, ("{who}", "Are we there yet? It's boring in the back.")),
         told=wrote(
             PARIS,
             (
-                "Tilda Holm",
+                "{who}",
                 param(
                     "which", {"feet": "My toes are frozen, air down there!", "windshield": "Air up, I see nothing!"}
                 ),
             ),
         ),
-        look=read_out("Tilda Holm"),
-        difference="content: what Tilda has written is about something else, or says where",
-        parameters={"which": ("feet", "windshield")},
+        look=read_out("{who}"),
+        difference="content: what the friend has written is about something else, or says where",
+        parameters={"which": ("feet", "windshield"), "who": FRIENDS},
     ),
     unclear(
         "hvac_ask_warm_by_when",
         Module.HVAC,
         (
-            "Have the car warm when we pick Ines up tomorrow, 7:30 or 8 it was.",
-            "Warm the cabin for fetching Ines in the morning; her parents know if it's 7:30 or 8.",
-            "Ines has to be fetched tomorrow, at 07:30 or 08:00. I want it warm by then.",
-            "Preheat for Ines's pick-up, half past seven or eight o'clock.",
-            "By the time we collect Ines, 7:30 or 8:00, the car has to be cosy.",
+            "Have the car warm when we pick {who} up tomorrow, 7:30 or 8 it was.",
+            "Warm the cabin for fetching {who} in the morning; her parents know if it's 7:30 or 8.",
+            "{who} has to be fetched tomorrow, at 07:30 or 08:00. I want it warm by then.",
+            "Preheat for {who}'s pick-up, half past seven or eight o'clock.",
+            "By the time we collect {who}, 7:30 or 8:00, the car has to be cosy.",
         ),
         Topic(
-            "when Ines is picked up",
+            "when {who} is picked up",
             (("07 30", "7 30", "half past seven", "half past 7"), ("08 00", "8 00", "eight", "8", "08")),
             param("which", {"07:30": "At half past seven.", "08:00": "At eight."}),
-            ("ines", "when", "time"),
+            ("{who}", "when", "time"),
         ),
-        "Is Ines picked up at 7:30 or at 8:00?",
+        "Is {who} picked up at 7:30 or at 8:00?",
         AppDataIs("climate.schedule", (param("which"),)),
         CLIMATE,
         Tap("hvac.comfort"),
@@ -158,34 +168,34 @@ TASKS = (
         Tap("climate.schedule"),
         untold=wrote(
             PARIS,
-            ("Ines's mother", "Ines is ready at 7:30 tomorrow."),
-            ("Ines's father", "Ines is ready at 8:00 tomorrow."),
+            ("{who}'s mother", "{who} is ready at 7:30 tomorrow."),
+            ("{who}'s father", "{who} is ready at 8:00 tomorrow."),
         ),
         told=wrote(
             PARIS,
             (
-                "Ines's mother",
+                "{who}'s mother",
                 param(
                     "which",
                     {
-                        "07:30": "Ines is ready at 7:30 tomorrow.",
-                        "08:00": "Her father knows when to fetch Ines.",
+                        "07:30": "{who} is ready at 7:30 tomorrow.",
+                        "08:00": "Her father knows when to fetch {who}.",
                     },
                 ),
             ),
             (
-                "Ines's father",
+                "{who}'s father",
                 param(
                     "which",
                     {
-                        "07:30": "Her mother knows when to fetch Ines.",
-                        "08:00": "Ines is ready at 8:00 tomorrow.",
+                        "07:30": "Her mother knows when to fetch {who}.",
+                        "08:00": "{who} is ready at 8:00 tomorrow.",
                     },
                 ),
             ),
         ),
-        look=read_out("Ines's mother", "Ines's father"),
+        look=read_out("{who}'s mother", "{who}'s father"),
         difference="content: the parents have written different times, or only one of them a time",
-        parameters={"which": TIMES},
+        parameters={"which": TIMES, "who": FRIENDS},
     ),
 )

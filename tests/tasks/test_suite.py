@@ -117,7 +117,7 @@ CHANGES = {
     "trip": {Differs.ROAD, Differs.TRAFFIC},
     "driver": {Differs.TRAFFIC, Differs.ROAD},
     "cabin": {Differs.WEATHER, Differs.SETTINGS},
-    "arrivals": set(),
+    "arrivals": {Differs.CONTENT},
     "sign_camera": set(),
 }
 """What a start may change only if one of these kinds is declared."""
