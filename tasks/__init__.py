@@ -29,6 +29,7 @@ from automotive_cosim.tasks import (
     phenomenon_asking,
     road,
     road_asking,
+    second_thoughts,
     system,
     system_asking,
 )
@@ -59,6 +60,7 @@ for _module in (
     system_asking,
     comms,
     comms_asking,
+    second_thoughts,
 ):
     CATALOGUE.add(*_module.TASKS)
 

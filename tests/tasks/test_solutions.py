@@ -63,8 +63,9 @@ def _at(start: Start, time_s: float) -> Any:
 
 
 def _hand_over_s(start: Start) -> int:
-    """Seconds after departure: at once, or when the first caller rings."""
-    return 2 + int(min((arrival.at_s for arrival in start.arrivals), default=0.0))
+    """Seconds after departure: at once, when the first caller rings, or when all messages are there."""
+    rings = [arrival.at_s for arrival in start.arrivals if arrival.kind == "call"]
+    return 2 + int(min(rings) if rings else max((arrival.at_s for arrival in start.arrivals), default=0.0))
 
 
 def _taken_over(task: Task, half: str, network: RoadNetwork) -> tuple[Instance, Cockpit]:
@@ -93,6 +94,7 @@ def _solved(instance: Instance, cockpit: Cockpit, way: tuple[Move, ...]) -> Solv
     oracle.reset(instance.goal)
     oracle.brief(instance, way)
     moments: list[Any] = []
+    said = tuple(says.text for says in instance.half.says)
     for second in range(STEPS_LIMIT):
         around = _at(start, FROM_S + _hand_over_s(start) + second)
         if second:
@@ -105,7 +107,7 @@ def _solved(instance: Instance, cockpit: Cockpit, way: tuple[Move, ...]) -> Solv
         )
         moments.append(now)
         seen = car.elements()
-        action = oracle.act(Observation(instance.goal, float(second), feedback, elements=seen))
+        action = oracle.act(Observation(instance.goal, float(second), feedback, said, elements=seen))
         if action.action_type is ActionType.STATUS:
             break
         feedback = actions.perform(action, car, seen)
