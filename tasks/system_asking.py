@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from automotive_cosim.cockpit.signals import CABIN, HMI, LINK
-from automotive_cosim.tasking.checks import AllOf, AppDataIs, SignalIs
+from automotive_cosim.tasking.checks import AllOf, AppDataIs, SeatRecalled, SignalIs
 from automotive_cosim.tasking.dialogue import Topic
 from automotive_cosim.tasking.moves import Open, Slide, Tap
 from automotive_cosim.tasking.parameters import param
@@ -22,7 +22,7 @@ from automotive_cosim.tasks.forms import (
     unclear,
     wrote,
 )
-from automotive_cosim.tasks.system import CONNECTIONS, DOORS, INSIDE, LANGUAGES
+from automotive_cosim.tasks.system import CONNECTIONS, DOORS, INSIDE, LANGUAGES, SEATS
 
 FRONT_WINDOWS = {"driver": CABIN.DRIVER_WINDOW, "passenger": CABIN.PASSENGER_WINDOW}
 READING_LIGHTS = {"driver": CABIN.DRIVER_READING_LIGHT, "passenger": CABIN.PASSENGER_READING_LIGHT}
@@ -85,6 +85,40 @@ TASKS = (
         parameters={"which": tuple(READING_LIGHTS)},
         trigger=ON_THE_WAY,
         scenarios=ELSEWHERE,
+    ),
+    unclear(
+        "system_ask_which_seat_memory",
+        Module.SYSTEM,
+        (
+            "Put my seat as I like it; {who} has stored hers over one of my two positions.",
+            "Recall my seat, 1 or 2, {who} has taken the other.",
+            "{who} sat here. Back to my own position, the one that's left of 1 and 2.",
+            "My seat memory, please, not {who}'s.",
+            "Seat and mirrors for me, 1 or 2; {who} has overwritten one.",
+        ),
+        Topic(
+            "which seat memory",
+            (("1", "one", "first"), ("2", "two", "second")),
+            param("which", {1: "Mine is number 1.", 2: "Mine is number 2."}),
+            ("seat", "memory", "position", "{who}"),
+        ),
+        "Which seat position is yours, 1 or 2?",
+        SeatRecalled(param("which")),
+        *SEATS,
+        Tap("seat.memory.{which}"),
+        untold=wrote(AT_THE_KERB, ("{who}", "Thanks for the car! I've stored my seat.")),
+        told=wrote(
+            AT_THE_KERB,
+            (
+                "{who}",
+                param("which", {1: "Thanks for the car! My seat is on 2 now.", 2: "Thanks! My seat is on 1 now."}),
+            ),
+        ),
+        look=read_out("{who}"),
+        difference="content: she writes that she has stored her seat, or also where",
+        parameters={"which": (1, 2), "who": FRIENDS},
+        trigger=PARKED_WHEN_WRITTEN,
+        dimension=Dimension.IMPLICIT_INTENT,
     ),
     unclear(
         "system_ask_which_profile",
