@@ -98,12 +98,12 @@ TASKS = (
             "My half of the car should have {degrees} degrees.",
         ),
         Says(
-            "No, sorry, 22 is warm enough.",
+            "No, sorry, I meant 20.",
             when=SignalAbove(HVAC.DRIVER_TEMPERATURE, param("degrees", DEGREES)),
         ),
         changed=(
-            SignalIs(HVAC.DRIVER_TEMPERATURE, (22.0,)),
-            (Open("climate"), _warmth("increase", "{degrees}"), Hear("22 is warm"), _warmth("decrease", "22")),
+            SignalIs(HVAC.DRIVER_TEMPERATURE, (20.0,)),
+            (Open("climate"), _warmth("increase", "{degrees}"), Hear("I meant 20"), _warmth("decrease", "20")),
         ),
         kept=(
             SignalIs(HVAC.DRIVER_TEMPERATURE, (param("degrees"),)),
