@@ -1,4 +1,4 @@
-"""The catalogue of tasks, one file per module of the cockpit."""
+"""The catalogue of tasks, one file per module of the cockpit; the hard suite has a folder of its own."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from automotive_cosim.tasks import (
     comms,
     comms_asking,
     folder,
+    hard,
     hvac,
     hvac_asking,
     hvac_hints,
@@ -61,6 +62,7 @@ for _module in (
     comms,
     comms_asking,
     second_thoughts,
+    hard,
 ):
     CATALOGUE.add(*_module.TASKS)
 
