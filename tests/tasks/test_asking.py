@@ -12,10 +12,10 @@ from automotive_cosim.tasking.dialogue import topic_of
 from automotive_cosim.tasking.instance import Instance, draw
 from automotive_cosim.tasking.moves import Consult, Hear
 from automotive_cosim.tasking.parameters import names
-from automotive_cosim.tasking.task import Module, Task
+from automotive_cosim.tasking.task import Module, Suite, Task
 from automotive_cosim.tasks import CATALOGUE
 
-ASKING = [task for task in CATALOGUE.values() if "asking" in task.tags]
+ASKING = [task for task in CATALOGUE.of(Suite.STANDARD) if "asking" in task.tags]
 CHANGED = [task for task in CATALOGUE.values() if "second_thoughts" in task.tags]
 of_each = pytest.mark.parametrize("task", ASKING, ids=lambda task: task.id)
 
