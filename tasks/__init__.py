@@ -11,19 +11,28 @@ from pathlib import Path
 from automotive_cosim.tasking.catalogue import Catalogue
 from automotive_cosim.tasks import (
     apps,
+    apps_asking,
     comms,
+    comms_asking,
     folder,
     hard,
     hvac,
+    hvac_asking,
     hvac_hints,
     hvac_safety,
     maps,
+    maps_asking,
     maps_hints,
     maps_safety,
     media,
+    media_asking,
     phenomenon,
+    phenomenon_asking,
     road,
+    road_asking,
+    second_thoughts,
     system,
+    system_asking,
 )
 
 __all__ = ["CATALOGUE"]
@@ -33,17 +42,26 @@ CATALOGUE = Catalogue()
 
 for _module in (
     maps,
+    maps_asking,
     maps_hints,
     maps_safety,
     hvac,
+    hvac_asking,
     hvac_hints,
     hvac_safety,
     road,
+    road_asking,
     phenomenon,
+    phenomenon_asking,
     media,
+    media_asking,
     apps,
+    apps_asking,
     system,
+    system_asking,
     comms,
+    comms_asking,
+    second_thoughts,
     hard,
 ):
     CATALOGUE.add(*_module.TASKS)
