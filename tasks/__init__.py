@@ -12,17 +12,24 @@ from automotive_cosim.tasking.catalogue import Catalogue
 from automotive_cosim.tasks import (
     apps,
     comms,
+    comms_aboard,
     folder,
     hvac,
+    hvac_aboard,
     hvac_hints,
     hvac_safety,
     maps,
+    maps_aboard,
     maps_hints,
     maps_safety,
     media,
+    media_aboard,
     phenomenon,
+    phenomenon_aboard,
     road,
+    road_aboard,
     system,
+    system_aboard,
 )
 
 __all__ = ["CATALOGUE"]
@@ -43,6 +50,13 @@ for _module in (
     apps,
     system,
     comms,
+    comms_aboard,
+    hvac_aboard,
+    maps_aboard,
+    media_aboard,
+    phenomenon_aboard,
+    road_aboard,
+    system_aboard,
 ):
     CATALOGUE.add(*_module.TASKS)
 
