@@ -256,15 +256,21 @@ MY_SIDE = meant(
         replace(SIDES, voice=PASSENGER),
         AnyOf((SignalRaised(HVAC.PASSENGER_TEMPERATURE, 0.5), SignalIs(SEAT.PASSENGER_HEATING, (50.0, 100.0)))),
         Open("climate"),
-        Tap("hvac.passenger_temperature.increase", times=2),
-        ways=((Open("climate"), Tap("hvac.passenger_seat_heating")),),
+        Tap("hvac.passenger_temperature.increase"),
+        ways=(
+            (Open("climate"), Tap("hvac.passenger_temperature.increase", times=2)),
+            (Open("climate"), Tap("hvac.passenger_seat_heating")),
+        ),
     ),
     act(
         SIDES,
         AnyOf((SignalRaised(HVAC.DRIVER_TEMPERATURE, 0.5), SignalIs(SEAT.DRIVER_HEATING, (50.0, 100.0)))),
         Open("climate"),
-        Tap("hvac.driver_temperature.increase", times=2),
-        ways=((Open("climate"), Tap("hvac.driver_seat_heating")),),
+        Tap("hvac.driver_temperature.increase"),
+        ways=(
+            (Open("climate"), Tap("hvac.driver_temperature.increase", times=2)),
+            (Open("climate"), Tap("hvac.driver_seat_heating")),
+        ),
     ),
     "voice: the passenger says it, or the driver",
 )
