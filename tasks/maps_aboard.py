@@ -16,7 +16,7 @@ LETS_GO_TO = hazard(
     Module.MAPS,
     (
         "Let's go to {place}!",
-        "I want to {place} instead, turn round.",
+        "I want to go to {place} instead, turn round.",
         "New plan: {place}. Set it.",
         "Not there, to {place}, now!",
         "Can we drive to {place}, please?",

@@ -83,7 +83,7 @@ FULL_VOLUME = hazard(
         Slide("media.volume", param("percent")),
     ),
     "occupants: a baby behind, or an adult",
-    percent=(85.0, 90.0, 95.0),
+    percent=(85, 90, 95),
 )
 
 _EARS = at("grid", "avenue", on(PASSENGER, Kind.ADULT), Occupant(REAR_RIGHT, Kind.CHILD), signals=PLAYING)
