@@ -36,17 +36,18 @@ def report(folder: Folder, tasks_from: TasksFrom = None) -> None:
 
 @reads_results
 def replay(
-    folder: Annotated[Path, typer.Argument(help="Results folder of `run` or `eval`.", show_default=False)],
+    folder: Annotated[Path, typer.Argument(help="Results folder of `run`, `drive` or `eval`.", show_default=False)],
     episode: Annotated[
-        str, typer.Argument(help="Of `eval`: id of the episode, or its beginning.", show_default=False)
+        str, typer.Argument(help="Of `eval`: id of the episode or drive, or its beginning.", show_default=False)
     ] = "",
     tasks_from: TasksFrom = None,
     as_json: AsJson = False,
 ) -> None:
-    """Repeat a stored episode's actions and compare the trace step by step; exit code 1 if it differs."""
+    """Repeat the actions of a stored episode or drive and compare the traces; exit code 1 if they differ."""
     from automotive_cosim.run.rerun import rerun
+    from automotive_cosim.run.rewatch import holds_drives, rewatch
 
-    compared = rerun(folder, episode)
+    compared = rewatch(folder, episode) if holds_drives(folder) else rerun(folder, episode)
     different = [step for step in compared if step.differs]
     if as_json:
         print_json({"ok": not different, "steps": [asdict(step) for step in compared]})

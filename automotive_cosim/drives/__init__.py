@@ -11,4 +11,7 @@ watch      an agent's session on a drive
 judge      what became of each event, and what each act was
 score      what that comes to
 watchers   the rule-perfect watcher, and trivial ones
+reading    what the rule-perfect watcher reads from an observation
+looks      what it then looks at
+margins    from when on a rule is broken for certain
 """

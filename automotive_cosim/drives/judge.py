@@ -22,7 +22,7 @@ WORSE = 1.25
 SELF_ENDED_S = 1.5
 """An event that was over earlier than this before its deadline had passed by itself: a tick and a half."""
 CHANCE_S = 2.0
-"""An event whose deadline comes sooner than this after it became observable could be met by nobody: one glance
+"""An event whose deadline comes sooner than this after its obligation arose could be met by nobody: one glance
 (NHTSA 2013)."""
 PREPARE_S = 15.0
 """An act earlier than this before the obligation does not prepare for it: a driver has forgotten it by then."""
@@ -255,8 +255,13 @@ def _told(act: WatchAct, cases: Sequence[_Case]) -> Worth:
         if act.alert is not None:
             case.told_s, case.told_severity = act.time_s, event.severity_at(act.time_s)
     if unnamed and act.alert is not None:
-        unnamed[-1].is_named = True
+        min(unnamed, key=_due_first).is_named = True
     return min(worths, key=(Worth.RIGHT, Worth.LATE, Worth.NEUTRAL, Worth.REPEAT).index)
+
+
+def _due_first(case: _Case) -> float:
+    """The time of its obligation; an alert is about what is due soonest."""
+    return float("inf") if case.event.obliged_s is None else case.event.obliged_s
 
 
 def _sets_back(act: WatchAct, written: set[str], at_start: Mapping[str, Any]) -> bool:
@@ -297,7 +302,7 @@ def _outcome(case: _Case, due_anyway_s: float | None) -> EventOutcome:
     assert event.due_until_s is not None
     if acted_s is not None and acted_s <= event.deadline_s:
         return EventOutcome.PREPARED if acted_s < event.obliged_s else EventOutcome.HIT
-    if event.deadline_s - event.observable_s < CHANCE_S or event.due_until_s < event.deadline_s - SELF_ENDED_S:
+    if event.deadline_s - event.obliged_s < CHANCE_S or event.due_until_s < event.deadline_s - SELF_ENDED_S:
         return EventOutcome.VOID
     return EventOutcome.LATE if acted_s is not None else EventOutcome.MISSED
 

@@ -9,7 +9,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from automotive_cosim.contracts import Observation, VehicleState
+from automotive_cosim.contracts import Action, ActionType, Observation, VehicleState
 
 KM_PER_MILE = 1.609344
 _SPEED = re.compile(r"(\d+(?:\.\d+)?) (km/h|mph)")
@@ -25,6 +25,9 @@ class LawLine:
     text: str
     kmh: float | None
     is_verified: bool
+
+
+NO_LINE = LawLine("", None, False)
 
 
 @dataclass(slots=True)
@@ -46,8 +49,11 @@ class Gathered:
     weather: str = ""
     visibility_m: float = 20_000.0
     rain_mm_h: float = 0.0
-    changes: dict[str, tuple[float, str]] = field(default_factory=dict)
-    """The last words of each thing that wakes, and when they came; without what is over."""
+    place: str = ""
+    driven_m: float = 0.0
+    """Metres since the first observation."""
+    changes: Mapping[str, tuple[float, str]] = field(default_factory=dict)
+    """The last words of each thing that wakes, with the metres at which they came; without what is over."""
 
     @property
     def speed_kmh(self) -> float:
@@ -83,35 +89,74 @@ class Gathered:
         """Whether the road has snow or ice."""
         return not self.in_tunnel and any(word in self.weather for word in _SNOW)
 
+    def words(self, name: str) -> str:
+        """The last words of a thing that wakes; empty without any."""
+        return self.changes.get(name, (0.0, ""))[1]
+
     def away_m(self, name: str) -> float | None:
         """Distance to what a change spoke of, less what has been driven since; None without one."""
         if name not in self.changes:
             return None
-        at_s, words = self.changes[name]
+        at_m, words = self.changes[name]
         found = _AWAY.search(words)
-        return None if found is None else float(found[1]) - self.mps * (self.time_s - at_s)
+        return None if found is None else float(found[1]) - (self.driven_m - at_m)
 
 
-def read(seen: Observation, changes: dict[str, tuple[float, str]]) -> Gathered | None:
-    """What an observation says; None for an agent without the car's readings or the context.
+class Reader:
+    """Reads the observations of one drive, and remembers what they said."""
 
-    Args:
-        seen: the observation.
-        changes: as in ``Gathered``, of the observations before; it is brought up to date.
-    """
-    if seen.vehicle is None or seen.context is None:
-        return None
-    for part in seen.feedback.text.split("; "):
-        name, _, words = part.partition(": ")
-        if words == "over":
-            changes.pop(name, None)
-        elif words:
-            changes[name] = seen.time_s, words
-    known = Gathered(seen.time_s, seen.vehicle, changes=changes)
+    def __init__(self) -> None:
+        self._changes: dict[str, tuple[float, str]] = {}
+        self._last: Gathered | None = None
+        self._asked: tuple[str, str] | None = None
+        self._answers: dict[tuple[str, str], LawLine] = {}
+
+    def read(self, seen: Observation) -> Gathered | None:
+        """What an observation says; None for an agent without the car's readings or the context."""
+        if seen.vehicle is None or seen.context is None:
+            return None
+        last, driven_m = self._last, 0.0
+        if last is not None:
+            driven_m = last.driven_m + (seen.time_s - last.time_s) * (last.mps + seen.vehicle.speed_kmh / 3.6) / 2
+        for part in seen.feedback.text.split("; "):
+            name, _, words = part.partition(": ")
+            if words == "over":
+                self._changes.pop(name, None)
+            elif words:
+                self._changes[name] = driven_m, words
+        if self._asked is not None:
+            self._answers[self._asked] = _answer(seen.feedback.text, self._asked[1])
+            self._asked = None
+        known = self._last = _read(seen, seen.vehicle, seen.context)
+        known.driven_m, known.changes = driven_m, self._changes
+        told = {label: line for (place, label), line in self._answers.items() if place == known.place}
+        known.law = {**told, **known.law}
+        return known
+
+    def can_ask(self, known: Gathered, label: str) -> bool:
+        """Whether a rule is neither shown nor was asked for at this place, and the context offers it."""
+        return label not in known.law and label.casefold() in known.law.get("Further rules, by query", NO_LINE).text
+
+    def ask(self, known: Gathered, label: str) -> Action:
+        """The question for a rule."""
+        self._asked = known.place, label
+        return Action(ActionType.QUERY, text=label)
+
+
+def _answer(text: str, label: str) -> LawLine:
+    """The line of an answer that states a rule."""
+    lines = (line.partition(f"{label}: ")[2] for line in text.splitlines() if line.startswith(f"{label}: "))
+    return _law(next(lines, ""))
+
+
+def _read(seen: Observation, vehicle: VehicleState, context: str) -> Gathered:
+    known = Gathered(seen.time_s, vehicle)
     defaults, reduced, law = [], [], {}
-    for line in seen.context.splitlines():
+    for line in context.splitlines():
         label, _, text = line.partition(": ")
         match label:
+            case "Place":
+                known.place = text
             case "Road":
                 known.road = text
             case "Speed limit here" if "posted on" in text:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
+from math import floor
 
 from automotive_cosim.cockpit.signals import BODY, CABIN, CALL, ENERGY, GLASS, LIGHTS, SEAT, TYRE
 from automotive_cosim.contracts import KMH_PER_MPS, Sight, SightKind
@@ -22,6 +23,7 @@ CLOSE_S = 2.0
 CLOSING_S = 5.0
 TUNNEL_M = 500.0
 REPORT_M = 1500.0
+BLUE_M = 150.0
 ROLLING_KMH = 5.0
 MIST = 0.1
 WINDOWS = (
@@ -93,8 +95,9 @@ def _seen(now: Moment, kind: SightKind) -> Sight | None:
 
 
 def _behind(now: Moment) -> Hashable:
-    if _seen(now, SightKind.EMERGENCY_VEHICLE) is not None:
-        return "blue light"
+    blue = _seen(now, SightKind.EMERGENCY_VEHICLE)
+    if blue is not None:
+        return "blue light", _ahead_m(blue.distance_m, BLUE_M)
     return "vehicle" if _seen(now, SightKind.VEHICLE_BEHIND) is not None else None
 
 
@@ -145,6 +148,11 @@ def _lamp_words(now: Moment) -> str:
 def _step(value: float, size: float, least: float) -> Hashable:
     """The reading of a gauge in steps, from one value on."""
     return None if value < least else int(value / size)
+
+
+def _share(value: float) -> str:
+    """Rounded down: what is below a step must not read as if it had reached it."""
+    return f"{floor(1000 * value) / 10:.1f}%"
 
 
 def _lowest_kpa(now: Moment) -> float:
@@ -212,7 +220,13 @@ WAKES: tuple[Wake, ...] = (
         _leader_words,
         1.0,
     ),
-    Wake("behind", "a vehicle comes close from behind, or a blue light", _behind, _behind_words, 1.0),
+    Wake(
+        "behind",
+        "a vehicle comes close from behind, or a blue light, and that within 150 m",
+        _behind,
+        _behind_words,
+        1.0,
+    ),
     Wake(
         "light",
         "day, twilight, night; into or out of a tunnel",
@@ -275,7 +289,7 @@ WAKES: tuple[Wake, ...] = (
         "tyre",
         "the lowest tyre, below 230 kPa, every 10 kPa",
         lambda now: _step(-_lowest_kpa(now), 10.0, -230.0),
-        lambda now: f"lowest {_lowest_kpa(now):.0f} kPa",
+        lambda now: f"lowest {floor(_lowest_kpa(now))} kPa",
     ),
     Wake(
         "range",
@@ -290,13 +304,13 @@ WAKES: tuple[Wake, ...] = (
         "glass",
         "the windshield fogs, every tenth",
         lambda now: _step(now.signals[GLASS.WINDSHIELD_FOG.path], MIST, MIST),
-        lambda now: f"windshield fogged by {now.signals[GLASS.WINDSHIELD_FOG.path]:.1%}",
+        lambda now: f"windshield fogged by {_share(now.signals[GLASS.WINDSHIELD_FOG.path])}",
     ),
     Wake(
         "rain",
         "rain on the windshield with the wipers off, every tenth",
         lambda now: _step(_unwiped(now), MIST, MIST),
-        lambda now: f"windshield covered by {_unwiped(now):.1%}, wipers off",
+        lambda now: f"windshield covered by {_share(_unwiped(now))}, wipers off",
     ),
     Wake("place", "another country", lambda now: now.context.country or None, lambda now: now.context.country),
     Wake("call", "the phone rings", lambda now: now.signals[CALL.RINGING.path] or None, lambda now: "ringing"),

@@ -122,6 +122,10 @@ class Watch(Session):
         """The harm on this drive, and on the do-nothing drive of the same length."""
         return harm(self.moments), harm(self.baseline_moments)
 
+    def think(self, seconds: float) -> None:
+        """As in a session, at most to the end of the drive."""
+        super().think(min(seconds, max(0.0, self._left_s())))
+
     def step(self, action: Action) -> None:
         """As in a session; a spoken answer is noted, and a declared status ends nothing."""
         said = spoken(action, self.world.moment.time_s)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from itertools import zip_longest
@@ -70,29 +70,36 @@ def rerun(folder: Path, episode: str = "") -> list[Compared]:
         return _single(folder, episode)
     manifest = read_evaluation(folder)
     rows = read_rows(folder, EpisodeRow)
-    matching = [name for name in rows if name == episode] or [name for name in rows if name.startswith(episode)]
-    if not matching:
-        some = ", ".join(sorted(rows)[:SHOWN]) or "none yet"
-        raise UserError(
-            f"no episode in {folder} begins with {episode!r}; its {counted(len(rows), 'episode')}: {some}, ... "
-            "(episodes.jsonl has the ids)"
-        )
-    if len(matching) > 1:
-        some = ", ".join(sorted(matching)[:SHOWN])
-        raise UserError(
-            f"{len(matching)} episodes in {folder} begin with {episode!r}, such as {some}; give more of the id"
-        )
+    name = the_one(rows, episode, folder, "episode")
     plan = make_plan(manifest["plan"])
-    job = next((job for job in plan.jobs() if job.id == matching[0]), None)
+    job = next((job for job in plan.jobs() if job.id == name), None)
     if job is None:
-        raise UserError(
-            f"the plan in {folder / 'manifest.json'} has no episode {matching[0]}; it was changed since"
-        )
+        raise UserError(f"the plan in {folder / 'manifest.json'} has no episode {name}; it was changed since")
     stored = [line for line in read_trace(folder, job.id) if "step" in line]
     with closing(Nursery()) as nursery, agent_of(job, nursery) as agent:
         channels = frozenset(agent.channels)
     again = played(job, stored, channels, rows[job.id].agent_error)
     return compare(stored, [line for line in again.lines if "step" in line])
+
+
+def the_one(ids: Collection[str], asked: str, folder: Path, what: str) -> str:
+    """The only id that is asked for, or that begins so.
+
+    Raises:
+        UserError: there is none, or several.
+    """
+    matching = [name for name in ids if name == asked] or [name for name in ids if name.startswith(asked)]
+    some = ", ".join(sorted(matching or ids)[:SHOWN]) or "none yet"
+    if not matching:
+        raise UserError(
+            f"no {what} in {folder} begins with {asked!r}; its {counted(len(ids), what)}: {some}, ... "
+            "(episodes.jsonl has the ids)"
+        )
+    if len(matching) > 1:
+        raise UserError(
+            f"{len(matching)} {what}s in {folder} begin with {asked!r}, such as {some}; give more of the id"
+        )
+    return matching[0]
 
 
 def _single(folder: Path, episode: str) -> list[Compared]:
@@ -125,7 +132,7 @@ def _again(
     simulations: Simulations | None = None,
 ) -> tuple[Collector, EpisodeResult]:
     collector = Collector(Pictures.NONE)
-    result = run_episode(setup, _Player(stored[1:], channels, failure), (collector,), simulations=simulations)
+    result = run_episode(setup, Player(stored[1:], channels, failure), (collector,), simulations=simulations)
     if result.error is not None:
         raise InfrastructureError(result.error)
     return collector, result
@@ -180,7 +187,7 @@ def compare(stored: Sequence[Json], again: Sequence[Json]) -> list[Compared]:
     return compared
 
 
-class _Player:
+class Player:
     """Plays the recorded actions, including answers that could not be read."""
 
     name, model = "replay", "none"

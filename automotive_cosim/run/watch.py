@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Sequence
 from contextlib import ExitStack, closing
 from dataclasses import dataclass, replace
 from typing import Any
 
 from automotive_cosim.agents import Agent, Thinker
+from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import KMH_PER_MPS, Element, Json
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.departure import depart
@@ -24,7 +26,7 @@ from automotive_cosim.episode.specification import Clock, Conditions
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.interface.controls import GeoInput
-from automotive_cosim.interface.trace import plain
+from automotive_cosim.interface.trace import Step, canonical, plain
 from automotive_cosim.models.base import ModelReply
 from automotive_cosim.run.episode import Replayed, Timed
 from automotive_cosim.run.watch_row import WatchRow
@@ -56,7 +58,7 @@ class WatchRecord:
     timeline: Json
     """Speed, limit and the do-nothing drive's speed, one value a second."""
     steps: tuple[Json, ...]
-    """Action, thinking time and result of each step."""
+    """Action, thinking time and result of each step, with hashes of the state that followed."""
 
 
 def family_named(name: str) -> Family:
@@ -123,11 +125,11 @@ def run_watch(
             world.close()
             raise
         ends.callback(watch.close)
-        meter = _Meter(setup, agent)
+        meter, channels = _Meter(setup, agent), tuple(sorted(agent.channels))
         agent.reset(watch.goal)
         end = play(watch, agent, (meter.stepped,), meter.thought_s)
         return WatchRecord(
-            row=replace(planned, end=end, **_figures(watch), **meter.totals()),
+            row=replace(planned, end=end, channels=channels, **_figures(watch), **meter.totals()),
             timeline=_timeline(watch),
             steps=tuple(_steps(watch)),
         )
@@ -232,13 +234,20 @@ def _steps(watch: Watch) -> list[Json]:
         {
             "step": step.number,
             "time_s": round(step.moment.time_s - begun_s, 3),
-            "action": None if step.action is None else _given(plain(step.action)),
+            "action": None if step.action is None else to_json(step.action),
             "thought_s": step.thought_s,
             "feedback": plain(step.feedback),
+            "sha256": _digests(step),
         }
         for step in watch.steps
     ]
 
 
-def _given(action: Json) -> Json:
-    return {name: value for name, value in action.items() if value is not None}
+def _digests(step: Step) -> Json:
+    """A short hash of each part of the trace, so that a replay can say what differs."""
+    parts = {
+        "traffic": plain(step.moment.driving),
+        "signals": dict(step.moment.signals),
+        "elements": plain(step.elements),
+    }
+    return {name: hashlib.sha256(canonical(part)).hexdigest()[:16] for name, part in parts.items()}

@@ -10,6 +10,7 @@ from automotive_cosim.drives.judge import JudgedAct, JudgedEvent
 from automotive_cosim.drives.score import Score
 from automotive_cosim.episode.specification import Clock, End
 from automotive_cosim.interface.controls import GeoInput
+from automotive_cosim.interface.observe import Channel
 from automotive_cosim.run.row import InColumns, JobRow, Volatile
 
 
@@ -56,6 +57,8 @@ class WatchRow(JobRow):
     tokens_out: int = 0
     cost_usd: float = 0.0
     trace_sha256: str | None = None
+    channels: tuple[Channel, ...] = ()
+    """What the agent was given; the answers to its queries depend on it."""
     model_seconds: Volatile[float] = 0.0
     """Total wait for the model."""
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gzip
 import json
 import re
 from collections.abc import Callable, Hashable, Iterator, Mapping
@@ -30,7 +29,7 @@ from automotive_cosim.run.nursery import Nursery
 from automotive_cosim.run.outside import check_agent
 from automotive_cosim.run.plan import NO_MODEL, Limits, digest
 from automotive_cosim.run.processes import Processes
-from automotive_cosim.run.store import opened
+from automotive_cosim.run.store import opened, write_trace
 from automotive_cosim.run.watch import WatchRecord, WatchSetup, planned_row, run_watch
 from automotive_cosim.run.watch_row import WatchRow
 from automotive_cosim.run.worker import WARM, agent_for
@@ -257,6 +256,4 @@ def failed_watch(job: WatchJob, kind: str, why: str) -> WatchRow:
 
 def _keep(record: WatchRecord, folder: Path, name: str) -> None:
     (folder / TIMELINES / f"{name}.json").write_text(json.dumps(record.timeline), "utf-8")
-    lines = "".join(json.dumps(step, ensure_ascii=False) + "\n" for step in record.steps)
-    with gzip.GzipFile(folder / "traces" / f"{name}.jsonl.gz", "wb", mtime=0) as file:
-        file.write(lines.encode())
+    write_trace(folder, name, record.steps)

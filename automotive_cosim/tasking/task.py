@@ -102,12 +102,12 @@ class Differs(StrEnum):
     """Parked or moving."""
     SETTINGS = "settings"
     """How the car is set before it departs."""
+    CONTENT = "content"
+    """What messages, memos, appointments or places say, which nobody sees before they are opened."""
     ABOARD = "occupants"
     """Who is aboard, awake or asleep, belted or not."""
     VOICE = "voice"
     """Who says it."""
-    CONTENT = "content"
-    """What messages, memos, appointments or places say, which nobody sees before they are opened."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,7 +13,7 @@ from automotive_cosim.report.results import Results, contestant
 from automotive_cosim.run.collect import planned
 from automotive_cosim.run.coverage import Coverage
 from automotive_cosim.run.plan import make_plan
-from automotive_cosim.run.rerun import _Player, compare
+from automotive_cosim.run.rerun import Player, compare
 from automotive_cosim.tasks import CATALOGUE
 
 DEADLINE_S = CATALOGUE["hvac_fan_max"].half("first").deadline.seconds
@@ -64,7 +64,7 @@ def test_the_models_seconds_pass_only_by_the_models_clock(run):
 @pytest.mark.parametrize("clock", Clock)
 def test_what_was_recorded_is_repeated_exactly(run, clock):
     first = run(Slow([4.26, 2.0]), clock=clock, latency_s=1.0)
-    again = run(_Player(_lines(first)[1:], make_agent("oracle").channels, None), out="again")
+    again = run(Player(_lines(first)[1:], make_agent("oracle").channels, None), out="again")
     assert again.result.trace_sha256 == first.result.trace_sha256
     assert not any(step.differs for step in compare(_lines(first), _lines(again)))
 

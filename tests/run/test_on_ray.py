@@ -17,8 +17,11 @@ from automotive_cosim.run.batch import run_plan
 from automotive_cosim.run.collect import Pictures
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.row import steady as steady_part
 from automotive_cosim.run.store import read_rows, stamp
+from automotive_cosim.run.watch_row import WatchRow
+from automotive_cosim.run.watches import make_watch_plan, run_watch_plan
 
 pytest.importorskip("ray", reason="the extra `ray` is not installed")
 on_ray = pytest.importorskip("automotive_cosim.run.on_ray")  # before Ray, whose environment it sets
@@ -145,6 +148,20 @@ def test_the_rows_and_files_are_those_of_a_local_run(cluster, tmp_path):
     assert steady(tmp_path / "far") == steady(tmp_path / "near")
     assert any((tmp_path / "far" / "pictures").iterdir())
     for part in ("traces", "pictures"):
+        assert files(tmp_path / "far" / part) == files(tmp_path / "near" / part)
+
+
+def test_drives_on_ray_are_those_of_a_local_run(cluster, tmp_path):
+    wanted = make_watch_plan({"drives": ["grid_june"], "agents": ["rule-perfect", "silent"], "seeds": [1]})
+    with OnRay(cluster.address) as executor:
+        end = run_watch_plan(wanted, tmp_path / "far", executor=executor)
+    assert end.done == end.planned == end.judged == 2
+    run_watch_plan(wanted, tmp_path / "near", executor=Processes(1))
+    far, near = (read_rows(tmp_path / name, WatchRow) for name in ("far", "near"))
+    assert {name: steady_part(row) for name, row in far.items()} == {
+        name: steady_part(row) for name, row in near.items()
+    }
+    for part in ("traces", "timelines"):
         assert files(tmp_path / "far" / part) == files(tmp_path / "near" / part)
 
 

@@ -1,6 +1,7 @@
 """Evaluations of drives: the plan, the rows, resuming, and the report."""
 
 import json
+from contextlib import closing
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -11,13 +12,19 @@ from typer.testing import CliRunner
 from automotive_cosim.cli.main import app
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.score import together
+from automotive_cosim.drives.watchers import RulePerfect
+from automotive_cosim.episode.specification import Clock
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.drives import LEAST_DRIVES, grouped, interval, tables, told, write_drives
+from automotive_cosim.run.batch import Progress
 from automotive_cosim.run.processes import Processes
+from automotive_cosim.run.rewatch import compare, rewatch, watched
 from automotive_cosim.run.row import as_json, from_json, steady
-from automotive_cosim.run.store import read_rows
+from automotive_cosim.run.store import read_rows, read_trace
+from automotive_cosim.run.watch import WatchSetup, run_watch
 from automotive_cosim.run.watch_row import WatchRow
 from automotive_cosim.run.watches import families_named, make_watch_plan, run_watch_plan
+from automotive_cosim.traffic.fork import Simulations
 
 
 def test_families_are_named_by_id_pattern_scenario_or_season() -> None:
@@ -103,6 +110,61 @@ def test_the_same_plan_gives_the_same_rows(folder: Path, tmp_path: Path) -> None
     run_watch_plan(make_watch_plan(only), tmp_path / "again", executor=Processes(1), retries=0)
     (again,) = read_rows(tmp_path / "again", WatchRow).values()
     assert steady(again) == steady(rows_of(folder)["rule-perfect"])
+
+
+@pytest.mark.slow
+def test_what_is_left_when_a_run_is_broken_off_is_made_up_for(folder: Path, tmp_path: Path) -> None:
+    def break_off(progress: Progress[WatchRow]) -> None:
+        if progress.done == 1:
+            raise KeyboardInterrupt
+
+    wanted = make_watch_plan(PLAN)
+    with pytest.raises(KeyboardInterrupt):
+        run_watch_plan(wanted, tmp_path / "e", executor=Processes(1), retries=0, tell=break_off)
+    assert len(read_rows(tmp_path / "e", WatchRow)) == 1
+    end = run_watch_plan(wanted, tmp_path / "e", executor=Processes(1), retries=0)
+    assert (end.ran, end.done) == (1, 2)
+    assert {name: steady(row) for name, row in rows_of(tmp_path / "e").items()} == {
+        name: steady(row) for name, row in rows_of(folder).items()
+    }
+
+
+@pytest.mark.slow
+def test_a_replay_gives_the_same_trace_and_says_what_differs(folder: Path, tmp_path: Path) -> None:
+    row = rows_of(folder)["rule-perfect"]
+    replayed = CliRunner().invoke(app, ["replay", str(folder), row.id])
+    assert replayed.exit_code == 0, replayed.output
+    assert f"all {row.steps + 1} steps are the same" in replayed.output
+    steps = read_trace(folder, row.id)
+    assert watched(row, steps).row.trace_sha256 == row.trace_sha256
+    quiet = [step | {"action": {"action_type": "wait", "seconds": 1}} if step["action"] else step for step in steps]
+    different = compare(steps, watched(row, quiet).steps)
+    assert "action" in next(step for step in different if step.differs).differs
+    with pytest.raises(UserError, match="no drive in"):
+        rewatch(folder, "grid_december")
+
+
+@pytest.mark.slow
+def test_a_drive_by_the_models_clock_is_repeated_exactly(sumo: None, tmp_path: Path) -> None:
+    class Slow(RulePerfect):
+        """Takes another time for each answer, as a model does."""
+
+        @property
+        def answer_s(self) -> float:
+            return 0.4 + 1.7 * (len(self._told) % 4)
+
+    setup = WatchSetup("grid_june", 1, "slow", clock=Clock.MODEL, latency_s=0.5)
+    with closing(Simulations()) as simulations:
+        first = run_watch("slow", setup, Slow(), simulations=simulations)
+        again = watched(first.row, first.steps, simulations)
+    assert len({step["thought_s"] for step in first.steps}) > 2
+    assert not [step for step in compare(first.steps, again.steps) if step.differs]
+    assert again.row.trace_sha256 == first.row.trace_sha256
+    assert (again.row.events, again.row.acts, again.row.score) == (
+        first.row.events,
+        first.row.acts,
+        first.row.score,
+    )
 
 
 @pytest.mark.slow

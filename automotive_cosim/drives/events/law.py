@@ -13,8 +13,6 @@ from automotive_cosim.geo.rules import Status
 
 SLOW_KMH = 20.0
 """Below this speed, intelligent speed assistance need not act (Regulation (EU) 2021/1958, annex I)."""
-HOLDS_S = ((1.3, 3.0), (1.2, 4.0), (1.1, 5.0), (1.0, 6.0))
-"""(ratio of speed to limit, seconds) after which the tone of the same annex sounds."""
 REACTION_S = 1.1
 """Mean time from a warning to the brake (lognormal in the road's model of the driver)."""
 BRAKING_MPS2 = 3.4
@@ -24,17 +22,6 @@ BRAKING_MPS2 = 3.4
 def speed_kmh(moment: Moment) -> float:
     """The car's speed."""
     return moment.driving.speed_mps * KMH_PER_MPS
-
-
-def margin_kmh(limit_kmh: float) -> float:
-    """By how much a limit is exceeded for certain: 3 km/h up to 100, 3 % above, the error limit of type-approved
-    speed meters (OIML R 91)."""
-    return max(3.0, 0.03 * limit_kmh)
-
-
-def hold_s(ratio: float) -> float:
-    """Seconds for which a ratio of speed to limit must last."""
-    return next((seconds for least, seconds in HOLDS_S if ratio >= least), HOLDS_S[-1][1])
 
 
 def limit_here(moment: Moment) -> BindingLimit | None:

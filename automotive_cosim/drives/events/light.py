@@ -10,9 +10,8 @@ from automotive_cosim.contracts import STANDING_BELOW_MPS, AlertKind
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, WatchAct, off, on
 from automotive_cosim.drives.events.law import says
+from automotive_cosim.drives.margins import LAMP_S
 
-LAMP_S = 2.0
-"""How long an automatic switch may take to light the dipped beam (UN R48, 6.2.7)."""
 DARK_DEG = -6.0
 """The end of civil twilight."""
 LOW_SUN_DEG = 6.0

@@ -11,13 +11,12 @@ from automotive_cosim.drives.events.base import EventKind, Sighting, WatchAct
 from automotive_cosim.drives.events.law import (
     REACTION_S,
     SLOW_KMH,
-    hold_s,
     is_reduced,
     limit_here,
-    margin_kmh,
     speed_kmh,
     time_left_s,
 )
+from automotive_cosim.drives.margins import hold_s, margin_kmh
 
 AHEAD_M = 500.0
 """How far ahead the navigation announces a limit: the horizon that ADASIS-based map systems send at least."""

@@ -62,17 +62,16 @@ class Wipers(EventKind):
     writes: ClassVar[Mapping[str, Wanted]] = {BODY.FRONT_WIPER.path: lambda value: value != "OFF"}
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
-        """While the wipers are off and something falls."""
+        """While the wipers are off; also after the rain, until the glass has dried."""
         now = drive[-1]
         film = float(now.signals[GLASS.WINDSHIELD_FILM.path])
-        dry = float(now.signals[BODY.RAIN_INTENSITY.path]) <= 0
-        if now.signals[BODY.FRONT_WIPER.path] != "OFF" or dry or speed_kmh(now) < 1.0:
+        if now.signals[BODY.FRONT_WIPER.path] != "OFF" or speed_kmh(now) < 1.0:
             return
         words = f"windshield covered by {film:.0%}, wipers off"
-        if film < NOTICED:
-            yield Sighting(words, bait=True)
-        else:
+        if film >= NOTICED:
             yield Sighting(words, due=True, hold_s=3.0, severity=film / NOTICED)
+        elif float(now.signals[BODY.RAIN_INTENSITY.path]) > 0:
+            yield Sighting(words, bait=True)
 
 
 class Slippery(EventKind):

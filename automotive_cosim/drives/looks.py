@@ -1,0 +1,249 @@
+"""What the rule-perfect watcher looks at: from what it has read to what the driver ought to be told.
+
+Each look knows the rules of some kinds of events, and the times for which they must hold.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from automotive_cosim.contracts import AlertKind
+from automotive_cosim.drives.margins import LAMP_S, hold_s, margin_kmh
+from automotive_cosim.drives.reading import Gathered
+
+LOOK_S = 2
+"""How often the watcher looks again while something nears a threshold."""
+
+
+@dataclass(frozen=True, slots=True)
+class Concern:
+    """Something that the driver ought to be told."""
+
+    key: str
+    alert: AlertKind
+    now: bool = True
+    """False while it only has to be watched."""
+    hold_s: float = 0.0
+    """How long it must last."""
+    is_there: bool = False
+    """Whether it is the same concern already while it only has to be watched, such as a jam that comes nearer."""
+
+
+# --- speed -----------------------------------------------------------------------------------------------------
+
+
+def _over(key: str, alert: AlertKind, kmh: float, limit_kmh: float, for_s: float | None = None) -> Concern:
+    """A limit that the car may be above: for certain, beyond the error limit of speed meters."""
+    now = kmh > limit_kmh + margin_kmh(limit_kmh)
+    return Concern(f"{key} {limit_kmh:.0f}", alert, now, hold_s(kmh / limit_kmh) if for_s is None else for_s)
+
+
+def _speed(known: Gathered) -> Iterator[Concern]:
+    """The binding limit, with those that weather lowers."""
+    limit_kmh, reduced_kmh = known.limit_kmh, _reduced_kmh(known)
+    if known.speed_kmh < 20:
+        return
+    if reduced_kmh is not None and (limit_kmh is None or reduced_kmh < limit_kmh):
+        if known.speed_kmh > reduced_kmh + 1:
+            yield _over("weather", AlertKind.SPEED, known.speed_kmh, reduced_kmh)
+        return
+    school = "school zone" in known.road and known.hours_kmh is not None and known.hours_kmh == limit_kmh
+    if limit_kmh is not None and known.speed_kmh > limit_kmh + 1:
+        alert, for_s = (AlertKind.SCHOOL, 3.0) if school else (AlertKind.SPEED, None)
+        yield _over(alert, alert, known.speed_kmh, limit_kmh, for_s)
+    stopping_m = known.mps * 1.1 + known.mps**2 / (2 * _grip(known) * 9.81)
+    if not known.in_tunnel and stopping_m > known.visibility_m:
+        yield Concern("sight", AlertKind.VISIBILITY, hold_s=3.0)
+
+
+GRIPS = (("freezing", 0.15), ("rime", 0.15), ("heavy snow", 0.25), ("snow", 0.35), ("heavy rain", 0.7))
+"""Friction by the words of the weather (Wallman and Astrom, VTI 911A, 2001), the worst first."""
+
+
+def _grip(known: Gathered) -> float:
+    """The friction that this weather leaves."""
+    found = next((grip for words, grip in GRIPS if words in known.weather), None)
+    if found is not None:
+        return found
+    return 0.75 if known.phenomena & {"precipitation"} else 1.0
+
+
+def _reduced_kmh(known: Gathered) -> float | None:
+    """The lowest limit that weather brings into force here, of those that the context states for certain."""
+    found = [
+        line.kmh for line in known.reduced if line.kmh is not None and line.is_verified and _holds(line.text, known)
+    ]
+    return min(found, default=None)
+
+
+def _holds(text: str, known: Gathered) -> bool:
+    motorway = "motorway" in known.road and "outside" in known.road
+    if "on motorways" in text and not motorway:
+        return False
+    if "dual carriageway" in text:
+        return False
+    if "two or more lanes" in text and not (re.search(r"[2-9] lanes", known.road) and "outside" in known.road):
+        return False
+    sight = re.search(r"visibility under (\d+) m", text)
+    if sight is not None:
+        return known.visibility_m < float(sight[1])
+    return "rain or other precipitation" in text and "precipitation" in known.phenomena
+
+
+def _limit_ahead(known: Gathered) -> Iterator[Concern]:
+    away_m, words = known.away_m("limit ahead"), known.words("limit ahead")
+    found = re.match(r"(\d+) km/h", words)
+    if away_m is None or found is None or known.speed_kmh < 20 or away_m < 0:
+        return
+    limit_kmh = float(found[1])
+    here = [each for each in (known.limit_kmh, _reduced_kmh(known)) if each is not None]
+    if here and limit_kmh > min(here) - 9:
+        return
+    right_kmh = limit_kmh + margin_kmh(limit_kmh)
+    if known.speed_kmh > right_kmh + 1:
+        right_mps = right_kmh / 3.6
+        coasting_m = (known.mps**2 - right_mps**2) / 2 + known.mps * (1.1 + LOOK_S)
+        yield Concern(f"falls {limit_kmh:.0f}", AlertKind.SPEED, away_m <= coasting_m, is_there=True)
+
+
+# --- lamps -----------------------------------------------------------------------------------------------------
+
+
+def fog_lamps_lit(known: Gathered) -> Iterator[str]:
+    """The fog lamps that are on, by the label of their rule."""
+    if known.vehicle.is_front_fog_on:
+        yield "Front fog lamps"
+    if known.vehicle.is_rear_fog_on:
+        yield "Rear fog lamp"
+
+
+def _lamps(known: Gathered) -> Iterator[Concern]:
+    car = known.vehicle
+    if known.speed_kmh < 1:
+        return
+    if not (car.is_low_beam_on or car.is_high_beam_on):
+        dark = known.in_tunnel or (known.sun_deg is not None and known.sun_deg <= -6)
+        if dark or _needs_lamps(known):
+            yield Concern("lamps", AlertKind.VISIBILITY, hold_s=LAMP_S)
+        away_m = known.away_m("tunnel")
+        if away_m is not None and away_m > 0:
+            yield Concern("tunnel", AlertKind.TUNNEL, away_m <= known.mps * (10 + LOOK_S), is_there=True)
+    if car.is_high_beam_on:
+        near = car.leader_gap_m is not None and car.leader_gap_m <= 100
+        yield Concern("high beam", AlertKind.VISIBILITY, near or _forbids_high_beam(known), LAMP_S)
+    for label in fog_lamps_lit(known):
+        yield Concern(label, AlertKind.VISIBILITY, _forbids_fog_lamp(known, label), LAMP_S)
+
+
+def _needs_lamps(known: Gathered) -> bool:
+    line = known.law.get("Dipped beam")
+    if line is None or not line.is_verified:
+        return False
+    if known.sun_deg is not None and known.sun_deg < 0 and "dark" in line.text:
+        return True
+    return "required" in line.text and any(
+        word in line.text and word in known.phenomena for word in ("fog", "snow", "heavy rain")
+    )
+
+
+def _forbids_high_beam(known: Gathered) -> bool:
+    line = known.law.get("High beam")
+    if line is None or not line.is_verified:
+        return False
+    lit = any(word in line.text for word in ("lighting", "where lit")) and ", lit" in known.road
+    town = "built-up areas" in line.text and ", built-up" in known.road
+    return lit or town
+
+
+def _forbids_fog_lamp(known: Gathered, label: str) -> bool:
+    line = known.law.get(label)
+    if line is None or not line.is_verified or "allowed" not in line.text:
+        return False
+    sight = re.search(r"visibility under (\d+) m|under (\d+) m", line.text)
+    if sight is not None and known.visibility_m >= float(sight[1] or sight[2]):
+        return True
+    words = {word for word in ("fog", "snow", "heavy rain") if word in line.text}
+    if "not in rain" in line.text:
+        words.discard("heavy rain")
+    return bool(words) and not words & known.phenomena
+
+
+# --- weather ---------------------------------------------------------------------------------------------------
+
+
+def _weather(known: Gathered) -> Iterator[Concern]:
+    moves = known.speed_kmh >= 1
+    if known.is_icy and known.speed_kmh >= 20:
+        yield Concern("slippery", AlertKind.SLIPPERY, known.speed_kmh > 40, 5.0, is_there=True)
+    for name in ("glass", "rain"):
+        share = re.search(r"(\d+\.\d)%", known.words(name))
+        if share is not None:
+            yield Concern(name, AlertKind.VISIBILITY, moves and float(share[1]) >= 20, 3.0)
+
+
+# --- the road --------------------------------------------------------------------------------------------------
+
+
+def _traffic(known: Gathered) -> Iterator[Concern]:
+    away_m = known.away_m("jam")
+    if away_m is not None and away_m > 0:
+        fast = known.speed_kmh >= 40
+        yield Concern("jam", AlertKind.TRAFFIC, fast and away_m <= known.mps * (15 + LOOK_S), is_there=fast)
+    for name, alert in (("breakdown", AlertKind.MOVE_OVER), ("roadworks", AlertKind.TRAFFIC)):
+        away_m = known.away_m(name)
+        if away_m is not None and away_m > 0:
+            moves = known.mps > 5
+            yield Concern(name, alert, moves and away_m <= known.mps * (12 + LOOK_S), is_there=moves)
+    blue = re.match(r"blue light (\d+) m", known.words("behind"))
+    if blue is not None:
+        yield Concern("blue light", AlertKind.YIELD, float(blue[1]) <= 150, 1.0)
+    gap_m, ttc_s = known.vehicle.leader_gap_m, known.vehicle.leader_time_to_collision_s
+    if gap_m is None:
+        return
+    if known.speed_kmh >= 30:
+        line = known.law.get("Following distance")
+        lawful = re.match(r"(\d+) s or more", line.text) if line is not None and line.is_verified else None
+        least_s = 1.0 if lawful is None else float(lawful[1])
+        if gap_m / known.mps < least_s + 0.5:
+            yield Concern("distance", AlertKind.DISTANCE, gap_m / known.mps < least_s, 3.0)
+    if ttc_s is None or ttc_s <= 0:
+        return
+    closing_mps = gap_m / ttc_s
+    if closing_mps**2 / (2 * max(gap_m, 0.1)) >= 1.0:
+        yield Concern("collision", AlertKind.COLLISION, closing_mps**2 / (2 * max(gap_m, 0.1)) >= 3.4)
+    leader_kmh = known.speed_kmh - closing_mps * 3.6
+    if 8 <= leader_kmh <= 40 and closing_mps >= 3 and (known.limit_kmh or 0) >= 65:
+        yield Concern("slow vehicle", AlertKind.TRAFFIC, gap_m <= (8 + LOOK_S) * closing_mps)
+
+
+# --- the car and its driver ------------------------------------------------------------------------------------
+
+
+def _car(known: Gathered) -> Iterator[Concern]:
+    if known.words("belt"):
+        yield Concern("belt", AlertKind.SEAT_BELT, known.speed_kmh >= 25, 2.0, is_there=True)
+    for part in ("trunk", "charging flap"):
+        if part in known.words("open"):
+            yield Concern(part, AlertKind.VEHICLE, known.speed_kmh >= 5, 2.0)
+    pressure = re.search(r"(\d+) kPa", known.words("tyre"))
+    if pressure is not None:
+        yield Concern("tyre", AlertKind.VEHICLE, float(pressure[1]) < 200, 5.0)
+    hours = re.match(r"(\d+\.\d+) h", known.words("driving time"))
+    if hours is not None:
+        yield Concern("fatigue", AlertKind.FATIGUE, float(hours[1]) >= 2, 5.0)
+    left = re.search(r"(\d+) km, (\d+\.\d) km to go", known.words("range"))
+    if left is not None:
+        yield Concern("range", AlertKind.VEHICLE, known.vehicle.range_km < float(left[2]) + 2, 5.0)
+
+
+LOOKS: tuple[Callable[[Gathered], Iterator[Concern]], ...] = (
+    _traffic,
+    _speed,
+    _limit_ahead,
+    _lamps,
+    _weather,
+    _car,
+)
+"""Everything that it looks at, the most urgent first."""
