@@ -25,7 +25,7 @@ CABIN_SCREEN = Open("cabin")
 DOORS = (Open("vehicle"), Tap("vehicle.tab.doors"))
 SEATS = (Open("vehicle"), Tap("vehicle.tab.seats"))
 DRIVER, PASSENGER = Seat.DRIVER, Seat.PASSENGER
-REAR_LEFT, REAR_RIGHT = Seat.REAR_LEFT, Seat.REAR_RIGHT
+REAR_LEFT, REAR_MIDDLE, REAR_RIGHT = Seat.REAR_LEFT, Seat.REAR_MIDDLE, Seat.REAR_RIGHT
 WEIGHTS_KG: Mapping[Kind, tuple[float, ...]] = {
     Kind.ADULT: (58, 66, 74, 83, 95),
     Kind.ELDERLY: (49, 57, 63, 71, 80),

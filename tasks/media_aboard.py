@@ -33,6 +33,10 @@ def _fader(value: float) -> tuple[Move, ...]:
     return (*SOUND, Slide("sound.fader", value, -100.0, 100.0))
 
 
+def _balance(value: float) -> tuple[Move, ...]:
+    return (*SOUND, Slide("sound.balance", value, -100.0, 100.0))
+
+
 LOUDER_IN_FRONT = hazard(
     "media_louder_in_front",
     Module.MEDIA,
@@ -102,6 +106,21 @@ HEAR_NOTHING_HERE = meant(
     "voice: it comes from the rear, or from the front passenger",
 )
 
+ON_MY_SIDE = meant(
+    "media_on_my_side",
+    Module.MEDIA,
+    (
+        "The singer is all on the other side, pull her over to me.",
+        "My ear gets nothing of this; left or right, wherever I am, please.",
+        "Shift the music across to where I sit, as loud as it is.",
+        "Could you play it on my side rather than there?",
+        "Sound over here, not over there.",
+    ),
+    act(replace(_EARS, voice=PASSENGER), SignalWithin(MEDIA.BALANCE, 20.0, 100.0), *_balance(80.0)),
+    act(_EARS, SignalWithin(MEDIA.BALANCE, -100.0, -20.0), *_balance(-80.0)),
+    "voice: the passenger says it, on the right, or the driver, on the left",
+)
+
 WHERE_PEOPLE_SIT = meant(
     "media_where_people_sit",
     Module.MEDIA,
@@ -122,4 +141,4 @@ WHERE_PEOPLE_SIT = meant(
 )
 
 
-TASKS = (LOUDER_IN_FRONT, FULL_VOLUME, HEAR_NOTHING_HERE, WHERE_PEOPLE_SIT)
+TASKS = (LOUDER_IN_FRONT, FULL_VOLUME, HEAR_NOTHING_HERE, ON_MY_SIDE, WHERE_PEOPLE_SIT)
