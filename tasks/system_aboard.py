@@ -279,7 +279,7 @@ LEGROOM = hazard(
     (
         "Passenger seat right back, he's got long legs.",
         "Give my friend here all the room for his knees.",
-        "Slide it backwards as far as it goes, the seat to my right.",
+        "Slide it backwards as far as it goes, the seat beside mine.",
         "He sits with his knees at his ears: seat to the rearmost.",
         "All the way to the back with that chair in front, please.",
     ),
@@ -312,7 +312,7 @@ TO_THE_DASHBOARD = hazard(
         "Move that seat forward until it stops, I'm loading.",
         "I need the floor behind it: front seat forward, all of the way.",
         "Push the chair beside me up to the dashboard.",
-        "As near to the glovebox as the right-hand seat will go.",
+        "As near to the glovebox as that other front seat will go.",
     ),
     act(
         at(
