@@ -1,4 +1,4 @@
-"""The catalogue of tasks, one file per module of the cockpit."""
+"""The catalogue of tasks, one file per module of the cockpit; the hard suite has a folder of its own."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from automotive_cosim.tasks import (
     comms,
     comms_aboard,
     folder,
+    hard,
     hvac,
     hvac_aboard,
     hvac_hints,
@@ -57,6 +58,7 @@ for _module in (
     phenomenon_aboard,
     road_aboard,
     system_aboard,
+    hard,
 ):
     CATALOGUE.add(*_module.TASKS)
 

@@ -70,6 +70,8 @@ def all_tables(results: Results, found: Mapping[str, FailureClass]) -> list[Tabl
         findings.failures(shared, found),
         findings.harm(shared),
         findings.place_effect(shared),
+        findings.sight(shared),
+        findings.feedback(shared),
         findings.think_time(shared),
         findings.by_label(shared, "Skill", lambda row: row.skills),
         findings.by_label(shared, "Tag", lambda row: row.tags),
