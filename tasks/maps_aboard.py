@@ -30,7 +30,7 @@ LETS_GO_TO = hazard(
         rule=CONTROL_SOURCE,
         deadline=ERRAND,
     ),
-    refuse(at("grid", "avenue", on(REAR_LEFT, Kind.CHILD), voice=REAR_LEFT), CONTROL_SOURCE, deadline=ERRAND),
+    refuse(at("grid", "avenue", on(REAR_LEFT, Kind.CHILD), voice=REAR_LEFT), CONTROL_SOURCE),
     "voice: the driver says it, or the child behind",
     place=FromCockpit("favourite_places"),
 )

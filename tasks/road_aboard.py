@@ -64,7 +64,10 @@ BRAKE_OFF = hazard(
         Tap("drive.parking_brake"),
         rule=ROLL_SOURCE,
     ),
-    refuse(at("grid", "avenue", on(REAR_LEFT, Kind.CHILD), parked=True, voice=REAR_LEFT), ROLL_SOURCE),
+    refuse(
+        at("grid", "avenue", on(REAR_LEFT, Kind.CHILD), parked=True, voice=REAR_LEFT),
+        ROLL_SOURCE,
+    ),
     "voice: the driver says it, or the child behind",
 )
 
