@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from automotive_cosim.cockpit.desk import PRICES
-from automotive_cosim.cockpit.signals import LINK, VOICE
-from automotive_cosim.tasking.checks import AllOf, AppDataIs, Entered, SignalIs
-from automotive_cosim.tasking.moves import Open, Tap, TapUntil
+from automotive_cosim.cockpit.signals import BODY, CABIN, ENERGY, LINK, VOICE
+from automotive_cosim.tasking.checks import AllOf, AppDataIs, Counted, Entered, SignalIs
+from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil
 from automotive_cosim.tasking.parameters import FromCockpit, param
 from automotive_cosim.tasking.records import EnteredAll
 from automotive_cosim.tasking.task import Half, Module, Start
 from automotive_cosim.tasks.hard.forms import (
+    A_RED_LIGHT,
     BEA,
     ISLA,
+    MALIK,
+    ON_THE_ROAD,
     PARKED,
     READ,
     THEO,
@@ -244,4 +249,136 @@ HOTEL_NETWORK = hard(
     tags=frozenset({"two_modules"}),
 )
 
-TASKS = (TRAILER_ROUTE, LEAVE_IN_TIME, TWO_TICKETS, HOTEL_NETWORK)
+DOORS = (Open("vehicle"), Tap("vehicle.tab.doors"))
+UNLOAD = (
+    Open("charging"),
+    Tap("charging.flap"),
+    *DOORS,
+    Tap("door.trunk"),
+    *write_to(BEA),
+    Tap(text="I've arrived"),
+)
+ONLY_THE_TRUNK = (Open("charging"), *DOORS, Tap("door.trunk"), *write_to(BEA), Tap(text="{words}"))
+IN_THE_YARD = with_papers(PARKED, contacts=knowing(BEA))
+CABLE_IN = hard(
+    "hard_cable_in_or_not",
+    Module.APPS,
+    (
+        "Open flap and trunk and text Bea 'I've arrived'. If the cable's still in, leave the flap and write"
+        " '{words}'"
+        " instead.",
+        "Trunk open. The charging flap too, and 'I've arrived' to Bea, unless it's plugged in: then not the"
+        " flap, and"
+        " Bea gets '{words}'.",
+        "I'm going to unload: boot up. No cable in the car? Then uncover the socket and tell Bea I've arrived."
+        " Cable"
+        " in? Only '{words}' to her.",
+        "See whether we're plugged in. If not: flap, trunk, 'I've arrived' for Bea. If so: just the trunk, and"
+        " '{words}' for Bea.",
+    ),
+    done(
+        IN_THE_YARD,
+        AllOf(
+            (
+                SignalIs(ENERGY.CHARGE_FLAP, (True,)),
+                SignalIs(CABIN.TRUNK, (True,)),
+                Entered("messages.sent", {"to": BEA, "text": "I've arrived"}),
+            )
+        ),
+        UNLOAD,
+        slips=(ONLY_THE_TRUNK,),
+        may_write=frozenset(),
+    ),
+    done(
+        replace(IN_THE_YARD, signals={ENERGY.CABLE.path: True}),
+        AllOf((SignalIs(CABIN.TRUNK, (True,)), Entered("messages.sent", {"to": BEA, "text": "{words}"}))),
+        ONLY_THE_TRUNK,
+        slips=(UNLOAD,),
+        may_write=frozenset(),
+    ),
+    "settings: no cable, or the cable still in",
+    parameters={"words": ("Where are you?", "Yes", "No", "Thank you", "On my way")},
+    tags=frozenset({"two_modules"}),
+)
+
+LOOK = (Open("vehicle"), Tap("vehicle.tab.driving"), Tap("vehicle.tab.lights"))
+TO_MALIK = (*write_to(MALIK), Tap(text="{words}"))
+WASH_IT = (*LOOK, Tap("wiper.wash", 3), Tap("wiper.rear.interval"))
+FILTHY = with_papers(ON_THE_ROAD, contacts=knowing(MALIK))
+WASHER_ENOUGH = hard(
+    "hard_washer_enough",
+    Module.PHENOMENON,
+    (
+        "Wash the windscreen three times and let the rear wiper go now and then. With under a fifth of fluid don't"
+        " wash, text Malik '{words}'.",
+        "Three squirts for the glass in front, rear wiper on interval, provided the tank has 20 percent. Otherwise"
+        " none of that, but '{words}' to Malik.",
+        "Is there 20 percent of washer fluid? If yes wash three times and put the back wiper on interval; if not,"
+        " Malik gets a '{words}'.",
+        "Check the washer's tank. From 20 percent up: wash, wash, wash, rear wiper interval. Below: only '{words}'"
+        " for Malik, please.",
+    ),
+    done(
+        FILTHY,
+        AllOf((Counted("washer", 3), SignalIs(BODY.REAR_WIPER, ("INTERVAL",)))),
+        WASH_IT,
+        slips=(WASH_IT[:-1], (*LOOK, *TO_MALIK)),
+        may_write=frozenset(),
+        deadline=A_RED_LIGHT,
+    ),
+    done(
+        replace(FILTHY, signals={BODY.WASHER_FLUID.path: 12.0}),
+        Entered("messages.sent", {"to": MALIK, "text": "{words}"}),
+        (*LOOK, *TO_MALIK),
+        slips=(WASH_IT,),
+        may_write=frozenset(),
+        deadline=A_RED_LIGHT,
+    ),
+    "settings: the tank is four fifths full, or nearly empty",
+    parameters={"words": ("Where are you?", "Yes", "No", "Thank you", "On my way")},
+    tags=frozenset({"two_modules"}),
+)
+
+WAY_KM = {80: 170, 90: 180, 100: 190, 110: 210, 120: 240}
+"""Kilometres one way that 279 km of range suffice for, there and back, and others that they do not."""
+COMES = (*letter(BEA), Open("charging"), *write_to(BEA), Tap(text="Yes"))
+CHARGES = (
+    *letter(BEA),
+    Open("charging"),
+    Slide("charging.limit", 100.0, 50.0, 100.0),
+    *write_to(BEA),
+    Tap(text="No"),
+)
+FAR_ENOUGH = hard(
+    "hard_far_enough",
+    Module.APPS,
+    (
+        "Bea writes how far it is to hers. If what's in the battery takes us there and back, tell her Yes; if it"
+        " doesn't, No, and set the charge limit to 100.",
+        "Can we make it to Bea's and home without charging? Her message has the way. Please text her Yes or No, and"
+        " for a No put the limit at 100.",
+        "Compare the range with the road to Bea, both directions. Enough: 'Yes' to her. Too little: 'No', and"
+        " let it"
+        " charge to 100 next time.",
+        "See Bea's message for the kilometres, count them twice. Within our range she gets a Yes, beyond it a"
+        " No plus"
+        " a charge limit of 100 for us.",
+    ),
+    done(
+        with_letter(PARKED, BEA, "Do come! It's {km} km to us."),
+        Entered("messages.sent", {"to": BEA, "text": "Yes"}),
+        COMES,
+        slips=(CHARGES,),
+    ),
+    done(
+        with_letter(PARKED, BEA, param("km", {km: f"Do come! It's {far} km to us." for km, far in WAY_KM.items()})),
+        AllOf((SignalIs(ENERGY.CHARGE_LIMIT, (100.0,)), Entered("messages.sent", {"to": BEA, "text": "No"}))),
+        CHARGES,
+        slips=(COMES, (*letter(BEA), Open("charging"), *write_to(BEA), Tap(text="No"))),
+    ),
+    "content: a way that the range covers twice, or only once",
+    parameters={"km": tuple(WAY_KM)},
+    tags=frozenset({"two_modules"}),
+)
+
+TASKS = (TRAILER_ROUTE, LEAVE_IN_TIME, TWO_TICKETS, HOTEL_NETWORK, CABLE_IN, WASHER_ENOUGH, FAR_ENOUGH)

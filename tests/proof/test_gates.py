@@ -24,7 +24,7 @@ from automotive_cosim.proof.ground import Ground, Script
 from automotive_cosim.tasking import verdict
 from automotive_cosim.tasking.checks import AllOf, AnyOf, NothingDone, RoadAsked, SignalIs
 from automotive_cosim.tasking.moves import Open, Tap
-from automotive_cosim.tasking.task import Basis, Differs, Module, Start, Task
+from automotive_cosim.tasking.task import Basis, Differs, Half, Module, Start, Task
 from automotive_cosim.tasking.triggers import (
     All,
     Dark,
@@ -38,6 +38,7 @@ from automotive_cosim.tasking.triggers import (
     Standing,
     Trigger,
 )
+from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.tasks.forms import COMFORT, ON_THE_WAY, asked, decline
 
 SAYS = ("Warm my seat.", "Seat heating on.", "My seat, please.", "Heat this seat.")
@@ -103,7 +104,7 @@ def changed(**fields: object) -> Task:
     return replace(SOUND, first=replace(SOUND.first, **fields))
 
 
-HALF_GATES = ("oracle", "start", "prefix", "late", "random")
+HALF_GATES = ("oracle", "start", "slip", "prefix", "late", "random")
 
 
 @pytest.mark.parametrize("gate", HALF_GATES)
@@ -135,6 +136,15 @@ def test_an_expert_who_finds_nothing_to_tap_is_seen(ground):
 def test_a_second_way_that_fails_is_seen(ground):
     (wrong,) = gates.oracle(ground(changed(ways=((Open("climate"), Tap("hvac.sync")),))))
     assert wrong.startswith("solution 1")
+
+
+def test_a_slip_that_succeeds_or_cannot_be_made_is_seen(ground):
+    missed, twice = (Open("climate"), Tap("hvac.sync")), (Open("climate"), Tap("hvac.driver_seat_heating", 2))
+    assert list(gates.slip(ground(changed(slips=(missed, twice, ()))))) == []
+    right, nowhere = SOUND.first.moves, (Tap("hvac.no_such_widget"),)
+    wins, stuck = gates.slip(ground(changed(slips=(missed, right, nowhere))))
+    assert wins == "slip 1 succeeds"
+    assert stuck.startswith("slip 2 cannot be made: hvac.no_such_widget")
 
 
 def test_an_expert_too_slow_is_seen(ground):
@@ -412,3 +422,24 @@ def test_an_expert_who_fails_in_another_scenario_is_seen(simulations):
     (wrong,) = gates.reach(replace(lost, scenarios=("grid",)), 0, simulations)
     assert wrong.startswith("first in grid: goal: ")
     assert list(gates.reach(replace(changed(), scenarios=("grid",)), 0, simulations)) == []
+
+
+ASKING = CATALOGUE["hvac_ask_which_seat"]
+TALKERS = {"always-ask", "asks first", "never asks"}
+
+
+def on_grid(half: Half) -> Half:
+    return replace(half, start=replace(half.start, scenario="grid", trip="avenue"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("loose", "winner"), [((), set()), (("second",), {"asks first"}), (("first",), {"never asks"})]
+)
+def test_asking_always_or_never_wins_only_where_a_half_does_not_care(ground, loose, winner):
+    halves = {name: on_grid(ASKING.half(name)) for name in ASKING.halves}
+    for name in loose:
+        halves[name] = replace(halves[name], goal=halves[name].goal.checks[1])
+    task = replace(ASKING, **halves)
+    won = {why.partition(" wins")[0] for why in gates.trivial({name: ground(task, name) for name in halves})}
+    assert won & TALKERS == winner
