@@ -155,7 +155,7 @@ class _Episode:
     @property
     def worked(self) -> frozenset[str]:
         """Controls that were operated."""
-        done = (touch for touch in self.touches if touch.code is FeedbackCode.OK)
+        done = (touch for touch in self.touches if touch.code in (FeedbackCode.OK, FeedbackCode.READ_OUT))
         return frozenset(touch.name for touch in done if touch.name in self._targets or not touch.is_way)
 
     @property
