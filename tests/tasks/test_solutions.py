@@ -77,6 +77,7 @@ def _taken_over(task: Task, half: str, network: RoadNetwork) -> tuple[Instance, 
         cockpit = Cockpit(
             network,
             rng=np.random.default_rng(1),
+            aboard=start.aboard,
             cabin=start.cabin,
             signals={**PARKED, **start.signals} if start.parked else start.signals,
             arrivals=start.arrivals,
