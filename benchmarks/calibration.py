@@ -40,6 +40,11 @@ def write_twin(scenario: Scenario, target: Path, spread: float, level: float, rn
         for rate in RATES:
             if rate in flow.attrib:
                 flow.set(rate, f"{float(flow.attrib[rate]) * factor:g}")
+        period = flow.get("period", "")
+        if period.startswith("exp("):
+            flow.set("period", f"exp({float(period[4:-1]) * factor:g})")
+        elif period:
+            flow.set("period", f"{float(period) / factor:g}")
     ET.ElementTree(root).write(target)
 
 
