@@ -241,8 +241,8 @@ CHARGE_FOR_THE_LAKE = hard(
         " up to fives; done one hour ahead of the ferry in the calendar.",
         "We're off to the lake and home again, distance in the memos: I want 15 percent in hand at the end. Limit"
         " to the five above. It has to be full an hour earlier than the ferry.",
-        "Work out the charge for the lake, both directions, plus a reserve of 15 percent, rounded up to the next five."
-        " Ready time: ferry minus an hour.",
+        "Work out the charge for the lake, both directions, plus a reserve of 15 percent, rounded up to the next"
+        " five. Ready time: ferry minus an hour.",
     ),
     done(
         _lake(param("km", {km: f"The lake is {km} km away" for km in LAKE})),
@@ -338,7 +338,8 @@ SONG_FOR_BEA = hard(
         "Bea wrote which list this song should go on and how loud it may be. Do both, and let it play on.",
         "Put what's playing on the playlist that Bea asks for, at her volume; don't stop the song.",
         "See what Bea wants done with this track, list and loudness. It keeps running meanwhile.",
-        "This one goes on a list, Bea's message says which and how loud it may be; keep playing from the USB stick.",
+        "This one goes on a list, Bea's message says which and how loud it may be; keep playing from the USB"
+        " stick.",
     ),
     done(
         with_letter(

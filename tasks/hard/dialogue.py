@@ -106,10 +106,10 @@ A_PART_BACK = hard(
         done(
             STREET,
             AllOf((AS_IT_WAS, BRIGHTER, QUIETER)),
-            (*AIR, *LIGHT, Hear("leave the temperature"), *AIR_BACK, *SOUND),
+            (*AIR, *LIGHT, Hear("leave the temp"), *AIR_BACK, *SOUND),
             slips=(
-                (*AIR, *LIGHT, Hear("leave the temperature"), *SOUND),
-                (*AIR, *LIGHT, Hear("leave the temperature"), *AIR_BACK),
+                (*AIR, *LIGHT, Hear("leave the temp"), *SOUND),
+                (*AIR, *LIGHT, Hear("leave the temp"), *AIR_BACK),
             ),
             may_write=frozenset(),
         ),
