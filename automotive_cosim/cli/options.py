@@ -91,14 +91,14 @@ def whole_number(least: int, most: int) -> Callable[[str], int]:
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class PartOf:
     """One of so many parts, as in ``3/10``."""
 
     number: int
     of: int
 
     @classmethod
-    def read(cls, text: str) -> Part:
+    def read(cls, text: str) -> PartOf:
         """Parser of ``--part``."""
         found = re.fullmatch(r"(\d{1,6})/(\d{1,6})", text)
         part = cls(int(found[1]), int(found[2])) if found else cls(0, 0)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from automotive_cosim.cli.batches import words
-from automotive_cosim.cli.options import AsJson, Part, TasksFrom, whole_number
+from automotive_cosim.cli.options import AsJson, PartOf, TasksFrom, whole_number
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import InfrastructureError, UserError
 
@@ -27,11 +27,11 @@ def validate(
         typer.Option(help="Ids, patterns, tags, modules, dimensions, general, safety or all; separated by commas."),
     ] = "all",
     part: Annotated[
-        Part | None,
+        PartOf | None,
         typer.Option(
             help="Only one of so many parts of them, as in 3/10; together the parts are all.",
             metavar="K/N",
-            parser=Part.read,
+            parser=PartOf.read,
             show_default=False,
         ),
     ] = None,

@@ -23,6 +23,7 @@ from automotive_cosim.run.plan import EpisodeJob
 from automotive_cosim.run.regrade import judged_again
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.store import read_trace, trace_file
+from automotive_cosim.run.taps import pixel_taps
 from automotive_cosim.scenarios import shipped
 
 ROWS = "episodes.jsonl"
@@ -112,7 +113,8 @@ def _judged_problems(folder: Path, job: EpisodeJob, row: EpisodeRow, told: Json)
     verdict = judged_again(row, judged)
     start, end = judged.trace[0], judged.trace[-1]
     prompts = [stage["reply"]["tokens_in"] for step in steps for stage in step["stages"] if stage["reply"]]
-    load = driver_load(_steps(steps, judged))
+    seen = _steps(steps, judged)
+    load, taps = driver_load(seen), pixel_taps(seen)
     expected: Json = {
         "success": verdict.success,
         "reward": float(verdict.success),
@@ -128,6 +130,7 @@ def _judged_problems(folder: Path, job: EpisodeJob, row: EpisodeRow, told: Json)
         "trace_sha256": sha256(steps),
         "interaction_s": load.interaction_s,
         "within_guideline": load.within_guideline,
+        "taps": taps and asdict(taps),
         "prompt_tokens": prompts,
         "error": None,
         "error_kind": None,

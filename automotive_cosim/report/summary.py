@@ -47,6 +47,7 @@ def tables(results: Results) -> list[Table]:
         safety(results),
         held_out(results),
         conduct(results),
+        taps(results),
         comparisons(results),
         by(results, "Module", lambda row: row.module, list(Module)),
         by(results, "Scenario", lambda row: row.scenario),
@@ -192,6 +193,24 @@ def conduct(results: Results) -> Table:
         "and 12 s. Tokens of rules are estimates at four characters each."
     )
     return Table("conduct", "Drive, driver and cost", columns, tuple(rows), note)
+
+
+def taps(results: Results) -> Table:
+    """How well taps by pixel hit what can be tapped; empty if none were given."""
+    rows: list[TableRow] = []
+    for each in results.contestants:
+        given = [row.taps for row in results.of(each) if row.taps is not None]
+        count = sum(taps.count for taps in given)
+        if count:
+            margin_px = sum(taps.margin_px * taps.count for taps in given) / count
+            hits = sum(taps.hits for taps in given)
+            rows.append((each.label, Cell(f"{count:,}"), Cell(f"{hits / count:.1%}"), Cell(f"{margin_px:+.1f}")))
+    columns = ("Contestant", "Taps by pixel", "Inside a clickable element", "Mean margin, px")
+    note = (
+        "The margin is the distance from the edge of the element that was hit, or was nearest: positive inside, "
+        "negative outside. Taps by an element's number are not counted."
+    )
+    return Table("taps", "Taps by pixel", columns, tuple(rows), note)
 
 
 def comparisons(results: Results) -> Table:

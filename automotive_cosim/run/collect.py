@@ -19,6 +19,7 @@ from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.harm import nearest_s, overspeed, states_of
 from automotive_cosim.run.moments import Judged
 from automotive_cosim.run.plan import EpisodeJob
+from automotive_cosim.run.taps import pixel_taps
 
 OVERSPEED_SCALE_MPS = 2.23
 """Mean overspeed at which compliance is zero, 5 mph: nuPlan's speed-limit metric (``max_overspeed_value``)."""
@@ -126,6 +127,7 @@ class Collector(Watcher):
             baseline_drive=result.baseline_drive,
             interaction_s=load.interaction_s if load else None,
             within_guideline=load.within_guideline if load else None,
+            taps=None if episode is None else pixel_taps(episode.steps),
             prompt_tokens=tuple(
                 stage["reply"]["tokens_in"] for line in self._lines for stage in line["stages"] if stage["reply"]
             ),

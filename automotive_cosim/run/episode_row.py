@@ -10,6 +10,7 @@ from automotive_cosim.episode.specification import Clock, End
 from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.run.harm import DriveFigures
 from automotive_cosim.run.row import InColumns, JobRow, Volatile, formerly
+from automotive_cosim.run.taps import PixelTaps
 from automotive_cosim.tasking.task import Basis, Dimension, Module
 from automotive_cosim.tasking.verdict import Verdict
 
@@ -99,6 +100,8 @@ class EpisodeRow(JobRow):
     """The driver's, while the car moved."""
     within_guideline: bool | None = None
     """Whether the load on the driver is within NHTSA's 2 s per glance and 12 s in total."""
+    taps: Annotated[PixelTaps | None, InColumns("taps")] = None
+    """Taps that were given as pixels; None without one."""
     prompt_tokens: tuple[int, ...] = ()
     """Tokens of each call of the model."""
     tokens_in: int = 0

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from automotive_cosim.cli.options import Part
+from automotive_cosim.cli.options import PartOf
 from automotive_cosim.cli.validate import _summary
 from automotive_cosim.proof.prover import GATES, Proof
 
@@ -34,7 +34,7 @@ def test_bad_input_is_one_line(cli, tmp_path, words, said):
 @given(st.integers(0, 40), st.integers(1, 12))
 def test_the_parts_together_are_all(tasks, parts):
     ids = tuple(map(str, range(tasks)))
-    taken = [Part(number, parts).taken(ids) for number in range(1, parts + 1)]
+    taken = [PartOf(number, parts).taken(ids) for number in range(1, parts + 1)]
     assert sorted(sum(taken, ())) == sorted(ids)
     assert max(map(len, taken)) - min(map(len, taken)) <= 1
 
