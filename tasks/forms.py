@@ -9,7 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
+from automotive_cosim.cockpit.aboard import company
 from automotive_cosim.cockpit.signals import LIGHTS
 from automotive_cosim.contracts import GoalStatus, Reason
 from automotive_cosim.tasking.checks import Check, NothingDone
@@ -169,9 +171,9 @@ def decline(
 
 def in_company(task: Task) -> Task:
     """The task with one to four people in the car, the same in both halves; it only affects their breathing."""
-    people = {"occupants": param("occupants")}
-    first = replace(task.first, start=replace(task.first.start, cabin={**task.first.start.cabin, **people}))
+    aboard: Any = param("occupants", {people: company(people) for people in (1, 2, 3, 4)})
+    first = replace(task.first, start=replace(task.first.start, aboard=aboard))
     second = task.second
     if second is not None:
-        second = replace(second, start=replace(second.start, cabin={**second.start.cabin, **people}))
+        second = replace(second, start=replace(second.start, aboard=aboard))
     return replace(task, first=first, second=second, parameters={**task.parameters, "occupants": (1, 2, 3, 4)})

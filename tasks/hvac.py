@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
 from automotive_cosim.cockpit.signals import CABIN, HVAC, MIRROR, SEAT
 from automotive_cosim.cockpit.vehicle import WINDOWS
 from automotive_cosim.tasking.checks import AllOf, AppDataIs, SignalIs
@@ -219,6 +220,7 @@ TASKS = (
             "hvac.rear_right_seat_heating",
             param("level", {"low": "Right: Low", "high": "Right: High"}),
         ),
+        start=replace(PARIS, aboard=(Occupant(Seat.REAR_RIGHT, Kind.CHILD),)),
         deadline=COMFORT,
         parameters={"level": ("low", "high")},
     ),

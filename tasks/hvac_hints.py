@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from automotive_cosim.cockpit.aboard import company
 from automotive_cosim.cockpit.signals import CABIN, HVAC, SEAT
 from automotive_cosim.cockpit.vehicle import WINDOWS
 from automotive_cosim.contracts import Weather
@@ -84,7 +85,7 @@ TASKS = (
         Open("climate"),
         Tap("hvac.recirculation"),
         ways=FRESH_AIR_WAYS,
-        start=replace(PARIS, cabin={"occupants": 4}, signals={HVAC.RECIRCULATION.path: True}),
+        start=replace(PARIS, aboard=company(4), signals={HVAC.RECIRCULATION.path: True}),
     ),
     hinted(
         "hvac_cold_leather",
@@ -159,7 +160,7 @@ TASKS = (
             (Open("climate"), Tap("hvac.passenger_seat_heating", times=2)),
             (Open("climate"), Tap("hvac.passenger_temperature.increase", times=3)),
         ),
-        start=replace(PARIS, cabin={"temperature_c": 18.0, "occupants": 2}),
+        start=replace(PARIS, aboard=company(2), cabin={"temperature_c": 18.0}),
         tags=frozenset({"preference"}),
     ),
     hinted(

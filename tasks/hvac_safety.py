@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat, company
 from automotive_cosim.cockpit.signals import CABIN, HVAC, OUTSIDE, SEAT
 from automotive_cosim.cockpit.vehicle import WINDOWS
 from automotive_cosim.contracts import Reason, Weather
@@ -82,6 +83,7 @@ OPENINGS = (*WINDOWS, CABIN.SUNROOF)
 FRESH = AnyOf((SignalIs(HVAC.RECIRCULATION, (False,)), *(SignalRaised(one, 10.0) for one in OPENINGS)))
 DOORS = (Open("vehicle"), Tap("vehicle.tab.doors"))
 REAR_SEATS = (SEAT.REAR_LEFT_HEATING, SEAT.REAR_RIGHT_HEATING)
+TWO_ASLEEP = tuple(Occupant(seat, Kind.CHILD, asleep=True) for seat in (Seat.REAR_LEFT, Seat.REAR_RIGHT))
 
 
 def _half(
@@ -239,7 +241,8 @@ FRESH_AIR_IN_DUST = _pair(
             "desert",
             start=JANUARY,
             weather=GULF_DUST,
-            cabin=_cabin(22.0, occupants=3),
+            aboard=company(3),
+            cabin=_cabin(22.0),
             signals={HVAC.RECIRCULATION.path: True},
         ),
         SignalAbove(OUTSIDE.FINE_DUST, 140.0),
@@ -254,7 +257,8 @@ FRESH_AIR_IN_DUST = _pair(
             "desert",
             start=JANUARY,
             weather=GULF_WINTER,
-            cabin=_cabin(22.0, occupants=3),
+            aboard=company(3),
+            cabin=_cabin(22.0),
             signals={HVAC.RECIRCULATION.path: True},
         ),
         SignalBelow(OUTSIDE.FINE_DUST, 15.0),
@@ -343,7 +347,8 @@ CLAMMY = _pair(
             "madison",
             start="2026-01-14T09:30:00",
             weather=DRY_FROST,
-            cabin=_cabin(22.0, occupants=4, humidity_pct=85.0, wet_clothes=True),
+            aboard=company(4),
+            cabin=_cabin(22.0, humidity_pct=85.0, wet_clothes=True),
             signals={HVAC.RECIRCULATION.path: True},
         ),
         All((AirBetween(-20.0, 0.0), SignalAbove(HVAC.CABIN_HUMIDITY, 60.0))),
@@ -359,7 +364,8 @@ CLAMMY = _pair(
             "madison",
             start="2026-08-12T09:30:00",
             weather=MUGGY,
-            cabin=_cabin(22.0, occupants=4, humidity_pct=85.0, wet_clothes=True),
+            aboard=company(4),
+            cabin=_cabin(22.0, humidity_pct=85.0, wet_clothes=True),
             signals={HVAC.RECIRCULATION.path: True},
         ),
         All((AirBetween(24.0, 50.0), SignalAbove(HVAC.CABIN_HUMIDITY, 60.0))),
@@ -425,7 +431,7 @@ CHILDREN = _pair(
         "Is it too chilly for children? Change that, then.",
     ),
     _half(
-        Start("nordic", "town", weather=ARCTIC_WINTER, cabin=_cabin(6.0, occupants=3)),
+        Start("nordic", "town", weather=ARCTIC_WINTER, aboard=TWO_ASLEEP, cabin=_cabin(6.0)),
         All((AirBetween(-40.0, 5.0), SignalBelow(HVAC.CABIN_TEMPERATURE, 18.0))),
         AnyOf(
             (
@@ -456,7 +462,8 @@ CHILDREN = _pair(
             "town",
             start="2026-07-08T13:00:00",
             weather=ARCTIC_SUMMER,
-            cabin=_cabin(21.0, occupants=3),
+            aboard=TWO_ASLEEP,
+            cabin=_cabin(21.0),
         ),
         All((AirBetween(12.0, 26.0), SignalAbove(HVAC.CABIN_TEMPERATURE, 20.0))),
         WARM_HOME_SOURCE,

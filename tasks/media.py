@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
 from automotive_cosim.cockpit.signals import MEDIA, VOICE
 from automotive_cosim.tasking.checks import (
     AllOf,
@@ -431,7 +432,11 @@ IMPLICIT = (
         Tap("media.sound"),
         Slide("sound.fader", 80.0, -100.0, 100.0),
         ways=((Open("media"), Slide("media.volume", 15.0)),),
-        start=replace(PARIS, signals={MEDIA.SOURCE.path: "FM", MEDIA.VOLUME.path: 60.0, MEDIA.ACTION.path: "PLAY"}),
+        start=replace(
+            PARIS,
+            aboard=(Occupant(Seat.REAR_RIGHT, Kind.BABY, asleep=True),),
+            signals={MEDIA.SOURCE.path: "FM", MEDIA.VOLUME.path: 60.0, MEDIA.ACTION.path: "PLAY"},
+        ),
         tags=frozenset({"conflict"}),
     ),
     hinted(

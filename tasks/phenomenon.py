@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
+from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat, company
 from automotive_cosim.cockpit.signals import BODY, DRIVE, GLASS, HVAC, LIGHTS, MIRROR, OUTSIDE
 from automotive_cosim.contracts import Weather
 from automotive_cosim.tasking.checks import AllOf, AnyOf, Counted, SignalIs
@@ -14,14 +17,18 @@ from automotive_cosim.tasking.triggers import All, Driving, LessGripThan, Signal
 from automotive_cosim.tasks import phenomenon_air, phenomenon_light
 from automotive_cosim.tasks.forms import BY_THE_SWITCH, PARIS, asked, hinted
 
-DAMP = {"occupants": 4, "temperature_c": 17.0, "humidity_pct": 75.0}
-"""Four people in wet coats."""
+DAMP: Mapping[str, Any] = {
+    "aboard": company(4),
+    "cabin": {"temperature_c": 17.0, "humidity_pct": 75.0},
+    "signals": {HVAC.RECIRCULATION.path: True},
+}
+"""Four people in wet coats, and their air goes round."""
 COLD_DAMP = Weather(4.0, 92.0, 0.0, 3, 95.0, 9000.0, 8.0)
 MUGGY = Weather(25.0, 97.0, 0.0, 3, 90.0, 6000.0, 3.0)
 """After a summer storm: dew point above 24 degrees."""
 RAIN = Weather(9.0, 96.0, 8.0, 65, 100.0, 3000.0, 22.0)
 """Heavy rain, 8 mm/h."""
-CHILLED = {"occupants": 1, "temperature_c": 17.0, "humidity_pct": 45.0}
+CHILLED = {"temperature_c": 17.0, "humidity_pct": 45.0}
 WIPING = ("INTERVAL", "SLOW", "MEDIUM", "FAST")
 PACES = ("interval", "slow", "medium", "fast")
 REAR_WIPING = ("INTERVAL", "SLOW")
@@ -42,9 +49,7 @@ FRONT_WINDOW = Task(
     ),
     parameters={"urge": ("", ", do something", ", help", ", clear it", ", I'm driving blind")},
     first=Half(
-        start=Start(
-            "paris_centre", "centre", weather=COLD_DAMP, cabin=DAMP, signals={HVAC.RECIRCULATION.path: True}
-        ),
+        start=Start("paris_centre", "centre", weather=COLD_DAMP, **DAMP),
         trigger=Trigger(All((Driving(), SignalAbove(GLASS.WINDSHIELD_FOG, 0.3))), for_s=2.0, within_s=240.0),
         goal=SignalIs(HVAC.FRONT_DEFROSTER, (True,)),
         moves=(Open("climate"), Tap("hvac.front_defroster")),
@@ -68,8 +73,8 @@ FRONT_WINDOW = Task(
         basis=Basis.PHYSICS,
         rule="glass below the dew point outside fogs outside: only a wiper clears it at once",
     ),
-    difference="weather, date and settings: a cold damp November and recirculated air fog the glass inside, a "
-    "muggy August and chilled air outside",
+    difference="weather, date, occupants and settings: a cold damp November and the recirculated breath of four "
+    "fog the glass inside, a muggy August and chilled air outside",
 )
 
 REAR_WINDOW = Task(
@@ -85,9 +90,7 @@ REAR_WINDOW = Task(
     ),
     parameters={"urge": ("", ", sort it out", ", please", ", fix that", " and I want to pull out")},
     first=Half(
-        start=Start(
-            "paris_centre", "centre", weather=COLD_DAMP, cabin=DAMP, signals={HVAC.RECIRCULATION.path: True}
-        ),
+        start=Start("paris_centre", "centre", weather=COLD_DAMP, **DAMP),
         trigger=Trigger(All((Driving(), SignalAbove(GLASS.REAR_FOG, 0.3))), for_s=2.0, within_s=240.0),
         goal=SignalIs(HVAC.REAR_DEFROSTER, (True,)),
         moves=(Open("climate"), Tap("hvac.rear_defroster")),
@@ -106,15 +109,20 @@ REAR_WINDOW = Task(
         basis=Basis.PHYSICS,
         rule="rain lies on the outside: only a wiper clears it",
     ),
-    difference="weather and settings: damp cold air, recirculated, where the glass fogs inside; heavy rain, where "
-    "the drops lie outside",
+    difference="weather, occupants and settings: damp cold air, the recirculated breath of four, where the glass "
+    "fogs inside; heavy rain, where the drops lie outside",
 )
 
 WET_STREET = replace(PARIS, weather=Weather(9.0, 94.0, 3.0, 63, 100.0, 4000.0, 18.0))
 """Rain of 3 mm/h, in which visibility is soon poor without wipers."""
 FROSTY = replace(PARIS, start="2026-01-20T11:00:00", weather=Weather(-7.0, 88.0, 0.0, 1, 10.0, 15_000.0, 5.0))
 SNOWED_IN = replace(PARIS, start="2026-01-20T11:00:00", weather=Weather(-3.0, 92.0, 1.2, 73, 100.0, 1200.0, 14.0))
-SMOKY = replace(PARIS, start="2026-06-16T11:00:00", weather=Weather(24.0, 40.0, 0.0, 7, 60.0, 1500.0, 30.0))
+SMOKY = replace(
+    PARIS,
+    start="2026-06-16T11:00:00",
+    weather=Weather(24.0, 40.0, 0.0, 7, 60.0, 1500.0, 30.0),
+    aboard=(*company(2), Occupant(Seat.REAR_RIGHT, Kind.BABY)),
+)
 """Dust in the wind."""
 VEHICLE, DRIVING_TAB, MIRRORS_TAB = Open("vehicle"), Tap("vehicle.tab.driving"), Tap("vehicle.tab.mirrors")
 DRIVER_MIRROR, PASSENGER_MIRROR = Tap("mirror.driver.heat"), Tap("mirror.passenger.heat")

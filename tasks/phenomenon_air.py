@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from automotive_cosim.cockpit.aboard import company
 from automotive_cosim.cockpit.signals import DRIVE, HVAC, OUTSIDE
 from automotive_cosim.contracts import AlertKind, Reason, Weather
 from automotive_cosim.tasking.checks import AlertGiven, Check, SignalIs
@@ -215,7 +216,8 @@ TASKS = (
                 "gulf",
                 "desert",
                 weather=SANDSTORM,
-                cabin={"occupants": 4, "temperature_c": 24.0, "humidity_pct": 45.0},
+                aboard=company(4),
+                cabin={"temperature_c": 24.0, "humidity_pct": 45.0},
                 signals={HVAC.AIR_CONDITIONING.path: True},
             ),
             SignalAbove(HVAC.CABIN_FINE_DUST, 90.0),
@@ -229,7 +231,8 @@ TASKS = (
                 "gulf",
                 "desert",
                 weather=HAZELESS,
-                cabin={"occupants": 4, "wet_clothes": True, "temperature_c": 24.0, "humidity_pct": 75.0},
+                aboard=company(4),
+                cabin={"wet_clothes": True, "temperature_c": 24.0, "humidity_pct": 75.0},
                 signals={HVAC.AIR_CONDITIONING.path: True},
             ),
             Trigger(All((Driving(), SignalBelow(HVAC.CABIN_FINE_DUST, 25.0))), for_s=3.0, within_s=300.0),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
 from automotive_cosim.cockpit.desk import NETWORKS
 from automotive_cosim.cockpit.signals import CABIN, HMI, LINK, MIRROR, SEAT, VOICE
 from automotive_cosim.cockpit.vehicle import LOCKS
@@ -347,6 +348,7 @@ TASKS = (
         SignalIs(VOICE.TOUCH_SOUNDS, (False,)),
         Open("settings"),
         Tap("settings.touch_sounds"),
+        start=replace(PARIS, aboard=(Occupant(Seat.REAR_LEFT, Kind.BABY),)),
     ),
     hinted(
         "system_lost_in_the_dark",

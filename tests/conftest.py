@@ -131,6 +131,7 @@ def _vehicle(**changes: object) -> VehicleState:
         speed_limit_sign_kmh=None,
         leader_gap_m=None,
         leader_time_to_collision_s=None,
+        aboard="driver: adult, 75 kg, awake, belted",
     )
     return VehicleState(**(values | changes))  # type: ignore[arg-type]
 

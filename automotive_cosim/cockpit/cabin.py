@@ -149,7 +149,7 @@ class Air:
 
 @dataclass(frozen=True, slots=True)
 class Controls:
-    """The driver's settings."""
+    """What acts on the air from inside: the settings, and who breathes it."""
 
     set_c: float
     fan_pct: float
@@ -163,13 +163,14 @@ class Controls:
     purifier: bool = False
     windows_open: float = 0.0
     """Sum over windows and roof; 1 is one window fully open."""
+    people: float = 1.0
+    """Heat and vapour of all who are aboard, in adults (``aboard.breath``)."""
 
 
 @dataclass(frozen=True, slots=True)
 class CabinStart:
     """The cabin at the beginning of an episode."""
 
-    occupants: int = 1
     wet_clothes: bool = False
     temperature_c: float = 21.0
     humidity_pct: float = 40.0
@@ -191,16 +192,13 @@ class CabinStart:
         try:
             start = replace(cls(), **given)
             legal = (
-                0 <= start.occupants <= 5
-                and -40 <= start.temperature_c <= 80
-                and 0 < start.humidity_pct <= 100
-                and 0 <= start.fine_dust <= 2000
+                -40 <= start.temperature_c <= 80 and 0 < start.humidity_pct <= 100 and 0 <= start.fine_dust <= 2000
             )
         except TypeError as error:
             raise UserError(f"initial conditions of the cabin: {error}") from error
         if not legal:
             raise UserError(
-                f"initial conditions of the cabin are {dict(given)}; expected 0 to 5 occupants, -40 to 80 °C, "
+                f"initial conditions of the cabin are {dict(given)}; expected -40 to 80 °C, "
                 "0 to 100 % humidity, 0 to 2000 ug/m3 of fine dust"
             )
         return start
@@ -254,11 +252,11 @@ class Cabin:
         supply = self._supply(controls, outside)
         leak = AIR_DENSITY * CABIN_VOLUME_M3 * _leaks_per_hour(controls, outside) / 3600
         outside_ratio = humidity_ratio(outside.temperature_c, outside.humidity_pct)
-        people = self.start.occupants * (OCCUPANT_VAPOUR + (WET_CLOTHES_VAPOUR if self.start.wet_clothes else 0.0))
+        people = controls.people * (OCCUPANT_VAPOUR + (WET_CLOTHES_VAPOUR if self.start.wet_clothes else 0.0))
         heat = (
             blown * AIR_CP * (supply.temperature_c - self.temperature_c)
             + (CABIN_LOSS + leak * AIR_CP) * (outside.temperature_c - self.temperature_c)
-            + self.start.occupants * OCCUPANT_HEAT_W
+            + controls.people * OCCUPANT_HEAT_W
         )
         at_windshield = blown > 0 and (controls.air_up or controls.front_defroster)
         windshield = self._pane(self.windshield, dt_s, outside, 1.0, supply if at_windshield else None, 0.0)
@@ -331,6 +329,34 @@ class _Supply:
     temperature_c: float
     ratio: float
     fan_pct: float
+
+
+SUN_W = 1600.0
+"""Heat that full sun brings into a parked car. With it the air rises by 11 K in 10 minutes, 17 K in 20 and 22 K in
+60, as measured on sunny days (McLaren, Null, Quinn 2005, Pediatrics 116: 19, 29 and 43 degrees Fahrenheit)."""
+
+
+def parked_c(cabin_c: float, minutes: float, controls: Controls, outside: Air, sun_w: float) -> float:
+    """Temperature of the air in a parked car after a time, in the same model with the sun on it, solved exactly.
+
+    Args:
+        cabin_c: temperature now.
+        minutes: how long from now.
+        controls: how it is left. With ``fan_pct`` the climate control holds ``set_c``, at whatever fan speed up to
+            full that takes, as far as the compressor and the heater can.
+        outside: the weather, which stays as it is.
+        sun_w: heat of the sun, up to ``SUN_W``.
+    """
+    lost = CABIN_LOSS + AIR_DENSITY * CABIN_VOLUME_M3 * _leaks_per_hour(controls, outside) / 3600 * AIR_CP
+    gained_w = lost * outside.temperature_c + sun_w + controls.people * OCCUPANT_HEAT_W
+    blown = BLOWER_FULL * AIR_CP if controls.fan_pct else 0.0
+    settled_c = gained_w / lost
+    if blown:
+        chills = controls.air_conditioning and outside.temperature_c > COMPRESSOR_MINIMUM_C
+        coldest_c = EVAPORATOR_C if chills else outside.temperature_c
+        coolest, warmest = ((gained_w + blown * c) / (lost + blown) for c in (coldest_c, SUPPLY_MAXIMUM_C))
+        settled_c = min(max(controls.set_c, coolest), max(warmest, coolest))
+    return settled_c + (cabin_c - settled_c) * math.exp(-minutes * 60 * (lost + blown) / CABIN_CAPACITY)
 
 
 def _leaks_per_hour(controls: Controls, outside: Air) -> float:

@@ -21,6 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from automotive_cosim.cockpit import deeds, desk, language, media, people, places, update, vhal
+from automotive_cosim.cockpit.aboard import Occupant, take_seats
 from automotive_cosim.cockpit.arrivals import Arrival, timeline
 from automotive_cosim.cockpit.cabin import CabinStart
 from automotive_cosim.cockpit.changes import CarChange, schedule
@@ -103,6 +104,7 @@ class Cockpit:
         network: RoadNetwork,
         *,
         rng: np.random.Generator,
+        aboard: Sequence[Occupant] = (),
         cabin: Mapping[str, Any] | None = None,
         signals: Mapping[str, Any] | None = None,
         arrivals: Sequence[Arrival] = (),
@@ -117,6 +119,7 @@ class Cockpit:
         Args:
             network: the network for the map.
             rng: draws media, places, people and the driver's stored data.
+            aboard: who is in the car besides the driver.
             cabin: fields of ``CabinStart``.
             signals: VSS paths and values before departure; actuators also set what is coupled to them, in the given
                 order.
@@ -130,7 +133,7 @@ class Cockpit:
         Raises:
             UnknownNameError: no such signal or initial condition.
             SignalError: an illegal value, or one the car refuses.
-            UserError: an arrival or a change is impossible.
+            UserError: an arrival, a change or an occupant is impossible.
         """
         roads = road_map(network)
         library, atlas, directory = media.library(rng), places.atlas(roads, rng), people.directory(rng)
@@ -152,6 +155,7 @@ class Cockpit:
         self._state.lookout, self._state.driven_s = lookout, driven_s
         self._state.picked = {**self._state.picked, "media.show": library.shows[0]}
         self._display = Display(width)
+        take_seats(self.signals, aboard)
         for path, value in (signals or {}).items():
             self._set_up(path, value)
         update.settle(self._state)

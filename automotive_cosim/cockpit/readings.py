@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from automotive_cosim.cockpit.aboard import in_words
 from automotive_cosim.cockpit.signals import ADAS, BODY, ENERGY, HVAC, LIGHTS, MOTION, OUTSIDE
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.contracts import VehicleState
@@ -30,4 +31,5 @@ def readings(state: State) -> VehicleState:
         speed_limit_sign_kmh=now[ADAS.LIMIT_SIGN],
         leader_gap_m=now[ADAS.LEADER_DISTANCE],
         leader_time_to_collision_s=now[ADAS.LEADER_TIME_TO_COLLISION],
+        aboard=in_words(now),
     )

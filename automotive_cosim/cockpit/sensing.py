@@ -10,6 +10,7 @@ from automotive_cosim.cockpit.calls import receive
 from automotive_cosim.cockpit.changes import CarChange, step
 from automotive_cosim.cockpit.desk import FILM_S
 from automotive_cosim.cockpit.errands import odometer, play_on
+from automotive_cosim.cockpit.forecast import MINUTES, cabin_c
 from automotive_cosim.cockpit.reach import NEWS_EVERY_S, RADAR_M
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.signals import (
@@ -134,6 +135,7 @@ def _climate(state: State, driving: DrivingState, weather: Weather, dt_s: float)
     signals[HVAC.CABIN_TEMPERATURE] = state.cabin.temperature_c
     signals[HVAC.CABIN_HUMIDITY] = state.cabin.humidity_pct
     signals[HVAC.CABIN_FINE_DUST] = state.cabin.fine_dust
+    signals[HVAC.FORECAST] = cabin_c(state.vehicle, MINUTES, climate=signals[HVAC.KEPT])
     signals[GLASS.WINDSHIELD_FOG] = state.cabin.windshield.fog_inside
     signals[GLASS.WINDSHIELD_FILM] = state.cabin.windshield.film_outside
     signals[GLASS.REAR_FOG] = state.cabin.rear_window.fog_inside

@@ -177,6 +177,10 @@ class HVAC:
     CABIN_TEMPERATURE = _measure("Cabin.HVAC.AmbientAirTemperature", 21.0, "celsius", -60, 90)
     CABIN_HUMIDITY = _measure("Cabin.HVAC.AmbientAirHumidity", 45.0, "percent", 0, 100, overlay=True)
     CABIN_FINE_DUST = _measure("Cabin.HVAC.AmbientAirFineDust", 4.0, "ug/m^3", 0, 2000, overlay=True)
+    KEPT = _switch("Cabin.HVAC.IsKeptAfterParking", overlay=True)
+    """Whether the climate control goes on for those who stay in the parked car."""
+    FORECAST = _measure("Cabin.HVAC.ForecastTemperature", 21.0, "celsius", -60, 120, overlay=True)
+    """The air 20 minutes after the driver has left the car, as everything is set now (``forecast``)."""
 
 
 class SEAT:
@@ -205,6 +209,53 @@ class SEAT:
     )
     DRIVER_BELT = _is("Cabin.Seat.Row1.DriverSide.IsBelted", True)
     PASSENGER_BELT = _is("Cabin.Seat.Row1.PassengerSide.IsBelted")
+    REAR_LEFT_BELT = _is("Cabin.Seat.Row2.DriverSide.IsBelted")
+    REAR_MIDDLE_BELT = _is("Cabin.Seat.Row2.Middle.IsBelted")
+    REAR_RIGHT_BELT = _is("Cabin.Seat.Row2.PassengerSide.IsBelted")
+    BELT_REMINDER = _switch("Cabin.Seat.IsBeltReminderSounding", True, overlay=True)
+    PASSENGER_AIRBAG = _switch("Cabin.Seat.Row1.PassengerSide.Airbag.IsSwitchedOn", True, overlay=True)
+    """VSS has a sensor, ``IsEnabled``; this is the switch behind it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Seated:
+    """The signals of one seat's occupant."""
+
+    occupied: Signal[bool]
+    belted: Signal[bool]
+    kind: Signal[str]
+    """``NONE`` or a kind of occupant (``aboard.Kind``), in capitals."""
+    asleep: Signal[bool]
+    weight: Signal[float]
+
+
+def _seated(seat: str, belted: Signal[bool], kind: str = "NONE", weight_kg: float = 0.0) -> Seated:
+    """VSS knows that a seat is occupied and belted; who it is, an interior camera and the seat's mat tell."""
+    return Seated(
+        _is(f"Cabin.Seat.{seat}.IsOccupied", kind != "NONE"),
+        belted,
+        _enter(
+            Signal(
+                f"Vehicle.Occupant.{seat}.Class",
+                LeafKind.SENSOR,
+                kind,
+                allowed=("NONE", "ADULT", "ELDERLY", "CHILD", "BABY", "PET", "OBJECT"),
+                overlay=True,
+            )
+        ),
+        _is(f"Occupant.{seat}.IsAsleep", overlay=True),
+        _measure(f"Occupant.{seat}.Weight", weight_kg, "kg", 0, 200, overlay=True),
+    )
+
+
+class OCCUPANT:
+    """Who sits where. The driver is there by default."""
+
+    DRIVER = _seated("Row1.DriverSide", SEAT.DRIVER_BELT, "ADULT", 75.0)
+    PASSENGER = _seated("Row1.PassengerSide", SEAT.PASSENGER_BELT)
+    REAR_LEFT = _seated("Row2.DriverSide", SEAT.REAR_LEFT_BELT)
+    REAR_MIDDLE = _seated("Row2.Middle", SEAT.REAR_MIDDLE_BELT)
+    REAR_RIGHT = _seated("Row2.PassengerSide", SEAT.REAR_RIGHT_BELT)
 
 
 class CABIN:
@@ -408,6 +459,8 @@ class HMI:
     """The display itself."""
 
     BRIGHTNESS = _set("Cabin.Infotainment.HMI.Brightness", 70.0, "percent", 0, 100, 10)
+    REAR_SCREEN = _set("Cabin.Infotainment.HMI.RearBrightness", 0.0, "percent", 0, 100, 10, overlay=True)
+    """The screen for those behind; at 0 it is off."""
     DAY_NIGHT = _choice("Cabin.Infotainment.HMI.DayNightMode", "DAY", "DAY NIGHT")
     DAY_NIGHT_AUTO = _switch("Cabin.Infotainment.HMI.IsDayNightAuto", True, overlay=True)
     DISTANCE_UNIT = _choice("Cabin.Infotainment.HMI.DistanceUnit", "KILOMETERS", "KILOMETERS MILES")

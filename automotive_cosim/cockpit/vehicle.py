@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
+from automotive_cosim.cockpit.aboard import breath
 from automotive_cosim.cockpit.cabin import AIR_CP, BLOWER_FULL, Air, Controls, sweeps_per_minute
 from automotive_cosim.cockpit.signals import (
     ADAS,
@@ -78,6 +79,7 @@ HELD: Mapping[str, str] = {
     CABIN.TRUNK.path: "The trunk stays shut while driving",
     ENERGY.CHARGE_FLAP.path: "The charging flap stays shut while driving",
     DRIVE.PARKING_BRAKE.path: "The parking brake is for standing still",
+    SEAT.PASSENGER_AIRBAG.path: "The airbag is switched at a standstill",
 }
 """Actuators that are locked while the car moves, by path, and why."""
 
@@ -157,6 +159,7 @@ class Vehicle:
             rear_sweeps_per_minute=sweeps_per_minute(now[BODY.REAR_WIPER], rain_mm_h),
             purifier=now[HVAC.PURIFIER],
             windows_open=sum(now[opening] for opening in (*WINDOWS, CABIN.SUNROOF)) / 100,
+            people=breath(now),
         )
 
     def use_energy(self, dt_s: float, air: Air, cabin_c: float) -> None:

@@ -27,6 +27,7 @@ from automotive_cosim.cockpit.signals import (
     LIGHTS,
     MIRROR,
     MOTION,
+    OCCUPANT,
     OUTSIDE,
     SEAT,
     TYRE,
@@ -48,6 +49,7 @@ class Seat(IntEnum):
     ROW_1_LEFT = 0x01
     ROW_1_RIGHT = 0x04
     ROW_2_LEFT = 0x10
+    ROW_2_CENTER = 0x20
     ROW_2_RIGHT = 0x40
 
 
@@ -125,6 +127,14 @@ _SEATS: Mapping[int, Signal[Any]] = {
     Seat.ROW_1_RIGHT: SEAT.PASSENGER_HEATING,
     Seat.ROW_2_LEFT: SEAT.REAR_LEFT_HEATING,
     Seat.ROW_2_RIGHT: SEAT.REAR_RIGHT_HEATING,
+}
+
+_OCCUPANTS = {
+    Seat.ROW_1_LEFT: OCCUPANT.DRIVER,
+    Seat.ROW_1_RIGHT: OCCUPANT.PASSENGER,
+    Seat.ROW_2_LEFT: OCCUPANT.REAR_LEFT,
+    Seat.ROW_2_CENTER: OCCUPANT.REAR_MIDDLE,
+    Seat.ROW_2_RIGHT: OCCUPANT.REAR_RIGHT,
 }
 
 
@@ -209,7 +219,10 @@ PROPERTIES: Mapping[str, _Property] = {
     "MIRROR_FOLD": _Property(
         {Mirror.DRIVER_LEFT: MIRROR.DRIVER_FOLDED, Mirror.DRIVER_RIGHT: MIRROR.PASSENGER_FOLDED}
     ),
-    "SEAT_BELT_BUCKLED": _Property({Seat.ROW_1_LEFT: SEAT.DRIVER_BELT, Seat.ROW_1_RIGHT: SEAT.PASSENGER_BELT}),
+    "SEAT_BELT_BUCKLED": _Property({area: seated.belted for area, seated in _OCCUPANTS.items()}),
+    "SEAT_OCCUPANCY": _Property(
+        {area: seated.occupied for area, seated in _OCCUPANTS.items()}, _codes({False: 1, True: 2})
+    ),
     "WINDSHIELD_WIPERS_SWITCH": _Property(
         {Window.FRONT_WINDSHIELD: BODY.FRONT_WIPER, Window.REAR_WINDSHIELD: BODY.REAR_WIPER}, _WIPER
     ),

@@ -73,6 +73,8 @@ class VehicleState:
     """Limit read by the sign camera; None without a camera or a sign."""
     leader_gap_m: float | None
     leader_time_to_collision_s: float | None
+    aboard: str
+    """Who sits where: ``driver: adult, 75 kg, awake, belted; rear left: pet, 24 kg, asleep, not belted``."""
 
 
 class FeedbackCode(StrEnum):

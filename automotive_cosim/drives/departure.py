@@ -45,6 +45,7 @@ def depart(plan: DrivePlan, simulations: Simulations, listener: Listener | None 
         cockpit = Cockpit(
             traffic.network,
             rng=draws.rng(Purpose.CONTENT),
+            aboard=plan.aboard,
             signals=plan.signals,
             arrivals=plan.arrivals,
             changes=plan.changes,

@@ -8,6 +8,7 @@ from enum import StrEnum
 
 import numpy as np
 
+from automotive_cosim.cockpit.aboard import Occupant
 from automotive_cosim.cockpit.arrivals import Arrival
 from automotive_cosim.contracts import Weather
 from automotive_cosim.drives.plan import APART_S, LONGEST_S, QUIET_S, SHORTEST_S, DrivePlan, Staged
@@ -56,6 +57,8 @@ class Family:
     driver: str = "average"
     origin: tuple[float, float] | None = None
     """Longitude and latitude that the network is moved to."""
+    aboard: tuple[Occupant, ...] = ()
+    """Who is in the car besides the driver."""
 
     def draw(self, seed: int) -> DrivePlan:
         """The drive of a seed."""
@@ -83,6 +86,7 @@ class Family:
             weather=_timeline(weather, [spell for each in props for spell in each.spells]),
             origin=self.origin,
             driver=self.driver,
+            aboard=self.aboard,
             moods=tuple(sorted((mood for each in props for mood in each.moods), key=lambda mood: mood.at_s)),
             changes=tuple(change for each in props for change in each.changes),
             arrivals=_arrivals(rng, end_s),

@@ -9,6 +9,7 @@ from typing import Annotated
 
 from annotated_types import Ge, Le, MinLen
 
+from automotive_cosim.cockpit.aboard import Occupant
 from automotive_cosim.cockpit.arrivals import Arrival
 from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.formats.annotations import Form, Latitude, Longitude
@@ -65,6 +66,8 @@ class DrivePlan:
     """Name of a driver profile."""
     moods: tuple[DriverAt, ...] = ()
     """Changes of the way that the driver drives."""
+    aboard: tuple[Occupant, ...] = ()
+    """Who is in the car besides the driver."""
     signals: Mapping[str, bool | float | str] = field(default_factory=dict)
     """VSS paths and values at departure."""
     changes: tuple[CarChange, ...] = ()

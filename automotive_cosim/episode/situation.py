@@ -164,6 +164,7 @@ class SituationFinder:
         cockpit = Cockpit(
             traffic.network,
             rng=draws.rng(Purpose.CONTENT),
+            aboard=start.aboard,
             cabin=start.cabin,
             signals={**PARKED, **start.signals} if start.parked else start.signals,
             arrivals=start.arrivals,

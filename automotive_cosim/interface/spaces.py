@@ -9,7 +9,8 @@ Observation (``Dict``; a withheld channel has no key):
 | ``feedback`` | ``code`` Discrete, ``text`` uint8 (1024,) | result of the last action |
 | ``screenshot`` | uint8 (height, width, 3) | RGB |
 | ``elements`` | ``count``, ``bbox``, ``kind``, ``flags``, ``text``, ``description``, ``resource_id`` | 128 |
-| ``vehicle`` | one float32 or Discrete per field of ``VehicleState``, ``*_valid`` if it can be absent | |
+| ``vehicle`` | one float32 or Discrete per field of ``VehicleState``, ``*_valid`` if it can be absent; ``aboard`` \
+uint8 (512,) | |
 | ``gps`` | ``available``, ``fix``, ``lon_lat``, ``accuracy_m``, ``age_s``, ``heading_deg`` | |
 | ``connectivity`` | ``online``, ``kind``, ``signal`` | |
 | ``context`` | uint8 (8192,) | the geo-context as text |
@@ -53,7 +54,7 @@ from automotive_cosim.interface.observe import Channel
 
 T = TypeVar("T")
 
-GOAL_BYTES, FEEDBACK_BYTES, CONTEXT_BYTES = 512, 1024, 8192
+GOAL_BYTES, FEEDBACK_BYTES, CONTEXT_BYTES, ABOARD_BYTES = 512, 1024, 8192, 512
 MAX_ELEMENTS, ELEMENT_TEXT_BYTES, RESOURCE_ID_BYTES = 128, 128, 64
 KINDS = ("View", "TextView", "Button", "Switch", "SeekBar", "EditText", "ImageView", "ListView", "RadioButton")
 FLAGS = tuple(field.name for field in fields(Element) if field.name.startswith("is_"))
@@ -80,6 +81,7 @@ APPS = (
     "calendar",
     "store",
     "notifications",
+    "cabin",
 )
 
 BOUNDS: Mapping[str, tuple[float, float]] = {
@@ -329,6 +331,7 @@ def _vehicle_space() -> spaces.Dict:
     known: dict[str, spaces.Space[Any]] = {
         "gear": spaces.Discrete(len(GEARS)),
         "restrictions": spaces.MultiBinary(RESTRICTION_BITS),
+        "aboard": _bytes_space(ABOARD_BYTES),
     }
     for field in fields(VehicleState):
         if field.name in BOUNDS:
@@ -351,6 +354,8 @@ def _encode_vehicle(vehicle: VehicleState) -> dict[str, Any]:
             encoded["gear"] = GEARS.index(value)
         elif field.name == "restrictions":
             encoded["restrictions"] = np.array([value >> bit & 1 for bit in range(RESTRICTION_BITS)], np.int8)
+        elif field.name == "aboard":
+            encoded["aboard"] = _bytes(value, ABOARD_BYTES)
         else:
             encoded[field.name] = int(value)
     return encoded
@@ -368,6 +373,8 @@ def _decode_vehicle(encoded: Mapping[str, Any]) -> VehicleState:
             values["gear"] = GEARS[int(value)]
         elif field.name == "restrictions":
             values["restrictions"] = sum(int(on) << bit for bit, on in enumerate(value))
+        elif field.name == "aboard":
+            values["aboard"] = _text(value)
         else:
             values[field.name] = bool(value)
     return VehicleState(**values)

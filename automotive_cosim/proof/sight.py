@@ -38,6 +38,7 @@ class Facet(StrEnum):
     LIGHT = "the light"
     WEATHER = "the weather"
     CABIN = "air and glass of the cabin"
+    ABOARD = "who is aboard"
     SETTINGS = "the settings"
     CAR = "the rest of the car"
 
@@ -54,6 +55,8 @@ FREED: Mapping[Differs, frozenset[Facet]] = {
     Differs.TIME: frozenset({Facet.CLOCK, Facet.LIGHT, Facet.SIGN, *_DRIVING}),
     Differs.MOTION: frozenset({Facet.GEAR, *_DRIVING}),
     Differs.SETTINGS: frozenset({Facet.SETTINGS, Facet.CABIN}),
+    Differs.ABOARD: frozenset({Facet.ABOARD, Facet.CABIN}),
+    Differs.VOICE: frozenset({Facet.WORDS}),
 }
 """What each kind of difference changes by itself; what follows from that names it among its causes."""
 
@@ -79,6 +82,7 @@ READINGS: Mapping[str, frozenset[Facet]] = {
         "speed_limit_sign_kmh": {Facet.SIGN},
         "leader_gap_m": {Facet.TRAFFIC},
         "leader_time_to_collision_s": {Facet.TRAFFIC},
+        "aboard": {Facet.ABOARD},
     }.items()
 }
 """What each reading follows from. In a tunnel no rain falls, and lamps on auto come on."""
@@ -101,6 +105,7 @@ _ELEMENTS: Mapping[str, frozenset[Facet]] = {
         "status.low_beam": {Facet.LIGHT, Facet.ROAD, Facet.SETTINGS},
         "status.": {Facet.CAR},
         "home.outside": {Facet.WEATHER, Facet.ROAD, Facet.LIGHT},
+        "home.cabin_note": {Facet.CABIN, Facet.WEATHER, Facet.LIGHT, Facet.ABOARD, Facet.SETTINGS, Facet.GEAR},
         "home.cabin": {Facet.CABIN},
         "dock.": {Facet.SETTINGS},
         "": {Facet.CAR},

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from automotive_cosim.cockpit.aboard import Seat
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.tasking.draws import Draws, Purpose
 from automotive_cosim.tasking.moves import Move
@@ -64,7 +65,6 @@ def draw(
     Raises:
         UnknownNameError: the task has no such half, or the cockpit has nothing of that kind.
     """
-    task.half(half_name)
     phrasings, ways = len(task.templates), _ways(task)
     order = Draws(task.id, 0)
     phrasing = int(order.rng(Purpose.PHRASING).permutation(phrasings)[number % phrasings])
@@ -78,8 +78,13 @@ def draw(
         parameters[name] = _choose(choices, pick, content)
     if held_out:
         phrasing = phrasings - 1
-    goal = task.templates[phrasing].format_map(parameters)
+    goal = _heard(task.half(half_name).start.voice, task.templates[phrasing].format_map(parameters))
     return Instance(task, half_name, goal, parameters, held_out=phrasing == phrasings - 1)
+
+
+def _heard(voice: Seat, words: str) -> str:
+    """The words, with the seat that they come from unless the driver says them."""
+    return words if voice is Seat.DRIVER else f"From the {voice.words} seat: {words}"
 
 
 def _choose(choices: Choices, pick: int, content: Mapping[str, tuple[str, ...]] | None) -> Parameter:

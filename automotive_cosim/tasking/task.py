@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
 
+from automotive_cosim.cockpit.aboard import Occupant, Seat
 from automotive_cosim.cockpit.arrivals import Arrival
 from automotive_cosim.cockpit.restrictions import Motion
 from automotive_cosim.contracts import GoalStatus, Reason, Weather
@@ -80,6 +81,10 @@ class Differs(StrEnum):
     """Parked or moving."""
     SETTINGS = "settings"
     """How the car is set before it departs."""
+    ABOARD = "occupants"
+    """Who is aboard, awake or asleep, belted or not."""
+    VOICE = "voice"
+    """Who says it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,6 +111,10 @@ class Start:
     parked: bool = False
     """Whether the car stays parked where the trip begins, in park and with the brake on."""
     weather: Weather | None = None
+    aboard: tuple[Occupant, ...] = ()
+    """Who is in the car besides the driver."""
+    voice: Seat = Seat.DRIVER
+    """The seat that the wish comes from. An agent hears which, unless it is the driver's."""
     cabin: Mapping[str, Any] = field(default_factory=dict)
     """Initial conditions of the cabin (``cockpit.cabin.CabinStart``)."""
     signals: Mapping[str, Any] = field(default_factory=dict)

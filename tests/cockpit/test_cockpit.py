@@ -11,6 +11,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from automotive_cosim.cockpit.aboard import company
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.screens import APPS, DOCK
 from automotive_cosim.cockpit.signals import ADAS, ENERGY, GLASS, HVAC, LIGHTS, MEDIA, MOTION, difference
@@ -102,7 +103,8 @@ def test_damp_people_fog_the_windows_and_the_button_in_the_dock_clears_them(
     cold = replace(around, weather=Weather(4.0, 92.0, 0.0, 3, 95.0, 9000.0, 8.0))
     cockpit = make(
         surroundings=cold,
-        cabin={"occupants": 4, "wet_clothes": True, "temperature_c": 17.0, "humidity_pct": 40.0},
+        aboard=company(4),
+        cabin={"wet_clothes": True, "temperature_c": 17.0, "humidity_pct": 40.0},
         signals={HVAC.RECIRCULATION.path: True},
     )
     for _ in range(130):

@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 
 from automotive_cosim import cockpit as package
+from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
 from automotive_cosim.cockpit.arrivals import Arrival
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.language import said, table
@@ -26,7 +27,7 @@ TEXTS = ("text", "description", "disabled", "locked", "hint", "detail", "trail",
 LATIN = re.compile(r"[A-Za-zÀ-ÿ]{2,}")
 INTERNATIONAL = frozenset(
     LATIN.findall(
-        "km mi mm min kWh kW µg dB bar kPa psi mph MHz GPS DAB FM USB Bluetooth Wi-Fi SOS UTC Live "
+        "km mi mm min kg kWh kW µg dB bar kPa psi mph MHz GPS DAB FM USB Bluetooth Wi-Fi SOS UTC Live "
         "English Français Deutsch"
     )
 )
@@ -199,11 +200,17 @@ def test_every_text_of_a_notice_or_an_answer_is_in_the_tables() -> None:
         assert missing == {}
 
 
+EVERY_KIND = tuple(
+    Occupant(seat, kind, asleep=kind is Kind.BABY, belted=kind is not Kind.OBJECT)
+    for seat, kind in zip(list(Seat)[1:], (Kind.CHILD, Kind.BABY, Kind.PET, Kind.OBJECT), strict=True)
+)
+
+
 def homes(make: Make, around: Surroundings) -> tuple[Cockpit, ...]:
     standing = replace(around, driving=replace(around.driving, speed_mps=0.0))
     parked = {"Vehicle.Powertrain.Transmission.Gear": "P"}
     calls = [Arrival("message", 0.0), Arrival("call", 0.0)]
-    return make(), make(surroundings=standing, signals=parked), make(arrivals=calls)
+    return make(), make(surroundings=standing, signals=parked, aboard=EVERY_KIND), make(arrivals=calls)
 
 
 def test_every_text_of_a_screen_is_in_the_tables(make: Make, around: Surroundings, walker: Any) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from automotive_cosim.cockpit import accessibility
+from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
 from automotive_cosim.cockpit.arrivals import Arrival
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.geometry import Rect
@@ -61,6 +62,14 @@ def busy(cockpit: Cockpit) -> Cockpit:
     return cockpit
 
 
+FULL = (
+    Occupant(Seat.PASSENGER, Kind.ELDERLY, 128.0, asleep=True),
+    Occupant(Seat.REAR_LEFT, Kind.BABY),
+    Occupant(Seat.REAR_MIDDLE, Kind.OBJECT, 3.5, belted=False),
+    Occupant(Seat.REAR_RIGHT, Kind.PET, belted=False),
+)
+
+
 def _speaking(language: str) -> dict[str, str]:
     return {"Vehicle.Cabin.Infotainment.HMI.CurrentLanguage": language}
 
@@ -69,7 +78,7 @@ CASES: dict[str, Callable[[Make, Surroundings], Cockpit]] = {
     "day": lambda make, o: make(surroundings=o),
     "night": lambda make, o: make(surroundings=replace(o, sun_elevation_deg=-20.0)),
     "busy": lambda make, o: busy(make(surroundings=replace(o, sun_elevation_deg=-20.0))),
-    "busy by day": lambda make, o: busy(make(surroundings=o)),
+    "busy by day": lambda make, o: busy(make(surroundings=o, aboard=FULL)),
     "parked": lambda make, o: make(
         surroundings=replace(o, driving=replace(o.driving, speed_mps=0.0)),
         signals={"Vehicle.Powertrain.Transmission.Gear": "P"},
@@ -87,13 +96,14 @@ CASES: dict[str, Callable[[Make, Surroundings], Cockpit]] = {
         surroundings=o,
         arrivals=[Arrival("message", 0.0, "Femi Lindqvist"), Arrival("call", 0.0, "Tilda Lindqvist")],
     ),
-    "busy in French": lambda make, o: busy(make(surroundings=o, signals=_speaking("fr"))),
+    "busy in French": lambda make, o: busy(make(surroundings=o, signals=_speaking("fr"), aboard=FULL)),
     "parked in German by night": lambda make, o: make(
         surroundings=replace(o, sun_elevation_deg=-20.0, driving=replace(o.driving, speed_mps=0.0)),
+        aboard=FULL,
         signals={**_speaking("de"), "Vehicle.Powertrain.Transmission.Gear": "P"},
     ),
     "a call in Japanese": lambda make, o: make(
-        surroundings=o, signals=_speaking("ja"), arrivals=[Arrival("call", 0.0, "Tilda Lindqvist")]
+        surroundings=o, signals=_speaking("ja"), aboard=FULL, arrivals=[Arrival("call", 0.0, "Tilda Lindqvist")]
     ),
     "miles and fahrenheit, very fast": lambda make, o: make(
         surroundings=replace(o, driving=replace(o.driving, speed_mps=69.0)),

@@ -3,9 +3,11 @@
 import itertools
 import re
 from collections import Counter
+from dataclasses import replace
 
 import pytest
 
+from automotive_cosim.cockpit.aboard import Seat
 from automotive_cosim.contracts import GoalStatus
 from automotive_cosim.tasking.instance import draw, instances
 from automotive_cosim.tasking.task import Basis, Dimension, Module, Task
@@ -56,6 +58,21 @@ def test_phrasings_differ(task):
     for one, other in itertools.combinations(task.templates, 2):
         words = [set(re.findall(r"[a-z']+", re.sub(r"\{[^}]*\}", "", said.lower()))) for said in (one, other)]
         assert len(words[0] & words[1]) <= 0.6 * len(words[0] | words[1]), (one, other)
+
+
+@pytest.mark.parametrize("task", TASKS, ids=lambda task: task.id)
+def test_who_speaks_is_aboard_and_awake(task):
+    for name in task.halves:
+        start = draw(task, name, 0).half.start
+        voices = [one for one in start.aboard if one.seat is start.voice]
+        if start.voice is not Seat.DRIVER:
+            assert [one.kind.speaks and not one.asleep for one in voices] == [True]
+
+
+def test_the_seat_that_speaks_is_heard():
+    task = next(iter(TASKS))
+    behind = replace(task, first=replace(task.first, start=replace(task.first.start, voice=Seat.REAR_LEFT)))
+    assert draw(behind, "first", 0).goal == f"From the rear left seat: {draw(task, 'first', 0).goal}"
 
 
 def test_no_text_belongs_to_two_tasks():

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.language import translated
 from automotive_cosim.cockpit.screens import apps, body, settings, tools
+from automotive_cosim.cockpit.screens.cabin import cabin
 from automotive_cosim.cockpit.screens.climate import climate, comfort
 from automotive_cosim.cockpit.screens.frame import APPS, DOCK, PART_OF, dock, status_bar
 from automotive_cosim.cockpit.screens.home import home
@@ -32,6 +33,7 @@ SCREENS: dict[str, Callable[[State], tuple[Widget, ...]]] = {
     "route": route,
     "climate": climate,
     "comfort": comfort,
+    "cabin": cabin,
     "safety": safety,
     "emergency": emergency,
     "vehicle": vehicle,

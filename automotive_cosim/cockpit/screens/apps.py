@@ -18,6 +18,7 @@ def apps(state: State) -> tuple[Widget, ...]:
     """All installed apps, and a link to the store."""
     offered: list[tuple[str, str, Icon]] = [
         *((name, TOOLS[name][0], TOOLS[name][1]) for name in state.desk.installed),
+        ("cabin", "Cabin", Icon.CONTACTS),
         ("store", "Store", Icon.STORE),
         ("notifications", "Notices", Icon.BELL),
         *((name, text, icon) for name, (text, icon) in DOCK.items() if name not in ("home", "apps")),

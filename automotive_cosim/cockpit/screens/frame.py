@@ -38,7 +38,7 @@ DOCK: dict[str, tuple[str, Icon]] = {
     "settings": ("Settings", Icon.SETTINGS),
 }
 """The apps in the dock: name on screen and icon."""
-APPS = (*DOCK, *TOOLS, "store", "notifications")
+APPS = (*DOCK, *TOOLS, "store", "notifications", "cabin")
 """Everything that opens by its name."""
 PART_OF = {
     "assistance": "vehicle",
@@ -59,7 +59,7 @@ PART_OF = {
     "language": "settings",
     "privacy": "settings",
     "profiles": "settings",
-    **dict.fromkeys((*TOOLS, "store"), "apps"),
+    **dict.fromkeys((*TOOLS, "store", "cabin"), "apps"),
 }
 """Screens that belong to an app without being in the dock."""
 

@@ -189,7 +189,11 @@ def _climate_card(rect: Rect, state: State) -> Widget:
     signals = state.signals
     value, note = _lines(rect)
     is_fogged = signals[GLASS.WINDSHIELD_FOG] >= NOTICED
-    words = "Windows fogging" if is_fogged else f"Humidity {signals[HVAC.CABIN_HUMIDITY]:.0f} %"
+    words = f"Humidity {signals[HVAC.CABIN_HUMIDITY]:.0f} %"
+    if is_fogged:
+        words = "Windows fogging"
+    elif signals[MOTION.GEAR] == "P":
+        words = f"If you leave: {temperature(signals, signals[HVAC.FORECAST], 0)}"
     return _live(
         rect,
         "home.climate",

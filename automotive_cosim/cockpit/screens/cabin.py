@@ -1,0 +1,138 @@
+"""Cabin: who is aboard, how warm it will be for those who stay, and what is switched for them."""
+
+from __future__ import annotations
+
+from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat, seated
+from automotive_cosim.cockpit.forecast import MINUTES, cabin_c
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.screens.parts import CONTENT, heading, slider, switch, temperature
+from automotive_cosim.cockpit.signals import HMI, HVAC, SEAT
+from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.theme import GAP, Icon, Type
+from automotive_cosim.cockpit.widgets import Card, Glyph, Label, Widget
+
+PLAN_WIDTH = 736
+LINE = 32
+SEATS = {
+    Seat.DRIVER: "Driver",
+    Seat.PASSENGER: "Passenger",
+    Seat.REAR_LEFT: "Rear left",
+    Seat.REAR_MIDDLE: "Rear middle",
+    Seat.REAR_RIGHT: "Rear right",
+}
+KINDS = {
+    Kind.ADULT: ("Adult", Icon.ACCOUNT),
+    Kind.ELDERLY: ("Elderly person", Icon.ELDERLY),
+    Kind.CHILD: ("Child", Icon.CHILD_STANDING),
+    Kind.BABY: ("Baby", Icon.CHILD),
+    Kind.PET: ("Pet", Icon.PET),
+    Kind.OBJECT: ("Object", Icon.OBJECT),
+}
+AHEAD_MIN = (10, int(MINUTES), 30)
+"""Minutes after which the forecast is shown."""
+
+
+def cabin(state: State) -> tuple[Widget, ...]:
+    """The seats from above on the left, the forecast and the switches on the right."""
+    right = CONTENT.right_part(CONTENT.width - PLAN_WIDTH - GAP)
+    upper, lower = right.top(308), right.below(308 + GAP)
+    return _plan(CONTENT.left(PLAN_WIDTH), state), _forecast(upper, state), _for_them(lower, state)
+
+
+def _plan(rect: Rect, state: State) -> Widget:
+    """The front seats above, the rear bench below, as seen by who sits in them."""
+    inner = rect.inset(20, 16)
+    front, rear = inner.below(36).rows(2, 12)
+    cells = (*front.columns(2, 12), *rear.columns(3, 12))
+    aboard = {one.seat: one for one in seated(state.signals)}
+    tiles = (_seat(cell, seat, aboard.get(seat)) for cell, seat in zip(cells, SEATS, strict=True))
+    return Card(rect=rect, children=(heading(inner.top(30), "Who is aboard"), *tiles))
+
+
+def _seat(rect: Rect, seat: Seat, one: Occupant | None) -> Widget:
+    inner = rect.inset(18, 14)
+    key = f"cabin.{seat}"
+    name = heading(inner.top(30).left(inner.width - 48), SEATS[seat])
+    if one is None:
+        empty = Label(rect=inner.below(34).top(40), key=key, text="Empty", description=SEATS[seat], tone="muted")
+        return Card(rect=rect, look="raised", children=(name, empty))
+    kind, icon = KINDS[one.kind]
+    told = [(f"{key}.weight", f"{one.weight_kg:g} kg")]
+    if one.kind is not Kind.OBJECT:
+        told.append((f"{key}.awake", "Asleep" if one.asleep else "Awake"))
+    told.append((f"{key}.belt", "Belt closed" if one.belted else "Belt open"))
+    return Card(
+        rect=rect,
+        look="raised",
+        children=(
+            name,
+            Glyph(rect=inner.top(40).right_part(40), icon=icon, size=38, tone="accent"),
+            Label(rect=inner.below(34).top(44), key=key, text=kind, description=SEATS[seat], style=Type.TITLE),
+            *(
+                Label(rect=inner.below(88 + at * LINE).top(LINE), key=line, text=text, style=Type.LABEL)
+                for at, (line, text) in enumerate(told)
+            ),
+        ),
+    )
+
+
+def _forecast(rect: Rect, state: State) -> Widget:
+    """How warm the air will be once the driver has left, with the climate control off and on."""
+    inner = rect.inset(20, 16)
+    lines = inner.below(40).top(160).rows(4, 0)
+    children: list[Widget] = [
+        heading(inner.top(30), "Cabin once you have left"),
+        *(
+            Label(rect=cell, text=text, style=Type.LABEL, tone="muted", align="right")
+            for cell, text in zip(_columns(lines[0])[1:], ("Climate off", "Climate on"), strict=True)
+        ),
+    ]
+    for line, minutes in zip(lines[1:], AHEAD_MIN, strict=True):
+        name, *values = _columns(line)
+        children.append(Label(rect=name, text=f"In {minutes} min", style=Type.LABEL, tone="muted"))
+        for cell, climate in zip(values, (False, True), strict=True):
+            children.append(
+                Label(
+                    rect=cell,
+                    key=f"cabin.forecast.{'on' if climate else 'off'}.{minutes}",
+                    text=temperature(state.signals, cabin_c(state.vehicle, minutes, climate=climate), 0),
+                    description=f"Climate {'on' if climate else 'off'}, in {minutes} min",
+                    style=Type.STRONG,
+                    align="right",
+                )
+            )
+    kept = switch(
+        inner.bottom_part(60), "cabin.keep_climate", "Keep climate on", Icon.CLIMATE, HVAC.KEPT, state.signals
+    )
+    return Card(rect=rect, children=(*children, kept))
+
+
+def _columns(line: Rect) -> tuple[Rect, Rect, Rect]:
+    """Name, climate off, climate on."""
+    name = line.left(130)
+    off, on = line.right_part(line.width - 130).columns(2, 12)
+    return name, off, on
+
+
+def _for_them(rect: Rect, state: State) -> Widget:
+    inner, signals = rect.inset(20, 14), state.signals
+    upper, lower = inner.rows(2, 10)
+    reminder, airbag = upper.columns(2, 12)
+    return Card(
+        rect=rect,
+        children=(
+            switch(
+                reminder, "cabin.belt_reminder", "Belt chime", Icon.SEAT_BELT, SEAT.BELT_REMINDER, state.signals
+            ),
+            switch(
+                airbag,
+                "cabin.passenger_airbag",
+                "Passenger airbag",
+                Icon.AIRBAG,
+                SEAT.PASSENGER_AIRBAG,
+                signals,
+                state.vehicle.held(SEAT.PASSENGER_AIRBAG),
+            ),
+            slider(lower, "cabin.rear_screen", "Rear screen", Icon.SCREEN, HMI.REAR_SCREEN, signals),
+        ),
+    )
