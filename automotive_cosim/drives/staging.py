@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 
 from automotive_cosim.cockpit.changes import CarChange
-from automotive_cosim.cockpit.signals import BODY, CABIN, ENERGY, HVAC, LIGHTS, SEAT, TYRE, Signal
+from automotive_cosim.cockpit.signals import BODY, CABIN, CALL, ENERGY, HVAC, LIGHTS, SEAT, TYRE, Signal
 from automotive_cosim.contracts import Weather
 from automotive_cosim.drives.sky import drizzle, fog, rain, sleet
 from automotive_cosim.scenarios.incidents import AheadIncident, AnyIncident, BrakingLeader, EmergencyVehicle
@@ -63,6 +63,8 @@ LEADER_WITHIN_S = 40.0
 """A leader that has not been found by then does not brake, lest it do so during the next stunt."""
 SPELL_S = 120.0
 """Length of a bank of fog or a shower."""
+PHONE_S = 40.0
+"""How long a driver uses the phone."""
 AHEAD_S = 420.0
 """How long an incident on the road lasts."""
 AHEAD_M = 1400.0
@@ -91,6 +93,13 @@ def _fatigue(cue: Cue) -> Props:
 def _belt(cue: Cue) -> Props:
     """The driver opens the belt; as a bait, only pulls it straight."""
     return Props(changes=_turned(SEAT.DRIVER_BELT, cue, False, 2.0 if cue.is_bait else 90.0))
+
+
+def _phone(cue: Cue) -> Props:
+    """The driver takes the phone in the hand; as a bait, uses it in its cradle."""
+    where = "CRADLE" if cue.is_bait else "HAND"
+    taken = CarChange(cue.at_s, CALL.PHONE.path, where)
+    return Props(changes=(taken, CarChange(cue.at_s + PHONE_S, CALL.PHONE.path, "AWAY")))
 
 
 # --- the car ------------------------------------------------------------------------------------------------
@@ -207,6 +216,7 @@ STUNTS: Mapping[str, Stunt] = {
     "leader_close": _mood("pressing", "calm"),
     "fatigue": _fatigue,
     "belt": _belt,
+    "phone": _phone,
     "door": _door,
     "tyre": _tyre,
     "range": _range,

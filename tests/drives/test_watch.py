@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 import pytest
 
 from automotive_cosim.agents import Thinker, make_agent
+from automotive_cosim.cockpit.signals import TYRE
 from automotive_cosim.contracts import Action, ActionType, AlertKind, Element, GoalStatus, Observation
 from automotive_cosim.drives.departure import depart
 from automotive_cosim.drives.families import FAMILIES
@@ -75,6 +76,12 @@ def test_a_leader_that_is_gone_is_told_with_the_next_change() -> None:
     assert [change.wakes for change in near] == [True]
     gone = [change for second in (4, 5) for change in alarm.see(moment(float(second)))]
     assert [(change.words, change.wakes) for change in gone] == [("vehicle ahead: over", False)]
+
+
+def test_a_gauge_below_its_step_does_not_read_as_if_it_had_reached_it() -> None:
+    tyre = {TYRE.REAR_LEFT.path: 199.9}
+    told = [change.words for second in (2, 3) for change in under_way().see(moment(float(second), signals=tyre))]
+    assert told[0] == "tyre: lowest 199 kPa"
 
 
 def test_every_wake_says_what_it_is_about() -> None:
