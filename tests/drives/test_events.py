@@ -164,6 +164,15 @@ def test_only_the_unit_of_the_signs_is_right() -> None:
     assert [KINDS["limit_units"].settles(act, 0.0) for act in (miles, kilometres)] == [False, True]
 
 
+def test_what_only_oncoming_traffic_forbids_is_not_due() -> None:
+    """In Sweden, where the law names oncoming traffic; no sensor of the car tells of it."""
+    lit = {"signals": {LIGHTS.HIGH_BEAM.path: True}, "at": NIGHT, "position": (20.2, 67.8)}
+    (dark,) = found(stream(10, oncoming=vehicle(200.0), **lit), "high_beam")
+    assert (dark.bait, dark.obliged_s) == (False, None)
+    (lamps,) = found(stream(10, oncoming=vehicle(200.0), lit=True, **lit), "high_beam")
+    assert lamps.obliged_s is not None
+
+
 def test_a_border_is_news_for_a_minute() -> None:
     (event,) = found(stream(200, before=[FRANCE], **BRITAIN), "limit_units")
     assert event.last_s == pytest.approx(BORDER_S, abs=1.0)

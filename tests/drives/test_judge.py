@@ -125,6 +125,14 @@ def test_an_alert_is_about_what_is_due_soonest() -> None:
     assert worths == [Worth.RIGHT, Worth.NEUTRAL]
 
 
+def test_an_alert_is_about_what_hardly_anything_else_settles() -> None:
+    """A collision alert for a leader that brakes and is slow; then traffic tells of that, and is no repeat."""
+    slow = replace(SPEEDING, kind="tractor", subject="", value=None)
+    brakes = replace(slow, kind="leader_brakes", obliged_s=105.0)
+    acts = [warn(105.0, AlertKind.COLLISION), warn(107.0, AlertKind.TRAFFIC)]
+    assert [act.worth for act in judged(*acts, events=(slow, brakes)).acts] == [Worth.RIGHT, Worth.NEUTRAL]
+
+
 def test_what_nobody_could_have_met_is_void() -> None:
     sudden = replace(SPEEDING, obliged_s=100.0, deadline_s=101.0)
     assert judged(events=(sudden,)).events[0].outcome is EventOutcome.VOID
