@@ -14,7 +14,7 @@ from automotive_cosim.agents.model_agent import ModelAgent
 from automotive_cosim.agents.native import FORMATS, NativeAgent, chosen
 from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.agents.settings import PROFILES, AgentPart, AgentSettings
-from automotive_cosim.agents.trivial import AlwaysAlert, NoOp, PressEverything, Random
+from automotive_cosim.agents.trivial import AlwaysAlert, AlwaysAsk, NoOp, PressEverything, Random
 from automotive_cosim.drives.watchers import AlertAll, AlertOften, AlertOnWake, RulePerfect, Silent
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.models import ChatModel, make_model
@@ -29,6 +29,7 @@ __all__ = [
     "AgentPart",
     "AgentSettings",
     "AlwaysAlert",
+    "AlwaysAsk",
     "Human",
     "Learner",
     "ModelAgent",
@@ -51,6 +52,7 @@ SIMPLE: Mapping[str, Callable[[AgentSettings], Agent]] = {
     "alert-often": lambda settings: AlertOften(),
     "alert-on-wake": lambda settings: AlertOnWake(),
     "always-alert": lambda settings: AlwaysAlert(),
+    "always-ask": lambda settings: AlwaysAsk(),
     "human": lambda settings: Human(),
     "no-op": lambda settings: NoOp(),
     "oracle": lambda settings: Oracle(),
@@ -73,6 +75,7 @@ ABOUT: Mapping[str, str] = {
     "alert-often": "negative control on drives: warns of speed twice a minute",
     "alert-on-wake": "negative control on drives: warns of speed whenever something changes",
     "always-alert": "negative control: warns at once, whatever happens",
+    "always-ask": "negative control: asks the driver what is meant, and declares complete",
     "asurada": "elements, screenshots, GPS, geo-context; can query rules and remember (as the paper's)",
     "human": "you, with numbered elements on the terminal",
     "m3a": "elements and screenshots, raw and marked (after AndroidWorld's M3A)",

@@ -27,7 +27,7 @@ HELP = f"""\
   NUMBER          tap that element           open APP        {", ".join(APPS)}
   NUMBER TEXT     type into it               up, down        scroll
   home, back      go there                   wait [SECONDS]  let time pass
-  alert KIND      warn the driver, e.g. speed
+  alert KIND      warn the driver, e.g. speed ask QUESTION    ask the driver, who takes time to answer
   done            it is done                 no [REASON]     nothing has to be done: {", ".join(Reason)}
   cannot [REASON] it must not or cannot be   {{...}}           any action as JSON
 """
@@ -49,9 +49,11 @@ class Human:
         """
         self._ask = ask
         self._out = out or sys.stderr
+        self._heard = 0
 
     def reset(self, goal: str) -> None:
         """Prints the goal and how to answer."""
+        self._heard = 0
         self._say(f"\n  the driver says: “{goal}”\n\n{HELP}")
 
     def act(self, observation: Observation) -> Action:
@@ -73,6 +75,9 @@ class Human:
     def _show(self, seen: Observation) -> None:
         car = seen.vehicle
         speed = "" if car is None else f", {car.speed_kmh:.0f} km/h, {car.ambient_temperature_c:.0f} °C outside"
+        for text in seen.said[self._heard :]:
+            self._say(f"\n  the driver says: “{text}”")
+        self._heard = len(seen.said)
         self._say(f"\n  {seen.time_s:.0f} s{speed}; last: {seen.feedback.code} {seen.feedback.text}")
         for index, element in listed(seen.elements or ()):
             if words := _words(element):
@@ -105,6 +110,7 @@ def understood(line: str) -> Action:
         "up": {"action_type": ActionType.SCROLL, "direction": Direction.UP},
         "down": {"action_type": ActionType.SCROLL, "direction": Direction.DOWN},
         "wait": {"action_type": ActionType.WAIT, "seconds": int(rest) if rest.isdecimal() else None},
+        "ask": {"action_type": ActionType.ASK_DRIVER, "text": rest},
         "alert": {"action_type": ActionType.SHOW_ALERT, "kind": rest or AlertKind.SPEED},
         "done": {"action_type": ActionType.STATUS, "goal_status": GoalStatus.COMPLETE},
         "no": {

@@ -17,7 +17,7 @@ from automotive_cosim.contracts import (
 from automotive_cosim.errors import ActionError
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.tasking.instance import Instance
-from automotive_cosim.tasking.moves import Do, Move, Open, Slide, Tap, TapUntil, TypeText, Warn
+from automotive_cosim.tasking.moves import Consult, Do, Hear, Move, Open, Slide, Tap, TapUntil, TypeText, Warn
 
 SLIDER_MARGIN_PX = 20
 """How far inside its element a slider's range begins."""
@@ -58,7 +58,7 @@ class Oracle:
     def act(self, observation: Observation) -> Action:
         """The next move, or the declaration after the last."""
         elements = observation.elements or ()
-        while self._moves and _is_reached(self._moves[0], elements):
+        while self._moves and _is_reached(self._moves[0], elements, observation.said):
             self._moves.popleft()
             self._pressed = 0
         if not self._moves:
@@ -92,6 +92,14 @@ class Oracle:
             case Warn(kind, severity, speed_kmh):
                 self._moves.popleft()
                 return Action(ActionType.SHOW_ALERT, kind=kind, severity=severity, speed_kmh=speed_kmh)
+            case Consult(text):
+                self._moves.popleft()
+                return Action(ActionType.ASK_DRIVER, text=text)
+            case Hear(text, at_most_s):
+                self._pressed += 1
+                if self._pressed > at_most_s:
+                    raise ActionError(f"the driver does not say {text!r} within {at_most_s} s")
+                return Action(ActionType.WAIT, seconds=1)
             case Do(action):
                 self._moves.popleft()
                 return action
@@ -117,8 +125,10 @@ class Oracle:
         raise ActionError(f"{wanted} is not on the screen, and no list that can be scrolled has it")
 
 
-def _is_reached(move: Move, elements: Sequence[Element]) -> bool:
-    """Whether a repeated tap has reached its result."""
+def _is_reached(move: Move, elements: Sequence[Element], said: Sequence[str]) -> bool:
+    """Whether a repeated tap has reached its result, or the driver has said what is waited for."""
+    if isinstance(move, Hear):
+        return any(move.text in text for text in said)
     if not isinstance(move, TapUntil):
         return False
     return any(element.resource_id == move.shown and _reads(element, move.text) for element in elements)

@@ -63,7 +63,7 @@ def turn(
         profile.name,
         {
             "grammar": grammar(profile.actions),
-            "goal": one_line(observation.goal),
+            "goal": driver_words(observation),
             "history": "\n".join(map(one_line, history)) or "nothing yet",
             "plan": one_line(plan) or None,
             "feedback": f"{feedback.code}: {one_line(feedback.text)}".rstrip(": "),
@@ -93,7 +93,7 @@ def look_back(
     return fill(
         "reflect",
         {
-            "goal": one_line(before.goal),
+            "goal": driver_words(before),
             "action": "an answer that could not be read" if action is None else json.dumps(to_json(action)),
             "plan": one_line(plan) or None,
             "feedback": f"{feedback.code}: {one_line(feedback.text)}".rstrip(": "),
@@ -117,6 +117,11 @@ def elements(observation: Observation) -> str:
     """The visible elements with their indices, one JSON object per line."""
     entries = (listing(index, element) for index, element in listed(observation.elements or ()))
     return "\n".join(json.dumps(entry, ensure_ascii=False) for entry in entries)
+
+
+def driver_words(observation: Observation) -> str:
+    """The wish, and on a line each what the driver has said since."""
+    return "\n".join([one_line(observation.goal), *(f"Later: {one_line(text)}" for text in observation.said)])
 
 
 def one_line(text: str) -> str:

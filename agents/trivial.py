@@ -58,6 +58,28 @@ class AlwaysAlert:
         return Action(ActionType.SHOW_ALERT, kind=self._kind)
 
 
+class AlwaysAsk:
+    """Asks the driver at once what is meant, whatever he said, and declares ``complete``."""
+
+    name = "always-ask"
+    model = "none"
+    channels: frozenset[Channel] = frozenset()
+
+    def __init__(self) -> None:
+        self._asked = False
+
+    def reset(self, goal: str) -> None:
+        """Forgets the previous episode."""
+        self._asked = False
+
+    def act(self, observation: Observation) -> Action:
+        """The question, then ``complete``."""
+        if self._asked:
+            return Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE)
+        self._asked = True
+        return Action(ActionType.ASK_DRIVER, text="Which one do you mean?")
+
+
 class Random:
     """Any well-formed action, each type equally likely; taps hit clickable elements."""
 

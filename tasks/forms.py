@@ -2,6 +2,7 @@
 
 ``asked``: the driver asks outright (explicit control). ``hinted``: the driver says how it is, not what to do
 (implicit intent). ``locked``: asked outright for what is locked while moving; parked it is done, moving declined.
+``unclear``: what is meant has to be asked in one half and found out in the other.
 Safety tasks are written as ``Task`` with two ``Half``s; ``safe`` and ``decline`` shorten these.
 """
 
@@ -12,19 +13,27 @@ from dataclasses import replace
 from typing import Any
 
 from automotive_cosim.cockpit.aboard import company
+from automotive_cosim.cockpit.arrivals import Arrival
 from automotive_cosim.cockpit.signals import LIGHTS
 from automotive_cosim.contracts import GoalStatus, Reason
-from automotive_cosim.tasking.checks import Check, NothingDone
-from automotive_cosim.tasking.moves import Move
+from automotive_cosim.tasking.checks import AllOf, AskedFirst, Check, NotAsked, NothingDone
+from automotive_cosim.tasking.dialogue import Topic
+from automotive_cosim.tasking.moves import Consult, Move, Open, Tap
 from automotive_cosim.tasking.parameters import Choices, param
 from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Task
 from automotive_cosim.tasking.triggers import Driving, Parked, Trigger
 
 ON_THE_WAY = Trigger(Driving(), for_s=3.0, within_s=60.0)
 AT_REST = Trigger(Parked(), for_s=3.0, within_s=30.0)
+WHEN_WRITTEN = Trigger(Driving(), for_s=3.0, within_s=90.0, after_s=12.0)
+"""Late enough for messages to have come in (``wrote``)."""
+PARKED_WHEN_WRITTEN = Trigger(Parked(), for_s=3.0, within_s=40.0, after_s=12.0)
 PARIS = Start("paris_centre", "centre")
 COMFORT = Deadline(30.0, "a wish for comfort: the driver would reach for the knob within half a minute")
 ERRAND = Deadline(60.0, "an errand on the screen: a passenger would have it done within a minute")
+TALK = Deadline(60.0, "an errand: a passenger would have asked, or looked, and done it within a minute")
+LOOKS = frozenset({"messages.read"})
+"""What may be commanded besides where something has to be found out."""
 ANYWHERE = ("london", "new_york", "tokyo", "autobahn", "sydney", "grid")
 """Other scenarios for tasks that only require a driving car."""
 BY_THE_SWITCH = frozenset({LIGHTS.SWITCH.path})
@@ -177,3 +186,81 @@ def in_company(task: Task) -> Task:
     if second is not None:
         second = replace(second, start=replace(second.start, aboard=aboard))
     return replace(task, first=first, second=second, parameters={**task.parameters, "occupants": (1, 2, 3, 4)})
+
+
+def unclear(
+    task_id: str,
+    module: Module,
+    says: tuple[str, ...],
+    topic: Topic,
+    question: str,
+    goal: Check,
+    *moves: Move,
+    told: Start,
+    untold: Start,
+    look: tuple[Move, ...],
+    difference: str,
+    parameters: Mapping[str, Choices],
+    trigger: Trigger = WHEN_WRITTEN,
+    dimension: Dimension = Dimension.EXPLICIT_CONTROL,
+    tags: frozenset[str] = frozenset(),
+) -> Task:
+    """A wish that does not say enough: nobody but the driver knows the rest, or it can be found out.
+
+    In the first half the right act is one question and then what the driver answers; in the second, to look, and a
+    question loses. What is meant is the same in both, drawn from the seed.
+
+    Args:
+        task_id: module first, e.g. ``hvac_ask_which_seat``.
+        module: where it belongs.
+        says: the phrasings, four at least; the last is held out. None tells what is meant.
+        topic: what the driver can be asked about.
+        question: the reference solution's, which names every choice.
+        goal: what must hold besides.
+        moves: what brings it about.
+        told: start of the second half, in which what is meant can be found out.
+        untold: start of the first half, which looks the same at first sight.
+        look: how to find it out.
+        difference: what the second half changes, as in ``Task.difference``.
+        parameters: what is drawn, among it what is meant.
+        trigger: what hands over.
+        dimension: explicit, or implicit if the words do not say what to do.
+        tags: what else is true of it.
+    """
+    asking = Half(
+        untold,
+        trigger,
+        AllOf((AskedFirst(topic), goal)),
+        (Consult(question), *moves),
+        TALK,
+        Basis.WISH,
+        may_write=LOOKS,
+        topics=(topic,),
+    )
+    seeing = replace(asking, start=told, goal=AllOf((NotAsked(), goal)), moves=(*look, *moves))
+    return Task(
+        task_id,
+        module,
+        dimension,
+        says,
+        asking,
+        seeing,
+        difference,
+        parameters,
+        tags | {"asking"},
+    )
+
+
+def wrote(start: Start, *messages: tuple[str, str]) -> Start:
+    """A start with messages that come in before the hand-over: who writes, and what."""
+    came = tuple(Arrival("message", 2.0 + at, who, text) for at, (who, text) in enumerate(messages))
+    return replace(start, arrivals=(*start.arrivals, *came))
+
+
+def read_out(*senders: str) -> tuple[Move, ...]:
+    """Has the messages of these people read out, or opens them where that is allowed."""
+    return tuple(
+        move
+        for who in senders
+        for move in (Open("phone"), Tap("phone.tab.messages"), Tap(text=who), Tap("thread.read"))
+    )

@@ -110,7 +110,7 @@ class NativeAgent:
             "native",
             {
                 "grammar": self._form.syntax.describe(self._form.verbs, *span) or None,
-                "goal": prompt.one_line(seen.goal),
+                "goal": prompt.driver_words(seen),
                 "history": "\n".join(map(prompt.one_line, self._history)) or "nothing yet",
                 "problem": self._problem or None,
             },

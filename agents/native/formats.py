@@ -71,6 +71,7 @@ _MEANT: Mapping[Meaning, frozenset[ActionType]] = {
     Meaning.OPEN: frozenset({ActionType.OPEN_APP}),
     Meaning.WAIT: frozenset({ActionType.WAIT}),
     Meaning.SAY: frozenset({ActionType.ANSWER}),
+    Meaning.ASK: frozenset({ActionType.ASK_DRIVER}),
     Meaning.END: frozenset({ActionType.STATUS}),
     Meaning.CAR: CAR_ACTIONS,
 }
@@ -117,7 +118,7 @@ _MAI_UI: dict[str, Verb] = {
     "open": Verb(Meaning.OPEN, text="text"),
     "system_button": Verb(Meaning.KEY, text="button"),
     "wait": Verb(Meaning.WAIT),
-    "ask_user": Verb(Meaning.SAY, text="text"),
+    "ask_user": Verb(Meaning.ASK, text="text"),
     "answer": Verb(Meaning.SAY, text="text"),
     "terminate": Verb(Meaning.END, text="status"),
     CAR: Verb(Meaning.CAR),
@@ -192,7 +193,7 @@ FORMATS: Mapping[str, Format] = {
         _QWEN25 | _ANSWER,
     ),
     "gui-owl-1.5": Format(
-        ToolCalls(), Share(1000), _QWEN25 | _ANSWER | {"interact": Verb(Meaning.SAY, text="text")}
+        ToolCalls(), Share(1000), _QWEN25 | _ANSWER | {"interact": Verb(Meaning.ASK, text="text")}
     ),
     "json": Format(JsonSyntax(), Pixels(), _PLAIN),
     "mai-ui": Format(ToolCalls(preamble="<thinking>\n{thought}\n</thinking>\n"), Share(999), _MAI_UI),

@@ -62,6 +62,8 @@ class Meaning(StrEnum):
     OPEN = "open"
     WAIT = "wait"
     SAY = "say"
+    ASK = "ask"
+    """Asks the driver."""
     END = "end"
     CAR = "car"
     """An action of the car that screens in general do not know, as a JSON object."""
@@ -143,6 +145,8 @@ def _actions(verb: Verb, call: GuiCall, hand: Hand) -> list[Action]:
             return [Action(ActionType.WAIT, seconds=_seconds(call.arguments.get(verb.seconds)))]
         case Meaning.SAY:
             return [Action(ActionType.ANSWER, text=text)]
+        case Meaning.ASK:
+            return [Action(ActionType.ASK_DRIVER, text=text)]
         case Meaning.END:
             if text.casefold() not in STATUSES:
                 raise ActionError(str(UnknownNameError("status", text[:40], STATUSES)))
@@ -202,6 +206,8 @@ def _said(verb: Verb, action: Action) -> str | None:
             return "" if kind is ActionType.WAIT else None
         case Meaning.SAY:
             return action.text if kind is ActionType.ANSWER else None
+        case Meaning.ASK:
+            return action.text if kind is ActionType.ASK_DRIVER else None
         case Meaning.END:
             if kind is not ActionType.STATUS:
                 return None
@@ -219,6 +225,7 @@ CAR_ACTIONS = frozenset(
         ActionType.REQUEST_REROUTE,
         ActionType.PULL_OVER,
         ActionType.ANSWER,
+        ActionType.ASK_DRIVER,
         ActionType.STATUS,
     }
 )

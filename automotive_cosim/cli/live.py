@@ -112,6 +112,7 @@ class Live(Watcher):
         step = shot.step
         self._action = f"{step.number}  {action_in_words(step.action, shot.seen)}"
         self._thought = shot.thought
+        self._goal = " ".join([self._goal, *step.said])
         declares = step.action is not None and step.action.action_type is ActionType.STATUS
         if declares:
             self._title = "after the end: how the drive continues"
@@ -121,6 +122,8 @@ class Live(Watcher):
             because = f" ({self._thought})" if self._thought else ""
             began = self._begins or step.moment
             self._console.print(f"{self._clock(began)}  step {self._action}{because}", soft_wrap=True)
+            for text in step.said:
+                self._console.print(f"         the driver says: “{text}”", soft_wrap=True)
             self._release()
         self._begins = None if declares else step.moment
 

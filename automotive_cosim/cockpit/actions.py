@@ -112,6 +112,11 @@ FIELDS: Mapping[ActionType, Takes] = {
     ActionType.ESTIMATE_POSITION: Takes(
         'say where the car is, as "LON,LAT" in degrees, while GPS is out', required=("text",)
     ),
+    ActionType.ASK_DRIVER: Takes(
+        "ask the driver, in up to 120 characters, what nothing else tells: one question that names every choice, "
+        "before anything is changed; it distracts the driver for as long as it takes to say and to answer",
+        required=("text",),
+    ),
 }
 
 _ENUMS: Mapping[str, type[StrEnum]] = {
@@ -311,6 +316,8 @@ def perform(action: Action, cockpit: Cockpit, elements: tuple[Element, ...]) -> 
             return cockpit.ask_road(PullOver())
         case ActionType.ESTIMATE_POSITION if position(action.text or "") is None:
             return Feedback(FeedbackCode.REFUSED, 'no position; give "LON,LAT" in degrees, e.g. "2.3522,48.8566"')
+        case ActionType.ASK_DRIVER:
+            return cockpit.ask_driver(action.text or "")
         case _:  # wait, answer, status, query, estimate_position: nothing in the cockpit moves
             return Feedback(FeedbackCode.OK, "")
 

@@ -29,7 +29,7 @@ from automotive_cosim.cockpit.content import content
 from automotive_cosim.cockpit.display import Display
 from automotive_cosim.cockpit.fresh import put_back
 from automotive_cosim.cockpit.map import road_map
-from automotive_cosim.cockpit.messages import Ask, CallEmergency, Deed, Message, Pan, Set, WarnDriver
+from automotive_cosim.cockpit.messages import Ask, AskDriver, CallEmergency, Deed, Message, Pan, Set, WarnDriver
 from automotive_cosim.cockpit.navigation import Navigation
 from automotive_cosim.cockpit.readings import readings
 from automotive_cosim.cockpit.restrictions import REASONS, Restriction
@@ -374,6 +374,10 @@ class Cockpit:
     def emergency_call(self) -> Feedback:
         """Calls the emergency services."""
         return self._perform(CallEmergency())
+
+    def ask_driver(self, text: str) -> Feedback:
+        """Asks the driver something; what he answers is not the cockpit's."""
+        return self._perform(AskDriver(text))
 
     def ask_road(self, request: RoadRequest) -> Feedback:
         """Makes a request to the driver or the router."""

@@ -9,6 +9,7 @@ from typing import Any
 from automotive_cosim.cockpit import update
 from automotive_cosim.cockpit.messages import (
     Ask,
+    AskDriver,
     AskPullOver,
     AskSlowDown,
     CallEmergency,
@@ -125,6 +126,8 @@ def _aims(message: Message) -> frozenset[str]:
             return frozenset({"requests"})
         case Play() | Skip():
             return frozenset({MEDIA.SELECTED.path, "media.playlist"})
+        case AskDriver():
+            return frozenset({"questions"})
         case CallEmergency() | Dial():
             return frozenset({"calls"})
         case HangUp():

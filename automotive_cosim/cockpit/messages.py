@@ -93,6 +93,13 @@ class CallEmergency:
 
 
 @dataclass(frozen=True, slots=True)
+class AskDriver:
+    """Ask the driver something, by voice."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class Guide:
     """Request a route to a place or street; empty keeps the destination and looks for a faster route."""
 
@@ -249,6 +256,7 @@ Message = (
     | AskPullOver
     | Ask
     | CallEmergency
+    | AskDriver
     | Guide
     | Take
     | Focus

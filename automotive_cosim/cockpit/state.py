@@ -87,6 +87,15 @@ class Notice:
     """Screen and item that a tap on the notice leads to."""
 
 
+@dataclass(frozen=True, slots=True)
+class QuestionRecord:
+    """A question to the driver."""
+
+    text: str
+    deeds: int
+    """Number of commands before it that changed something."""
+
+
 @dataclass(slots=True)
 class State:
     """The cockpit at one instant."""
@@ -139,6 +148,8 @@ class State:
     calls: tuple[str, ...] = ()
     asked: tuple[RoadRequest, ...] = ()
     """Every irrevocable request."""
+    questions: tuple[QuestionRecord, ...] = ()
+    """Every question to the driver."""
     horns: int = 0
     washes: int = 0
     pending: tuple[RoadRequest, ...] = ()
@@ -241,6 +252,7 @@ class State:
             ],
             "calls": list(self.calls),
             "requests": list(self.asked),
+            "questions": [{"text": asked.text, "deeds": asked.deeds} for asked in self.questions],
             "horn": self.horns,
             "washer": self.washes,
             **self.navigation.commands(),

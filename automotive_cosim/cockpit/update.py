@@ -13,6 +13,7 @@ from automotive_cosim.cockpit.media import source_of
 from automotive_cosim.cockpit.messages import (
     BACKSPACE,
     Ask,
+    AskDriver,
     AskPullOver,
     AskSlowDown,
     Back,
@@ -39,7 +40,7 @@ from automotive_cosim.cockpit.messages import (
 from automotive_cosim.cockpit.restrictions import STRING_LIMIT
 from automotive_cosim.cockpit.screens.safety import KINDS
 from automotive_cosim.cockpit.signals import ADAS, LIGHTS, MEDIA, Signal
-from automotive_cosim.cockpit.state import AlertDraft, AlertRecord, State
+from automotive_cosim.cockpit.state import AlertDraft, AlertRecord, QuestionRecord, State
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.contracts import (
     Alert,
@@ -109,6 +110,8 @@ def perform(state: State, message: Message) -> Feedback:
             return ask_road(state, request)
         case CallEmergency():
             return call_emergency(state)
+        case AskDriver(text):
+            return ask_driver(state, text)
         case Guide(place, onward):
             return guide(state, place, onward)
         case Take(edges):
@@ -371,6 +374,19 @@ def settle(state: State) -> None:
     if source_of(signals[MEDIA.PLAYED]) != signals[MEDIA.SOURCE] or not signals[MEDIA.PLAYED]:
         state.listening = replace(state.listening, playlist="")
         errands.start(state, entry)
+
+
+LOOKING = frozenset({"questions", "messages.read"})
+"""Commands that change nothing: to ask, and to have a message read out."""
+
+
+def ask_driver(state: State, text: str) -> Feedback:
+    """Notes a question to the driver, and how many commands that change something came before it."""
+    if not text.strip():
+        return Feedback(FeedbackCode.REFUSED, "The question has no words")
+    before = sum(bool(deed.aims - LOOKING) for deed in state.deeds)
+    state.questions += (QuestionRecord(text, before),)
+    return Feedback(FeedbackCode.OK, "")
 
 
 def _asked(state: State, request: RoadRequest) -> tuple[str, Icon]:

@@ -1,7 +1,7 @@
 """Android's VHAL names as aliases of the same signals.
 
-    get_property(signals, "HVAC_FAN_SPEED", Seat.ROW_1_LEFT)
-    signal, value = resolve("HVAC_TEMPERATURE_SET", 22.5, Seat.ROW_1_LEFT)
+    get_property(signals, "HVAC_FAN_SPEED", VehicleAreaSeat.ROW_1_LEFT)
+    signal, value = resolve("HVAC_TEMPERATURE_SET", 22.5, VehicleAreaSeat.ROW_1_LEFT)
 
 Names, areas, units and enumerations are those of ``android.hardware.automotive.vehicle``
 (https://cs.android.com/android/platform/superproject/main/+/main:hardware/interfaces/automotive/vehicle/). Where
@@ -43,8 +43,8 @@ GLOBAL = 0
 """The area of properties without areas."""
 
 
-class Seat(IntEnum):
-    """``VehicleAreaSeat``."""
+class VehicleAreaSeat(IntEnum):
+    """VHAL area ids of the seats."""
 
     ROW_1_LEFT = 0x01
     ROW_1_RIGHT = 0x04
@@ -121,20 +121,20 @@ _LAMP = _codes({False: 0, True: 1})
 _VENTILATION = _Codec(lambda value: max(0, round(-value / 50)), lambda value: -50.0 * value)
 _WIPER = _codes({"OFF": 1, "INTERVAL": 3, "SLOW": 8, "MEDIUM": 9, "FAST": 10, "RAIN_SENSOR": 13})
 
-_FRONT_SEATS = (Seat.ROW_1_LEFT, Seat.ROW_1_RIGHT)
+_FRONT_SEATS = (VehicleAreaSeat.ROW_1_LEFT, VehicleAreaSeat.ROW_1_RIGHT)
 _SEATS: Mapping[int, Signal[Any]] = {
-    Seat.ROW_1_LEFT: SEAT.DRIVER_HEATING,
-    Seat.ROW_1_RIGHT: SEAT.PASSENGER_HEATING,
-    Seat.ROW_2_LEFT: SEAT.REAR_LEFT_HEATING,
-    Seat.ROW_2_RIGHT: SEAT.REAR_RIGHT_HEATING,
+    VehicleAreaSeat.ROW_1_LEFT: SEAT.DRIVER_HEATING,
+    VehicleAreaSeat.ROW_1_RIGHT: SEAT.PASSENGER_HEATING,
+    VehicleAreaSeat.ROW_2_LEFT: SEAT.REAR_LEFT_HEATING,
+    VehicleAreaSeat.ROW_2_RIGHT: SEAT.REAR_RIGHT_HEATING,
 }
 
 _OCCUPANTS = {
-    Seat.ROW_1_LEFT: OCCUPANT.DRIVER,
-    Seat.ROW_1_RIGHT: OCCUPANT.PASSENGER,
-    Seat.ROW_2_LEFT: OCCUPANT.REAR_LEFT,
-    Seat.ROW_2_CENTER: OCCUPANT.REAR_MIDDLE,
-    Seat.ROW_2_RIGHT: OCCUPANT.REAR_RIGHT,
+    VehicleAreaSeat.ROW_1_LEFT: OCCUPANT.DRIVER,
+    VehicleAreaSeat.ROW_1_RIGHT: OCCUPANT.PASSENGER,
+    VehicleAreaSeat.ROW_2_LEFT: OCCUPANT.REAR_LEFT,
+    VehicleAreaSeat.ROW_2_CENTER: OCCUPANT.REAR_MIDDLE,
+    VehicleAreaSeat.ROW_2_RIGHT: OCCUPANT.REAR_RIGHT,
 }
 
 
@@ -171,7 +171,10 @@ PROPERTIES: Mapping[str, _Property] = {
     "HVAC_FAN_SPEED": _front(HVAC.FAN_SPEED, _steps(10)),
     "HVAC_FAN_DIRECTION": _front(HVAC.AIR_DISTRIBUTION, _codes({"MIDDLE": 1, "DOWN": 2, "UP": 4})),
     "HVAC_TEMPERATURE_SET": _Property(
-        {Seat.ROW_1_LEFT: HVAC.DRIVER_TEMPERATURE, Seat.ROW_1_RIGHT: HVAC.PASSENGER_TEMPERATURE}
+        {
+            VehicleAreaSeat.ROW_1_LEFT: HVAC.DRIVER_TEMPERATURE,
+            VehicleAreaSeat.ROW_1_RIGHT: HVAC.PASSENGER_TEMPERATURE,
+        }
     ),
     "HVAC_TEMPERATURE_CURRENT": _front(HVAC.CABIN_TEMPERATURE),
     "HVAC_DEFROSTER": _Property(
@@ -193,7 +196,10 @@ PROPERTIES: Mapping[str, _Property] = {
     **_lamps("CABIN_LIGHTS", {GLOBAL: CABIN.DOME_LIGHT}),
     **_lamps(
         "READING_LIGHTS",
-        {Seat.ROW_1_LEFT: CABIN.DRIVER_READING_LIGHT, Seat.ROW_1_RIGHT: CABIN.PASSENGER_READING_LIGHT},
+        {
+            VehicleAreaSeat.ROW_1_LEFT: CABIN.DRIVER_READING_LIGHT,
+            VehicleAreaSeat.ROW_1_RIGHT: CABIN.PASSENGER_READING_LIGHT,
+        },
     ),
     "WINDOW_POS": _Property(
         {

@@ -9,8 +9,8 @@ from automotive_cosim.contracts.requests import AlertKind, Severity
 
 
 class ActionType(StrEnum):
-    """AndroidWorld's action types, the car's safety calls, and two for places. The order is that of the
-    action space."""
+    """AndroidWorld's action types, the car's safety calls, two for places, and a question to the driver. The order
+    is that of the action space; a new type comes last, so that the others keep their numbers."""
 
     CLICK = "click"
     DOUBLE_TAP = "double_tap"
@@ -33,6 +33,7 @@ class ActionType(StrEnum):
     PULL_OVER = "pull_over"
     QUERY = "query"
     ESTIMATE_POSITION = "estimate_position"
+    ASK_DRIVER = "ask_driver"
 
 
 class GoalStatus(StrEnum):

@@ -110,6 +110,8 @@ class Observation:
     time_s: float
     """Seconds since the hand-over."""
     feedback: Feedback
+    said: tuple[str, ...] = ()
+    """What the driver has said since the hand-over, in order: answers to questions, and remarks of his own."""
     elements: tuple[Element, ...] | None = None
     screenshot: npt.NDArray[np.uint8] | None = None
     """(height, width, 3), RGB."""

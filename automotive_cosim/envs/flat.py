@@ -202,7 +202,7 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
     def _numbers(self) -> npt.NDArray[np.float32]:
         seen = self.episode.observation
         spent = (len(self.episode.steps) - 1) / self._conditions.max_steps
-        parts = [*_words(seen.goal), *self._switches(seen), *_car(seen), spent]
+        parts = [*_words(" ".join([seen.goal, *seen.said])), *self._switches(seen), *_car(seen), spent]
         return np.clip(np.array(parts, np.float32), -1.0, 1.0)
 
     def _switches(self, seen: Observation) -> list[float]:

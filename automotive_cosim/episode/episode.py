@@ -15,6 +15,7 @@ from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.session import Session, beginning
 from automotive_cosim.episode.situation import HandOver
 from automotive_cosim.episode.specification import ROUNDING_S, Conditions, End
+from automotive_cosim.tasking.dialogue import NEUTRAL, Question, Says, dialogue, questions, topic_of
 from automotive_cosim.tasking.instance import Instance
 from automotive_cosim.tasking.verdict import Verdict, judge
 
@@ -31,6 +32,8 @@ class Episode(Session):
     """Whether it owns the baseline run; false for a branch, which shares it."""
     verdict: Verdict | None = None
     """The verdict; None until the episode is over."""
+    unsaid: tuple[Says, ...] = ()
+    """What the driver may still say by himself."""
 
     @classmethod
     def take_over(cls, hand_over: HandOver, conditions: Conditions, listener: Listener | None = None) -> Episode:
@@ -45,6 +48,7 @@ class Episode(Session):
             **begun,
             instance=instance,
             at_hand_over=world.cockpit.copy(),
+            unsaid=instance.half.says,
             baseline=Baseline(world.shadow()),
         )
 
@@ -88,11 +92,28 @@ class Episode(Session):
         return self.baseline.until(self.moments[-1].time_s)
 
     @property
+    def questions(self) -> tuple[Question, ...]:
+        """What the driver was asked, and what of it was needed."""
+        half = self.instance.half
+        texts = (asked["text"] for asked in questions(self.moments[0], self.moments[-1]))
+        return dialogue(texts, half.topics, half.needed_topics)
+
+    @property
     def counterfactual(self) -> Mapping[str, Any]:
         """What would be commanded now, had the agent given only the commands that belong to the goal."""
         return counterfactual(
             self.at_hand_over, self.world.cockpit.deeds, self.moments, self.instance.half.allowed_writes
         )
+
+    def _reply(self, question: str) -> str:
+        topic = topic_of(question, self.instance.half.topics)
+        return NEUTRAL if topic is None else topic.reply
+
+    def _remarks(self) -> tuple[str, ...]:
+        start, now, steps = self.moments[0], self.moments[-1], len(self.steps)
+        due = tuple(says for says in self.unsaid if says.is_due(start, now, steps))
+        self.unsaid = tuple(says for says in self.unsaid if says not in due)
+        return tuple(says.text for says in due)
 
     def _advance(self, duration_s: float) -> None:
         """Advances second by second together with the baseline run: both simulations run at the same time."""

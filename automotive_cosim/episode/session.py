@@ -33,6 +33,7 @@ from automotive_cosim.geo.reckoning import Roads
 from automotive_cosim.interface import trace
 from automotive_cosim.interface.controls import Shown, shown
 from automotive_cosim.interface.observe import Channel, observe
+from automotive_cosim.tasking.dialogue import NEUTRAL, spoken_s
 
 
 @dataclass(kw_only=True)
@@ -67,6 +68,8 @@ class Session:
     """Why the agent can act no more, if that ended it."""
     thought_s: float = 0.0
     """Simulated seconds that have passed since the agent last saw the screen."""
+    heard: tuple[str, ...] = ()
+    """What the driver has said since the beginning."""
     hashed: trace.Hash = field(default_factory=trace.Hash, repr=False)
     """Hash of the steps so far, computed when asked for."""
     _roads: Roads | None = field(default=None, repr=False)
@@ -112,9 +115,13 @@ class Session:
         """
         self._check_open()
         feedback, cost_s = self._answer(action) or (self.world.perform(action, self.elements), 0.0)
+        said: tuple[str, ...] = ()
+        if action.action_type is ActionType.ASK_DRIVER and feedback.code is FeedbackCode.OK:
+            said = (self._reply(action.text or ""),)
+            cost_s = spoken_s(action.text or "", *said)
         if action.action_type is ActionType.STATUS:
             self.declared, self.reason = action.goal_status, action.reason
-        self._proceed(action, feedback, cost_s)
+        self._proceed(action, feedback, cost_s, said)
 
     def refuse(self, why: str) -> None:
         """Spends a step on an answer that could not be read as an action: only its time passes."""
@@ -183,14 +190,27 @@ class Session:
         reply = sensor.ask(action.text or "", known, with_position=Channel.GPS in given, roads=self._roads)
         return Feedback(FeedbackCode.OK if reply.ok else FeedbackCode.REFUSED, reply.text), reply.cost_s
 
-    def _proceed(self, action: Action | None, feedback: Feedback, cost_s: float = 0.0) -> None:
-        """Lets the action's time pass, plus ``cost_s``."""
+    def _reply(self, question: str) -> str:
+        """What the driver answers to a question."""
+        return NEUTRAL
+
+    def _remarks(self) -> tuple[str, ...]:
+        """What the driver says unasked, after another action."""
+        return ()
+
+    def _proceed(
+        self, action: Action | None, feedback: Feedback, cost_s: float = 0.0, said: tuple[str, ...] = ()
+    ) -> None:
+        """Lets the action's time pass, plus ``cost_s``; the driver says ``said`` and what he has to say besides."""
         feedback = self._spend(action, feedback, cost_s)
+        said += self._remarks()
+        self.heard += said
+        begun_s = self.moments[0].time_s
         self.elements, self.observation = _seen(
-            self.world, self.goal, self._channels(action), self.shown, self.moments[0].time_s, feedback
+            self.world, self.goal, self._channels(action), self.shown, begun_s, feedback, self.heard
         )
         self.steps.append(
-            trace.Step(len(self.steps), self.world.moment, self.elements, action, feedback, self.thought_s)
+            trace.Step(len(self.steps), self.world.moment, self.elements, action, feedback, self.thought_s, said)
         )
         self.thought_s = 0.0
         end = self._ended()
@@ -258,8 +278,9 @@ def _seen(
     told: Shown,
     begun_s: float,
     feedback: Feedback,
+    said: tuple[str, ...] = (),
 ) -> tuple[tuple[Element, ...], Observation]:
     """The elements on the screen, and the agent's observation."""
     elements = world.cockpit.elements()
-    seen = observe(world, goal, begun_s, elements, feedback, channels)
+    seen = observe(world, goal, begun_s, elements, feedback, channels, said)
     return elements, told.observation(seen, world.moment)

@@ -31,6 +31,7 @@ def observe(
     elements: tuple[Element, ...],
     feedback: Feedback,
     channels: frozenset[Channel] = ALL,
+    said: tuple[str, ...] = (),
 ) -> Observation:
     """An agent's observation of the present moment.
 
@@ -41,12 +42,14 @@ def observe(
         elements: the accessibility elements of the present screen.
         feedback: the result of the last action.
         channels: the channels that the agent is given.
+        said: what the driver has said since the hand-over.
     """
     moment = world.moment
     return Observation(
         goal=goal,
         time_s=moment.time_s - hand_over_s,
         feedback=feedback,
+        said=said,
         elements=elements if Channel.ELEMENTS in channels else None,
         screenshot=world.cockpit.screenshot() if Channel.SCREENSHOT in channels else None,
         vehicle=world.cockpit.vehicle_state() if Channel.VEHICLE in channels else None,

@@ -5,6 +5,7 @@ Observation (``Dict``; a withheld channel has no key):
 | key | space | meaning |
 |---|---|---|
 | ``goal`` | uint8 (512,) | what the driver said, UTF-8, zero-padded |
+| ``said`` | uint8 (1024,) | what the driver has said since, one remark per line, the latest that fit |
 | ``time_s`` | float64 () | simulated seconds since the hand-over |
 | ``feedback`` | ``code`` Discrete, ``text`` uint8 (1024,) | result of the last action |
 | ``screenshot`` | uint8 (height, width, 3) | RGB |
@@ -54,7 +55,7 @@ from automotive_cosim.interface.observe import Channel
 
 T = TypeVar("T")
 
-GOAL_BYTES, FEEDBACK_BYTES, CONTEXT_BYTES, ABOARD_BYTES = 512, 1024, 8192, 512
+GOAL_BYTES, SAID_BYTES, FEEDBACK_BYTES, CONTEXT_BYTES, ABOARD_BYTES = 512, 1024, 1024, 8192, 512
 MAX_ELEMENTS, ELEMENT_TEXT_BYTES, RESOURCE_ID_BYTES = 128, 128, 64
 KINDS = ("View", "TextView", "Button", "Switch", "SeekBar", "EditText", "ImageView", "ListView", "RadioButton")
 FLAGS = tuple(field.name for field in fields(Element) if field.name.startswith("is_"))
@@ -129,6 +130,7 @@ def observation_space(channels: frozenset[Channel], width: int, height: int) -> 
     return spaces.Dict(
         {
             "goal": _bytes_space(GOAL_BYTES),
+            "said": _bytes_space(SAID_BYTES),
             "time_s": spaces.Box(0, 1e6, (), np.float64),
             "feedback": spaces.Dict(
                 {"code": spaces.Discrete(len(FeedbackCode)), "text": _bytes_space(FEEDBACK_BYTES)}
@@ -218,6 +220,7 @@ def encode(observation: Observation, channels: frozenset[Channel]) -> dict[str, 
     """
     encoded: dict[str, Any] = {
         "goal": _bytes(observation.goal, GOAL_BYTES),
+        "said": _bytes(_latest(observation.said), SAID_BYTES),
         "time_s": np.array(observation.time_s, np.float64),
         "feedback": {
             "code": tuple(FeedbackCode).index(observation.feedback.code),
@@ -249,6 +252,7 @@ def decode(encoded: Mapping[str, Any]) -> Observation:
     feedback = encoded["feedback"]
     return Observation(
         goal=_text(encoded["goal"]),
+        said=tuple(_text(encoded["said"]).splitlines()),
         time_s=float(encoded["time_s"]),
         feedback=Feedback(tuple(FeedbackCode)[int(feedback["code"])], _text(feedback["text"])),
         elements=_decode_elements(encoded["elements"]) if "elements" in encoded else None,
@@ -434,6 +438,13 @@ def _bytes_space(*shape: int) -> spaces.Box:
 def _first_bytes(shape: tuple[int, ...]) -> spaces.Box:
     """Nobody samples from this one, so copies have random generators of their own."""
     return spaces.Box(0, 255, shape, np.uint8)
+
+
+def _latest(said: tuple[str, ...]) -> str:
+    """The remarks on a line each, without the first ones if not all of them fit."""
+    while len("\n".join(said).encode()) > SAID_BYTES:
+        said = said[1:]
+    return "\n".join(said)
 
 
 def _bytes(text: str, size: int) -> npt.NDArray[np.uint8]:

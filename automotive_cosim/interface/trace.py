@@ -18,6 +18,8 @@ from automotive_cosim.contracts import Action, Element, Feedback, Json
 from automotive_cosim.cosim.moment import Moment
 
 HASHED = ("traffic", "signals", "elements", "action")
+SAID = "said"
+"""Also in the hash, of a step in which the driver said something."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +33,8 @@ class Step:
     feedback: Feedback
     thought_s: float = 0.0
     """Simulated seconds that the agent took to answer, before the action."""
+    said: tuple[str, ...] = ()
+    """What the driver said meanwhile."""
 
     def as_json(self) -> Json:
         """The step as a JSON object, for ``steps.jsonl``."""
@@ -50,7 +54,7 @@ class Step:
             "connectivity": plain(moment.connectivity),
             "context": moment.context.text(),
             "events": [plain(event) for event in moment.events],
-        }
+        } | ({SAID: list(self.said)} if self.said else {})
 
 
 class Hash:
@@ -72,7 +76,9 @@ class Hash:
             "elements": f"[{','.join(map(_element, step.elements))}]",
             "action": _text(None if step.action is None else to_json(step.action)),
         }
-        whole = ",".join(f'"{name}":{texts[name]}' for name in sorted(HASHED))
+        if step.said:
+            texts[SAID] = _text(list(step.said))
+        whole = ",".join(f'"{name}":{texts[name]}' for name in sorted(texts))
         self._digest.update(f"{{{whole}}}\n".encode())
         self.count += 1
 
@@ -129,9 +135,9 @@ def canonical(value: Any) -> bytes:
 
 
 def sha256(steps: list[Json]) -> str:
-    """The trace's hash over the parts in ``HASHED`` of every step, as a hexadecimal string."""
+    """The trace's hash over the parts in ``HASHED`` of every step, and ``SAID``, as a hexadecimal string."""
     digest = hashlib.sha256()
     for step in steps:
-        digest.update(canonical({name: step[name] for name in HASHED}))
+        digest.update(canonical({name: step[name] for name in (*HASHED, SAID) if name in step}))
         digest.update(b"\n")
     return digest.hexdigest()

@@ -60,7 +60,7 @@ class Page:
             return tuple(line for line in sections.get(title, "").split("\n") if line)
 
         return cls(
-            goal=sections.get("What the driver said", ""),
+            goal=sections.get("What the driver said", "").partition("\n")[0],
             screen=tuple(line for line in map(_line, lines("The screen")) if line is not None),
             car=dict(text.split(": ", 1) for text in lines("The car") if ": " in text),
             context=lines("What applies here"),

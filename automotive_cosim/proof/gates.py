@@ -32,7 +32,7 @@ from dataclasses import replace
 from functools import partial
 from itertools import product
 
-from automotive_cosim.agents.trivial import AlwaysAlert, NoOp, PressEverything, Random
+from automotive_cosim.agents.trivial import AlwaysAlert, AlwaysAsk, NoOp, PressEverything, Random
 from automotive_cosim.cockpit.signals import ACTUATORS, ADAS, named
 from automotive_cosim.contracts import Action, ActionType, AlertKind, FeedbackCode, GoalStatus, Observation
 from automotive_cosim.episode.counterfactual import replayed
@@ -47,6 +47,8 @@ from automotive_cosim.proof.sight import undeclared
 from automotive_cosim.proof.world import implausible
 from automotive_cosim.tasking.binding import rules_of
 from automotive_cosim.tasking.checks import NothingDone
+from automotive_cosim.tasking.dialogue import Topic
+from automotive_cosim.tasking.moves import Consult, Move
 from automotive_cosim.tasking.task import Basis, Half, Task
 from automotive_cosim.tasking.triggers import All, Parked, Standing, TriggerCondition
 from automotive_cosim.tasking.verdict import judge
@@ -217,6 +219,10 @@ def _strategies(grounds: dict[str, Ground]) -> Iterator[tuple[str, GateStrategy]
     )
     for kind in AlertKind:
         yield f"always {kind}", partial(_alerts, kind=kind)
+    yield "always-ask", lambda ground: ground.play(ground.agent(AlwaysAsk()), stop_when_lost=True)
+    if topics := next((ground.half.topics for ground in grounds.values() if ground.half.topics), ()):
+        yield "asks first", partial(_talks, asks=tuple(Consult(_naming_all(topic)) for topic in topics))
+        yield "never asks", partial(_talks, asks=())
     if len(grounds) > 1:
         for name, acting in grounds.items():
             yield f"context-reader, {name}", partial(_reads_context, acting=acting)
@@ -224,6 +230,16 @@ def _strategies(grounds: dict[str, Ground]) -> Iterator[tuple[str, GateStrategy]
 
 def _alerts(ground: Ground, kind: AlertKind) -> Played:
     return ground.play(ground.agent(AlwaysAlert(kind)), stop_when_lost=True)
+
+
+def _talks(ground: Ground, asks: tuple[Move, ...]) -> Played:
+    """Asks the right questions, or none, in whichever half it is, and then does what is right there."""
+    acts = tuple(move for move in ground.half.moves if not isinstance(move, Consult))
+    return ground.play(ground.oracle((*asks, *acts)))
+
+
+def _naming_all(topic: Topic) -> str:
+    return f"Which: {', or '.join(words[0] for words in topic.choices)}?"
 
 
 def _reads_context(ground: Ground, acting: Ground) -> Played:

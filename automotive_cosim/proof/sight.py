@@ -55,6 +55,7 @@ FREED: Mapping[Differs, frozenset[Facet]] = {
     Differs.TIME: frozenset({Facet.CLOCK, Facet.LIGHT, Facet.SIGN, *_DRIVING}),
     Differs.MOTION: frozenset({Facet.GEAR, *_DRIVING}),
     Differs.SETTINGS: frozenset({Facet.SETTINGS, Facet.CABIN}),
+    Differs.CONTENT: frozenset(),
     Differs.ABOARD: frozenset({Facet.ABOARD, Facet.CABIN}),
     Differs.VOICE: frozenset({Facet.WORDS}),
 }

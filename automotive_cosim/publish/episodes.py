@@ -11,10 +11,10 @@ from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import ActionType, Feedback, FeedbackCode, Json
 from automotive_cosim.episode.specification import ROUNDING_S, End
 from automotive_cosim.errors import CosimError
-from automotive_cosim.interface.trace import Step, plain, sha256
+from automotive_cosim.interface.trace import SAID, Step, plain, sha256
 from automotive_cosim.publish.problems import Problem, differences
 from automotive_cosim.report.page import element
-from automotive_cosim.run.collect import alerts, planned
+from automotive_cosim.run.collect import alerts, planned, questioned
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.harm import nearest_s
 from automotive_cosim.run.load import driver_load
@@ -25,6 +25,8 @@ from automotive_cosim.run.row import as_json
 from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.run.taps import pixel_taps
 from automotive_cosim.scenarios import shipped
+from automotive_cosim.tasking.dialogue import dialogue, questions
+from automotive_cosim.tasking.parameters import bind
 
 ROWS = "episodes.jsonl"
 PLANNED = (
@@ -124,6 +126,7 @@ def _judged_problems(folder: Path, job: EpisodeJob, row: EpisodeRow, told: Json)
         "parameters": {name: plain(value) for name, value in judged.parameters.items()},
         "country": start.context.country,
         "alerts": alerts(start, end),
+        **_questions(job, row, judged),
         "steps": len(steps) - 1,
         "sim_seconds": round(end.time_s - start.time_s, 3),
         "thought_s": round(sum(step["thought_s"] for step in steps), 1),
@@ -154,7 +157,7 @@ def _step_problems(file: str, steps: Sequence[Json], judged: Judged) -> Iterator
     """What the steps have that their moments do not."""
     moments = {moment.time_s: moment for moment in judged.trace}
     for number, step in enumerate(steps):
-        if step.keys() != STEP or step["step"] != number:
+        if step.keys() - {SAID} != STEP or step["step"] != number:
             yield Problem(file, f"step {number}", "is not there, or has other fields")
             return
         moment = moments.get(step["time_s"])
@@ -179,6 +182,15 @@ def _answers(step: Json) -> Iterator[str]:
     action = step["action"]
     if isinstance(action, dict) and action.get("action_type") == ActionType.ANSWER:
         yield str(action.get("text"))
+
+
+def _questions(job: EpisodeJob, row: EpisodeRow, judged: Judged) -> Json:
+    """The row's fields about questions; none of a row that was written before they were counted."""
+    if row.questions is None:
+        return {}
+    half = bind(job.task.half(row.half), judged.parameters)
+    texts = (asked["text"] for asked in questions(judged.trace[0], judged.trace[-1]))
+    return questioned(dialogue(texts, half.topics, half.needed_topics))
 
 
 def _end_problems(job: EpisodeJob, row: EpisodeRow, judged: Judged, steps: int) -> Iterator[Problem]:

@@ -10,6 +10,7 @@ from automotive_cosim.agents import AgentSettings, make_agent
 from automotive_cosim.agents.settings import geo_input
 from automotive_cosim.contracts import ActionType, Json
 from automotive_cosim.interface.observe import ALL, Channel
+from automotive_cosim.interface.trace import SAID
 from automotive_cosim.publish.episodes import FROM_MOMENTS, ROWS
 from automotive_cosim.publish.problems import Problem, differences
 from automotive_cosim.run.episode_row import EpisodeRow
@@ -73,7 +74,8 @@ def _differences(
     if len(steps) != len(new_steps):
         yield Problem(file, "", f"has {len(steps)} steps, and {len(new_steps)} when it is replayed")
     for number, (step, new) in enumerate(zip(steps, new_steps, strict=False)):
-        yield from differences(file, f"step {number}", step, new, STEP, "its replay")
+        told, now = ({SAID: []} | each for each in (step, new))
+        yield from differences(file, f"step {number}", told, now, (*STEP, SAID), "its replay")
     names = [name for name in RESULT if name in last["result"]]
     yield from differences(file, "result", last["result"], new_last["result"], names, "its replay")
     names = [name for name in steady(row) if name not in OF_THE_AGENT]

@@ -27,6 +27,7 @@ NOT_RANKED = {
     "random": "negative control",
     "press-everything": "negative control",
     "always-alert": "negative control",
+    "always-ask": "negative control",
     "silent": "negative control",
     "alert-all": "negative control",
     "alert-often": "negative control",

@@ -169,6 +169,9 @@ def conduct(results: Results) -> Table:
                 _mean_cell(mine, 1, lambda row: row.interaction_s),
                 rate_cell(mine, of=lambda row: row.within_guideline),
                 _mean_cell(mine, 1, lambda row: row.steps),
+                _mean_cell(mine, 2, lambda row: row.questions),
+                _mean_cell(mine, 2, lambda row: row.unneeded_questions),
+                _mean_cell(mine, 1, lambda row: row.question_s),
                 _mean_cell(mine, 0, lambda row: row.tokens_in),
                 _mean_cell(mine, 0, lambda row: row.tokens_out),
                 _mean_cell(mine, 2, lambda row: row.model_seconds),
@@ -182,6 +185,9 @@ def conduct(results: Results) -> Table:
         "Driver's interaction, s",
         "Within 2 s / 12 s",
         "Steps",
+        "Questions",
+        "Unneeded",
+        "Talk, s",
         "Tokens in",
         "Tokens out",
         "Model, s",
@@ -190,7 +196,8 @@ def conduct(results: Results) -> Table:
     note = (
         "Means over judged episodes, from the hand-over to 12 s after the end. Speed-limit compliance is 1 minus "
         "the mean overspeed over 2.23 m/s (nuPlan). Interaction and reading while moving compare with NHTSA's 2 s "
-        "and 12 s. Tokens of rules are estimates at four characters each."
+        "and 12 s. Questions to the driver, those whose answer could be found out otherwise, and the seconds they "
+        "took. Tokens of rules are estimates at four characters each."
     )
     return Table("conduct", "Drive, driver and cost", columns, tuple(rows), note)
 

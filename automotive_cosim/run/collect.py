@@ -7,6 +7,7 @@ from dataclasses import replace
 from enum import StrEnum
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 from PIL import Image
 
@@ -20,6 +21,7 @@ from automotive_cosim.run.harm import nearest_s, overspeed, states_of
 from automotive_cosim.run.moments import Judged
 from automotive_cosim.run.plan import EpisodeJob
 from automotive_cosim.run.taps import pixel_taps
+from automotive_cosim.tasking.dialogue import Question
 
 OVERSPEED_SCALE_MPS = 2.23
 """Mean overspeed at which compliance is zero, 5 mph: nuPlan's speed-limit metric (``max_overspeed_value``)."""
@@ -118,6 +120,7 @@ class Collector(Watcher):
             goal_s=judged.goal_s if judged else None,
             reason_fits=judged.reason_fits if judged else None,
             alerts=None if episode is None else alerts(episode.moments[0], episode.moments[-1]),
+            **({} if episode is None else questioned(episode.questions)),
             steps=result.steps,
             sim_seconds=result.sim_seconds,
             thought_s=0.0 if episode is None else round(sum(step.thought_s for step in episode.steps), 1),
@@ -182,6 +185,15 @@ def compliance(moments: Sequence[Moment]) -> float | None:
     """
     over_m, whole_s = overspeed(moments)
     return None if whole_s == 0 else round(max(0.0, 1 - over_m / (OVERSPEED_SCALE_MPS * whole_s)), 6)
+
+
+def questioned(questions: Sequence[Question]) -> dict[str, Any]:
+    """The fields of a row about questions to the driver."""
+    return {
+        "questions": len(questions),
+        "unneeded_questions": sum(not question.is_needed for question in questions),
+        "question_s": sum(question.seconds for question in questions),
+    }
 
 
 def alerts(start: Moment, end: Moment) -> int:

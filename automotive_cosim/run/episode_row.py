@@ -84,6 +84,12 @@ class EpisodeRow(JobRow):
     """For a declined task, whether the reason code fits."""
     alerts: int | None = None
     """Number of alerts that the agent gave to the driver."""
+    questions: int | None = None
+    """Number of questions that it asked the driver."""
+    unneeded_questions: int | None = None
+    """Those of them whose answer could be found out otherwise, or had been given."""
+    question_s: float | None = None
+    """Seconds that questions and answers took from the driver's attention."""
     steps: int = 0
     sim_seconds: float = 0.0
     """From the hand-over to the end."""

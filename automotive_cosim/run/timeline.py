@@ -23,7 +23,7 @@ class TimelineEntry:
     at_s: float
     """Seconds since the hand-over; negative before it."""
     kind: str
-    """One of departure, hand_over, action, alert, road, limit, goal, declared, end."""
+    """One of departure, hand_over, action, said, alert, road, limit, goal, declared, end."""
     text: str
 
 
@@ -100,6 +100,8 @@ def _actions(steps: Sequence[Step], zero_s: float) -> Iterable[TimelineEntry]:
         words = action_in_words(action, before.elements)
         if action is None or action.action_type not in QUIET:
             yield TimelineEntry(at_s, "action", words)
+        for text in step.said:
+            yield TimelineEntry(round(step.moment.time_s - zero_s, 2), "said", f"the driver says “{text}”")
         for alert in given:
             yield TimelineEntry(at_s, "alert", f"alert to the driver: {alert['kind']} ({alert['severity']})")
         if action is not None and action.action_type is ActionType.STATUS:

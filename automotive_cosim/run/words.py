@@ -67,6 +67,8 @@ def action_in_words(action: Action | None, elements: Sequence[Element]) -> str:
             return f"asks for another route {f'to {action.destination}' if action.destination else ''}".rstrip()
         case ActionType.QUERY:
             return f"asks “{action.text}”"
+        case ActionType.ASK_DRIVER:
+            return f"asks the driver “{action.text}”"
         case ActionType.ESTIMATE_POSITION:
             return f"estimates the position at {action.text}"
         case _:  # keyboard_enter, emergency_call, pull_over: their names say it

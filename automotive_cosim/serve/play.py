@@ -311,6 +311,7 @@ def _told(seen: Observation) -> Json:
     car = seen.vehicle
     return {
         "goal": seen.goal,
+        "said": list(seen.said),
         "time_s": round(seen.time_s, 1),
         "feedback": [seen.feedback.code, seen.feedback.text],
         "context": seen.context or "",

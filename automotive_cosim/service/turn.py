@@ -41,6 +41,7 @@ class EpisodeTurn:
             "step": self.step,
             "end": None if self.end is None else str(self.end),
             "goal": seen.goal,
+            "said": list(seen.said),
             "time_s": seen.time_s,
             "feedback": {"code": str(seen.feedback.code), "text": seen.feedback.text},
         }

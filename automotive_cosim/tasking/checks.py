@@ -6,13 +6,14 @@ so it can be compared and stored; ``str`` describes it in words. Values may be p
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar
 
 from automotive_cosim.cockpit.signals import Signal
 from automotive_cosim.contracts import AlertKind, Reroute, RoadRequest
 from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.tasking.dialogue import Topic, questions
 
 
 class Check(Protocol):
@@ -248,6 +249,53 @@ class RoadAsked:
     def __str__(self) -> str:
         wanted = self.request.__name__ if isinstance(self.request, type) else self.request
         return f"the road asked once for {wanted}"
+
+
+@dataclass(frozen=True, slots=True)
+class AskedFirst:
+    """The driver was asked exactly once, before anything was changed, and the question names every alternative."""
+
+    topic: Topic
+
+    @property
+    def writes(self) -> frozenset[str]:
+        """The key of the questions."""
+        return frozenset({"questions"})
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        """Whether that was the only question, and came first."""
+        asked = questions(start, now)
+        if len(asked) != 1 or asked[0]["deeds"]:
+            return False
+        return self.topic.named(asked[0]["text"]) == len(self.topic.choices)
+
+    def __str__(self) -> str:
+        return f"the driver asked once, and first, about {self.topic.name}"
+
+
+@dataclass(frozen=True, slots=True)
+class NotAsked:
+    """The driver was not asked anything: what he wants can be found out."""
+
+    @property
+    def writes(self) -> frozenset[str]:
+        """Nothing."""
+        return frozenset()
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        """Whether there was no question since the start."""
+        return not questions(start, now)
+
+    def __str__(self) -> str:
+        return "the driver not asked"
+
+
+def asked_in(check: Check) -> Iterator[Topic]:
+    """The topics of a goal that the driver has to be asked about."""
+    if isinstance(check, AskedFirst):
+        yield check.topic
+    for part in getattr(check, "checks", ()):
+        yield from asked_in(part)
 
 
 @dataclass(frozen=True, slots=True)

@@ -66,10 +66,26 @@ class Warn:
 
 
 @dataclass(frozen=True, slots=True)
+class Consult:
+    """Asks the driver."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Hear:
+    """Waits until the driver has said something since the hand-over."""
+
+    text: str
+    """What it is, as a part of it."""
+    at_most_s: int = 60
+
+
+@dataclass(frozen=True, slots=True)
 class Do:
     """Any action without an element: back, wait, a safety call."""
 
     action: Action
 
 
-Move = Open | Tap | TapUntil | Slide | TypeText | Warn | Do
+Move = Open | Tap | TapUntil | Slide | TypeText | Warn | Consult | Hear | Do

@@ -17,7 +17,8 @@ from automotive_cosim.cockpit.arrivals import Arrival
 from automotive_cosim.cockpit.restrictions import Motion
 from automotive_cosim.contracts import GoalStatus, Reason, Weather
 from automotive_cosim.errors import UnknownNameError
-from automotive_cosim.tasking.checks import Check
+from automotive_cosim.tasking.checks import Check, asked_in
+from automotive_cosim.tasking.dialogue import Says, Topic
 from automotive_cosim.tasking.moves import Move, Open, Slide, Tap, TapUntil, TypeText
 from automotive_cosim.tasking.parameters import Choices, names
 from automotive_cosim.tasking.triggers import Trigger
@@ -81,6 +82,8 @@ class Differs(StrEnum):
     """Parked or moving."""
     SETTINGS = "settings"
     """How the car is set before it departs."""
+    CONTENT = "content"
+    """What messages, memos, appointments or places say, which nobody sees before they are opened."""
     ABOARD = "occupants"
     """Who is aboard, awake or asleep, belted or not."""
     VOICE = "voice"
@@ -149,6 +152,15 @@ class Half:
     to a command need not be named."""
     ways: tuple[tuple[Move, ...], ...] = ()
     """Other reference solutions: to every further end state that the goal accepts, or in another order."""
+    topics: tuple[Topic, ...] = ()
+    """What the driver can be asked about; any other question gets an answer that does not help."""
+    says: tuple[Says, ...] = ()
+    """What the driver says later, besides the wish; the order counts if several are due at once."""
+
+    @property
+    def needed_topics(self) -> tuple[Topic, ...]:
+        """The topics that the driver has to be asked about."""
+        return tuple(asked_in(self.goal))
 
     @property
     def allowed_writes(self) -> frozenset[str]:

@@ -195,8 +195,13 @@ def _since(instance: Instance, trace: Sequence[Moment]) -> float | None:
     return since
 
 
+SPOKEN = frozenset({"questions"})
+"""Commands that leave the car as it is: a question that was not needed costs time and is counted, and only a goal
+that says so forbids it."""
+
+
 def _clean(instance: Instance, end: Moment, counterfactual: Mapping[str, Any]) -> Part:
-    surplus = sorted(_changed(end.commands, counterfactual) - instance.half.allowed_writes)
+    surplus = sorted(_changed(end.commands, counterfactual) - instance.half.allowed_writes - SPOKEN)
     return Part(not surplus, "also changed: " + ", ".join(surplus) if surplus else "nothing else changed")
 
 

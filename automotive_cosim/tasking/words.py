@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from automotive_cosim.tasking.binding import needs
-from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil, TypeText, Warn
+from automotive_cosim.tasking.moves import Consult, Hear, Open, Slide, Tap, TapUntil, TypeText, Warn
 from automotive_cosim.tasking.parameters import Choices, FromCockpit
 from automotive_cosim.tasking.task import Half
 
@@ -32,6 +32,10 @@ def half_in_words(half: Half) -> Iterable[tuple[str, str]]:
         yield "allowed", f"{', '.join(sorted(half.may_write))} may be commanded besides"
     for number, way in enumerate((half.moves, *half.ways)):
         yield "solution", f"{'or ' if number else ''}{', '.join(map(_move, way)) or 'declare at once'}"
+    for topic in half.topics:
+        yield "driver", f"asked about {topic.name}, says {topic.reply!r}"
+    for says in half.says:
+        yield "driver", f"{says}, says {says.text!r}"
     yield "deadline", f"{half.deadline.seconds:g} s: {half.deadline.reason}"
     yield "basis", f"{half.basis}: {half.rule}" if half.rule else str(half.basis)
     for need in needs(half):
@@ -52,5 +56,9 @@ def _move(move: object) -> str:
             return f"type {text!r} into {resource_id}"
         case Warn(kind):
             return f"alert {kind}"
+        case Consult(text):
+            return f"ask {text!r}"
+        case Hear(text):
+            return f"wait until the driver says {text!r}"
         case _:
             return str(getattr(getattr(move, "action", move), "action_type", move))

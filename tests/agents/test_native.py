@@ -206,7 +206,8 @@ def test_the_prompt_names_every_word_of_the_format_and_it_says_what_it_lacks(for
         ),
         ("qwen3-vl", tool(action="answer", text="50"), [Action(ActionType.ANSWER, text="50")]),
         ("gui-owl", tool(action="key", text="enter"), [Action(ActionType.KEYBOARD_ENTER)]),
-        ("gui-owl-1.5", tool(action="interact", text="Which one?"), [Action(ActionType.ANSWER, text="Which one?")]),
+        ("gui-owl-1.5", tool(action="interact", text="Which?"), [Action(ActionType.ASK_DRIVER, text="Which?")]),
+        ("mai-ui", tool(action="ask_user", text="Which one?"), [Action(ActionType.ASK_DRIVER, text="Which one?")]),
         ("gui-owl-1.5", tool(action="click", coordinate=[500, 500]), [Action(CLICK, x=640, y=360)]),
         ("mai-ui", tool(action="swipe", direction="up"), [Action(SWIPE, x=640, y=360, direction=Direction.UP)]),
         (

@@ -159,7 +159,7 @@ def test_a_turn_has_a_picture_and_nothing_of_the_verdict(service: EpisodeService
     assert picture.mime_type == "image/png"
     told = set(json.loads(text.text))
     assert told == {
-        "episode_id", "step", "end", "goal", "time_s", "feedback",
+        "episode_id", "step", "end", "goal", "said", "time_s", "feedback",
         "elements", "vehicle", "connectivity", "gps", "context",
     }  # fmt: skip
 

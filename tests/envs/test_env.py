@@ -121,7 +121,7 @@ def test_wrong_actions_cost_time_and_break_nothing(env):
 def test_withheld_channels_are_absent(simulations):
     env = CockpitEnv(**QUICK, channels=("elements", "vehicle"), simulations=simulations)
     encoded, _ = env.reset(seed=0)
-    assert set(encoded) == {"goal", "time_s", "feedback", "elements", "vehicle"}
+    assert set(encoded) == {"goal", "said", "time_s", "feedback", "elements", "vehicle"}
     assert env.episode.observation.context is None
     assert env.episode.observation.gps is None
     encoded = env.step({"action_type": "query", "text": "weather"})[0]

@@ -18,6 +18,9 @@ from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import Conditions, End, EpisodeSpec, SeedSource
 from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError
 from automotive_cosim.interface.observe import Channel
+from automotive_cosim.interface.trace import sha256
+from automotive_cosim.tasking.dialogue import NEUTRAL, Says, Topic, spoken_s
+from automotive_cosim.tasks import CATALOGUE
 
 SPEC = EpisodeSpec("hvac_fan_max", scenario="grid")
 BLIND = Conditions(frozenset({Channel.ELEMENTS}))
@@ -202,4 +205,88 @@ def test_a_session_needs_no_task(begin):
     assert play(session, Acts(*[WAIT] * 9)) is End.OUT_OF_STEPS
     assert session.observation.goal == "Warm me up."
     assert session.seconds == pytest.approx(3.0)
+    session.close()
+
+
+ASK = Action(ActionType.ASK_DRIVER, text="Full blast, or gently?")
+HOW = Topic("how strong", (("full",), ("gently",)), "Full blast.", ("fan",))
+
+
+@pytest.fixture
+def talk(simulations) -> Iterator[Callable[..., Episode]]:
+    begun: list[Episode] = []
+
+    def talk_(*says: Says, topics: tuple[Topic, ...] = (HOW,)) -> Episode:
+        task = CATALOGUE["hvac_fan_max"]
+        task = replace(task, first=replace(task.first, topics=topics, says=says))
+        hand_over = SituationFinder(SPEC, simulations, task=task).find(SeedSource(0).next())
+        begun.append(Episode.take_over(hand_over, BLIND))
+        return begun[-1]
+
+    yield talk_
+    for episode in begun:
+        episode.close()
+
+
+def test_the_driver_answers_and_it_takes_as_long_as_it_is_said(talk):
+    episode = talk()
+    before = episode.moments[0].commands
+    assert episode.observation.said == ()
+    episode.step(ASK)
+    assert episode.observation.said == episode.steps[-1].said == ("Full blast.",)
+    assert episode.seconds == pytest.approx(1.0 + spoken_s(ASK.text, "Full blast."))
+    episode.step(Action(ActionType.ASK_DRIVER, text="What's the fan to do?"))
+    episode.step(Action(ActionType.ASK_DRIVER, text="Nice weather?"))
+    assert episode.observation.said == ("Full blast.", "Full blast.", NEUTRAL)
+    assert [question.is_needed for question in episode.questions] == [False, False, False]
+    after = {**episode.moments[-1].commands, "questions": []}
+    assert after == {**before, "questions": []}, "a question changes nothing in the car"
+
+
+def test_a_question_without_words_is_refused_and_costs_a_step(talk):
+    episode = talk()
+    episode.step(Action(ActionType.ASK_DRIVER, text="  "))
+    assert episode.observation.feedback.code is FeedbackCode.REFUSED
+    assert episode.seconds == pytest.approx(1.0)
+    assert episode.observation.said == () == episode.questions
+
+
+def test_a_question_notes_what_was_changed_before_it(talk):
+    episode = talk()
+    episode.step(Action(ActionType.OPEN_APP, app_name="climate"))
+    episode.step(ASK)
+    episode.step(Action(ActionType.HAZARD_LIGHTS, on=True))
+    episode.step(ASK)
+    assert [asked["deeds"] for asked in episode.moments[-1].commands["questions"]] == [0, 1]
+
+
+def test_the_driver_says_each_remark_once_and_branches_hear_their_own(talk):
+    episode = talk(Says("No, leave it.", step=2), Says("Thanks.", after=1), Says("Hm.", time_s=2.0))
+    episode.step(WAIT)
+    branch = episode.branch()
+    episode.step(WAIT)
+    assert episode.steps[-1].said == ("No, leave it.", "Hm.")
+    episode.step(WAIT)
+    assert episode.steps[-1].said == ()
+    branch.step(ASK)
+    assert branch.observation.said == ("Full blast.", "No, leave it.", "Thanks.", "Hm.")
+    assert episode.observation.said == ("No, leave it.", "Hm.")
+    branch.close()
+
+
+def test_what_the_driver_says_is_in_the_trace(talk):
+    quiet, other = talk(), talk(Says("No, leave it.", step=1))
+    assert quiet.trace_sha256 == other.trace_sha256
+    for episode in (quiet, other):
+        episode.step(WAIT)
+    assert quiet.trace_sha256 != other.trace_sha256
+    assert other.trace_sha256 == sha256([step.as_json() for step in other.steps])
+    assert "said" not in quiet.steps[-1].as_json()
+
+
+def test_a_session_without_a_task_gets_an_answer_that_does_not_help(begin):
+    episode = begin()
+    session = Session.begin(episode.world.branch(), "Drive on.", BLIND)
+    session.step(ASK)
+    assert session.observation.said == (NEUTRAL,)
     session.close()

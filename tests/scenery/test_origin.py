@@ -42,7 +42,9 @@ def test_any_shipped_network_lies_where_it_is_put(name: str, country: str) -> No
     assert away.weather == ()
     network = network_of(away)
     assert middle(network.map) == pytest.approx(origin, abs=1e-9)
-    assert network.edges == network_of(home).edges
+    assert {edge_id: replace(edge, name="") for edge_id, edge in network.edges.items()} == {
+        edge_id: replace(edge, name="") for edge_id, edge in network_of(home).edges.items()
+    }
 
 
 @pytest.mark.parametrize("origin", [ROME, (0.0, 0.0), (179.9, -16.0), (25.0, 78.0)])

@@ -139,7 +139,7 @@ def test_an_agent_gets_the_channels_it_asks_for_and_no_others(serve):
     assert whole.picture is not None
     assert whole.picture.startswith(b"\x89PNG")
     bare = service.start(SPEC, frozenset())
-    assert bare.as_json().keys() == {"episode_id", "step", "end", "goal", "time_s", "feedback"}
+    assert bare.as_json().keys() == {"episode_id", "step", "end", "goal", "said", "time_s", "feedback"}
     assert bare.picture is None
     eyes = service.start(SPEC, frozenset({Channel.SCREENSHOT}))
     assert eyes.picture == whole.picture

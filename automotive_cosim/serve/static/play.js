@@ -58,13 +58,13 @@ export async function playPage(query) {
   const typed = h("form", { class: "filters", hidden: true });
   const reason = h("select", { "aria-label": "Reason for declining" }, REASONS.map((each) => h("option", { value: each }, each === "none" ? "no reason" : plain(each))));
   const declare = (status_) => act({ action_type: "status", goal_status: status_, reason: status_ === "complete" ? "none" : reason.value });
-  const answer = h("input", { type: "text", "aria-label": "Say to the driver", placeholder: "Say to the driver" });
+  const answer = h("input", { type: "text", "aria-label": "Say to the driver, or ask", placeholder: "Say to the driver, or ask" });
   const button = (label, action, kind) => h("button", { type: "button", class: kind, onclick: action }, label);
   const cockpit = h("div", { class: "playing" },
     words, h("div", { class: "card stage-one" }, frame), typed,
     h("div", { class: "card transport" },
       button("Back", () => act({ action_type: "navigate_back" })), button("Home", () => act({ action_type: "navigate_home" })), button("Enter", () => act({ action_type: "keyboard_enter" })),
-      h("form", { class: "filters say", onsubmit: (event) => { event.preventDefault(); if (answer.value) act({ action_type: "answer", text: answer.value }); answer.value = ""; } }, answer, h("button", { type: "submit" }, "Say")),
+      h("form", { class: "filters say", onsubmit: (event) => { event.preventDefault(); if (answer.value) act({ action_type: "answer", text: answer.value }); answer.value = ""; } }, answer, h("button", { type: "submit" }, "Say"), button("Ask", () => { if (answer.value) act({ action_type: "ask_driver", text: answer.value }); answer.value = ""; })),
       button("Done", () => declare("complete"), "main"), button("Not needed", () => declare("not_needed")), button("Cannot or must not", () => declare("infeasible")), reason,
       button("Leave", async () => { try { await send("/api/play/leave", {}); } catch (error) { say(error); } })),
     told, h("details", { class: "card", open: true }, h("summary", {}, "What is known of the place"), context));
@@ -119,7 +119,7 @@ export async function playPage(query) {
     if (playing) {
       const { told: now } = scene;
       if (main.firstChild !== cockpit) main.replaceChildren(cockpit);
-      words.textContent = `“${now.goal}”`;
+      words.textContent = [now.goal, ...now.said].map((text) => `“${text}”`).join(" ");
       screen.src = `/api/play/screen?seen=${scene.version}`;
       told.textContent = `${seconds(now.time_s)} · ${plain(now.feedback[0])}${now.feedback[1] ? `: ${now.feedback[1]}` : ""}`;
       context.textContent = now.context;

@@ -1,0 +1,157 @@
+"""What the driver says besides the wish: answers to questions, and remarks of his own.
+
+A driver who is asked answers from the task's data, without a model: a question is about the topic whose words it
+has, so the same question in other words gets the same answer. Whatever no topic is about gets ``NEUTRAL``, which
+helps nobody. Question and answer take as long as it takes to say them.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.tasking.triggers import TriggerCondition
+
+NEUTRAL = "I don't know. Do as you think best."
+"""The answer to a question that the task has no topic for."""
+ROUNDING_S = 1e-9
+"""Tolerance of sums of simulated seconds."""
+WORDS_PER_S = 2.5
+"""How fast people talk: 150 words a minute, the usual rate of conversation and audio books."""
+
+
+@dataclass(frozen=True, slots=True)
+class Topic:
+    """Something that the driver can be asked about, and what he answers."""
+
+    name: str
+    choices: tuple[tuple[str, ...], ...]
+    """The alternatives that a question has to name, each by any of its words: ``(("keller",), ("holm",))``."""
+    reply: str
+    """The answer, the same however the question is put."""
+    about: tuple[str, ...] = ()
+    """Words by which a question is about this topic even if it names no alternative."""
+
+    def named(self, question: str) -> int:
+        """How many of the alternatives a question names."""
+        said = _said(question)
+        return sum(any(_has(said, word) for word in words) for words in self.choices)
+
+    def fits(self, question: str) -> int:
+        """How many of the topic's words a question has; 0 if it is about something else."""
+        said = _said(question)
+        return self.named(question) + sum(_has(said, word) for word in self.about)
+
+
+@dataclass(frozen=True, slots=True)
+class Says:
+    """A remark of the driver's, made once, after the first step at whose end all that is given here is so."""
+
+    text: str
+    step: int = 0
+    """Number of actions that the agent must have made."""
+    time_s: float = 0.0
+    """Seconds since the hand-over."""
+    when: TriggerCondition | None = None
+    """What must hold, at that moment."""
+    changed: frozenset[str] = frozenset()
+    """Keys of ``Moment.commands``, one of which must have changed since the hand-over."""
+    after: int = 0
+    """Number of questions that the driver must have answered."""
+
+    def __str__(self) -> str:
+        told = (
+            f"after {self.step} actions" if self.step else "",
+            f"after {self.time_s:g} s" if self.time_s else "",
+            f"once {' or '.join(sorted(self.changed))} has changed" if self.changed else "",
+            f"after {self.after} answers" if self.after else "",
+            f"once {self.when}" if self.when else "",
+        )
+        return " and ".join(filter(None, told)) or "at once"
+
+    def is_due(self, start: Moment, now: Moment, steps: int) -> bool:
+        """Whether the driver says it now, unless he has said it already.
+
+        Args:
+            start: the hand-over.
+            now: the present.
+            steps: actions so far.
+        """
+        return (
+            steps >= self.step
+            and now.time_s - start.time_s >= self.time_s - ROUNDING_S
+            and (not self.changed or any(now.commands[key] != start.commands[key] for key in self.changed))
+            and len(questions(start, now)) >= self.after
+            and (self.when is None or self.when(now))
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """A question that the driver was asked."""
+
+    text: str
+    topic: Topic | None
+    """What it is about; None if the driver can only shrug."""
+    is_needed: bool
+    """Whether what it asks for could not be found out otherwise, and had not been asked before."""
+
+    @property
+    def reply(self) -> str:
+        """What the driver answers."""
+        return NEUTRAL if self.topic is None else self.topic.reply
+
+    @property
+    def seconds(self) -> float:
+        """How long question and answer take from the driver's attention."""
+        return spoken_s(self.text, self.reply)
+
+
+def spoken_s(*texts: str) -> float:
+    """Whole seconds that it takes to say the texts, one at least."""
+    return float(max(1, math.ceil(sum(len(text.split()) for text in texts) / WORDS_PER_S)))
+
+
+def topic_of(question: str, topics: Sequence[Topic]) -> Topic | None:
+    """The topic that a question fits best, the first of several that fit equally; None if it fits none."""
+    best = max(topics, key=lambda topic: topic.fits(question), default=None)
+    return best if best is not None and best.fits(question) else None
+
+
+def questions(start: Moment, now: Moment) -> list[dict[str, Any]]:
+    """The questions since a moment, as the cockpit keeps them: ``text``, and the number of ``deeds`` before."""
+    before, after = (moment.commands.get("questions", []) for moment in (start, now))
+    asked: list[dict[str, Any]] = after[len(before) :]
+    return asked
+
+
+def dialogue(texts: Iterable[str], topics: Sequence[Topic], needed: Collection[Topic]) -> tuple[Question, ...]:
+    """Questions in order, with what each is about and whether it is needed.
+
+    Args:
+        texts: the questions.
+        topics: what the driver can be asked about.
+        needed: the topics that have to be asked about, once each.
+    """
+    left, found = list(needed), []
+    for text in texts:
+        topic = topic_of(text, topics)
+        is_needed = topic in left
+        if topic is not None and is_needed:
+            left.remove(topic)
+        found.append(Question(text, topic, is_needed))
+    return tuple(found)
+
+
+def _said(text: str) -> str:
+    """A text as words between single spaces, so that words and phrases are found whole."""
+    words = re.findall(r"\w+", text.casefold())
+    return f" {' '.join(words)} "
+
+
+def _has(said: str, phrase: str) -> bool:
+    return _said(phrase) in said
