@@ -7,7 +7,7 @@ the drive itself, where the same causes may also lie in the road.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -82,6 +82,13 @@ def _mood(of_event: str, of_bait: str) -> Stunt:
         return Props(moods=(DriverAt(cue.at_s, mood), DriverAt(cue.at_s + MOOD_S, cue.driver)))
 
     return stage
+
+
+def _leader_close(cue: Cue) -> Props:
+    """The driver presses, behind somebody who eases off; as a bait, keeps two seconds."""
+    until_s = cue.at_s + MOOD_S
+    eases = BrakingLeader(from_s=cue.at_s, to_s=until_s, ahead_m=40.0, deceleration_mps2=0.2, to_kmh=40.0)
+    return replace(_mood("pressing", "calm")(cue), incidents=(eases,))
 
 
 def _fatigue(cue: Cue) -> Props:
@@ -213,7 +220,7 @@ def _ahead(what: Literal["breakdown", "roadworks", "jam", "tractor"]) -> Stunt:
 
 STUNTS: Mapping[str, Stunt] = {
     "over_limit": _mood("hurried", "brisk"),
-    "leader_close": _mood("pressing", "calm"),
+    "leader_close": _leader_close,
     "fatigue": _fatigue,
     "belt": _belt,
     "phone": _phone,

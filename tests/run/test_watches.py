@@ -172,9 +172,7 @@ def test_one_command_gives_the_scores_at_fixed_latencies(tmp_path: Path) -> None
     values = PLAN | {"agents": ["rule-perfect"], "latency": [0, 1, 3, 10]}
     end = run_watch_plan(make_watch_plan(values), tmp_path / "e", executor=Processes(1), retries=0)
     assert end.judged == 4
-    by_latency = {
-        each.latency_s: rows for each, rows in grouped(read_rows(tmp_path / "e", WatchRow).values()).items()
-    }
+    rows = read_rows(tmp_path / "e", WatchRow).values()
     scores = {each.latency_s: mine[0].value for each, mine in grouped(rows).items()}
     assert scores.keys() == {0.0, 1.0, 3.0, 10.0}
     assert scores[10.0] < scores[3.0] <= scores[0.0]  # type: ignore[operator]
