@@ -257,11 +257,9 @@ def _border(known: Gathered) -> Iterator[Concern]:
     if units is not None and units[1] != units[2]:
         yield Concern("units", hold_s=2.0, say=f"Speed signs are in {units[1]} here; the car shows {units[2]}")
     law = [(label, known.law[label]) for label in LAWS if label in known.law]
-    changed = [
-        f"{label}: {line.said}" for label, line in law if line.is_verified and line.said not in border.before
-    ]
-    if border.is_new and changed:
-        yield Concern("law", hold_s=2.0, say=f"The law is another here. {'. '.join(changed)}")
+    new = [label.lower() for label, line in law if line.is_verified and line.said not in border.before]
+    if border.is_new and new:
+        yield Concern("law", hold_s=2.0, say=f"Another law here on {', '.join(new)}")
 
 
 LOOKS: tuple[Callable[[Gathered], Iterator[Concern]], ...] = (

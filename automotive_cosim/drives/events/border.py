@@ -82,9 +82,9 @@ class RuleChange(EventKind):
     name = "rule_change"
     about = "beyond a border the law on lamps, horn or phone is another"
     bait = "back in a country in which the car has been on this drive"
-    source = "our choice: told within a minute of the border"
+    source = "our choice: told within 50 s of the border"
     weight = 0.5
-    grace_s = 60.0
+    grace_s = 48.0
     alerts = frozenset[AlertKind]()
     says = ("lamp", "light", "beam", "horn", "phone")
 
