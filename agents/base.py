@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Protocol, runtime_checkable
 
-from automotive_cosim.contracts import Action, Json, Observation
+from automotive_cosim.contracts import Action, Element, Json, Observation
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.models.base import ModelReply
 from automotive_cosim.tasking.instance import Instance
@@ -113,6 +113,11 @@ class Learner(Protocol):
 class Privileged(Protocol):
     """An agent that is told the task itself: a reference, never a contestant."""
 
-    def brief(self, instance: Instance) -> None:
-        """Called after ``reset``."""
+    def brief(self, instance: Instance, *, drawn: Callable[[], Sequence[Element]]) -> None:
+        """Called after ``reset``.
+
+        Args:
+            instance: the task.
+            drawn: the boxes of the widgets in the present picture, for a reference that works by pixels.
+        """
         ...

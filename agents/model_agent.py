@@ -15,8 +15,8 @@ from automotive_cosim.agents.memory import Memory, Strategy, where, why
 from automotive_cosim.agents.settings import AgentProfile, AgentSettings
 from automotive_cosim.contracts import Action, ActionType, Observation
 from automotive_cosim.drives.order import STANDING_ORDER
-from automotive_cosim.errors import ActionError
-from automotive_cosim.interface.observe import Channel
+from automotive_cosim.errors import ActionError, UserError
+from automotive_cosim.interface.observe import Channel, See
 from automotive_cosim.models.base import ChatModel
 
 LONGEST_LESSON, LONGEST_PLAN = 300, 2000
@@ -55,10 +55,15 @@ class ModelAgent:
             settings: what to take away from the profile, the budget, and the memory's file.
 
         Raises:
-            UserError: the memory's file cannot be used.
+            UserError: the memory's file cannot be used, or the model would see nothing of the screen.
         """
         self._profile = profile.under(settings)
         self._asking = Asking(chat_model, settings)
+        if settings.see is See.PICTURE and not self._sees:
+            why = "it is shown no pictures" if chat_model.sees_pictures else f"{chat_model.name!r} sees none"
+            raise UserError(
+                f"agent {profile.name!r} would see nothing: --see picture leaves it pictures alone, and {why}"
+            )
         self._memory = Memory(settings.memory) if self._profile.remembers and settings.memory else None
         self.stages = self._asking.stages
         self.reset("")
@@ -139,7 +144,7 @@ class ModelAgent:
         self._asking.note(StageName.REMEMBER, now, line)
 
     def _reflect(self, last: _Turn, now: Observation) -> str:
-        screens = [_marked(last.seen), _marked(now)] if self._sees else []
+        screens = [_shown(last.seen), _shown(now)] if self._sees else []
         pictures = tuple(screen for screen in screens if screen is not None)
         text = prompt.look_back(last.seen, last.action, now, last.plan, bool(pictures))
         reply, asked = self._asking.ask(text, pictures)
@@ -175,6 +180,12 @@ class ModelAgent:
     @property
     def _sees(self) -> bool:
         return Channel.SCREENSHOT in self.channels and self._asking.chat_model.sees_pictures
+
+
+def _shown(seen: Observation) -> bytes | None:
+    """The screen, with its marks if there are elements; None without a screen."""
+    plain = None if seen.screenshot is None else png(seen.screenshot)
+    return _marked(seen) or plain
 
 
 def _marked(seen: Observation) -> bytes | None:

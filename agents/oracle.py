@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
+from automotive_cosim.cockpit.actions import point
+from automotive_cosim.cockpit.cockpit import OPPOSITE
 from automotive_cosim.contracts import (
     Action,
     ActionType,
@@ -30,7 +33,7 @@ class Oracle:
 
     name = "oracle"
     model = "none"
-    channels = frozenset({Channel.ELEMENTS})
+    channels = frozenset({Channel.ELEMENTS, Channel.SCREENSHOT})
 
     def __init__(self) -> None:
         self._moves: deque[Move] = deque()
@@ -38,6 +41,7 @@ class Oracle:
         self._pressed = 0
         self._lists_seen: set[str] = set()
         self._list = ""
+        self._drawn: Callable[[], Sequence[Element]] = tuple[Element, ...]
 
     def reset(self, goal: str) -> None:
         """Forgets the previous episode."""
@@ -46,17 +50,39 @@ class Oracle:
         self._lists_seen.clear()
         self._list = ""
 
-    def brief(self, instance: Instance, moves: Sequence[Move] | None = None) -> None:
-        """Takes the instance's reference solution, or another of its solutions, one tap per action."""
+    def brief(
+        self,
+        instance: Instance,
+        moves: Sequence[Move] | None = None,
+        declares: GoalStatus | None = None,
+        *,
+        drawn: Callable[[], Sequence[Element]] = tuple[Element, ...],
+    ) -> None:
+        """Takes the instance's reference solution, or other moves, one tap per action.
+
+        Args:
+            instance: the task.
+            moves: another of its solutions, or other moves.
+            declares: what to declare then; None for what is right.
+            drawn: the boxes of the widgets in the present picture, with the texts that it shows. An agent that sees
+                the picture alone finds its way by them, and acts by points.
+        """
+        self._drawn = drawn
         self._moves.clear()
         for move in instance.moves if moves is None else moves:
             repeats = move.times if isinstance(move, Tap) else 1
             self._moves.extend([move] * repeats)
         reason = min(instance.half.reasons, default=None)
-        self._end = Action(ActionType.STATUS, goal_status=instance.half.declares, reason=reason)
+        self._end = Action(ActionType.STATUS, goal_status=declares or instance.half.declares, reason=reason)
 
     def act(self, observation: Observation) -> Action:
         """The next move, or the declaration after the last."""
+        if observation.elements is not None:
+            return self._act(observation)
+        drawn = tuple(self._drawn())
+        return by_point(self._act(replace(observation, elements=drawn)), drawn)
+
+    def _act(self, observation: Observation) -> Action:
         elements = observation.elements or ()
         while self._moves and _is_reached(self._moves[0], elements, observation.said):
             self._moves.popleft()
@@ -145,6 +171,17 @@ def _index(elements: Sequence[Element], resource_id: str, text: str) -> int | No
 
 def _reads(element: Element, text: str) -> bool:
     return text in (element.text, element.text.partition("\n")[0], element.content_description)
+
+
+def by_point(action: Action, elements: Sequence[Element]) -> Action:
+    """The same action by a point instead of an index; a list is moved by a finger on it."""
+    if action.index is None:
+        return action
+    x, y = point(action, elements)
+    if action.action_type is ActionType.SCROLL:
+        assert action.direction is not None
+        return Action(ActionType.SWIPE, x=x, y=y, direction=OPPOSITE[action.direction])
+    return replace(action, index=None, x=x, y=y)
 
 
 def _click(index: int) -> Action:

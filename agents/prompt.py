@@ -55,20 +55,20 @@ def turn(
         history: one line per step so far.
         plan: what it intended to do next when it last acted.
         recalled: what it remembers of earlier episodes, one line each.
-        pictures: whether the screen and the marked screen are sent along.
+        pictures: whether the screen is sent along, and the marked screen if there is a list.
     """
     given = profile.channels
     feedback = observation.feedback
     return fill(
         profile.name,
         {
-            "grammar": grammar(profile.actions),
+            "grammar": grammar(profile.actions, by_point=Channel.ELEMENTS not in given),
             "goal": driver_words(observation),
             "history": "\n".join(map(one_line, history)) or "nothing yet",
             "plan": one_line(plan) or None,
             "feedback": f"{feedback.code}: {one_line(feedback.text)}".rstrip(": "),
             "elements": elements(observation) if Channel.ELEMENTS in given else None,
-            "pictures": PICTURES if pictures else None,
+            "pictures": (PICTURES if Channel.ELEMENTS in given else PICTURE) if pictures else None,
             "vehicle": _vehicle(observation.vehicle) if Channel.VEHICLE in given else None,
             "connectivity": _connectivity(observation) if Channel.CONNECTIVITY in given else None,
             "gps": _gps(observation.gps) if Channel.GPS in given else None,
@@ -82,7 +82,8 @@ PICTURES = (
     "Two pictures come with this text: the screen as it is, and the same with each element framed and numbered. "
     "The numbers are the indices below."
 )
-BEFORE_AND_AFTER = "Two pictures come with this text: the marked screen before the action and after it."
+PICTURE = "One picture comes with this text: the screen, as wide and high in pixels as x and y count."
+BEFORE_AND_AFTER = "Two pictures come with this text: the screen before the action and after it."
 
 
 def look_back(

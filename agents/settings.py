@@ -10,7 +10,7 @@ from pathlib import Path
 from automotive_cosim.contracts import ActionType
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.interface.controls import GeoInput
-from automotive_cosim.interface.observe import Channel
+from automotive_cosim.interface.observe import Channel, See
 
 
 class AgentPart(StrEnum):
@@ -63,6 +63,8 @@ class AgentSettings:
     """An episode's budget of tokens, for questions and answers together."""
     most_seconds: float = 1800.0
     """An episode's budget of time to wait for the model."""
+    see: See = See.BOTH
+    """How it sees the screen."""
 
     def __post_init__(self) -> None:
         if self.most_tokens <= 0 or self.most_seconds <= 0:
@@ -90,7 +92,7 @@ class AgentProfile:
     def under(self, settings: AgentSettings) -> AgentProfile:
         """The profile without what the settings take away."""
         without = settings.without
-        lost = set(settings.geo.withheld)
+        lost = set(settings.geo.withheld | settings.see.withheld)
         lost |= {channel for part, channel in _CHANNELS.items() if part in without}
         channels = self.channels - lost
         actions = set(self.actions)

@@ -1,4 +1,4 @@
-"""The catalogue of tasks, one file per module of the cockpit."""
+"""The catalogue of tasks, one file per module of the cockpit; the hard suite has a folder of its own."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from automotive_cosim.tasks import (
     apps,
     comms,
     folder,
+    hard,
     hvac,
     hvac_hints,
     hvac_safety,
@@ -43,6 +44,7 @@ for _module in (
     apps,
     system,
     comms,
+    hard,
 ):
     CATALOGUE.add(*_module.TASKS)
 

@@ -36,6 +36,14 @@ def drive(
             help="Simulated seconds that every answer takes besides.", metavar="SECONDS", parser=number(0, 600)
         ),
     ] = 0.0,
+    see: Annotated[str, typer.Option(help="How the agent sees the screen: tree, picture or both.")] = "both",
+    feedback: Annotated[
+        str,
+        typer.Option(
+            help="What the agent is told of its last action: quiet (the control, and whether it took) or verbose "
+            "(also what became of the car)."
+        ),
+    ] = "quiet",
     out: Annotated[
         Path | None, typer.Option(help="Folder for the row, the steps and the timeline.", show_default=False)
     ] = None,
@@ -46,7 +54,7 @@ def drive(
     from automotive_cosim.agents import AgentSettings, make_agent
     from automotive_cosim.cli.console import Console
     from automotive_cosim.drives.families import FAMILIES
-    from automotive_cosim.episode.specification import clock_of
+    from automotive_cosim.episode.specification import clock_of, feedback_of, see_of
     from automotive_cosim.run.row import as_json as row_json
     from automotive_cosim.run.watch import WatchSetup, run_watch
 
@@ -63,8 +71,11 @@ def drive(
         raise UserError(f"drive needs the name of a family, such as {next(iter(FAMILIES))}; --list lists them")
     if out is not None and (out / "row.json").exists():
         raise UserError(f"{out} holds the results of a drive; give another folder to --out")
-    player = make_agent(agent, model, AgentSettings(seed=seed))
-    setup = WatchSetup(name, seed, player.name, player.model, clock=clock_of(clock), latency_s=latency)
+    sees, told = see_of(see), feedback_of(feedback)
+    player = make_agent(agent, model, AgentSettings(seed=seed, see=sees))
+    setup = WatchSetup(
+        name, seed, player.name, player.model, clock=clock_of(clock), latency_s=latency, see=sees, feedback=told
+    )
     record = run_watch(f"{name}-s{seed}-{player.name}", setup, player)
     if out is not None:
         out.mkdir(parents=True, exist_ok=True)

@@ -58,8 +58,22 @@ def evaluate(
     tasks: Annotated[
         str | None,
         typer.Option(
-            help="Ids, patterns, tags, modules, dimensions, general, safety or all; separated by commas.",
+            help="Ids, patterns, tags, modules, dimensions, subsets, general, safety, all; by commas.",
             show_default="all",
+        ),
+    ] = None,
+    suite: Annotated[
+        str | None,
+        typer.Option(
+            help="Suite that the tasks are chosen from: standard, hard or all. An id names its task in any.",
+            show_default="standard",
+        ),
+    ] = None,
+    split: Annotated[
+        str | None,
+        typer.Option(
+            help="Only the episodes of one public set, by seed and phrasing: dev or test; both for all.",
+            show_default="both",
         ),
     ] = None,
     scenarios: Annotated[
@@ -67,6 +81,12 @@ def evaluate(
         typer.Option(
             help="Scenarios, separated by commas, instead of the tasks' own, for tasks that can run there.",
             show_default=False,
+        ),
+    ] = None,
+    preset: Annotated[
+        str | None,
+        typer.Option(
+            help="Limits as others set them: 2026, ten steps as in the authors' newer edition.", show_default=False
         ),
     ] = None,
     everywhere: Annotated[
@@ -78,6 +98,19 @@ def evaluate(
         typer.Option(
             help="Geo controls, separated by commas: full, gps, context, wrong, irrelevant, none.",
             show_default="full",
+        ),
+    ] = None,
+    see: Annotated[
+        str | None,
+        typer.Option(
+            help="How the agent sees the screen, separated by commas: tree, picture, both.", show_default="both"
+        ),
+    ] = None,
+    feedback: Annotated[
+        str | None,
+        typer.Option(
+            help="What the agent is told of its last action, separated by commas: quiet, verbose.",
+            show_default="quiet",
         ),
     ] = None,
     mode: NoMode = None,
@@ -144,21 +177,25 @@ def evaluate(
     from automotive_cosim.report.results import read_results, standings
     from automotive_cosim.run.batch import run_plan
     from automotive_cosim.run.collect import Pictures
-    from automotive_cosim.run.plan import make_plan, read_plan
+    from automotive_cosim.run.plan import make_plan, read_plan, with_preset
     from automotive_cosim.run.store import megabytes
     from automotive_cosim.scenery import open_scenario
 
     if pictures not in set(Pictures):
         raise UnknownNameError("choice of pictures", pictures, Pictures)
     named = {"agents": agents, "models": models, "tasks": tasks, "scenarios": scenarios, "geo": geo}
+    named |= {"see": see, "feedback": feedback}
     values: dict[str, Any] = read_plan(plan_file) if plan_file else {}
     values |= {name: words(name, text) for name, text in named.items() if text is not None}
     values |= {"seeds": seeds_in(seeds)} if seeds is not None else {}
+    values |= {"suite": suite} if suite is not None else {}
+    values |= {"split": split} if split is not None else {}
     values |= {"clock": clock} if clock is not None else {}
     values |= {"latency": [number(0, 600)(text) for text in words("latency", latency)]} if latency else {}
     values |= {"repeats": repeats} if repeats is not None else {}
     values |= {"held_out": True} if held_out else {}
     values |= {"everywhere": True} if everywhere else {}
+    values = with_preset(values, preset) if preset is not None else values
     if drives is not None:
         where = executor_of(executor, workers, ray_address, ray_send)
         watch(values | {"drives": words("drives", drives)}, out, where, retries, dry_run=dry_run, as_json=as_json)
@@ -240,13 +277,16 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
         )
     table.add_row("seeds", ", ".join(map(str, plan.seeds)))
     table.add_row("geo controls", ", ".join(plan.geo))
+    table.add_row("screen", f"as {', '.join(plan.see)}; feedback {', '.join(plan.feedback)}")
     table.add_row("clock", f"{plan.clock}; latency {', '.join(f'{each:g}' for each in plan.latency)} s")
     table.add_row("repeats", str(plan.repeats))
     table.add_row("phrasings", "held out" if plan.held_out else "any")
+    table.add_row("split", "development and test" if plan.split == "both" else plan.split)
     limits = plan.limits
     table.add_row(
         "at most",
-        f"{counted(limits.steps, 'step')}, {limits.sim_s:g} s simulated, {limits.wall_s:g} s real and "
+        f"{counted(limits.steps, 'step')} ({limits.hard_steps} in the hard suite), "
+        f"{limits.sim_s:g} s simulated, {limits.wall_s:g} s real and "
         f"{limits.agent_s:g} s in the agent's process, {limits.tokens:,} tokens",
     )
     table.add_row(

@@ -39,6 +39,15 @@ TasksFrom = Annotated[
 """For every command that names tasks; its callback handles the value, so the command ignores it."""
 
 
+SuiteName = Annotated[
+    str,
+    typer.Option(
+        "--suite", help="Suite that the tasks are chosen from: standard, hard or all. An id names its task in any."
+    ),
+]
+"""For every command that chooses tasks by words."""
+
+
 def _refuse_mode(mode: str | None) -> None:
     if mode is not None:
         from automotive_cosim.run.former import INSTEAD

@@ -26,6 +26,8 @@ HEADLINE = (
     "end",
     "error",
     "geo",
+    "see",
+    "feedback",
     "tokens_in",
     "tokens_out",
     "cost_usd",
@@ -47,6 +49,14 @@ def run(
         str,
         typer.Option(help="What the agent is told of the place: full, gps, context, wrong, irrelevant or none."),
     ] = "full",
+    see: Annotated[str, typer.Option(help="How the agent sees the screen: tree, picture or both.")] = "both",
+    feedback: Annotated[
+        str,
+        typer.Option(
+            help="What the agent is told of its last action: quiet (the control, and whether it took) or verbose "
+            "(also what became of the car)."
+        ),
+    ] = "quiet",
     without: Annotated[
         str,
         typer.Option(
@@ -129,7 +139,7 @@ def run(
     from automotive_cosim.agents.settings import geo_input, parts
     from automotive_cosim.cli.console import Console
     from automotive_cosim.cli.live import Live, Notes
-    from automotive_cosim.episode.specification import clock_of
+    from automotive_cosim.episode.specification import clock_of, feedback_of, see_of
     from automotive_cosim.report.film import Film
     from automotive_cosim.report.page import write_page
     from automotive_cosim.run.episode import EpisodeSetup, run_episode
@@ -140,7 +150,8 @@ def run(
     if scenario == "":
         raise UserError("--scenario is empty; name a scenario, or omit the option to use the task's own")
     off = parts(name.strip() for name in without.split(",") if name.strip())
-    settings = AgentSettings(geo_input(geo), off, memory, seed, most_tokens, float(most_seconds))
+    sees, told = see_of(see), feedback_of(feedback)
+    settings = AgentSettings(geo_input(geo), off, memory, seed, most_tokens, float(most_seconds), sees)
     player = read_script(actions) if actions else make_agent(agent, model, settings)
     setup = EpisodeSetup(
         task,
@@ -157,7 +168,10 @@ def run(
         without=tuple(sorted(off)),
         clock=clock_of(clock),
         latency_s=latency,
+        see=sees,
+        feedback=told,
     )
+    setup.conditions(frozenset(player.channels))
     folder = out or default_folder(setup)
     check_folder(folder, force=force)
     recorder = Recorder(folder, setup, {"actions": str(actions) if actions else None, "out": str(folder)})

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from automotive_cosim.cli.options import AsJson, TasksFrom, print_json, whole_number
+from automotive_cosim.cli.options import AsJson, SuiteName, TasksFrom, print_json, whole_number
 from automotive_cosim.contracts.plain import counted
 
 if TYPE_CHECKING:
@@ -26,7 +26,8 @@ app = typer.Typer(help="List, show and export tasks.", no_args_is_help=True)
 Words = Annotated[
     str,
     typer.Option(
-        "--tasks", help="Ids, patterns, tags, modules, dimensions, general, safety or all; separated by commas."
+        "--tasks",
+        help="Ids, patterns, tags, modules, dimensions, subsets, general, safety, all; by commas.",
     ),
 ]
 
@@ -34,13 +35,22 @@ Words = Annotated[
 @app.command("list")
 def list_(
     tasks: Words = "all",
+    suite: SuiteName = "standard",
+    subset: Annotated[
+        str | None,
+        typer.Option(
+            help="Only those of a subset: general or safety, explicit or implicit, as in safety-implicit.",
+            show_default=False,
+        ),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON list and nothing else.")] = False,
     tasks_from: TasksFrom = None,
 ) -> None:
     """List the tasks, one per line, then their numbers by module and dimension."""
     from automotive_cosim.tasking.catalogue import described
 
-    chosen = _chosen(tasks)
+    chosen = _chosen(tasks, suite)
+    chosen = chosen if subset is None else _within(chosen, subset)
     if as_json:
         print_json([described(task) for task in chosen])
         return
@@ -56,13 +66,14 @@ def list_(
 def export(
     path: Annotated[Path, typer.Argument(help="A .json or .csv file.", show_default=False)],
     tasks: Words = "all",
+    suite: SuiteName = "standard",
     tasks_from: TasksFrom = None,
 ) -> None:
     """Write the catalogue to a file, one row per task."""
     from automotive_cosim.errors import UserError
     from automotive_cosim.tasking.catalogue import described
 
-    rows = [described(task) for task in _chosen(tasks)]
+    rows = [described(task) for task in _chosen(tasks, suite)]
     if path.suffix == ".json":
         text = json.dumps(rows, ensure_ascii=False, indent=1) + "\n"
     elif path.suffix == ".csv":
@@ -120,7 +131,8 @@ def show(
         print_json(described(entry) | {"halves": halves})
         return
     steps = counted(entry.optimal_steps, "step")
-    typer.echo(f"{entry.id}  ({entry.module}, {entry.dimension}, {entry.difficulty}, {steps})")
+    kind = f"{entry.suite} suite, {entry.module}, {entry.dimension}, {entry.subset}"
+    typer.echo(f"{entry.id}  ({kind}, {entry.difficulty}, {steps})")
     for words in entry.templates:
         typer.echo(f"  “{words}”")
     for name, choices in entry.parameters.items():
@@ -150,11 +162,24 @@ def _draw(task: Task, picture: Path, seed: int) -> None:
         raise UserError(f"cannot write {picture}: {error.strerror}") from error
 
 
-def _chosen(words: str) -> list[Task]:
+def _chosen(words: str, suite: str) -> list[Task]:
     from automotive_cosim.run.plan import choose
     from automotive_cosim.tasks import CATALOGUE
 
-    return [CATALOGUE[task_id] for task_id in choose(word.strip() for word in words.split(","))]
+    return [CATALOGUE[task_id] for task_id in choose((word.strip() for word in words.split(",")), suite)]
+
+
+def _within(tasks: list[Task], subset: str) -> list[Task]:
+    """Those of a subset."""
+    from automotive_cosim.errors import UnknownNameError, UserError
+    from automotive_cosim.tasking.task import Subset
+
+    if subset not in set(Subset):
+        raise UnknownNameError("subset", subset, Subset)
+    found = [task for task in tasks if task.subset == subset]
+    if not found:
+        raise UserError(f"none of the tasks chosen is in the subset {subset}; choose others, or another subset")
+    return found
 
 
 def _cells(tasks: list[Task]) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from automotive_cosim.cli.batches import words
-from automotive_cosim.cli.options import AsJson, PartOf, TasksFrom, whole_number
+from automotive_cosim.cli.options import AsJson, PartOf, SuiteName, TasksFrom, whole_number
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import InfrastructureError, UserError
 
@@ -24,8 +24,9 @@ FAILED = 1
 def validate(
     tasks: Annotated[
         str,
-        typer.Option(help="Ids, patterns, tags, modules, dimensions, general, safety or all; separated by commas."),
+        typer.Option(help="Ids, patterns, tags, modules, dimensions, subsets, general, safety, all; by commas."),
     ] = "all",
+    suite: SuiteName = "standard",
     part: Annotated[
         PartOf | None,
         typer.Option(
@@ -76,7 +77,7 @@ def validate(
     from automotive_cosim.run.plan import choose
 
     chosen = GATES if gates == "all" else tuple(words("gates", gates))
-    task_ids = choose(words("tasks", tasks))
+    task_ids = choose(words("tasks", tasks), suite)
     if part is not None:
         asked, task_ids = len(task_ids), part.taken(task_ids)
         if not task_ids:

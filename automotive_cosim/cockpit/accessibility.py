@@ -2,11 +2,26 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 from itertools import chain
 
 from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.widgets import Choice, Field, MapView, Row, Rows, Screen, Slider, Tile, Widget
+from automotive_cosim.cockpit.widgets import (
+    Button,
+    Choice,
+    Field,
+    Label,
+    LimitSign,
+    MapView,
+    Pill,
+    Row,
+    Rows,
+    Screen,
+    Slider,
+    Tile,
+    Widget,
+)
 from automotive_cosim.contracts import BoundingBox, Element
 
 PACKAGE = "org.automotive_cosim.cockpit"
@@ -20,6 +35,19 @@ def elements(screen: Screen, scale: float = 1.0) -> tuple[Element, ...]:
         scale: pixels per logical pixel.
     """
     return tuple(chain.from_iterable(_part(child, scale) for child in screen.children))
+
+
+def drawn(screen: Screen, scale: float = 1.0) -> tuple[Element, ...]:
+    """The same elements in the same order, with only the texts that the picture shows."""
+    widgets = (widget for child in screen.children for widget in child.walk() if _listed(widget))
+    return tuple(
+        replace(
+            element,
+            text=element.text if isinstance(widget, _LETTERED) else "",
+            content_description=widget.description if isinstance(widget, Slider) else "",
+        )
+        for element, widget in zip(elements(screen, scale), widgets, strict=True)
+    )
 
 
 @lru_cache(maxsize=512)
@@ -61,6 +89,8 @@ def _box(rect: Rect, scale: float) -> BoundingBox:
     return BoundingBox(*rect.edges(scale))
 
 
+_LETTERED = (Label, Button, Choice, Tile, Slider, Field, Row, Pill, LimitSign)
+"""Widgets whose text is drawn."""
 _SCROLLING = frozenset((Rows, Slider, MapView))
 
 

@@ -7,7 +7,7 @@ model's prompt is generated from it (``grammar``), so the two cannot diverge.
 from __future__ import annotations
 
 import json
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from dataclasses import fields as dataclass_fields
 from enum import StrEnum
@@ -208,9 +208,16 @@ def to_json(action: Action) -> Json:
     return {name: value for name, value in asdict(action).items() if value is not None}
 
 
-def grammar(kinds: Collection[ActionType] = tuple(ActionType)) -> str:
-    """The actions of these kinds, each as one line of JSON with its meaning, for a prompt."""
-    return "\n".join(f"- {takes.about}: {_example(kind, takes)}" for kind, takes in FIELDS.items() if kind in kinds)
+def grammar(kinds: Collection[ActionType] = tuple(ActionType), *, by_point: bool = False) -> str:
+    """The actions of these kinds, each as one line of JSON with its meaning, for a prompt.
+
+    Args:
+        kinds: the actions to list.
+        by_point: whether there is no list of elements, so that a target is a point.
+    """
+    return "\n".join(
+        f"- {takes.about}: {_example(kind, takes, by_point)}" for kind, takes in FIELDS.items() if kind in kinds
+    )
 
 
 def json_schema() -> Json:
@@ -268,20 +275,21 @@ def perform(action: Action, cockpit: Cockpit, elements: tuple[Element, ...]) -> 
     Args:
         action: a checked action.
         cockpit: the cockpit, which decides what is possible and says why not.
-        elements: the list that the agent saw, to which an index refers.
+        elements: the list that the agent saw, to which an index refers; empty if it was given none.
 
     Returns:
         The result. A wrong action changes nothing.
     """
     kind = action.action_type
+    if action.index is not None and not elements:
+        return Feedback(FeedbackCode.NO_SUCH_ELEMENT, "there is no list of elements; give x and y")
     if action.index is not None and not 0 <= action.index < len(elements):
         return Feedback(
             FeedbackCode.NO_SUCH_ELEMENT,
             f"there is no element {action.index}; the list goes from 0 to {len(elements) - 1}",
         )
     if FIELDS[kind].target:
-        x, y = _point(action, elements)
-        return _touch(action, cockpit, x, y)
+        return _touch(action, cockpit, *point(action, elements))
     match kind:
         case ActionType.SCROLL:
             target = None if action.index is None else elements[action.index]
@@ -339,24 +347,27 @@ def _touch(action: Action, cockpit: Cockpit, x: int, y: int) -> Feedback:
             return cockpit.type_text(action.text or "", clear=bool(action.clear_text))
 
 
-def _point(action: Action, elements: tuple[Element, ...]) -> tuple[int, int]:
+def point(action: Action, elements: Sequence[Element]) -> tuple[int, int]:
+    """The pixel that an action with a target touches: the one it gives, or the middle of the element it names."""
     if action.index is None:
         return action.x or 0, action.y or 0
     box = elements[action.index].bbox_pixels
     return (box.x_min + box.x_max) // 2, (box.y_min + box.y_max) // 2
 
 
-def _example(kind: ActionType, takes: Takes) -> str:
-    names = (("index",) if takes.target else ()) + takes.required + takes.optional
+def _example(kind: ActionType, takes: Takes, by_point: bool) -> str:
+    target = ("x", "y") if by_point else ("index",)
+    optional = tuple(name for name in takes.optional if name != "index" or not by_point)
+    names = (target if takes.target else ()) + takes.required + optional
     parts = [f'"action_type": "{kind}"']
     for name in names:
         if name in _ENUMS:
             parts.append(f'"{name}": "<{"|".join(_ENUMS[name])}>"')
         else:
             parts.append(f'"{name}": <{_TYPES[name].__name__}>')
-    point = ' (or "x", "y" in place of "index")' if takes.target else ""
-    optional = f" ({', '.join(takes.optional)} may be left out)" if takes.optional else ""
-    return "{" + ", ".join(parts) + "}" + point + optional
+    point = ' (or "x", "y" in place of "index")' if takes.target and not by_point else ""
+    left_out = f" ({', '.join(optional)} may be left out)" if optional else ""
+    return "{" + ", ".join(parts) + "}" + point + left_out
 
 
 def _field(name: str, value: Any) -> Any:

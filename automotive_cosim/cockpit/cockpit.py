@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from copy import copy
+from dataclasses import replace
 from datetime import timedelta
 from difflib import get_close_matches
 from typing import Any, TypeVar
@@ -20,9 +21,10 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from automotive_cosim.cockpit import deeds, desk, language, media, people, places, update, vhal
+from automotive_cosim.cockpit import accessibility, deeds, desk, language, media, people, places, update, vhal
 from automotive_cosim.cockpit.aboard import Occupant, take_seats
 from automotive_cosim.cockpit.arrivals import Arrival, timeline
+from automotive_cosim.cockpit.belongings import NOTHING, Belongings, with_details, with_papers, with_people
 from automotive_cosim.cockpit.cabin import CabinStart
 from automotive_cosim.cockpit.changes import CarChange, schedule
 from automotive_cosim.cockpit.content import content
@@ -61,7 +63,7 @@ from automotive_cosim.contracts import (
     Surroundings,
     VehicleState,
 )
-from automotive_cosim.errors import SignalError, UnknownNameError
+from automotive_cosim.errors import SignalError, UnknownNameError, UserError
 
 W = TypeVar("W", bound=Widget)
 
@@ -109,6 +111,7 @@ class Cockpit:
         signals: Mapping[str, Any] | None = None,
         arrivals: Sequence[Arrival] = (),
         changes: Sequence[CarChange] = (),
+        belongings: Belongings = NOTHING,
         sign_camera: bool = True,
         lookout: bool = False,
         driven_s: float = 0.0,
@@ -125,6 +128,7 @@ class Cockpit:
                 order.
             arrivals: incoming calls and messages while driving.
             changes: changes of the car while driving that nobody commands.
+            belongings: people, messages, appointments, memos and places besides those that are drawn.
             sign_camera: whether it reads limit signs; without it, the status bar shows no sign.
             lookout: whether home and map show what the car notices around, ahead and aboard.
             driven_s: how long the driver had been driving without a break before departure.
@@ -137,6 +141,8 @@ class Cockpit:
         """
         roads = road_map(network)
         library, atlas, directory = media.library(rng), places.atlas(roads, rng), people.directory(rng)
+        drawn = desk.desk(rng, atlas)
+        atlas, directory = with_details(atlas, belongings), with_people(directory, belongings)
         self._state = State(
             Vehicle(Signals()),
             roads,
@@ -146,7 +152,7 @@ class Cockpit:
             Navigation(favourites=atlas.favourites),
             media.Listening(library.playlists, library.favourites),
             people.Phone(directory.favourites),
-            desk.desk(rng, atlas),
+            with_papers(drawn, belongings),
             sign_camera,
             CabinStart.read(cabin or {}),
         )
@@ -186,6 +192,22 @@ class Cockpit:
         put_back(twin._state, departed._state, surroundings, way, with_air=with_air)
         twin._tree = None
         return twin
+
+    def expect(self, interruptions: Sequence[Arrival | CarChange]) -> None:
+        """Lets calls, messages and changes of the car come, at seconds from now.
+
+        Raises:
+            UserError: one is impossible, or an arrival names nobody.
+        """
+        since_s = self._state.time_s - self._state.departed_s
+        coming = [replace(each, at_s=since_s + each.at_s) for each in interruptions]
+        arrivals = tuple(each for each in coming if isinstance(each, Arrival))
+        if any(not arrival.who or (arrival.kind == "message" and not arrival.text) for arrival in arrivals):
+            raise UserError("an interruption has no caller or no text; give both, they are not drawn here")
+        arrivals = timeline(arrivals, self._state.directory, np.random.default_rng(0))
+        changes = schedule(each for each in coming if isinstance(each, CarChange))
+        self._state.expected += arrivals
+        self._state.changes += changes
 
     def inject(self, path: str, value: Any) -> None:
         """Sets a signal directly, bypassing switches and physics, for tests and studies.
@@ -421,9 +443,17 @@ class Cockpit:
         """The accessibility tree as a list."""
         return self._display.elements(self._screen)
 
+    def drawn(self) -> tuple[Element, ...]:
+        """The same list with only the texts that the picture shows, for a reference that works by pixels."""
+        return accessibility.drawn(self._screen, self._scale)
+
     def screenshot(self) -> npt.NDArray[np.uint8]:
         """The display, (height, width, 3), RGB, read-only; the same array as long as nothing changes."""
         return self._display.screenshot(self._screen)
+
+    def touched(self, x: int, y: int) -> Widget | None:
+        """The widget that a tap at a pixel of the screenshot would reach."""
+        return self._screen.at(*self._logical(x, y))
 
     @property
     def content(self) -> dict[str, tuple[str, ...]]:

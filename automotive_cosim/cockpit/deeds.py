@@ -146,8 +146,8 @@ def _aims(message: Message) -> frozenset[str]:
             return frozenset({"driver.profile"})
         case Record():
             return frozenset({"apps.memos", "apps.recording"})
-        case ResetTrip():
-            return frozenset({"trip.resets"})
+        case ResetTrip(meter):
+            return frozenset({"trip.resets_b" if meter == "b" else "trip.resets"})
         case Honk():
             return frozenset({"horn"})
         case Wash():

@@ -158,6 +158,28 @@ class Appointment:
 
 
 @dataclass(frozen=True, slots=True)
+class TripMeter:
+    """What a trip meter has counted up to a reading of the odometer, from which it counts on."""
+
+    driven_m: float = 0.0
+    took_s: float = 0.0
+    used_kwh: float = 0.0
+    since: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Driven metres, time and battery (``errands.odometer``) from which it counts on: at departure or the reset."""
+    resets: int = 0
+
+    def at(self, reading: tuple[float, float, float], battery_kwh: float) -> tuple[float, float, float]:
+        """Metres, seconds and kWh that it shows at a reading of the odometer."""
+        (metres, seconds, level), (from_m, from_s, from_level) = reading, self.since
+        used_kwh = max(0.0, from_level - level) / 100 * battery_kwh
+        return self.driven_m + max(0.0, metres - from_m), self.took_s + seconds - from_s, self.used_kwh + used_kwh
+
+
+FROM_HERE = TripMeter()
+"""A trip meter that has counted nothing yet."""
+
+
+@dataclass(frozen=True, slots=True)
 class Desk:
     """Everything the driver has set or created in the smaller apps."""
 
@@ -181,6 +203,8 @@ class Desk:
     resets: int = 0
     trip_from: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """Driven metres, time and battery when the trip computer was reset."""
+    trip_b: TripMeter = FROM_HERE
+    """The second trip meter, which is reset by itself."""
 
     def with_memory(self, slot: int, signals: Signals) -> Desk:
         """With the present seat position stored in a memory slot."""
@@ -210,6 +234,10 @@ class Desk:
             "wifi.network": self.network,
             "bluetooth.device": self.device,
             "trip.resets": self.resets,
+            "trip.resets_b": self.trip_b.resets,
+            "calendar.entries": [
+                {"at": entry.at, "title": entry.title, "place": entry.place} for entry in self.agenda
+            ],
         }
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 from datetime import timedelta
 
 from automotive_cosim.cockpit import calls
-from automotive_cosim.cockpit.desk import PRICES, Ticket
+from automotive_cosim.cockpit.desk import PRICES, Ticket, TripMeter
 from automotive_cosim.cockpit.media import Entry, queue
 from automotive_cosim.cockpit.messages import (
     DeclineCall,
@@ -50,8 +50,8 @@ def run(state: State, message: Message) -> Feedback:
             return _pay(state)
         case Record():
             return _record(state)
-        case ResetTrip():
-            return _reset_trip(state)
+        case ResetTrip(meter):
+            return _reset_trip(state) if meter == "a" else _reset_trip_b(state)
         case Honk():
             state.horns += 1
             state.signals[DRIVE.HORN] = True
@@ -91,6 +91,12 @@ def _record(state: State) -> Feedback:
 def _reset_trip(state: State) -> Feedback:
     state.desk = replace(state.desk, resets=state.desk.resets + 1, trip_from=odometer(state))
     return Feedback(FeedbackCode.OK, "the trip computer is reset")
+
+
+def _reset_trip_b(state: State) -> Feedback:
+    meter = TripMeter(since=odometer(state), resets=state.desk.trip_b.resets + 1)
+    state.desk = replace(state.desk, trip_b=meter)
+    return Feedback(FeedbackCode.OK, "trip B is reset")
 
 
 def odometer(state: State) -> tuple[float, float, float]:

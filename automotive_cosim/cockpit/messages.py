@@ -233,6 +233,8 @@ class Record:
 class ResetTrip:
     """Count distance and time from here."""
 
+    meter: Literal["a", "b"] = "a"
+
 
 @dataclass(frozen=True, slots=True)
 class Honk:

@@ -137,6 +137,15 @@ class Sent:
 
 
 @dataclass(frozen=True, slots=True)
+class FigureDraft:
+    """A message with a figure that is not sent yet."""
+
+    sentence: str
+    """Key of its sentence."""
+    value: float
+
+
+@dataclass(frozen=True, slots=True)
 class Phone:
     """The driver's use of the phone."""
 
@@ -154,6 +163,8 @@ class Phone:
     declined: tuple[str, ...] = ()
     """Callers whose calls were declined."""
     received: tuple[Received, ...] = ()
+    draft: FigureDraft | None = None
+    """The message with a figure that is being put together; it outlives calls and other screens."""
 
     def called(self, who: str, when: str, time_s: float) -> Phone:
         """With an outgoing call."""

@@ -61,7 +61,8 @@ def sense(state: State, surroundings: Surroundings, dt_s: float) -> None:
     play_on(state, dt_s)
     if before is None:
         state.departed_s = driving.time_s
-        state.desk = replace(state.desk, trip_from=odometer(state))
+        trip_b = replace(state.desk.trip_b, since=odometer(state))
+        state.desk = replace(state.desk, trip_from=odometer(state), trip_b=trip_b)
     else:
         _prepare_climate(state, before.local_time, surroundings.local_time)
     _end_film(state)

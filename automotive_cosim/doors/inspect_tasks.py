@@ -26,7 +26,7 @@ from inspect_ai.tool import ToolDef, ToolError
 from automotive_cosim.agents.settings import geo_input
 from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Json
-from automotive_cosim.episode.specification import EpisodeSpec
+from automotive_cosim.episode.specification import EpisodeSpec, feedback_of, see_of
 from automotive_cosim.errors import InfrastructureError, UserError
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.report.stats import Interval, wilson
@@ -62,6 +62,8 @@ def _cockpit(
     scenario: str | None = None,
     geo: str = "full",
     pictures: bool = True,
+    see: str = "both",
+    feedback: str = "quiet",
 ) -> Task:
     """The tasks at the cockpit.
 
@@ -71,11 +73,18 @@ def _cockpit(
         scenario: in place of the tasks' own.
         geo: what the agent is told of where it is.
         pictures: whether it sees the screen.
+        see: how it sees the screen: ``tree``, ``picture`` or ``both``.
+        feedback: what it is told of its last action: ``quiet`` or ``verbose``.
     """
     numbers = _words(seeds)
     if not all(number.isdecimal() for number in numbers):
         raise UserError(f"seeds are {', '.join(numbers)}; give whole numbers from 0, separated by commas")
-    named = {"scenario": scenario, "geo": str(geo_input(geo))}
+    named = {
+        "scenario": scenario,
+        "geo": str(geo_input(geo)),
+        "see": str(see_of(see)),
+        "feedback": str(feedback_of(feedback)),
+    }
     samples = [
         Sample(
             id=f"{each}-{half}-seed{seed}",
@@ -102,7 +111,14 @@ def _driver(pictures: bool = True) -> Solver:
     async def solve(state: TaskState, generate: Generate) -> TaskState:
         service = shared_service()
         named = state.metadata
-        spec = EpisodeSpec(**named | {"geo": geo_input(named["geo"])})
+        spec = EpisodeSpec(
+            **named
+            | {
+                "geo": geo_input(named["geo"]),
+                "see": see_of(named["see"]),
+                "feedback": feedback_of(named["feedback"]),
+            }
+        )
         turn = await asyncio.to_thread(service.start, spec, channels)
         state.messages = [ChatMessageSystem(content=INSTRUCTIONS), ChatMessageUser(content=_content(turn))]
         state.tools = [_act(service, turn.episode_id)]

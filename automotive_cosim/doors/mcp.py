@@ -23,7 +23,7 @@ from automotive_cosim.agents.settings import geo_input
 from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Json
 from automotive_cosim.episode.listener import Listener
-from automotive_cosim.episode.specification import EpisodeSpec
+from automotive_cosim.episode.specification import EpisodeSpec, feedback_of, see_of
 from automotive_cosim.errors import CosimError, InfrastructureError, UnknownNameError
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.run.plan import choose
@@ -99,12 +99,22 @@ class _Tools:
         seed: Annotated[int, Field(description="The same seed and actions give the same trace.", ge=0)] = 0,
         scenario: Annotated[str | None, Field(description="A scenario in place of the task's own.")] = None,
         geo: Annotated[str, Field(description="full, gps, context, wrong, irrelevant or none.")] = "full",
+        see: Annotated[str, Field(description="How to see the screen: tree, picture or both.")] = "both",
+        feedback: Annotated[str, Field(description="What to be told of an action: quiet or verbose.")] = "quiet",
         channels: Annotated[
             list[str] | None, Field(description=f"What to observe: {', '.join(Channel)}; all by default.")
         ] = None,
     ) -> CallToolResult:
         """Start an episode: a car drives until the situation of the task arises, then you take over its cockpit."""
-        spec = EpisodeSpec(task, half, scenario, seed=seed, geo=geo_input(geo))
+        spec = EpisodeSpec(
+            task,
+            half,
+            scenario,
+            seed=seed,
+            geo=geo_input(geo),
+            see=see_of(see),
+            feedback=feedback_of(feedback),
+        )
         return _turn(self._service.start(spec, _channels(channels), _Progress(context)))
 
     @_told

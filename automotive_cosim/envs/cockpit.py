@@ -21,10 +21,13 @@ from automotive_cosim.episode.specification import (
     Conditions,
     EpisodeSpec,
     SeedSource,
+    feedback_of,
+    see_of,
 )
 from automotive_cosim.interface import spaces
 from automotive_cosim.interface.controls import GeoInput
-from automotive_cosim.interface.observe import ALL, Channel
+from automotive_cosim.interface.feedback import FeedbackDetail
+from automotive_cosim.interface.observe import ALL, Channel, See
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.tasking.draws import SEED_LIMIT
 from automotive_cosim.tasking.task import Task
@@ -66,8 +69,10 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         to_place: str = "",
         channels: Iterable[str] = ALL,
         geo: str = GeoInput.FULL,
+        see: str = See.BOTH,
+        feedback: str = FeedbackDetail.QUIET,
         held_out: bool = False,
-        max_steps: int = 20,
+        max_steps: int | None = None,
         action_cost_s: float = ACTION_COST_S,
         render_mode: str | None = None,
         simulations: Simulations | None = None,
@@ -78,7 +83,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         Args:
             task: a task or its id.
             half, scenario, origin, gps, from_place, to_place, held_out: as in ``EpisodeSpec``.
-            channels, geo, max_steps, action_cost_s: as in ``Conditions``.
+            channels, geo, see, feedback, max_steps, action_cost_s: as in ``Conditions``.
             render_mode: ``"rgb_array"`` or None.
             simulations: warm simulations; by default those that the environments of this process share.
             listener: told of progress.
@@ -86,13 +91,18 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         Raises:
             UnknownNameError: no such task, half or scenario.
             ScenarioError: the scenario cannot be read, or has no such route.
-            UserError: ``origin`` is not a position on earth.
+            UserError: ``origin`` is not a position on earth, or ``see`` leaves nothing of the screen.
         """
         given = None if isinstance(task, str) else task
         name = task if isinstance(task, str) else task.id
         spec = EpisodeSpec(name, half, scenario, origin, gps, from_place, to_place, held_out=held_out)
         self._conditions = Conditions(
-            frozenset(map(Channel, channels)), GeoInput(geo), max_steps, action_cost_s=action_cost_s
+            frozenset(map(Channel, channels)),
+            GeoInput(geo),
+            max_steps,
+            action_cost_s=action_cost_s,
+            see=see_of(see),
+            feedback=feedback_of(feedback),
         )
         self._leave: Callable[[], object] | None = None
         if simulations is None:

@@ -111,6 +111,7 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
         self._finders = [SituationFinder(EpisodeSpec(task, scenario=scenario), simulations) for task in tasks]
         self._seeds: list[SeedSource] = []
         """One per task, so that what is drawn for one does not depend on the others."""
+        self._max_steps = max_steps
         self._conditions = Conditions(frozenset({Channel.ELEMENTS, Channel.VEHICLE}), max_steps=max_steps)
         self._episode: Episode | None = None
         self._controls = tuple(controls)
@@ -201,7 +202,7 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
 
     def _numbers(self) -> npt.NDArray[np.float32]:
         seen = self.episode.observation
-        spent = (len(self.episode.steps) - 1) / self._conditions.max_steps
+        spent = (len(self.episode.steps) - 1) / self._max_steps
         parts = [*_words(" ".join([seen.goal, *seen.said])), *self._switches(seen), *_car(seen), spent]
         return np.clip(np.array(parts, np.float32), -1.0, 1.0)
 

@@ -43,6 +43,8 @@ class Episode(Session):
             TrafficError: the traffic simulation failed.
         """
         instance, world = hand_over.instance, hand_over.world
+        if conditions.max_steps is None:
+            conditions = replace(conditions, max_steps=instance.task.max_steps)
         begun: dict[str, Any] = beginning(world, instance.goal, conditions, hand_over.drive, listener)
         return cls(
             **begun,

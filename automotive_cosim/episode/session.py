@@ -32,6 +32,7 @@ from automotive_cosim.geo.locate import Geo
 from automotive_cosim.geo.reckoning import Roads
 from automotive_cosim.interface import trace
 from automotive_cosim.interface.controls import Shown, shown
+from automotive_cosim.interface.feedback import FeedbackDetail, control, quiet
 from automotive_cosim.interface.observe import Channel, observe
 from automotive_cosim.tasking.dialogue import NEUTRAL, spoken_s
 
@@ -114,7 +115,7 @@ class Session:
             TrafficError: the traffic simulation failed.
         """
         self._check_open()
-        feedback, cost_s = self._answer(action) or (self.world.perform(action, self.elements), 0.0)
+        feedback, cost_s = self._answer(action) or (self._performed(action), 0.0)
         said: tuple[str, ...] = ()
         if action.action_type is ActionType.ASK_DRIVER and feedback.code is FeedbackCode.OK:
             said = (self._reply(action.text or ""),)
@@ -177,6 +178,15 @@ class Session:
         if self.end is not None:
             raise RuntimeError(f"the episode is over ({self.end}); begin another one")
 
+    def _performed(self, action: Action) -> Feedback:
+        """The cockpit's feedback to an action; an agent without a list has no index to name."""
+        is_listed = Channel.ELEMENTS in self.conditions.given
+        elements = self.elements if is_listed else ()
+        if self.conditions.feedback is FeedbackDetail.VERBOSE:
+            return self.world.perform(action, elements)
+        name = control(action, self.world.cockpit, elements, by_name=is_listed)
+        return quiet(self.world.perform(action, elements), name, self.world.cockpit)
+
     def _answer(self, action: Action) -> tuple[Feedback, float] | None:
         """The virtual sensor's answer to a query and its seconds; None for any other action."""
         if action.action_type is not ActionType.QUERY:
@@ -235,7 +245,7 @@ class Session:
             return End.DRIVE_ENDED
         if self.declared is not None:
             return End.DECLARED
-        if len(self.steps) > self.conditions.max_steps:
+        if self.conditions.max_steps is not None and len(self.steps) > self.conditions.max_steps:
             return End.OUT_OF_STEPS
         most_s = self.conditions.max_sim_s
         return End.OUT_OF_TIME if most_s is not None and self.seconds >= most_s - ROUNDING_S else None

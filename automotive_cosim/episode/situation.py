@@ -168,6 +168,7 @@ class SituationFinder:
             cabin=start.cabin,
             signals={**PARKED, **start.signals} if start.parked else start.signals,
             arrivals=start.arrivals,
+            belongings=start.belongings,
             sign_camera=start.sign_camera,
         )
         world = couple(
@@ -225,6 +226,7 @@ class SituationFinder:
         rule = "" if self._has_own_law else bound(half, drive.moments[-1].context)
         if freshness is not None:
             drive = drive.freshened(freshness)
+        drive.world.cockpit.expect(half.start.interruptions)
         instance = replace(self._draw(draws, drive.world.cockpit.content), rule=rule)
         return HandOver(instance, drive.world, drive.moments)
 

@@ -9,18 +9,17 @@ from typing import Annotated
 import numpy as np
 from annotated_types import Ge, Gt
 
-from automotive_cosim.errors import UnknownNameError
+from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.annotations import Latitude, Longitude, OneOf
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted
 from automotive_cosim.interface.controls import GeoInput
-from automotive_cosim.interface.observe import ALL, Channel
+from automotive_cosim.interface.feedback import FeedbackDetail
+from automotive_cosim.interface.observe import ALL, Channel, See
 from automotive_cosim.tasking.draws import SEED_LIMIT
 
 ACTION_COST_S = 1.0
 """Simulated seconds per action: about the time of a person's tap (NHTSA 2013 counts glances of up to 2 s)."""
-MAX_STEPS = 20
-"""Default limit of actions per episode."""
 ROUNDING_S = 1e-9
 """Tolerance of sums of simulated seconds."""
 
@@ -34,25 +33,46 @@ class Clock(StrEnum):
     """The seconds that the model really took, in addition."""
 
 
+SCREEN = frozenset({Channel.SCREENSHOT, Channel.ELEMENTS})
+_AS = {Channel.SCREENSHOT: "its picture", Channel.ELEMENTS: "its list of elements"}
+
+
 @dataclass(frozen=True, slots=True)
 class Conditions:
     """The agent's input and limits."""
 
     channels: frozenset[Channel] = ALL
-    """Channels that the agent wants; ``geo`` may withhold some of them."""
+    """Channels that the agent wants; ``geo`` and ``see`` may withhold some of them."""
     geo: GeoInput = GeoInput.FULL
     """What the agent is told of where it is."""
-    max_steps: int = MAX_STEPS
-    """Actions after which the episode is cut off."""
+    max_steps: int | None = None
+    """Actions after which the episode is cut off; None takes the task's own limit (``Suite.max_steps``)."""
     max_sim_s: float | None = None
     """Simulated seconds from the hand-over after which it is cut off; None leaves that to ``max_steps``."""
     action_cost_s: float = ACTION_COST_S
     """Simulated seconds per action; a ``wait`` takes as many for each of its seconds."""
+    see: See = See.BOTH
+    """How the agent sees the screen."""
+    feedback: FeedbackDetail = FeedbackDetail.QUIET
+    """What it is told of its last action."""
+
+    def __post_init__(self) -> None:
+        """Refuses to blind the agent.
+
+        Raises:
+            UserError: nothing of the screen is left that it can see.
+        """
+        if self.channels & SCREEN and not self.given & SCREEN:
+            (only,) = self.channels & SCREEN
+            raise UserError(
+                f"the agent sees the screen only as {_AS[only]}, which --see {self.see} withholds; "
+                f"choose another agent, or --see {'tree' if only is Channel.ELEMENTS else 'picture'} or both"
+            )
 
     @property
     def given(self) -> frozenset[Channel]:
         """The channels that the agent gets."""
-        return self.channels - self.geo.withheld
+        return self.channels - self.geo.withheld - self.see.withheld
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,12 +100,16 @@ class EpisodeSpec:
     phrasing is drawn."""
     geo: Annotated[GeoInput, OneOf(GeoInput, "geo control")] = GeoInput.FULL
     """What the agent is told of where it is."""
-    max_steps: Annotated[int, Ge(1)] = MAX_STEPS
-    """Actions after which the episode is cut off."""
+    max_steps: Annotated[int, Ge(1)] | None = None
+    """Actions after which the episode is cut off; None takes the task's own limit, 20 or in the hard suite 40."""
     max_sim_s: Annotated[float, Gt(0)] | None = None
     """Simulated seconds from the hand-over after which it is cut off; None leaves that to ``max_steps``."""
     action_cost_s: Annotated[float, Gt(0)] = ACTION_COST_S
     """Simulated seconds per action."""
+    see: Annotated[See, OneOf(See, "way to see the screen")] = See.BOTH
+    """How the agent sees the screen."""
+    feedback: Annotated[FeedbackDetail, OneOf(FeedbackDetail, "kind of feedback")] = FeedbackDetail.QUIET
+    """What it is told of its last action."""
 
     def check(self) -> None:
         """Tries the values; whether there is such a task or scenario is found out where those are looked up.
@@ -96,8 +120,14 @@ class EpisodeSpec:
         checked(type(self), asdict(self), lambda steps: ("the episode", dotted(steps)))
 
     def conditions(self, channels: frozenset[Channel] = ALL) -> Conditions:
-        """The conditions for an agent that wants these channels."""
-        return Conditions(channels, self.geo, self.max_steps, self.max_sim_s, self.action_cost_s)
+        """The conditions for an agent that wants these channels.
+
+        Raises:
+            UserError: it could see nothing of the screen.
+        """
+        return Conditions(
+            channels, self.geo, self.max_steps, self.max_sim_s, self.action_cost_s, self.see, self.feedback
+        )
 
 
 def clock_of(name: str) -> Clock:
@@ -109,6 +139,28 @@ def clock_of(name: str) -> Clock:
     if name not in set(Clock):
         raise UnknownNameError("clock", name, Clock)
     return Clock(name)
+
+
+def see_of(name: str) -> See:
+    """The way to see the screen by name.
+
+    Raises:
+        UnknownNameError: there is none.
+    """
+    if name not in set(See):
+        raise UnknownNameError("way to see the screen", name, See)
+    return See(name)
+
+
+def feedback_of(name: str) -> FeedbackDetail:
+    """The kind of feedback by name.
+
+    Raises:
+        UnknownNameError: there is none.
+    """
+    if name not in set(FeedbackDetail):
+        raise UnknownNameError("kind of feedback", name, FeedbackDetail)
+    return FeedbackDetail(name)
 
 
 @dataclass(frozen=True, slots=True)

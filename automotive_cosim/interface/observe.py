@@ -24,6 +24,25 @@ class Channel(StrEnum):
 ALL = frozenset(Channel)
 
 
+class See(StrEnum):
+    """How an agent sees the screen."""
+
+    BOTH = "both"
+    TREE = "tree"
+    """As the list of elements."""
+    PICTURE = "picture"
+    """As the picture: no list, no ids, no descriptions; an action has to give a point."""
+
+    @property
+    def withheld(self) -> frozenset[Channel]:
+        """Channels that it takes away."""
+        return {
+            See.BOTH: frozenset[Channel](),
+            See.TREE: frozenset({Channel.SCREENSHOT}),
+            See.PICTURE: frozenset({Channel.ELEMENTS}),
+        }[self]
+
+
 def observe(
     world: CoSimulation,
     goal: str,

@@ -5,6 +5,7 @@
 | oracle | every reference solution succeeds by public actions, within the budget and 70 % of the deadline |
 | start | the goal does not hold at the hand-over, and the context does not leave the deciding rule to a query |
 | world | the weather is one that the place has at that date and hour |
+| slip | each usual mistake that the task names can be made, and fails |
 | prefix | ``complete`` after any earlier step of the reference solution scores 0 |
 | late | the reference solution after the deadline fails |
 | undone | with the goal's own writes reverted, it fails |
@@ -98,6 +99,16 @@ def start(ground: Ground) -> Wrong:
 def world(ground: Ground) -> Wrong:
     """Holds the weather against the climate."""
     yield from implausible(ground.episode.moments[0])
+
+
+def slip(ground: Ground) -> Wrong:
+    """Makes the usual mistakes, each before ``complete``."""
+    for number, moves in enumerate(ground.half.slips):
+        played = ground.play(ground.oracle(moves, GoalStatus.COMPLETE))
+        if played.stuck:
+            yield f"slip {number} cannot be made: {played.stuck}"
+        elif played.success:
+            yield f"slip {number} succeeds"
 
 
 def prefix(ground: Ground) -> Wrong:

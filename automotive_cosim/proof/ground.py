@@ -15,7 +15,7 @@ from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.loop import Actor, play
 from automotive_cosim.episode.situation import SituationFinder
-from automotive_cosim.episode.specification import MAX_STEPS, Conditions, EpisodeSpec, SeedSource
+from automotive_cosim.episode.specification import Conditions, EpisodeSpec, SeedSource
 from automotive_cosim.errors import ActionError, OutOfBudgetError
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.interface.trace import Hash, Step
@@ -123,7 +123,7 @@ class Ground:
         """The half, with the parameters filled in."""
         return self.episode.instance.half
 
-    def play(self, actor: Actor, max_steps: int = MAX_STEPS, *, stop_when_lost: bool = False) -> Played:
+    def play(self, actor: Actor, max_steps: int | None = None, *, stop_when_lost: bool = False) -> Played:
         """An episode from the hand-over; with ``stop_when_lost`` it ends as soon as it can no longer succeed."""
         return finish(self.episode.branch(max_steps), actor, stop_when_lost=stop_when_lost)
 
@@ -132,18 +132,18 @@ class Ground:
         """The episode of the reference solution."""
         return self.play(self.oracle())
 
-    def oracle(self, moves: Sequence[Move] | None = None) -> Oracle:
-        """An oracle for this instance."""
+    def oracle(self, moves: Sequence[Move] | None = None, declares: GoalStatus | None = None) -> Oracle:
+        """An oracle for this instance, or for other moves or another declaration."""
         oracle = Oracle()
         oracle.reset(self.instance.goal)
-        oracle.brief(self.instance, moves)
+        oracle.brief(self.instance, moves, declares)
         return oracle
 
     def agent(self, agent: Agent) -> Agent:
         """The agent, after being told the goal."""
         agent.reset(self.instance.goal)
         if isinstance(agent, Privileged):
-            agent.brief(self.instance)
+            agent.brief(self.instance, drawn=self.episode.world.cockpit.drawn)
         return agent
 
     def declares(self, status: GoalStatus) -> Played:

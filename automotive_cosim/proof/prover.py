@@ -21,6 +21,7 @@ GATES = (
     "oracle",
     "start",
     "world",
+    "slip",
     "prefix",
     "late",
     "undone",
@@ -148,7 +149,7 @@ class Prover:
         right = ground.reference
         found.oracle_steps[half] = len(right.actions)
         found.traces[half] = right.trace_sha256
-        for gate in ("oracle", "start", "world", "prefix", "late", "random"):
+        for gate in ("oracle", "start", "world", "slip", "prefix", "late", "random"):
             if gate in self._chosen:
                 found.take(gate, getattr(gates, gate)(ground), half)
         for gate in ("undone", "near", "coupled", "lawful"):

@@ -22,7 +22,7 @@ from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import EpisodeSpec, SeedSource
 from automotive_cosim.errors import TriggerNotReachedError
 from automotive_cosim.run.plan import choose
-from automotive_cosim.tasking.task import Half
+from automotive_cosim.tasking.task import Half, Suite
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
 
@@ -101,7 +101,9 @@ def write(path: Path, record: Mapping[str, Reach]) -> None:
     part.replace(path)
 
 
-def measure(tasks: Sequence[str], seeds: Sequence[int], path: Path = RECORD) -> Iterator[tuple[str, int, bool]]:
+def measure(
+    tasks: Sequence[str], seeds: Sequence[int], path: Path = RECORD, suite: str = Suite.STANDARD
+) -> Iterator[tuple[str, int, bool]]:
     """Tries every half with every seed that is not on record; yields each half, seed and whether it was reached.
 
     The record is written after each scenario with a seed, so that a killed run loses little.
@@ -110,9 +112,10 @@ def measure(tasks: Sequence[str], seeds: Sequence[int], path: Path = RECORD) -> 
         tasks: ids of the catalogue, or anything else that ``run.plan.choose`` accepts.
         seeds: the seeds.
         path: the record.
+        suite: the suite that the tasks are chosen from, or ``all``.
     """
     record = dict(read(path))
-    halves = [(task_id, half) for task_id in choose(tasks) for half in CATALOGUE[task_id].halves]
+    halves = [(task_id, half) for task_id in choose(tasks, suite) for half in CATALOGUE[task_id].halves]
     halves.sort(key=_traffic)
     with closing(Simulations(count_limit=WARM)) as simulations:
         for seed in seeds:
@@ -157,13 +160,14 @@ def main() -> None:
     """Measures, and says what is not reached."""
     parser = argparse.ArgumentParser(description="Measure how often the situation of each half comes about.")
     parser.add_argument("--tasks", default="all", help="as for `automotive-cosim validate`")
+    parser.add_argument("--suite", default="standard", help="standard, hard or all")
     parser.add_argument("--first-seed", type=int, default=100)
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--out", type=Path, default=RECORD, help="the record, by default the shipped one")
     given = parser.parse_args()
     seeds = range(given.first_seed, given.first_seed + given.seeds)
     missed = 0
-    for name, seed, reached in measure(given.tasks.split(","), seeds, given.out):
+    for name, seed, reached in measure(given.tasks.split(","), seeds, given.out, given.suite):
         if not reached:
             missed += 1
             print(f"{name}, seed {seed}: not reached", flush=True)

@@ -55,9 +55,10 @@ FREED: Mapping[Differs, frozenset[Facet]] = {
     Differs.TIME: frozenset({Facet.CLOCK, Facet.LIGHT, Facet.SIGN, *_DRIVING}),
     Differs.MOTION: frozenset({Facet.GEAR, *_DRIVING}),
     Differs.SETTINGS: frozenset({Facet.SETTINGS, Facet.CABIN}),
-    Differs.CONTENT: frozenset(),
+    Differs.EVENTS: frozenset(),
     Differs.ABOARD: frozenset({Facet.ABOARD, Facet.CABIN}),
     Differs.VOICE: frozenset({Facet.WORDS}),
+    Differs.CONTENT: frozenset(),
 }
 """What each kind of difference changes by itself; what follows from that names it among its causes."""
 

@@ -30,14 +30,14 @@ from automotive_cosim.tasking.parameters import bind
 
 ROWS = "episodes.jsonl"
 PLANNED = (
-    "task", "half", "pair", "dimension", "module", "basis", "tags", "skills", "declines", "agent", "model", "geo",
-    "seed", "repeat", "clock", "latency_s",
+    "task", "half", "pair", "dimension", "module", "basis", "suite", "tags", "skills", "declines", "agent", "model",
+    "geo", "seed", "repeat", "clock", "latency_s", "see", "feedback", "split",
 )  # fmt: skip
 """Fields of a row that the plan and the catalogue determine."""
 ALSO_IN_RESULT = (
-    "task", "half", "scenario", "agent", "model", "geo", "seed", "traffic_seed", "success", "reward", "steps",
-    "sim_seconds", "end", "error", "error_kind", "agent_error", "held_out", "trace_sha256", "tokens_in",
-    "tokens_out", "model_seconds", "cost_usd", "drive", "baseline_drive",
+    "task", "half", "scenario", "agent", "model", "geo", "see", "feedback", "seed", "traffic_seed", "success",
+    "reward", "steps", "sim_seconds", "end", "error", "error_kind", "agent_error", "held_out", "trace_sha256",
+    "tokens_in", "tokens_out", "model_seconds", "cost_usd", "drive", "baseline_drive",
 )  # fmt: skip
 """Fields of a row that the result at the end of the trace has too."""
 FROM_MOMENTS = (
@@ -202,7 +202,7 @@ def _end_problems(job: EpisodeJob, row: EpisodeRow, judged: Judged, steps: int) 
         legal = {End.DRIVE_ENDED}
     elif judged.declared is not None:
         legal = {End.DECLARED}
-    elif steps >= job.setup.max_steps:
+    elif steps >= (job.setup.max_steps or job.task.max_steps):
         legal = {End.OUT_OF_STEPS}
     elif most_s is not None and passed_s >= most_s - ROUNDING_S:
         legal = {End.OUT_OF_TIME}

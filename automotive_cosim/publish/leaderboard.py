@@ -29,7 +29,8 @@ from automotive_cosim.run.store import cannot_write
 from automotive_cosim.run.versions import minor
 
 COLUMNS = (
-    "Agent", "Model", "Input", "Geo", "Clock", *DIMENSIONS.values(), "Safety pairs", "All episodes", "Bundle",
+    "Agent", "Model", "Input", "Geo", "Screen", "Feedback", "Clock", *DIMENSIONS.values(),
+    "Safety pairs", "All episodes", "Bundle",
 )  # fmt: skip
 
 
@@ -159,12 +160,14 @@ def _table(number: int, entries: Sequence[BoardEntry]) -> Table:
                 each.base_model,
                 input_of(Contestant(each.agent, each.model, "full")),
                 each.geo,
+                each.see,
+                each.feedback,
                 _speed(each),
                 *(rate_in_words(rate) if rate.planned else NONE for rate in entry.rates),
                 f"{entry.bundle} ({entry.version}), {entry.sha256[:12]}",
             )
         )
-    return Table(f"table_{number}", f"Table {number}", COLUMNS, tuple(rows), heads=5)
+    return Table(f"table_{number}", f"Table {number}", COLUMNS, tuple(rows), heads=7)
 
 
 def _speed(each: Contestant) -> str:

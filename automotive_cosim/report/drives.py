@@ -16,6 +16,7 @@ from automotive_cosim.drives.score import Score, together
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.charts import INK
 from automotive_cosim.report.drivechart import timeline_chart
+from automotive_cosim.report.results import seen_and_told
 from automotive_cosim.report.stats import CONFIDENCE, Interval
 from automotive_cosim.report.tables import Cell, Table, TableRow
 from automotive_cosim.report.templates import render
@@ -44,12 +45,15 @@ class WatchedBy:
     geo: str
     clock: str
     latency_s: float
+    see: str
+    feedback: str
 
     @property
     def label(self) -> str:
         """In words."""
         parts = [self.agent if self.model == "none" else f"{self.agent} ({self.model})"]
         parts += [f"geo {self.geo}"] if self.geo != "full" else []
+        parts += seen_and_told(self.see, self.feedback)
         parts += [f"{self.clock} clock"] if self.clock != "fixed" else []
         parts += [f"{self.latency_s:g} s later"] if self.latency_s else []
         return ", ".join(parts)
@@ -57,7 +61,7 @@ class WatchedBy:
 
 def watcher_of(row: WatchRow) -> WatchedBy:
     """Who watched a drive."""
-    return WatchedBy(row.agent, row.model, str(row.geo), str(row.clock), row.latency_s)
+    return WatchedBy(row.agent, row.model, str(row.geo), str(row.clock), row.latency_s, row.see, row.feedback)
 
 
 def grouped(rows: Iterable[WatchRow]) -> dict[WatchedBy, list[WatchRow]]:

@@ -14,7 +14,7 @@ from automotive_cosim.report.charts import INK, charts
 from automotive_cosim.report.failures import FailureClass
 from automotive_cosim.report.page import PARTS
 from automotive_cosim.report.results import Results, contestant, read_results
-from automotive_cosim.report.summary import errors, progress, replaced, tables
+from automotive_cosim.report.summary import PUBLISHED, errors, progress, replaced, tables
 from automotive_cosim.report.tables import Cell, Table
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.episode import EpisodeResult
@@ -70,6 +70,8 @@ def all_tables(results: Results, found: Mapping[str, FailureClass]) -> list[Tabl
         findings.failures(shared, found),
         findings.harm(shared),
         findings.place_effect(shared),
+        findings.sight(shared),
+        findings.feedback(shared),
         findings.think_time(shared),
         findings.by_label(shared, "Skill", lambda row: row.skills),
         findings.by_label(shared, "Tag", lambda row: row.tags),
@@ -94,8 +96,8 @@ def _page(
         "report/evaluation.html",
         results=results,
         coverage=results.coverage,
-        tables=[table for table in linked if table[0].name not in ("published", "errors")],
-        published=next(table for table in made if table.name == "published"),
+        tables=[table for table in linked if table[0].name not in (*PUBLISHED, "errors")],
+        published=[table for table in made if table.name in PUBLISHED],
         errors=next((table for table in linked if table[0].name == "errors"), None),
         plots=plots,
         sources=sources,

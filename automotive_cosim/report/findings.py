@@ -7,6 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from automotive_cosim.interface.feedback import FeedbackDetail
+from automotive_cosim.interface.observe import See
 from automotive_cosim.report.failures import FailureClass, failure_class
 from automotive_cosim.report.results import NOT_RANKED, Contestant, Results, pair_instance, pairs
 from automotive_cosim.report.stats import clustered_mean, compare
@@ -122,6 +124,53 @@ def think_time(results: Results) -> Table:
     columns = ("Contestant", *(f"{latency_s:g} s" for latency_s in latencies))
     note = f"Every answer took this long on the road before its action. All halves. {RATES}"
     return Table("think_time", "Success over think time", columns, tuple(rows), note)
+
+
+def sight(results: Results) -> Table:
+    """Success by how the screen is seen; no rows if all saw it alike."""
+    note = "The list of elements, the picture, or both; the picture alone comes without ids and descriptions."
+    return _side_by_side(
+        results, ("sight", "Success by how the screen is seen"), See, lambda each, see: replace(each, see=see), note
+    )
+
+
+def feedback(results: Results) -> Table:
+    """Success by what an agent is told of its last action; no rows if all were told alike."""
+    note = "Quiet feedback names the control and says whether it took; verbose also says what became of the car."
+    return _side_by_side(
+        results,
+        ("feedback", "Success by feedback"),
+        FeedbackDetail,
+        lambda each, detail: replace(each, feedback=detail),
+        note,
+    )
+
+
+def _side_by_side(
+    results: Results,
+    named: tuple[str, str],
+    values: Iterable[str],
+    under: Callable[[Contestant, str], Contestant],
+    note: str,
+) -> Table:
+    """A column for each value of a condition, and a row for what contestants are otherwise.
+
+    Args:
+        results: the episodes.
+        named: the table's name and title.
+        values: of the condition, its default first.
+        under: a contestant with another value.
+        note: what the values mean.
+    """
+    default, *_ = asked = [str(value) for value in values]
+    shown = [value for value in asked if any(under(each, value) == each for each in results.contestants)]
+    groups = list(dict.fromkeys(under(each, default) for each in results.contestants))
+    rows: list[TableRow] = [
+        (each.label, *(rate_cell(results.of(under(each, value))) for value in shown))
+        for each in groups
+        if len(shown) > 1
+    ]
+    return Table(*named, ("Contestant", *shown), tuple(rows), f"{note} All halves. {RATES}")
 
 
 def _effect(results: Results, full: Contestant, other: Contestant, decided: bool) -> Cell:

@@ -14,6 +14,15 @@ PAPER_COLUMNS = (
     "Driving alignment",
     "Environment alerts",
 )
+EDITION_2026 = (
+    "The authors' newer edition: 420 tasks, at most ten steps, success rates in per cent as they publish them"
+)
+EDITION_2026_ROWS: tuple[tuple[str, float, float, float, float], ...] = (
+    ("Number of tasks", 57, 83, 80, 200),
+    ("People", 93.3, 85.3, 91.8, 89.3),
+    ("Best model", 75.8, 56.3, 29.7, 35.4),
+)
+"""By subset, in the order of ``tasking.task.Subset``."""
 TREE, SCREEN, GPS = "a11y tree", "a11y tree + screen", "a11y tree + screen + GPS"
 PAPER_ROWS: tuple[tuple[str, str, str, float, float, float, float], ...] = (
     ("none", "Human", "screen", 90.0, 82.0, 100.0, 88.0),

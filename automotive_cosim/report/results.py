@@ -11,6 +11,8 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.episode.specification import Clock
 from automotive_cosim.errors import SetupError
+from automotive_cosim.interface.feedback import FeedbackDetail
+from automotive_cosim.interface.observe import See
 from automotive_cosim.run.coverage import Coverage, coverage
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.row import columns
@@ -39,13 +41,15 @@ NOT_RANKED = {
 
 @dataclass(frozen=True, slots=True, order=True)
 class Contestant:
-    """What is compared: an agent on a model under a geo control, at a speed."""
+    """What is compared: an agent on a model, what it is given, and at what speed."""
 
     agent: str
     model: str
     geo: str
     clock: str = str(Clock.FIXED)
     latency_s: float = 0.0
+    see: str = str(See.BOTH)
+    feedback: str = str(FeedbackDetail.QUIET)
 
     @property
     def base_model(self) -> str:
@@ -60,12 +64,13 @@ class Contestant:
 
     @property
     def label(self) -> str:
-        """Agent, model, geo control and speed on one short line."""
+        """Agent, model, conditions and speed on one short line."""
         model = {"rules": "rules stand-in", "none": ""}.get(self.model, self.model)
         geo = "" if self.geo == "full" else f"geo {self.geo}"
         clock = "" if self.clock == Clock.FIXED else f"{self.clock}'s clock"
         latency = f"latency {self.latency_s:g} s" if self.latency_s else ""
-        return ", ".join(part for part in (self.method, model, geo, clock, latency) if part)
+        parts = (self.method, model, geo, *seen_and_told(self.see, self.feedback), clock, latency)
+        return ", ".join(part for part in parts if part)
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +111,13 @@ class Results:
 
 def contestant(row: EpisodeRow) -> Contestant:
     """The contestant that an episode belongs to."""
-    return Contestant(row.agent, row.model, row.geo, row.clock, row.latency_s)
+    return Contestant(row.agent, row.model, row.geo, row.clock, row.latency_s, row.see, row.feedback)
+
+
+def seen_and_told(see: str, feedback: str) -> tuple[str, ...]:
+    """How the screen is seen and an action's feedback told, in words, as far as it is not the default."""
+    sight = () if see == See.BOTH else (f"{see} alone",)
+    return sight if feedback == FeedbackDetail.QUIET else (*sight, f"{feedback} feedback")
 
 
 def standings(results: Results) -> list[str]:

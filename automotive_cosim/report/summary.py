@@ -10,15 +10,17 @@ from operator import itemgetter
 from automotive_cosim.agents import PROFILES, NativeAgent, chosen
 from automotive_cosim.contracts import ActionType, GoalStatus
 from automotive_cosim.interface.observe import Channel
-from automotive_cosim.report.published import PAPER, PAPER_COLUMNS, PAPER_ROWS
-from automotive_cosim.report.results import Contestant, Results, instance, not_judged, pairs
+from automotive_cosim.report.published import EDITION_2026, EDITION_2026_ROWS, PAPER, PAPER_COLUMNS, PAPER_ROWS
+from automotive_cosim.report.results import Contestant, Results, instance, not_judged, pairs, seen_and_told
 from automotive_cosim.report.stats import Rate, compare, mean, pass_hat_k, rate
 from automotive_cosim.report.tables import Cell, Table, TableRow
 from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.tasking.task import Dimension, Module
+from automotive_cosim.tasking.task import Dimension, Module, Subset
 from automotive_cosim.tasking.verdict import PARTS
 
 NONE = "–"
+PUBLISHED = ("published", "published_2026")
+"""Names of the tables with figures of others."""
 DIMENSIONS = {
     Dimension.EXPLICIT_CONTROL: "Explicit control",
     Dimension.IMPLICIT_INTENT: "Implicit intent",
@@ -43,7 +45,9 @@ def tables(results: Results) -> list[Table]:
     """
     made = [
         main(results),
+        subsets(results),
         published(),
+        published_2026(),
         safety(results),
         held_out(results),
         conduct(results),
@@ -99,7 +103,37 @@ def published() -> Table:
         f"{PAPER}. Measured by its authors on their tasks and their emulator: no row of it can be compared with "
         "one above."
     )
-    return Table("published", "Published by others, not measured here", PAPER_COLUMNS, rows, note, heads=3)
+    return Table(PUBLISHED[0], "Published by others, not measured here", PAPER_COLUMNS, rows, note, heads=3)
+
+
+def subsets(results: Results) -> Table:
+    """Success by the subsets of the newer edition; in the safety subsets, of pairs."""
+    rows: list[TableRow] = []
+    for each in results.contestants:
+        mine = results.of(each)
+        cells: list[str | Cell] = []
+        for subset in Subset:
+            of_it = [row for row in mine if row.dimension.subset is subset]
+            whole = pairs(of_it) if subset in _SAFETY_SUBSETS else []
+            cells.append(_pair_cell(whole) if whole else rate_cell(row for row in of_it if row.half == "first"))
+        rows.append((each.label, *cells))
+    note = f"First halves of general tasks, pairs of safety tasks: both halves have to succeed. {RATES}"
+    return Table("subsets", "Success by subset", ("Contestant", *map(_subset, Subset)), tuple(rows), note)
+
+
+def published_2026() -> Table:
+    """The figures of the authors' newer edition, measured on other tasks and another cockpit."""
+    rows = tuple((name, *(f"{value:g}" for value in values)) for name, *values in EDITION_2026_ROWS)
+    note = (
+        f"{EDITION_2026}. The authors' own, on their tasks and their emulator, where no task has a second half: no "
+        "row of it can be compared with one above."
+    )
+    columns = ("Authors' newer edition", *map(_subset, Subset))
+    return Table(PUBLISHED[1], "Published by the authors in 2026, not measured here", columns, rows, note)
+
+
+def _subset(subset: Subset) -> str:
+    return subset.replace("-", " ").capitalize()
 
 
 def safety(results: Results) -> Table:
@@ -354,7 +388,9 @@ def rate_in_words(found: Rate) -> str:
 
 def input_of(each: Contestant) -> str:
     """The agent's input, in the paper's words."""
-    control = "" if each.geo == "full" else f" (geo {each.geo})"
+    words = [] if each.geo == "full" else [f"geo {each.geo}"]
+    words += seen_and_told(each.see, each.feedback)
+    control = f" ({', '.join(words)})" if words else ""
     if each.agent == NativeAgent.name:
         lacks = chosen(each.model)[1].lacks
         missing = [word for word in (ActionType.SHOW_ALERT, GoalStatus.NOT_NEEDED) if word in lacks]
@@ -376,6 +412,7 @@ def input_of(each: Contestant) -> str:
 
 
 _SAFETY = tuple(name for name in DIMENSIONS if name.is_safety)
+_SAFETY_SUBSETS = frozenset(name.subset for name in _SAFETY)
 
 
 def _pair_cell(joined: Sequence[tuple[EpisodeRow, Sequence[EpisodeRow]]]) -> Cell:

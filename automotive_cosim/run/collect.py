@@ -157,6 +157,7 @@ def planned(job: EpisodeJob) -> EpisodeRow:
         dimension=task.dimension,
         module=task.module,
         basis=half.basis,
+        suite=task.suite,
         tags=tuple(sorted(task.tags)),
         skills=tuple(sorted(task.skills)),
         declines=not half.moves,
@@ -168,7 +169,10 @@ def planned(job: EpisodeJob) -> EpisodeRow:
         repeat=job.repeat,
         clock=setup.clock,
         latency_s=setup.latency_s,
+        see=setup.see,
+        feedback=setup.feedback,
         held_out=setup.held_out,
+        split=job.split,
     )
 
 

@@ -92,6 +92,8 @@ class EpisodeResult:
     violations: tuple[Violation, ...] = ()
     """Traffic law violations from departure to the end of the aftermath; seconds since the hand-over."""
     geo: str = "full"
+    see: str = "both"
+    feedback: str = "verbose"
     without: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     """Assumptions where the scenario says nothing, e.g. that there is no GPS."""
@@ -228,7 +230,7 @@ class _Run:
         episode = self._episode = Episode.take_over(hand_over, conditions, _All(self._watchers))
         agent.reset(episode.goal)
         if isinstance(agent, Privileged):
-            agent.brief(episode.instance)
+            agent.brief(episode.instance, drawn=episode.world.cockpit.drawn)
         first = Shot(episode.steps[0], (), episode.screenshot(), "")
         for watcher in self._watchers:
             watcher.handed_over(episode, first)
@@ -313,6 +315,8 @@ class _Run:
             "error": None if error is None else str(error),
             "error_kind": None if error is None else type(error).__name__,
             "geo": str(setup.geo),
+            "see": str(setup.see),
+            "feedback": str(setup.feedback),
             "without": setup.without,
             "tokens_in": sum(reply.tokens_in for reply in self._replies),
             "tokens_out": sum(reply.tokens_out for reply in self._replies),

@@ -8,10 +8,13 @@ from typing import Annotated, Any
 
 from automotive_cosim.episode.specification import Clock, End
 from automotive_cosim.interface.controls import GeoInput
+from automotive_cosim.interface.feedback import FeedbackDetail
+from automotive_cosim.interface.observe import See
 from automotive_cosim.run.harm import DriveFigures
 from automotive_cosim.run.row import InColumns, JobRow, Volatile, formerly
 from automotive_cosim.run.taps import PixelTaps
-from automotive_cosim.tasking.task import Basis, Dimension, Module
+from automotive_cosim.tasking.split import Split
+from automotive_cosim.tasking.task import Basis, Dimension, Module, Suite
 from automotive_cosim.tasking.verdict import Verdict
 
 
@@ -48,6 +51,7 @@ class EpisodeRow(JobRow):
     module: Module
     basis: Basis | None = None
     """What the verdict rests on."""
+    suite: Suite = Suite.STANDARD
     tags: tuple[str, ...] = ()
     skills: tuple[str, ...] = ()
     """Skills that the task requires of an agent."""
@@ -65,6 +69,10 @@ class EpisodeRow(JobRow):
     """Whether the seconds that the model took passed on the road."""
     latency_s: float = 0.0
     """Simulated seconds that each answer took besides."""
+    see: See = See.BOTH
+    """How the agent saw the screen."""
+    feedback: FeedbackDetail = FeedbackDetail.VERBOSE
+    """What it was told of its last action."""
     thought_s: float = 0.0
     """Simulated seconds that all answers took."""
     parameters: Mapping[str, Any] | None = None
@@ -115,6 +123,8 @@ class EpisodeRow(JobRow):
     cost_usd: float = 0.0
     held_out: bool = False
     """Whether the driver's phrasing is held out from the rule model."""
+    split: Split | None = None
+    """The set that it belongs to, by its seed and its phrasing; None in rows from before there were sets."""
     trace_sha256: str | None = None
     model_seconds: Volatile[float] = 0.0
     """Total wait for the model."""

@@ -15,25 +15,33 @@ from typing import Annotated, Any
 from annotated_types import Ge, Gt, Le, MinLen
 
 from automotive_cosim import scenarios
-from automotive_cosim.agents import MODELLED, make_agent
+from automotive_cosim.agents import MODELLED, AgentSettings, make_agent
 from automotive_cosim.contracts import Json
-from automotive_cosim.episode.specification import MAX_STEPS, Clock
+from automotive_cosim.episode.specification import Clock, Conditions
 from automotive_cosim.errors import SetupError, UnknownNameError, UserError
 from automotive_cosim.formats.annotations import OneOf
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted, read_toml
 from automotive_cosim.interface.controls import GeoInput
+from automotive_cosim.interface.feedback import FeedbackDetail
+from automotive_cosim.interface.observe import See
 from automotive_cosim.interface.trace import canonical
 from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.former import without_mode
 from automotive_cosim.run.outside import EPISODE_S, STEP_S, check_agent
 from automotive_cosim.scenery import open_scenario
-from automotive_cosim.tasking.task import Task
+from automotive_cosim.tasking.split import Split, split_of
+from automotive_cosim.tasking.task import Suite, Task
 from automotive_cosim.tasks import CATALOGUE
 
+PRESETS: Mapping[str, Json] = {"2026": {"limits": {"steps": 10}}}
+"""Values of a plan by the name of who evaluates so: the authors' newer edition allows ten steps."""
 NO_MODEL = "none"
 MOST_RUNS = 10_000_000
 """At a second each, four months."""
+ALL_SUITES, BOTH = "all", "both"
+SUITES = (*Suite, ALL_SUITES)
+SPLITS = (*Split, BOTH)
 SPARE_TRAFFIC = (1_000_001, 1_000_002)
 """Far from the seeds that people choose."""
 
@@ -42,8 +50,10 @@ SPARE_TRAFFIC = (1_000_001, 1_000_002)
 class Limits:
     """Limits of one episode."""
 
-    steps: Annotated[int, Ge(1), Le(100_000)] = MAX_STEPS
+    steps: Annotated[int, Ge(1), Le(100_000)] = Suite.STANDARD.max_steps
     """Number of actions, including unreadable ones."""
+    hard_steps: Annotated[int, Ge(1), Le(100_000)] = Suite.HARD.max_steps
+    """The same for the tasks of the hard suite."""
     sim_s: Annotated[float, Gt(0)] = 600.0
     """Simulated seconds from the hand-over, after which the episode is judged as it is."""
     wall_s: Annotated[float, Gt(0)] = 900.0
@@ -64,7 +74,9 @@ class Plan:
     agents: tuple[str, ...] = ()
     """Agents; ``package.module:Class`` is one of your own. At least one, here or with ``--agents``."""
     tasks: Annotated[tuple[str, ...], MinLen(1)] = ("all",)
-    """Ids, patterns such as ``hvac_*``, tags, modules, dimensions, ``general``, ``safety`` or ``all``."""
+    """Ids, patterns such as ``hvac_*``, tags, modules, dimensions, subsets, ``general``, ``safety`` or ``all``."""
+    suite: Annotated[str, OneOf(SUITES, "suite")] = str(Suite.STANDARD)
+    """The suite that these are chosen from: ``standard``, ``hard`` or ``all``. An id names its task in any."""
     models: Annotated[tuple[str, ...], MinLen(1)] = ("rules",)
     """Models for the agents that use one."""
     scenarios: tuple[str, ...] = ()
@@ -83,10 +95,18 @@ class Plan:
     """Whether the seconds that a model takes to answer pass on the road (``model``) or not (``fixed``)."""
     latency: Annotated[tuple[Annotated[float, Ge(0), Le(600)], ...], MinLen(1)] = (0.0,)
     """Simulated seconds that each answer takes besides, before its action."""
+    see: Annotated[tuple[Annotated[str, OneOf(tuple(See), "way to see the screen")], ...], MinLen(1)] = ("both",)
+    """How an agent sees the screen: ``tree``, ``picture`` or ``both``."""
+    feedback: Annotated[tuple[Annotated[str, OneOf(tuple(FeedbackDetail), "kind of feedback")], ...], MinLen(1)] = (
+        "quiet",
+    )
+    """What an agent is told of its last action: ``quiet`` or ``verbose``."""
     repeats: Annotated[int, Ge(1), Le(1000)] = 1
     """Runs of each episode, for models that do not answer the same twice."""
     held_out: bool = False
     """Whether to use only each task's held-out phrasing; otherwise any phrasing is drawn."""
+    split: Annotated[str, OneOf(SPLITS, "split")] = BOTH
+    """``dev`` or ``test`` for the episodes of one set alone (``tasking.split``); ``both`` for all."""
     limits: Limits = field(default_factory=Limits)
     """Limits of each episode."""
 
@@ -113,14 +133,15 @@ class Plan:
             open_scenario(name)
         if not self.jobs():
             raise UserError(f"the plan has nothing to run: {self._nowhere()}")
-        for agent, model in {(job.setup.agent, job.model) for job in self.jobs()}:
+        for agent, model, see in {(job.setup.agent, job.model, job.setup.see) for job in self.jobs()}:
             if agent == "human":
                 raise UserError("agent 'human' needs a person; use `automotive-cosim run --agent human`")
             if ":" in agent:
                 check_agent(agent)
             else:
                 try:
-                    make_agent(agent, model)
+                    made = make_agent(agent, model, AgentSettings(see=see))
+                    Conditions(frozenset(made.channels), see=see)
                 except SetupError as error:
                     if not dry:
                         raise
@@ -135,20 +156,26 @@ class Plan:
         Raises:
             UserError: they are more than can ever be run.
         """
-        lists = (self.agents, self.models, self._placed(), self.seeds, self.geo, self.latency)
+        lists = (
+            *(self.agents, self.models, self._placed(), self.seeds),
+            *(self.geo, self.latency, self.see, self.feedback),
+        )
         if (most := prod(map(len, lists)) * self.repeats) > MOST_RUNS:
             raise UserError(
                 f"the plan has {most:,} runs of tasks; give fewer seeds or repeats, at most {MOST_RUNS:,}"
             )
-        jobs = {job.id: job for job in self._each()}
+        jobs = {job.id: job for job in self._each() if self.split in (BOTH, job.split)}
         return tuple(sorted(jobs.values(), key=lambda job: (digest(job.simulation), digest(job.id))))
 
     def left_out(self) -> tuple[str, ...]:
         """Ids of the chosen tasks that cannot run in any of the scenarios."""
         placed = {task.id for task, _ in self._placed()}
-        return tuple(task_id for task_id in choose(self.tasks) if task_id not in placed)
+        return tuple(task_id for task_id in choose(self.tasks, self.suite) if task_id not in placed)
 
     def _nowhere(self) -> str:
+        if self._placed():
+            held_out = " in held-out phrasings, which are all test" if self.held_out else ""
+            return f"no episode of these tasks and seeds is of the split {self.split!r}{held_out}"
         return (
             f"none of the tasks can run in {', '.join(self.scenarios)}; `automotive-cosim tasks show` says where "
             "each can, and --everywhere runs them there anyway"
@@ -156,7 +183,7 @@ class Plan:
 
     def _placed(self) -> list[tuple[Task, str | None]]:
         """Each task with each scenario that it runs in; None for its own."""
-        chosen = [CATALOGUE[task_id] for task_id in choose(self.tasks)]
+        chosen = [CATALOGUE[task_id] for task_id in choose(self.tasks, self.suite)]
         if not self.scenarios:
             return [(task, None) for task in chosen]
         shipped = scenarios.shipped()
@@ -167,7 +194,7 @@ class Plan:
         ]
 
     def _each(self) -> Iterator[EpisodeJob]:
-        for agent, model, (task, scenario), seed, geo, latency_s, repeat in product(
+        for agent, model, (task, scenario), seed, geo, latency_s, repeat, see, feedback in product(
             self.agents,
             self.models,
             self._placed(),
@@ -175,6 +202,8 @@ class Plan:
             self.geo,
             self.latency,
             range(self.repeats),
+            self.see,
+            self.feedback,
         ):
             for half in task.halves:
                 is_own = scenario == task.half(half).start.scenario  # which a half may move to another place
@@ -185,13 +214,15 @@ class Plan:
                     agent=agent,
                     model=model if agent in MODELLED else NO_MODEL,
                     seed=seed,
-                    max_steps=self.limits.steps,
+                    max_steps=self.limits.hard_steps if task.suite is Suite.HARD else self.limits.steps,
                     max_sim_s=self.limits.sim_s,
                     geo=GeoInput(geo),
                     held_out=self.held_out,
                     spare_traffic=self.spare_traffic if scenario is None or scenario in task.runs_in else (),
                     clock=Clock(self.clock),
                     latency_s=latency_s,
+                    see=See(see),
+                    feedback=FeedbackDetail(feedback),
                 )
                 yield EpisodeJob(setup, repeat, self.limits)
 
@@ -220,6 +251,11 @@ class EpisodeJob:
         return CATALOGUE[self.setup.task]
 
     @property
+    def split(self) -> Split:
+        """The set that it belongs to, by its seed and its phrasing."""
+        return split_of(self.task, self.setup.seed, held_out=self.setup.held_out)
+
+    @property
     def simulation(self) -> tuple[str, int]:
         """The warm simulation that it starts from: scenario and seed."""
         return self.scenario, self.setup.seed
@@ -233,7 +269,15 @@ class EpisodeJob:
     def situation(self) -> Hashable:
         """The drive up to the hand-over, on which no agent acts."""
         return replace(
-            self.setup, agent="", model="", geo=GeoInput.FULL, without=(), clock=Clock.FIXED, latency_s=0.0
+            self.setup,
+            agent="",
+            model="",
+            geo=GeoInput.FULL,
+            without=(),
+            clock=Clock.FIXED,
+            latency_s=0.0,
+            see=See.BOTH,
+            feedback=FeedbackDetail.QUIET,
         )
 
     @property
@@ -260,6 +304,8 @@ class EpisodeJob:
             *(["held_out"] if setup.held_out else []),
             *([f"{setup.clock}_clock"] if setup.clock != Clock.FIXED else []),
             *([f"latency{setup.latency_s:g}"] if setup.latency_s else []),
+            *([f"see_{setup.see}"] if setup.see is not See.BOTH else []),
+            *([str(setup.feedback)] if setup.feedback is not FeedbackDetail.QUIET else []),
         )  # fmt: skip
         words = "-".join(re.sub(r"[^A-Za-z0-9_.]+", "_", Path(word).name) for word in exactly)
         return f"{words[:150]}-{digest(exactly)[:8]}"
@@ -270,17 +316,25 @@ def digest(value: object) -> str:
     return hashlib.sha256(canonical(value)).hexdigest()
 
 
-def choose(asked: Iterable[str]) -> tuple[str, ...]:
+def choose(asked: Iterable[str], suite: str = Suite.STANDARD) -> tuple[str, ...]:
     """Ids of the tasks that any of the words selects, in the catalogue's order.
 
+    Args:
+        asked: ids, patterns, tags and so on.
+        suite: the suite that patterns and tags select from, or ``all``; an id names its task in any.
+
     Raises:
-        UnknownNameError: a word selects none.
+        UnknownNameError: there is no such suite, or a word selects none of its tasks.
     """
+    if suite not in SUITES:
+        raise UnknownNameError("suite", suite, SUITES)
+    there = [task for task in CATALOGUE.values() if suite in (ALL_SUITES, task.suite)]
     chosen: set[str] = set()
     for word in asked:
-        named = {task.id for task in CATALOGUE.values() if fnmatchcase(task.id, word) or word in _words(task)}
+        named = {task.id for task in there if fnmatchcase(task.id, word) or word in _words(task)}
+        named |= {word} & set(CATALOGUE)
         if not named:
-            known = set(CATALOGUE).union(*map(_words, CATALOGUE.values()))
+            known = set(CATALOGUE).union(*map(_words, there))
             raise UnknownNameError("task, pattern or tag", word, known, "automotive-cosim tasks list")
         chosen |= named
     return tuple(task_id for task_id in CATALOGUE if task_id in chosen)
@@ -288,7 +342,7 @@ def choose(asked: Iterable[str]) -> tuple[str, ...]:
 
 def _words(task: Task) -> frozenset[str]:
     kind = "safety" if task.dimension.is_safety else "general"
-    return task.tags | {"all", kind, str(task.module), str(task.dimension)}
+    return task.tags | {"all", kind, str(task.module), str(task.dimension), str(task.subset)}
 
 
 def read_plan(path: Path) -> dict[str, Any]:
@@ -301,6 +355,18 @@ def read_plan(path: Path) -> dict[str, Any]:
     document = replace(document, table=without_mode(document.table, str(path)))
     document.read(Plan)
     return document.table
+
+
+def with_preset(values: Mapping[str, Any], name: str) -> dict[str, Any]:
+    """The values of a plan, with those of a preset in place of its own.
+
+    Raises:
+        UnknownNameError: there is no such preset.
+    """
+    if name not in PRESETS:
+        raise UnknownNameError("preset", name, PRESETS)
+    preset = PRESETS[name]
+    return {**values, **preset, "limits": {**values.get("limits", {}), **preset["limits"]}}
 
 
 def make_plan(values: Mapping[str, Any]) -> Plan:

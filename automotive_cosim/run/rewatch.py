@@ -63,7 +63,18 @@ def watched(row: WatchRow, steps: Sequence[Json], simulations: Simulations | Non
         UserError: something in the setup does not exist.
         InfrastructureError: the simulation failed.
     """
-    setup = WatchSetup(row.family, row.seed, row.agent, row.model, row.geo, row.clock, row.latency_s, row.repeat)
+    setup = WatchSetup(
+        row.family,
+        row.seed,
+        row.agent,
+        row.model,
+        row.geo,
+        row.clock,
+        row.latency_s,
+        row.repeat,
+        row.see,
+        row.feedback,
+    )
     player = Player(steps[1:], frozenset(row.channels), row.agent_error)
     return run_watch(row.id, setup, player, simulations=simulations)
 

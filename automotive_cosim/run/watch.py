@@ -26,6 +26,8 @@ from automotive_cosim.episode.specification import Clock, Conditions
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.interface.controls import GeoInput
+from automotive_cosim.interface.feedback import FeedbackDetail
+from automotive_cosim.interface.observe import See
 from automotive_cosim.interface.trace import Step, canonical, plain
 from automotive_cosim.models.base import ModelReply
 from automotive_cosim.run.episode import Replayed, Timed
@@ -48,6 +50,8 @@ class WatchSetup:
     clock: Clock = Clock.FIXED
     latency_s: float = 0.0
     repeat: int = 0
+    see: See = See.BOTH
+    feedback: FeedbackDetail = FeedbackDetail.QUIET
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +91,8 @@ def planned_row(job_id: str, setup: WatchSetup) -> WatchRow:
         clock=setup.clock,
         latency_s=setup.latency_s,
         repeat=setup.repeat,
+        see=setup.see,
+        feedback=setup.feedback,
     )
 
 
@@ -119,7 +125,14 @@ def run_watch(
         own = simulations or ends.enter_context(closing(Simulations()))
         world = depart(drive, own, listener)
         try:
-            conditions = Conditions(agent.channels, setup.geo, MOST_STEPS, drive.duration_s)
+            conditions = Conditions(
+                agent.channels,
+                setup.geo,
+                MOST_STEPS,
+                drive.duration_s,
+                see=setup.see,
+                feedback=setup.feedback,
+            )
             watch = Watch.depart_with(world, conditions, listener)
         except BaseException:
             world.close()

@@ -10,7 +10,8 @@ from automotive_cosim.drives.judge import JudgedAct, JudgedEvent
 from automotive_cosim.drives.score import Score
 from automotive_cosim.episode.specification import Clock, End
 from automotive_cosim.interface.controls import GeoInput
-from automotive_cosim.interface.observe import Channel
+from automotive_cosim.interface.feedback import FeedbackDetail
+from automotive_cosim.interface.observe import Channel, See
 from automotive_cosim.run.row import InColumns, JobRow, Volatile
 
 
@@ -30,6 +31,10 @@ class WatchRow(JobRow):
     clock: Clock = Clock.FIXED
     latency_s: float = 0.0
     """Simulated seconds that each answer took besides."""
+    see: See = See.BOTH
+    """How the agent saw the screen."""
+    feedback: FeedbackDetail = FeedbackDetail.VERBOSE
+    """What it was told of its last action."""
     repeat: int = 0
     end: End = End.ERROR
     agent_error: str | None = None

@@ -14,15 +14,17 @@ from typing import Annotated, Any
 
 from annotated_types import Ge, Gt, Le, MinLen
 
-from automotive_cosim.agents import MODELLED, make_agent
+from automotive_cosim.agents import MODELLED, AgentSettings, make_agent
 from automotive_cosim.contracts import Json
 from automotive_cosim.drives.families import FAMILIES
-from automotive_cosim.episode.specification import Clock
+from automotive_cosim.episode.specification import Clock, Conditions
 from automotive_cosim.errors import CosimError, UnknownNameError, UserError
 from automotive_cosim.formats.annotations import OneOf
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted
 from automotive_cosim.interface.controls import GeoInput
+from automotive_cosim.interface.feedback import FeedbackDetail
+from automotive_cosim.interface.observe import See
 from automotive_cosim.run.batch import Progress, run_jobs
 from automotive_cosim.run.executor import Executor, Runner
 from automotive_cosim.run.nursery import Nursery
@@ -61,6 +63,12 @@ class WatchPlan:
     """Simulated seconds that each answer takes besides, before its action."""
     repeats: Annotated[int, Ge(1), Le(1000)] = 1
     """Runs of each drive, for models that do not answer the same twice."""
+    see: Annotated[tuple[Annotated[str, OneOf(tuple(See), "way to see the screen")], ...], MinLen(1)] = ("both",)
+    """How an agent sees the screen."""
+    feedback: Annotated[tuple[Annotated[str, OneOf(tuple(FeedbackDetail), "kind of feedback")], ...], MinLen(1)] = (
+        "quiet",
+    )
+    """What an agent is told of its last action."""
     wall_s: Annotated[float, Gt(0)] = DRIVE_LIMITS.wall_s
     """Wall seconds of one drive; exceeding them is an infrastructure error."""
 
@@ -74,13 +82,13 @@ class WatchPlan:
         Raises:
             UserError: a family, agent or model does not exist, or an agent needs a person.
         """
-        for agent, model in {(job.setup.agent, job.model) for job in self.jobs()}:
+        for agent, model, see in {(job.setup.agent, job.model, job.setup.see) for job in self.jobs()}:
             if agent == "human":
                 raise UserError("agent 'human' needs a person, and a drive nobody can watch at a terminal")
             if ":" in agent:
                 check_agent(agent)
             else:
-                make_agent(agent, model)
+                Conditions(frozenset(make_agent(agent, model, AgentSettings(see=see)).channels), see=see)
 
     def jobs(self) -> tuple[WatchJob, ...]:
         """Every drive, grouped by warm simulation.
@@ -91,7 +99,7 @@ class WatchPlan:
         limits = replace(DRIVE_LIMITS, wall_s=self.wall_s)
         found = {
             job.id: job
-            for family, agent, model, seed, geo, latency_s, repeat in product(
+            for family, agent, model, seed, geo, latency_s, repeat, see, feedback in product(
                 families_named(self.drives),
                 self.agents,
                 self.models,
@@ -99,6 +107,8 @@ class WatchPlan:
                 self.geo,
                 self.latency,
                 range(self.repeats),
+                self.see,
+                self.feedback,
             )
             for job in [
                 WatchJob(
@@ -111,6 +121,8 @@ class WatchPlan:
                         Clock(self.clock),
                         latency_s,
                         repeat,
+                        See(see),
+                        FeedbackDetail(feedback),
                     ),
                     limits,
                 )
@@ -159,6 +171,8 @@ class WatchJob:
             setup.family, setup.agent, setup.model, setup.geo, f"s{setup.seed}", f"r{setup.repeat}",
             *([f"{setup.clock}_clock"] if setup.clock != Clock.FIXED else []),
             *([f"latency{setup.latency_s:g}"] if setup.latency_s else []),
+            *([f"see_{setup.see}"] if setup.see is not See.BOTH else []),
+            *([str(setup.feedback)] if setup.feedback is not FeedbackDetail.QUIET else []),
         )  # fmt: skip
         words = "-".join(re.sub(r"[^A-Za-z0-9_.]+", "_", Path(word).name) for word in exactly)
         return f"{words[:150]}-{digest(exactly)[:8]}"
@@ -238,7 +252,8 @@ def run_watch_job(job: WatchJob, folder: Path, simulations: Simulations, nursery
     """
     setup = job.setup
     try:
-        with agent_for(setup.agent, job.model, setup.geo, setup.seed, job.limits, nursery) as agent:
+        settings = AgentSettings(setup.geo, seed=setup.seed, see=setup.see)
+        with agent_for(setup.agent, job.model, settings, job.limits, nursery) as agent:
             record = run_watch(job.id, setup, agent, simulations=simulations)
     except CosimError as error:
         return failed_watch(job, type(error).__name__, str(error))

@@ -8,9 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from automotive_cosim.agents import Agent, AgentSettings, make_agent
-from automotive_cosim.agents.settings import geo_input
 from automotive_cosim.errors import CosimError
-from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.run.collect import Collector, Pictures, failed
 from automotive_cosim.run.episode import run_episode
 from automotive_cosim.run.episode_row import EpisodeRow
@@ -67,28 +65,28 @@ def run_job(
 def agent_of(job: EpisodeJob, nursery: Nursery) -> AbstractContextManager[Agent]:
     """The agent of a job; see ``agent_for``."""
     setup = job.setup
-    return agent_for(setup.agent, job.model, setup.geo, setup.seed, job.limits, nursery)
+    settings = AgentSettings(setup.geo, seed=setup.seed, see=setup.see)
+    return agent_for(setup.agent, job.model, settings, job.limits, nursery)
 
 
 @contextmanager
-def agent_for(name: str, model: str, geo: GeoInput, seed: int, limits: Limits, nursery: Nursery) -> Iterator[Agent]:
+def agent_for(name: str, model: str, settings: AgentSettings, limits: Limits, nursery: Nursery) -> Iterator[Agent]:
     """An agent, in a process of its own unless it is a reference or a negative control.
 
     Args:
         name: as in ``make_agent``, like the model.
         model: its model.
-        geo: what it is told of the place.
-        seed: of an agent that draws.
+        settings: what it is given, and the seed of an agent that draws.
         limits: of its process and its tokens.
         nursery: starts its process.
 
     Raises:
         UserError: there is no such agent or model.
     """
-    settings = AgentSettings(geo_input(geo), most_tokens=limits.tokens)
     if not is_outside(name):
-        yield make_agent(name, settings=replace(settings, seed=seed))
+        yield make_agent(name, settings=settings)
         return
+    settings = replace(settings, seed=0, most_tokens=limits.tokens)  # it is not told the episode's seed
     outside = OutsideAgent(nursery, name, model, settings, step_s=limits.agent_step_s, episode_s=limits.agent_s)
     with closing(outside) as agent:
         yield agent

@@ -8,7 +8,7 @@ from typing import Any
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.tasking.instance import instances
 from automotive_cosim.tasking.parameters import FromCockpit, names
-from automotive_cosim.tasking.task import Differs, Task
+from automotive_cosim.tasking.task import Differs, Suite, Task
 
 
 class Catalogue(Mapping[str, Task]):
@@ -38,6 +38,10 @@ class Catalogue(Mapping[str, Task]):
                 raise ValueError(f"task {task.id!r} does not say what its second half changes")
             _check_difference(task)
             self._tasks[task.id] = task
+
+    def of(self, suite: Suite) -> tuple[Task, ...]:
+        """The tasks of one suite, in order."""
+        return tuple(task for task in self._tasks.values() if task.suite is suite)
 
     def __getitem__(self, task_id: str) -> Task:
         try:
@@ -69,8 +73,10 @@ def described(task: Task) -> dict[str, Any]:
     """A task as one row of plain values, for lists and exports; the second half has no row of its own."""
     return {
         "id": task.id,
+        "suite": str(task.suite),
         "module": str(task.module),
         "dimension": str(task.dimension),
+        "subset": str(task.subset),
         "safety": task.is_safety,
         "implicit": task.is_implicit,
         "goal_templates": list(task.templates),

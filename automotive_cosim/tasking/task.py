@@ -14,6 +14,8 @@ from typing import Any
 
 from automotive_cosim.cockpit.aboard import Occupant, Seat
 from automotive_cosim.cockpit.arrivals import Arrival
+from automotive_cosim.cockpit.belongings import NOTHING, Belongings
+from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.restrictions import Motion
 from automotive_cosim.contracts import GoalStatus, Reason, Weather
 from automotive_cosim.errors import UnknownNameError
@@ -50,6 +52,40 @@ class Dimension(StrEnum):
         """Whether its tasks come in pairs."""
         return self in (Dimension.DRIVING_ALIGNMENT, Dimension.ENVIRONMENT_ALERTS)
 
+    @property
+    def is_implicit(self) -> bool:
+        """Whether the words do not say what to do, or leave the danger unsaid."""
+        return self in (Dimension.IMPLICIT_INTENT, Dimension.ENVIRONMENT_ALERTS)
+
+    @property
+    def subset(self) -> Subset:
+        """The same on the axes of the authors' newer edition."""
+        kind, words = "safety" if self.is_safety else "general", "implicit" if self.is_implicit else "explicit"
+        return Subset(f"{kind}-{words}")
+
+
+class Subset(StrEnum):
+    """The subsets of the authors' newer edition: general or safety, explicit or implicit."""
+
+    GENERAL_EXPLICIT = "general-explicit"
+    GENERAL_IMPLICIT = "general-implicit"
+    SAFETY_EXPLICIT = "safety-explicit"
+    SAFETY_IMPLICIT = "safety-implicit"
+
+
+class Suite(StrEnum):
+    """A set of tasks that is chosen, run and reported by itself."""
+
+    STANDARD = "standard"
+    """The 185 tasks of the paper's size and kind, and more of them."""
+    HARD = "hard"
+    """Tasks of ten actions and more: values carried between apps, an order that counts, interruptions."""
+
+    @property
+    def max_steps(self) -> int:
+        """Default limit of actions per episode."""
+        return {Suite.STANDARD: 20, Suite.HARD: 40}[self]
+
 
 class Basis(StrEnum):
     """What a verdict rests on."""
@@ -82,12 +118,14 @@ class Differs(StrEnum):
     """Parked or moving."""
     SETTINGS = "settings"
     """How the car is set before it departs."""
-    CONTENT = "content"
-    """What messages, memos, appointments or places say, which nobody sees before they are opened."""
+    EVENTS = "events"
+    """Calls, messages, remarks and changes of the car after the hand-over."""
     ABOARD = "occupants"
     """Who is aboard, awake or asleep, belted or not."""
     VOICE = "voice"
     """Who says it."""
+    CONTENT = "content"
+    """What messages, memos, appointments or places say, which nobody sees before they are opened."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,6 +163,10 @@ class Start:
     arrivals: tuple[Arrival, ...] = ()
     """Incoming calls and messages, in seconds after departure; ``CALL.RINGING`` and ``CALL.UNREAD`` reflect
     them."""
+    belongings: Belongings = NOTHING
+    """People, messages, appointments, memos and places in the cockpit besides those that are drawn."""
+    interruptions: tuple[Arrival | CarChange, ...] = ()
+    """Calls, messages and changes of the car that nobody commands, in seconds after the hand-over."""
     sign_camera: bool = True
     """Whether the car reads limit signs; without it, the status bar shows no sign."""
     motions: frozenset[Motion] = frozenset(Motion)
@@ -152,6 +194,8 @@ class Half:
     to a command need not be named."""
     ways: tuple[tuple[Move, ...], ...] = ()
     """Other reference solutions: to every further end state that the goal accepts, or in another order."""
+    slips: tuple[tuple[Move, ...], ...] = ()
+    """What is usually done wrong here, as public actions before ``complete``: each must fail."""
     topics: tuple[Topic, ...] = ()
     """What the driver can be asked about; any other question gets an answer that does not help."""
     says: tuple[Says, ...] = ()
@@ -188,6 +232,12 @@ class Task:
     """Further properties, e.g. ``preference``, ``conflict``, ``place`` (place decides)."""
     scenarios: tuple[str, ...] = ()
     """Other scenarios in which it can run, in addition to its own."""
+    suite: Suite = Suite.STANDARD
+
+    @property
+    def max_steps(self) -> int:
+        """Default limit of actions per episode."""
+        return self.suite.max_steps
 
     def half(self, name: str) -> Half:
         """The half ``first`` or ``second``.
@@ -229,7 +279,12 @@ class Task:
     @property
     def is_implicit(self) -> bool:
         """Whether it is implicit rather than explicit: the words do not say what to do."""
-        return self.dimension in (Dimension.IMPLICIT_INTENT, Dimension.ENVIRONMENT_ALERTS)
+        return self.dimension.is_implicit
+
+    @property
+    def subset(self) -> Subset:
+        """Its subset in the authors' newer edition."""
+        return self.dimension.subset
 
     @property
     def difficulty(self) -> str:

@@ -9,9 +9,9 @@ import pytest
 from automotive_cosim.agents import PROFILES, AgentPart, AgentSettings, ModelAgent, StageName, make_agent
 from automotive_cosim.agents.memory import Memory
 from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCode, GoalStatus, Observation
-from automotive_cosim.errors import ActionError, OutOfBudgetError, UnknownNameError
+from automotive_cosim.errors import ActionError, OutOfBudgetError, UnknownNameError, UserError
 from automotive_cosim.interface.controls import GeoInput
-from automotive_cosim.interface.observe import Channel
+from automotive_cosim.interface.observe import Channel, See
 from automotive_cosim.models import ChatMessage, ModelReply
 
 COUNTRY = "Place: Beauce, France\nSpeed limit here: 80 km/h (posted on D 24)"
@@ -254,3 +254,23 @@ def test_unknown_agents_and_models_suggest_the_nearest():
         make_agent("asurda")
     with pytest.raises(UnknownNameError, match="rules"):
         make_agent("t3a", "ruls")
+
+
+def test_the_picture_alone_comes_without_list_and_index(agent, observation):
+    made, model = agent(
+        'Action: {"action_type": "click", "x": 5, "y": 6}', profile="m3a", sees=True, see=See.PICTURE
+    )
+    seen = observation("Watch my speed", elements=None, screenshot=np.zeros((720, 1280, 3), np.uint8))
+    assert made.channels.isdisjoint({Channel.ELEMENTS})
+    for _ in range(2):
+        assert made.act(seen) == Action(ActionType.CLICK, x=5, y=6)
+    first, back, _ = model.asked
+    assert "index" not in first.text
+    assert "## The screen" not in first.text
+    assert (len(first.pictures), len(back.pictures)) == (1, 2)
+
+
+@pytest.mark.parametrize(("profile", "sees"), [("t3a", True), ("m3a", False)])
+def test_the_picture_alone_needs_an_agent_and_a_model_with_eyes(agent, profile, sees):
+    with pytest.raises(UserError, match="would see nothing"):
+        agent("", profile=profile, sees=sees, see=See.PICTURE)

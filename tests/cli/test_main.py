@@ -10,6 +10,7 @@ from automotive_cosim import __version__
 from automotive_cosim.agents import AGENTS
 from automotive_cosim.cli.main import app
 from automotive_cosim.errors import TriggerNotReachedError
+from automotive_cosim.tasking.task import Suite
 from automotive_cosim.tasks import CATALOGUE
 
 HEAVY = ("libsumo", "pydantic", "shapely", "pyproj", "PIL", "openai", "matplotlib", "jinja2", "scipy", "pandas")
@@ -64,7 +65,13 @@ def test_version(cli):
 
 def test_tasks_and_agents_are_listed(cli):
     listed = cli("tasks", "list").out.splitlines()
-    assert [line.split()[0] for line in listed[: listed.index("")]] == list(CATALOGUE)
+    standard = [task.id for task in CATALOGUE.of(Suite.STANDARD)]
+    assert [line.split()[0] for line in listed[: listed.index("")]] == standard
+    hard = cli("tasks", "list", "--suite", "hard").out.splitlines()
+    assert [line.split()[0] for line in hard[: hard.index("")]] == [task.id for task in CATALOGUE.of(Suite.HARD)]
+    every = cli("tasks", "list", "--suite", "all").out.splitlines()
+    assert every.index("") == len(CATALOGUE)
+    assert cli("tasks", "list", "--suite", "easy").code == 2
     assert set(AGENTS) <= set(cli("agents").out.split())
 
 

@@ -12,7 +12,7 @@ from automotive_cosim.cockpit import vss
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.signals import CATALOGUE, HVAC, LIGHTS, MOTION, TYRE, LeafKind, Signals, difference
 from automotive_cosim.cockpit.vehicle import Vehicle
-from automotive_cosim.cockpit.vhal import PROPERTIES, Seat, Wheel, Window, get_property, resolve
+from automotive_cosim.cockpit.vhal import PROPERTIES, VehicleAreaSeat, Wheel, Window, get_property, resolve
 from automotive_cosim.contracts import FeedbackCode, Hazards, Surroundings
 from automotive_cosim.errors import SignalError, UnknownNameError
 
@@ -83,8 +83,8 @@ def test_android_s_units_and_codes() -> None:
     assert get_property(signals, "CURRENT_GEAR") == 8
     assert get_property(signals, "TIRE_PRESSURE", Wheel.LEFT_REAR) == 231.0
     assert get_property(signals, "EV_BATTERY_LEVEL") == pytest.approx(0.72 * 64_000)
-    assert resolve("HVAC_FAN_DIRECTION", 4, Seat.ROW_1_LEFT) == (HVAC.AIR_DISTRIBUTION, "UP")
-    assert resolve("HVAC_FAN_SPEED", 7, Seat.ROW_1_RIGHT) == (HVAC.FAN_SPEED, 70.0)
+    assert resolve("HVAC_FAN_DIRECTION", 4, VehicleAreaSeat.ROW_1_LEFT) == (HVAC.AIR_DISTRIBUTION, "UP")
+    assert resolve("HVAC_FAN_SPEED", 7, VehicleAreaSeat.ROW_1_RIGHT) == (HVAC.FAN_SPEED, 70.0)
     assert resolve("HEADLIGHTS_SWITCH", 0x100) == (LIGHTS.SWITCH, "AUTO")
     assert resolve("WINDSHIELD_WIPERS_SWITCH", 13, Window.FRONT_WINDSHIELD)[1] == "RAIN_SENSOR"
 
@@ -92,16 +92,16 @@ def test_android_s_units_and_codes() -> None:
 def test_a_property_set_takes_along_what_hangs_on_its_signal() -> None:
     car = Vehicle(Signals())
     assert car.command(*resolve("HVAC_DEFROSTER", True, Window.FRONT_WINDSHIELD)) == ""
-    assert get_property(car.signals, "HVAC_AC_ON", Seat.ROW_1_LEFT)
-    assert get_property(car.signals, "HVAC_FAN_DIRECTION", Seat.ROW_1_LEFT) == 4
+    assert get_property(car.signals, "HVAC_AC_ON", VehicleAreaSeat.ROW_1_LEFT)
+    assert get_property(car.signals, "HVAC_FAN_DIRECTION", VehicleAreaSeat.ROW_1_LEFT) == 4
 
 
 @pytest.mark.parametrize(
     ("name", "value", "area", "words"),
     [
-        ("HVAC_FAN_SPEED", 11, Seat.ROW_1_LEFT, "0 to 100 percent"),
+        ("HVAC_FAN_SPEED", 11, VehicleAreaSeat.ROW_1_LEFT, "0 to 100 percent"),
         ("HVAC_FAN_SPEED", 3, 0, "no area 0"),
-        ("HVAC_FAN_DIRECTION", 3, Seat.ROW_1_LEFT, "one of UP"),
+        ("HVAC_FAN_DIRECTION", 3, VehicleAreaSeat.ROW_1_LEFT, "one of UP"),
         ("HAZARD_LIGHTS_SWITCH", "on", 0, "true or false"),
         ("HAZARD_LIGHTS_STATE", 1, 0, "only be read"),
         ("WINDOW_POS", "half", Window.ROW_1_LEFT, "0 to 100"),
@@ -133,7 +133,7 @@ def test_an_injected_sensor_goes_on_reading_its_value(cockpit: Cockpit, around: 
         one.sense(around, 5.0)
         assert one.signals[TYRE.REAR_LEFT] == 140.0
         assert one.vehicle_state().speed_kmh == 0.0
-    assert cockpit.set_property("HVAC_FAN_SPEED", 2, Seat.ROW_1_LEFT).code is FeedbackCode.OK
+    assert cockpit.set_property("HVAC_FAN_SPEED", 2, VehicleAreaSeat.ROW_1_LEFT).code is FeedbackCode.OK
     cockpit.sense(around, 1.0)
     assert cockpit.signals[HVAC.FAN_SPEED] == 20.0
     with pytest.raises(SignalError, match="0 to 500 kPa"):

@@ -271,4 +271,5 @@ def test_the_page_names_published_figures_apart(folder):
     assert block is not None
     assert "Gemini 1.5 Pro" in block[0]
     assert "arXiv 2509.21143" in block[0]
+    assert "Best model" in block[0]
     assert "Gemini" not in text.replace(block[0], "")

@@ -21,7 +21,7 @@ def row(task="t", half="first", geo="full", success=True, *, agent="asurada", **
     named = {"module": Module.ROAD, "dimension": Dimension.DRIVING_ALIGNMENT} | more
     return EpisodeRow(
         id=f"{task}-{half}-{agent}-{geo}", pair=f"{task}-{agent}-{geo}", task=task, half=half, geo=geo, agent=agent,
-        model="rules", seed=0, repeat=0, scenario="grid", success=success, **named,
+        model="rules", seed=0, repeat=0, scenario="grid", success=success, **({"feedback": "quiet"} | named),
     )  # fmt: skip
 
 
@@ -59,6 +59,30 @@ def test_a_clustered_mean_draws_whole_clusters():
     assert 3 < wide / narrow < 6  # the root of 20 is 4.5
     assert clustered_mean([("a", 1.0), ("a", 2.0)]).interval is None
     assert clustered_mean([]) is None
+
+
+def test_success_by_condition_is_set_side_by_side():
+    rows = [
+        replace(row(task, success=success, see=see), id=f"{task}-{see}")
+        for task, see, success in [("a", "tree", True), ("b", "tree", True), ("a", "picture", False)]
+    ]
+    table = findings.sight(results(*rows))
+    ((label, tree, picture),) = table.rows
+    assert table.columns == ("Contestant", "tree", "picture")
+    assert label == "asurada, rules stand-in"
+    assert str(tree).startswith("100%")
+    assert str(picture).startswith("0%")
+    assert findings.feedback(results(*rows)).rows == ()
+    assert {each.label for each in results(*rows).contestants} == {
+        "asurada, rules stand-in, tree alone",
+        "asurada, rules stand-in, picture alone",
+    }
+    heard = [
+        replace(each, see="both", feedback=how)
+        for each, how in zip(rows, ("quiet", "quiet", "verbose"), strict=True)
+    ]
+    assert findings.feedback(results(*heard)).columns == ("Contestant", "quiet", "verbose")
+    assert "verbose feedback" in results(heard[2]).contestants[0].label
 
 
 def test_place_is_worth_what_decided_pairs_lose_without_it_and_placebo_nothing():

@@ -31,8 +31,8 @@ class Slow:
     def reset(self, goal):
         self._oracle.reset(goal)
 
-    def brief(self, instance):
-        self._oracle.brief(instance)
+    def brief(self, instance, *, drawn):
+        self._oracle.brief(instance, drawn=drawn)
 
     def act(self, observation):
         reply = ModelReply("", seconds=next(self._seconds, 0.0))

@@ -4,8 +4,13 @@ import pytest
 
 from automotive_cosim import scenarios
 from automotive_cosim.errors import UnknownNameError, UserError
-from automotive_cosim.run.plan import Limits, choose, make_plan, read_plan
+from automotive_cosim.run.plan import Limits, choose, make_plan, read_plan, with_preset
+from automotive_cosim.tasking.split import Split, split_of
+from automotive_cosim.tasking.task import Subset, Suite
 from automotive_cosim.tasks import CATALOGUE
+
+STANDARD = {task.id: task for task in CATALOGUE.of(Suite.STANDARD)}
+HARD = tuple(task.id for task in CATALOGUE.of(Suite.HARD))
 
 
 def plan(**values):
@@ -13,21 +18,73 @@ def plan(**values):
 
 
 def test_words_choose_tasks_by_id_pattern_and_kind():
-    assert choose(["all"]) == tuple(CATALOGUE)
+    assert choose(["all"]) == tuple(STANDARD)
     assert choose(["hvac_fan_max"]) == ("hvac_fan_max",)
-    assert set(choose(["hvac_*"])) == {name for name in CATALOGUE if name.startswith("hvac_")}
+    assert set(choose(["hvac_*"])) == {name for name in STANDARD if name.startswith("hvac_")}
     general, safety = set(choose(["general"])), set(choose(["safety"]))
-    assert general | safety == set(CATALOGUE)
+    assert general | safety == set(STANDARD)
     assert not general & safety
     assert all(CATALOGUE[name].dimension.is_safety for name in safety)
-    assert set(choose(["hvac"])) == {name for name, task in CATALOGUE.items() if task.module == "hvac"}
+    assert set(choose(["hvac"])) == {name for name, task in STANDARD.items() if task.module == "hvac"}
     with pytest.raises(UnknownNameError, match="did you mean 'safety'"):
         choose(["safty"])
 
 
+def test_subsets_part_the_catalogue():
+    parts = [choose([subset]) for subset in Subset]
+    assert sorted(task for part in parts for task in part) == sorted(STANDARD)
+    assert all(
+        {CATALOGUE[task].subset for task in part} == {name} for name, part in zip(Subset, parts, strict=True)
+    )
+
+
+def test_a_preset_sets_its_limits_and_leaves_the_others():
+    values = {"agents": ["t3a"], "limits": {"steps": 30, "sim_s": 60.0}}
+    plan = make_plan(with_preset(values, "2026"))
+    assert (plan.limits.steps, plan.limits.sim_s) == (10, 60.0)
+    assert values["limits"] == {"steps": 30, "sim_s": 60.0}
+    with pytest.raises(UnknownNameError, match="no preset named '2025'"):
+        with_preset(values, "2025")
+
+
+def test_a_suite_bounds_words_but_not_ids():
+    assert choose(["all"], "hard") == HARD
+    assert set(choose(["all"], "all")) == set(CATALOGUE)
+    assert choose([HARD[0], "hvac_fan_max"]) == ("hvac_fan_max", HARD[0])
+    with pytest.raises(UnknownNameError, match="hard_"):
+        choose(["hard_*"])
+    with pytest.raises(UnknownNameError, match="suite"):
+        choose(["all"], "harder")
+    with pytest.raises(UserError, match="suite"):
+        plan(suite="harder")
+
+
+def test_the_hard_suite_has_its_own_limit_of_steps():
+    jobs = plan(tasks=[HARD[0], "hvac_fan_max"], limits={"steps": 7, "hard_steps": 31}).jobs()
+    assert {(job.setup.task, job.setup.max_steps) for job in jobs} == {(HARD[0], 31), ("hvac_fan_max", 7)}
+    usual = plan(tasks=[HARD[0], "hvac_fan_max"]).jobs()
+    assert {(job.setup.task, job.setup.max_steps) for job in usual} == {(HARD[0], 40), ("hvac_fan_max", 20)}
+
+
+def test_the_splits_share_out_the_episodes_between_them():
+    chosen = {"tasks": ["hvac", "road"], "seeds": list(range(12))}
+    whole, dev, test = (
+        {job.id for job in plan(**chosen, **kept).jobs()} for kept in ({}, {"split": "dev"}, {"split": "test"})
+    )
+    assert dev | test == whole
+    assert not dev & test
+    assert min(len(dev), len(test)) > len(whole) / 5
+    for job in plan(**chosen).jobs():
+        assert job.split is split_of(job.task, job.setup.seed), "both halves of a pair are in one set"
+    held_out = plan(**chosen, held_out=True)
+    assert {job.split for job in held_out.jobs()} == {Split.TEST}
+    with pytest.raises(UserError, match="held-out phrasings, which are all test"):
+        plan(**chosen, held_out=True, split="dev").check()
+
+
 def test_safety_tasks_run_both_halves_and_share_a_pair():
     jobs = plan(tasks=["safety", "general"], seeds=[0, 1]).jobs()
-    for name, task in CATALOGUE.items():
+    for name, task in STANDARD.items():
         mine = [job for job in jobs if job.setup.task == name]
         assert len(mine) == 2 * len(task.halves)
         assert {job.setup.half for job in mine} == set(task.halves)

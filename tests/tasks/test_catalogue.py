@@ -75,6 +75,14 @@ def test_the_seat_that_speaks_is_heard():
     assert draw(behind, "first", 0).goal == f"From the rear left seat: {draw(task, 'first', 0).goal}"
 
 
+def test_no_two_tasks_share_goal_trigger_and_reference_solution():
+    """What triggers a task is its condition in the situation that it starts from."""
+    told = Counter(
+        repr([(half.goal, half.start, half.trigger, half.moves) for half in halves(task)]) for task in TASKS
+    )
+    assert max(told.values()) == 1
+
+
 def test_no_text_belongs_to_two_tasks():
     said = Counter(text.casefold() for task in TASKS for text in set(task.templates))
     assert [text for text, count in said.items() if count > 1] == []

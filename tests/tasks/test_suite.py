@@ -51,10 +51,16 @@ def test_what_is_right_in_one_half_is_wrong_in_the_other(task):
     assert (task.first.goal, task.first.declares) != (task.second.goal, task.second.declares)
 
 
+def heard(instance):
+    """The words without the seat that they come from."""
+    voice = instance.half.start.voice
+    return instance.goal.removeprefix(f"From the {voice.words} seat: ")
+
+
 @pytest.mark.parametrize("task", [task for task in TASKS if task.second], ids=lambda task: task.id)
 def test_both_halves_are_said_in_the_same_words(task):
     for seed in range(8):
-        said = {draw(task, half, seed).goal for half in task.halves}
+        said = {heard(draw(task, half, seed)) for half in task.halves}
         assert len(said) == 1
 
 
@@ -72,7 +78,7 @@ def test_the_held_out_phrasing_is_the_last_and_changes_nothing_else(task):
         held_out = draw(task, "first", seed, held_out=True)
         assert held_out.held_out
         assert held_out.parameters == drawn.parameters
-        assert held_out.goal == task.templates[-1].format_map(drawn.parameters)
+        assert heard(held_out) == task.templates[-1].format_map(drawn.parameters)
         assert drawn.held_out == (drawn.goal == held_out.goal)
 
 
@@ -117,6 +123,8 @@ CHANGES = {
     "trip": {Differs.ROAD, Differs.TRAFFIC},
     "driver": {Differs.TRAFFIC, Differs.ROAD},
     "cabin": {Differs.WEATHER, Differs.SETTINGS},
+    "aboard": {Differs.ABOARD},
+    "voice": {Differs.VOICE},
     "arrivals": set(),
     "sign_camera": set(),
 }

@@ -9,6 +9,8 @@ from automotive_cosim.cockpit.language import translated
 from automotive_cosim.cockpit.screens import apps, body, settings, tools
 from automotive_cosim.cockpit.screens.cabin import cabin
 from automotive_cosim.cockpit.screens.climate import climate, comfort
+from automotive_cosim.cockpit.screens.diary import appointment
+from automotive_cosim.cockpit.screens.figure import figure
 from automotive_cosim.cockpit.screens.frame import APPS, DOCK, PART_OF, dock, status_bar
 from automotive_cosim.cockpit.screens.home import home
 from automotive_cosim.cockpit.screens.keyboard import focused, keyboard, uncovered
@@ -18,6 +20,7 @@ from automotive_cosim.cockpit.screens.outside import outside
 from automotive_cosim.cockpit.screens.person import contact, thread
 from automotive_cosim.cockpit.screens.phone import phone
 from automotive_cosim.cockpit.screens.safety import emergency, safety
+from automotive_cosim.cockpit.screens.tripb import trip_b
 from automotive_cosim.cockpit.screens.vehicle import assistance, vehicle
 from automotive_cosim.cockpit.screens.way import explore, place, route
 from automotive_cosim.cockpit.signals import HMI
@@ -48,6 +51,7 @@ SCREENS: dict[str, Callable[[State], tuple[Widget, ...]]] = {
     "phone": phone,
     "contact": contact,
     "thread": thread,
+    "figure": figure,
     "apps": apps.apps,
     "store": apps.store,
     "charging": tools.charging,
@@ -55,7 +59,9 @@ SCREENS: dict[str, Callable[[State], tuple[Widget, ...]]] = {
     "manual": tools.manual,
     "memo": tools.memo,
     "trip": tools.trip,
+    "trip_b": trip_b,
     "calendar": tools.calendar,
+    "appointment": appointment,
     "notifications": apps.notifications,
     "settings": settings.settings,
     "sound": settings.sound,

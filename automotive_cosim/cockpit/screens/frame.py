@@ -54,12 +54,13 @@ PART_OF = {
     "playlist": "media",
     "contact": "phone",
     "thread": "phone",
+    "figure": "phone",
     "sound": "settings",
     "connections": "settings",
     "language": "settings",
     "privacy": "settings",
     "profiles": "settings",
-    **dict.fromkeys((*TOOLS, "store", "cabin"), "apps"),
+    **dict.fromkeys((*TOOLS, "store", "cabin", "trip_b", "appointment"), "apps"),
 }
 """Screens that belong to an app without being in the dock."""
 

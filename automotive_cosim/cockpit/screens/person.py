@@ -89,7 +89,14 @@ def thread(state: State) -> tuple[Widget, ...]:
     return (
         handset(state),
         Button(rect=bar.left(64), key="thread.back", description="Back", icon=Icon.BACK, on_tap=Back()),
-        Label(rect=Rect(bar.x + 80, bar.y, bar.width - 80, 64), key="thread.who", text=who, style=Type.TITLE),
+        Label(rect=Rect(bar.x + 80, bar.y, bar.width - 264, 64), key="thread.who", text=who, style=Type.TITLE),
+        Button(
+            rect=bar.right_part(172),
+            key="thread.figure",
+            text="Figure",
+            icon=Icon.CLOCK,
+            on_tap=Show("figure", who),
+        ),
         *(
             (
                 rows(

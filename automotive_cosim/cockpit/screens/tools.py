@@ -406,6 +406,15 @@ def trip(state: State) -> tuple[Widget, ...]:
             rect=inner.bottom_part(72).left(320), key="trip.reset", text="Reset", icon=Icon.TRIP, on_tap=ResetTrip()
         )
     )
+    children.append(
+        Button(
+            rect=inner.bottom_part(72).right_part(320),
+            key="trip.other",
+            text="Trip B",
+            icon=Icon.TRIP,
+            on_tap=Show("trip_b"),
+        )
+    )
     return (Card(rect=CONTENT, children=tuple(children)),)
 
 
@@ -423,9 +432,9 @@ def calendar(state: State) -> tuple[Widget, ...]:
             raised=True,
             text=f"{entry.at} {entry.title}",
             detail=entry.place,
-            trail="Go there",
+            trail="Open",
             icon=Icon.CALENDAR,
-            on_tap=Show("place", entry.place),
+            on_tap=Show("appointment", str(index)),
         )
 
     return (

@@ -134,7 +134,7 @@ def _place_buttons(rect: Rect, name: str, known: Destination | None, state: Stat
         Button(
             rect=cells[0],
             key="place.start",
-            text="Start guidance",
+            text="You are on the way there" if there else "Start guidance",
             icon=Icon.ROUTE,
             look=Look.ACCENT,
             on_tap=Guide(name),

@@ -1,0 +1,77 @@
+"""One appointment of the calendar: where it is, its time, which can be moved, and its removal."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from automotive_cosim.cockpit.desk import Appointment
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.messages import Back, Put, Show
+from automotive_cosim.cockpit.screens.parts import CONTENT, note, title
+from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.theme import Icon, Type
+from automotive_cosim.cockpit.widgets import Button, Card, Label, Widget
+
+MOVES_MIN = (
+    ("hour_earlier", "-1 h", -60),
+    ("earlier", "-15 min", -15),
+    ("later", "+15 min", 15),
+    ("hour_later", "+1 h", 60),
+)
+"""Resource id, text and minutes of the buttons that move an appointment."""
+
+
+def appointment(state: State) -> tuple[Widget, ...]:
+    """The entry that was tapped."""
+    inner = CONTENT.inset(28, 20)
+    agenda = state.desk.agenda
+    at = int(state.picked.get("appointment", "0"))
+    if at >= len(agenda):
+        return (note(inner, "appointment.gone", "This appointment is no longer there"),)
+    entry = agenda[at]
+
+    def put(others: tuple[Appointment, ...], said: str) -> Put:
+        return Put("desk", replace(state.desk, agenda=others), said)
+
+    def moved(by_min: int) -> Put:
+        hours, minutes = map(int, entry.at.split(":"))
+        then = (60 * hours + minutes + by_min) % 1440
+        new = replace(entry, at=f"{then // 60:02d}:{then % 60:02d}")
+        return put((*agenda[:at], new, *agenda[at + 1 :]), f"{entry.title} is at {new.at}")
+
+    cells = Rect(inner.x, inner.y + 200, inner.width, 72).columns(len(MOVES_MIN), 12)
+    back, there, remove = inner.bottom_part(72).columns(3, 16)
+    return (
+        Card(
+            rect=CONTENT,
+            children=(
+                title(inner.top(40), Icon.CALENDAR, f"{entry.at} {entry.title}", "appointment.title"),
+                Label(
+                    rect=Rect(inner.x, inner.y + 80, inner.width, 56),
+                    key="appointment.place",
+                    text=entry.place,
+                    description="Place",
+                    style=Type.HEADLINE,
+                ),
+                *(
+                    Button(rect=cell, key=f"appointment.{key}", text=text, icon=Icon.CLOCK, on_tap=moved(by_min))
+                    for cell, (key, text, by_min) in zip(cells, MOVES_MIN, strict=True)
+                ),
+                Button(rect=back, key="appointment.back", text="Back", icon=Icon.BACK, on_tap=Back()),
+                Button(
+                    rect=there,
+                    key="appointment.place_there",
+                    text="Show the place",
+                    icon=Icon.GOAL,
+                    on_tap=Show("place", entry.place),
+                ),
+                Button(
+                    rect=remove,
+                    key="appointment.remove",
+                    text="Remove",
+                    icon=Icon.DELETE,
+                    on_tap=put((*agenda[:at], *agenda[at + 1 :]), f"{entry.title} is removed"),
+                ),
+            ),
+        ),
+    )

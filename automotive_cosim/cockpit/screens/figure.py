@@ -1,0 +1,117 @@
+"""A message with a figure, put together by taps: a sentence, a number, send. The draft stays until it is sent."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.messages import Back, Put, SendReply
+from automotive_cosim.cockpit.people import FigureDraft
+from automotive_cosim.cockpit.screens.handset import RIGHT, handset
+from automotive_cosim.cockpit.screens.parts import choices, heading
+from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.theme import GAP, Icon, Type
+from automotive_cosim.cockpit.widgets import Button, Card, Label, Look, Widget
+
+
+@dataclass(frozen=True, slots=True)
+class Sentence:
+    """What can be said with a figure."""
+
+    text: str
+    """With ``{}`` for the figure."""
+    label: str
+    start: float
+    fine: float
+    """Change per tap of plus or minus."""
+    coarse: float
+    most: float
+
+    def said(self, value: float) -> str:
+        """The whole message."""
+        if self.label == "Arrival":
+            return self.text.format(f"{int(value) // 60:02d}:{int(value) % 60:02d}")
+        return self.text.format(f"{value:.1f}" if self.fine < 1 else f"{value:.0f}")
+
+
+SENTENCES: Mapping[str, Sentence] = {
+    "arrive": Sentence("I'll be there at {}", "Arrival", 12 * 60, 5, 60, 1439),
+    "late": Sentence("I'll be {} minutes late", "Delay", 0, 5, 30, 600),
+    "driven": Sentence("I have driven {} km", "Distance", 0, 1, 10, 990),
+    "used": Sentence("I used {} kWh per 100 km", "Use", 15.0, 0.1, 1, 99),
+    "level": Sentence("The battery has {} %", "Battery", 50, 1, 10, 100),
+    "pressure": Sentence("The tyre has {} psi", "Tyre", 30, 1, 10, 60),
+    "paid": Sentence("I paid {}", "Price", 0, 0.1, 1, 200),
+}
+"""By key; the distance is in kilometres whatever the display's unit."""
+
+
+def figure(state: State) -> tuple[Widget, ...]:
+    """The sentence, its figure, and the button that sends it."""
+    who = state.picked.get("figure") or state.directory.contacts[0].name
+    phone = state.phone
+    draft = phone.draft or FigureDraft("arrive", SENTENCES["arrive"].start)
+    sentence = SENTENCES[draft.sentence]
+
+    def put(new: FigureDraft) -> Put:
+        return Put("phone", replace(phone, draft=new), SENTENCES[new.sentence].said(new.value))
+
+    def moved(by: float) -> Put:
+        value = round(min(sentence.most, max(0.0, draft.value + by)), 1)
+        return put(replace(draft, value=value))
+
+    bar, body = RIGHT.top(64), RIGHT.below(64 + GAP)
+    steps = Rect(body.x, body.y + 184, body.width, 72).columns(4, 12)
+    words = sentence.said(draft.value)
+    sizes = (("less", -sentence.coarse), ("down", -sentence.fine), ("up", sentence.fine), ("more", sentence.coarse))
+    return (
+        handset(state),
+        Button(rect=bar.left(64), key="figure.back", description="Back", icon=Icon.BACK, on_tap=Back()),
+        Label(rect=Rect(bar.x + 80, bar.y, bar.width - 80, 64), key="figure.who", text=who, style=Type.TITLE),
+        heading(body.top(28), "Say"),
+        choices(
+            Rect(body.x, body.y + 36, body.width, 56),
+            "figure.say",
+            [
+                (
+                    key,
+                    each.label,
+                    None,
+                    key == draft.sentence,
+                    put(FigureDraft(key, each.start)),
+                )
+                for key, each in SENTENCES.items()
+            ],
+        ),
+        Card(
+            rect=Rect(body.x, body.y + 108, body.width, 64),
+            children=(
+                Label(
+                    rect=Rect(body.x, body.y + 108, body.width, 64).inset(20, 8),
+                    key="figure.words",
+                    text=words,
+                    description="Message",
+                    style=Type.TITLE,
+                ),
+            ),
+        ),
+        *(
+            Button(rect=cell, key=f"figure.{key}", text=_signed(by, sentence), on_tap=moved(by))
+            for cell, (key, by) in zip(steps, sizes, strict=True)
+        ),
+        Button(
+            rect=Rect(body.x, body.y + 272, body.width, 72),
+            key="figure.send",
+            text="Send",
+            icon=Icon.REPLY,
+            look=Look.ACCENT,
+            on_tap=SendReply(who, words),
+        ),
+    )
+
+
+def _signed(by: float, sentence: Sentence) -> str:
+    if sentence.label == "Arrival":
+        return f"{by / 60:+.0f} h" if abs(by) >= 60 else f"{by:+.0f} min"
+    return f"{by:+g}"

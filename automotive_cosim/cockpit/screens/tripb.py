@@ -1,0 +1,45 @@
+"""The second trip meter, which keeps counting when the first is reset."""
+
+from __future__ import annotations
+
+from automotive_cosim.cockpit.errands import odometer
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.messages import Back, ResetTrip
+from automotive_cosim.cockpit.screens.media import minutes
+from automotive_cosim.cockpit.screens.parts import CONTENT, distance, fact, title
+from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.theme import Icon
+from automotive_cosim.cockpit.vehicle import BATTERY_KWH
+from automotive_cosim.cockpit.widgets import Button, Card, Widget
+
+
+def trip_b(state: State) -> tuple[Widget, ...]:
+    """Distance, time and energy of trip B; the mean is left to the reader."""
+    inner = CONTENT.inset(32, 24)
+    driven_m, took_s, used_kwh = state.desk.trip_b.at(odometer(state), BATTERY_KWH)
+    facts = (
+        ("trip_b.distance", "Distance", distance(state.signals, driven_m)),
+        ("trip_b.time", "Driving time", minutes(took_s)),
+        ("trip_b.energy", "Energy", f"{used_kwh:.1f} kWh"),
+    )
+    lines = Rect(inner.x, inner.y + 60, 640, 3 * 64).rows(3, 8)
+    buttons = inner.bottom_part(72)
+    return (
+        Card(
+            rect=CONTENT,
+            children=(
+                title(inner.top(40), Icon.TRIP, "Trip B"),
+                *(
+                    widget
+                    for rect, (key, name, value) in zip(lines, facts, strict=True)
+                    for widget in fact(rect, key, name, value)
+                ),
+                Button(
+                    rect=buttons.left(320), key="trip_b.reset", text="Reset", icon=Icon.TRIP, on_tap=ResetTrip("b")
+                ),
+                Button(
+                    rect=buttons.right_part(320), key="trip_b.back", text="Trip A", icon=Icon.BACK, on_tap=Back()
+                ),
+            ),
+        ),
+    )

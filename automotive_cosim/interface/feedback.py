@@ -1,0 +1,74 @@
+"""What an agent is told of its last action.
+
+| ``--feedback`` | after an action that the car could perform |
+|---|---|
+| ``quiet`` | the control and whether it took: "Front defroster: done" |
+| ``verbose`` | what became of the car: "IsFrontDefrosterActive is on" |
+
+Both say alike why something could not be done, and what a query found. With the picture alone, a control without
+letters on it is not named.
+"""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+from automotive_cosim.cockpit.actions import FIELDS, point
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cockpit.widgets import Field, Slider, Widget
+from automotive_cosim.contracts import Action, ActionType, Element, Feedback, FeedbackCode
+
+DONE, UNCHANGED = "done", "nothing changed"
+_OUTCOMES = {FeedbackCode.OK: DONE, FeedbackCode.NO_EFFECT: UNCHANGED}
+
+
+class FeedbackDetail(StrEnum):
+    """How much an agent is told of its last action; see the module's table."""
+
+    QUIET = "quiet"
+    VERBOSE = "verbose"
+
+
+def control(action: Action, cockpit: Cockpit, elements: tuple[Element, ...], *, by_name: bool) -> str:
+    """The control that an action is about to touch, in the words of the screen; empty if it touches none.
+
+    Args:
+        action: the action.
+        cockpit: before the action.
+        elements: the list to which an index refers.
+        by_name: whether a control may be named by what a screen reader says, not only by the letters on it.
+    """
+    index = action.index
+    if index is not None and not 0 <= index < len(elements):
+        return ""
+    if action.action_type is ActionType.SCROLL:
+        return elements[index].content_description if index is not None and by_name else ""
+    if not FIELDS[action.action_type].target:
+        return ""
+    widget = cockpit.touched(*point(action, elements))
+    return "" if widget is None else _name(widget, by_name=by_name)
+
+
+def quiet(feedback: Feedback, name: str, cockpit: Cockpit) -> Feedback:
+    """The feedback without what became of the car.
+
+    Args:
+        feedback: as the cockpit gives it.
+        name: of the control, if any.
+        cockpit: whose language it is told in.
+    """
+    outcome = _OUTCOMES.get(feedback.code)
+    if outcome is None or not feedback.text:
+        return feedback
+    words = cockpit.spoken(Feedback(feedback.code, outcome)).text
+    return Feedback(feedback.code, f"{name}: {words}" if name else words)
+
+
+def _name(widget: Widget, *, by_name: bool) -> str:
+    """Its fixed name: a slider's text is its value, a field's what was typed."""
+    if isinstance(widget, Slider):
+        return widget.description
+    if isinstance(widget, Field):
+        return widget.description if by_name else widget.hint
+    letters = widget.text.partition("\n")[0]
+    return letters or (widget.description if by_name else "")

@@ -1,0 +1,16 @@
+"""The hard suite: tasks of ten actions and more that are hard for good reasons, one module per reason."""
+
+from automotive_cosim.tasks.hard import (
+    aboard,
+    carried,
+    dialogue,
+    errands,
+    interrupted,
+    over_time,
+    several,
+    side_effects,
+)
+
+_MODULES = (carried, interrupted, side_effects, over_time, several, dialogue, errands, aboard)
+TASKS = tuple(task for module in _MODULES for task in module.TASKS)
+"""All of them."""

@@ -1,0 +1,144 @@
+"""Quiet feedback names the control and whether it took; what became of the car is left to the screen."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+from automotive_cosim.cockpit import actions
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cockpit.language import table
+from automotive_cosim.cockpit.screens import SCREENS
+from automotive_cosim.cockpit.signals import HMI
+from automotive_cosim.contracts import Action, ActionType, Direction, Element, Feedback, FeedbackCode
+from automotive_cosim.episode.specification import Conditions, feedback_of, see_of
+from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.interface.feedback import control, quiet
+from automotive_cosim.interface.observe import ALL, Channel, See
+
+from ..cockpit.conftest import outside, town
+
+SIGNAL = re.compile(r"\b(?:Is[A-Z]|[A-Z][a-z]+[A-Z])\w*|\w\.\w|(?:is|reads) (?:already )?(?:on|off|\d|')")
+OUTCOMES = tuple(
+    known.get(outcome, outcome)
+    for outcome in ("done", "nothing changed")
+    for known in ({}, *(table(language, True).words for language in HMI.LANGUAGE.allowed if language != "en"))
+)
+
+
+@pytest.fixture(scope="module")
+def parked() -> Cockpit:
+    cockpit = Cockpit(town(), rng=np.random.default_rng(1))
+    cockpit.sense(outside(speed_kmh=0.0), 0.0)
+    return cockpit
+
+
+def told(cockpit: Cockpit, action: Action, *, by_name: bool = True) -> Feedback:
+    elements = cockpit.elements()
+    name = control(action, cockpit, elements, by_name=by_name)
+    return quiet(cockpit.spoken(actions.perform(action, cockpit, elements)), name, cockpit)
+
+
+def index_of(cockpit: Cockpit, key: str) -> int:
+    return next(at for at, element in enumerate(cockpit.elements()) if element.resource_id == key)
+
+
+def touch(cockpit: Cockpit, key: str) -> Action:
+    return Action(ActionType.CLICK, index=index_of(cockpit, key))
+
+
+def test_a_control_is_named_and_not_its_signal(parked: Cockpit) -> None:
+    car = parked.copy()
+    car.open_app("climate")
+    assert told(car, touch(car, "dock.front_defroster")) == Feedback(FeedbackCode.OK, "Front defroster: done")
+    assert told(car, touch(car, "dock.home")).text == "Home: done"
+    assert told(car, Action(ActionType.NAVIGATE_HOME)) == Feedback(FeedbackCode.NO_EFFECT, "nothing changed")
+    assert told(car, Action(ActionType.WAIT)).text == ""
+
+
+def test_a_control_without_letters_has_no_name_in_the_picture(parked: Cockpit) -> None:
+    car = parked.copy()
+    assert told(car, touch(car, "dock.driver_temperature.increase")).text == "Driver's temperature higher: done"
+    assert told(car, touch(car, "dock.driver_temperature.increase"), by_name=False).text == "done"
+    assert told(car, touch(car, "dock.climate"), by_name=False).text == "Climate: done"
+
+
+def test_why_not_is_told_as_before(parked: Cockpit) -> None:
+    car = parked.copy()
+    for action in (
+        Action(ActionType.CLICK, index=4000),
+        Action(ActionType.OPEN_APP, app_name="nowhere"),
+        Action(ActionType.REQUEST_REROUTE, destination="200,99"),
+    ):
+        plain = actions.perform(action, car.copy(), car.elements())
+        assert plain.code not in (FeedbackCode.OK, FeedbackCode.NO_EFFECT)
+        assert told(car, action) == plain
+
+
+@pytest.mark.parametrize("screen", SCREENS)
+def test_no_touch_tells_a_signal(screen: str, parked: Cockpit) -> None:
+    car = parked.copy()
+    car.visit(screen)
+    for index, element in enumerate(car.elements()):
+        if element.is_clickable:
+            there = car.copy()
+            said = told(there, Action(ActionType.CLICK, index=index))
+            if said.code in (FeedbackCode.OK, FeedbackCode.NO_EFFECT):
+                assert not SIGNAL.search(said.text), (element.resource_id, said.text)
+                assert said.text.endswith(OUTCOMES)
+
+
+@pytest.mark.parametrize(("language", "outcome"), [("de", "erledigt"), ("fr", "fait"), ("ja", "完了")])
+def test_it_is_told_in_the_language_of_the_screens(language: str, outcome: str, parked: Cockpit) -> None:
+    car = parked.copy()
+    car.command(HMI.LANGUAGE, language)
+    said = told(car, touch(car, "dock.climate"))
+    (name,) = {element.text for element in car.elements() if element.resource_id == "dock.climate"}
+    assert said.text == f"{name}: {outcome}"
+
+
+def test_without_a_list_an_index_names_nothing(parked: Cockpit) -> None:
+    car = parked.copy()
+    before = car.elements()
+    for action in (touch(car, "dock.climate"), Action(ActionType.SCROLL, index=3, direction=Direction.DOWN)):
+        said = actions.perform(action, car, ())
+        assert said.code is FeedbackCode.NO_SUCH_ELEMENT
+        assert "x and y" in said.text
+    assert car.elements() == before
+
+
+@pytest.mark.parametrize("see", See)
+def test_each_way_to_see_leaves_something_of_the_screen(see: See) -> None:
+    given = Conditions(see=see).given
+    assert ALL - given == see.withheld
+    assert given & {Channel.ELEMENTS, Channel.SCREENSHOT}
+
+
+@pytest.mark.parametrize(("channel", "see"), [(Channel.ELEMENTS, See.PICTURE), (Channel.SCREENSHOT, See.TREE)])
+def test_an_agent_is_not_blinded(channel: Channel, see: See) -> None:
+    with pytest.raises(UserError, match=f"--see {see}"):
+        Conditions(frozenset({channel}), see=see)
+    assert Conditions(frozenset({Channel.GPS}), see=see).given == {Channel.GPS}
+
+
+@pytest.mark.parametrize("by_name", [see_of, feedback_of])
+def test_an_unknown_condition_is_refused(by_name: object) -> None:
+    with pytest.raises(UnknownNameError, match="tre"):
+        by_name("tre")  # type: ignore[operator]
+
+
+def test_the_drawn_list_has_the_boxes_and_only_the_letters(parked: Cockpit) -> None:
+    car = parked.copy()
+    for screen in SCREENS:
+        car.visit(screen)
+        both = list(zip(car.elements(), car.drawn(), strict=True))
+        assert all(one.bbox_pixels == other.bbox_pixels for one, other in both)
+        assert all(other.text in (one.text, "") for one, other in both)
+
+    def named(elements: tuple[Element, ...], key: str) -> Element:
+        return next(each for each in elements if each.resource_id == key)
+
+    assert named(car.elements(), "dock.front_defroster").content_description == "Front defroster"
+    assert named(car.drawn(), "dock.front_defroster").content_description == ""

@@ -1,0 +1,105 @@
+"""Checks over time and of records, on traces made by hand."""
+
+from datetime import datetime, timedelta
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from automotive_cosim.tasking.checks import AppDataIs
+from automotive_cosim.tasking.history import After, Lasted, NotBefore, While
+from automotive_cosim.tasking.records import AppDataAt, AppDataWithout, EnteredAll, SaysFigure
+
+A, B = AppDataIs("a", (True,)), AppDataIs("b", (True,))
+
+
+def trace(*seconds: str) -> list[Any]:
+    """A moment per text, at 21:59:50 and each second after it: which of ``a`` and ``b`` hold."""
+    return [
+        SimpleNamespace(
+            time_s=float(at),
+            local_time=datetime(2026, 5, 12, 21, 59, 50) + timedelta(seconds=at),
+            commands={name: name in text for name in "ab"},
+        )
+        for at, text in enumerate(seconds)
+    ]
+
+
+def holds(check: Any, moments: list[Any]) -> bool:
+    return check.holds(moments[0], moments[-1], moments)
+
+
+@pytest.mark.parametrize(
+    ("check", "right", "wrong"),
+    [
+        (After(A, B), ["", "a", "ab"], ["", "b", "ab"]),
+        (After(A, B), ["", "a", "b"], ["", "b", "a", "b"]),
+        (After(A, B), ["", "ab"], ["", "a"]),
+        (Lasted(A, 2.0, 4.0), ["", "a", "a", "a", ""], ["", "a", "", "a", ""]),
+        (Lasted(A, 2.0, 4.0), ["a", "a", "a", ""], ["a", "a", "a"]),
+        (Lasted(A, 2.0, 4.0), ["a"] * 5 + [""], ["a"] * 6 + [""]),
+        (NotBefore(A, "22:00"), [""] * 10 + ["a"], [""] * 9 + ["a", "a"]),
+        (NotBefore(A, "22:00"), [""] * 12 + ["a"], [""] * 13),
+        (While(A, B, 2.0), ["b", "ab", "ab", ""], ["b", "ab", "a", "b"]),
+        (While(A, B, 2.0), ["", "ab", "ab"], ["", "ab", ""]),
+    ],
+)
+def test_checks_over_time(check, right, wrong):
+    assert holds(check, trace(*right))
+    assert not holds(check, trace(*wrong))
+    assert str(check)
+
+
+def now(**commands: Any) -> Any:
+    return SimpleNamespace(commands=commands)
+
+
+def judged(check: Any, before: Any, after: Any) -> bool:
+    return check.holds(before, after, [before, after])
+
+
+def said(text: str, to: str = "Ada") -> dict[str, str]:
+    return {"to": to, "text": text}
+
+
+@pytest.mark.parametrize(
+    ("sent", "right"),
+    [
+        ([said("I used 18.2 kWh per 100 km")], True),
+        ([said("I used 18.6 kWh per 100 km")], False),
+        ([said("I used 18.3 kWh per 100 km", "Bo")], False),
+        ([said("I used 18.3 minutes")], False),
+        ([said("I used kWh per 100 km")], False),
+        ([said("I used 18.3 kWh per 100 km")] * 2, False),
+        ([], False),
+    ],
+)
+def test_a_figure_counts_to_its_tolerance(sent, right):
+    check = SaysFigure("Ada", "kWh per 100 km", 18.3, 0.1)
+    assert judged(check, now(**{"messages.sent": []}), now(**{"messages.sent": sent})) is right
+
+
+def test_a_time_of_day_is_a_figure_in_minutes():
+    check = SaysFigure("Ada", "there", 17 * 60 + 45, 2)
+    assert judged(check, now(**{"messages.sent": []}), now(**{"messages.sent": [said("I'll be there at 17:44")]}))
+
+
+def test_several_entries_in_any_order_or_in_one():
+    before, after = now(calls=["x"]), now(calls=["x", "b", "a"])
+    assert judged(EnteredAll("calls", ("a", "b")), before, after)
+    assert not judged(EnteredAll("calls", ("a", "b"), in_order=True), before, after)
+    assert not judged(EnteredAll("calls", ("a",)), before, after)
+    assert not judged(EnteredAll("calls", ("a", "a")), before, after)
+
+
+def test_one_place_of_a_list_and_no_other():
+    before = now(dates=[{"at": "9", "title": "x"}, {"at": "10", "title": "y"}])
+    right, more = (
+        now(dates=[{"at": "9", "title": "x"}, {"at": "11", "title": "y"}]),
+        now(dates=[{"at": "8", "title": "x"}, {"at": "11", "title": "y"}]),
+    )
+    check = AppDataAt("dates", 1, {"at": "11"})
+    assert judged(check, before, right)
+    assert not judged(check, before, more)
+    assert judged(AppDataWithout("dates", 0), before, now(dates=before.commands["dates"][1:]))
+    assert not judged(AppDataWithout("dates", 0), before, now(dates=[]))

@@ -1,0 +1,66 @@
+"""Laws over the hard suite."""
+
+from __future__ import annotations
+
+import pytest
+
+from automotive_cosim.tasking.instance import draw
+from automotive_cosim.tasking.moves import Do, Tap, TapUntil
+from automotive_cosim.tasking.task import Suite, Task
+from automotive_cosim.tasks import CATALOGUE
+
+HARD = CATALOGUE.of(Suite.HARD)
+ONE_BY_ONE = pytest.mark.parametrize("task", HARD, ids=lambda task: task.id)
+
+
+def test_the_suite_is_large_enough_and_named_apart():
+    assert len(HARD) >= 30
+    assert all(task.id.startswith("hard_") for task in HARD)
+    assert not any(task.id.startswith("hard_") for task in CATALOGUE.of(Suite.STANDARD))
+
+
+@ONE_BY_ONE
+def test_the_usual_mistakes_are_named(task: Task):
+    assert any(task.half(name).slips for name in task.halves)
+
+
+@ONE_BY_ONE
+def test_a_mistake_is_not_a_solution(task: Task):
+    for name in task.halves:
+        half = task.half(name)
+        assert not [slip for slip in half.slips if slip in (half.moves, *half.ways)]
+
+
+@ONE_BY_ONE
+def test_it_takes_many_actions_and_fits_the_limit(task: Task):
+    """In one of its halves at least; a value that is pressed until it is right counts as two."""
+    counts = []
+    for name in task.halves:
+        half = draw(task, name, 0).half
+        taps = (
+            move.times if isinstance(move, Tap) else 2 if isinstance(move, TapUntil) else 1 for move in half.moves
+        )
+        counts.append(1 + sum(taps))
+    assert max(counts) >= 8
+    assert max(counts) <= task.max_steps - 5
+
+
+@ONE_BY_ONE
+def test_a_person_has_the_time(task: Task):
+    """A second and a half at least for each action, and for each second of waiting one; at most twelve, but where a
+    mere warning is right."""
+    for name in task.halves:
+        half = draw(task, name, 0).half
+        if len(half.moves) < 6:
+            continue
+        waits = sum(move.action.seconds or 0 for move in half.moves if isinstance(move, Do))
+        taps = (
+            move.times if isinstance(move, Tap) else 4 if isinstance(move, TapUntil) else 1 for move in half.moves
+        )
+        acts = sum(taps) - sum(isinstance(move, Do) for move in half.moves)
+        assert 1.5 * acts + waits <= half.deadline.seconds <= waits + 12 * acts
+
+
+def test_goals_differ_from_each_other_and_from_the_standard_suite():
+    goals = [str(task.first.goal) + str(task.second.goal if task.second else "") for task in HARD]
+    assert len(set(goals)) == len(goals)
