@@ -19,7 +19,7 @@ TOPICS = ("dipped_beam", "daytime_lamps", "horn", "phone")
 
 
 @dataclass(frozen=True, slots=True)
-class Crossing:
+class BorderCrossing:
     """The last border that the car crossed, not long ago."""
 
     before: Moment
@@ -28,7 +28,7 @@ class Crossing:
     """Whether the car had not been in the present country on this drive."""
 
 
-def crossing(drive: Sequence[Moment]) -> Crossing | None:
+def crossing(drive: Sequence[Moment]) -> BorderCrossing | None:
     """The border crossed within the last minute; None without one, or if a country is unknown."""
     now = drive[-1]
     here = now.context.country
@@ -36,7 +36,7 @@ def crossing(drive: Sequence[Moment]) -> Crossing | None:
         moment = drive[index]
         if moment.context.country != here:
             known = bool(here and moment.context.country)
-            return Crossing(moment, all(m.context.country != here for m in drive[:index])) if known else None
+            return BorderCrossing(moment, all(m.context.country != here for m in drive[:index])) if known else None
         if now.time_s - moment.time_s > BORDER_S:
             return None
     return None
