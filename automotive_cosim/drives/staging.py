@@ -160,7 +160,8 @@ def _fog_lamps(cue: Cue) -> Props:
 def _glass_fog(cue: Cue) -> Props:
     """The air is recirculated, with the fan low, for good; as a bait, for half a minute."""
     closed = _turned(HVAC.RECIRCULATION, cue, True, 30.0) if cue.is_bait else _set(cue, (HVAC.RECIRCULATION, True))
-    return Props(changes=(CarChange(cue.at_s, HVAC.AIR_CONDITIONING.path, False), *closed))
+    weak = (CarChange(cue.at_s, HVAC.FAN_SPEED.path, 10.0),) if not cue.is_bait else ()
+    return Props(changes=(CarChange(cue.at_s, HVAC.AIR_CONDITIONING.path, False), *weak, *closed))
 
 
 # --- the sky ------------------------------------------------------------------------------------------------
@@ -179,7 +180,7 @@ def _weather_speed(cue: Cue) -> Props:
     """A bank of dense fog that the driver takes no notice of; as a bait, mist."""
     until_s = cue.at_s + SPELL_S
     careless = (DriverAt(cue.at_s, "careless"), DriverAt(until_s, cue.driver))
-    visibility_m = 1600.0 if cue.is_bait else float(round(cue.rng.uniform(30, 46)))
+    visibility_m = 1600.0 if cue.is_bait else float(round(cue.rng.uniform(14, 24)))  # too little for 50 km/h
     return Props(moods=careless, spells=(Spell(cue.at_s, until_s, fog(cue.weather, visibility_m)),))
 
 
