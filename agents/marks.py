@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +17,10 @@ FRAME = (255, 64, 160)
 GROUND = (255, 255, 255)
 INK = (0, 0, 0)
 LABEL_PX = 15
+STEPS = 6
+"""Steps of a number along each side of its box."""
+EDGE = 40.0
+"""Leap of brightness, of 255, that is a letter's edge rather than that of a surface."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +31,7 @@ class Mark:
     """Index in the element list, which is also an action's ``index``."""
     box: BoundingBox
     label: BoundingBox
-    """Position of the number: the box's upper left corner, inside the picture."""
+    """Place of the number: beside the box, inside the picture, on no letter and no other number."""
 
 
 def listed(elements: tuple[Element, ...]) -> tuple[tuple[int, Element], ...]:
@@ -34,15 +39,25 @@ def listed(elements: tuple[Element, ...]) -> tuple[tuple[int, Element], ...]:
     return tuple((index, element) for index, element in enumerate(elements) if element.is_visible)
 
 
-def marks(elements: tuple[Element, ...], width: int, height: int) -> tuple[Mark, ...]:
-    """The marks of a picture of that size."""
-    found = []
+def marks(screenshot: npt.NDArray[np.uint8], elements: tuple[Element, ...]) -> tuple[Mark, ...]:
+    """The marks of a screenshot, (height, width, 3).
+
+    A number stands at the first place around its box that is free. On a crowded screen it stands inside the box
+    where that is free, else where it hides least.
+    """
+    height, width, _ = screenshot.shape
+    ink = Leaps(screenshot)
+    found: list[Mark] = []
     for index, element in listed(elements):
-        tag = label(index)
-        box = element.bbox_pixels
-        left = max(0, min(box.x_min, width - tag.width))
-        top = max(0, min(box.y_min, height - tag.height))
-        found.append(Mark(index, box, BoundingBox(left, top, left + tag.width, top + tag.height)))
+        tag, box = label(index), element.bbox_pixels
+        spots = [_within(spot, width, height) for spot in _around(box, tag.width, tag.height)]
+
+        def faults(spot: BoundingBox, box: BoundingBox = box) -> tuple[bool, bool, bool, int]:
+            leaps = ink.under(spot)
+            return any(overlap(spot, mark.label) for mark in found), leaps > 0, overlap(spot, box), leaps
+
+        spot = next((spot for spot in spots if not any(faults(spot))), None) or min(spots, key=faults)
+        found.append(Mark(index, box, spot))
     return tuple(found)
 
 
@@ -50,7 +65,7 @@ def marked(screenshot: npt.NDArray[np.uint8], elements: tuple[Element, ...]) -> 
     """A copy of the screenshot, (height, width, 3), with its marks; numbers are drawn above all frames."""
     picture = Image.fromarray(screenshot)
     draw = ImageDraw.Draw(picture)
-    found = marks(elements, picture.width, picture.height)
+    found = marks(screenshot, elements)
     for mark in found:
         box = mark.box
         if box.x_max > box.x_min and box.y_max > box.y_min:
@@ -58,6 +73,47 @@ def marked(screenshot: npt.NDArray[np.uint8], elements: tuple[Element, ...]) -> 
     for mark in found:
         picture.paste(label(mark.index), (mark.label.x_min, mark.label.y_min))
     return np.array(picture, dtype=np.uint8)
+
+
+class Leaps:
+    """How much is drawn in any part of a picture, from sums over its upper left parts."""
+
+    def __init__(self, picture: npt.NDArray[np.uint8]) -> None:
+        grey = picture.mean(axis=2)
+        steps = np.zeros(grey.shape, np.int32)
+        steps[:, 1:] += np.abs(np.diff(grey, axis=1)) > EDGE
+        steps[1:, :] += np.abs(np.diff(grey, axis=0)) > EDGE
+        self._sums = np.pad(steps.cumsum(axis=0).cumsum(axis=1), ((1, 0), (1, 0)))
+
+    def under(self, box: BoundingBox) -> int:
+        """Number of leaps of brightness in the box, as at the edges of letters and lines."""
+        sums = self._sums
+        right = sums[box.y_max, box.x_max] - sums[box.y_min, box.x_max]
+        return int(right - sums[box.y_max, box.x_min] + sums[box.y_min, box.x_min])
+
+
+def _around(box: BoundingBox, width: int, height: int) -> Iterator[BoundingBox]:
+    """Places for a number of that size: outside the box, then in its corners."""
+    across = [box.x_min + step * (box.x_max - width - box.x_min) // STEPS for step in range(STEPS + 1)]
+    down = [box.y_min + step * (box.y_max - height - box.y_min) // STEPS for step in range(STEPS + 1)]
+    corners = [(x, y) for y in (box.y_min - height, box.y_max) for x in across]
+    corners += [(x, y) for x in (box.x_min - width, box.x_max) for y in down]
+    corners += [(x, y) for y in down for x in across]
+    for x, y in corners:
+        yield BoundingBox(x, y, x + width, y + height)
+
+
+def _within(spot: BoundingBox, width: int, height: int) -> BoundingBox:
+    """The place moved into the picture."""
+    x = max(0, min(spot.x_min, width - (spot.x_max - spot.x_min)))
+    y = max(0, min(spot.y_min, height - (spot.y_max - spot.y_min)))
+    return BoundingBox(x, y, x + spot.x_max - spot.x_min, y + spot.y_max - spot.y_min)
+
+
+def overlap(one: BoundingBox, other: BoundingBox) -> bool:
+    """Whether two boxes share a pixel."""
+    across = min(one.x_max, other.x_max) > max(one.x_min, other.x_min)
+    return across and min(one.y_max, other.y_max) > max(one.y_min, other.y_min)
 
 
 def label(index: int) -> Image.Image:

@@ -161,7 +161,9 @@ def _is_reached(move: Move, elements: Sequence[Element], said: Sequence[str]) ->
 
 
 def _index(elements: Sequence[Element], resource_id: str, text: str) -> int | None:
-    for index, element in enumerate(elements):
+    """Where it is; of several the first, but the dock comes last: a place may be called Home too."""
+    dock_last = sorted(enumerate(elements), key=lambda entry: entry[1].resource_id.startswith("dock."))
+    for index, element in dock_last:
         if not element.is_visible or (resource_id and element.resource_id != resource_id):
             continue
         if not text or (element.is_clickable and _reads(element, text)):

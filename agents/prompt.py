@@ -21,7 +21,7 @@ from automotive_cosim.cockpit.restrictions import in_words
 from automotive_cosim.contracts import Action, Element, Feedback, GpsFix, Json, Observation, VehicleState
 from automotive_cosim.interface.observe import Channel
 
-SHOWN_FLAGS = ("is_checked", "is_selected", "is_editable", "is_scrollable")
+SHOWN_FLAGS = ("is_checked", "is_selected", "is_editable", "is_scrollable", "is_long_clickable")
 SLIDERS = ("SeekBar",)
 """Elements whose bounds are listed, because it matters where they are touched."""
 

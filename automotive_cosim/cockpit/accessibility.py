@@ -81,6 +81,7 @@ def _element(widget: Widget, scale: float) -> Element:
         is_focusable=is_field,
         is_scrollable=kind in _SCROLLING and _scrolls(widget),
         is_selected=chosen,
+        is_long_clickable=isinstance(widget, Button) and widget.on_hold is not None,
     )
 
 

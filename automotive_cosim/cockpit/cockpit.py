@@ -35,7 +35,7 @@ from automotive_cosim.cockpit.messages import Ask, AskDriver, CallEmergency, Dee
 from automotive_cosim.cockpit.navigation import Navigation
 from automotive_cosim.cockpit.readings import readings
 from automotive_cosim.cockpit.restrictions import REASONS, Restriction
-from automotive_cosim.cockpit.screens import APPS, SCREENS, picture
+from automotive_cosim.cockpit.screens import APPS, PART_OF, SCREENS, picture
 from automotive_cosim.cockpit.screens.lookout import sights
 from automotive_cosim.cockpit.sensing import sense
 from automotive_cosim.cockpit.signals import (
@@ -49,7 +49,7 @@ from automotive_cosim.cockpit.signals import (
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import SCREEN_HEIGHT, SCREEN_WIDTH
 from automotive_cosim.cockpit.vehicle import Vehicle
-from automotive_cosim.cockpit.widgets import Field, MapView, Rows, Screen, Slider, Widget
+from automotive_cosim.cockpit.widgets import Button, Field, MapView, Rows, Screen, Slider, Widget
 from automotive_cosim.contracts import (
     Alert,
     Answer,
@@ -267,10 +267,12 @@ class Cockpit:
         return self.tap(x, y) if first.code is FeedbackCode.OK else first
 
     def long_press(self, x: int, y: int) -> Feedback:
-        """A long press; no widget reacts to it."""
+        """A long press: minus and plus go several steps at once; nothing else reacts to it."""
         widget = self._screen.at(*self._logical(x, y))
         if widget is not None and not widget.usable:
             return self._unusable(widget)
+        if isinstance(widget, Button) and widget.on_hold is not None:
+            return self._perform(widget.on_hold)
         return Feedback(FeedbackCode.NO_EFFECT, f"nothing at ({x}, {y}) reacts to a long press")
 
     def swipe(self, x: int, y: int, direction: Direction, distance_px: int | None = None) -> Feedback:
@@ -358,6 +360,8 @@ class Cockpit:
         """Opens an app by its name."""
         wanted = " ".join(name.casefold().split())
         wanted = APP_ALIASES.get(wanted, wanted)
+        if wanted in PART_OF and wanted not in APPS:
+            return Feedback(FeedbackCode.NO_SUCH_ELEMENT, f"{wanted} is no app; it is a page of {PART_OF[wanted]}")
         if wanted not in APPS:
             close = get_close_matches(wanted, APPS, n=1)
             missing = repr(name[:40])

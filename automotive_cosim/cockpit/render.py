@@ -49,12 +49,12 @@ from automotive_cosim.contracts import Severity
 
 NARROW = 150
 """Tiles narrower than this stack icon and text."""
-ROOMY = 230
-"""Low tiles narrower than this show that they are on only by their colour."""
 TALL = 110
 """Stacked choices this high have large icons."""
 DOCK = Rect(0, SCREEN_HEIGHT - DOCK_HEIGHT, SCREEN_WIDTH, DOCK_HEIGHT)
 """The background of the dock."""
+ROOMY = 230
+"""Low tiles narrower than this have a light where name and toggle do not fit."""
 SPILL = 4
 """How far letters and icons may extend out of their box, in logical pixels."""
 WORTH_IT = 0.7 * SCREEN_WIDTH * SCREEN_HEIGHT
@@ -226,6 +226,7 @@ def _tile(canvas: Canvas, tile: Tile, palette: Palette) -> None:
         return
     if not tile.text or rect.width < NARROW:
         _content(canvas, rect, tile.icon, 32, tile.text, Type.LABEL, ink, stacked=True)
+        _lit(canvas, rect, tile.checked, palette)
         return
     upper = rect.y + 18 + (rect.height - 88) // 3 + 14
     canvas.icon((rect.x + 34, upper), tile.icon, 32, ink)
@@ -239,20 +240,26 @@ def _tile(canvas: Canvas, tile: Tile, palette: Palette) -> None:
 def _line_tile(canvas: Canvas, tile: Tile, ink: Colour, mark: Colour, palette: Palette) -> None:
     """Icon, name and state side by side."""
     rect = tile.rect
-    canvas.icon((rect.x + 30, rect.centre[1]), tile.icon, 28, ink)
+    canvas.icon((rect.x + 28, rect.centre[1]), tile.icon, 28, ink)
     if tile.level:
         wide = round(text_width(tile.level, Type.LABEL)) + 2
         canvas.text(Rect(rect.right - 16 - wide, rect.y, wide, rect.height), tile.level, Type.LABEL, mark, "right")
     elif tile.locked:
         wide = 28
         canvas.icon((rect.right - 30, rect.centre[1]), Icon.LOCK, 24, mark)
-    elif rect.width < ROOMY:
+    elif rect.width < ROOMY and 50 + text_width(tile.text, Type.LABEL) + 64 > rect.width:
         wide = 0
+        _lit(canvas, rect, tile.checked, palette)
     else:
         wide = 44
-        _toggle(canvas, Rect(rect.right - 60, rect.centre[1] - 12, 44, 24), tile.checked, palette)
-    words = Rect(rect.x + 54, rect.y, rect.width - 54 - wide - 22, rect.height)
+        _toggle(canvas, Rect(rect.right - 58, rect.centre[1] - 12, 44, 24), tile.checked, palette)
+    words = Rect(rect.x + 50, rect.y, rect.width - 50 - wide - 20, rect.height)
     canvas.text(words, tile.text, Type.LABEL, ink)
+
+
+def _lit(canvas: Canvas, rect: Rect, on: bool, palette: Palette) -> None:
+    """The light of a switch that is too small for a toggle."""
+    canvas.box(Rect(rect.centre[0] - 10, rect.bottom - 8, 20, 4), palette.accent if on else palette.pressed, 2)
 
 
 def _toggle(canvas: Canvas, rect: Rect, on: bool, palette: Palette) -> None:

@@ -99,6 +99,8 @@ def perform(state: State, message: Message) -> Feedback:
             state.keyboard = False
             if key.endswith(".list") and value != state.picked.get(key):
                 _rewind(state, key.removesuffix("list"))
+            if key == "media.show" and value != state.picked.get(key):
+                _rewind(state, "media.entries")
             return _change(state, "picked", {**state.picked, key: value}, "It is shown")
         case WarnDriver(alert):
             return _warn(state) if alert is None else give_alert(state, alert)
@@ -187,6 +189,8 @@ def command(state: State, signal: Signal[Any], value: Any) -> Feedback:
     settle(state)
     if before == state.signals.snapshot():
         return Feedback(FeedbackCode.NO_EFFECT, f"{_short(signal)} is already {_said(value)}")
+    if signal is MEDIA.SOURCE:
+        _rewind(state, "media.")
     _tell_road(state, before)
     return Feedback(FeedbackCode.OK, f"{_short(signal)} is {_said(value)}")
 

@@ -129,6 +129,8 @@ class Button(Widget):
     style: Type = Type.LABEL
     stacked: bool = False
     """Whether the icon is above the text."""
+    on_hold: Message | None = None
+    """Message of a long press."""
 
     class_name: ClassVar[str] = "Button"
 

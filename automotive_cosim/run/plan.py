@@ -175,7 +175,7 @@ class Plan:
     def _nowhere(self) -> str:
         if self._placed():
             held_out = " in held-out phrasings, which are all test" if self.held_out else ""
-            return f"no episode of these tasks and seeds is of the split {self.split!r}{held_out}"
+            return f"no episode of these tasks and seeds is of the split {self.split!r}{held_out}; give other seeds"
         return (
             f"none of the tasks can run in {', '.join(self.scenarios)}; `automotive-cosim tasks show` says where "
             "each can, and --everywhere runs them there anyway"

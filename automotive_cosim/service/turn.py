@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass
 
 from automotive_cosim.agents.marks import listed, png
 from automotive_cosim.agents.prompt import listing
+from automotive_cosim.cockpit.restrictions import in_words
 from automotive_cosim.contracts import Json, Observation
 from automotive_cosim.episode.specification import End
 from automotive_cosim.interface.trace import plain
@@ -51,6 +52,8 @@ class EpisodeTurn:
             readings = getattr(seen, name)
             if readings is not None:
                 told[name] = {key: value for key, value in plain(readings).items() if value is not None}
+        if seen.vehicle is not None:
+            told["vehicle"]["restrictions"] = in_words(seen.vehicle.restrictions)
         if seen.context is not None:
             told["context"] = seen.context
         return told

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from automotive_cosim.cockpit.arrivals import Arrival
+from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.tasking.binding import needs
 from automotive_cosim.tasking.moves import Consult, Hear, Open, Slide, Tap, TapUntil, TypeText, Warn
 from automotive_cosim.tasking.parameters import Choices, FromCockpit
@@ -30,16 +32,29 @@ def half_in_words(half: Half) -> Iterable[tuple[str, str]]:
     yield "goal", f"{half.goal}, then declare {half.declares}"
     if half.may_write:
         yield "allowed", f"{', '.join(sorted(half.may_write))} may be commanded besides"
+    for coming in start.interruptions:
+        what = (
+            f"{coming.kind} from {coming.who}" if isinstance(coming, Arrival) else f"{coming.path} {coming.value}"
+        )
+        yield "meanwhile", f"{what}, {coming.at_s:g} s after the hand-over"
     for number, way in enumerate((half.moves, *half.ways)):
         yield "solution", f"{'or ' if number else ''}{', '.join(map(_move, way)) or 'declare at once'}"
     for topic in half.topics:
         yield "driver", f"asked about {topic.name}, says {topic.reply!r}"
     for says in half.says:
         yield "driver", f"{says}, says {says.text!r}"
+    for slip in half.slips:
+        yield "slip", ", ".join(map(_move, slip)) or "declare at once"
     yield "deadline", f"{half.deadline.seconds:g} s: {half.deadline.reason}"
     yield "basis", f"{half.basis}: {half.rule}" if half.rule else str(half.basis)
     for need in needs(half):
         yield "elsewhere", need
+
+
+def _coming(coming: Arrival | CarChange) -> str:
+    if isinstance(coming, Arrival):
+        return f"{coming.kind} from {coming.who}"
+    return f"{coming.path} {coming.value}"
 
 
 def _move(move: object) -> str:

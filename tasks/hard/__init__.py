@@ -7,10 +7,11 @@ from automotive_cosim.tasks.hard import (
     errands,
     interrupted,
     over_time,
+    prepared,
     several,
     side_effects,
 )
 
-_MODULES = (carried, interrupted, side_effects, over_time, several, dialogue, errands, aboard)
+_MODULES = (carried, prepared, interrupted, side_effects, over_time, several, dialogue, errands, aboard)
 TASKS = tuple(task for module in _MODULES for task in module.TASKS)
 """All of them."""

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
+from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat, company
 from automotive_cosim.cockpit.arrivals import Arrival
 from automotive_cosim.cockpit.desk import Appointment
-from automotive_cosim.cockpit.signals import CABIN, HMI, MEDIA, SEAT, TYRE
+from automotive_cosim.cockpit.signals import CABIN, HMI, HVAC, MEDIA, SEAT, TYRE
 from automotive_cosim.contracts import Action, ActionType, AlertKind, Weather
 from automotive_cosim.tasking.checks import AlertGiven, AllOf, AppDataIs, Entered, SignalIs
 from automotive_cosim.tasking.history import Lasted
 from automotive_cosim.tasking.moves import Do, Open, Slide, Tap, Warn
 from automotive_cosim.tasking.parameters import param
 from automotive_cosim.tasking.records import SaysFigure
-from automotive_cosim.tasking.task import Deadline, Module, Start
+from automotive_cosim.tasking.task import Deadline, Half, Module, Start
 from automotive_cosim.tasks.hard.forms import (
     A_RED_LIGHT,
     BEA,
@@ -374,7 +374,81 @@ PSI_FOR_THE_GARAGE = hard(
     tags=frozenset({"two_modules"}),
 )
 
+HER_DEGREES = {19: 4, 20: 2, 23: 4, 24: 6, 22: 2}
+"""Degrees, and half degrees from 21."""
+HER_SIDE = (
+    Open("memo"),
+    Open("climate"),
+    Tap(
+        param("degrees", {c: f"hvac.passenger_temperature.{'in' if c > 21 else 'de'}crease" for c in HER_DEGREES}),
+        param("degrees", HER_DEGREES),
+    ),
+    Tap("hvac.passenger_seat_heating"),
+)
+HER_MUSIC = (
+    Open("media"),
+    Tap("media.list.playlists"),
+    Tap(text="{playlist}"),
+    Tap("playlist.play"),
+    Slide("media.volume", 50.0),
+)
+HER_WARMTH = AllOf(
+    (
+        SignalIs(HVAC.PASSENGER_TEMPERATURE, (param("degrees", {c: float(c) for c in HER_DEGREES}),)),
+        SignalIs(SEAT.PASSENGER_HEATING, (50.0,)),
+    )
+)
+HER_SOUND = AllOf((*LIST_PLAYS, SignalIs(MEDIA.VOLUME, (50.0,))))
+
+
+def _guest(memo: str, goal: AllOf, may_write: frozenset[str], moves: Moves, wrong: Moves) -> Half:
+    start = replace(ON_THE_ROAD, aboard=company(2), voice=Seat.PASSENGER)
+    return done(
+        with_papers(start, memos=("Oil at 80,000 km", memo)),
+        goal,
+        moves,
+        slips=((*HER_SIDE, *HER_MUSIC), wrong),
+        may_write=may_write,
+        deadline=A_RED_LIGHT,
+    )
+
+
+WHAT_GUESTS_MAY = hard(
+    "hard_what_guests_may",
+    Module.SYSTEM,
+    (
+        "The driver says what guests may change is in the memos. If so: {degrees} on my side and low seat"
+        " heat, then"
+        " {playlist} at 50.",
+        "May I? It's in the driver's notes, please stick to them. I'd like {degrees} over here with the seat"
+        " on low,"
+        " and {playlist}, volume 50.",
+        "Do as much of this as the rules for guests in the memos allow: my side {degrees}, my seat a little warm,"
+        " {playlist} on at 50.",
+        "I was told to mind the memo on guests. Within that, {degrees} and one step of seat heat for me, music:"
+        " {playlist}, 50 loud.",
+    ),
+    _guest(
+        "Guests: their own air, not the music",
+        HER_WARMTH,
+        frozenset({HVAC.SYNC.path}),
+        HER_SIDE,
+        (Open("memo"), *HER_MUSIC),
+    ),
+    _guest(
+        "Guests: the music, not the air",
+        HER_SOUND,
+        frozenset({MEDIA.SOURCE.path, MEDIA.SELECTED.path}),
+        (Open("memo"), *HER_MUSIC),
+        HER_SIDE,
+    ),
+    "content: guests may set their air, or the music",
+    parameters={"degrees": tuple(HER_DEGREES), "playlist": PLAYLISTS},
+    tags=frozenset({"two_modules", "conflict"}),
+)
+
 TASKS = (
+    WHAT_GUESTS_MAY,
     ASLEEP_BEHIND,
     EVERYBODY_BELTED,
     CHILDS_SIDE,

@@ -12,7 +12,7 @@ from automotive_cosim.tasking.checks import AllOf, AppDataIs, AskedFirst, Entere
 from automotive_cosim.tasking.dialogue import Says, Topic
 from automotive_cosim.tasking.moves import Consult, Hear, Open, Slide, Tap, TapUntil
 from automotive_cosim.tasking.parameters import param
-from automotive_cosim.tasking.records import AppDataAt, SaysFigure
+from automotive_cosim.tasking.records import AppDataAt, EnteredAll, SaysFigure
 from automotive_cosim.tasking.task import Half, Module, Start
 from automotive_cosim.tasking.triggers import SignalHas
 from automotive_cosim.tasks.hard.forms import (
@@ -407,4 +407,58 @@ MAKE_IT_MORE = hard(
     tags=frozenset({"two_modules"}),
 )
 
-TASKS = (A_PART_BACK, WHOSE_LANGUAGE, RATHER_THE_CAFE, TWO_PARENTS, MAKE_IT_MORE)
+WORDS = ("Yes", "Thank you", "On my way", "Where are you?", "I've arrived")
+TO_ISLA = (*write_to(ISLA), Tap(text="{words}"))
+NO_TO_ISLA = (*write_to(ISLA), Tap(text="No"))
+TO_MALIK = (*write_to(MALIK), Tap(text="{words}"))
+SENT_TO_ISLA = {"to": ISLA, "text": "{words}"}
+
+
+def _sends(*entries: dict[str, str]) -> AllOf:
+    return AllOf((EnteredAll("messages.sent", entries, in_order=True), SignalIs(VOICE.GUIDANCE, ("MUTED",))))
+
+
+QUIET_MAP = (Open("map"), Tap("map.voice"))
+BOTH_KNOWN = with_papers(PARKED, contacts=knowing(ISLA, MALIK))
+MEANT_FOR_MALIK = hard(
+    "hard_meant_for_malik",
+    Module.COMMS,
+    (
+        "Text Isla '{words}', and then no more voice from the map.",
+        "Isla gets a '{words}' from me; mute the guidance after that.",
+        "First '{words}' to Isla. Next, switch the spoken directions off.",
+        "A message, '{words}', for Isla, please, and silence from the navigation afterwards.",
+    ),
+    speaking(
+        done(
+            BOTH_KNOWN,
+            _sends(SENT_TO_ISLA, {"to": ISLA, "text": "No"}, {"to": MALIK, "text": "{words}"}),
+            (*TO_ISLA, Hear("meant for Malik"), *NO_TO_ISLA, *TO_MALIK, *QUIET_MAP),
+            slips=(
+                (*TO_ISLA, Hear("meant for Malik"), *TO_MALIK, *QUIET_MAP),
+                (*TO_ISLA, Hear("meant for Malik"), *TO_MALIK, *NO_TO_ISLA, *QUIET_MAP),
+                (*TO_ISLA, Hear("meant for Malik"), *NO_TO_ISLA, *TO_MALIK),
+            ),
+        ),
+        Says(
+            "Oh dear, that was meant for Malik. Write Isla 'No' first, then Malik what I told you.",
+            changed=frozenset({"messages.sent"}),
+        ),
+    ),
+    speaking(
+        done(
+            BOTH_KNOWN,
+            _sends(SENT_TO_ISLA),
+            (*TO_ISLA, Hear("nothing for him"), *QUIET_MAP),
+            slips=((*TO_ISLA, Hear("nothing for him"), *TO_MALIK, *QUIET_MAP), (*TO_ISLA, Hear("nothing for him"))),
+        ),
+        Says(
+            "Good. I thought for a moment that Malik should have it too, but there's nothing for him.",
+            changed=frozenset({"messages.sent"}),
+        ),
+    ),
+    "events: the driver finds that the wrong one got it, or that all is well",
+    parameters={"words": WORDS},
+)
+
+TASKS = (A_PART_BACK, WHOSE_LANGUAGE, RATHER_THE_CAFE, TWO_PARENTS, MAKE_IT_MORE, MEANT_FOR_MALIK)

@@ -31,6 +31,7 @@ from automotive_cosim.tasks.hard.forms import (
     with_letter,
     with_papers,
     write_to,
+    wrote,
 )
 from automotive_cosim.tasks.maps import SETS_OUT, STOPS_THERE
 
@@ -374,7 +375,168 @@ TELL_THE_ROUND = hard(
     parameters={"late": (10, 15, 20, 25, 35)},
 )
 
+PROPOSED = {"16:00": 2, "16:30": 4, "17:00": 6, "17:30": 8, "16:45": 5}
+"""Time, and quarters of an hour from 15:30."""
+LESSON = Appointment("15:30", "Lesson with Wanda", "Work")
+MOVES_LESSON = (
+    *letter(WANDA),
+    Open("calendar"),
+    Tap("calendar.0"),
+    Tap("appointment.later", param("time", PROPOSED)),
+)
+YES_WANDA, NO_WANDA = ((*write_to(WANDA), Tap(text=word)) for word in ("Yes", "No"))
+
+
+def _lesson(*others: Appointment) -> Start:
+    return with_letter(PARKED, WANDA, "Would {time} do for you too?", agenda=(LESSON, *others))
+
+
+FREE_THEN = hard(
+    "hard_free_at_that_time",
+    Module.APPS,
+    (
+        "Wanda wants another time for the lesson. If I've nothing else then, move it and tell her yes; if I"
+        " have, just"
+        " no.",
+        "Check whether I'm free when Wanda proposes. Free: shift our lesson there and reply Yes. Booked: reply No,"
+        " leave it.",
+        "Look at Wanda's message and at my diary. Should nothing clash, put the lesson to her time, Yes to her."
+        " Otherwise a No.",
+        "Can the lesson be when Wanda says? Change it and send Yes, please, unless there's something at that very"
+        " time, then No.",
+    ),
+    done(
+        _lesson(Appointment("19:00", "Choir", "Home")),
+        AllOf(
+            (
+                AppDataAt("calendar.entries", 0, param("time", {time: {"at": time} for time in PROPOSED})),
+                Entered("messages.sent", {"to": WANDA, "text": "Yes"}),
+            )
+        ),
+        (*MOVES_LESSON, *YES_WANDA),
+        slips=((*letter(WANDA), Open("calendar"), *NO_WANDA), (*MOVES_LESSON,)),
+    ),
+    done(
+        _lesson(Appointment(param("time"), "Notary", "Work"), Appointment("19:00", "Choir", "Home")),
+        Entered("messages.sent", {"to": WANDA, "text": "No"}),
+        (*letter(WANDA), Open("calendar"), *NO_WANDA),
+        slips=((*MOVES_LESSON, *YES_WANDA),),
+    ),
+    "content: nothing else at that time, or the notary",
+    parameters={"time": tuple(PROPOSED)},
+)
+
+EARLY = {"18:15": "19:00", "18:30": "19:15", "18:45": "19:30", "19:00": "19:45", "18:00": "18:45"}
+"""When the one comes, and the other."""
+TO_LATER = {"18:15": 4, "18:30": 5, "18:45": 6, "19:00": 7, "18:00": 3}
+"""Quarters of an hour from 18:00 to the later time."""
+DINNER = (Appointment("09:30", "Bank", "Work"), Appointment("18:00", "Dinner", "Home"))
+COMES_AT = {early: f"I'll be with you at {late}" for early, late in EARLY.items()}
+
+
+def _dinner(sooner: str, later: str) -> Half:
+    start = with_papers(
+        PARKED,
+        contacts=knowing(OSKAR, WANDA),
+        agenda=DINNER,
+        threads=tuple(
+            wrote(who, "I'll be with you at {early}" if who == sooner else param("early", COMES_AT))
+            for who in (OSKAR, WANDA)
+        ),
+    )
+    goal = AllOf(
+        (
+            AppDataAt(
+                "calendar.entries", 1, param("early", {early: {"at": late} for early, late in EARLY.items()})
+            ),
+            Entered("messages.sent", {"to": sooner, "text": "Thank you"}),
+        )
+    )
+
+    def thanking(who: str) -> Moves:
+        return (
+            *letter(OSKAR),
+            *letter(WANDA),
+            Open("calendar"),
+            Tap("calendar.1"),
+            Tap("appointment.later", param("early", TO_LATER)),
+            *write_to(who),
+            Tap(text="Thank you"),
+        )
+
+    return done(start, goal, thanking(sooner), slips=(thanking(later),))
+
+
+LATER_OF_TWO = hard(
+    "hard_later_of_two",
+    Module.APPS,
+    (
+        "Oskar and Wanda write when they come. Dinner is when the later one is there: change it. Whoever comes"
+        " first"
+        " gets a thank you.",
+        "Put the dinner in my calendar to the later of Wanda's and Oskar's arrivals, and send 'Thank you' to the"
+        " earlier guest.",
+        "We eat once both Oskar and Wanda are here, correct the entry by their messages. The first of them to"
+        " arrive"
+        " is to be thanked in writing.",
+        "Two guests, Wanda, Oskar, two times: move dinner to the second time and text Thank you to the one who's"
+        " sooner.",
+    ),
+    _dinner(OSKAR, WANDA),
+    _dinner(WANDA, OSKAR),
+    "content: he comes first, or she does",
+    parameters={"early": tuple(EARLY)},
+)
+
+HOURS = {"one hour": 60, "two hours": 120, "four hours": 240}
+DAYS = ("today", "this afternoon")
+
+
+def _cheaper(zone: str, other: str, dearer: str) -> Half:
+    paid = AllOf(
+        (
+            Entered("payments", {"zone": f"Zone {zone}", "minutes": param("stay", HOURS)}),
+            AppDataIs("parking.zone", (f"Zone {zone}",)),
+            AppDataIs("parking.minutes", (param("stay", HOURS),)),
+            Entered("messages.sent", {"to": ISLA, "text": "Thank you"}),
+        )
+    )
+
+    def paying(which: str) -> Moves:
+        return (
+            *letter(ISLA),
+            Open("parking"),
+            Tap(text=f"Zone {other}"),
+            Tap(text=f"Zone {which}"),
+            Tap(param("stay", {words: f"parking.time.{minutes}" for words, minutes in HOURS.items()})),
+            Tap("parking.pay"),
+            *write_to(ISLA),
+            Tap(text="Thank you"),
+        )
+
+    start = with_letter(PARKED, ISLA, f"Zones {zone} and {other} are near {{when}}")
+    return done(start, paid, paying(zone), slips=(paying(dearer),))
+
+
+CHEAPER_ZONE = hard(
+    "hard_cheaper_zone",
+    Module.APPS,
+    (
+        "Isla says which zones are near. Pay {stay} in the cheaper one of those and text her 'Thank you'.",
+        "Of the zones in Isla's message take the one that costs less, {stay}, then send Isla a thank you.",
+        "{stay} of parking where it's cheapest, but only in a zone that Isla names. Thank you to her.",
+        "Compare the prices of what Isla suggests and buy {stay} in the better deal; she's to be thanked by text.",
+    ),
+    _cheaper("B", "A", "C"),
+    _cheaper("C", "B", "B"),
+    "content: she names A and B, or B and C",
+    parameters={"stay": tuple(HOURS), "when": DAYS},
+)
+
 TASKS = (
+    FREE_THEN,
+    LATER_OF_TWO,
+    CHEAPER_ZONE,
     CLOSES_FIRST,
     PRICE_TO_ISLA,
     BATTERY_FOR_THEO,

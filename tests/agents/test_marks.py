@@ -1,14 +1,20 @@
 """The numbers on the picture are the indices of the list."""
 
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 import pytest
 
-from automotive_cosim.agents.marks import label, listed, marked, marks
+from automotive_cosim.agents.marks import Leaps, label, listed, marked, marks, overlap
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cockpit.screens import SCREENS
 from automotive_cosim.contracts import BoundingBox
 
+from ..cockpit.conftest import outside, town
+
 WIDTH, HEIGHT = 320, 180
+PLAIN = np.full((HEIGHT, WIDTH, 3), 40, np.uint8)
 
 
 @pytest.fixture
@@ -31,15 +37,15 @@ def read_back(picture: np.ndarray, left: int, top: int) -> list[int]:
 
 
 def test_each_visible_element_has_its_own_number_on_the_picture(elements):
-    picture = marked(np.full((HEIGHT, WIDTH, 3), 40, np.uint8), elements)
-    placed = marks(elements, WIDTH, HEIGHT)
+    picture = marked(PLAIN, elements)
+    placed = marks(PLAIN, elements)
     assert [mark.index for mark in placed] == [index for index, _ in listed(elements)] == [0, 2, 3, 4]
     for mark in placed:
         assert read_back(picture, mark.label.x_min, mark.label.y_min) == [mark.index]
 
 
 def test_the_numbers_stand_inside_the_picture(elements):
-    for mark in marks(elements, WIDTH, HEIGHT):
+    for mark in marks(PLAIN, elements):
         assert 0 <= mark.label.x_min < mark.label.x_max <= WIDTH
         assert 0 <= mark.label.y_min < mark.label.y_max <= HEIGHT
 
@@ -49,3 +55,18 @@ def test_the_screenshot_itself_stays_as_it_is(elements):
     plain.flags.writeable = False
     assert (marked(plain, elements) != plain).any()
     assert (plain == 40).all()
+
+
+@pytest.mark.parametrize("sun_deg", [40.0, -20.0], ids=["day", "night"])
+@pytest.mark.slow
+def test_on_every_screen_numbers_stand_beside_their_boxes_and_cover_no_letter_and_no_other_number(sun_deg):
+    cockpit = Cockpit(town(), rng=np.random.default_rng(1))
+    cockpit.sense(outside(sun_elevation_deg=sun_deg), 0.0)
+    for screen in SCREENS:
+        cockpit.visit(screen)
+        shot = cockpit.screenshot()
+        ink, placed = Leaps(shot), marks(shot, cockpit.elements())
+        assert len(placed) > 20
+        assert not [mark for mark in placed if overlap(mark.label, mark.box)], screen
+        assert not [mark for mark in placed if ink.under(mark.label)], screen
+        assert not [pair for pair in combinations(placed, 2) if overlap(pair[0].label, pair[1].label)], screen

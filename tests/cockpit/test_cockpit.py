@@ -38,6 +38,8 @@ from automotive_cosim.contracts import (
 from automotive_cosim.errors import SignalError, UnknownNameError
 from automotive_cosim.interface import spaces
 
+from .conftest import middle
+
 Make = Callable[..., Cockpit]
 OK, NO_EFFECT = FeedbackCode.OK, FeedbackCode.NO_EFFECT
 
@@ -476,3 +478,40 @@ def test_any_text_can_be_typed_shown_and_said(make: Make, around: Surroundings, 
     cockpit.alert(Alert(AlertKind.WEATHER, Severity.INFO, text))
     assert cockpit.screenshot().shape == (720, 1280, 3)
     assert all(len(element.text) <= 240 for element in cockpit.elements())
+
+
+def test_a_long_press_on_plus_goes_several_steps_and_stops_at_the_end(cockpit: Cockpit) -> None:
+    (plus,) = (each for each in cockpit.elements() if each.resource_id == "dock.driver_temperature.increase")
+    assert plus.is_long_clickable
+    assert plus.content_description == "Driver's temperature higher by 0.5"
+    before = cockpit.signals[HVAC.DRIVER_TEMPERATURE]
+    assert cockpit.long_press(*middle(plus)).code is OK
+    assert cockpit.signals[HVAC.DRIVER_TEMPERATURE] == before + 2.5
+    for _ in range(3):
+        code = cockpit.long_press(*middle(plus)).code
+    assert cockpit.signals[HVAC.DRIVER_TEMPERATURE] == HVAC.DRIVER_TEMPERATURE.high
+    assert code is FeedbackCode.DISABLED
+
+
+def test_a_page_is_named_with_its_app_and_nothing_else_is_offered(cockpit: Cockpit) -> None:
+    said = cockpit.open_app("Seats")
+    assert said.code is FeedbackCode.NO_SUCH_ELEMENT
+    assert said.text == "seats is no app; it is a page of vehicle"
+
+
+def test_no_list_begins_where_another_was_scrolled_to(cockpit: Cockpit) -> None:
+    """Another source, another podcast: each list begins at its first row."""
+
+    def press(key: str) -> None:
+        (element,) = (each for each in cockpit.elements() if each.resource_id == key)
+        assert cockpit.tap(*middle(element)).code is OK
+
+    cockpit.open_app("media")
+    for other in ("media.source.usb", "media.source.fm", "media.source.dab", "media.source.bluetooth"):
+        cockpit.scroll("media.entries", Direction.DOWN)
+        press(other)
+        assert shown(cockpit, "media.entry.0"), other
+    press("media.source.internet")
+    cockpit.scroll("media.entries", Direction.DOWN)
+    press("media.show.1")
+    assert shown(cockpit, "media.entry.0")

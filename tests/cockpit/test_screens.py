@@ -378,3 +378,29 @@ def test_the_picture_changes_only_with_the_tree(cockpit: Cockpit) -> None:
     tree: Screen = cockpit.tree
     assert render(tree).pixels().tobytes() == render(tree).pixels().tobytes()
     assert accessibility.elements(tree) == accessibility.elements(tree)
+
+
+def numbers(cockpit: Cockpit) -> dict[str, int]:
+    """Index of every element of status bar and dock that is always there."""
+    passing = {"status.notice", "status.limit_sign", *(f"status.{lamp}" for lamp in LAMPS)}
+    return {
+        element.resource_id: index
+        for index, element in enumerate(cockpit.elements())
+        if element.resource_id.startswith(("status.", "dock.")) and element.resource_id not in passing
+    }
+
+
+LAMPS = ("low_beam", "high_beam", "front_fog", "rear_fog", "hazard")
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_status_bar_and_dock_keep_their_numbers(case: str, make: Make, around: Surroundings) -> None:
+    """On every screen, whatever tell-tale, notice or caller comes."""
+    known = numbers(make())
+    assert sorted(known.values()) == list(range(len(known)))
+    assert len(known) > 20
+    cockpit = CASES[case](make, around)
+    for screen in SCREENS:
+        cockpit.visit(screen)
+        if not cockpit._state.is_typing:
+            assert numbers(cockpit) == known, screen

@@ -20,7 +20,7 @@ from automotive_cosim.interface.observe import ALL, Channel, See
 
 from ..cockpit.conftest import outside, town
 
-SIGNAL = re.compile(r"\b(?:Is[A-Z]|[A-Z][a-z]+[A-Z])\w*|\w\.\w|(?:is|reads) (?:already )?(?:on|off|\d|')")
+SIGNAL = re.compile(r"\b(?:Is[A-Z]|[A-Z][a-z]+[A-Z])\w*|[A-Za-z_]\.\w|(?:is|reads) (?:already )?(?:on|off|\d|')")
 OUTCOMES = tuple(
     known.get(outcome, outcome)
     for outcome in ("done", "nothing changed")
@@ -60,7 +60,9 @@ def test_a_control_is_named_and_not_its_signal(parked: Cockpit) -> None:
 
 def test_a_control_without_letters_has_no_name_in_the_picture(parked: Cockpit) -> None:
     car = parked.copy()
-    assert told(car, touch(car, "dock.driver_temperature.increase")).text == "Driver's temperature higher: done"
+    assert (
+        told(car, touch(car, "dock.driver_temperature.increase")).text == "Driver's temperature higher by 0.5: done"
+    )
     assert told(car, touch(car, "dock.driver_temperature.increase"), by_name=False).text == "done"
     assert told(car, touch(car, "dock.climate"), by_name=False).text == "Climate: done"
 

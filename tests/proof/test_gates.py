@@ -103,7 +103,7 @@ def changed(**fields: object) -> Task:
     return replace(SOUND, first=replace(SOUND.first, **fields))
 
 
-HALF_GATES = ("oracle", "start", "prefix", "late", "random")
+HALF_GATES = ("oracle", "start", "slip", "prefix", "late", "random")
 
 
 @pytest.mark.parametrize("gate", HALF_GATES)
@@ -135,6 +135,15 @@ def test_an_expert_who_finds_nothing_to_tap_is_seen(ground):
 def test_a_second_way_that_fails_is_seen(ground):
     (wrong,) = gates.oracle(ground(changed(ways=((Open("climate"), Tap("hvac.sync")),))))
     assert wrong.startswith("solution 1")
+
+
+def test_a_slip_that_succeeds_or_cannot_be_made_is_seen(ground):
+    missed, twice = (Open("climate"), Tap("hvac.sync")), (Open("climate"), Tap("hvac.driver_seat_heating", 2))
+    assert list(gates.slip(ground(changed(slips=(missed, twice, ()))))) == []
+    right, nowhere = SOUND.first.moves, (Tap("hvac.no_such_widget"),)
+    wins, stuck = gates.slip(ground(changed(slips=(missed, right, nowhere))))
+    assert wins == "slip 1 succeeds"
+    assert stuck.startswith("slip 2 cannot be made: hvac.no_such_widget")
 
 
 def test_an_expert_too_slow_is_seen(ground):

@@ -11,7 +11,7 @@ from automotive_cosim.cockpit.screens.cabin import cabin
 from automotive_cosim.cockpit.screens.climate import climate, comfort
 from automotive_cosim.cockpit.screens.diary import appointment
 from automotive_cosim.cockpit.screens.figure import figure
-from automotive_cosim.cockpit.screens.frame import APPS, DOCK, PART_OF, dock, status_bar
+from automotive_cosim.cockpit.screens.frame import APPS, DOCK, PART_OF, callouts, dock, status_bar
 from automotive_cosim.cockpit.screens.home import home
 from automotive_cosim.cockpit.screens.keyboard import focused, keyboard, uncovered
 from automotive_cosim.cockpit.screens.map import map_screen
@@ -74,17 +74,18 @@ SCREENS: dict[str, Callable[[State], tuple[Widget, ...]]] = {
 
 
 def picture(state: State) -> Screen:
-    """The widget tree of the whole display."""
+    """The widget tree of the whole display: what is always there first, so that it keeps its place in the list."""
     language = state.signals[HMI.LANGUAGE]
-    upper: tuple[Widget, ...] = (*status_bar(state), *SCREENS[state.screen](state))
-    lower = dock(state)
+    bar, lower = tuple(translated(widget, language) for widget in status_bar(state)), dock(state)
+    upper: tuple[Widget, ...] = (*callouts(state), *SCREENS[state.screen](state))
     field = focused(upper) if state.is_typing else None
+    above: tuple[Widget, ...] = ()
     if field is not None:
-        upper, lower = tuple(uncovered(upper)), (keyboard(field, state),)
+        upper, lower, above = tuple(uncovered(upper)), (), (keyboard(field, state),)
     return Screen(
         rect=Rect(0, 0, SCREEN_WIDTH, SCREEN_HEIGHT),
         night=state.signals[HMI.DAY_NIGHT] == "NIGHT",
-        children=(*(translated(widget, language) for widget in upper), *lower),
+        children=(*bar, *lower, *(translated(widget, language) for widget in upper), *above),
     )
 
 

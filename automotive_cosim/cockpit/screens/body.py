@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from automotive_cosim.cockpit.desk import REMEMBERED
 from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.layout import REST, column
 from automotive_cosim.cockpit.messages import Honk, Message, Pick, Put, Set, SetAll
 from automotive_cosim.cockpit.screens.notices import LOW_KPA
 from automotive_cosim.cockpit.screens.parts import (
@@ -151,18 +152,16 @@ def _tyres(rect: Rect, state: State) -> Widget:
 def doors(state: State) -> tuple[Widget, ...]:
     """Locks, windows and the roof."""
     signals = state.signals
-    area = _area()
-    upper, lower = area.top(176), area.below(176 + GAP)
-    inner = upper.inset(20, 14)
+    upper, _, lower = column(_area(), 176, GAP, REST)
+    head, _, tiles = column(upper.inset(20, 14), 28, 4, REST)
     locked = all(signals[lock] for lock in LOCKS)
-    cells = [cell for line in inner.below(32).rows(2, 8) for cell in line.columns(4, 8)]
-    windows = lower.inset(20, 12)
+    cells = [cell for line in tiles.rows(2, 8) for cell in line.columns(4, 8)]
     return _page(
         state,
         Card(
             rect=upper,
             children=(
-                heading(inner.top(28), "Doors"),
+                heading(head, "Locks"),
                 Tile(
                     rect=cells[0],
                     key="door.all",
@@ -192,14 +191,14 @@ def doors(state: State) -> tuple[Widget, ...]:
                 ),
             ),
         ),
-        Card(rect=lower, children=_windows(windows, state)),
+        Card(rect=lower, children=_windows(lower.inset(20, 12), state)),
     )
 
 
 def _windows(rect: Rect, state: State) -> tuple[Widget, ...]:
     signals = state.signals
-    lines = rect.top(rect.height - 64).rows(2, 4)
-    cells = (*lines[0].columns(3, 24), *lines[1].columns(3, 24))
+    head, _, body, _, acts = column(rect, 28, 4, REST, 8, 56)
+    cells = [cell for line in body.rows(2, 4) for cell in line.columns(3, 24)]
     panes = (
         ("driver", "Driver", CABIN.DRIVER_WINDOW),
         ("passenger", "Passenger", CABIN.PASSENGER_WINDOW),
@@ -209,8 +208,9 @@ def _windows(rect: Rect, state: State) -> tuple[Widget, ...]:
         ("shade", "Shade", CABIN.SUNROOF_SHADE),
     )
     closed = all(signals[window] == 0 for window in WINDOWS)
-    buttons = rect.bottom_part(56).columns(3, 24)
+    buttons = acts.columns(3, 24)
     return (
+        heading(head, "Windows and roof"),
         *(
             slider(cell, f"window.{key}", name, Icon.WINDOW, signal, signals)
             for cell, (key, name, signal) in zip(cells, panes, strict=True)

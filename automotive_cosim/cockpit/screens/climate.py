@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.layout import REST, column, row
 from automotive_cosim.cockpit.messages import Put, Set, Show
 from automotive_cosim.cockpit.screens.parts import (
     CONTENT,
@@ -31,24 +32,23 @@ WHEEL_LEVELS = ((0.0, "Off"), (100.0, "On"))
 
 def climate(state: State) -> tuple[Widget, ...]:
     """The climate screen."""
-    zones = 264
-    driver, passenger = CONTENT.left(zones), CONTENT.right_part(zones)
+    driver, _, middle, _, passenger = row(CONTENT, 264, GAP, REST, GAP, 264)
     if state.roads.network.left_hand:
         driver, passenger = passenger, driver
-    middle = Rect(CONTENT.x + zones + GAP, CONTENT.y, CONTENT.width - 2 * (zones + GAP), CONTENT.height)
+    air, _, switches, _, glass = column(middle, 240, GAP, 188, GAP, REST)
     return (
         _zone(driver, "driver", "Driver", HVAC.DRIVER_TEMPERATURE, SEAT.DRIVER_HEATING, state),
         _zone(passenger, "passenger", "Passenger", HVAC.PASSENGER_TEMPERATURE, SEAT.PASSENGER_HEATING, state),
-        _air(middle.top(240), state),
-        *_switches(Rect(middle.x, middle.y + 240 + GAP, middle.width, 188), state),
-        _glass(middle.bottom_part(middle.height - 240 - 188 - 2 * GAP), state),
+        _air(air, state),
+        *_switches(switches, state),
+        _glass(glass, state),
     )
 
 
 def _zone(rect: Rect, who: str, name: str, warmth: Signal[float], seat: Signal[float], state: State) -> Widget:
     signals = state.signals
-    inner = rect.inset(20, 16)
-    tiles = Rect(inner.x, inner.bottom - 260, inner.width, 260).rows(3, 10)
+    head, _, shown, _, steps, _, seats = column(rect.inset(20, 16), 30, 6, 88, 12, 64, REST, 260)
+    tiles = seats.rows(3, 10)
     third = (
         levels(
             tiles[2],
@@ -65,16 +65,16 @@ def _zone(rect: Rect, who: str, name: str, warmth: Signal[float], seat: Signal[f
     return Card(
         rect=rect,
         children=(
-            heading(inner.top(30), name),
+            heading(head, name),
             Label(
-                rect=Rect(inner.x, inner.y + 36, inner.width, 88),
+                rect=shown,
                 key=f"hvac.{who}_temperature",
                 text=temperature(signals, signals[warmth]),
                 description=f"{name}'s temperature",
                 style=Type.DISPLAY,
                 align="centre",
             ),
-            *_plus_minus(Rect(inner.x, inner.y + 136, inner.width, 64), who, name, warmth, state),
+            *_plus_minus(steps, who, name, warmth, state),
             levels(tiles[0], f"hvac.{who}_seat_heating", "Seat heat", Icon.SEAT_HEATER, seat, signals, SEAT_LEVELS),
             levels(tiles[1], f"hvac.{who}_seat_airing", "Seat air", Icon.SEAT_COOLER, seat, signals, AIRING_LEVELS),
             third,
@@ -89,8 +89,8 @@ def _plus_minus(rect: Rect, who: str, name: str, warmth: Signal[float], state: S
 
 def _air(rect: Rect, state: State) -> Widget:
     signals = state.signals
-    inner = rect.inset(20, 16)
-    blower = inner.top(84)
+    blower, _, name, _, ways_to = column(rect.inset(20, 16), 84, 10, 28, REST, 76)
+    fan, _, fastest = row(blower, REST, 20, 88)
     flow = signals[HVAC.AIR_DISTRIBUTION]
     ways = (
         ("up", "Windshield", Icon.AIR_UP, "UP"),
@@ -100,17 +100,17 @@ def _air(rect: Rect, state: State) -> Widget:
     return Card(
         rect=rect,
         children=(
-            slider(blower.left(blower.width - 108), "hvac.fan", "Fan speed", Icon.CLIMATE, HVAC.FAN_SPEED, signals),
+            slider(fan, "hvac.fan", "Fan speed", Icon.CLIMATE, HVAC.FAN_SPEED, signals),
             Button(
-                rect=blower.right_part(88).middle(88, 64),
+                rect=fastest.middle(88, 64),
                 key="hvac.fan.max",
                 text="Max",
                 description="Fan at full speed",
                 on_tap=Set(HVAC.FAN_SPEED, HVAC.FAN_SPEED.high),
             ),
-            heading(Rect(inner.x, inner.y + 94, inner.width, 28), "Air to"),
+            heading(name, "Air to"),
             choices(
-                inner.bottom_part(76),
+                ways_to,
                 "hvac.air",
                 [
                     (key, text, icon, flow == value, Set(HVAC.AIR_DISTRIBUTION, value))
@@ -163,38 +163,37 @@ def _cabin(rect: Rect, state: State) -> tuple[Widget, ...]:
 def _glass(rect: Rect, state: State) -> Widget:
     """The visibility through the windows."""
     signals = state.signals
-    inner = rect.inset(20, 10)
-    halves = inner.left(344).columns(2, 20)
+    glazing, _, cabin, _, beside = row(rect.inset(20, 10), 344, 20, REST, 12, 112)
     panes = (
         ("windshield", "Windshield", signals[GLASS.WINDSHIELD_FOG], signals[GLASS.WINDSHIELD_FILM]),
         ("rear_window", "Rear window", signals[GLASS.REAR_FOG], signals[GLASS.REAR_FILM]),
     )
     children: list[Widget] = []
-    for half, (key, name, fog, film) in zip(halves, panes, strict=True):
+    for half, (key, name, fog, film) in zip(glazing.columns(2, 20), panes, strict=True):
+        words, _, bar, _ = column(half, REST, 8, 8, 4)
         clear = round((1 - fog) * (1 - film) * 100)
         children += [
             Label(
-                rect=Rect(half.x, half.y, half.width, half.height - 20),
+                rect=words,
                 key=f"glass.{key}",
                 text=f"{name} {glass_words(fog, film)}",
                 style=Type.LABEL,
                 lines=2,
             ),
             Bar(
-                rect=Rect(half.x, half.bottom - 12, half.width, 8),
+                rect=bar,
                 share=clear / 100,
                 tone="good" if clear > 70 else "warning",
             ),
         ]
     more = Button(
-        rect=inner.right_part(112),
+        rect=beside,
         key="hvac.comfort",
         text="More",
         description="Rear seats and schedule",
         icon=Icon.CLOCK,
         on_tap=Show("comfort"),
     )
-    cabin = Rect(inner.x + 364, inner.y, inner.width - 364 - 124, inner.height)
     return Card(rect=rect, children=(*children, *_cabin(cabin, state), more))
 
 
@@ -215,12 +214,19 @@ def comfort(state: State) -> tuple[Widget, ...]:
 
 def _rear(rect: Rect, state: State) -> Widget:
     signals = state.signals
-    inner = rect.inset(28, 24)
-    tiles = Rect(inner.x, inner.y + 60, inner.width, 120).columns(2, 16)
+    head, _, seats, _, air, _, facts = column(rect.inset(28, 24), 40, 20, 120, 40, 40, 16, 212)
+    tiles = seats.columns(2, 16)
+    known = (
+        ("temperature", "Temperature", temperature(signals, signals[HVAC.CABIN_TEMPERATURE])),
+        ("humidity", "Humidity", f"{signals[HVAC.CABIN_HUMIDITY]:.0f} %"),
+        ("air", "Air comes from", "Inside" if signals[HVAC.RECIRCULATION] else "Outside"),
+        ("purifier", "Purifier", "On" if signals[HVAC.PURIFIER] else "Off"),
+        ("fine_dust", "Fine dust", f"{signals[HVAC.CABIN_FINE_DUST]:.0f} µg/m³"),
+    )
     return Card(
         rect=rect,
         children=(
-            title(inner.top(40), Icon.SEAT_HEATER, "Rear seats"),
+            title(head, Icon.SEAT_HEATER, "Rear seats"),
             levels(
                 tiles[0],
                 "hvac.rear_left_seat_heating",
@@ -239,51 +245,26 @@ def _rear(rect: Rect, state: State) -> Widget:
                 signals,
                 SEAT_LEVELS,
             ),
-            title(Rect(inner.x, inner.y + 220, inner.width, 40), Icon.AIR_QUALITY, "Cabin air"),
-            *fact(
-                Rect(inner.x, inner.y + 276, inner.width, 36),
-                "comfort.temperature",
-                "Temperature",
-                temperature(signals, signals[HVAC.CABIN_TEMPERATURE]),
-            ),
-            *fact(
-                Rect(inner.x, inner.y + 320, inner.width, 36),
-                "comfort.humidity",
-                "Humidity",
-                f"{signals[HVAC.CABIN_HUMIDITY]:.0f} %",
-            ),
-            *fact(
-                Rect(inner.x, inner.y + 364, inner.width, 36),
-                "comfort.air",
-                "Air comes from",
-                "Inside" if signals[HVAC.RECIRCULATION] else "Outside",
-            ),
-            *fact(
-                Rect(inner.x, inner.y + 408, inner.width, 36),
-                "comfort.purifier",
-                "Purifier",
-                "On" if signals[HVAC.PURIFIER] else "Off",
-            ),
-            *fact(
-                Rect(inner.x, inner.y + 452, inner.width, 36),
-                "comfort.fine_dust",
-                "Fine dust",
-                f"{signals[HVAC.CABIN_FINE_DUST]:.0f} µg/m³",
+            title(air, Icon.AIR_QUALITY, "Cabin air"),
+            *(
+                widget
+                for line, (key, name, value) in zip(facts.rows(5, 8), known, strict=True)
+                for widget in fact(line, f"comfort.{key}", name, value)
             ),
         ),
     )
 
 
 def _schedule(rect: Rect, state: State) -> Widget:
-    inner = rect.inset(28, 24)
+    head, _, prepare, _, time, _, about = column(rect.inset(28, 24), 40, 20, 68, 28, 72, 24, 64)
     timer = state.desk.climate_at
     on = timer.on
     return Card(
         rect=rect,
         children=(
-            title(inner.top(40), Icon.CLOCK, "Schedule"),
+            title(head, Icon.CLOCK, "Schedule"),
             Tile(
-                rect=Rect(inner.x, inner.y + 60, inner.width, 68),
+                rect=prepare,
                 key="climate.schedule",
                 text="Prepare the cabin",
                 icon=Icon.CLIMATE,
@@ -295,13 +276,13 @@ def _schedule(rect: Rect, state: State) -> Widget:
                 ),
             ),
             *time_setter(
-                Rect(inner.x, inner.y + 156, inner.width, 72),
+                time,
                 "climate.schedule",
                 timer,
                 lambda moved: Put("desk", replace(state.desk, climate_at=moved), f"The time is {moved.shown}"),
             ),
             Label(
-                rect=Rect(inner.x, inner.y + 252, inner.width, 64),
+                rect=about,
                 key="climate.schedule.about",
                 text="At this time the climate control starts by itself and holds the temperature that is set.",
                 style=Type.CAPTION,

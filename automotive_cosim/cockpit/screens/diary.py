@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from automotive_cosim.cockpit.desk import Appointment
-from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.layout import REST, column
 from automotive_cosim.cockpit.messages import Back, Put, Show
 from automotive_cosim.cockpit.screens.parts import CONTENT, note, title
 from automotive_cosim.cockpit.state import State
@@ -24,6 +24,7 @@ MOVES_MIN = (
 def appointment(state: State) -> tuple[Widget, ...]:
     """The entry that was tapped."""
     inner = CONTENT.inset(28, 20)
+    head, _, where, _, times, _, acts = column(inner, 40, 40, 56, 64, 72, REST, 72)
     agenda = state.desk.agenda
     at = int(state.picked.get("appointment", "0"))
     if at >= len(agenda):
@@ -39,15 +40,15 @@ def appointment(state: State) -> tuple[Widget, ...]:
         new = replace(entry, at=f"{then // 60:02d}:{then % 60:02d}")
         return put((*agenda[:at], new, *agenda[at + 1 :]), f"{entry.title} is at {new.at}")
 
-    cells = Rect(inner.x, inner.y + 200, inner.width, 72).columns(len(MOVES_MIN), 12)
-    back, there, remove = inner.bottom_part(72).columns(3, 16)
+    cells = times.columns(len(MOVES_MIN), 12)
+    back, there, remove = acts.columns(3, 16)
     return (
         Card(
             rect=CONTENT,
             children=(
-                title(inner.top(40), Icon.CALENDAR, f"{entry.at} {entry.title}", "appointment.title"),
+                title(head, Icon.CALENDAR, f"{entry.at} {entry.title}", "appointment.title"),
                 Label(
-                    rect=Rect(inner.x, inner.y + 80, inner.width, 56),
+                    rect=where,
                     key="appointment.place",
                     text=entry.place,
                     description="Place",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.layout import REST, column, row
 from automotive_cosim.cockpit.messages import Back, Put, SendReply
 from automotive_cosim.cockpit.people import FigureDraft
 from automotive_cosim.cockpit.screens.handset import RIGHT, handset
@@ -61,17 +61,20 @@ def figure(state: State) -> tuple[Widget, ...]:
         value = round(min(sentence.most, max(0.0, draft.value + by)), 1)
         return put(replace(draft, value=value))
 
-    bar, body = RIGHT.top(64), RIGHT.below(64 + GAP)
-    steps = Rect(body.x, body.y + 184, body.width, 72).columns(4, 12)
+    bar, _, say, _, sentences, _, card, _, sizes_row, _, send = column(
+        RIGHT, 64, GAP, 28, 8, 56, 16, 64, 12, 72, 16, 72
+    )
+    back, _, name = row(bar, 64, 16, REST)
+    steps = sizes_row.columns(4, 12)
     words = sentence.said(draft.value)
     sizes = (("less", -sentence.coarse), ("down", -sentence.fine), ("up", sentence.fine), ("more", sentence.coarse))
     return (
         handset(state),
-        Button(rect=bar.left(64), key="figure.back", description="Back", icon=Icon.BACK, on_tap=Back()),
-        Label(rect=Rect(bar.x + 80, bar.y, bar.width - 80, 64), key="figure.who", text=who, style=Type.TITLE),
-        heading(body.top(28), "Say"),
+        Button(rect=back, key="figure.back", description="Back", icon=Icon.BACK, on_tap=Back()),
+        Label(rect=name, key="figure.who", text=who, style=Type.TITLE),
+        heading(say, "Say"),
         choices(
-            Rect(body.x, body.y + 36, body.width, 56),
+            sentences,
             "figure.say",
             [
                 (
@@ -85,10 +88,10 @@ def figure(state: State) -> tuple[Widget, ...]:
             ],
         ),
         Card(
-            rect=Rect(body.x, body.y + 108, body.width, 64),
+            rect=card,
             children=(
                 Label(
-                    rect=Rect(body.x, body.y + 108, body.width, 64).inset(20, 8),
+                    rect=card.inset(20, 8),
                     key="figure.words",
                     text=words,
                     description="Message",
@@ -101,7 +104,7 @@ def figure(state: State) -> tuple[Widget, ...]:
             for cell, (key, by) in zip(steps, sizes, strict=True)
         ),
         Button(
-            rect=Rect(body.x, body.y + 272, body.width, 72),
+            rect=send,
             key="figure.send",
             text="Send",
             icon=Icon.REPLY,

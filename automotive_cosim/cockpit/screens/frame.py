@@ -9,6 +9,7 @@ from typing import Any
 from automotive_cosim.cockpit.desk import TOOLS
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.language import translated
+from automotive_cosim.cockpit.layout import REST, row
 from automotive_cosim.cockpit.messages import Back, DeclineCall, Put, Show, TakeCall
 from automotive_cosim.cockpit.screens.notices import wanting
 from automotive_cosim.cockpit.screens.parts import speed, speed_unit, stepper, switch, temperature
@@ -79,10 +80,10 @@ _SIGNAL = (Icon.SIGNAL_0, Icon.SIGNAL_1, Icon.SIGNAL_2, Icon.SIGNAL_3, Icon.SIGN
 
 
 def status_bar(state: State) -> tuple[Widget, ...]:
-    """Clock, weather, notice, lamps, links, battery, gear, speed and, if the car has a camera, the limit sign."""
+    """What is there on every screen: clock, weather, bell, links, battery, gear and speed."""
     signals = state.signals
     bar = Rect(0, 0, SCREEN_WIDTH, STATUS_HEIGHT)
-    widgets: list[Widget] = [
+    return (
         Label(
             rect=Rect(MARGIN - 4, 0, 76, bar.height),
             key="status.clock",
@@ -107,13 +108,19 @@ def status_bar(state: State) -> tuple[Widget, ...]:
             look=Look.PLAIN,
             on_tap=Back() if state.screen == "notifications" else Show("notifications"),
         ),
-    ]
-    widgets += _lamps(state)
+        *_links(state),
+        *_motion(state),
+    )
+
+
+def callouts(state: State) -> tuple[Widget, ...]:
+    """What comes and goes in the status bar: tell-tales, a caller or a notice, and the limit sign of the camera."""
+    told: tuple[Widget, ...] = ()
     if state.phone.ringing is not None:
-        widgets += _incoming(NOTICE, state.phone.ringing.who, state)
+        told = _incoming(NOTICE, state.phone.ringing.who, state)
     elif state.notice is not None:
-        widgets.append(_pill(NOTICE, state.notice, state))
-    return (*widgets, *_links(state), *_motion(state))
+        told = (_pill(NOTICE, state.notice, state),)
+    return (*_lamps(state), *told, *_limit_sign(state))
 
 
 def _pill(rect: Rect, notice: Notice, state: State) -> Pill:
@@ -132,11 +139,12 @@ def _pill(rect: Rect, notice: Notice, state: State) -> Pill:
 
 def _incoming(rect: Rect, who: str, state: State) -> tuple[Widget, ...]:
     """The caller, and the possible reactions, on every screen."""
-    answer, decline, message = rect.right_part(3 * 64).columns(3, 8)
+    picture, _, name, _, acts = row(rect, 40, 4, REST, 8, 3 * 64)
+    answer, decline, message = acts.columns(3, 8)
     return (
-        Glyph(rect=Rect(rect.x, rect.y, 40, rect.height), icon=Icon.CALL_IN, size=30, tone="good"),
+        Glyph(rect=picture, icon=Icon.CALL_IN, size=30, tone="good"),
         Label(
-            rect=Rect(rect.x + 44, rect.y, answer.x - rect.x - 52, rect.height),
+            rect=name,
             key="call.incoming",
             text=who,
             description="Incoming call",
@@ -233,15 +241,6 @@ def _links(state: State) -> tuple[Widget, ...]:
 
 def _motion(state: State) -> tuple[Widget, ...]:
     signals = state.signals
-    limit = signals[ADAS.LIMIT_SIGN]
-    sign: tuple[Widget, ...] = ()
-    if state.sign_camera and limit is not None:
-        shown = speed(signals, limit)
-        sign = (
-            LimitSign(
-                rect=Rect(1206, 7, 50, 50), key="status.limit_sign", text=shown, description=f"Limit sign {shown}"
-            ),
-        )
     return (
         Label(
             rect=Rect(1020, 14, 36, 36),
@@ -267,7 +266,18 @@ def _motion(state: State) -> tuple[Widget, ...]:
             style=Type.CAPTION,
             tone="muted",
         ),
-        *sign,
+    )
+
+
+def _limit_sign(state: State) -> tuple[Widget, ...]:
+    limit = state.signals[ADAS.LIMIT_SIGN]
+    if not state.sign_camera or limit is None:
+        return ()
+    shown = speed(state.signals, limit)
+    return (
+        LimitSign(
+            rect=Rect(1206, 7, 50, 50), key="status.limit_sign", text=shown, description=f"Limit sign {shown}"
+        ),
     )
 
 
@@ -285,7 +295,10 @@ def dock(state: State) -> tuple[Widget, ...]:
 def _dock(here: str, values: tuple[Any, ...], left_hand: bool) -> tuple[Widget, ...]:
     signals = Signals({signal.path: value for signal, value in zip(DOCKED, values, strict=True)})
     bar = Rect(0, SCREEN_HEIGHT - DOCK_HEIGHT, SCREEN_WIDTH, DOCK_HEIGHT)
-    cells = Rect(284, bar.y + 8, 712, 80).columns(len(DOCK), 4)
+    _, left, _, front, _, middle, _, rear, _, right, _ = row(
+        bar, MARGIN, 184, 10, 58, 8, REST, 8, 58, 10, 184, MARGIN
+    )
+    cells = middle.inset(0, 8).columns(len(DOCK), 4)
     apps = tuple(
         Choice(
             rect=cell,
@@ -300,8 +313,7 @@ def _dock(here: str, values: tuple[Any, ...], left_hand: bool) -> tuple[Widget, 
         )
         for cell, (name, (text, icon)) in zip(cells, DOCK.items(), strict=True)
     )
-    left = Rect(MARGIN, bar.y + 22, 184, 52)
-    right = Rect(SCREEN_WIDTH - MARGIN - 184, bar.y + 22, 184, 52)
+    left, front, rear, right = (each.inset(0, 22) for each in (left, front, rear, right))
     driver, passenger = signals[HVAC.DRIVER_TEMPERATURE], signals[HVAC.PASSENGER_TEMPERATURE]
     whole = (
         *stepper(
@@ -313,9 +325,9 @@ def _dock(here: str, values: tuple[Any, ...], left_hand: bool) -> tuple[Widget, 
             temperature(signals, driver),
             Type.LABEL,
         ),
-        _quick(Rect(218, bar.y + 22, 58, 52), "front", Icon.DEFROST_FRONT, signals),
+        _quick(front, "front", Icon.DEFROST_FRONT, signals),
         *apps,
-        _quick(Rect(1004, bar.y + 22, 58, 52), "rear", Icon.DEFROST_REAR, signals),
+        _quick(rear, "rear", Icon.DEFROST_REAR, signals),
         *stepper(
             left if left_hand else right,
             "dock.passenger_temperature",

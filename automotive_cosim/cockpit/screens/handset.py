@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.layout import REST, column, row
 from automotive_cosim.cockpit.messages import DeclineCall, HangUp, Put, Show, TakeCall
+from automotive_cosim.cockpit.people import OnCall
 from automotive_cosim.cockpit.screens.media import minutes
 from automotive_cosim.cockpit.screens.parts import CONTENT
 from automotive_cosim.cockpit.signals import LINK
@@ -13,20 +15,20 @@ from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Card, Glyph, Label, Look, Tile, Widget
 
-LEFT, RIGHT = CONTENT.left(320), CONTENT.right_part(CONTENT.width - 320 - GAP)
+LEFT, _, RIGHT = row(CONTENT, 320, GAP, REST)
 """The card, and the space beside it."""
 
 
 def handset(state: State) -> Widget:
     """The present call, or the phone's state, and permanent buttons."""
-    inner = LEFT.inset(20)
+    call, quiet, _, emergency = column(LEFT.inset(20), REST, 68, 12, 68)
     calls = state.phone
     return Card(
         rect=LEFT,
         children=(
-            *_call(inner, state),
+            *_call(call, state),
             Tile(
-                rect=Rect(inner.x, inner.bottom - 148, inner.width, 68),
+                rect=quiet,
                 key="phone.do_not_disturb",
                 text="Do not disturb",
                 icon=Icon.BELL_OFF,
@@ -40,7 +42,7 @@ def handset(state: State) -> Widget:
                 ),
             ),
             Button(
-                rect=inner.bottom_part(68),
+                rect=emergency,
                 key="phone.emergency_call",
                 text="Emergency call",
                 icon=Icon.PHONE_ALERT,
@@ -51,26 +53,30 @@ def handset(state: State) -> Widget:
     )
 
 
-def _call(inner: Rect, state: State) -> tuple[Widget, ...]:
+def _call(rect: Rect, state: State) -> tuple[Widget, ...]:
+    """A picture, a name, a line below it, and what can be done, one above the other."""
+    _, picture, _, name, _, line, _, acts = column(rect, 8, 88, 16, 36, 2, 30, 24, 88)
     if state.phone.ringing is not None:
-        return _ringing(inner, state.phone.ringing.who)
-    return _on_call(inner, state) if state.phone.on_call else _linked(inner, state)
+        return _ringing(picture, name, line, acts, state.phone.ringing.who)
+    if state.phone.on_call is not None:
+        return _on_call(picture, name, line, acts, state.phone.on_call, state)
+    return _linked(picture, name, line, acts.top(60), state)
 
 
-def _linked(inner: Rect, state: State) -> tuple[Widget, ...]:
+def _linked(picture: Rect, name: Rect, line: Rect, act: Rect, state: State) -> tuple[Widget, ...]:
     on = state.signals[LINK.BLUETOOTH]
     count = len(state.directory.unread(state.phone))
     return (
-        Glyph(rect=Rect(inner.x, inner.y + 8, inner.width, 88), icon=Icon.PHONE, size=72, tone="accent"),
+        Glyph(rect=picture, icon=Icon.PHONE, size=72, tone="accent"),
         Label(
-            rect=Rect(inner.x, inner.y + 112, inner.width, 36),
+            rect=name,
             key="phone.device",
             text=state.desk.device if on else "No phone paired",
             style=Type.STRONG,
             align="centre",
         ),
         Label(
-            rect=Rect(inner.x, inner.y + 150, inner.width, 30),
+            rect=line,
             key="phone.state",
             text=(f"{count} unread message{'s' if count != 1 else ''}" if count else "No new messages")
             if on
@@ -80,7 +86,7 @@ def _linked(inner: Rect, state: State) -> tuple[Widget, ...]:
             align="centre",
         ),
         Button(
-            rect=Rect(inner.x, inner.y + 204, inner.width, 60),
+            rect=act,
             key="phone.devices",
             text="Devices",
             icon=Icon.BLUETOOTH,
@@ -89,14 +95,12 @@ def _linked(inner: Rect, state: State) -> tuple[Widget, ...]:
     )
 
 
-def _on_call(inner: Rect, state: State) -> tuple[Widget, ...]:
-    call = state.phone.on_call
-    assert call is not None
-    mute, end = Rect(inner.x, inner.y + 204, inner.width, 88).columns(2, 12)
+def _on_call(picture: Rect, name: Rect, line: Rect, acts: Rect, call: OnCall, state: State) -> tuple[Widget, ...]:
+    mute, end = acts.columns(2, 12)
     return (
-        Glyph(rect=Rect(inner.x, inner.y + 8, inner.width, 88), icon=Icon.IN_CALL, size=72, tone="good"),
+        Glyph(rect=picture, icon=Icon.IN_CALL, size=72, tone="good"),
         Label(
-            rect=Rect(inner.x, inner.y + 112, inner.width, 36),
+            rect=name,
             key="call.who",
             text=call.who,
             description="On the phone with",
@@ -104,7 +108,7 @@ def _on_call(inner: Rect, state: State) -> tuple[Widget, ...]:
             align="centre",
         ),
         Label(
-            rect=Rect(inner.x, inner.y + 150, inner.width, 30),
+            rect=line,
             key="call.time",
             text=minutes(state.time_s - call.since_s),
             style=Type.LABEL,
@@ -136,12 +140,12 @@ def _on_call(inner: Rect, state: State) -> tuple[Widget, ...]:
     )
 
 
-def _ringing(inner: Rect, who: str) -> tuple[Widget, ...]:
-    answer, decline = Rect(inner.x, inner.y + 204, inner.width, 88).columns(2, 12)
+def _ringing(picture: Rect, name: Rect, line: Rect, acts: Rect, who: str) -> tuple[Widget, ...]:
+    answer, decline = acts.columns(2, 12)
     return (
-        Glyph(rect=Rect(inner.x, inner.y + 8, inner.width, 88), icon=Icon.CALL_IN, size=72, tone="good"),
+        Glyph(rect=picture, icon=Icon.CALL_IN, size=72, tone="good"),
         Label(
-            rect=Rect(inner.x, inner.y + 112, inner.width, 36),
+            rect=name,
             key="phone.ringing",
             text=who,
             description="Is calling",
@@ -149,7 +153,7 @@ def _ringing(inner: Rect, who: str) -> tuple[Widget, ...]:
             align="centre",
         ),
         Label(
-            rect=Rect(inner.x, inner.y + 150, inner.width, 30),
+            rect=line,
             text="Incoming call",
             style=Type.LABEL,
             tone="muted",

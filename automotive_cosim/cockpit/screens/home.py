@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from automotive_cosim.cockpit.drawing import text_width
 from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.layout import REST, column, row
 from automotive_cosim.cockpit.map import camera_of
 from automotive_cosim.cockpit.mapscene import ego
 from automotive_cosim.cockpit.messages import Set, Show, Skip
@@ -30,14 +31,8 @@ METRES_PER_PIXEL = 1.6
 
 def home(state: State) -> tuple[Widget, ...]:
     """The home screen."""
-    left = CONTENT.left(560)
-    right = CONTENT.right_part(CONTENT.width - 560 - GAP)
-    drive, first, second, media = (
-        right.top(136),
-        Rect(right.x, right.y + 136 + GAP, right.width, 114),
-        Rect(right.x, right.y + 266 + GAP, right.width, 114),
-        right.bottom_part(132),
-    )
+    left, _, right = row(CONTENT, 560, GAP, REST)
+    drive, _, first, _, second, _, media = column(right, 136, GAP, 114, GAP, 114, REST, 132)
     cells = (*first.columns(2, GAP), *second.columns(2, GAP))
     return (
         _map_card(left, state),
@@ -51,10 +46,11 @@ def home(state: State) -> tuple[Widget, ...]:
 
 
 def _map_card(rect: Rect, state: State) -> Widget:
-    plate = Rect(rect.x + 20, rect.bottom - 84, rect.width - 40, 64)
-    words = Rect(plate.x + 62, plate.y, plate.width - 190, plate.height)
+    plate = rect.inset(20).bottom_part(64)
+    picture, _, words, _, left, _ = row(plate.inset(14, 0), 36, 12, REST, 8, 100, 6)
+    name, _, then, _ = column(words, 34, 2, 24, REST)
     camera = camera_of(state.roads, ego(state), METRES_PER_PIXEL)
-    noticed = lookout.plate(rect.x + 20, rect.y + 20, rect.width - 40, state)
+    noticed = lookout.plate(plate.x, rect.inset(20).y, plate.width, state)
     over = (plate, *(card.rect for card in noticed))
     view = map_view(rect, "home.map", state, camera, over, Show("map"))
     ahead = None if state.outside is None else state.outside.driving.ahead
@@ -71,15 +67,13 @@ def _map_card(rect: Rect, state: State) -> Widget:
                 look="plate",
                 children=(
                     Glyph(
-                        rect=Rect(plate.x + 14, plate.y + 14, 36, 36),
+                        rect=picture.middle(36, 36),
                         icon=turn[0].icon if turn else Icon.MAP,
                         size=34,
                         tone="accent",
                     ),
                     Label(
-                        rect=Rect(
-                            plate.x + 62, plate.y + (4 if turn else 0), plate.width - 190, 34 if turn else 64
-                        ),
+                        rect=name.moved(0, 4) if turn else words,
                         key="home.street",
                         text=street(state),
                         description="Current road",
@@ -88,7 +82,7 @@ def _map_card(rect: Rect, state: State) -> Widget:
                     *(
                         (
                             Label(
-                                rect=Rect(words.x, words.y + 36, words.width, 24),
+                                rect=then,
                                 key="home.turn",
                                 text=f"{turn[0].words} in {distance(state.signals, turn[1])}",
                                 description="Next turn",
@@ -100,7 +94,7 @@ def _map_card(rect: Rect, state: State) -> Widget:
                         else ()
                     ),
                     Label(
-                        rect=Rect(plate.right - 120, plate.y, 100, plate.height),
+                        rect=left,
                         key="home.route_left",
                         text=way,
                         description="Distance to the destination",
@@ -118,36 +112,37 @@ def _drive_card(rect: Rect, state: State) -> Widget:
     signals = state.signals
     level = signals[ENERGY.LEVEL]
     inner = rect.inset(24, 14)
-    right = inner.right_part(220)
+    head, _, reach, _, bar, _ = column(inner.right_part(220), 28, 2, 40, 14, 12, REST)
+    far, charge = row(reach, 130, 90)
     shown = speed(signals, signals[MOTION.SPEED])
-    wide = round(text_width(shown, Type.HUGE)) + 4
+    figure, _, unit = row(inner, round(text_width(shown, Type.HUGE)) + 4, 12, 60)
     return Card(
         rect=rect,
         children=(
             Label(
-                rect=inner.left(wide),
+                rect=figure,
                 key="home.speed",
                 text=shown,
                 description=f"Speed in {speed_unit(signals)}",
                 style=Type.HUGE,
             ),
             Label(
-                rect=Rect(inner.x + wide + 12, inner.bottom - 44, 60, 30),
+                rect=unit.bottom_part(44).top(30),
                 key="home.speed_unit",
                 text=speed_unit(signals),
                 tone="muted",
                 style=Type.LABEL,
             ),
-            heading(right.top(28), "Range"),
+            heading(head, "Range"),
             Label(
-                rect=Rect(right.x, right.y + 30, 130, 40),
+                rect=far,
                 key="home.range",
                 text=distance(signals, signals[ENERGY.RANGE]),
                 description="Range",
                 style=Type.TITLE,
             ),
             Label(
-                rect=Rect(right.x + 130, right.y + 30, 90, 40),
+                rect=charge,
                 key="home.battery",
                 text=f"{level:.0f} %",
                 description="Battery",
@@ -155,7 +150,7 @@ def _drive_card(rect: Rect, state: State) -> Widget:
                 tone="muted",
             ),
             Bar(
-                rect=Rect(right.x, right.y + 84, right.width, 12),
+                rect=bar,
                 share=round(level / 100, 2),
                 tone="good" if level > 15 else "warning",
             ),
@@ -165,14 +160,14 @@ def _drive_card(rect: Rect, state: State) -> Widget:
 
 def _live(rect: Rect, key: str, name: str, icon: Icon, screen: str, value: Label, note: Label) -> Widget:
     """A card that shows an app's state and opens it."""
-    inner = rect.inset(20, 12)
+    picture = rect.inset(20, 12).top(30).right_part(30)
     return Card(
         rect=rect,
         key=key,
         description=name,
         on_tap=Show(screen),
         children=(
-            Glyph(rect=Rect(inner.right - 30, inner.y, 30, 30), icon=icon, size=26, tone="accent"),
+            Glyph(rect=picture, icon=icon, size=26, tone="accent"),
             value,
             note,
         ),
@@ -181,8 +176,8 @@ def _live(rect: Rect, key: str, name: str, icon: Icon, screen: str, value: Label
 
 def _lines(rect: Rect) -> tuple[Rect, Rect]:
     """Boxes of a live card's value and its note."""
-    inner = rect.inset(20, 12)
-    return Rect(inner.x, inner.y, inner.width - 40, 50), inner.bottom_part(32)
+    value, _, note = column(rect.inset(20, 12), 50, REST, 32)
+    return row(value, REST, 40)[0], note
 
 
 def _climate_card(rect: Rect, state: State) -> Widget:
@@ -289,9 +284,9 @@ def _media_card(rect: Rect, state: State) -> Widget:
     signals = state.signals
     playing = signals[MEDIA.ACTION] == "PLAY"
     inner = rect.inset(16, 16)
-    art = inner.left(inner.height)
-    buttons = inner.right_part(3 * 72).columns(3, 8)
-    words = Rect(art.right + 20, inner.y, buttons[0].x - art.right - 36, inner.height)
+    art, _, words, _, keys = row(inner, inner.height, 20, REST, 16, 3 * 72)
+    _, name, _, artist = column(words, 10, 48, 2, 28)
+    buttons = keys.inset(0, 16).columns(3, 8)
     return Card(
         rect=rect,
         key="home.media",
@@ -304,7 +299,7 @@ def _media_card(rect: Rect, state: State) -> Widget:
                 children=(Glyph(rect=art.middle(48, 48), icon=Icon.NOTE, size=48, tone="accent"),),
             ),
             Label(
-                rect=Rect(words.x, words.y + 10, words.width, 48),
+                rect=name,
                 key="home.media.title",
                 text=signals[MEDIA.TRACK],
                 description="Playing" if playing else "Paused",
@@ -312,14 +307,14 @@ def _media_card(rect: Rect, state: State) -> Widget:
                 lines=2,
             ),
             Label(
-                rect=Rect(words.x, words.y + 60, words.width, 28),
+                rect=artist,
                 key="home.media.artist",
                 text=signals[MEDIA.ARTIST],
                 style=Type.LABEL,
                 tone="muted",
             ),
             Button(
-                rect=buttons[0].inset(0, 16),
+                rect=buttons[0],
                 key="home.media.previous",
                 description="Previous",
                 icon=Icon.PREVIOUS,
@@ -327,14 +322,14 @@ def _media_card(rect: Rect, state: State) -> Widget:
                 on_tap=Skip(-1),
             ),
             Button(
-                rect=buttons[1].inset(0, 16),
+                rect=buttons[1],
                 key="home.media.play",
                 description="Pause" if playing else "Play",
                 icon=Icon.PAUSE if playing else Icon.PLAY,
                 on_tap=Set(MEDIA.ACTION, "STOP" if playing else "PLAY"),
             ),
             Button(
-                rect=buttons[2].inset(0, 16),
+                rect=buttons[2],
                 key="home.media.next",
                 description="Next",
                 icon=Icon.NEXT,

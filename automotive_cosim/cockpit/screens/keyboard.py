@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.language import translated
+from automotive_cosim.cockpit.layout import REST, row
 from automotive_cosim.cockpit.messages import BACKSPACE, Enter, Focus, Key
 from automotive_cosim.cockpit.screens.parts import KEYBOARD
 from automotive_cosim.cockpit.signals import HMI
@@ -63,9 +64,7 @@ def _centred(line: Rect, count: int) -> tuple[Rect, ...]:
 
 
 def _lowest(line: Rect, field: Field) -> tuple[Widget, ...]:
-    hide, erase = line.left(160), Rect(line.x + 160 + GAP, line.y, 160, line.height)
-    enter = line.right_part(260)
-    space = Rect(erase.right + GAP, line.y, enter.x - erase.right - 2 * GAP, line.height)
+    hide, _, erase, _, space, _, enter = row(line, 160, GAP, 160, GAP, REST, GAP, 260)
     return (
         Button(
             rect=hide,

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from datetime import timedelta
 
 from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.layout import REST, column, row
 from automotive_cosim.cockpit.map import ZOOMS_M_PER_PX, Camera
 from automotive_cosim.cockpit.mapscene import box_of, ego, goal, incidents, jam, map_camera, scene
 from automotive_cosim.cockpit.messages import Follow, Guide, Message, Pick, Set, Show, Zoom
@@ -51,10 +52,11 @@ def map_screen(state: State) -> tuple[Widget, ...]:
 def sight(state: State) -> Widget:
     """The map, with the next turn, the road and the buttons over it."""
     rect = CONTENT.right_part(CONTENT.width - PANEL.width - GAP)
-    turn, plate = Rect(rect.x + 20, rect.y + 20, 560, 72), Rect(rect.x + 20, rect.bottom - 76, 420, 56)
-    voice, closer, further = (Rect(rect.right - 84, rect.bottom - 236 + 76 * at, 64, 64) for at in range(3))
+    left, _, keys = row(rect.inset(20), 560, REST, 64)
+    turn, _, lowest = column(left, 72, REST, 56)
+    plate = lowest.left(420)
+    north, _, voice, _, closer, _, further, _ = column(keys, 64, REST, 64, 12, 64, 12, 64, 0)
     ahead = next_turn(state)
-    north = Rect(rect.right - 84, rect.y + 20, 64, 64)
     closer_in = Zoom(-1) if state.zoom else None
     noticed = lookout.plate(rect.x + 20, turn.bottom + 12 if ahead else turn.y, 440, state)
     over = (plate, voice, closer, further, north, *((turn,) if ahead else ()), *(card.rect for card in noticed))
@@ -207,20 +209,21 @@ def next_turn(state: State) -> tuple[Turn, float] | None:
 
 def _turn_plate(rect: Rect, ahead: tuple[Turn, float], state: State) -> Widget:
     turn, away_m = ahead
+    picture, _, far, _, words = row(rect.inset(14, 0), 44, 14, 116, 4, REST)
     return Card(
         rect=rect,
         look="plate",
         children=(
-            Glyph(rect=Rect(rect.x + 14, rect.y + 14, 44, 44), icon=turn.icon, size=42, tone="accent"),
+            Glyph(rect=picture.middle(44, 44), icon=turn.icon, size=42, tone="accent"),
             Label(
-                rect=Rect(rect.x + 72, rect.y + 8, 116, 56),
+                rect=far.inset(0, 8),
                 key="map.next_turn.distance",
                 text=distance(state.signals, away_m),
                 description="Distance to the next turn",
                 style=Type.TITLE,
             ),
             Label(
-                rect=Rect(rect.x + 192, rect.y + 8, rect.width - 206, 56),
+                rect=words.inset(0, 8),
                 key="map.next_turn",
                 text=f"{turn.words}: {turn.street}",
                 description="Next turn",
@@ -232,13 +235,14 @@ def _turn_plate(rect: Rect, ahead: tuple[Turn, float], state: State) -> Widget:
 
 
 def _street_plate(rect: Rect, state: State) -> Widget:
+    picture, _, words, _ = row(rect, 44, 12, REST, 20)
     tunnel = state.outside is not None and state.outside.driving.road.in_tunnel
     return Card(
         rect=rect,
         look="plate",
         children=(
             Glyph(
-                rect=Rect(rect.x + 16, rect.y + 14, 28, 28),
+                rect=picture.right_part(28).middle(28, 28),
                 icon=Icon.TUNNEL if tunnel else Icon.MAP,
                 size=26,
                 tone="accent",
@@ -246,7 +250,7 @@ def _street_plate(rect: Rect, state: State) -> Widget:
                 description="In a tunnel" if tunnel else "",
             ),
             Label(
-                rect=Rect(rect.x + 56, rect.y, rect.width - 76, rect.height),
+                rect=words,
                 key="map.street",
                 text=street(state),
                 description="Current road",
@@ -257,12 +261,13 @@ def _street_plate(rect: Rect, state: State) -> Widget:
 
 
 def _panel(rect: Rect, state: State) -> tuple[Widget, ...]:
+    wanted, _, tabs, _, listed, _, way = column(rect, 64, 12, 56, 12, REST, GAP, 184)
     found = matches(state)
     typed = bool(state.typed.get("map.search")) or state.focus == "map.search"
     shown = state.picked["map.list"]
     names = found if typed else state.navigation.recents if shown == "recent" else state.navigation.favourites
     lists = choices(
-        Rect(rect.x, rect.y + 64 + 12, rect.width, 56),
+        tabs,
         "map.list",
         [
             ("saved", "Saved", Icon.STAR, shown == "saved", Pick("map.list", "saved")),
@@ -270,8 +275,6 @@ def _panel(rect: Rect, state: State) -> tuple[Widget, ...]:
             ("explore", "Near", Icon.PLACE, False, Show("explore", "all")),
         ],
     )
-    top = rect.y + 144
-    listed = Rect(rect.x, top, rect.width, rect.bottom - 184 - GAP - top)
     empty = Label(
         rect=listed.top(60),
         key="map.places.empty",
@@ -282,14 +285,14 @@ def _panel(rect: Rect, state: State) -> tuple[Widget, ...]:
     )
     return (
         search(
-            rect.top(64),
+            wanted,
             "map.search",
             "Search for a place or street",
             "Where to?",
             state,
             _first(found if typed else ()),
         ),
-        heading(Rect(rect.x + 4, rect.y + 90, rect.width, 28), "Results", "map.results") if typed else lists,
+        heading(tabs.moved(4, 14).top(28), "Results", "map.results") if typed else lists,
         rows(
             listed,
             "map.places",
@@ -302,7 +305,7 @@ def _panel(rect: Rect, state: State) -> tuple[Widget, ...]:
         )
         if names
         else empty,
-        _way(rect.bottom_part(184), state),
+        _way(way, state),
     )
 
 
@@ -345,14 +348,14 @@ def matches(state: State) -> tuple[str, ...]:
 
 
 def _way(rect: Rect, state: State) -> Widget:
-    inner = rect.inset(20, 14)
-    faster, details = inner.bottom_part(56).columns(2, 12)
+    head, _, when, _, acts = column(rect.inset(20, 14), 28, 2, 50, REST, 56)
+    faster, details = acts.columns(2, 12)
     goal = state.navigation.destination
     return Card(
         rect=rect,
         children=(
-            heading(inner.top(28), f"To {goal}" if goal else "Arrival", "map.goal"),
-            *arrival(Rect(inner.x, inner.y + 30, inner.width, 50), "map", state),
+            heading(head, f"To {goal}" if goal else "Arrival", "map.goal"),
+            *arrival(when, "map", state),
             Button(rect=faster, key="map.faster_route", text="Faster", icon=Icon.ROUTE, on_tap=Guide("")),
             Button(rect=details, key="map.route", text="Route", icon=Icon.TURNS, on_tap=Show("route")),
         ),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.layout import REST, column, row
 from automotive_cosim.cockpit.media import Entry
 from automotive_cosim.cockpit.messages import Message, Pick, Play, Put, Set, Show, Skip
 from automotive_cosim.cockpit.screens.parts import CONTENT, choices, rows, search, slider
@@ -27,13 +28,13 @@ def media(state: State) -> tuple[Widget, ...]:
     source = state.signals[MEDIA.SOURCE]
     typed = bool(state.typed.get("media.search")) or state.focus == "media.search"
     found = state.library.named(state.typed.get("media.search", ""))[:FOUND] if typed else ()
-    bar = Rect(RIGHT.x, RIGHT.y + 64 + 12, RIGHT.width, 56)
-    wide = 280 if typed else RIGHT.width - 3 * 150 if source != "INTERNET" else RIGHT.width
-    body = RIGHT.below(64 + 12 + 56 + 12)
+    sources, _, bar, _, body = column(RIGHT, 64, 12, 56, 12, REST)
+    is_filtered = not typed and source != "INTERNET"
+    words, _, filters = row(bar, REST, 12, 3 * 150 - 12) if is_filtered else (bar, bar, bar)
     return (
         _now(LEFT, state),
         choices(
-            RIGHT.top(64),
+            sources,
             "media.source",
             [
                 (key, text, icon, source == key.upper(), Set(MEDIA.SOURCE, key.upper()))
@@ -41,14 +42,14 @@ def media(state: State) -> tuple[Widget, ...]:
             ],
         ),
         search(
-            bar if typed else bar.left(wide),
+            words,
             "media.search",
             "Search music, stations and podcasts",
             "Search",
             state,
             Play(found[0].uri) if found else None,
         ),
-        *(() if typed or source == "INTERNET" else (_filters(bar.right_part(3 * 150 - 12), state),)),
+        *((_filters(filters, state),) if is_filtered else ()),
         *(_entries(body, found, state) if typed else _browse(body, source, state)),
     )
 
@@ -145,7 +146,7 @@ def _shows(rect: Rect, state: State) -> tuple[Widget, ...]:
     chosen = state.picked["media.show"]
     offline = "" if state.signals[LINK.ONLINE] else "Podcasts need a connection"
     episodes = tuple(entry for entry in state.library.of("INTERNET") if entry.by == chosen)
-    left, right = rect.left(300), rect.right_part(rect.width - 300 - 12)
+    left, _, right = row(rect, 300, 12, REST)
     return (
         rows(
             left,
@@ -191,17 +192,15 @@ def playlist(state: State) -> tuple[Widget, ...]:
     tracks = tuple(state.library.by_uri[uri] for uri in state.listening.tracks(name))
     playing = state.library.by_uri[state.signals[MEDIA.PLAYED]]
     inside = playing in tracks
-    bar = RIGHT.top(64)
-    right = bar.right_part(2 * 200 + 12).columns(2, 12)
+    bar, _, body = column(RIGHT, 64, 12, REST)
+    back, _, title, _, start, _, change = row(bar, 64, 16, 230, REST, 200, 12, 200)
     fits = playing.length_s is not None and not playing.uri.startswith("podcast")
     return (
         _now(LEFT, state),
+        Button(rect=back, key="playlist.back", description="All music", icon=Icon.BACK, on_tap=Show("media")),
+        Label(rect=title, key="playlist.name", text=name, style=Type.TITLE),
         Button(
-            rect=bar.left(64), key="playlist.back", description="All music", icon=Icon.BACK, on_tap=Show("media")
-        ),
-        Label(rect=Rect(bar.x + 80, bar.y, 230, 64), key="playlist.name", text=name, style=Type.TITLE),
-        Button(
-            rect=right[0],
+            rect=start,
             key="playlist.play",
             text="Play all",
             icon=Icon.PLAY,
@@ -210,7 +209,7 @@ def playlist(state: State) -> tuple[Widget, ...]:
             disabled="" if tracks else "It is empty",
         ),
         Button(
-            rect=right[1],
+            rect=change,
             key="playlist.change",
             text="Remove" if inside else "Add this",
             description=f"{playing.title}: {'remove it' if inside else 'add it'}",
@@ -223,7 +222,7 @@ def playlist(state: State) -> tuple[Widget, ...]:
             disabled="" if fits else "Only tracks go into a playlist",
         ),
         rows(
-            RIGHT.below(64 + 12),
+            body,
             "playlist.tracks",
             "Tracks",
             state,
@@ -238,15 +237,15 @@ def playlist(state: State) -> tuple[Widget, ...]:
 
 def _now(rect: Rect, state: State) -> Widget:
     signals = state.signals
-    inner = rect.inset(28, 20)
+    head, _, way, _, keys, _, signs, _, volume = column(rect.inset(28, 20), 132, 20, 40, 28, 88, 20, 60, REST, 84)
+    art, _, words = row(head, 132, 24, REST)
+    _, title, _, by, _ = column(words, 16, 64, 4, 32, REST)
+    _, previous, _, middle, _, following, _ = row(keys, REST, 72, 40, 88, 40, 72, REST)
+    extras = signs.columns(4, 12)
+    loud, _, mute = row(volume, REST, 16, 68)
     entry = state.library.by_uri[signals[MEDIA.PLAYED]]
     playing = signals[MEDIA.ACTION] == "PLAY"
     liked = entry.uri in state.listening.favourites
-    art = Rect(inner.x, inner.y, 132, 132)
-    words = Rect(art.right + 24, art.y + 16, inner.right - art.right - 24, 100)
-    middle = Rect(inner.x, inner.y + 220, inner.width, 88).middle(88, 88)
-    volume = inner.bottom_part(84)
-    extras = Rect(inner.x, inner.y + 328, inner.width, 60).columns(4, 12)
     return Card(
         rect=rect,
         children=(
@@ -256,17 +255,17 @@ def _now(rect: Rect, state: State) -> Widget:
                 children=(Glyph(rect=art.middle(72, 72), icon=_art(entry), size=72, tone="accent"),),
             ),
             Label(
-                rect=words.top(64),
+                rect=title,
                 key="media.title",
                 text=entry.title,
                 description="Playing" if playing else "Paused",
                 style=Type.TITLE,
                 lines=2,
             ),
-            Label(rect=words.bottom_part(32), key="media.artist", text=entry.by, description="By", tone="muted"),
-            *_progress(Rect(inner.x, inner.y + 152, inner.width, 40), state, entry.length_s),
+            Label(rect=by, key="media.artist", text=entry.by, description="By", tone="muted"),
+            *_progress(way, state, entry.length_s),
             Button(
-                rect=Rect(middle.x - 112, middle.y + 8, 72, 72),
+                rect=previous.inset(0, 8),
                 key="media.previous",
                 description="Previous",
                 icon=Icon.PREVIOUS,
@@ -284,7 +283,7 @@ def _now(rect: Rect, state: State) -> Widget:
                 on_tap=Set(MEDIA.ACTION, "STOP" if playing else "PLAY"),
             ),
             Button(
-                rect=Rect(middle.right + 40, middle.y + 8, 72, 72),
+                rect=following.inset(0, 8),
                 key="media.next",
                 description="Next",
                 icon=Icon.NEXT,
@@ -324,7 +323,7 @@ def _now(rect: Rect, state: State) -> Widget:
                 rect=extras[3], key="media.sound", description="Sound", icon=Icon.EQUALIZER, on_tap=Show("sound")
             ),
             slider(
-                volume.left(volume.width - 84),
+                loud,
                 "media.volume",
                 "Volume",
                 Icon.VOLUME,
@@ -332,7 +331,7 @@ def _now(rect: Rect, state: State) -> Widget:
                 signals,
             ),
             _sign(
-                volume.right_part(68).middle(68, 60),
+                mute.middle(68, 60),
                 "media.mute",
                 "Mute",
                 Icon.MUTE,
@@ -357,17 +356,19 @@ def _art(entry: Entry) -> Icon:
 def _progress(rect: Rect, state: State, length_s: float | None) -> tuple[Widget, ...]:
     if length_s is None:
         return (Label(rect=rect, key="media.live", text="Live", style=Type.LABEL, tone="accent"),)
+    bar, _, times = column(rect, 8, 6, 26)
+    elapsed, _, length = row(times, 100, REST, 100)
     return (
-        Bar(rect=rect.top(8), share=round(state.played_s / length_s, 3)),
+        Bar(rect=bar, share=round(state.played_s / length_s, 3)),
         Label(
-            rect=rect.bottom_part(26).left(100),
+            rect=elapsed,
             key="media.elapsed",
             text=minutes(state.played_s),
             style=Type.CAPTION,
             tone="muted",
         ),
         Label(
-            rect=rect.bottom_part(26).right_part(100),
+            rect=length,
             key="media.length",
             text=minutes(length_s),
             style=Type.CAPTION,

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.layout import REST, column, row
 from automotive_cosim.cockpit.messages import Message, Pick, Set, WarnDriver, Wash
 from automotive_cosim.cockpit.screens.climate import glass_words
 from automotive_cosim.cockpit.screens.parts import CONTENT, distance, heading, speed, speed_unit, temperature
@@ -29,7 +30,7 @@ from automotive_cosim.cockpit.theme import GAP, Icon, Type
 from automotive_cosim.cockpit.widgets import Bar, Button, Card, Glyph, Label, Look, Row, Tile, Widget
 from automotive_cosim.contracts import Alert, AlertKind
 
-LEFT, RIGHT = CONTENT.left(400), CONTENT.right_part(CONTENT.width - 400 - GAP)
+LEFT, _, RIGHT = row(CONTENT, 400, GAP, REST)
 FOG_M, MIST_M = 1000.0, 5000.0
 """Fog and mist by the WMO's definitions."""
 ICE_C = 3.0
@@ -258,43 +259,45 @@ def outside(state: State) -> tuple[Widget, ...]:
 
 
 def _detail(known: Phenomenon, state: State) -> Widget:
-    inner = RIGHT.inset(32, 28)
     reading = known.read(state)
-    words = Rect(inner.x + 128, inner.y, inner.width - 128, 96)
-    tiles = Rect(inner.x, inner.y + 272, inner.width, 104).columns(4, 12)
-    warn, wash = inner.bottom_part(72).columns(2, 12)
+    head, _, bar, _, about, _, name, _, acts, _, remedies = column(
+        RIGHT.inset(32, 28), 96, 28, 12, 16, 56, 24, 28, 12, 104, REST, 72
+    )
+    picture, _, words = row(head, 96, 32, REST)
+    word, _, value = column(words, 52, REST, 36)
+    warn, wash = remedies.columns(2, 12)
     return Card(
         rect=RIGHT,
         children=(
             Glyph(
-                rect=Rect(inner.x, inner.y, 96, 96),
+                rect=picture,
                 icon=known.icon,
                 size=88,
                 tone="warning" if reading.share >= 0.5 else "accent",
             ),
             Label(
-                rect=words.top(52),
+                rect=word,
                 key="outside.word",
                 text=reading.word,
                 description=known.title,
                 style=Type.HEADLINE,
             ),
-            Label(rect=words.bottom_part(36), key="outside.value", text=reading.value, tone="muted"),
+            Label(rect=value, key="outside.value", text=reading.value, tone="muted"),
             Bar(
-                rect=Rect(inner.x, inner.y + 124, inner.width, 12),
+                rect=bar,
                 share=round(reading.share, 2),
                 tone="warning" if reading.share >= 0.5 else "good",
             ),
             Label(
-                rect=Rect(inner.x, inner.y + 152, inner.width, 56),
+                rect=about,
                 key="outside.about",
                 text=known.about,
                 style=Type.LABEL,
                 tone="muted",
                 lines=2,
             ),
-            heading(Rect(inner.x, inner.y + 232, inner.width, 28), "What to do"),
-            *(_act(cell, act, state) for cell, act in zip(tiles, known.acts, strict=False)),
+            heading(name, "What to do"),
+            *(_act(cell, act, state) for cell, act in zip(acts.columns(4, 12), known.acts, strict=False)),
             Button(
                 rect=warn,
                 key="outside.warn",

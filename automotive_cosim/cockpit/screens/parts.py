@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 
 from automotive_cosim.cockpit.desk import Timer
 from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.layout import REST, row
 from automotive_cosim.cockpit.messages import Focus, Message, Put, Set, Show
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.signals import HMI, Signal, Signals
@@ -42,6 +43,8 @@ CONTENT = Rect(
 """The area of a screen."""
 KEYBOARD = Rect(0, 416, SCREEN_WIDTH, SCREEN_HEIGHT - 416)
 """The area of the on-screen keyboard."""
+HELD_STEPS = 5
+"""Steps of a stepper for one long press."""
 MILE_KM, PSI_KPA = 1.609344, 6.894757
 
 
@@ -95,24 +98,27 @@ def stepper(
     style: Type = Type.TITLE,
     locked: str = "",
 ) -> tuple[Widget, ...]:
-    """Minus, the value, plus."""
+    """Minus, the value, plus; a long press goes ``HELD_STEPS`` at once."""
     value = signals[signal]
     side = min(rect.height, 64)
-    less, more = max(signal.low, value - signal.step), min(signal.high, value + signal.step)
-    left = Rect(rect.x, rect.y + (rect.height - side) // 2, side, side)
-    right = Rect(rect.right - side, left.y, side, side)
+    less, more, far_less, far_more = (
+        min(signal.high, max(signal.low, value + steps * signal.step)) for steps in (-1, 1, -HELD_STEPS, HELD_STEPS)
+    )
+    by = _step(signal, signals)
+    left, middle, right = row(rect, side, REST, side)
     return (
         Button(
-            rect=left,
+            rect=left.middle(side, side),
             key=f"{key}.decrease",
-            description=f"{name} lower",
+            description=f"{name} lower by {by}",
             icon=Icon.MINUS,
             on_tap=Set(signal, less),
+            on_hold=Set(signal, far_less),
             disabled="It is at its lowest" if less == value else "",
             locked=locked,
         ),
         Label(
-            rect=Rect(left.right, rect.y, right.x - left.right, rect.height),
+            rect=middle,
             key=f"{key}.value",
             text=shown,
             description=name,
@@ -120,15 +126,25 @@ def stepper(
             align="centre",
         ),
         Button(
-            rect=right,
+            rect=right.middle(side, side),
             key=f"{key}.increase",
-            description=f"{name} higher",
+            description=f"{name} higher by {by}",
             icon=Icon.PLUS,
             on_tap=Set(signal, more),
+            on_hold=Set(signal, far_more),
             disabled="It is at its highest" if more == value else "",
             locked=locked,
         ),
     )
+
+
+def _step(signal: Signal[float], signals: Signals) -> str:
+    """A stepper's step in the unit of the display."""
+    if signal.unit == "celsius" and signals[HMI.TEMPERATURE_UNIT] == "F":
+        return f"{1.8 * signal.step:.1f}"
+    if signal.unit == "km/h" and signals[HMI.DISTANCE_UNIT] == "MILES":
+        return f"{signal.step / MILE_KM:.1f}"
+    return f"{signal.step:g}"
 
 
 def switch(
@@ -234,14 +250,13 @@ def search(
 
 def title(rect: Rect, icon: Icon, text: str, key: str = "") -> Card:
     """The head of a page: an icon and its name."""
+    picture, _, words = row(rect, 32, 12, REST)
     return Card(
         rect=rect,
         look="none",
         children=(
-            Glyph(rect=Rect(rect.x, rect.y, 32, rect.height), icon=icon, size=28, tone="accent"),
-            Label(
-                rect=Rect(rect.x + 44, rect.y, rect.width - 44, rect.height), key=key, text=text, style=Type.TITLE
-            ),
+            Glyph(rect=picture, icon=icon, size=28, tone="accent"),
+            Label(rect=words, key=key, text=text, style=Type.TITLE),
         ),
     )
 
@@ -353,17 +368,17 @@ def _rest(rect: Rect, key: str, state: State) -> Row:
 
 def time_setter(rect: Rect, key: str, timer: Timer, put: Callable[[Timer], Put]) -> tuple[Widget, ...]:
     """A time of day, earlier and later by half an hour; ``put`` keeps the one that was set."""
-    side = 72
+    earlier, time, later = row(rect, 72, REST, 72)
     return (
         Button(
-            rect=rect.left(side),
+            rect=earlier,
             key=f"{key}.earlier",
             description="Half an hour earlier",
             icon=Icon.MINUS,
             on_tap=put(timer.moved(-30)),
         ),
         Label(
-            rect=Rect(rect.x + side, rect.y, rect.width - 2 * side, rect.height),
+            rect=time,
             key=f"{key}.time",
             text=timer.shown,
             description="Time",
@@ -371,7 +386,7 @@ def time_setter(rect: Rect, key: str, timer: Timer, put: Callable[[Timer], Put])
             align="centre",
         ),
         Button(
-            rect=rect.right_part(side),
+            rect=later,
             key=f"{key}.later",
             description="Half an hour later",
             icon=Icon.PLUS,

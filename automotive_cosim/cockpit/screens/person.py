@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.layout import REST, column, row
 from automotive_cosim.cockpit.messages import Back, Dial, Put, Read, SendReply, Show
 from automotive_cosim.cockpit.people import TEMPLATES
 from automotive_cosim.cockpit.restrictions import Restriction
@@ -18,21 +18,22 @@ def contact(state: State) -> tuple[Widget, ...]:
     who = state.picked.get("contact") or state.directory.contacts[0].name
     number = state.directory.number(who)
     favourite = who in state.phone.favourites
-    card = RIGHT.top(264)
-    buttons = RIGHT.below(264 + GAP).top(108).columns(3, GAP)
+    head, _, acts = column(RIGHT, 264, GAP, 108)
+    _, picture, _, name, _, line = column(head, 24, 120, 8, 48, 6, 36)
+    buttons = acts.columns(3, GAP)
     return (
         handset(state),
-        Button(rect=RIGHT.left(64).top(64), key="contact.back", description="Back", icon=Icon.BACK, on_tap=Back()),
-        Glyph(rect=Rect(card.x, card.y + 24, card.width, 120), icon=Icon.ACCOUNT, size=112, tone="accent"),
+        Button(rect=head.left(64).top(64), key="contact.back", description="Back", icon=Icon.BACK, on_tap=Back()),
+        Glyph(rect=picture, icon=Icon.ACCOUNT, size=112, tone="accent"),
         Label(
-            rect=Rect(card.x, card.y + 152, card.width, 48),
+            rect=name,
             key="contact.name",
             text=who,
             style=Type.HEADLINE,
             align="centre",
         ),
         Label(
-            rect=Rect(card.x, card.y + 206, card.width, 36),
+            rect=line,
             key="contact.number",
             text="" if number == who else number,
             description="Number",
@@ -83,15 +84,15 @@ def thread(state: State) -> tuple[Widget, ...]:
     sent = [(sent.text, "You") for sent in state.phone.sent if sent.to == who]
     said = [(text, who) for text in known.lines] if known else []
     lines = [*(said if opened and not hidden else []), *sent]
-    left, right = RIGHT.left(500), RIGHT.right_part(RIGHT.width - 500 - GAP)
-    bar = left.top(64)
-    read = Rect(left.x, left.bottom - 64, left.width, 64)
+    left, _, right = row(RIGHT, 500, GAP, REST)
+    bar, _, talk, _, read = column(left, 64, 12, REST, 12, 64)
+    back, _, name, _, figure = row(bar, 64, 16, REST, 12, 172)
     return (
         handset(state),
-        Button(rect=bar.left(64), key="thread.back", description="Back", icon=Icon.BACK, on_tap=Back()),
-        Label(rect=Rect(bar.x + 80, bar.y, bar.width - 264, 64), key="thread.who", text=who, style=Type.TITLE),
+        Button(rect=back, key="thread.back", description="Back", icon=Icon.BACK, on_tap=Back()),
+        Label(rect=name, key="thread.who", text=who, style=Type.TITLE),
         Button(
-            rect=bar.right_part(172),
+            rect=figure,
             key="thread.figure",
             text="Figure",
             icon=Icon.CLOCK,
@@ -100,7 +101,7 @@ def thread(state: State) -> tuple[Widget, ...]:
         *(
             (
                 rows(
-                    Rect(left.x, left.y + 76, left.width, left.height - 152),
+                    talk,
                     "thread.lines",
                     "Messages",
                     state,
@@ -118,7 +119,7 @@ def thread(state: State) -> tuple[Widget, ...]:
             if lines
             else (
                 note(
-                    left.below(76),
+                    talk,
                     "thread.hidden",
                     hidden if hidden and said else "Not opened yet" if said else "No messages yet",
                 ),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.layout import REST, column, row
 from automotive_cosim.cockpit.messages import BACKSPACE, Dial, Key, Pick, Show
 from automotive_cosim.cockpit.people import PastCall
 from automotive_cosim.cockpit.restrictions import Restriction
@@ -147,10 +148,9 @@ def _messages(rect: Rect, state: State) -> tuple[Widget, ...]:
 def _keypad(rect: Rect, state: State) -> tuple[Widget, ...]:
     number = state.typed.get("phone.number", "")
     locked = state.locked(Restriction.NO_DIALPAD)
-    pad = rect.left(420)
+    pad, _, side = row(rect, 420, 24, REST)
+    shown, _, erase, _, call = column(side, 96, 16, 72, 16, 88)
     cells = [cell for line in pad.rows(4, 12) for cell in line.columns(3, 12)]
-    side = rect.right_part(rect.width - 420 - 24)
-    erase, call = Rect(side.x, side.y + 112, side.width, 72), Rect(side.x, side.y + 200, side.width, 88)
     empty = "" if number else "Enter a number first"
     return (
         *(
@@ -165,10 +165,10 @@ def _keypad(rect: Rect, state: State) -> tuple[Widget, ...]:
             for cell, digit in zip(cells, KEYS, strict=True)
         ),
         Card(
-            rect=side.top(96),
+            rect=shown,
             children=(
                 Label(
-                    rect=side.top(96).inset(20),
+                    rect=shown.inset(20),
                     key="phone.number",
                     text=number[-14:] or ("Locked while driving" if locked else "Number"),
                     description="Number to call",

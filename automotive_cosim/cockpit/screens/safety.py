@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.layout import REST, column, row
 from automotive_cosim.cockpit.messages import (
     AskPullOver,
     AskSlowDown,
@@ -51,9 +52,7 @@ SLOWEST_KMH, FASTEST_KMH, STEP_KMH = 10.0, 180.0, 10.0
 
 def safety(state: State) -> tuple[Widget, ...]:
     """The safety centre."""
-    left = CONTENT.left(556)
-    middle = Rect(left.right + GAP, CONTENT.y, 344, CONTENT.height)
-    right = CONTENT.right_part(CONTENT.width - 556 - 344 - 2 * GAP)
+    left, _, middle, _, right = row(CONTENT, 556, GAP, 344, GAP, REST)
     return _kinds(left, state), _draft(middle, state), *_help(right, state)
 
 
@@ -62,7 +61,7 @@ def _put(draft: AlertDraft) -> Put:
 
 
 def _kinds(rect: Rect, state: State) -> Widget:
-    inner = rect.inset(20, 16)
+    head, _, body = column(rect.inset(20, 16), 30, 6, REST)
     kinds = tuple(KINDS)
 
     def cell(index: int, box: Rect) -> Widget:
@@ -82,9 +81,9 @@ def _kinds(rect: Rect, state: State) -> Widget:
     return Card(
         rect=rect,
         children=(
-            heading(inner.top(30), "Warn the driver about"),
+            heading(head, "Warn the driver about"),
             rows(
-                inner.below(36),
+                body,
                 "safety.kinds",
                 "Alert types",
                 state,
@@ -99,22 +98,24 @@ def _kinds(rect: Rect, state: State) -> Widget:
 
 
 def _draft(rect: Rect, state: State) -> Widget:
-    inner = rect.inset(20, 16)
+    head, _, chosen, _, severities, _, advice, _, warn = column(
+        rect.inset(20, 16), 30, 4, 44, 14, 92, 20, 180, REST, 88
+    )
     draft = state.draft
     title = "Choose what to warn about" if draft.kind is None else KINDS[draft.kind][0]
     return Card(
         rect=rect,
         children=(
-            heading(inner.top(30), "Alert"),
+            heading(head, "Alert"),
             Label(
-                rect=Rect(inner.x, inner.y + 34, inner.width, 44),
+                rect=chosen,
                 key="safety.draft",
                 text=title,
                 description="Alert to give",
                 style=Type.TITLE,
             ),
             choices(
-                Rect(inner.x, inner.y + 92, inner.width, 92),
+                severities,
                 "safety.severity",
                 [
                     (
@@ -128,9 +129,9 @@ def _draft(rect: Rect, state: State) -> Widget:
                 ],
                 stacked=True,
             ),
-            *_advice(Rect(inner.x, inner.y + 204, inner.width, 180), state),
+            *_advice(advice, state),
             Button(
-                rect=inner.bottom_part(88),
+                rect=warn,
                 key="safety.warn",
                 text="Warn driver",
                 icon=Icon.WARN,
@@ -153,11 +154,12 @@ def _advice(rect: Rect, state: State) -> tuple[Widget, ...]:
     less = start if advised is None else max(SLOWEST_KMH, advised - STEP_KMH)
     more = start if advised is None else min(FASTEST_KMH, advised + STEP_KMH)
     shown = "Posted limit" if advised is None else f"{speed(signals, advised)} {speed_unit(signals)}"
-    line = Rect(rect.x, rect.y + 40, rect.width, 64)
+    head, _, line, _, posted = column(rect, 28, 12, 64, 12, 52)
+    minus, number, plus = row(line, 64, REST, 64)
     return (
-        heading(rect.top(28), "Advised speed"),
+        heading(head, "Advised speed"),
         Button(
-            rect=line.left(64),
+            rect=minus,
             key="safety.speed.decrease",
             description="Advised speed lower",
             icon=Icon.MINUS,
@@ -165,7 +167,7 @@ def _advice(rect: Rect, state: State) -> tuple[Widget, ...]:
             disabled="It is at its lowest" if advised == less else "",
         ),
         Label(
-            rect=Rect(line.x + 64, line.y, line.width - 128, 64),
+            rect=number,
             key="safety.speed.value",
             text=shown,
             description="Advised speed",
@@ -173,7 +175,7 @@ def _advice(rect: Rect, state: State) -> tuple[Widget, ...]:
             align="centre",
         ),
         Button(
-            rect=line.right_part(64),
+            rect=plus,
             key="safety.speed.increase",
             description="Advised speed higher",
             icon=Icon.PLUS,
@@ -181,7 +183,7 @@ def _advice(rect: Rect, state: State) -> tuple[Widget, ...]:
             disabled="It is at its highest" if advised == more else "",
         ),
         Choice(
-            rect=Rect(rect.x, rect.y + 116, rect.width, 52),
+            rect=posted,
             key="safety.speed.posted",
             text="Leave it to the signs",
             selected=advised is None,
@@ -192,7 +194,7 @@ def _advice(rect: Rect, state: State) -> tuple[Widget, ...]:
 
 
 def _help(rect: Rect, state: State) -> tuple[Widget, ...]:
-    first = rect.top(204)
+    first, _, earlier = column(rect, 204, GAP, REST)
     upper, lower = first.rows(2, 12)
     hazard, slow = upper.columns(2, 12)
     stop, call = lower.columns(2, 12)
@@ -223,12 +225,12 @@ def _help(rect: Rect, state: State) -> tuple[Widget, ...]:
             look=Look.CRITICAL,
             on_tap=Show("emergency"),
         ),
-        _history(rect.below(204 + GAP), state),
+        _history(earlier, state),
     )
 
 
 def _history(rect: Rect, state: State) -> Widget:
-    inner = rect.inset(16, 14)
+    head, _, body = column(rect.inset(16, 14), 28, 6, REST)
     given = tuple(reversed(state.alerts))
 
     def line(index: int, box: Rect) -> Widget:
@@ -242,33 +244,31 @@ def _history(rect: Rect, state: State) -> Widget:
             icon=icon,
         )
 
-    empty = Label(
-        rect=inner.below(34).top(40), key="safety.history.empty", text="Nothing yet", tone="muted", style=Type.LABEL
-    )
-    listed = rows(inner.below(34), "safety.history", "Alerts given", state, len(given), line, height=84, gap=6)
-    return Card(rect=rect, children=(heading(inner.top(28), "History"), listed if given else empty))
+    empty = Label(rect=body.top(40), key="safety.history.empty", text="Nothing yet", tone="muted", style=Type.LABEL)
+    listed = rows(body, "safety.history", "Alerts given", state, len(given), line, height=84, gap=6)
+    return Card(rect=rect, children=(heading(head, "History"), listed if given else empty))
 
 
 def emergency(state: State) -> tuple[Widget, ...]:
     """Asks for confirmation before it calls."""
     card = CONTENT.middle(640, 400)
-    inner = card.inset(40, 36)
-    cancel, call = inner.bottom_part(88).columns(2, GAP)
+    picture, _, question, _, about, _, answers = column(card.inset(40, 36), 72, 16, 48, 6, 72, REST, 88)
+    cancel, call = answers.columns(2, GAP)
     made = "emergency" in state.calls
     return (
         Card(
             rect=card,
             children=(
-                Glyph(rect=Rect(inner.x, inner.y, inner.width, 72), icon=Icon.PHONE_ALERT, size=64, tone="accent"),
+                Glyph(rect=picture, icon=Icon.PHONE_ALERT, size=64, tone="accent"),
                 Label(
-                    rect=Rect(inner.x, inner.y + 88, inner.width, 48),
+                    rect=question,
                     key="emergency.title",
                     text="Call the emergency services?",
                     style=Type.TITLE,
                     align="centre",
                 ),
                 Label(
-                    rect=Rect(inner.x, inner.y + 142, inner.width, 72),
+                    rect=about,
                     key="emergency.about",
                     text="A call was made. They have the car's position."
                     if made

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from automotive_cosim.cockpit.desk import DEVICES, NETWORKS
 from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.layout import REST, column
 from automotive_cosim.cockpit.messages import Drive, Put, Set, SetAll
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.screens.parts import (
@@ -32,6 +33,7 @@ PAGES = (
     ("profiles", "Profiles", Icon.PROFILE),
 )
 LANGUAGES = {"en": "English", "fr": "Français", "de": "Deutsch", "ja": "日本語"}
+PADDING = 28, 24
 MENU, PAGE = CONTENT.left(264), CONTENT.right_part(CONTENT.width - 264 - GAP)
 
 
@@ -50,23 +52,18 @@ def settings(state: State) -> tuple[Widget, ...]:
 
 def _display(rect: Rect, state: State) -> Widget:
     signals = state.signals
-    inner = rect.inset(28, 24)
+    head, _, bright, _, name, _, modes, _, about, _, sounds = column(
+        rect.inset(*PADDING), 40, 24, 92, 24, 28, 8, 112, 12, 56, REST, 64
+    )
     by_itself, mode = signals[HMI.DAY_NIGHT_AUTO], signals[HMI.DAY_NIGHT]
     return Card(
         rect=rect,
         children=(
-            title(inner.top(40), Icon.BRIGHTNESS, "Display"),
-            slider(
-                Rect(inner.x, inner.y + 64, inner.width, 92),
-                "settings.brightness",
-                "Brightness",
-                Icon.BRIGHTNESS,
-                HMI.BRIGHTNESS,
-                signals,
-            ),
-            heading(Rect(inner.x, inner.y + 180, inner.width, 28), "Appearance"),
+            title(head, Icon.BRIGHTNESS, "Display"),
+            slider(bright, "settings.brightness", "Brightness", Icon.BRIGHTNESS, HMI.BRIGHTNESS, signals),
+            heading(name, "Appearance"),
             choices(
-                Rect(inner.x, inner.y + 216, inner.width, 112),
+                modes,
                 "settings.appearance",
                 [
                     ("auto", "Auto", Icon.DAY_NIGHT, by_itself, Set(HMI.DAY_NIGHT_AUTO, True)),
@@ -76,28 +73,21 @@ def _display(rect: Rect, state: State) -> Widget:
                 stacked=True,
             ),
             Label(
-                rect=Rect(inner.x, inner.y + 340, inner.width, 56),
+                rect=about,
                 key="settings.appearance.about",
                 text="Auto follows the light outside: night after sunset and in tunnels.",
                 style=Type.CAPTION,
                 tone="muted",
                 lines=2,
             ),
-            switch(
-                inner.bottom_part(64),
-                "settings.touch_sounds",
-                "Touch sounds",
-                Icon.VOLUME,
-                VOICE.TOUCH_SOUNDS,
-                signals,
-            ),
+            switch(sounds, "settings.touch_sounds", "Touch sounds", Icon.VOLUME, VOICE.TOUCH_SOUNDS, signals),
         ),
     )
 
 
 def _units(rect: Rect, state: State) -> Widget:
     signals = state.signals
-    inner = rect.inset(28, 24)
+    head, _, units, _, fitted = column(rect.inset(*PADDING), 40, 20, 318, REST, 72)
     groups: tuple[tuple[str, str, Signal[str], tuple[tuple[str, str, str], ...]], ...] = (
         (
             "distance",
@@ -118,9 +108,8 @@ def _units(rect: Rect, state: State) -> Widget:
             (("bar", "bar", "BAR"), ("kpa", "kPa", "KPA"), ("psi", "psi", "PSI")),
         ),
     )
-    lines = Rect(inner.x, inner.y + 60, inner.width, 3 * 106).rows(3, 10)
-    children: list[Widget] = [title(inner.top(40), Icon.UNITS, "Units")]
-    for line, (key, name, signal, options) in zip(lines, groups, strict=True):
+    children: list[Widget] = [title(head, Icon.UNITS, "Units")]
+    for line, (key, name, signal, options) in zip(units.rows(3, 10), groups, strict=True):
         now = signals[signal]
         children += [
             heading(line.top(28), name),
@@ -132,7 +121,7 @@ def _units(rect: Rect, state: State) -> Widget:
         ]
     gps = "Not fitted" if state.outside is None or state.outside.gps is None else "Fitted"
     camera = "Fitted" if state.sign_camera else "Not fitted"
-    facts = Rect(inner.x, inner.bottom - 72, inner.width, 72).rows(2, 4)
+    facts = fitted.rows(2, 4)
     children += fact(facts[0], "settings.sign_camera", "Sign camera", camera)
     children += fact(facts[1], "settings.positioning", "Satellite positioning", gps)
     return Card(rect=rect, children=tuple(children))
@@ -145,7 +134,8 @@ def sound(state: State) -> tuple[Widget, ...]:
     """Volumes and the equaliser."""
     signals = state.signals
     left, right = PAGE.columns(2, GAP)
-    levels, tones = left.inset(28, 24), right.inset(28, 24)
+    volume, _, levels, _, mute = column(left.inset(*PADDING), 40, 20, 288, REST, 64)
+    equaliser, _, tones, _, neutral = column(right.inset(*PADDING), 40, 12, 376, REST, 56)
     volumes = (
         ("sound.media", "Media", Icon.MEDIA, MEDIA.VOLUME),
         ("sound.guidance", "Guidance", Icon.VOICE, VOICE.GUIDANCE_VOLUME),
@@ -165,20 +155,18 @@ def sound(state: State) -> tuple[Widget, ...]:
         Card(
             rect=left,
             children=(
-                title(levels.top(40), Icon.VOLUME, "Volume"),
+                title(volume, Icon.VOLUME, "Volume"),
                 *(
                     slider(line, key, name, icon, signal, signals)
-                    for line, (key, name, icon, signal) in zip(
-                        Rect(levels.x, levels.y + 60, levels.width, 288).rows(3, 12), volumes, strict=True
-                    )
+                    for line, (key, name, icon, signal) in zip(levels.rows(3, 12), volumes, strict=True)
                 ),
-                switch(levels.bottom_part(64), "sound.mute", "Mute media", Icon.MUTE, MEDIA.MUTED, signals),
+                switch(mute, "sound.mute", "Mute media", Icon.MUTE, MEDIA.MUTED, signals),
             ),
         ),
         Card(
             rect=right,
             children=(
-                title(tones.top(40), Icon.EQUALIZER, "Equaliser"),
+                title(equaliser, Icon.EQUALIZER, "Equaliser"),
                 *(
                     slider(
                         line,
@@ -189,12 +177,10 @@ def sound(state: State) -> tuple[Widget, ...]:
                         signals,
                         f"{signals[signal]:+.0f} {unit}".strip() if signals[signal] else "0",
                     )
-                    for line, (key, name, signal, unit) in zip(
-                        Rect(tones.x, tones.y + 52, tones.width, 376).rows(5, 6), bands, strict=True
-                    )
+                    for line, (key, name, signal, unit) in zip(tones.rows(5, 6), bands, strict=True)
                 ),
                 Button(
-                    rect=tones.bottom_part(56),
+                    rect=neutral,
                     key="sound.flat",
                     text="Flat",
                     icon=Icon.EQUALIZER,
@@ -213,7 +199,10 @@ def connections(state: State) -> tuple[Widget, ...]:
     """Networks and phones. They are paired while parked."""
     signals = state.signals
     left, right = PAGE.columns(2, GAP)
-    links, phones = left.inset(28, 24), right.inset(28, 24)
+    head, _, links, _, networks = column(left.inset(*PADDING), 40, 16, 192, 20, 228)
+    bluetooth, _, power, _, name, _, devices, _, about = column(
+        right.inset(*PADDING), 40, 16, 60, 16, 28, 8, 188, REST, 64
+    )
     locked = state.locked(Restriction.NO_SETUP)
     desk = state.desk
     wifi_off = "" if signals[LINK.WIFI] else "Wi-Fi is off"
@@ -223,11 +212,11 @@ def connections(state: State) -> tuple[Widget, ...]:
         Card(
             rect=left,
             children=(
-                title(links.top(40), Icon.WIFI, "Networks"),
+                title(head, Icon.WIFI, "Networks"),
                 *(
                     switch(line, key, name, icon, signal, signals)
                     for line, (key, name, icon, signal) in zip(
-                        Rect(links.x, links.y + 56, links.width, 192).rows(3, 8),
+                        links.rows(3, 8),
                         (
                             ("link.mobile", "Mobile data", Icon.MOBILE, LINK.MOBILE_DATA),
                             ("link.wifi", "Wi-Fi", Icon.WIFI, LINK.WIFI),
@@ -249,25 +238,16 @@ def connections(state: State) -> tuple[Widget, ...]:
                         locked=locked,
                         on_tap=Put("desk", replace(desk, network=name), f"{name} is connected"),
                     )
-                    for at, (line, name) in enumerate(
-                        zip(Rect(links.x, links.y + 268, links.width, 228).rows(4, 6), NETWORKS, strict=True)
-                    )
+                    for at, (line, name) in enumerate(zip(networks.rows(4, 6), NETWORKS, strict=True))
                 ),
             ),
         ),
         Card(
             rect=right,
             children=(
-                title(phones.top(40), Icon.BLUETOOTH, "Bluetooth"),
-                switch(
-                    Rect(phones.x, phones.y + 56, phones.width, 60),
-                    "link.bluetooth",
-                    "Bluetooth",
-                    Icon.BLUETOOTH,
-                    LINK.BLUETOOTH,
-                    signals,
-                ),
-                heading(Rect(phones.x, phones.y + 132, phones.width, 28), "Devices"),
+                title(bluetooth, Icon.BLUETOOTH, "Bluetooth"),
+                switch(power, "link.bluetooth", "Bluetooth", Icon.BLUETOOTH, LINK.BLUETOOTH, signals),
+                heading(name, "Devices"),
                 *(
                     Row(
                         rect=line,
@@ -281,12 +261,10 @@ def connections(state: State) -> tuple[Widget, ...]:
                         locked=locked,
                         on_tap=Put("desk", replace(desk, device=name), f"{name} is paired"),
                     )
-                    for at, (line, name) in enumerate(
-                        zip(Rect(phones.x, phones.y + 168, phones.width, 188).rows(3, 8), DEVICES, strict=True)
-                    )
+                    for at, (line, name) in enumerate(zip(devices.rows(3, 8), DEVICES, strict=True))
                 ),
                 Label(
-                    rect=phones.bottom_part(64),
+                    rect=about,
                     key="link.about",
                     text="Connect to networks and pair phones while parked.",
                     style=Type.CAPTION,
@@ -305,17 +283,20 @@ def language(state: State) -> tuple[Widget, ...]:
     """The language, and the format of times."""
     signals = state.signals
     left, right = PAGE.columns(2, GAP)
-    words, clock = left.inset(28, 24), right.inset(28, 24)
+    head, _, words = column(left.inset(*PADDING), 40, 20, 272)
+    when, _, name, _, forms, _, facts, _, about = column(
+        right.inset(*PADDING), 40, 16, 28, 8, 68, 20, 132, REST, 64
+    )
     now, form = signals[HMI.LANGUAGE], signals[HMI.TIME_FORMAT]
     date = "Not known yet" if state.outside is None else f"{state.outside.local_time:%Y-%m-%d}"
     zone = "Not known yet" if state.outside is None else f"UTC{state.outside.local_time:%z}"
-    lines = Rect(clock.x, clock.y + 180, clock.width, 132).rows(3, 8)
+    lines = facts.rows(3, 8)
     return _page(
         state,
         Card(
             rect=left,
             children=(
-                title(words.top(40), Icon.LANGUAGE, "Language"),
+                title(head, Icon.LANGUAGE, "Language"),
                 *(
                     Row(
                         rect=line,
@@ -325,19 +306,17 @@ def language(state: State) -> tuple[Widget, ...]:
                         selected=code == now,
                         on_tap=Set(HMI.LANGUAGE, code),
                     )
-                    for line, (code, name) in zip(
-                        Rect(words.x, words.y + 60, words.width, 272).rows(4, 8), LANGUAGES.items(), strict=True
-                    )
+                    for line, (code, name) in zip(words.rows(4, 8), LANGUAGES.items(), strict=True)
                 ),
             ),
         ),
         Card(
             rect=right,
             children=(
-                title(clock.top(40), Icon.CLOCK, "Date and time"),
-                heading(Rect(clock.x, clock.y + 56, clock.width, 28), "Time of day"),
+                title(when, Icon.CLOCK, "Date and time"),
+                heading(name, "Time of day"),
                 choices(
-                    Rect(clock.x, clock.y + 92, clock.width, 68),
+                    forms,
                     "language.time",
                     [
                         ("24", "24 hours", None, form == "HR_24", Set(HMI.TIME_FORMAT, "HR_24")),
@@ -348,7 +327,7 @@ def language(state: State) -> tuple[Widget, ...]:
                 *fact(lines[1], "language.date", "Date", date),
                 *fact(lines[2], "language.zone", "Time zone", zone),
                 Label(
-                    rect=clock.bottom_part(64),
+                    rect=about,
                     key="language.about",
                     text="Clock and time zone are set by satellite.",
                     style=Type.CAPTION,
@@ -366,7 +345,7 @@ def language(state: State) -> tuple[Widget, ...]:
 def privacy(state: State) -> tuple[Widget, ...]:
     """Data sharing and the microphone."""
     signals = state.signals
-    inner = PAGE.inset(28, 24)
+    head, _, body = column(PAGE.inset(*PADDING), 40, 24, 330)
     options = (
         (
             "privacy.position",
@@ -390,33 +369,28 @@ def privacy(state: State) -> tuple[Widget, ...]:
             "The microphone listens for spoken requests.",
         ),
     )
-    children: list[Widget] = [title(inner.top(40), Icon.PRIVACY, "Privacy")]
-    lines = Rect(inner.x, inner.y + 64, inner.width, 330).rows(3, 12)
-    for line, (key, name, icon, signal, about) in zip(lines, options, strict=True):
+    children: list[Widget] = [title(head, Icon.PRIVACY, "Privacy")]
+    for line, (key, name, icon, signal, about) in zip(body.rows(3, 12), options, strict=True):
+        share, _, words = column(line, 64, 2, 32)
         children += [
-            switch(line.top(64), key, name, icon, signal, signals),
-            Label(
-                rect=Rect(line.x + 16, line.y + 66, line.width - 32, 32),
-                text=about,
-                style=Type.CAPTION,
-                tone="muted",
-            ),
+            switch(share, key, name, icon, signal, signals),
+            Label(rect=words.inset(16, 0), text=about, style=Type.CAPTION, tone="muted"),
         ]
     return _page(state, Card(rect=PAGE, children=tuple(children)))
 
 
 def profiles(state: State) -> tuple[Widget, ...]:
     """Driver profiles with seat, mirrors, temperature and brightness. They change only while parked."""
-    inner = PAGE.inset(28, 24)
+    head, _, body, _, about = column(PAGE.inset(*PADDING), 40, 24, 252, 20, 64)
     desk = state.desk
     locked = state.locked(Restriction.NO_SETUP)
-    lines = Rect(inner.x, inner.y + 64, inner.width, 252).rows(len(desk.profiles), 12)
+    lines = body.rows(len(desk.profiles), 12)
     return _page(
         state,
         Card(
             rect=PAGE,
             children=(
-                title(inner.top(40), Icon.PROFILE, "Profiles"),
+                title(head, Icon.PROFILE, "Profiles"),
                 *(
                     Row(
                         rect=line,
@@ -432,7 +406,7 @@ def profiles(state: State) -> tuple[Widget, ...]:
                     for at, (line, profile) in enumerate(zip(lines, desk.profiles, strict=True))
                 ),
                 Label(
-                    rect=Rect(inner.x, inner.y + 336, inner.width, 64),
+                    rect=about,
                     key="profile.about",
                     text="A profile sets its own seat, mirrors, temperature and brightness.",
                     style=Type.CAPTION,

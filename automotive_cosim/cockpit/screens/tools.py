@@ -7,6 +7,7 @@ from dataclasses import replace
 from automotive_cosim.cockpit.desk import FILM_S, MANUAL, ZONES
 from automotive_cosim.cockpit.errands import odometer, price
 from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.layout import REST, column, row
 from automotive_cosim.cockpit.messages import Message, Pay, Pick, Put, Record, ResetTrip, Show
 from automotive_cosim.cockpit.places import PlaceKind
 from automotive_cosim.cockpit.restrictions import Restriction
@@ -42,26 +43,28 @@ def charging(state: State) -> tuple[Widget, ...]:
     """The battery, its charge limit and schedule, and stations nearby."""
     signals = state.signals
     left, right = CONTENT.columns(2, GAP)
-    inner = left.inset(28, 20)
+    head, _, upper, _, bar, _, limit, _, flap, _, ready, _, time = column(
+        left.inset(28, 20), 40, 8, 44, 8, 12, 14, 84, 16, 60, 12, 60, 16, 72
+    )
+    charge, _, reach = row(upper, 150, 10, REST)
     level, cable = signals[ENERGY.LEVEL], "cable in" if signals[ENERGY.CABLE] else "no cable"
     stations = nearest(state, state.atlas.of(PlaceKind.CHARGING))
     desk = state.desk
     timer = desk.charge_by
-    upper = Rect(inner.x, inner.y + 48, inner.width, 44)
     return (
         Card(
             rect=left,
             children=(
-                title(inner.top(40), Icon.CHARGING, "Charging"),
+                title(head, Icon.CHARGING, "Charging"),
                 Label(
-                    rect=upper.left(150),
+                    rect=charge,
                     key="charging.level",
                     text=f"{level:.0f} %",
                     description="Battery",
                     style=Type.HEADLINE,
                 ),
                 Label(
-                    rect=upper.right_part(inner.width - 160),
+                    rect=reach,
                     key="charging.range",
                     text=f"{distance(signals, signals[ENERGY.RANGE])}, {cable}",
                     description="Range and cable",
@@ -70,12 +73,12 @@ def charging(state: State) -> tuple[Widget, ...]:
                     align="right",
                 ),
                 Bar(
-                    rect=Rect(inner.x, inner.y + 100, inner.width, 12),
+                    rect=bar,
                     share=round(level / 100, 2),
                     tone="good" if level > 15 else "warning",
                 ),
                 slider(
-                    Rect(inner.x, inner.y + 126, inner.width, 84),
+                    limit,
                     "charging.limit",
                     "Charge to",
                     Icon.BATTERY,
@@ -83,7 +86,7 @@ def charging(state: State) -> tuple[Widget, ...]:
                     signals,
                 ),
                 switch(
-                    Rect(inner.x, inner.y + 226, inner.width, 60),
+                    flap,
                     "charging.flap",
                     "Charging flap open",
                     Icon.FLAP,
@@ -92,7 +95,7 @@ def charging(state: State) -> tuple[Widget, ...]:
                     state.vehicle.held(ENERGY.CHARGE_FLAP),
                 ),
                 Tile(
-                    rect=Rect(inner.x, inner.y + 298, inner.width, 60),
+                    rect=ready,
                     key="charging.schedule",
                     text="Ready at a set time",
                     icon=Icon.CLOCK,
@@ -104,7 +107,7 @@ def charging(state: State) -> tuple[Widget, ...]:
                     ),
                 ),
                 *time_setter(
-                    Rect(inner.x, inner.y + 374, inner.width, 72),
+                    time,
                     "charging.schedule",
                     timer,
                     lambda moved: Put("desk", replace(desk, charge_by=moved), f"The time is {moved.shown}"),
@@ -129,18 +132,20 @@ def charging(state: State) -> tuple[Widget, ...]:
 
 def parking(state: State) -> tuple[Widget, ...]:
     """Pays for a parking space."""
-    left, right = CONTENT.left(700), CONTENT.right_part(CONTENT.width - 700 - GAP)
-    inner = left.inset(28, 20)
+    left, _, right = row(CONTENT, 700, GAP, REST)
+    head, _, zone_name, _, zones, _, stay_name, _, stays, _, total, _, pay = column(
+        left.inset(28, 20), 40, 24, 28, 8, 72, 24, 28, 8, 72, 24, 56, REST, 88
+    )
     desk = state.desk
     tickets = tuple(reversed(desk.tickets))
     return (
         Card(
             rect=left,
             children=(
-                title(inner.top(40), Icon.TICKET, "Pay for parking"),
-                heading(Rect(inner.x, inner.y + 64, inner.width, 28), "Zone"),
+                title(head, Icon.TICKET, "Pay for parking"),
+                heading(zone_name, "Zone"),
                 choices(
-                    Rect(inner.x, inner.y + 100, inner.width, 72),
+                    zones,
                     "parking.zone",
                     [
                         (
@@ -153,9 +158,9 @@ def parking(state: State) -> tuple[Widget, ...]:
                         for zone in ZONES
                     ],
                 ),
-                heading(Rect(inner.x, inner.y + 196, inner.width, 28), "How long"),
+                heading(stay_name, "How long"),
                 choices(
-                    Rect(inner.x, inner.y + 232, inner.width, 72),
+                    stays,
                     "parking.time",
                     [
                         (
@@ -169,13 +174,13 @@ def parking(state: State) -> tuple[Widget, ...]:
                     ],
                 ),
                 Label(
-                    rect=Rect(inner.x, inner.y + 328, inner.width, 56),
+                    rect=total,
                     key="parking.price",
                     text=f"Price {price(desk.zone, desk.minutes):.2f}",
                     style=Type.HEADLINE,
                 ),
                 Button(
-                    rect=inner.bottom_part(88),
+                    rect=pay,
                     key="parking.pay",
                     text="Pay now",
                     icon=Icon.TICKET,
@@ -260,8 +265,9 @@ def manual(state: State) -> tuple[Widget, ...]:
     ]
     chosen = int(state.picked["manual"])
     name, icon, text = MANUAL[chosen]
-    left, right = CONTENT.left(420), CONTENT.right_part(CONTENT.width - 420 - GAP)
-    inner = right.inset(32, 28)
+    left, _, right = row(CONTENT, 420, GAP, REST)
+    head, _, words, _, film = column(right.inset(32, 28), 72, 20, 160, REST, 208)
+    picture, _, topic = row(head, 72, 24, REST)
     first: Message | None = Show("manual", str(found[0][0])) if found else None
     return (
         search(left.top(60), "manual.search", "Search the manual", "Search the manual", state, first),
@@ -286,21 +292,21 @@ def manual(state: State) -> tuple[Widget, ...]:
         Card(
             rect=right,
             children=(
-                Glyph(rect=Rect(inner.x, inner.y, 72, 72), icon=icon, size=64, tone="accent"),
+                Glyph(rect=picture, icon=icon, size=64, tone="accent"),
                 Label(
-                    rect=Rect(inner.x + 96, inner.y, inner.width - 96, 72),
+                    rect=topic,
                     key="manual.title",
                     text=name,
                     style=Type.HEADLINE,
                 ),
                 Label(
-                    rect=Rect(inner.x, inner.y + 92, inner.width, 160),
+                    rect=words,
                     key="manual.text",
                     text=text,
                     style=Type.BODY,
                     lines=5,
                 ),
-                *_film(inner.bottom_part(208), chosen, icon, state),
+                *_film(film, chosen, icon, state),
             ),
         ),
     )
@@ -309,7 +315,7 @@ def manual(state: State) -> tuple[Widget, ...]:
 def memo(state: State) -> tuple[Widget, ...]:
     """Records spoken notes."""
     left, right = CONTENT.columns(2, GAP)
-    inner = left.inset(28, 20)
+    head, _, picture, _, time, _, record = column(left.inset(28, 20), 40, 50, 128, 22, 52, REST, 88)
     desk = state.desk
     since = desk.recording_since_s
     memos = desk.memos
@@ -329,15 +335,15 @@ def memo(state: State) -> tuple[Widget, ...]:
         Card(
             rect=left,
             children=(
-                title(inner.top(40), Icon.MEMO, "Memo"),
+                title(head, Icon.MEMO, "Memo"),
                 Glyph(
-                    rect=Rect(inner.x, inner.y + 90, inner.width, 128),
+                    rect=picture,
                     icon=Icon.MICROPHONE,
                     size=112,
                     tone="warning" if since is not None else "muted",
                 ),
                 Label(
-                    rect=Rect(inner.x, inner.y + 240, inner.width, 52),
+                    rect=time,
                     key="memo.time",
                     text=minutes(state.time_s - since) if since is not None else "Ready",
                     description="Recording" if since is not None else "Memo",
@@ -345,7 +351,7 @@ def memo(state: State) -> tuple[Widget, ...]:
                     align="centre",
                 ),
                 Button(
-                    rect=inner.bottom_part(88),
+                    rect=record,
                     key="memo.record",
                     text="Record" if since is None else "Stop",
                     icon=Icon.RECORD if since is None else Icon.STOP,
@@ -366,7 +372,8 @@ def memo(state: State) -> tuple[Widget, ...]:
 def trip(state: State) -> tuple[Widget, ...]:
     """Distance, time and consumption since the last reset."""
     signals = state.signals
-    inner = CONTENT.inset(32, 24)
+    head, _, body, _, acts = column(CONTENT.inset(32, 24), 40, 20, 312, REST, 72)
+    reset, _, other = row(acts, 320, REST, 320)
     metres, seconds, level = odometer(state)
     from_m, from_s, from_level = state.desk.trip_from
     driven_m, took_s, used_pct = max(0.0, metres - from_m), seconds - from_s, max(0.0, from_level - level)
@@ -382,33 +389,26 @@ def trip(state: State) -> tuple[Widget, ...]:
         ("trip.consumption", "Consumption", f"{per_100:.1f} kWh/100 {unit}", Icon.CHARGING),
         ("trip.range", "Range", distance(signals, signals[ENERGY.RANGE]), Icon.GOAL),
     )
-    cells = [
-        cell for line in Rect(inner.x, inner.y + 60, inner.width, 312).rows(2, 16) for cell in line.columns(3, 16)
-    ]
-    children: list[Widget] = [title(inner.top(40), Icon.TRIP, "Trip computer")]
+    cells = [cell for line in body.rows(2, 16) for cell in line.columns(3, 16)]
+    children: list[Widget] = [title(head, Icon.TRIP, "Trip computer")]
     for cell, (key, name, value, icon) in zip(cells, tiles, strict=True):
-        box = cell.inset(20, 16)
+        upper, _, lower = column(cell.inset(20, 16), 32, REST, 56)
+        picture, _, words = row(upper, 32, 12, REST)
         children.append(
             Card(
                 rect=cell,
                 look="raised",
                 children=(
-                    Glyph(rect=Rect(box.x, box.y, 32, 32), icon=icon, size=28, tone="accent"),
-                    Label(
-                        rect=Rect(box.x + 44, box.y, box.width - 44, 32), text=name, style=Type.LABEL, tone="muted"
-                    ),
-                    Label(rect=box.bottom_part(56), key=key, text=value, description=name, style=Type.HEADLINE),
+                    Glyph(rect=picture, icon=icon, size=28, tone="accent"),
+                    Label(rect=words, text=name, style=Type.LABEL, tone="muted"),
+                    Label(rect=lower, key=key, text=value, description=name, style=Type.HEADLINE),
                 ),
             )
         )
+    children.append(Button(rect=reset, key="trip.reset", text="Reset", icon=Icon.TRIP, on_tap=ResetTrip()))
     children.append(
         Button(
-            rect=inner.bottom_part(72).left(320), key="trip.reset", text="Reset", icon=Icon.TRIP, on_tap=ResetTrip()
-        )
-    )
-    children.append(
-        Button(
-            rect=inner.bottom_part(72).right_part(320),
+            rect=other,
             key="trip.other",
             text="Trip B",
             icon=Icon.TRIP,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from automotive_cosim.cockpit.errands import odometer
-from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.layout import REST, column
 from automotive_cosim.cockpit.messages import Back, ResetTrip
 from automotive_cosim.cockpit.screens.media import minutes
 from automotive_cosim.cockpit.screens.parts import CONTENT, distance, fact, title
@@ -15,20 +15,19 @@ from automotive_cosim.cockpit.widgets import Button, Card, Widget
 
 def trip_b(state: State) -> tuple[Widget, ...]:
     """Distance, time and energy of trip B; the mean is left to the reader."""
-    inner = CONTENT.inset(32, 24)
+    head, _, body, _, buttons = column(CONTENT.inset(32, 24), 40, 20, 3 * 64, REST, 72)
     driven_m, took_s, used_kwh = state.desk.trip_b.at(odometer(state), BATTERY_KWH)
     facts = (
         ("trip_b.distance", "Distance", distance(state.signals, driven_m)),
         ("trip_b.time", "Driving time", minutes(took_s)),
         ("trip_b.energy", "Energy", f"{used_kwh:.1f} kWh"),
     )
-    lines = Rect(inner.x, inner.y + 60, 640, 3 * 64).rows(3, 8)
-    buttons = inner.bottom_part(72)
+    lines = body.left(640).rows(3, 8)
     return (
         Card(
             rect=CONTENT,
             children=(
-                title(inner.top(40), Icon.TRIP, "Trip B"),
+                title(head, Icon.TRIP, "Trip B"),
                 *(
                     widget
                     for rect, (key, name, value) in zip(lines, facts, strict=True)

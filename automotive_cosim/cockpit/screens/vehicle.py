@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.layout import REST, column, row
 from automotive_cosim.cockpit.messages import Set, Show, Wash
 from automotive_cosim.cockpit.screens.parts import (
     CONTENT,
@@ -33,9 +34,8 @@ WIPING = {
 def vehicle(state: State) -> tuple[Widget, ...]:
     """Lamps and wipers."""
     signals = state.signals
-    right = right_side()
-    lights = Rect(right.x, right.y + 64 + GAP, right.width, 272)
-    inner = lights.inset(20, 16)
+    _, lights, _, wipers = column(right_side(), 64 + GAP, 272, GAP, REST)
+    head, _, turned, _, lit = column(lights.inset(20, 16), 28, 8, 72, REST, 116)
     switches = (
         ("off", "Off", Icon.LIGHTS_OFF, "OFF"),
         ("position", "Position", Icon.POSITION, "POSITION"),
@@ -55,9 +55,9 @@ def vehicle(state: State) -> tuple[Widget, ...]:
         Card(
             rect=lights,
             children=(
-                heading(inner.top(28), "Lights"),
+                heading(head, "Lights"),
                 choices(
-                    Rect(inner.x, inner.y + 36, inner.width, 72),
+                    turned,
                     "lights.switch",
                     [
                         (key, text, icon, now == value, Set(LIGHTS.SWITCH, value))
@@ -66,22 +66,19 @@ def vehicle(state: State) -> tuple[Widget, ...]:
                 ),
                 *(
                     switch(cell, f"lights.{key}", name, icon, signal, signals)
-                    for cell, (key, name, icon, signal) in zip(
-                        inner.bottom_part(116).columns(4, 12), lamps, strict=True
-                    )
+                    for cell, (key, name, icon, signal) in zip(lit.columns(4, 12), lamps, strict=True)
                 ),
             ),
         ),
-        _wipers(Rect(right.x, lights.bottom + GAP, right.width, right.bottom - lights.bottom - GAP), state),
+        _wipers(wipers, state),
     )
 
 
 def assistance(state: State) -> tuple[Widget, ...]:
     """Driver assistance, cruise control and limiter."""
     signals = state.signals
-    right = right_side()
-    helpers = Rect(right.x, right.y + 64 + GAP, right.width, 236)
-    inner = helpers.inset(20, 14)
+    _, helpers, _, keeping = column(right_side(), 64 + GAP, 236, GAP, REST)
+    head, _, switches = column(helpers.inset(20, 14), 28, 4, REST)
     known = (
         ("collision_warning", "Collision warning", Icon.COLLISION, ADAS.FORWARD_COLLISION_WARNING),
         ("emergency_braking", "Emergency braking", Icon.BRAKE, ADAS.EMERGENCY_BRAKING),
@@ -93,27 +90,27 @@ def assistance(state: State) -> tuple[Widget, ...]:
         ("parking_sensors", "Parking sensors", Icon.PARKING, ADAS.PARKING_SENSORS),
         ("driver_monitoring", "Attention", Icon.EYE, ADAS.DRIVER_MONITORING),
     )
-    cells = [cell for line in inner.below(32).rows(3, 8) for cell in line.columns(3, 10)]
+    cells = [cell for line in switches.rows(3, 8) for cell in line.columns(3, 10)]
     return (
         car_card(state),
         tabs(state),
         Card(
             rect=helpers,
             children=(
-                heading(inner.top(28), "Assistance"),
+                heading(head, "Assistance"),
                 *(
                     switch(cell, f"adas.{key}", name, icon, signal, signals)
                     for cell, (key, name, icon, signal) in zip(cells, known, strict=True)
                 ),
             ),
         ),
-        _keeping(Rect(right.x, helpers.bottom + GAP, right.width, right.bottom - helpers.bottom - GAP), state),
+        _keeping(keeping, state),
     )
 
 
 def right_side() -> Rect:
     """The controls next to the car."""
-    return CONTENT.right_part(CONTENT.width - CAR_WIDTH - GAP)
+    return row(CONTENT, CAR_WIDTH, GAP, REST)[-1]
 
 
 def tabs(state: State) -> Widget:
@@ -177,22 +174,23 @@ def _wipers(rect: Rect, state: State) -> Widget:
     inner = rect.inset(20, 14)
     front, rear = state.signals[BODY.FRONT_WIPER], state.signals[BODY.REAR_WIPER]
     upper, lower = inner.rows(2, 12)
-    wash = lower.right_part(150)
+    front_name, _, front_modes = row(upper, 128, 8, REST)
+    rear_name, _, rear_modes, _, wash = row(lower, 128, 8, REST, 12, 150)
     return Card(
         rect=rect,
         children=(
-            Label(rect=upper.left(128), text="Front wiper", style=Type.LABEL, tone="muted"),
+            Label(rect=front_name, text="Front wiper", style=Type.LABEL, tone="muted"),
             choices(
-                upper.right_part(upper.width - 136),
+                front_modes,
                 "wiper.front",
                 [
                     (key, text, None, front == mode, Set(BODY.FRONT_WIPER, mode))
                     for mode, (key, text) in WIPING.items()
                 ],
             ),
-            Label(rect=lower.left(128), text="Rear wiper", style=Type.LABEL, tone="muted"),
+            Label(rect=rear_name, text="Rear wiper", style=Type.LABEL, tone="muted"),
             choices(
-                Rect(lower.x + 136, lower.y, lower.width - 136 - 162, lower.height),
+                rear_modes,
                 "wiper.rear",
                 [
                     (key, text, None, rear == mode, Set(BODY.REAR_WIPER, mode))
@@ -215,9 +213,10 @@ def _wipers(rect: Rect, state: State) -> Widget:
 def _keeping(rect: Rect, state: State) -> Widget:
     """Cruise control on the left, the limiter on the right; only one of them is active."""
     signals = state.signals
-    inner = rect.inset(20, 12)
-    left, right = inner.columns(2, 24)
-    adaptive, gap = Rect(left.x, left.y + 130, left.width, 56).columns(2, 10)
+    left, right = rect.inset(20, 12).columns(2, 24)
+    _, following = column(left, 130, 56)
+    _, available = column(right, 130, 56)
+    adaptive, gap = following.columns(2, 10)
     off = "" if signals[ADAS.CRUISE_ENABLED] else "Cruise control is disabled"
     return Card(
         rect=rect,
@@ -246,7 +245,7 @@ def _keeping(rect: Rect, state: State) -> Widget:
                 right, "adas.limiter", "Limiter", Icon.SLOWER, ADAS.LIMITER_ACTIVE, ADAS.LIMITER_SPEED, state, ""
             ),
             switch(
-                Rect(right.x, right.y + 130, right.width, 56),
+                available,
                 "adas.cruise_enabled",
                 "Cruise control available",
                 Icon.CRUISE,
@@ -269,10 +268,11 @@ def _holder(
 ) -> tuple[Widget, ...]:
     signals = state.signals
     on = signals[active]
+    tile, _, steps = column(rect, 54, 8, 60)
     shown = f"{speed(signals, signals[target])} {speed_unit(signals)}"
     return (
         Tile(
-            rect=rect.top(54),
+            rect=tile,
             key=key,
             text=name,
             icon=icon,
@@ -280,7 +280,5 @@ def _holder(
             on_tap=Set(active, not on),
             disabled=disabled,
         ),
-        *stepper(
-            Rect(rect.x, rect.y + 62, rect.width, 60), f"{key}_speed", f"{name}, set speed", target, signals, shown
-        ),
+        *stepper(steps, f"{key}_speed", f"{name}, set speed", target, signals, shown),
     )

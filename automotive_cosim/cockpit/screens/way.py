@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.layout import REST, column, row
 from automotive_cosim.cockpit.messages import Back, Guide, Pick, Put, Set, Show, Take
 from automotive_cosim.cockpit.navigation import AVOIDABLE
 from automotive_cosim.cockpit.places import SORTS, Destination, PlaceKind
@@ -52,11 +53,11 @@ def along(state: State, places: Sequence[Destination]) -> tuple[Destination, ...
 
 
 def _head(state: State, text: str, icon: Icon, key: str) -> tuple[Widget, ...]:
-    bar = PANEL.top(56)
+    back, _, picture, _, words = row(PANEL.top(56), 56, 16, 32, 8, REST)
     return (
-        Button(rect=bar.left(56), key=f"{key}.back", description="Back", icon=Icon.BACK, on_tap=Back()),
-        Glyph(rect=Rect(bar.x + 72, bar.y + 12, 32, 32), icon=icon, size=28, tone="accent"),
-        Label(rect=Rect(bar.x + 112, bar.y, bar.width - 112, 56), key=f"{key}.title", text=text, style=Type.TITLE),
+        Button(rect=back, key=f"{key}.back", description="Back", icon=Icon.BACK, on_tap=Back()),
+        Glyph(rect=picture.middle(32, 32), icon=icon, size=28, tone="accent"),
+        Label(rect=words, key=f"{key}.title", text=text, style=Type.TITLE),
     )
 
 
@@ -98,7 +99,7 @@ def place(state: State) -> tuple[Widget, ...]:
     """One destination, before departure."""
     name = state.picked.get("place") or next(iter(state.navigation.favourites), "")
     known = state.atlas.find(name)
-    card = Rect(PANEL.x, PANEL.y + 72, PANEL.width, 200)
+    _, card, _, buttons = column(PANEL, 72, 200, GAP, REST)
     inner = card.inset(20, 16)
     facts = (
         (known.street if known else "Street in this area", "place.street", Type.STRONG, "text"),
@@ -112,7 +113,7 @@ def place(state: State) -> tuple[Widget, ...]:
     return (
         *_head(state, name, known.icon if known else Icon.ROUTE, "place"),
         Card(rect=card, children=lines),
-        *_place_buttons(PANEL.below(72 + 200 + GAP), name, known, state),
+        *_place_buttons(buttons, name, known, state),
         sight(state),
     )
 
@@ -121,7 +122,7 @@ def _place_buttons(rect: Rect, name: str, known: Destination | None, state: Stat
     navigation = state.navigation
     saved = name in navigation.favourites
     goal = navigation.destination
-    cells = tuple(Rect(rect.x, rect.y + at * 64, rect.width, 56) for at in range(4))
+    cells = column(rect, 56, 8, 56, 8, 56, 8, 56)[::2]
     there = "You are already on the way there" if goal == name else ""
     extra: tuple[Widget, ...] = ()
     if known is not None and known.kind is PlaceKind.PARKING and "parking" in state.desk.installed:
@@ -167,9 +168,7 @@ def route(state: State) -> tuple[Widget, ...]:
     """The route ahead: its turns, alternatives, and what to avoid."""
     shown = state.picked["route"]
     goal = state.navigation.destination or "Route"
-    summary = Rect(PANEL.x, PANEL.y + 64, PANEL.width, 72)
-    tabs = Rect(PANEL.x, PANEL.y + 148, PANEL.width, 56)
-    body = PANEL.below(216)
+    _, summary, _, tabs, _, body = column(PANEL, 64, 72, 12, 56, 12, REST)
     pages = {"turns": _turn_list, "ways": _ways, "options": _options}
     return (
         *_head(state, goal, Icon.TURNS, "route"),
@@ -261,12 +260,12 @@ def _more(eta_s: float, now_s: float) -> str:
 
 def _options(rect: Rect, state: State) -> tuple[Widget, ...]:
     navigation = state.navigation
-    tiles = Rect(rect.x, rect.y + 32, rect.width, 2 * 60 + 8)
+    avoid, _, tiles, _, spoken, _, voices, _, stop = column(rect, 28, 4, 128, 8, 28, 4, 56, 12, 56)
     cells = [cell for line in tiles.rows(2, 8) for cell in line.columns(2, 8)]
     guidance = state.signals[VOICE.GUIDANCE]
     onward = navigation.onward
     return (
-        heading(rect.top(28), "Avoid"),
+        heading(avoid, "Avoid"),
         *(
             Tile(
                 rect=cell,
@@ -282,9 +281,9 @@ def _options(rect: Rect, state: State) -> tuple[Widget, ...]:
             )
             for cell, (name, (text, icon)) in zip(cells, AVOIDABLE.items(), strict=True)
         ),
-        heading(Rect(rect.x, tiles.bottom + 8, rect.width, 28), "Spoken guidance"),
+        heading(spoken, "Spoken guidance"),
         choices(
-            Rect(rect.x, tiles.bottom + 40, rect.width, 56),
+            voices,
             "route.voice",
             [
                 (key, text, None, guidance == value, Set(VOICE.GUIDANCE, value))
@@ -296,7 +295,7 @@ def _options(rect: Rect, state: State) -> tuple[Widget, ...]:
             ],
         ),
         Button(
-            rect=Rect(rect.x, tiles.bottom + 108, rect.width, 56),
+            rect=stop,
             key="route.onward",
             text=f"Skip the stop: {onward}" if onward else "Remove the stop",
             icon=Icon.GOAL,
