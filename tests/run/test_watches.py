@@ -5,6 +5,7 @@ from contextlib import closing
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from typer.testing import CliRunner
@@ -144,7 +145,12 @@ def test_a_replay_gives_the_same_trace_and_says_what_differs(folder: Path, tmp_p
 
 
 @pytest.mark.slow
-def test_a_drive_by_the_models_clock_is_repeated_exactly(sumo: None, tmp_path: Path) -> None:
+def test_a_drive_by_the_models_clock_is_repeated_exactly(sumo: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    family = FAMILIES["grid_june"]
+    shorter = replace(family.draw(1), duration_s=110.0)
+    drawn = SimpleNamespace(id=family.id, scenario=family.scenario, season=family.season, draw=lambda seed: shorter)
+    monkeypatch.setattr("automotive_cosim.run.watch.family_named", lambda name: drawn)
+
     class Slow(RulePerfect):
         """Takes another time for each answer, as a model does."""
 
