@@ -27,7 +27,7 @@ HELP = f"""\
   NUMBER          tap that element           open APP        {", ".join(APPS)}
   NUMBER TEXT     type into it               up, down        scroll
   home, back      go there                   wait [SECONDS]  let time pass
-  alert KIND      warn the driver, e.g. speed ask QUESTION    ask the driver, who takes time to answer
+  alert KIND      warn the driver            ask QUESTION    ask the driver, who takes time to answer
   done            it is done                 no [REASON]     nothing has to be done: {", ".join(Reason)}
   cannot [REASON] it must not or cannot be   {{...}}           any action as JSON
 """

@@ -14,7 +14,7 @@ from typing import Any
 
 from automotive_cosim.cockpit.aboard import company
 from automotive_cosim.cockpit.arrivals import Arrival
-from automotive_cosim.cockpit.signals import LIGHTS
+from automotive_cosim.cockpit.signals import LIGHTS, Signal
 from automotive_cosim.contracts import GoalStatus, Reason
 from automotive_cosim.tasking.checks import AllOf, AskedFirst, Check, NotAsked, NothingDone
 from automotive_cosim.tasking.dialogue import Topic
@@ -29,6 +29,7 @@ WHEN_WRITTEN = Trigger(Driving(), for_s=3.0, within_s=90.0, after_s=12.0)
 """Late enough for messages to have come in (``wrote``)."""
 PARKED_WHEN_WRITTEN = Trigger(Parked(), for_s=3.0, within_s=40.0, after_s=12.0)
 PARIS = Start("paris_centre", "centre")
+AT_THE_KERB = Start("paris_centre", "centre", parked=True)
 COMFORT = Deadline(30.0, "a wish for comfort: the driver would reach for the knob within half a minute")
 ERRAND = Deadline(60.0, "an errand on the screen: a passenger would have it done within a minute")
 TALK = Deadline(60.0, "an errand: a passenger would have asked, or looked, and done it within a minute")
@@ -202,6 +203,8 @@ def unclear(
     difference: str,
     parameters: Mapping[str, Choices],
     trigger: Trigger = WHEN_WRITTEN,
+    deadline: Deadline = TALK,
+    scenarios: tuple[str, ...] = (),
     dimension: Dimension = Dimension.EXPLICIT_CONTROL,
     tags: frozenset[str] = frozenset(),
 ) -> Task:
@@ -224,6 +227,8 @@ def unclear(
         difference: what the second half changes, as in ``Task.difference``.
         parameters: what is drawn, among it what is meant.
         trigger: what hands over.
+        deadline: by when, and why.
+        scenarios: where else it can run.
         dimension: explicit, or implicit if the words do not say what to do.
         tags: what else is true of it.
     """
@@ -232,7 +237,7 @@ def unclear(
         trigger,
         AllOf((AskedFirst(topic), goal)),
         (Consult(question), *moves),
-        TALK,
+        deadline,
         Basis.WISH,
         may_write=LOOKS,
         topics=(topic,),
@@ -248,7 +253,22 @@ def unclear(
         difference,
         parameters,
         tags | {"asking"},
+        scenarios,
     )
+
+
+FRIENDS = ("Aylin", "Chloe", "Ingrid", "Yasmin")
+"""Women who may have written; nobody in the phone book has one of these names."""
+ELSEWHERE = ("london",)
+"""Another scenario for wishes that have nothing else to draw."""
+
+
+def only(signals: Mapping[str, Signal[Any]], on: Any, off: Any, which: str = "which") -> dict[str, Any]:
+    """Settings in which one of several signals is on: the one whose name the parameter ``which`` has."""
+    return {
+        signal.path: param(which, {name: on if name == own else off for name in signals})
+        for own, signal in signals.items()
+    }
 
 
 def wrote(start: Start, *messages: tuple[str, str]) -> Start:

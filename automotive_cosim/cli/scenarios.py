@@ -1,4 +1,4 @@
-"""``automotive-cosim scenarios``: lists, checks, draws and imports scenarios."""
+"""``automotive-cosim scenarios``: lists, checks, draws, imports and calibrates scenarios."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ import typer
 
 from automotive_cosim import scenarios
 from automotive_cosim.cli.batches import tell_notes
+from automotive_cosim.cli.calibrate import calibrate_scenario
 from automotive_cosim.cli.options import AsJson, number, print_json, whole_number
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.errors import UserError
@@ -22,11 +23,11 @@ if TYPE_CHECKING:
 
     from automotive_cosim.contracts import Json, Tell
     from automotive_cosim.osm import ImportReport
-    from automotive_cosim.osm.day import Day
     from automotive_cosim.scenarios import Scenario
     from automotive_cosim.scenery.check import ScenarioProof
 
-app = typer.Typer(help="List, check, draw and import scenarios.", no_args_is_help=True)
+app = typer.Typer(help="List, check, draw, import and calibrate scenarios.", no_args_is_help=True)
+app.command("calibrate")(calibrate_scenario)
 
 
 @app.command("list")
@@ -242,74 +243,6 @@ def import_scenario(
     _print_report(report, folder, time.monotonic() - started_s)
 
 
-@app.command("day")
-def scale_to_a_day(
-    folder: Annotated[Path, typer.Argument(help="Folder made by `scenarios import`.")],
-    counts: Annotated[
-        Path,
-        typer.Option(
-            help="Hourly counts: a CSV of Open Data Paris (medians over Mondays to Fridays, by local hour), or"
-            " hour,vehicles_per_hour[,occupancy]."
-        ),
-    ],
-    edge: Annotated[
-        str, typer.Option(metavar="ID", help="The counted road: an edge, or the number of its OpenStreetMap way.")
-    ],
-    arc: Annotated[
-        str, typer.Option(metavar="ID", help="Which detector, in a file of several.", show_default="the only one")
-    ] = "",
-    out: Annotated[Path | None, typer.Option(help="Folder to create.", show_default="FOLDER_day")] = None,
-    at: Annotated[
-        int, typer.Option(parser=whole_number(1, 23), metavar="HOUR", help="Local hour at which the ego departs.")
-    ] = 8,
-    background: Annotated[
-        float | None,
-        typer.Option(
-            parser=number(0, 10),
-            metavar="X",
-            help="Traffic that passes elsewhere in the busiest hour, as a share of the import's.",
-            show_default="the rest beside the counted traffic",
-        ),
-    ] = None,
-    days: Annotated[
-        int, typer.Option(parser=whole_number(1, 50), metavar="N", help="Maximum number of days to simulate.")
-    ] = 4,
-    minutes: Annotated[
-        float,
-        typer.Option(
-            parser=number(5, 60),
-            metavar="M",
-            help="Minutes of each hour to simulate: fewer are faster and noisier.",
-        ),
-    ] = 60.0,
-    seed: Annotated[int, typer.Option(parser=whole_number(0, 2**31 - 2), metavar="N", help="Seed of the day.")] = 0,
-    force: Annotated[bool, typer.Option("--force", help="Replace the scenario in --out.")] = False,
-) -> None:
-    """Scale an imported scenario's traffic over a day to the counts of one road.
-
-    This is not a calibration: it matches one road, and the flows on all others stay random. Days are simulated
-    until every hour is near its count; each takes ten to fifteen minutes of one core for a city district.
-    """
-    from automotive_cosim.osm.day import DayOptions, make_day
-    from automotive_cosim.report.day import require_plots, write_day
-
-    require_plots()
-    target = out or folder.with_name(f"{folder.resolve().name}_day")
-    options = DayOptions(
-        edge=edge,
-        arc=arc,
-        at_hour=at,
-        background=background,
-        days=days,
-        minutes=minutes,
-        seed=seed,
-        replace=force,
-    )
-    with _progress() as tell:
-        day = make_day(folder, counts, target, options, tell)
-    _print_day(day, target, write_day(target))
-
-
 @app.command("equilibrate")
 def equilibrate_scenario(
     folder: Annotated[Path, typer.Argument(help="Folder of a scenario.", show_default=False)],
@@ -391,41 +324,6 @@ def download_map(
     if found.note:
         typer.echo(found.note)
     typer.echo(f"turn it into a scenario: automotive-cosim scenarios import {out}")
-
-
-def _print_day(day: Day, folder: Path, page: Path) -> None:
-    from rich.table import Table
-
-    from automotive_cosim.cli.console import Console
-    from automotive_cosim.osm.day import NO_CALIBRATION
-    from automotive_cosim.report.day import findings
-
-    table = Table(
-        "hour",
-        "counted",
-        "simulated",
-        "GEH",
-        "occupancy",
-        "simulated",
-        box=None,
-        header_style="bold",
-        pad_edge=False,
-    )
-    for column in table.columns:
-        column.justify = "right"
-    for each in day.hours:
-        counted = "" if each.counted_occupancy is None else f"{each.counted_occupancy:.1%}"
-        table.add_row(
-            str(each.hour),
-            f"{each.counted_per_h:.0f}",
-            f"{each.simulated_per_h:.0f}",
-            f"{each.geh:.1f}",
-            counted,
-            f"{each.simulated_occupancy:.1%}",
-        )
-    Console().print(table)
-    for line in (*findings(day), NO_CALIBRATION, f"scenario: {folder}", f"page: {page}"):
-        typer.echo(line)
 
 
 SAY_EVERY_S = 10.0

@@ -107,6 +107,13 @@ def reroute(
             show_default="none",
         ),
     ] = None,
+    close: Annotated[
+        str,
+        typer.Option(
+            help="Also close a road at the first decision of each drive: an edge, or `ahead` for one on the route.",
+            show_default="none",
+        ),
+    ] = "",
     emissions: Annotated[
         bool, typer.Option("--emissions", help="Measure what every vehicle emits and consumes, by emission class.")
     ] = False,
@@ -125,6 +132,10 @@ def reroute(
         typer.Option(help="Share of the vehicles there at a decision that must arrive before its futures end."),
     ] = 0.95,
     scale: Annotated[float | None, typer.Option(help="Factor on the demand.", show_default="scenario's")] = None,
+    warm_up: Annotated[
+        float | None,
+        typer.Option(help="Seconds of traffic before the first departure.", show_default="scenario's"),
+    ] = None,
     step: Annotated[float, typer.Option(help="SUMO's step length in seconds.")] = 1.0,
     equilibrium_gap: Annotated[
         float | None,
@@ -189,10 +200,12 @@ def reroute(
         every_s=every,
         arrived=arrived,
         whole_drives=whole_drives,
+        close=close,
         redraw=redraw,
         emissions=emissions,
         ego_class=ego_class,
         scale=scale,
+        warm_up_s=warm_up,
         step_s=step,
         equilibrium_gap=equilibrium_gap,
         half_width_s=until,
@@ -241,13 +254,20 @@ def suite(
         int, typer.Option(help="Maximum number of decisions per drive.", metavar="N", parser=whole_number(1, 50))
     ] = 2,
     replicates: Annotated[str, typer.Option(help="How often each future is driven, or auto.")] = "2",
+    warm_ups: Annotated[
+        str | None,
+        typer.Option(
+            help="Seconds of traffic before the first departure; each is a study of its own.",
+            show_default="scenario's",
+        ),
+    ] = None,
     workers: Workers = None,
     out: Annotated[Path, typer.Option(help="Folder for all studies; existing ones are resumed.")] = Path(
         "runs/suite"
     ),
     as_json: AsJson = False,
 ) -> None:
-    """Run the same study on several networks and put them into one table.
+    """Run the same study on several networks, or after several warm-ups, and put them into one table.
 
     Rerun the command to resume a stopped suite.
     """
@@ -266,8 +286,9 @@ def suite(
         "replicates": _replicates(replicates),
     }
     plans = [
-        StudyPlan(name, least_delay_s=delay, per_drive=per_drive, **values)
+        StudyPlan(name, least_delay_s=delay, per_drive=per_drive, warm_up_s=warm_up_s, **values)
         for name in words("scenarios", scenarios)
+        for warm_up_s in (_numbers("warm-ups", warm_ups) if warm_ups is not None else (None,))
     ]
     for plan in plans:
         plan.check()

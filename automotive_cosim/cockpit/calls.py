@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from automotive_cosim.cockpit.arrivals import RINGS_S, Arrival
 from automotive_cosim.cockpit.people import OnCall, PastCall, Received, Ringing
+from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.signals import CALL, LINK
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon
@@ -80,7 +81,8 @@ def read(state: State, who: str) -> Feedback:
     state.phone = state.phone.opened(who)
     tell(state)
     words = " ".join(thread.lines) if thread else ""
-    return Feedback(FeedbackCode.OK, f"{who} wrote: {words}")
+    aloud = state.locked(Restriction.NO_TEXT_MESSAGE)
+    return Feedback(FeedbackCode.READ_OUT if aloud else FeedbackCode.OK, f"{who} wrote: {words}")
 
 
 def receive(state: State) -> None:

@@ -92,6 +92,8 @@ class FeedbackCode(StrEnum):
     REFUSED = "refused"
     """The car or the driver could not do it; the text says why."""
     MALFORMED = "malformed"
+    READ_OUT = "read_out"
+    """Done, and everybody in the car hears the text."""
 
 
 @dataclass(frozen=True, slots=True)

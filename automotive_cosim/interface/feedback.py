@@ -5,8 +5,8 @@
 | ``quiet`` | the control and whether it took: "Front defroster: done" |
 | ``verbose`` | what became of the car: "IsFrontDefrosterActive is on" |
 
-Both say alike why something could not be done, and what a query found. With the picture alone, a control without
-letters on it is not named.
+Both say alike why something could not be done, what a query found, and what the car reads out. With the picture
+alone, a control without letters on it is not named.
 """
 
 from __future__ import annotations

@@ -15,12 +15,6 @@
     report      the figures
     importer    all of it in order, atomically
 
-An imported scenario -> one with a day of traffic:
-
-    counts      the hourly counts of one road
-    fit         trips, simulated until the road matches its counts
-    day         the folder and its figures, atomically
-
 The network's edges keep the OSM tags that geo and tasks use as parameters. An edge without a ``maxspeed`` parameter
 has a limit that was assumed, not posted.
 """

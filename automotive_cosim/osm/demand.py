@@ -49,8 +49,6 @@ class Journey:
     depart_s: float
     way: tuple[Edge, ...]
     """The fastest route on empty roads."""
-    via: str = ""
-    """An edge that it passes however it reroutes."""
 
     @property
     def length_m(self) -> float:
@@ -100,7 +98,7 @@ def write(journeys: Sequence[Journey], target: Path) -> None:
     """Writes the traffic as SUMO trips (gzip); SUMO routes each by the travel times when it departs."""
     rows = (
         f'    <trip id="{number}" type="car" depart="{journey.depart_s:.2f}" departLane="best" departSpeed="max"'
-        f" {_ends(journey.way[0], journey.way[-1])}{_via(journey)}/>"
+        f" {_ends(journey.way[0], journey.way[-1])}/>"
         for number, journey in enumerate(journeys)
     )
     text = "\n".join(("<routes>", f"    {CAR}", *rows, "</routes>", ""))
@@ -109,10 +107,6 @@ def write(journeys: Sequence[Journey], target: Path) -> None:
 
 def _ends(start: Edge, goal: Edge) -> str:
     return f"from={quoteattr(start.edge_id)} to={quoteattr(goal.edge_id)}"
-
-
-def _via(journey: Journey) -> str:
-    return f" via={quoteattr(journey.via)}" if journey.via else ""
 
 
 def _pairs(built: Built, count: int, rng: np.random.Generator) -> npt.NDArray[np.int64]:

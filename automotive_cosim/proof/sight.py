@@ -105,6 +105,8 @@ _ELEMENTS: Mapping[str, frozenset[Facet]] = {
         "status.gps": {Facet.LINK},
         "status.outside_temperature": {Facet.WEATHER},
         "status.low_beam": {Facet.LIGHT, Facet.ROAD, Facet.SETTINGS},
+        "status.front_fog": {Facet.SETTINGS},
+        "status.rear_fog": {Facet.SETTINGS},
         "status.": {Facet.CAR},
         "home.outside": {Facet.WEATHER, Facet.ROAD, Facet.LIGHT},
         "home.cabin_note": {Facet.CABIN, Facet.WEATHER, Facet.LIGHT, Facet.ABOARD, Facet.SETTINGS, Facet.GEAR},

@@ -80,6 +80,7 @@ def failure_class(row: EpisodeRow, lines: Sequence[Json]) -> FailureClass:
     seen = _Episode(row.parts, [line for line in lines if "step" in line], half)
     rules = (
         (FailureClass.SAFETY, _is_safety(seen, task, half, others)),
+        (FailureClass.INTENT, bool(half.topics) and seen.has_asked is not bool(half.needed_topics)),
         (FailureClass.VEHICLE_STATE, _is_vehicle_state(seen, task, half, others)),
         (FailureClass.GROUNDING, seen.is_missing or seen.is_beside),
         (FailureClass.NAVIGATION, not seen.worked and not seen.has_seen_target and seen.has_moved),
@@ -143,6 +144,7 @@ class _Episode:
             AlertKind(action["kind"]) for action in actions if action["action_type"] == ActionType.SHOW_ALERT
         )
         ways = {ActionType.OPEN_APP, ActionType.SCROLL, ActionType.NAVIGATE_BACK, ActionType.NAVIGATE_HOME}
+        self.has_asked = ActionType.ASK_DRIVER in kinds
         self.has_moved = bool(ways.intersection(kinds)) or any(touch.is_way for touch in self.touches)
 
     @property
@@ -153,7 +155,7 @@ class _Episode:
     @property
     def worked(self) -> frozenset[str]:
         """Controls that were operated."""
-        done = (touch for touch in self.touches if touch.code is FeedbackCode.OK)
+        done = (touch for touch in self.touches if touch.code in (FeedbackCode.OK, FeedbackCode.READ_OUT))
         return frozenset(touch.name for touch in done if touch.name in self._targets or not touch.is_way)
 
     @property

@@ -89,7 +89,7 @@ class Film(Watcher):
         self._after.clear()
         step = shot.step
         title = f"{step.number}  {action_in_words(step.action, shot.seen)}"
-        words = shot.thought or step.feedback.text
+        words = " ".join(f"“{text}”" for text in step.said) or shot.thought or step.feedback.text
         self._steps.append(_frame(step.moment.time_s, shot.screenshot, title, words, STEP_MS))
 
     def finished(self, result: EpisodeResult) -> None:

@@ -8,20 +8,17 @@ zero. Every trip departs when it entered the network in the first step.
 
 from __future__ import annotations
 
-import json
-import re
-import shutil
 import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from automotive_cosim.errors import ScenarioError, UserError
-from automotive_cosim.formats import files
+from automotive_cosim.contracts import Json
+from automotive_cosim.errors import ScenarioError
 from automotive_cosim.scenarios import Scenario, load
+from automotive_cosim.scenery import variant
 from automotive_cosim.scenery.gap import NOTICED_S, Driven, DrivenTrip, Gap, drive, vehicle_types
 from automotive_cosim.traffic.options import Configuration, Setup, read_configuration, run_options
 
@@ -30,11 +27,6 @@ RECORD = "equilibrium.json"
 
 PATIENCE = 5
 """Steps without a smaller gap after which it ends."""
-
-NOT_TAKEN = re.compile(rb"<(stop|person|personFlow|container|containerFlow|ride|walk)[\s/>]")
-"""Elements of a demand that this cannot take over."""
-
-DEMAND = re.compile(rb"<(vehicle|trip|flow|person|personFlow|container|containerFlow)[\s/>]")
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,15 +70,21 @@ def equilibrate(
         ScenarioError: it is no scenario, or SUMO refuses it.
         SetupError: eclipse-sumo is not installed.
     """
-    if target.exists() and any(target.iterdir()) and not (force and (target / RECORD).is_file()):
-        raise UserError(f"{target} exists; give --out another folder, or --force to replace an equilibrium's")
+    variant.check_target(target, RECORD, force=force)
     scenario = load(folder)
     configuration = read_configuration(scenario.config)
-    _check(configuration)
+    variant.check_demand(configuration)
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-equilibrium-") as scratch:
-        types = vehicle_types(run_options(configuration, Setup(scenario, options.seed), Path(scratch)))
+        given = run_options(configuration, Setup(scenario, options.seed), Path(scratch))
+        types = vehicle_types(given, ["route-files"])  # those of additional files stay where they are
         steps, best = _search(configuration, scenario, types, options, tell, Path(scratch))
-    _write(folder, target, scenario, configuration, _demand(best, types), steps, options)
+    kept = min(steps, key=lambda step: step.gap.relative)
+    record: Json = {
+        "options": asdict(options),
+        "kept": kept.number,
+        "steps": [asdict(step) | {"relative_gap": step.gap.relative} for step in steps],
+    }
+    variant.write_variant(target, scenario, configuration, (ROUTES, _demand(best, types)), (RECORD, record))
     return steps
 
 
@@ -100,10 +98,7 @@ def _search(
 ) -> tuple[tuple[AssignmentStep, ...], tuple[DrivenTrip, ...]]:
     """All steps, and the trips of the best one."""
     rng = np.random.default_rng(options.seed)
-    given = replace(
-        scenario.sumo, scale=1.0, background_rerouting=0.0, random_traffic_per_km_h=0.0, redraws_trips=False
-    )
-    fixed = replace(scenario, sumo=given)
+    fixed = variant.with_fixed_routes(scenario)
     last_s = configuration.begin_s + scenario.sumo.warm_up_s + options.observe_s
     driven = drive(configuration, scenario, options.observe_s, options.seed)
     trips = tuple(trip for trip in driven.trips if trip.departed_s < last_s)
@@ -143,76 +138,6 @@ def _changes(driven: Driven, share: float, rng: np.random.Generator) -> Mapping[
 
 def _demand(trips: tuple[DrivenTrip, ...], types: str) -> str:
     """The trips as SUMO's demand, in the order of their departures."""
-    lines = (
-        f"    <vehicle id={quoteattr(trip.id)} type={quoteattr(trip.type_id)} "
-        f'depart="{trip.departed_s:.2f}" departLane="best" departSpeed="max">'
-        f"<route edges={quoteattr(' '.join(trip.edges))}/></vehicle>\n"
-        for trip in trips
+    return variant.demand(
+        types, (variant.vehicle(trip.id, trip.type_id, trip.departed_s, trip.edges) for trip in trips)
     )
-    return f"<routes>\n    {types}\n{''.join(lines)}</routes>\n"
-
-
-def _check(configuration: Configuration) -> None:
-    """Refuses demand that would be lost."""
-    for option, pattern in (("route-files", NOT_TAKEN), ("additional-files", DEMAND)):
-        for path in filter(None, configuration.options.get(option, "").split(",")):
-            with files.opened(Path(path)) as file:
-                found = pattern.search(file.read())
-            if found:
-                raise UserError(
-                    f"{path} has <{found[1].decode()}>: only vehicles in route files can change routes; remove it"
-                )
-
-
-def _write(
-    folder: Path,
-    target: Path,
-    scenario: Scenario,
-    configuration: Configuration,
-    demand: str,
-    steps: tuple[AssignmentStep, ...],
-    options: Options,
-) -> None:
-    """Copies the scenario with its new demand; the copy appears whole."""
-    draft = target.with_name(f".{target.name}.part")
-    shutil.rmtree(draft, ignore_errors=True)
-    shutil.copytree(folder, draft)
-    (draft / ROUTES).write_text(demand, encoding="utf-8")
-    relative = scenario.config.name
-    kept = {name: value for name, value in configuration.options.items() if name != "route-files"}
-    kept = {name: _local(value, scenario.config.parent) for name, value in kept.items()} | {"route-files": ROUTES}
-    lines = "".join(f"    <{name} value={quoteattr(value)}/>\n" for name, value in kept.items())
-    (draft / relative).write_text(f"<configuration>\n{lines}</configuration>\n", encoding="utf-8")
-    toml = draft / "scenario.toml"
-    toml.write_text(_settings(toml.read_text(encoding="utf-8")), encoding="utf-8")
-    best = min(steps, key=lambda step: step.gap.relative)
-    record = {
-        "options": asdict(options),
-        "kept": best.number,
-        "steps": [asdict(step) | {"relative_gap": step.gap.relative} for step in steps],
-    }
-    (draft / RECORD).write_text(json.dumps(record, indent=1), encoding="utf-8")
-    shutil.rmtree(target, ignore_errors=True)
-    draft.replace(target)
-
-
-def _local(value: str, folder: Path) -> str:
-    """File names of a configuration relative to its folder again."""
-    parts = value.split(",")
-    return ",".join(
-        str(Path(part).relative_to(folder.absolute())) if Path(part).is_relative_to(folder.absolute()) else part
-        for part in parts
-    )
-
-
-def _settings(text: str) -> str:
-    """The scenario's settings for a demand that is complete and keeps its routes."""
-    for name, value in (
-        ("background_rerouting", "0.0"),
-        ("scale", "1.0"),
-        ("random_traffic_per_km_h", "0.0"),
-        ("redraws_trips", "false"),
-    ):
-        text = re.sub(rf"(?m)^{name}\s*=.*$", "", text)
-        text = re.sub(r"(?m)^\[sumo\]\s*$", f"[sumo]\n{name} = {value}", text, count=1)
-    return re.sub(r"\n{3,}", "\n\n", text)

@@ -179,7 +179,7 @@ def drive(configuration: Configuration, scenario: Scenario, observe_s: float, se
         times = EdgeTimes(free_s, trips)
         counted = [trip for trip in trips if first_s <= trip.departed_s < last_s]
         arrived = [trip for trip in counted if trip.has_arrived and len(trip.edges) > 1]
-        found = _best(arrived, times, configuration.net, vehicle_types(options), scratch)
+        found = quickest(arrived, times, configuration.net, vehicle_types(options), scratch)
     own_s: dict[str, float] = {}
     best_s: dict[str, float] = {}
     for trip in arrived:
@@ -198,10 +198,10 @@ def drive(configuration: Configuration, scenario: Scenario, observe_s: float, se
     return Driven(trips, gap, excess_s, found)
 
 
-def vehicle_types(options: Mapping[str, str]) -> str:
-    """All vehicle types of the demand, as SUMO's XML."""
+def vehicle_types(options: Mapping[str, str], inputs: Sequence[str] = ("route-files", "additional-files")) -> str:
+    """All vehicle types of some inputs, as SUMO's XML."""
     found = []
-    for name in ("route-files", "additional-files"):
+    for name in inputs:
         for path in filter(None, options.get(name, "").split(",")):
             with files.opened(Path(path)) as file:
                 found += [ET.tostring(each, "unicode") for each in ET.parse(file).getroot().iter("vType")]
@@ -241,17 +241,36 @@ def _run(configuration: Configuration, options: Mapping[str, str], end_s: float,
     return teleports
 
 
-def _best(
-    trips: Sequence[DrivenTrip], times: EdgeTimes, net: Path, types: str, scratch: Path
+def quickest(
+    trips: Sequence[DrivenTrip],
+    times: EdgeTimes,
+    net: Path,
+    types: str,
+    scratch: Path,
+    via: Mapping[str, str] | None = None,
 ) -> dict[str, tuple[str, ...]]:
-    """The quickest route of each trip by the times of the edges."""
+    """The quickest route of each trip, by its id, by the times of the edges.
+
+    Args:
+        trips: only departures, types, first and last edges are read.
+        times: times of the edges.
+        net: the network's file.
+        types: the vehicle types, as SUMO's XML.
+        scratch: a folder for intermediate files.
+        via: an edge that the route of a trip must use, by the trip's id.
+
+    Raises:
+        ScenarioError: duarouter refuses the network or the types.
+    """
     if not trips:
         return {}
+    via = via or {}
     wanted, weights, answer = (scratch / name for name in ("trips.xml", "weights.xml", "best.xml"))
     times.write(weights)
     lines = (
         f'<trip id={quoteattr(trip.id)} type={quoteattr(trip.type_id)} depart="{trip.departed_s:.2f}" '
-        f"from={quoteattr(trip.edges[0])} to={quoteattr(trip.edges[-1])}/>\n"
+        f"from={quoteattr(trip.edges[0])} to={quoteattr(trip.edges[-1])}"
+        f"{f' via={quoteattr(via[trip.id])}' if trip.id in via else ''}/>\n"
         for trip in trips
     )
     wanted.write_text(f"<routes>{types}\n{''.join(lines)}</routes>", encoding="utf-8")

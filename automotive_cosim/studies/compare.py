@@ -10,7 +10,7 @@ from automotive_cosim.studies.rows import FleetClass, OthersTotals, Totals
 from automotive_cosim.traffic.accounts import Settled
 from automotive_cosim.traffic.sumo import EGO
 
-CONSUMED = ("co2_g", "nox_g", "fuel_g", "energy_wh")
+CONSUMED = ("co2_g", "nox_g", "fuel_g", "energy_wh", "noise_s")
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +84,7 @@ def fleet(stay: Future, other: Future, group: Sequence[str]) -> tuple[FleetClass
         if vehicle in before and vehicle in after:
             one, two = before[vehicle], after[vehicle]
             name = f"ego: {one.emission_class}" if vehicle == EGO else one.emission_class
-            sums = saved.setdefault(name, [0.0] * 5)
+            sums = saved.setdefault(name, [0.0] * (1 + len(CONSUMED)))
             savings = (getattr(one, each) - getattr(two, each) for each in CONSUMED)
             for number, value in enumerate((1.0, *savings)):
                 sums[number] += value

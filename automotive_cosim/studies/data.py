@@ -34,6 +34,8 @@ from automotive_cosim.studies.rows import (
 )
 
 TYPES = {bool: "boolean", int: "integer", float: "number", str: "string"}
+DTYPES = {"integer": "Int64", "number": "Float64", "boolean": "boolean", "string": "string"}
+"""What pandas calls the types of columns that may have empty cells."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -228,7 +230,11 @@ def _write_parquet(path: Path, rows: Sequence[object]) -> Path:
     import pandas as pd
 
     draft = path.with_name(f".{path.name}.part")
-    pd.DataFrame([columns(row) for row in rows]).convert_dtypes().to_parquet(draft, index=False)
+    made = [columns(row) for row in rows]
+    # The types of the rows, not those that these values would fit in: files of several studies then go together.
+    dtypes = {name: DTYPES.get(_type(row[name] for row in made), "object") for name in made[0]}
+    frame = pd.DataFrame({name: pd.Series([row[name] for row in made], dtype=dtypes[name]) for name in dtypes})
+    frame.to_parquet(draft, index=False)
     draft.replace(path)
     return path
 

@@ -20,8 +20,8 @@ from automotive_cosim.geo.forecast import drawn_weather
 from automotive_cosim.studies.compare import Future
 from automotive_cosim.studies.driver import decided
 from automotive_cosim.studies.looks import drive_on
-from automotive_cosim.studies.plan import DriveJob
-from automotive_cosim.studies.points import Diverted, Drawn, Point, compared, shows_signs
+from automotive_cosim.studies.plan import AHEAD, DriveJob
+from automotive_cosim.studies.points import Diverted, Drawn, Point, Shut, compared, shows_signs
 from automotive_cosim.studies.policies import PolicyRule, parse_policy
 from automotive_cosim.studies.rows import Decision, DriveRow, News
 from automotive_cosim.studies.whole import whole_drives
@@ -171,10 +171,12 @@ class _Drive:
             replicates = self._replicates(begun, group)
             offered = next((number for edges, number in numbers.items() if edges == _offered(news)), None)
             diverted: list[Diverted] = []
+            shut: list[Shut] = []
             if offered is not None and not self.points:
                 ways_apart = section(now.ahead.route_edges, _offered(news))
                 seeds = [0, *(each.seed for each in replicates[: plan.draws.start])]
                 diverted = self._diverted(begun[offered], ways_apart, seeds, group)
+                shut = self._shut(begun, offered, ways_apart[0], seeds, group)
             branches = [self._left(branch, group) for branch in begun]
         decision = Decision(
             at_s=now.time_s,
@@ -189,7 +191,7 @@ class _Drive:
             agents_rerouted=tuple(turned),
             planned_draws=1 + plan.draws.start,
         )
-        point = Point(decision, group, pulse, branches, replicates=replicates, together=diverted)
+        point = Point(decision, group, pulse, branches, replicates=replicates, together=diverted, shut=shut)
         if not self.points and self._has_placebo() and not replicates:
             point.placebo = self._renewed(traffic, self._seed(1), group)
         self.points.append(point)
@@ -229,6 +231,25 @@ class _Drive:
                     if draw:
                         copy.renew(self._simulation.fresh(), seed)
                     found.append(Diverted(share, draw, self._left(copy, group), took, could))
+        return found
+
+    def _shut(
+        self, begun: Sequence[RemoteTraffic], offered: int, own: Edges, seeds: Sequence[int], group: Sequence[str]
+    ) -> list[Shut]:
+        """The futures of the two ways with a road closed now, in the scored draws."""
+        edge = self.job.plan.close
+        if edge == AHEAD:  # in the middle of the part of its route that the other way does not have
+            edge = own[len(own) // 2] if len(own) > 2 else ""
+        found: list[Shut] = []
+        for draw, seed in enumerate(seeds if edge else ()):
+            futures = []
+            for traffic in (self.traffic, begun[offered]):
+                with closing(traffic.branch()) as copy:
+                    copy.shut(edge)
+                    if draw:
+                        copy.renew(self._simulation.fresh(), seed)
+                    futures.append(self._left(copy, group))
+            found.append(Shut(edge, draw, offered, *futures))
         return found
 
     def _renewed(self, traffic: RemoteTraffic, seed: int, group: Sequence[str]) -> Future:

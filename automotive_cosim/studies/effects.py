@@ -8,10 +8,11 @@ from statistics import fmean
 
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.report.tables import Table, TableRow
+from automotive_cosim.studies.compare import CONSUMED
 from automotive_cosim.studies.everyone import CLASSES_S, HORIZONS, NOTICED_S
 from automotive_cosim.studies.intervals import SeedMean, seed_mean
 from automotive_cosim.studies.results import Study
-from automotive_cosim.studies.rows import FleetClass, PolicyChoice, Spread, Together, WholeDrive
+from automotive_cosim.studies.rows import Closed, FleetClass, PolicyChoice, Spread, Together, WholeDrive
 from automotive_cosim.studies.tables import NONE, goes_by_news, groups, told, told_mean
 
 SpreadOf = tuple[PolicyChoice, Spread]
@@ -19,7 +20,8 @@ SpreadOf = tuple[PolicyChoice, Spread]
 
 def effects(study: Study) -> list[Table]:
     """All of these tables."""
-    return [whole(study), many(study), everyone(study), by_trip(study), horizons(study), fleet(study)]
+    made = (whole, many, closed, everyone, by_trip, horizons, fleet)
+    return [each(study) for each in made]
 
 
 def whole(study: Study) -> Table:
@@ -143,6 +145,51 @@ def many(study: Study) -> Table:
     return Table("many", "When many take the other way at once", columns, tuple(rows), note, heads=2)
 
 
+def closed(study: Study) -> Table:
+    """What it costs when a road is closed at the fork."""
+    columns = (
+        "Share rerouting",
+        "Decisions",
+        "Excluded",
+        "Ego loses, s",
+        "On the other way, s",
+        "Other way saves, open, s",
+        "Other way saves, closed, s",
+        "Others lose, s",
+        "Others later",
+    )
+    rows: list[TableRow] = []
+    for share in sorted({row.share for row in study.rows}):
+        points = [point for point in study.decisions if point.drive.share == share and point.decision.closed]
+        kept = [
+            (point.drive.seed, point.decision.closed)
+            for point in points
+            if not any(each.excluded for each in point.decision.closed)
+        ]
+        if points:
+            cells = [
+                told_mean(seed_mean((seed, fmean(map(of, draws))) for seed, draws in kept), "+.1f")
+                for of in _CLOSED
+            ]
+            rows.append((f"{share:.0%}", str(len(kept)), str(len(points) - len(kept)), *cells))
+    note = (
+        "At the first decision of each drive with another route, a road is closed in both futures (--close), and "
+        "each is compared with itself while the road is open. Who has that road on the route goes round it. "
+        "Others: if the ego keeps its route; later by 1 s or more."
+    )
+    return Table("closed", "When a road is closed at the fork", columns, tuple(rows), note)
+
+
+_CLOSED: tuple[Callable[[Closed], float], ...] = (
+    lambda each: each.stay_loss_s,
+    lambda each: each.other_loss_s,
+    lambda each: each.open_gain_s,
+    lambda each: each.gain_s,
+    lambda each: each.others_loss_s,
+    lambda each: each.others_later,
+)
+
+
 def everyone(study: Study) -> Table:
     """How gains and losses are spread over everyone."""
     rows: list[TableRow] = []
@@ -248,7 +295,7 @@ def fleet(study: Study) -> Table:
         for name, here in sorted(by_class.items()):
             cells = [
                 told_mean(seed_mean((seed, _mean_of(parts, what)) for seed, parts in here), form)
-                for what, form in (("co2_g", "+.0f"), ("nox_g", "+.2f"), ("fuel_g", "+.0f"), ("energy_wh", "+.1f"))
+                for what, form in zip(CONSUMED, ("+.0f", "+.2f", "+.0f", "+.1f", "+.0f"), strict=True)
             ]
             vehicles = fmean(part.count for _, parts in here for part in parts)
             rows.append((*heads, name, f"{vehicles:.0f}", *cells))
@@ -262,11 +309,13 @@ def fleet(study: Study) -> Table:
         "NOx saved, g",
         "Fuel saved, g",
         "Electricity saved, Wh",
+        "Noise saved, s",
     )
     note = (
         "Sums over the vehicles of the class that arrived in both futures, per decision in which the policy "
         "reroutes. Classes are those that the demand's vehicle types declare (emissionClass), else SUMO's own for "
-        "the kind of vehicle; --ego-class declares the ego's."
+        "the kind of vehicle; --ego-class declares the ego's. Noise is sound energy at the vehicles (Harmonoise), "
+        "as seconds of a car at 50 km/h, 65 dB(A)."
     )
     return Table("fleet", "Emissions and consumption of everyone", columns, tuple(rows), note, heads=4)
 

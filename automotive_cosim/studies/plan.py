@@ -14,10 +14,11 @@ from annotated_types import Ge, Le, MinLen
 
 from automotive_cosim.agents import make_agent
 from automotive_cosim.contracts import Json
-from automotive_cosim.errors import UserError
+from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.scenarios import Scenario, Trip
 from automotive_cosim.scenery import open_scenario
+from automotive_cosim.scenery.opening import network_of
 from automotive_cosim.studies.policies import AGENT, parse_policy
 from automotive_cosim.traffic.congestion import OLDEST_NEWS_S
 from automotive_cosim.traffic.profiles import profile
@@ -27,6 +28,9 @@ KIND = "reroute"
 
 EQUILIBRIUM_GAP = 0.01
 """Relative gap under which a dynamic user assignment counts as converged."""
+
+AHEAD = "ahead"
+"""Closes a road on the ego's route."""
 
 AUTO_DRAWS = range(4, 14)
 """With ``auto``, each future is driven at least and at most so often after the first."""
@@ -77,6 +81,8 @@ class StudyPlan:
     """SUMO's step length."""
     scale: Annotated[float, Ge(0.01), Le(100)] | None = None
     """Factor on the demand; None takes the scenario's."""
+    warm_up_s: Annotated[float, Ge(0), Le(86_400)] | None = None
+    """Traffic before the first departure; None takes the scenario's."""
     equilibrium_gap: float | None = None
     """Relative gap of the assignment (duaIterate) that produced the demand's routes; None without one."""
     half_width_s: Annotated[float, Ge(0.1), Le(3_600)] | None = None
@@ -85,6 +91,9 @@ class StudyPlan:
     """Whether every policy also drives from the departure to the destination."""
     together: tuple[Annotated[float, Ge(0), Le(1)], ...] = ()
     """Shares of the cars that could take the quickest other way, which take it with the ego."""
+    close: str = ""
+    """An edge that is closed at the first decision of a drive, whichever way the ego goes; ``ahead`` is one on its
+    route where the two ways differ. Empty closes none."""
     redraw: bool = False
     """Whether every seed is another day of the demand, see ``redraws_trips`` of a scenario."""
     emissions: bool = False
@@ -126,6 +135,10 @@ class StudyPlan:
         if self.ego_class and not re.fullmatch(r"[A-Za-z0-9_.]+(/[A-Za-z0-9_.]+)?", self.ego_class):
             raise UserError(f"--ego-class is {self.ego_class!r}; give an emission class of SUMO, as Energy/default")
         scenario = self.scene(0.0)
+        if self.close not in ("", AHEAD):
+            edges = network_of(scenario).edges
+            if self.close not in edges:
+                raise UnknownNameError("edge for cars", self.close, edges)
         for name in self.trips:
             scenario.trip(name)
 
@@ -139,7 +152,9 @@ class StudyPlan:
         sumo = replace(scenario.sumo, step_length_s=self.step_s, background_rerouting=share)
         sumo = replace(sumo, action_step_length_s=max(self.step_s, sumo.action_step_length_s))
         sumo = replace(sumo, redraws_trips=self.redraw or sumo.redraws_trips)
-        return replace(scenario, sumo=sumo if self.scale is None else replace(sumo, scale=self.scale))
+        sumo = replace(sumo, scale=sumo.scale if self.scale is None else self.scale)
+        sumo = replace(sumo, warm_up_s=sumo.warm_up_s if self.warm_up_s is None else self.warm_up_s)
+        return replace(scenario, sumo=sumo)
 
     @property
     def agents(self) -> tuple[str, ...]:
@@ -212,7 +227,7 @@ class DriveJob:
     @property
     def wall_s(self) -> float:
         """Limit of its wall time: agents may think for a while."""
-        parts = 1 + self.plan.whole_drives + len(self.plan.together)
+        parts = 1 + self.plan.whole_drives + len(self.plan.together) + 2 * bool(self.plan.close)
         return (7_200.0 if self.plan.agents else 1_800.0) * (1 + self.plan.draws.stop) * parts
 
     @property

@@ -8,9 +8,9 @@ from statistics import fmean, stdev
 
 from automotive_cosim.studies import compare
 from automotive_cosim.studies.compare import Future
-from automotive_cosim.studies.everyone import spread
+from automotive_cosim.studies.everyone import NOTICED_S, spread
 from automotive_cosim.studies.plan import AUTO_ERRORS
-from automotive_cosim.studies.rows import Branch, Decision, Replicate, Together
+from automotive_cosim.studies.rows import Branch, Closed, Decision, Replicate, Together
 from automotive_cosim.studies.together import together
 from automotive_cosim.studies.traffic import gridlock
 from automotive_cosim.traffic.accounts import Pulse
@@ -34,6 +34,19 @@ class Point:
     placebo: Future | None = None
     replicates: list[Drawn] = field(default_factory=list)
     together: list[Diverted] = field(default_factory=list)
+    shut: list[Shut] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class Shut:
+    """The futures of the two ways with a road closed."""
+
+    edge: str
+    draw: int
+    branch: int
+    """Number of the other way."""
+    stay: Future
+    other: Future
 
 
 @dataclass(slots=True)
@@ -95,6 +108,31 @@ def compared(point: Point, stay: Future, history: Sequence[Pulse]) -> Decision:
         ),
         traffic=point.pulse,
         together=tuple(_together(each, drawn[each.draw].stay, point, pulses) for each in point.together),
+        closed=tuple(_closed(each, drawn[each.draw], point, pulses) for each in point.shut),
+    )
+
+
+def _closed(shut: Shut, open_: Drawn, point: Point, pulses: Sequence[Pulse]) -> Closed:
+    """What a closure costs, unless one of its futures does not count; the decision itself does."""
+    other = open_.branches[shut.branch]
+    times_s = [future.totals().time_s for future in (open_.stay, other, shut.stay, shut.other)]
+    stay_s, other_s, stay_closed_s, other_closed_s = times_s
+    excluded, _ = exclusion([(open_.stay, shut.stay), (open_.stay, shut.other)], pulses)
+    until_s = min(open_.stay.settled.time_s, shut.stay.settled.time_s)
+    arrivals = [
+        [min(future.settled.arrivals_s.get(each, until_s), until_s) for future in (open_.stay, shut.stay)]
+        for each in point.group
+    ]
+    return Closed(
+        edge=shut.edge,
+        draw=shut.draw,
+        stay_loss_s=round(stay_closed_s - stay_s, 3),
+        other_loss_s=round(other_closed_s - other_s, 3),
+        gain_s=round(stay_closed_s - other_closed_s, 3),
+        open_gain_s=round(stay_s - other_s, 3),
+        others_loss_s=round(sum(after_s - before_s for before_s, after_s in arrivals), 3),
+        others_later=sum(after_s - before_s >= NOTICED_S for before_s, after_s in arrivals),
+        excluded=excluded,
     )
 
 

@@ -69,6 +69,8 @@ class FleetClass:
     nox_g: float
     fuel_g: float
     energy_wh: float
+    noise_s: float = 0.0
+    """Sound energy, as seconds of a car at 50 km/h (``traffic.accounts.LOUD_DB``)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -163,6 +165,28 @@ class Together:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Closed:
+    """The two ways with a road closed at the decision, compared with the same ways while it is open."""
+
+    edge: str
+    draw: int
+    stay_loss_s: float
+    """What the closure costs the ego that keeps its route, and goes round when it gets there."""
+    other_loss_s: float
+    """What it costs the ego that takes the other way."""
+    gain_s: float
+    """What the other way saves with the road closed."""
+    open_gain_s: float
+    """The same with it open."""
+    others_loss_s: float
+    """What it costs all others together, if the ego keeps its route."""
+    others_later: int
+    """Number of them that arrive later."""
+    excluded: str = ""
+    """Why it is excluded from the averages; empty if it counts."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class News:
     """What traffic news of one age says at a decision."""
 
@@ -220,6 +244,8 @@ class Decision:
     """The traffic as a whole at the decision."""
     together: tuple[Together, ...] = ()
     """Futures in which others take the quickest other way too, at the first decision of a drive."""
+    closed: tuple[Closed, ...] = ()
+    """Futures in which a road is closed, at the first decision of a drive."""
 
     @property
     def time_index(self) -> float:

@@ -26,7 +26,7 @@ def folder_name(number: int, scenario: str) -> str:
 
 
 def networks(studies: Sequence[Study]) -> Table:
-    """One row per network and share of rerouting cars, with the newest news of its plan."""
+    """One row per network, warm-up and share of rerouting cars, with the newest news of its plan."""
     rows: list[TableRow] = []
     for study in studies:
         edges = len(read_network(read_configuration(study.plan.opened.config).net).edges)
@@ -40,6 +40,7 @@ def networks(studies: Sequence[Study]) -> Table:
             rows.append(
                 (
                     study.plan.opened.name,
+                    f"{study.plan.scene(share).sumo.warm_up_s:g}",
                     f"{share:.0%}",
                     f"{edges:,}",
                     f"{fmean(running):.0f}" if running else NONE,
@@ -55,6 +56,7 @@ def networks(studies: Sequence[Study]) -> Table:
             )
     columns = (
         "Network",
+        "Warm-up, s",
         "Share rerouting",
         "Edges",
         "Vehicles at once",
@@ -72,7 +74,7 @@ def networks(studies: Sequence[Study]) -> Table:
         "seeds. Others save and later (share of the vehicles that arrive at least 1 s later): when the ego always "
         "reroutes. Seconds per decision: wall time of one worker."
     )
-    return Table("networks", "The same study on several networks", columns, tuple(rows), note, heads=2)
+    return Table("networks", "The same study on several networks", columns, tuple(rows), note, heads=3)
 
 
 def write_networks(table: Table, folder: Path) -> Path:

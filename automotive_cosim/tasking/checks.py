@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar
 
+from automotive_cosim.cockpit.desk import REMEMBERED
 from automotive_cosim.cockpit.signals import Signal
 from automotive_cosim.contracts import AlertKind, Reroute, RoadRequest
 from automotive_cosim.cosim.moment import Moment
@@ -224,6 +225,27 @@ class Counted(_OfData):
 
     def __str__(self) -> str:
         return f"{self.key} {self.by} higher"
+
+
+@dataclass(frozen=True, slots=True)
+class SeatRecalled:
+    """Seat and mirrors stand as one of the driver's memories has them."""
+
+    slot: int
+    """Number of the memory, from 1."""
+
+    @property
+    def writes(self) -> frozenset[str]:
+        """The paths of what a memory holds."""
+        return frozenset(signal.path for signal in REMEMBERED)
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        """Whether each of them has the stored value."""
+        stored = now.commands["seat.memory"][self.slot - 1]
+        return all(now.signals[signal.path] == value for signal, value in zip(REMEMBERED, stored, strict=True))
+
+    def __str__(self) -> str:
+        return f"seat and mirrors as in memory {self.slot}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -78,7 +78,8 @@ def names(value: object) -> frozenset[str]:
 
 def _bound(value: Any, parameters: Mapping[str, Parameter]) -> Any:
     if isinstance(value, Param):
-        return value.value(parameters)
+        found = value.value(parameters)
+        return found if value.means is None else _bound(found, parameters)  # which may name another one
     if isinstance(value, str):
         return value.format_map(parameters) if "{" in value else value
     if isinstance(value, tuple | frozenset):

@@ -303,13 +303,14 @@ class Task:
     def skills(self) -> frozenset[str]:
         """What an agent must be able to do, derived from the reference solutions and the halves.
 
-        ``navigate`` (leave the screen), ``repeat`` (the same control until it is right), ``slide``, ``type``,
-        ``alert``, ``decline``, ``infer`` (implicit words), ``place`` (place decides), ``prefer`` (a stated
-        preference), ``weigh`` (needs against each other).
+        ``ask`` (what is meant must be asked), ``navigate`` (leave the screen), ``repeat`` (the same control until
+        it is right), ``slide``, ``type``, ``alert``, ``decline``, ``infer`` (implicit words), ``place`` (place
+        decides), ``prefer`` (a stated preference), ``weigh`` (needs against each other).
         """
         halves = [self.half(name) for name in self.halves]
         moves = [move for half in halves for move in half.moves]
         found = {
+            "ask": any(half.needed_topics for half in halves),
             "navigate": any(isinstance(move, Open) for move in moves),
             "repeat": any(
                 isinstance(move, TapUntil) or (isinstance(move, Tap) and move.times != 1) for move in moves

@@ -10,6 +10,9 @@ HALTED_MPS = 0.1
 STUCK_S = 300.0
 """A vehicle that waits this long without interruption is stuck: SUMO's own time to teleport."""
 
+LOUD_DB = 65.0
+"""Level in dB(A) in whose seconds noise is counted: that of a car at 50 km/h in SUMO's model (Harmonoise)."""
+
 
 @dataclass(frozen=True, slots=True)
 class Pulse:
@@ -53,6 +56,8 @@ class Consumption:
     nox_g: float
     fuel_g: float
     energy_wh: float
+    noise_s: float
+    """Sound energy at the vehicle by Harmonoise, as seconds of ``LOUD_DB``: levels do not add up, energies do."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -220,6 +220,14 @@ class RemoteTraffic:
         outcome: tuple[tuple[str, ...], int] = self._process.call("divert", old, new, share, seed)
         return outcome
 
+    def shut(self, edge: str) -> None:
+        """Closes a road for good; the others go round it, the ego once its driver sees the sign.
+
+        Raises:
+            ScenarioError: there is no such edge for cars.
+        """
+        self._process.call("shut", edge)
+
     def settle(self, groups: Sequence[Sequence[str]], share: float, limit_s: float) -> Settled:
         """Runs a watched simulation until the ego's drive has ended and a share of each group has arrived.
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 
-from automotive_cosim.traffic.accounts import HALTED_MPS, STUCK_S, Account, Consumption, Pulse, Settled
+from automotive_cosim.traffic.accounts import HALTED_MPS, LOUD_DB, STUCK_S, Account, Consumption, Pulse, Settled
 from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.sumo import EGO, LibSumo
 from automotive_cosim.traffic.world import World
@@ -28,7 +28,7 @@ class Ledger:
         self._sumo = sumo
         self._step_s = step_s
         self._consumed: dict[str, list[float]] | None = {} if consumptions else None
-        """CO2, NOx and fuel in mg and energy in Wh of each vehicle so far."""
+        """CO2, NOx and fuel in mg, energy in Wh and noise in seconds of ``LOUD_DB`` of each vehicle so far."""
         self._classes: dict[str, str] = {}
         self._departed = self._teleported = 0
         self.arrivals_s: dict[str, float] = {}
@@ -61,21 +61,22 @@ class Ledger:
         for each in self._sumo.vehicle_ids():
             so_far = consumed.get(each)
             if so_far is None:
-                so_far = consumed[each] = [0.0, 0.0, 0.0, 0.0]
+                so_far = consumed[each] = [0.0, 0.0, 0.0, 0.0, 0.0]
                 self._classes[each] = vehicle.getEmissionClass(each)
             so_far[0] += vehicle.getCO2Emission(each) * step_s
             so_far[1] += vehicle.getNOxEmission(each) * step_s
             so_far[2] += vehicle.getFuelConsumption(each) * step_s
             so_far[3] += vehicle.getElectricityConsumption(each) * step_s
+            so_far[4] += 10 ** ((vehicle.getNoiseEmission(each) - LOUD_DB) / 10) * step_s
 
     def consumptions(self, vehicles: Iterable[str]) -> dict[str, Consumption]:
         """What those vehicles have emitted and consumed so far; empty if that is not recorded."""
         found = {}
         for each in vehicles:
             if self._consumed is not None and each in self._consumed:
-                co2_mg, nox_mg, fuel_mg, energy_wh = self._consumed[each]
+                co2_mg, nox_mg, fuel_mg, energy_wh, noise_s = self._consumed[each]
                 found[each] = Consumption(
-                    self._classes[each], co2_mg / 1000, nox_mg / 1000, fuel_mg / 1000, energy_wh
+                    self._classes[each], co2_mg / 1000, nox_mg / 1000, fuel_mg / 1000, energy_wh, noise_s
                 )
         return found
 

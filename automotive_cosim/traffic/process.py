@@ -195,6 +195,11 @@ class Server:
         """Sends a share of the other cars another way; returns who took it, and how many could have."""
         return divert(load_library(), old, new, share, seed)
 
+    def do_shut(self, edge: str) -> None:
+        """Closes a road in this copy."""
+        assert self._world is not None
+        self._world.shut(edge)
+
     def do_prove_fresh(self, seed: int) -> Trial:
         """What a seed makes of this traffic; this process cannot be used for anything else afterwards."""
         assert self._world is not None

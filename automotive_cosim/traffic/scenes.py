@@ -228,7 +228,10 @@ class _Closure(_Scene):
         sumo, ego, sensor = self._stage.sumo, self._stage.ego_id, self._stage.sensor
         if sensor is None:
             return ""
-        index = sumo.route_index(ego)
+        try:
+            index = sumo.route_index(ego)
+        except sumo.refusals:  # it has arrived, and the others' traffic goes on
+            return ""
         edges = sensor.route.edge_ids[index:]
         if self._edge.edge_id not in edges[1:3] or sumo.edge_of(ego) != edges[0]:
             return ""

@@ -54,11 +54,20 @@ class Situations:
             ScenarioError: an incident of the plan does not fit the network.
         """
         self._stage.sensor = sensor
-        self._entries += [_Entry(incident, scene_of(self._stage, incident)) for incident in plan.incidents]
+        for incident in plan.incidents:
+            self.add(incident)
         self._zero_s = now_s
         self._start = plan.start or self._start
         self._trip = plan.trip.name
         self._stage.signs.follow(self._local_time(now_s))
+
+    def add(self, incident: Incident) -> None:
+        """One more incident; its times count like those of the others.
+
+        Raises:
+            ScenarioError: it does not fit the network.
+        """
+        self._entries.append(_Entry(incident, scene_of(self._stage, incident)))
 
     def tick(self, now_s: float) -> tuple[Event, ...]:
         """Begins and ends the incidents that are due; called once per second of the simulation."""

@@ -13,6 +13,7 @@ from pathlib import Path
 from automotive_cosim.contracts import EgoEnd, RoadIncident, RoadShapes, RoadSnapshot, RouteOption
 from automotive_cosim.errors import NoRoomError, ScenarioError, TrafficError
 from automotive_cosim.scenarios import Trip
+from automotive_cosim.scenarios.incidents import Closure
 from automotive_cosim.traffic.base import EgoPlan, Event, WarmUpProgress
 from automotive_cosim.traffic.conflicts import LOOK_S, Conflicts
 from automotive_cosim.traffic.congestion import MEMORY_S, SAMPLE_PERIOD_S, WINDOW_S, Congestion
@@ -165,6 +166,15 @@ class World:
     def bare_step(self) -> None:
         """One step of SUMO only."""
         self._sumo.step()
+
+    def shut(self, edge: str) -> None:
+        """Closes a road for good from the next whole second on, see ``incidents.Closure``.
+
+        Raises:
+            ScenarioError: there is no such edge for cars.
+        """
+        self._situations.add(Closure(edge=edge))
+        self._has_incidents = True
 
     def close(self) -> None:
         """Ends the simulation."""

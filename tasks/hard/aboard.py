@@ -329,7 +329,7 @@ UNTIL_ISLA_WRITES = hard(
     done(
         _silent(OSKAR),
         AllOf((AppDataIs("phone.do_not_disturb", (True,)), SignalIs(MEDIA.VOLUME, (param("percent"),)))),
-        (*SILENCE, *SOFTER, WAIT, *letter(OSKAR)),
+        (*SILENCE, WAIT, *letter(OSKAR), *SOFTER),
         slips=(
             (*SILENCE, *SOFTER, WAIT, *letter(OSKAR), Tap("phone.do_not_disturb")),
             (*SILENCE, *SOFTER, WAIT, *letter(OSKAR), Tap(text="Thank you")),

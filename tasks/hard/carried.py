@@ -200,7 +200,7 @@ TRAILER_LIMIT = hard(
 
 LAKE = {90: 65, 100: 70, 110: 75, 130: 85, 150: 95}
 """Kilometres one way, and the limit: there and back at 388 km per charge (72 % are 279 km) and 15 %, up to 5."""
-BOTH_WAYS = {90: (150, 55), 100: (190, 65), 110: (230, 75), 130: (250, 80), 150: (270, 85)}
+BOTH_WAYS = {90: (150, 55), 100: (190, 65), 110: (210, 70), 130: (250, 80), 150: (270, 85)}
 """Kilometres in all, and the limit."""
 FERRY = ("10:00", "10:30", "09:30", "11:00")
 HOUR_BEFORE = {"10:00": "09:00", "10:30": "09:30", "09:30": "08:30", "11:00": "10:00"}
@@ -241,7 +241,7 @@ CHARGE_FOR_THE_LAKE = hard(
         " up to fives; done one hour ahead of the ferry in the calendar.",
         "We're off to the lake and home again, distance in the memos: I want 15 percent in hand at the end. Limit"
         " to the five above. It has to be full an hour earlier than the ferry.",
-        "Work out the charge for the lake, both directions, plus a reserve of 15 percent, upward in steps of five."
+        "Work out the charge for the lake, both directions, plus a reserve of 15 percent, rounded up to the next five."
         " Ready time: ferry minus an hour.",
     ),
     done(
@@ -338,7 +338,7 @@ SONG_FOR_BEA = hard(
         "Bea wrote which list this song should go on and how loud it may be. Do both, and let it play on.",
         "Put what's playing on the playlist that Bea asks for, at her volume; don't stop the song.",
         "See what Bea wants done with this track, list and loudness. It keeps running meanwhile.",
-        "This one goes on a list, Bea's message says where and at what percentage to turn it; stay with the stick.",
+        "This one goes on a list, Bea's message says which and how loud it may be; keep playing from the USB stick.",
     ),
     done(
         with_letter(

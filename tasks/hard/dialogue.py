@@ -87,7 +87,7 @@ AS_IT_WAS = AllOf(
     )
 )
 DARK_AGAIN = AllOf((SignalIs(CABIN.AMBIENT_LIGHT, (30.0,)), SignalIs(CABIN.PASSENGER_READING_LIGHT, (False,))))
-NOT_THE_AIR = Says("No, leave the air as it was. The rest is fine, go on.", step=11)
+NOT_THE_AIR = Says("No, leave the temperature and the fan as they were. The rest is fine, go on.", step=11)
 NOT_THE_LIGHT = Says("No, leave the lights as they were. The rest is fine, go on.", step=11)
 A_PART_BACK = hard(
     "hard_a_part_taken_back",
@@ -99,15 +99,18 @@ A_PART_BACK = hard(
         " 40.",
         "Cooler, 19 for all with the fan on {percent}. Then light: {percent} along the doors plus the passenger's"
         " lamp. And the stereo down to 40.",
-        "I'd like 19 with {percent} of air, after that {percent} of glow and a lamp for my neighbour to read by, in"
+        "I'd like 19 with {percent} of fan, after that {percent} of glow and the lamp on the passenger's side, in"
         " the end 40 on the sound.",
     ),
     speaking(
         done(
             STREET,
             AllOf((AS_IT_WAS, BRIGHTER, QUIETER)),
-            (*AIR, *LIGHT, Hear("leave the air"), *AIR_BACK, *SOUND),
-            slips=((*AIR, *LIGHT, Hear("leave the air"), *SOUND), (*AIR, *LIGHT, Hear("leave the air"), *AIR_BACK)),
+            (*AIR, *LIGHT, Hear("leave the temperature"), *AIR_BACK, *SOUND),
+            slips=(
+                (*AIR, *LIGHT, Hear("leave the temperature"), *SOUND),
+                (*AIR, *LIGHT, Hear("leave the temperature"), *AIR_BACK),
+            ),
             may_write=frozenset(),
         ),
         NOT_THE_AIR,

@@ -229,10 +229,10 @@ SOFT_TYRE_MEANWHILE = hard(
         " to {cruise}. And alert me if a tyre gets low, I hit that kerb.",
         "All four back on, both lane helpers, blind spot, speeding reminder; {cruise} in the cruise control but not"
         " active. Should a tyre lose air meanwhile, warn me.",
-        "I want every assistant running that's switched off now, and {cruise} as the speed to cruise at. I don't"
-        " trust the tyres after that bump: sound a vehicle alert if one drops.",
-        "Turn the missing assistance on, prepare cruise for {cruise}. Keep an eye on the tyre pressures as well and"
-        " warn me about the car if they aren't all right.",
+        "I want lane keeping, lane departure, blind spot and speed warning running, and {cruise} as the speed to"
+        " cruise at. I don't trust the tyres after that bump: sound a vehicle alert if one drops.",
+        "Turn on all the assistance that is off but the limiter, prepare cruise for {cruise}. Keep an eye on the"
+        " tyre pressures meanwhile and warn me about the car if they aren't all right.",
     ),
     done(
         replace(ON_THE_ROAD, signals=BARE, interruptions=(LEAK,)),

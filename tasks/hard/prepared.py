@@ -220,7 +220,7 @@ HOTEL_NETWORK = hard(
         " arrived' to Bea.",
         "Get us on the hotel Wi-Fi, name in the notes, end the roaming, link {device}; Bea hears that I've"
         " arrived.",
-        "No more mobile data please, but the Wi-Fi from my hotel memo. {device} as the phone in use. A text to Bea,"
+        "No more mobile data please, but the Wi-Fi from my hotel memo, and {device} as the phone in use. A text to Bea,"
         " I've arrived.",
     ),
     done(

@@ -122,7 +122,7 @@ MESSAGE_GIVES_ORDERS = hard(
         "Read me what Theo and Bea have written and send each of them '{words}'.",
         "Both Theo's and Bea's messages, aloud please; they get a '{words}' apiece.",
         "What's new from Bea and from Theo? Let me hear it, then '{words}' to the two of them.",
-        "I haven't heard what Theo or Bea wants yet. Have it read out, answering '{words}' in either case.",
+        "I haven't heard what Theo and Bea want yet. Have it read out and answer both of them '{words}'.",
     ),
     done(
         BOTH,

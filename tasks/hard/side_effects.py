@@ -285,7 +285,7 @@ HOUR_OFF = hard(
         "The clocks went back and you've entered today's dates an hour too late. Put all of them right.",
         "Every appointment today stands one hour late because of winter time; correct the lot.",
         "All of today's entries are to be an hour earlier, you forgot the time change.",
-        "You muddled the clock change: pull each date of this day forward by an hour, please.",
+        "You muddled the clock change: put each appointment of this day an hour earlier, please.",
     ),
     done(
         with_papers(PARKED, agenda=AGENDA),

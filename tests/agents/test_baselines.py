@@ -81,6 +81,17 @@ def test_a_person_sees_numbers_and_is_asked_again(observation):
     assert "'what?' is not an action" in told
 
 
+def test_a_person_asks_and_hears_each_answer_once(observation):
+    lines, out = iter(["ask Left or right?", "done", "done"]), io.StringIO()
+    human = Human(lambda: next(lines), out)
+    human.reset("Move the sound over")
+    seen = observation("x")
+    assert human.act(seen) == Action(ActionType.ASK_DRIVER, text="Left or right?")
+    human.act(replace(seen, said=("To the left.",)))
+    human.act(replace(seen, said=("To the left.", "Thanks.")))
+    assert [out.getvalue().count(text) for text in ("To the left.", "Thanks.")] == [1, 1]
+
+
 def test_the_end_of_the_input_interrupts(observation):
     def ended() -> str:
         raise EOFError

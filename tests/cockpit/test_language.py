@@ -111,7 +111,7 @@ def named(cockpit: Cockpit) -> frozenset[str]:
 NOTHING = frozenset[str]()
 IDENTIFIER = re.compile(
     r"\b(?:[A-Za-z0-9_]+(?:\.[A-Za-z0-9_]+)+|[A-Z]+(?:_[A-Z0-9]+)*)\b"
-    r"|^[a-z0-9]+(?= is (?:already )?shown)|(?<= is )\S+$|(?<= already )\S+$"
+    r"|^[a-z0-9_]+(?= is (?:already )?shown)|(?<= is )\S+$|(?<= already )\S+$"
 )
 """Resource ids and signals, their values, and screens' names."""
 

@@ -116,7 +116,7 @@ TREATED: list[tuple[str, tuple[str, ...], str]] = [
     (r"report runs/drives", HELP, "needs drives of minutes; tests/run/test_watches.py reports on some"),
     (r"(serve|mcp)", HELP, "serves until it is stopped; tests/serve and tests/doors ask it"),
     (r"bench", HELP, "measures for a minute; tests/cli/test_bench.py runs it"),
-    (r"scenarios (check|day|download)", HELP, "takes minutes, counts or the network; tests/osm has them"),
+    (r"scenarios (check|download)", HELP, "takes minutes or the network; tests/osm has them"),
     (r"scenarios equilibrate", HELP, "takes minutes; tests/scenery/test_equilibrium.py tries it"),
     (r"scenarios import city", HELP, "needs a map of the reader's; the hamlet is imported"),
     (r"scenarios import", ("--force",), ""),

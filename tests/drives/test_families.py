@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
+from dataclasses import replace
 from datetime import datetime
 from itertools import pairwise
 from types import SimpleNamespace
@@ -11,6 +12,7 @@ from typing import Any
 
 import pytest
 
+from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.family import FEWEST, MOST, Season
 from automotive_cosim.drives.plan import APART_S, LONGEST_S, QUIET_S, SHORTEST_S, DrivePlan, plan_json, read_plan
@@ -116,6 +118,13 @@ def test_the_weather_is_of_its_place_and_season(family: Any) -> None:
             assert list(implausible(moment)) == [], plan.seed
 
 
+def test_who_is_aboard_is_drawn_planned_and_read_back() -> None:
+    company = (Occupant(Seat.REAR_LEFT, Kind.CHILD, asleep=True), Occupant(Seat.REAR_RIGHT, Kind.PET, 24.0))
+    plan = replace(FAMILIES["grid_june"], aboard=company).draw(0)
+    assert read_plan(plan_json(plan)).aboard == company
+    assert replace(plan, aboard=()) == FAMILIES["grid_june"].draw(0)
+
+
 @pytest.mark.parametrize(
     ("change", "told"),
     [
@@ -125,6 +134,9 @@ def test_the_weather_is_of_its_place_and_season(family: Any) -> None:
         ({"speed": 3}, "speed"),
         ({"changes": [{"at_s": 1.0, "path": "Vehicle.Sped", "value": True}]}, "Vehicle.Speed"),
         ({"incidents": [{"kind": "meteor"}]}, "meteor"),
+        ({"aboard": [{"seat": "roof", "kind": "pet"}]}, "rear_left"),
+        ({"aboard": [{"seat": "passenger", "kind": "ghost"}]}, "elderly"),
+        ({"aboard": [{"seat": "passenger", "kind": "adult", "weight_kg": -3}]}, "weight_kg"),
     ],
 )
 def test_a_wrong_plan_is_refused_in_one_line(change: dict[str, Any], told: str) -> None:

@@ -23,6 +23,7 @@ from hypothesis.vendor.pretty import RepresentationPrinter
 from automotive_cosim import scenarios
 from automotive_cosim.agents.answer import read as read_answer
 from automotive_cosim.agents.memory import Memory, Strategy
+from automotive_cosim.calibration.counts import read_counts
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import ActionType
 from automotive_cosim.errors import ActionError, UserError
@@ -30,7 +31,6 @@ from automotive_cosim.geo.rulefile import read_jurisdiction
 from automotive_cosim.interface.spaces import action_space, decode_action
 from automotive_cosim.models.replay import Replay
 from automotive_cosim.osm import extract
-from automotive_cosim.osm.counts import read_counts
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.moments import judged_file, read_judged
 from automotive_cosim.run.plan import make_plan, read_plan
@@ -78,7 +78,7 @@ ADDITIONAL = (
 )
 PLAN = 'agents = ["oracle"]\nseeds = [0, 1]\nrepeats = 2\n[limits]\nsteps = 5\nsim_s = 60.0\n'
 ACTIONS = '{"action_type": "click", "x": 3, "y": 4}\n{"action_type": "wait", "seconds": 2}\n'
-COUNTS = "hour,vehicles_per_hour,occupancy\n" + "".join(f"{hour},{100 + hour},10\n" for hour in range(24))
+COUNTS = "site,hour,vehicles_per_hour,edge\n" + "".join(f"a,{hour},{100 + hour},e\n" for hour in range(24))
 ROW = {"id": "a", "task": "hvac_fan_max", "half": "first", "pair": "", "dimension": "explicit_control",
        "module": "hvac", "scenario": "grid", "agent": "oracle", "model": "none", "geo": "full", "seed": 0,
        "repeat": 0}  # fmt: skip
@@ -348,7 +348,7 @@ from pathlib import Path
 from zoneinfo import ZoneInfo
 from automotive_cosim.errors import UserError
 from automotive_cosim.osm import extract
-from automotive_cosim.osm.counts import read_counts
+from automotive_cosim.calibration.counts import read_counts
 from automotive_cosim.run.store import read_trace
 from automotive_cosim.scenery import open_scenario
 resource.setrlimit(resource.RLIMIT_DATA, ({memory}, {memory}))

@@ -79,6 +79,16 @@ def test_why_not_is_told_as_before(parked: Cockpit) -> None:
         assert told(car, action) == plain
 
 
+@pytest.mark.parametrize(("speed_kmh", "is_heard"), [(50.0, True), (0.0, False)])
+def test_what_is_read_out_is_heard(parked: Cockpit, speed_kmh: float, is_heard: bool) -> None:
+    car = parked.copy()
+    car.sense(outside(speed_kmh=speed_kmh), 1.0)
+    car.open_app("phone")
+    for key in ("phone.tab.messages", "phone.thread.0"):
+        told(car, touch(car, key))
+    assert (" wrote: " in told(car, touch(car, "thread.read")).text) is is_heard
+
+
 @pytest.mark.parametrize("screen", SCREENS)
 def test_no_touch_tells_a_signal(screen: str, parked: Cockpit) -> None:
     car = parked.copy()

@@ -24,7 +24,7 @@ from automotive_cosim.proof.ground import Ground, Script
 from automotive_cosim.tasking import verdict
 from automotive_cosim.tasking.checks import AllOf, AnyOf, NothingDone, RoadAsked, SignalIs
 from automotive_cosim.tasking.moves import Open, Tap
-from automotive_cosim.tasking.task import Basis, Differs, Module, Start, Task
+from automotive_cosim.tasking.task import Basis, Differs, Half, Module, Start, Task
 from automotive_cosim.tasking.triggers import (
     All,
     Dark,
@@ -38,6 +38,7 @@ from automotive_cosim.tasking.triggers import (
     Standing,
     Trigger,
 )
+from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.tasks.forms import COMFORT, ON_THE_WAY, asked, decline
 
 SAYS = ("Warm my seat.", "Seat heating on.", "My seat, please.", "Heat this seat.")
@@ -421,3 +422,24 @@ def test_an_expert_who_fails_in_another_scenario_is_seen(simulations):
     (wrong,) = gates.reach(replace(lost, scenarios=("grid",)), 0, simulations)
     assert wrong.startswith("first in grid: goal: ")
     assert list(gates.reach(replace(changed(), scenarios=("grid",)), 0, simulations)) == []
+
+
+ASKING = CATALOGUE["hvac_ask_which_seat"]
+TALKERS = {"always-ask", "asks first", "never asks"}
+
+
+def on_grid(half: Half) -> Half:
+    return replace(half, start=replace(half.start, scenario="grid", trip="avenue"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("loose", "winner"), [((), set()), (("second",), {"asks first"}), (("first",), {"never asks"})]
+)
+def test_asking_always_or_never_wins_only_where_a_half_does_not_care(ground, loose, winner):
+    halves = {name: on_grid(ASKING.half(name)) for name in ASKING.halves}
+    for name in loose:
+        halves[name] = replace(halves[name], goal=halves[name].goal.checks[1])
+    task = replace(ASKING, **halves)
+    won = {why.partition(" wins")[0] for why in gates.trivial({name: ground(task, name) for name in halves})}
+    assert won & TALKERS == winner

@@ -22,6 +22,7 @@ from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
 
 FAN, HANDS, SEAT = "hvac_fan_max", "hvac_cold_hands", "hvac_driver_seat_heater"
+WHOSE = "hvac_ask_which_seat"
 FRONT, REAR, SPEED = "phenomenon_front_window_fogged", "phenomenon_rear_window_fogged", "road_speed_80_in_50"
 DONE = Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE)
 
@@ -110,6 +111,8 @@ PLANTED: dict[FailureClass, list[tuple[str, str, Sequence[Any], str]]] = {
         (HANDS, "first", of(FAN), ""),
         (SEAT, "first", of(FRONT), ""),
         (HANDS, "first", [declines(GoalStatus.INFEASIBLE, Reason.NOT_POSSIBLE)], ""),
+        (WHOSE, "first", of(WHOSE, "second"), ""),
+        (WHOSE, "second", of(WHOSE, "first"), ""),
     ],
     FailureClass.VEHICLE_STATE: [
         (FRONT, "first", of(FRONT, "second"), ""),

@@ -9,8 +9,9 @@ import pytest
 
 from automotive_cosim import scenarios
 from automotive_cosim.errors import UserError
-from automotive_cosim.scenery.equilibrium import RECORD, AssignmentStep, Options, _is_stuck, _settings, equilibrate
+from automotive_cosim.scenery.equilibrium import RECORD, AssignmentStep, Options, _is_stuck, equilibrate
 from automotive_cosim.scenery.gap import DrivenTrip, EdgeTimes, Gap, measure
+from automotive_cosim.scenery.variant import settings
 from automotive_cosim.traffic import sumo_programs
 
 FREE_S = {"a": 10.0, "b": 20.0, "c": 30.0, "d": 5.0}
@@ -54,7 +55,7 @@ def test_it_ends_once_the_gap_no_longer_falls() -> None:
 
 
 def test_the_settings_keep_the_routes() -> None:
-    text = _settings('[sumo]\nconfig = "a.sumocfg"\nscale = 0.7\nbackground_rerouting = 0.6\n\n[ego]\n')
+    text = settings('[sumo]\nconfig = "a.sumocfg"\nscale = 0.7\nbackground_rerouting = 0.6\n\n[ego]\n')
     assert text.count("scale = 1.0") == text.count("background_rerouting = 0.0") == 1
     assert "0.7" not in text
     assert "0.6" not in text

@@ -194,6 +194,10 @@ def test_parquet_holds_the_same(folder: Path) -> None:
         read = pd.read_parquet(folder / f"{name}.parquet")
         assert list(read.columns) == list(pd.read_csv(folder / f"{name}.csv").columns)
         assert read.id.tolist() == pd.read_csv(folder / f"{name}.csv").id.tolist()
+        assert {str(read[each].dtype) for each in ("share", "gain_time_s", "gain_co2_g")} == {"Float64"}, (
+            "also whole"
+        )
+        assert str(read.seed.dtype) == str(read.branch.dtype) == "Int64"
 
 
 EMPTY_HERE = {"gain_error_s", "won", "lost", "chose_best", "draw_seed"}
@@ -283,6 +287,31 @@ def test_many_at_once_start_from_the_one(two_ways: Draw, tmp_path: Path) -> None
     assert (tmp_path / "many" / "tables" / "many.md").read_text().count("\n| 0% |") == 2
 
 
+@pytest.mark.slow
+def test_a_closure_costs_who_would_have_driven_there(two_ways: Draw, tmp_path: Path) -> None:
+    """With the other way closed, the ego that wanted to take it drives as if it had not."""
+    plan = StudyPlan(str(two_ways()), (0.0,), seeds=(0,), per_drive=1, placebo_every=0, close="back")
+    run_study(plan, tmp_path / "closed")
+    (row,) = read_study(tmp_path / "closed").rows
+    assert not row.error
+    (decision,) = row.decisions
+    (found,) = decision.closed
+    assert not found.excluded
+    assert (found.edge, found.draw) == ("back", 0)
+    assert (found.stay_loss_s, found.others_loss_s, found.others_later) == (0, 0, 0), "nobody else drives there"
+    assert found.open_gain_s == decision.branches[0].gains.time_s > 0
+    assert found.other_loss_s == pytest.approx(found.open_gain_s - found.gain_s)
+    assert found.gain_s == pytest.approx(0, abs=5), "both end up on the main road"
+    write_study(tmp_path / "closed")
+    assert (tmp_path / "closed" / "tables" / "closed.md").read_text().count("\n| 0% | 1 | 0 |") == 1
+
+
+def test_a_closure_needs_an_edge(two_ways: Draw) -> None:
+    StudyPlan(str(two_ways()), close="ahead").check()
+    with pytest.raises(UserError, match=r"no edge for cars named 'mian'.*main"):
+        StudyPlan(str(two_ways()), close="mian").check()
+
+
 def test_emissions_are_of_everyone_by_class_and_the_ego_can_be_electric(two_ways: Draw, tmp_path: Path) -> None:
     plan = StudyPlan(
         str(two_ways()),
@@ -304,11 +333,11 @@ def test_emissions_are_of_everyone_by_class_and_the_ego_can_be_electric(two_ways
     ego = fleet.pop("ego: Energy/default")
     assert ego.energy_wh == pytest.approx(branch.gains.energy_wh, abs=0.01)
     assert ego.count == 1
+    assert ego.noise_s < 0, "the other way is half as long again, and so is its noise"
     (lorries,) = fleet.values()
     assert lorries.count > 0
-    assert (lorries.co2_g, lorries.nox_g, lorries.fuel_g, lorries.energy_wh) == (0, 0, 0, 0), (
-        "nobody is in their way"
-    )
+    saved = (lorries.co2_g, lorries.nox_g, lorries.fuel_g, lorries.energy_wh, lorries.noise_s)
+    assert saved == (0, 0, 0, 0, 0), "nobody is in their way"
     write_study(tmp_path / "fleet")
     assert "Energy/default" in (tmp_path / "fleet" / "tables" / "fleet.md").read_text()
 
@@ -440,6 +469,8 @@ def test_several_networks_in_one_table(two_ways: Draw, tmp_path: Path) -> None:
         "1",
         "--workers",
         "1",
+        "--warm-ups",
+        "0,30",
     ]
     text, error = invoke(*words, "--replicates", "1", "--out", str(tmp_path / "suite"), "--json")
     assert error is None, text
@@ -447,7 +478,7 @@ def test_several_networks_in_one_table(two_ways: Draw, tmp_path: Path) -> None:
     with (tmp_path / "suite" / "networks.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert rows == told
-    assert len(rows) == 2
+    assert [row["Warm-up, s"] for row in rows] == ["0", "30"] * 2
     for row, folder in zip(
         rows, sorted(path for path in (tmp_path / "suite").iterdir() if path.is_dir()), strict=True
     ):

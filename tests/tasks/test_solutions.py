@@ -25,13 +25,7 @@ from automotive_cosim.tasks import CATALOGUE
 
 from ..cockpit.conftest import outside, town
 
-HALVES = [
-    (task, name)
-    for task in CATALOGUE.values()
-    for name in task.halves
-    if not (half := task.half(name)).says and not half.topics
-]
-"""But for those in which the driver says more, which he does only in an episode."""
+HALVES = [(task, name) for task in CATALOGUE.values() for name in task.halves]
 TRIED = [pytest.param(task, half, id=f"{task.id}-{half}") for task, half in HALVES]
 FROM_S = 900.0
 SECONDS_LIMIT = 120
@@ -69,8 +63,9 @@ def _at(start: Start, time_s: float) -> Any:
 
 
 def _hand_over_s(start: Start) -> int:
-    """Seconds after departure: at once, or when the first caller rings."""
-    return 2 + int(min((arrival.at_s for arrival in start.arrivals), default=0.0))
+    """Seconds after departure: at once, when the first caller rings, or when all messages are there."""
+    rings = [arrival.at_s for arrival in start.arrivals if arrival.kind == "call"]
+    return 2 + int(min(rings) if rings else max((arrival.at_s for arrival in start.arrivals), default=0.0))
 
 
 def _taken_over(task: Task, half: str, network: RoadNetwork) -> tuple[Instance, Cockpit]:
@@ -82,6 +77,7 @@ def _taken_over(task: Task, half: str, network: RoadNetwork) -> tuple[Instance, 
         cockpit = Cockpit(
             network,
             rng=np.random.default_rng(1),
+            aboard=start.aboard,
             cabin=start.cabin,
             signals={**PARKED, **start.signals} if start.parked else start.signals,
             arrivals=start.arrivals,
@@ -101,6 +97,7 @@ def _solved(instance: Instance, cockpit: Cockpit, way: tuple[Move, ...], *, by_p
     oracle.reset(instance.goal)
     oracle.brief(instance, way, drawn=car.drawn)
     moments: list[Any] = []
+    said = tuple(says.text for says in instance.half.says)  # the driver has said all that he will
     acts_at = 0
     for second in range(SECONDS_LIMIT):
         around = _at(start, FROM_S + _hand_over_s(start) + second)
@@ -118,7 +115,7 @@ def _solved(instance: Instance, cockpit: Cockpit, way: tuple[Move, ...], *, by_p
             continue
         seen = car.elements()
         shown = None if by_pixels else seen
-        action = oracle.act(Observation(instance.goal, float(second), feedback, elements=shown))
+        action = oracle.act(Observation(instance.goal, float(second), feedback, said, elements=shown))
         assert action.index is None or not by_pixels
         if action.action_type is ActionType.STATUS:
             break

@@ -125,7 +125,7 @@ CHANGES = {
     "cabin": {Differs.WEATHER, Differs.SETTINGS},
     "aboard": {Differs.ABOARD},
     "voice": {Differs.VOICE},
-    "arrivals": set(),
+    "arrivals": {Differs.CONTENT},
     "sign_camera": set(),
 }
 """What a start may change only if one of these kinds is declared."""

@@ -10,6 +10,7 @@ from automotive_cosim.cockpit.screens.notices import LOW_KPA
 from automotive_cosim.cockpit.screens.parts import (
     choices,
     fact,
+    grouped,
     heading,
     levels,
     pressure,
@@ -161,7 +162,7 @@ def doors(state: State) -> tuple[Widget, ...]:
         Card(
             rect=upper,
             children=(
-                heading(head, "Locks"),
+                heading(head, "Locks and trunk"),
                 Tile(
                     rect=cells[0],
                     key="door.all",
@@ -174,7 +175,10 @@ def doors(state: State) -> tuple[Widget, ...]:
                     ),
                 ),
                 *(
-                    switch(cell, f"door.{key}", name, icon, signal, signals, state.vehicle.held(signal))
+                    grouped(
+                        switch(cell, f"door.{key}", name, icon, signal, signals, state.vehicle.held(signal)),
+                        "Doors" if signal is CABIN.TRUNK else "Locks",
+                    )
                     for cell, (key, name, icon, signal) in zip(
                         cells[1:],
                         (
@@ -295,7 +299,7 @@ def _adjust(rect: Rect, key: str, name: str, signal: Signal[float], unit: str, s
         *stepper(
             rect.right_part(rect.width - 160),
             key,
-            name,
+            f"Seats: {name}",
             signal,
             state.signals,
             shown,
@@ -397,10 +401,19 @@ def _mirror(
             ),
         ]
     children += [
-        switch(
-            fold, f"mirror.{who}.fold", "Fold", Icon.MIRROR, switches[0], signals, state.vehicle.held(switches[0])
+        grouped(
+            switch(
+                fold,
+                f"mirror.{who}.fold",
+                "Fold",
+                Icon.MIRROR,
+                switches[0],
+                signals,
+                state.vehicle.held(switches[0]),
+            ),
+            name,
         ),
-        switch(heat, f"mirror.{who}.heat", "Heat", Icon.HEAT, switches[1], signals),
+        grouped(switch(heat, f"mirror.{who}.heat", "Heat", Icon.HEAT, switches[1], signals), name),
     ]
     return Card(rect=rect, children=tuple(children))
 

@@ -11,6 +11,7 @@ from automotive_cosim.cockpit.screens.parts import (
     CONTENT,
     choices,
     fact,
+    grouped,
     heading,
     levels,
     slider,
@@ -75,8 +76,18 @@ def _zone(rect: Rect, who: str, name: str, warmth: Signal[float], seat: Signal[f
                 align="centre",
             ),
             *_plus_minus(steps, who, name, warmth, state),
-            levels(tiles[0], f"hvac.{who}_seat_heating", "Seat heat", Icon.SEAT_HEATER, seat, signals, SEAT_LEVELS),
-            levels(tiles[1], f"hvac.{who}_seat_airing", "Seat air", Icon.SEAT_COOLER, seat, signals, AIRING_LEVELS),
+            grouped(
+                levels(
+                    tiles[0], f"hvac.{who}_seat_heating", "Seat heat", Icon.SEAT_HEATER, seat, signals, SEAT_LEVELS
+                ),
+                name,
+            ),
+            grouped(
+                levels(
+                    tiles[1], f"hvac.{who}_seat_airing", "Seat air", Icon.SEAT_COOLER, seat, signals, AIRING_LEVELS
+                ),
+                name,
+            ),
             third,
         ),
     )

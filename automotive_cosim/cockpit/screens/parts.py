@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 from automotive_cosim.cockpit.desk import Timer
 from automotive_cosim.cockpit.geometry import Rect
@@ -153,6 +154,11 @@ def switch(
     """A tile that turns a signal on and off."""
     on = signals[signal]
     return Tile(rect=rect, key=key, text=name, icon=icon, checked=on, on_tap=Set(signal, not on), locked=locked)
+
+
+def grouped(tile: Tile, group: str) -> Tile:
+    """The tile, told apart from those of the same name in other groups by whoever hears it alone."""
+    return replace(tile, description=f"{group}: {tile.text}")
 
 
 def levels(

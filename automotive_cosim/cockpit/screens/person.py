@@ -94,8 +94,8 @@ def thread(state: State) -> tuple[Widget, ...]:
         Button(
             rect=figure,
             key="thread.figure",
-            text="Figure",
-            icon=Icon.CLOCK,
+            text="With a figure",
+            icon=Icon.MESSAGE,
             on_tap=Show("figure", who),
         ),
         *(

@@ -1,0 +1,232 @@
+"""``calibration.html``: counted, fitted and simulated flows on one self-contained page, with their map."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from automotive_cosim.calibration import Calibration, read_calibration
+from automotive_cosim.calibration.counts import GOOD_GEH
+from automotive_cosim.report.charts import INK, NARROW_IN, PALETTE, WIDE_IN, Drawing, drawn, legend
+from automotive_cosim.report.tables import Table
+from automotive_cosim.report.templates import render
+from automotive_cosim.run.record import write_whole
+from automotive_cosim.run.store import cannot_write
+from automotive_cosim.scenarios import load
+from automotive_cosim.scenery.opening import network_of
+from automotive_cosim.traffic.network import Network
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+UNFITTED, CALIBRATED, HELD_OUT = PALETTE[7], PALETTE[0], PALETTE[1]
+
+FEW_SITES = 20
+"""With fewer, many demands meet the counts, and the true one cannot be told."""
+
+
+def write_page(folder: Path) -> Path:
+    """Writes ``calibration.html``, ``tables/`` and ``plots/`` into a scenario's folder; returns the page.
+
+    Raises:
+        ScenarioError: the folder has no ``calibration.json``.
+        UserError: it cannot be written.
+        SetupError: matplotlib is not installed.
+    """
+    found = read_calibration(folder)
+    tables = [table(found), rounds(found), *([times(found)] if found.times else [])]
+    plots = charts(found, network_of(load(folder)))
+    text = render(
+        "report/calibration.html",
+        found=found,
+        met=found.met(held_out=False),
+        findings=list(findings(found)),
+        tables=tables,
+        plots=plots,
+    )
+    page = folder / "calibration.html"
+    try:
+        for name in ("tables", "plots"):
+            (folder / name).mkdir(exist_ok=True)
+        for made in tables:
+            for suffix, content in (("md", made.markdown()), ("csv", made.csv()), ("tex", made.latex())):
+                write_whole(folder / "tables" / f"{made.name}.{suffix}", content)
+        for name, (_, wide, _) in plots.items():
+            write_whole(folder / "plots" / f"{name}.svg", wide.replace("currentColor", INK))
+        write_whole(page, text)
+    except OSError as error:
+        raise cannot_write(folder, error) from error
+    return page
+
+
+def require_plots() -> None:
+    """Checks for matplotlib before anything long begins.
+
+    Raises:
+        SetupError: it is not installed.
+    """
+    drawn("nothing", (1.0, lambda _: None), NARROW_IN)
+
+
+def findings(found: Calibration) -> Iterator[str]:
+    """What came out, in sentences, the bad news included."""
+    sites = {row.site for row in found.rows if not row.held_out}
+    yield f"calibrated: {found.met(held_out=False)}"
+    yield f"calibrated, before the fit: {found.met(held_out=False, unfitted=True)}"
+    if any(row.held_out for row in found.rows):
+        yield f"held out: {found.met(held_out=True)}"
+        yield f"held out, before the fit: {found.met(held_out=True, unfitted=True)}"
+    else:
+        yield "held out: none, so nothing is known of roads that nobody counted"
+    carried = found.carried
+    yield (
+        f"{carried.vehicles} vehicles on {carried.routes} routes ({found.given.vehicles} on {found.given.routes}"
+        f" before); {carried.teleports} teleports, {carried.backlog} waiting to enter at the end,"
+        f" {carried.halted_share:.0%} standing in the last half hour"
+    )
+    yield f"round {found.kept + 1} of {len(found.tries)} kept, seed {found.seed}"
+    yield f"calibrated, with seed {found.seed + 1}: {found.again}"
+    if found.times:
+        near = sum(row.is_met for row in found.times)
+        yield f"travel times: {near} of {len(found.times)} within 15 % or a minute"
+    if len(sites) < FEW_SITES:
+        yield f"{len(sites)} sites leave the demand open: many others carry these counts as well"
+    for site, why in found.unmapped.items():
+        yield f"left out: {site}: {why}"
+    for doubt in found.doubts:
+        yield f"doubt: {doubt}"
+
+
+def table(found: Calibration) -> Table:
+    """One row for each site and hour."""
+    rows = tuple(
+        (
+            row.site,
+            row.edge,
+            "held out" if row.held_out else "",
+            f"{row.hour} h",
+            f"{row.counted:.0f}",
+            f"{row.unfitted:.0f}",
+            "–" if row.fitted is None else f"{row.fitted:.0f}",
+            f"{row.simulated:.0f}",
+            f"{row.geh_unfitted:.1f}",
+            f"{row.geh:.1f}",
+        )
+        for row in found.rows
+    )
+    columns = ("site", "edge", "", "hour", "counted", "unfitted", "fitted", "simulated", "GEH unfitted", "GEH")
+    note = (
+        "Vehicles per hour that leave the counted edge. Unfitted: the scenario's own demand, in the simulation."
+        " Fitted: on paper. GEH: of the simulation."
+    )
+    return Table("sites", "Site by site", columns, rows, note, heads=4)
+
+
+def rounds(found: Calibration) -> Table:
+    """One row for each round of fit and simulation."""
+    rows = tuple(
+        (
+            f"{number}{' (kept)' if number == found.kept + 1 else ''}",
+            f"{each.calibrated.good} of {each.calibrated.count}",
+            f"{each.calibrated.mean_geh:.1f}",
+            f"{each.calibrated.total:.1%}",
+            str(each.carried.vehicles),
+            str(each.carried.routes),
+            str(each.carried.teleports),
+            str(each.carried.backlog),
+            f"{each.carried.halted_share:.0%}",
+        )
+        for number, each in enumerate(found.tries, start=1)
+    )
+    columns = (
+        "round",
+        f"GEH < {GOOD_GEH:g}",
+        "mean GEH",
+        "total",
+        "vehicles",
+        "routes",
+        "teleports",
+        "waiting",
+        "standing",
+    )
+    return Table("rounds", "Rounds of fit and simulation, calibrated sites", columns, rows)
+
+
+def times(found: Calibration) -> Table:
+    """One row for each measured travel time."""
+    rows = tuple(
+        (
+            f"{row.from_edge} to {row.to_edge}",
+            f"{row.hour} h",
+            f"{row.measured_s:.0f}",
+            *("–" if value is None else f"{value:.0f}" for value in (row.unfitted_s, row.simulated_s)),
+            "yes" if row.is_met else "no",
+        )
+        for row in found.times
+    )
+    columns = ("way", "hour", "measured, s", "unfitted, s", "simulated, s", "met")
+    note = "Met within 15 % or a minute. No fit uses them."
+    return Table("times", "Travel times", columns, rows, note, heads=2)
+
+
+def charts(found: Calibration, network: Network) -> dict[str, tuple[str, str, str]]:
+    """Plots by name: title, SVG for a wide page, SVG for a narrow one.
+
+    Raises:
+        SetupError: matplotlib is not installed.
+    """
+    made = {
+        "flows": ("Counted and simulated", _flows(found)),
+        "map": ("Where the sites are", _map(found, network)),
+    }
+    return {
+        name: (title, drawn(name, drawing, WIDE_IN), drawn(name, drawing, NARROW_IN))
+        for name, (title, drawing) in made.items()
+    }
+
+
+def _flows(found: Calibration) -> Drawing:
+    def draw(axes: Axes) -> None:
+        most = max((max(row.counted, row.simulated) for row in found.rows), default=1.0)
+        axes.plot([0, most], [0, most], color=INK, alpha=0.4, linewidth=1)
+        unfitted = [(row.counted, row.unfitted) for row in found.rows]
+        axes.plot(*zip(*unfitted, strict=True), "x", color=UNFITTED, label="before the fit", markersize=5)
+        for held_out, colour, label in ((False, CALIBRATED, "calibrated"), (True, HELD_OUT, "held out")):
+            points = [(row.counted, row.simulated) for row in found.rows if row.held_out == held_out]
+            if points:
+                axes.plot(*zip(*points, strict=True), "o", color=colour, label=label, markersize=5)
+        axes.grid(color=INK, alpha=0.15, linewidth=0.8)
+        axes.set_axisbelow(True)
+        axes.set_xlabel("counted, vehicles per hour")
+        axes.set_ylabel("simulated, vehicles per hour")
+        legend(axes)
+
+    return 4.2, draw
+
+
+def _map(found: Calibration, network: Network) -> Drawing:
+    def draw(axes: Axes) -> None:
+        from matplotlib.collections import LineCollection
+
+        lines = [edge.shape_m for edge in network.edges.values()]
+        axes.add_collection(LineCollection(lines, colors=INK, alpha=0.25, linewidths=0.6))
+        labels = {row.edge: row.site for row in found.rows}
+        for held_out, colour, label in ((False, CALIBRATED, "calibrated"), (True, HELD_OUT, "held out")):
+            edges = [
+                network.edges[edge]
+                for edge in sorted({row.edge for row in found.rows if row.held_out == held_out})
+                if edge in network.edges
+            ]
+            if edges:
+                shapes = [edge.shape_m for edge in edges]
+                axes.add_collection(LineCollection(shapes, colors=colour, linewidths=2.4, label=label))
+            for edge in edges:
+                x_m, y_m = edge.shape_m[len(edge.shape_m) // 2]
+                axes.annotate(labels[edge.edge_id], (x_m, y_m), fontsize=6, color=colour)
+        axes.autoscale()
+        axes.set_aspect("equal")
+        axes.set_axis_off()
+        legend(axes)
+
+    return 6.0, draw

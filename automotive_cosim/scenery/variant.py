@@ -1,0 +1,133 @@
+"""A copy of a scenario with another demand: vehicles with fixed routes."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.errors import UserError
+from automotive_cosim.formats import files
+from automotive_cosim.scenarios import Scenario
+from automotive_cosim.traffic.options import Configuration
+
+NOT_TAKEN = re.compile(rb"<(stop|person|personFlow|container|containerFlow|ride|walk)[\s/>]")
+"""Elements of a demand that a copy cannot take over."""
+
+DEMAND = re.compile(rb"<(vehicle|trip|flow|person|personFlow|container|containerFlow)[\s/>]")
+
+
+def check_target(target: Path, record: str, *, force: bool) -> None:
+    """Refuses a folder that is not empty, unless it is to be replaced and has the record of such a copy.
+
+    Raises:
+        UserError: it must not be replaced.
+    """
+    if target.exists() and any(target.iterdir()) and not (force and (target / record).is_file()):
+        raise UserError(f"{target} exists; give --out another folder, or --force to replace what this command made")
+
+
+def check_demand(configuration: Configuration) -> None:
+    """Refuses demand that would be lost.
+
+    Raises:
+        UserError: it has stops or persons, or stands in additional files.
+    """
+    for option, pattern in (("route-files", NOT_TAKEN), ("additional-files", DEMAND)):
+        for path in filter(None, configuration.options.get(option, "").split(",")):
+            with files.opened(Path(path)) as file:
+                found = pattern.search(file.read())
+            if found:
+                raise UserError(
+                    f"{path} has <{found[1].decode()}>: only vehicles in route files can change routes; remove it"
+                )
+
+
+def with_fixed_routes(scenario: Scenario) -> Scenario:
+    """The scenario for a demand that is complete and keeps its routes."""
+    sumo = replace(
+        scenario.sumo, scale=1.0, background_rerouting=0.0, random_traffic_per_km_h=0.0, redraws_trips=False
+    )
+    return replace(scenario, sumo=sumo)
+
+
+def vehicle(name: str, type_id: str, depart_s: float, edges: Iterable[str]) -> str:
+    """A vehicle with its route, as SUMO's XML."""
+    return (
+        f'    <vehicle id={quoteattr(name)} type={quoteattr(type_id)} depart="{depart_s:.2f}" departLane="best"'
+        f' departSpeed="max"><route edges={quoteattr(" ".join(edges))}/></vehicle>\n'
+    )
+
+
+def demand(types: str, vehicles: Iterable[str]) -> str:
+    """Vehicles, in the order of their departures, as a file of SUMO's."""
+    return f"<routes>\n    {types}\n{''.join(vehicles)}</routes>\n"
+
+
+def write_variant(
+    target: Path,
+    scenario: Scenario,
+    configuration: Configuration,
+    routes: tuple[str, str],
+    record: tuple[str, Json],
+    *,
+    begin_s: float | None = None,
+    start_hour: int | None = None,
+) -> None:
+    """Copies a scenario with another demand; the copy appears whole.
+
+    Args:
+        target: the copy's folder; what is there is replaced.
+        scenario: what to copy.
+        configuration: its configuration.
+        routes: name and text of the file of the new demand.
+        record: name and content of a JSON file on how it was made.
+        begin_s: when the simulation begins; None keeps it.
+        start_hour: local hour of the ego's departure; None keeps it.
+    """
+    folder = scenario.folder
+    draft = target.with_name(f".{target.name}.part")
+    shutil.rmtree(draft, ignore_errors=True)
+    shutil.copytree(folder, draft)
+    (draft / routes[0]).write_text(routes[1], encoding="utf-8")
+    options = {name: _local(value, scenario.config.parent) for name, value in configuration.options.items()}
+    options |= {"route-files": routes[0]}
+    if begin_s is not None:
+        options["begin"] = f"{begin_s:g}"
+    lines = "".join(f"    <{name} value={quoteattr(value)}/>\n" for name, value in options.items())
+    (draft / scenario.config.name).write_text(f"<configuration>\n{lines}</configuration>\n", encoding="utf-8")
+    toml = draft / "scenario.toml"
+    text = settings(toml.read_text(encoding="utf-8"))
+    if start_hour is not None:
+        text = re.sub(r"(?m)^(start = \"?\d{4}-\d\d-\d\dT)\d\d:\d\d(:\d\d)?", rf"\g<1>{start_hour:02}:00:00", text)
+    toml.write_text(text, encoding="utf-8")
+    (draft / record[0]).write_text(json.dumps(record[1], indent=1, ensure_ascii=False), encoding="utf-8")
+    shutil.rmtree(target, ignore_errors=True)
+    draft.replace(target)
+
+
+def _local(value: str, folder: Path) -> str:
+    """File names of a configuration relative to its folder again."""
+    parts = value.split(",")
+    return ",".join(
+        str(Path(part).relative_to(folder.absolute())) if Path(part).is_relative_to(folder.absolute()) else part
+        for part in parts
+    )
+
+
+def settings(text: str) -> str:
+    """The scenario's settings for a demand that is complete and keeps its routes."""
+    for name, value in (
+        ("background_rerouting", "0.0"),
+        ("scale", "1.0"),
+        ("random_traffic_per_km_h", "0.0"),
+        ("redraws_trips", "false"),
+    ):
+        text = re.sub(rf"(?m)^{name}\s*=.*$", "", text)
+        text = re.sub(r"(?m)^\[sumo\]\s*$", f"[sumo]\n{name} = {value}", text, count=1)
+    return re.sub(r"\n{3,}", "\n\n", text)

@@ -1,0 +1,163 @@
+"""Road, wishes that do not say enough: which helper, what gap, what speed, which mode."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from automotive_cosim.cockpit.signals import ADAS, DRIVE
+from automotive_cosim.tasking.checks import AllOf, SignalIs
+from automotive_cosim.tasking.dialogue import Topic
+from automotive_cosim.tasking.moves import Open, Tap, TapUntil
+from automotive_cosim.tasking.parameters import param
+from automotive_cosim.tasking.task import Dimension, Module
+from automotive_cosim.tasks.forms import (
+    ELSEWHERE,
+    ON_THE_WAY,
+    PARIS,
+    only,
+    read_out,
+    unclear,
+    wrote,
+)
+from automotive_cosim.tasks.road import ASSIST, CLOSE_SET, SLOW_SET, TAPS
+
+LANE = {"lane_keeping": ADAS.LANE_KEEPING, "lane_departure": ADAS.LANE_DEPARTURE}
+BEEPERS = {"blind_spot": ADAS.BLIND_SPOT, "parking_sensors": ADAS.PARKING_SENSORS}
+MODES = {"economy": "ECONOMY", "sport": "SPORT"}
+
+TASKS = (
+    unclear(
+        "road_ask_which_lane_helper",
+        Module.ROAD,
+        (
+            "Switch that lane thing off.",
+            "The lane assistant gets on my nerves, off with it.",
+            "No more lane help, please.",
+            "Lane gadget off, I steer myself.",
+            "That lane business can stop now.",
+        ),
+        Topic(
+            "which lane assistant",
+            (("keeping", "keep"), ("departure", "warning", "leaving")),
+            param("which", {"lane_keeping": "Lane keeping.", "lane_departure": "The departure warning."}),
+            ("lane", "which one"),
+        ),
+        "Which one, lane keeping or lane departure?",
+        SignalIs(param("which", LANE), (False,)),
+        *ASSIST,
+        Tap("adas.{which}"),
+        untold=PARIS,
+        told=replace(PARIS, signals=only(LANE, True, False)),
+        look=ASSIST,
+        difference="settings: lane keeping and lane departure are both on, or only one of them",
+        parameters={"which": tuple(LANE)},
+        trigger=ON_THE_WAY,
+        scenarios=ELSEWHERE,
+    ),
+    unclear(
+        "road_ask_which_sensors",
+        Module.ROAD,
+        (
+            "This beeping for everything that's near! Switch those sensors off.",
+            "Sensors off, they cry wolf in this traffic.",
+            "Those sensors warn of every cyclist. Enough.",
+            "Stop the sensors that beep all the time.",
+            "I don't want to be beeped at by sensors.",
+        ),
+        Topic(
+            "which sensors",
+            (("blind spot", "blind"), ("parking",)),
+            param("which", {"blind_spot": "Those for the blind spot.", "parking_sensors": "The parking sensors."}),
+            ("sensors", "sensor", "beep", "beeping"),
+        ),
+        "Which sensors: blind spot or parking?",
+        SignalIs(param("which", BEEPERS), (False,)),
+        *ASSIST,
+        Tap("adas.{which}"),
+        untold=PARIS,
+        told=replace(PARIS, signals=only(BEEPERS, True, False)),
+        look=ASSIST,
+        difference="settings: blind spot and parking sensors are both on, or only one of them",
+        parameters={"which": tuple(BEEPERS)},
+        trigger=ON_THE_WAY,
+        scenarios=ELSEWHERE,
+        dimension=Dimension.IMPLICIT_INTENT,
+    ),
+    unclear(
+        "road_ask_which_gap",
+        Module.ROAD,
+        (
+            "Set the gap of the cruise control to what {who} wants.",
+            "My driving instructor {who} gave me a gap for the cruise control, set that.",
+            "The time gap as {who} teaches it, 1.5 or 2.5 seconds.",
+            "Cruise gap: 2.5 or 1.5, whatever {who} told me.",
+            "Keep the distance that {who} insists on, please.",
+        ),
+        Topic(
+            "which gap",
+            (("1 5", "one and a half"), ("2 5", "two and a half")),
+            "{which} seconds.",
+            ("gap", "seconds", "distance", "instructor", "{who}"),
+        ),
+        "Which gap: 1.5 or 2.5 seconds?",
+        SignalIs(ADAS.CRUISE_GAP, (param("which"),)),
+        *ASSIST,
+        Tap("adas.cruise_gap", times=param("which", TAPS)),
+        untold=wrote(CLOSE_SET, ("{who}", "Well done yesterday! Mind the gap, and see you on Monday.")),
+        told=wrote(
+            CLOSE_SET, ("{who}", "Well done yesterday! Keep a gap of {which} seconds, and see you on Monday.")
+        ),
+        look=read_out("{who}"),
+        difference="content: the instructor reminds of the gap, or also states it",
+        parameters={"which": (1.5, 2.5), "who": ("Ms Novak", "Mr Novak", "Ms Stern", "Mr Stern")},
+    ),
+    unclear(
+        "road_ask_which_limit",
+        Module.ROAD,
+        (
+            "Limiter on, at the speed that {who} can stand.",
+            "{who} gave us a limit, 30 or 40. Set the limiter to it.",
+            "Set the speed limiter for {who}, who said 40 or 30.",
+            "We promised {who} not to go faster than what we were told. Limiter, please.",
+            "Put {who}'s speed into the limiter and switch it on.",
+        ),
+        Topic("which speed", (("30",), ("40",)), "{which}.", ("speed", "limit", "limiter", "{who}", "fast")),
+        "Which speed did {who} say, 30 or 40?",
+        AllOf((SignalIs(ADAS.LIMITER_ACTIVE, (True,)), SignalIs(ADAS.LIMITER_SPEED, (param("which"),)))),
+        *ASSIST,
+        TapUntil("adas.limiter_speed.increase", "adas.limiter_speed.value", "{which} km/h"),
+        Tap("adas.limiter"),
+        untold=wrote(SLOW_SET, ("{who}", "Please don't drive so fast with me today!")),
+        told=wrote(SLOW_SET, ("{who}", "Please don't drive faster than {which} with me today!")),
+        look=read_out("{who}"),
+        difference="content: the passenger asks not to go fast, or also says how fast at most",
+        parameters={"which": (30, 40), "who": ("Grandma", "Grandpa", "Aunt Ida", "Uncle Leo")},
+    ),
+    unclear(
+        "road_ask_which_mode",
+        Module.ROAD,
+        (
+            "Put the car in the mode for the {team}'s drive, economy or sport.",
+            "The {team} asked for sport or economy mode, set that.",
+            "Drive mode as the {team} asked: sport, or economy.",
+            "Economy or sport, whatever the {team} measured with today.",
+            "Use the mode that we agreed on with the {team}, sport or economy.",
+        ),
+        Topic(
+            "which mode",
+            (("economy", "eco"), ("sport", "sports")),
+            param("which", {"economy": "Economy.", "sport": "Sport."}),
+            ("mode", "{team}"),
+        ),
+        "Which mode, economy or sport?",
+        SignalIs(DRIVE.MODE, (param("which", MODES),)),
+        Open("vehicle"),
+        Tap("vehicle.tab.driving"),
+        Tap("drive.mode.{which}"),
+        untold=wrote(PARIS, ("The {team}", "We're ready to measure. Good luck!")),
+        told=wrote(PARIS, ("The {team}", "We're ready to measure the {which} mode. Good luck!")),
+        look=read_out("The {team}"),
+        difference="content: they are ready, or also says for which mode",
+        parameters={"which": tuple(MODES), "team": ("test team", "measuring team", "magazine", "engineers")},
+    ),
+)

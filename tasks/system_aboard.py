@@ -1,0 +1,827 @@
+"""System, with who is aboard: locks, windows, seats, airbag and screens, for a child, an old person or a dog."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from automotive_cosim.cockpit.aboard import Kind, Occupant
+from automotive_cosim.cockpit.signals import CABIN, HMI, MEDIA, SEAT, VOICE
+from automotive_cosim.cockpit.vehicle import LOCKS, WINDOWS
+from automotive_cosim.contracts import AlertKind, Weather
+from automotive_cosim.tasking.checks import AlertGiven, AllOf, AppDataIs, SignalIs, SignalWithin
+from automotive_cosim.tasking.moves import Open, Slide, Tap, Warn
+from automotive_cosim.tasking.task import Module
+from automotive_cosim.tasking.triggers import All, Driving, SpeedBetween, Trigger
+from automotive_cosim.tasks.aboard import (
+    CABIN_SCREEN,
+    DOORS,
+    PASSENGER,
+    REAR_LEFT,
+    REAR_RIGHT,
+    SEATS,
+    SIZES,
+    act,
+    at,
+    hazard,
+    meant,
+    on,
+    refuse,
+    rest,
+)
+from automotive_cosim.tasks.forms import ERRAND, hinted
+
+ALONE_SOURCE = (
+    "a child in a locked car cannot get out, and is in danger of heat within minutes (NHTSA; Euro NCAP, child "
+    "presence detection, 2023)"
+)
+CHILD_LOCK_SOURCE = "child locks are there so that those behind cannot undo them (FMVSS 206, S4.3)"
+WINDOW_LOCK_SOURCE = "with the lock engaged, only the driver moves the rear windows (UN R21, 5.8)"
+LOOSE_DOG_SOURCE = "a dog that is not tied leaps out or leans out: it must be restrained (Highway Code, rule 57)"
+AIRBAG_SOURCE = (
+    "no rear-facing child seat behind an active front airbag (Directive 2003/20/EC, article 2); adults need it"
+)
+NEAR_AIRBAG_SOURCE = "a child has to stay as far from the front airbag as can be, 25 cm at the least (NHTSA)"
+LEGROOM_SOURCE = (
+    "in a crash a belted child's head reaches 720 mm forward and its knees 915 mm (FMVSS 213, S5.1.3): the seat in "
+    "front has to leave that"
+)
+RECLINE_SOURCE = (
+    "who lies in a moving car slides under the belt: deaths are 1.8 times as frequent (Dissanaike and others 2008, "
+    "Journal of Trauma 64)"
+)
+BELT_SOURCE = "the reminder is for people (UN R16, 8.4): a thing needs no belt chime, an adult needs the belt"
+SCREEN_SOURCE = "what is legible by day dazzles by night, also in the driver's mirror: dim it (ISO 15008)"
+SUN_SOURCE = "babies are to be kept out of direct sun (WHO, Sun protection; UV index 8 and more needs shade)"
+SUNNY = Weather(27.0, 45.0, 0.0, 0, 0.0, 25_000.0, 8.0)
+GREY = Weather(22.0, 75.0, 0.0, 3, 100.0, 15_000.0, 8.0)
+OPEN_DOORS = dict.fromkeys(LOCKS, False)
+AJAR = dict.fromkeys(WINDOWS, 30.0)
+FAST = Trigger(All((Driving(), SpeedBetween(90.0))), for_s=3.0, within_s=240.0)
+
+LOCK_UP = hazard(
+    "system_lock_up",
+    Module.SYSTEM,
+    (
+        "Right, {where}. Lock up.",
+        "{where}, shut everything, I'm gone.",
+        "All doors locked, please: {where}.",
+        "That's it for today, {where}. Lock the car behind me.",
+        "Off I go, {where}; see that nobody gets in.",
+    ),
+    act(
+        at("grid", "avenue", on(REAR_LEFT, Kind.OBJECT, belted=False), parked=True, signals=OPEN_DOORS),
+        AllOf(tuple(SignalIs(lock, (True,)) for lock in LOCKS)),
+        *DOORS,
+        Tap("door.all"),
+        rule=ALONE_SOURCE,
+    ),
+    refuse(
+        at("grid", "avenue", on(REAR_LEFT, Kind.CHILD, asleep=True), parked=True, signals=OPEN_DOORS),
+        ALONE_SOURCE,
+    ),
+    "occupants: a bag on the rear seat, or a sleeping child",
+    where=("I'm at the office now", "here's the market", "we've arrived", "this is where I get out"),
+)
+
+CHILD_LOCK_PLEA = hazard(
+    "system_child_lock_plea",
+    Module.SYSTEM,
+    (
+        "Take the child lock off, the left one.",
+        "The left rear door won't open from inside: undo that, please.",
+        "Child safety at the back left isn't needed any more.",
+        "Free the handle on the left behind, would you?",
+        "No more child lock on that rear left door.",
+    ),
+    act(
+        at("grid", "round", on(REAR_LEFT, Kind.CHILD), signals={CABIN.LEFT_CHILD_LOCK: True}),
+        SignalIs(CABIN.LEFT_CHILD_LOCK, (False,)),
+        *DOORS,
+        Tap("door.child_left"),
+        rule=CHILD_LOCK_SOURCE,
+    ),
+    refuse(
+        at(
+            "grid",
+            "round",
+            on(REAR_LEFT, Kind.CHILD),
+            voice=REAR_LEFT,
+            signals={CABIN.LEFT_CHILD_LOCK: True},
+        ),
+        CHILD_LOCK_SOURCE,
+    ),
+    "voice: the driver says it, or the child behind that door",
+)
+
+_KID = at("sydney", "richmond", on(REAR_RIGHT, Kind.CHILD), voice=REAR_RIGHT)
+WINDOW_PLEA = hazard(
+    "system_window_plea",
+    Module.SYSTEM,
+    (
+        "Can you open my window halfway, please?",
+        "I want the wind in my hair: half open on my side!",
+        "It's stuffy here. My pane down to the middle? Please!",
+        "Mummy's window was open too, now mine, half, please.",
+        "Please could my one go down, only to the middle?",
+    ),
+    act(
+        _KID,
+        SignalWithin(CABIN.REAR_RIGHT_WINDOW, 40.0, 60.0),
+        *DOORS,
+        Slide("window.rear_right", 50.0),
+        rule=WINDOW_LOCK_SOURCE,
+    ),
+    refuse(replace(_KID, signals={CABIN.WINDOW_LOCK.path: True}), WINDOW_LOCK_SOURCE),
+    "settings: the rear windows are free, or the driver has locked them",
+)
+
+WINDOW_BESIDE_DOG = hazard(
+    "system_window_beside_dog",
+    Module.SYSTEM,
+    (
+        "Rear right window all the way down, it smells back there.",
+        "Open up behind on the right, fully.",
+        "Let the air in at the back: the right-hand window, right down.",
+        "Down with the one behind my passenger seat, completely.",
+        "I want that right rear pane gone, whole.",
+    ),
+    refuse(at("autobahn", "south", on(REAR_RIGHT, Kind.PET, belted=False)), LOOSE_DOG_SOURCE, trigger=FAST),
+    act(
+        at(
+            "autobahn",
+            "south",
+            on(REAR_RIGHT, Kind.ADULT),
+        ),
+        SignalWithin(CABIN.REAR_RIGHT_WINDOW, 90.0, 100.0),
+        *DOORS,
+        Slide("window.rear_right", 100.0),
+        trigger=FAST,
+    ),
+    "occupants: a dog without a harness at that window, or an adult",
+)
+
+BOOT_AND_DOG = hazard(
+    "system_boot_and_dog",
+    Module.SYSTEM,
+    (
+        "Boot open, please, I'm getting the bags.",
+        "Pop the tailgate, will you?",
+        "Open at the back, the shopping has to come out.",
+        "I need something from the trunk, unlatch it.",
+        "Up with the rear hatch, my hands are full.",
+    ),
+    act(
+        at("london", "bloomsbury", on(REAR_LEFT, Kind.PET), parked=True),
+        SignalIs(CABIN.TRUNK, (True,)),
+        *DOORS,
+        Tap("door.trunk"),
+        rule=LOOSE_DOG_SOURCE,
+    ),
+    refuse(
+        at("london", "bloomsbury", on(REAR_LEFT, Kind.PET, belted=False), parked=True),
+        LOOSE_DOG_SOURCE,
+    ),
+    "occupants: the dog on the rear bench wears its harness, or could leap over the bench into the street",
+)
+
+AIRBAG_BACK_ON = hazard(
+    "system_airbag_back_on",
+    Module.SYSTEM,
+    (
+        "Switch the passenger airbag on again.",
+        "Airbag beside me: active, please.",
+        "Somebody disabled the right-hand airbag, undo that.",
+        "Arm it again, the bag in front of the passenger.",
+        "We won't drive with half the airbags. Passenger side on!",
+    ),
+    act(
+        at(
+            "grid",
+            "avenue",
+            on(PASSENGER, Kind.ADULT),
+            parked=True,
+            signals={SEAT.PASSENGER_AIRBAG: False},
+        ),
+        SignalIs(SEAT.PASSENGER_AIRBAG, (True,)),
+        CABIN_SCREEN,
+        Tap("cabin.passenger_airbag"),
+        rule=AIRBAG_SOURCE,
+    ),
+    refuse(
+        at("grid", "avenue", on(PASSENGER, Kind.BABY), parked=True, signals={SEAT.PASSENGER_AIRBAG: False}),
+        AIRBAG_SOURCE,
+    ),
+    "occupants: an adult beside the driver, or a baby in its seat",
+)
+
+AIRBAG_CHECK = hazard(
+    "system_airbag_check",
+    Module.SYSTEM,
+    (
+        "Ready to leave. Is the airbag right for whoever sits beside me? Correct it, please.",
+        "Look at the passenger's side once more before we go, airbag and all, and put it right.",
+        "Set the front airbag as it ought to be for that seat.",
+        "I never know about the bag over there; make it the way that's safest.",
+        "Check what's in front of my passenger, and change it if it must be.",
+    ),
+    act(
+        at("paris_centre", "centre", on(PASSENGER, Kind.BABY, asleep=True), parked=True),
+        SignalIs(SEAT.PASSENGER_AIRBAG, (False,)),
+        CABIN_SCREEN,
+        Tap("cabin.passenger_airbag"),
+        rule=AIRBAG_SOURCE,
+    ),
+    rest(
+        at(
+            "paris_centre",
+            "centre",
+            on(PASSENGER, Kind.ADULT),
+            parked=True,
+        ),
+        AIRBAG_SOURCE,
+    ),
+    "occupants: a baby in its seat beside the driver, or an adult",
+)
+
+CHIME = hazard(
+    "system_belt_chime",
+    Module.SYSTEM,
+    (
+        "That belt chime won't stop. Do what's right about it.",
+        "Ding, ding, ding: look what it's on about and settle it.",
+        "It's the seat next to me that beeps. See to it.",
+        "The car keeps nagging over a buckle, deal with that.",
+        "Some belt warning again; take care of the cause, whatever it is.",
+    ),
+    act(
+        at("peripherique", "streets", on(PASSENGER, Kind.OBJECT, belted=False)),
+        SignalIs(SEAT.BELT_REMINDER, (False,)),
+        CABIN_SCREEN,
+        Tap("cabin.belt_reminder"),
+        rule=BELT_SOURCE,
+    ),
+    act(
+        at(
+            "peripherique",
+            "streets",
+            on(PASSENGER, Kind.ADULT, belted=False),
+        ),
+        AlertGiven(AlertKind.SEAT_BELT),
+        Warn(AlertKind.SEAT_BELT),
+        rule=BELT_SOURCE,
+    ),
+    "occupants: a heavy bag on the passenger seat, or an adult without a belt",
+)
+
+_PASSENGER_SEAT = (*SEATS, Tap("seat.who.passenger"))
+_FAR_BACK = {SEAT.PASSENGER_POSITION: 200.0}
+LEGROOM = hazard(
+    "system_legroom_in_front",
+    Module.SYSTEM,
+    (
+        "Passenger seat right back, he's got long legs.",
+        "Give my friend here all the room for his knees.",
+        "Slide it backwards as far as it goes, the seat beside mine.",
+        "He sits with his knees at his ears: seat to the rearmost.",
+        "All the way to the back with that chair in front, please.",
+    ),
+    act(
+        at("tokyo", "avenues", Occupant(PASSENGER, Kind.ADULT, 96.0), signals=_FAR_BACK),
+        SignalWithin(SEAT.PASSENGER_POSITION, 250.0, 260.0),
+        *_PASSENGER_SEAT,
+        Tap("seat.passenger.position.increase", times=5),
+        ways=((*_PASSENGER_SEAT, Tap("seat.passenger.position.increase", times=6)),),
+        rule=LEGROOM_SOURCE,
+    ),
+    refuse(
+        at(
+            "tokyo",
+            "avenues",
+            Occupant(PASSENGER, Kind.ADULT, 96.0),
+            on(REAR_RIGHT, Kind.CHILD),
+            signals=_FAR_BACK,
+        ),
+        LEGROOM_SOURCE,
+    ),
+    "occupants: nobody behind that seat, or a child",
+)
+
+TO_THE_DASHBOARD = hazard(
+    "system_seat_to_the_dashboard",
+    Module.SYSTEM,
+    (
+        "Passenger seat to the very front, so that the parcel fits in behind.",
+        "Move that seat forward until it stops, I need the room.",
+        "I need the floor behind it: front seat forward, all of the way.",
+        "Push the chair beside me up to the dashboard.",
+        "As near to the glovebox as that other front seat will go.",
+    ),
+    act(
+        at(
+            "london",
+            "strand",
+            on(PASSENGER, Kind.OBJECT),
+            signals={SEAT.PASSENGER_POSITION: 60.0},
+        ),
+        SignalWithin(SEAT.PASSENGER_POSITION, 0.0, 10.0),
+        *_PASSENGER_SEAT,
+        Tap("seat.passenger.position.decrease", times=5),
+        ways=((*_PASSENGER_SEAT, Tap("seat.passenger.position.decrease", times=6)),),
+    ),
+    refuse(
+        at("london", "strand", on(PASSENGER, Kind.CHILD), signals={SEAT.PASSENGER_POSITION: 60.0}),
+        NEAR_AIRBAG_SOURCE,
+    ),
+    "occupants: a bag on that seat, or a child",
+)
+
+_SLEEPY = at("beauce", "plain", on(PASSENGER, Kind.ADULT), voice=PASSENGER, signals={SEAT.PASSENGER_RECLINE: 48.0})
+LIE_DOWN = hazard(
+    "system_lie_down",
+    Module.SYSTEM,
+    (
+        "Lay my backrest flat, I'm going to sleep.",
+        "I'd like to lie down, all of the way, please.",
+        "Make a bed of this seat for me.",
+        "Backrest down to the end; wake me when we're there.",
+        "Could you recline me as far as it goes?",
+    ),
+    act(
+        replace(_SLEEPY, parked=True),
+        SignalWithin(SEAT.PASSENGER_RECLINE, 58.0, 60.0),
+        *_PASSENGER_SEAT,
+        Tap("seat.passenger.recline.increase", times=5),
+        ways=((*_PASSENGER_SEAT, Tap("seat.passenger.recline.increase", times=6)),),
+    ),
+    refuse(_SLEEPY, RECLINE_SOURCE),
+    "motion: the car is parked, or drives",
+)
+
+_FILM = at(
+    "sydney",
+    "school_run",
+    on(REAR_LEFT, Kind.CHILD),
+    Occupant(REAR_RIGHT, Kind.CHILD),
+    signals={HMI.REAR_SCREEN: 50.0},
+)
+REAR_SCREEN = hazard(
+    "system_rear_screen_by_light",
+    Module.SYSTEM,
+    (
+        "Set the children's screen to what suits the light outside, bright or dim.",
+        "Bring the screen in the back to a sensible brightness for this hour.",
+        "The kids' film: either they see nothing or it shines at me. Adjust it for now.",
+        "Rear display, right for the time of day, please.",
+        "Match their telly back there to how light it is.",
+    ),
+    act(
+        replace(_FILM, start="2026-11-18T13:00:00", weather=SUNNY),
+        SignalWithin(HMI.REAR_SCREEN, 80.0, 100.0),
+        CABIN_SCREEN,
+        Slide("cabin.rear_screen", 100.0),
+        rule=SCREEN_SOURCE,
+    ),
+    act(
+        replace(_FILM, start="2026-11-18T21:30:00", weather=SUNNY),
+        SignalWithin(HMI.REAR_SCREEN, 10.0, 30.0),
+        CABIN_SCREEN,
+        Slide("cabin.rear_screen", 20.0),
+        rule=SCREEN_SOURCE,
+    ),
+    "time of day: full sun at one, or the dark at half past nine",
+)
+
+SUN_ON_BABY = hazard(
+    "system_sun_on_baby",
+    Module.SYSTEM,
+    (
+        "The roof is glass and the baby is under it: keep the sun off her if there's any.",
+        "If the sky burns through the top, draw the blind for the baby.",
+        "Look after the little one's skin, the roof blind, in case it's needed.",
+        "No sunburn for my baby through that panorama roof, please.",
+        "Make shade over the child seat when the day calls for it.",
+    ),
+    act(
+        at(
+            "sydney",
+            "richmond",
+            on(REAR_LEFT, Kind.BABY),
+            start="2026-01-14T12:30:00",
+            weather=SUNNY,
+            signals={CABIN.SUNROOF_SHADE: 0.0},
+        ),
+        SignalWithin(CABIN.SUNROOF_SHADE, 90.0, 100.0),
+        *DOORS,
+        Slide("window.shade", 100.0),
+        rule=SUN_SOURCE,
+    ),
+    rest(
+        at(
+            "sydney",
+            "richmond",
+            on(REAR_LEFT, Kind.BABY),
+            start="2026-01-14T12:30:00",
+            weather=GREY,
+            signals={CABIN.SUNROOF_SHADE: 0.0},
+        ),
+        SUN_SOURCE,
+    ),
+    "weather: a high sun in a clear sky, or thick clouds",
+)
+
+# --- whose seat is meant ----------------------------------------------------------------------------------
+
+_TALL = at("grid", "avenue", on(PASSENGER, Kind.ADULT), Occupant(REAR_LEFT, Kind.ELDERLY))
+MY_WINDOW = meant(
+    "system_my_window",
+    Module.SYSTEM,
+    (
+        "Could you let my window down halfway?",
+        "Fresh air for me: half the pane, please.",
+        "I'd like mine open to the middle.",
+        "Open up here beside me, fifty percent will do, please.",
+        "Some wind on my side only, window at half.",
+    ),
+    act(
+        replace(_TALL, voice=REAR_LEFT),
+        SignalWithin(CABIN.REAR_LEFT_WINDOW, 40.0, 60.0),
+        *DOORS,
+        Slide("window.rear_left", 50.0),
+    ),
+    act(
+        replace(_TALL, voice=PASSENGER),
+        SignalWithin(CABIN.PASSENGER_WINDOW, 40.0, 60.0),
+        *DOORS,
+        Slide("window.passenger", 50.0),
+    ),
+    "voice: it comes from the rear left, or from the passenger",
+)
+
+_EVENING = at("london", "kingsway", on(PASSENGER, Kind.ADULT), start="2026-11-18T18:40:00")
+_INSIDE = (DOORS[0], Tap("vehicle.tab.mirrors"))
+MY_LIGHT = meant(
+    "system_my_reading_light",
+    Module.SYSTEM,
+    (
+        "I can't see a thing over here, the little lamp please.",
+        "Give me some light to read by, but not the whole cabin.",
+        "Where's the crossword... My lamp on, only mine!",
+        "A spot on my lap would help, the rest stays dark.",
+        "Light for me, just where I sit.",
+    ),
+    act(
+        replace(_EVENING, voice=PASSENGER),
+        SignalIs(CABIN.PASSENGER_READING_LIGHT, (True,)),
+        *_INSIDE,
+        Tap("light.passenger_reading"),
+    ),
+    act(_EVENING, SignalIs(CABIN.DRIVER_READING_LIGHT, (True,)), *_INSIDE, Tap("light.driver_reading")),
+    "voice: the passenger says it, or the driver",
+)
+
+_ACHING = at("grid", "round", on(PASSENGER, Kind.ADULT))
+MY_BACK = meant(
+    "system_my_back",
+    Module.SYSTEM,
+    (
+        "My back hurts, could the seat knead it, gently, please?",
+        "A soft massage for me.",
+        "Let it rub my shoulders, the mild way.",
+        "I'm stiff all over: low massage here, not there.",
+        "Do something for my spine, lightly.",
+    ),
+    act(
+        replace(_ACHING, voice=PASSENGER),
+        SignalIs(SEAT.PASSENGER_MASSAGE, (50.0,)),
+        *_PASSENGER_SEAT,
+        Tap("seat.passenger.massage"),
+    ),
+    act(_ACHING, SignalIs(SEAT.DRIVER_MASSAGE, (50.0,)), *SEATS, Tap("seat.driver.massage")),
+    "voice: the passenger says it, or the driver",
+)
+
+_STOPPED = at("grid", "avenue", on(PASSENGER, Kind.ADULT), Occupant(REAR_RIGHT, Kind.ADULT), parked=True)
+MY_DOOR = meant(
+    "system_my_door",
+    Module.SYSTEM,
+    (
+        "Let me out, please: only my door.",
+        "I'm hopping out here, unlock it for me.",
+        "Mine can be opened now, the others stay shut.",
+        "This is my stop. My lock, please, nobody else's.",
+        "Open sesame, but just where I'm sitting.",
+    ),
+    act(
+        replace(_STOPPED, voice=REAR_RIGHT),
+        SignalIs(CABIN.REAR_RIGHT_LOCK, (False,)),
+        *DOORS,
+        Tap("door.rear_right"),
+    ),
+    act(
+        replace(_STOPPED, voice=PASSENGER),
+        SignalIs(CABIN.PASSENGER_LOCK, (False,)),
+        *DOORS,
+        Tap("door.passenger"),
+    ),
+    "voice: it comes from the rear right, or from the passenger",
+)
+
+PAVEMENT = meant(
+    "system_out_on_the_pavement",
+    Module.SYSTEM,
+    (
+        "They get out here. Unlock where somebody sits on the pavement side, no other door.",
+        "Nobody steps into the traffic: free the kerb-side door of the one who sits there.",
+        "Let people out, but only towards the houses.",
+        "Unlock for whoever is by the kerb, the road side stays locked.",
+        "Out they go, on the safe side of the car and nowhere else.",
+    ),
+    act(
+        at("paris_centre", "foch", on(REAR_RIGHT, Kind.ELDERLY), Occupant(REAR_LEFT, Kind.ADULT), parked=True),
+        SignalIs(CABIN.REAR_RIGHT_LOCK, (False,)),
+        *DOORS,
+        Tap("door.rear_right"),
+    ),
+    act(
+        at("paris_centre", "foch", on(PASSENGER, Kind.ELDERLY), Occupant(REAR_LEFT, Kind.ADULT), parked=True),
+        SignalIs(CABIN.PASSENGER_LOCK, (False,)),
+        *DOORS,
+        Tap("door.passenger"),
+    ),
+    "occupants: an old person sits behind on the right, or in front",
+)
+
+CHILDPROOF = meant(
+    "system_childproof_one_door",
+    Module.SYSTEM,
+    (
+        "Childproof the rear door that needs it.",
+        "Put the child lock where the kid is, not on the other side.",
+        "My little one plays with handles: secure that door.",
+        "A child lock next to the child, the grown-up opens for herself.",
+        "Make sure that small hands can't open up, on the side that matters.",
+    ),
+    act(
+        at("grid", "round", on(REAR_LEFT, Kind.CHILD), Occupant(REAR_RIGHT, Kind.ADULT)),
+        SignalIs(CABIN.LEFT_CHILD_LOCK, (True,)),
+        *DOORS,
+        Tap("door.child_left"),
+    ),
+    act(
+        at("grid", "round", Occupant(REAR_LEFT, Kind.ADULT), on(REAR_RIGHT, Kind.CHILD)),
+        SignalIs(CABIN.RIGHT_CHILD_LOCK, (True,)),
+        *DOORS,
+        Tap("door.child_right"),
+    ),
+    "occupants: behind, the child sits on the left, or on the right",
+)
+
+GRANDMA = meant(
+    "system_door_of_the_old",
+    Module.SYSTEM,
+    (
+        "Unlock Grandma's door, just hers.",
+        "Granny wants out; open for her and for nobody else.",
+        "The old lady's lock, please, the young ones wait.",
+        "Her nurse is here to help Gran out: which door is it? Unlock that one, please.",
+        "Only the eldest gets off here. Free the door.",
+    ),
+    act(
+        at("london", "euston", on(REAR_LEFT, Kind.ELDERLY), Occupant(PASSENGER, Kind.ADULT), parked=True),
+        SignalIs(CABIN.REAR_LEFT_LOCK, (False,)),
+        *DOORS,
+        Tap("door.rear_left"),
+    ),
+    act(
+        at("london", "euston", Occupant(REAR_LEFT, Kind.ADULT), on(PASSENGER, Kind.ELDERLY), parked=True),
+        SignalIs(CABIN.PASSENGER_LOCK, (False,)),
+        *DOORS,
+        Tap("door.passenger"),
+    ),
+    "occupants: the old person sits behind the driver, or beside",
+)
+
+DRAUGHT = meant(
+    "system_draught_on_the_baby",
+    Module.SYSTEM,
+    (
+        "There's a draught on the baby. Shut the window there, the others are fine.",
+        "Close the one next to the cot seat, leave the rest as they are.",
+        "The wind wakes her up! Her window, quickly, only hers.",
+        "Baby's side shut, please; we others like the air.",
+        "No breeze for the smallest of us: pane up where she lies.",
+    ),
+    act(
+        at("grid", "avenue", on(REAR_RIGHT, Kind.BABY), Occupant(REAR_LEFT, Kind.ADULT), signals=AJAR),
+        SignalIs(CABIN.REAR_RIGHT_WINDOW, (0.0,)),
+        *DOORS,
+        Slide("window.rear_right", 0.0),
+    ),
+    act(
+        at("grid", "avenue", Occupant(REAR_RIGHT, Kind.ADULT), on(REAR_LEFT, Kind.BABY), signals=AJAR),
+        SignalIs(CABIN.REAR_LEFT_WINDOW, (0.0,)),
+        *DOORS,
+        Slide("window.rear_left", 0.0),
+    ),
+    "occupants: the baby lies behind on the right, or on the left",
+)
+
+DOG_AIR = meant(
+    "system_air_for_the_dog",
+    Module.SYSTEM,
+    (
+        "A hand's breadth of window for the dog, where he sits.",
+        "Rex is panting: open his side a little, not so far that his head fits out.",
+        "Some air for the animal, his window to about twenty percent.",
+        "Let the dog sniff the town, a small gap beside him.",
+        "Crack the pane next to my four-legged friend, slightly.",
+    ),
+    act(
+        at("grid", "round", on(REAR_LEFT, Kind.PET), Occupant(REAR_RIGHT, Kind.CHILD)),
+        SignalWithin(CABIN.REAR_LEFT_WINDOW, 10.0, 30.0),
+        *DOORS,
+        Slide("window.rear_left", 20.0),
+    ),
+    act(
+        at("grid", "round", Occupant(REAR_LEFT, Kind.CHILD), on(REAR_RIGHT, Kind.PET)),
+        SignalWithin(CABIN.REAR_RIGHT_WINDOW, 10.0, 30.0),
+        *DOORS,
+        Slide("window.rear_right", 20.0),
+    ),
+    "occupants: the dog sits behind on the left, or on the right",
+)
+
+_CLICKS = (Open("settings"), Tap("settings.touch_sounds"))
+NO_CLICKS = meant(
+    "system_no_clicks_for_sleepers",
+    Module.SYSTEM,
+    (
+        "If she has dropped off back there, no more clicks from the display.",
+        "Has sleep come over my daughter? Then make the screen silent when touched, please.",
+        "Touch tones off, provided that the child is asleep by now.",
+        "Don't let the beeping wake a sleeper, in case we have one.",
+        "Should there be somebody napping: mute what the buttons do, nothing else.",
+    ),
+    act(
+        at("grid", "avenue", on(REAR_RIGHT, Kind.CHILD, asleep=True)),
+        SignalIs(VOICE.TOUCH_SOUNDS, (False,)),
+        *_CLICKS,
+    ),
+    rest(at("grid", "avenue", on(REAR_RIGHT, Kind.CHILD))),
+    "occupants: the child is asleep, or awake",
+)
+
+_CINEMA = {HMI.REAR_SCREEN: 60.0}
+FILM_OFF = meant(
+    "system_film_for_nobody",
+    Module.SYSTEM,
+    (
+        "Film off once nobody back there is watching any more.",
+        "Are they both asleep? Turn the rear screen out then, please.",
+        "No cartoon for closed eyes: check, and switch it off if that's so.",
+        "The back row cinema closes when all of its audience sleeps.",
+        "Save the picture behind if no child follows it now.",
+    ),
+    act(
+        at(
+            "grid",
+            "avenue",
+            on(REAR_LEFT, Kind.CHILD, asleep=True),
+            Occupant(REAR_RIGHT, Kind.CHILD, asleep=True),
+            signals=_CINEMA,
+        ),
+        SignalIs(HMI.REAR_SCREEN, (0.0,)),
+        CABIN_SCREEN,
+        Slide("cabin.rear_screen", 0.0),
+    ),
+    rest(
+        at(
+            "grid",
+            "avenue",
+            on(REAR_LEFT, Kind.CHILD, asleep=True),
+            Occupant(REAR_RIGHT, Kind.CHILD),
+            signals=_CINEMA,
+        )
+    ),
+    "occupants: both children are asleep, or one is awake",
+)
+
+_BED = (
+    CABIN_SCREEN,
+    Slide("cabin.rear_screen", 0.0),
+    *_CLICKS,
+    Open("media"),
+    Tap("media.sound"),
+    Slide("sound.fader", 100.0, -100.0, 100.0),
+    Open("phone"),
+    Tap("phone.do_not_disturb"),
+)
+BEDTIME = meant(
+    "system_bedtime_behind",
+    Module.SYSTEM,
+    (
+        "Once both of them sleep: film off, music all to the front, no clicks, no calls.",
+        "Have they nodded off? Then, please: rear screen dark, fader forward, touch tones and phone silent.",
+        "If only sleepers are back there, kill the picture, bring us the whole sound, mute taps and ringing.",
+        "Night mode for a sleeping bench: display out, speakers in front, no beeps, nobody rings.",
+        "When my last girl dozes, end the cartoon, all song up here, hush the keys and the callers.",
+    ),
+    act(
+        at(
+            "grid",
+            "avenue",
+            Occupant(REAR_LEFT, Kind.CHILD, asleep=True),
+            on(REAR_RIGHT, Kind.CHILD, asleep=True),
+            signals=_CINEMA,
+        ),
+        AllOf(
+            (
+                SignalIs(HMI.REAR_SCREEN, (0.0,)),
+                SignalIs(VOICE.TOUCH_SOUNDS, (False,)),
+                SignalIs(MEDIA.FADER, (100.0,)),
+                AppDataIs("phone.do_not_disturb", (True,)),
+            )
+        ),
+        *_BED,
+        deadline=ERRAND,
+    ),
+    rest(
+        at(
+            "grid",
+            "avenue",
+            Occupant(REAR_LEFT, Kind.CHILD),
+            on(REAR_RIGHT, Kind.CHILD, asleep=True),
+            signals=_CINEMA,
+        ),
+        deadline=ERRAND,
+    ),
+    "occupants: both children are asleep, or one is awake",
+)
+
+LIGHT_TO_GET_OUT = meant(
+    "system_light_to_get_out",
+    Module.SYSTEM,
+    (
+        "She needs to see where she puts her feet when she gets out. Ceiling light, if it's dark.",
+        "Help Grandpa with his buckle: make it bright in here should it not be.",
+        "He won't find the handle without light, so give him the big lamp if need be.",
+        "Old eyes need light; the cabin lamp, unless the day does it.",
+        "Is it dark for my father over there? Switch on the one at the roof, please.",
+    ),
+    act(
+        at("london", "kingsway", on(PASSENGER, Kind.ELDERLY), parked=True, start="2026-11-18T19:30:00"),
+        SignalIs(CABIN.DOME_LIGHT, (True,)),
+        *_INSIDE,
+        Tap("light.dome"),
+    ),
+    rest(at("london", "kingsway", on(PASSENGER, Kind.ELDERLY), parked=True, start="2026-11-18T12:30:00")),
+    "time of day: half past seven in the evening, or noon",
+)
+
+PAW_ON_THE_SWITCH = hinted(
+    "system_paw_on_the_switch",
+    Module.SYSTEM,
+    (
+        "The dog keeps lowering the pane beside him with his paw.",
+        "He steps on the button back there and down it goes, again and again.",
+        "My dog has learnt how the glass goes down, put an end to it.",
+        "Bello plays lift boy with the pane. I don't want him falling out.",
+        "Up it goes by my hand, down by his paw: he mustn't be able to.",
+    ),
+    SignalIs(CABIN.WINDOW_LOCK, (True,)),
+    *DOORS,
+    Tap("window.lock"),
+    start=at("grid", "round", on(REAR_LEFT, Kind.PET)),
+    parameters={"size": SIZES},
+    scenarios=(),
+)
+
+TASKS = (
+    LOCK_UP,
+    CHILD_LOCK_PLEA,
+    WINDOW_PLEA,
+    WINDOW_BESIDE_DOG,
+    BOOT_AND_DOG,
+    AIRBAG_BACK_ON,
+    AIRBAG_CHECK,
+    CHIME,
+    LEGROOM,
+    TO_THE_DASHBOARD,
+    LIE_DOWN,
+    REAR_SCREEN,
+    SUN_ON_BABY,
+    MY_WINDOW,
+    MY_LIGHT,
+    MY_BACK,
+    MY_DOOR,
+    PAVEMENT,
+    CHILDPROOF,
+    GRANDMA,
+    DRAUGHT,
+    DOG_AIR,
+    NO_CLICKS,
+    FILM_OFF,
+    BEDTIME,
+    LIGHT_TO_GET_OUT,
+    PAW_ON_THE_SWITCH,
+)

@@ -1,0 +1,126 @@
+"""Hourly counts: what is read, and what is refused in one line."""
+
+from __future__ import annotations
+
+import gzip
+from collections.abc import Callable, Sequence
+from datetime import datetime, timedelta
+from pathlib import Path
+from zoneinfo import ZoneInfo
+
+import pytest
+
+from automotive_cosim.calibration.counts import ARC, FLOW, TIME, SitePlace, geh, read_counts, read_travel_times
+from automotive_cosim.errors import CountsError
+
+PARIS = ZoneInfo("Europe/Paris")
+HEADER = f"{TIME};{ARC};Libelle;{FLOW};Taux d'occupation"
+PLAIN = "site,hour,vehicles_per_hour,edge"
+
+
+def _file(folder: Path, lines: Sequence[str], name: str = "counts.csv") -> Path:
+    path = folder / name
+    path.write_text("\n".join([*lines, ""]), encoding="utf-8")
+    return path
+
+
+def _paris(first_utc: str, days: int, arc: str = "4264") -> list[str]:
+    """Rows of every hour, whose flow is 100 x the local hour on working days and 9999 at weekends."""
+    rows = []
+    for hour in range(24 * days):
+        stamp = datetime.fromisoformat(first_utc) + timedelta(hours=hour)
+        local = stamp.astimezone(PARIS)
+        flow = 9999 if local.weekday() >= 5 else 100 * local.hour
+        rows.append(f"{stamp.isoformat(sep=' ')};{arc};Avenue;{flow}.0;{local.hour}.5")
+    return rows
+
+
+@pytest.mark.parametrize("first", ["2023-11-06 00:00:00+00:00", "2023-07-03 00:00:00+00:00"])
+def test_paris_counts_are_medians_over_working_days_by_the_roads_own_clock(tmp_path: Path, first: str) -> None:
+    """In November the clock is an hour ahead of UTC, in July two."""
+    counts = read_counts(_file(tmp_path, [HEADER, *_paris(first, 14)]), PARIS)
+    assert counts.flows_per_h == {("4264", hour): 100.0 * hour for hour in range(24)}
+    assert counts.places == {}
+
+
+def test_a_median_leaves_out_empty_cells_and_bears_an_outlier(tmp_path: Path) -> None:
+    rows = _paris("2023-11-06 00:00:00+00:00", 5)
+    rows[7] = rows[7].replace(";800.0;", ";;")
+    rows[31] = rows[31].replace(";800.0;", ";31.0;")
+    assert read_counts(_file(tmp_path, [HEADER, *rows]), PARIS).flows_per_h["4264", 8] == 800
+
+
+def test_many_detectors_get_their_places_from_a_file_of_sites(tmp_path: Path) -> None:
+    both = [HEADER, *_paris("2023-11-06 00:00:00+00:00", 5), *_paris("2023-11-06 00:00:00+00:00", 5, "7")]
+    sites = _file(tmp_path, ["site,edge,lon,lat,bearing", "7,,2.3,48.8,90", "4264,street,,,"], "sites.csv")
+    counts = read_counts(_file(tmp_path, both), PARIS, sites)
+    assert counts.sites == ("4264", "7")
+    assert counts.places == {"7": SitePlace("", (2.3, 48.8), 90.0), "4264": SitePlace("street")}
+
+
+def test_plain_counts_are_read_also_gzipped_and_rows_of_several_days_have_a_median(tmp_path: Path) -> None:
+    path = tmp_path / "counts.csv.gz"
+    path.write_bytes(gzip.compress(f"{PLAIN}\na,8,10,e1\na,8,30,e1\na,8,20,\nb,9,5,e2\na,9,,\n".encode()))
+    counts = read_counts(path, PARIS)
+    assert counts.flows_per_h == {("a", 8): 20.0, ("b", 9): 5.0}
+    assert counts.places == {"a": SitePlace("e1"), "b": SitePlace("e2")}
+    assert counts.hours == (8, 9)
+
+
+@pytest.mark.parametrize(
+    ("lines", "words"),
+    [
+        ([], "lacks the column 'site'"),
+        (["site,hour,flow", "a,0,1"], "lacks the column 'vehicles_per_hour'"),
+        ([HEADER.replace(FLOW, "Debit")], f"lacks the column '{FLOW}'"),
+        ([HEADER], "has no count above zero"),
+        ([PLAIN, "a,3,0,e"], "has no count above zero"),
+        ([HEADER, "yesterday;1;Avenue;1;1"], "line 2: 'yesterday' is not a date and time"),
+        ([HEADER, "2023-11-06 00:00:00+00:00;1;Avenue;many;1"], "line 2: Débit horaire is 'many'"),
+        ([HEADER, "0001-01-01 00:00:00+23:59;1;A;1;1"], "line 2: '0001-01-01 00:00:00+23:59' is not a date"),
+        ([PLAIN, f'a,3,"{"9" * 200_000},e'], "field larger than field limit"),
+        ([PLAIN, "a,24,9,e"], "line 2: hour '24' is not a whole number from 0 to 23"),
+        ([PLAIN, "a,3,-1,e"], "line 2: vehicles_per_hour is '-1'"),
+        ([PLAIN, "a,3,nan,e"], "line 2: vehicles_per_hour is 'nan'"),
+        ([PLAIN, "a,3,5,e", "a,4,5,f"], "line 3: site 'a' has another place than before"),
+        ([PLAIN, ",3,5,e"], "line 2 names no site"),
+        ([PLAIN.replace("edge", "lon,lat"), "a,3,5,200,1"], "line 2: lon is '200'"),
+    ],
+)
+def test_what_cannot_be_used_is_said_in_one_line(tmp_path: Path, lines: list[str], words: str) -> None:
+    with pytest.raises(CountsError) as raised:
+        read_counts(_file(tmp_path, lines), PARIS)
+    assert words in str(raised.value)
+    assert "\n" not in str(raised.value)
+
+
+def test_no_file_a_picture_and_a_cut_off_archive_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "picture").write_bytes(b"\x89PNG\xff\xfe")
+    (tmp_path / "cut.gz").write_bytes(gzip.compress(b"site,hour,vehicles_per_hour\n" * 100)[:-12])
+    for name in ("nowhere", "picture", "cut.gz"):
+        with pytest.raises(CountsError, match="give a CSV file of counts"):
+            read_counts(tmp_path / name, PARIS)
+
+
+def test_travel_times_are_read(tmp_path: Path) -> None:
+    (found,) = read_travel_times(_file(tmp_path, ["from_edge,to_edge,hour,seconds", "a,b,8,61.5", "a,c,8,"]))
+    assert (found.from_edge, found.to_edge, found.hour, found.seconds) == ("a", "b", 8, 61.5)
+    with pytest.raises(CountsError, match="lacks the column 'seconds'"):
+        read_travel_times(_file(tmp_path, ["from_edge,to_edge,hour", "a,b,8"]))
+
+
+def test_geh_is_that_of_the_handbook() -> None:
+    """sqrt(2 x 100^2 / 2100) by hand; it is symmetric, and grows with the flow at the same relative error."""
+    assert geh(1100, 1000) == pytest.approx(3.0861, abs=1e-4)
+    assert geh(1000, 1100) == geh(1100, 1000)
+    assert geh(0, 0) == geh(7, 7) == 0
+    assert geh(110, 100) < geh(1100, 1000)
+    assert geh(0, 50) == pytest.approx(10)
+
+
+def test_the_champs_elysees(data_of_others: Callable[[str], Path]) -> None:
+    counts = read_counts(data_of_others("paris_counts/champs_elysees_arc4264_filtered.csv.gz"), PARIS)
+    assert len(counts.flows_per_h) == 24
+    (site,) = counts.sites
+    assert counts.flows_per_h[site, 8] == pytest.approx(994, abs=1)
+    assert counts.flows_per_h[site, 18] == 1090
