@@ -3,29 +3,39 @@
     python benchmarks/drives.py                                  # all families, seed 0: nobody at the cockpit
     python benchmarks/drives.py beauce_june grid_january --seeds 0 1 2 3 4
     python benchmarks/drives.py --watch perfect late             # plays them, and scores what they do
+    python benchmarks/drives.py --watch perfect --seeds 0 1 2 3 4 --keep runs/perfect    # resumes; docs/drives.md
 
-Staged is what the plans ask for; it *came off* if an event of its kind (or a bait of its kind) was found on the
-untouched drive by the time the next thing but two is staged. None of it depends on how busy the machine is.
+Staged is what the plans ask for. On the drive with nobody at the cockpit, an event *came off* if its kind obliged
+within five minutes, and a bait if nothing of its kind did while it lasted. None of it depends on how busy the
+machine is.
 """
 
 from __future__ import annotations
 
 import argparse
-from collections import Counter
+import json
+import time
+from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
+from dataclasses import asdict, dataclass
+from itertools import product
+from pathlib import Path
 from statistics import mean
 
+from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.departure import depart
 from automotive_cosim.drives.events import KINDS
-from automotive_cosim.drives.events.tracker import DriveEvent, Tracker
+from automotive_cosim.drives.events.tracker import Tracker
 from automotive_cosim.drives.families import FAMILIES
-from automotive_cosim.drives.plan import DrivePlan, Staged
+from automotive_cosim.drives.judge import JudgedAct, JudgedEvent, Judgement
+from automotive_cosim.drives.plan import APART_S, Staged
 from automotive_cosim.drives.score import Score, score, together
 from automotive_cosim.drives.watch import Watch
 from automotive_cosim.drives.watchers import AlertAll, AlertOften, AlertOnWake, RulePerfect, Silent
 from automotive_cosim.episode.loop import play
 from automotive_cosim.episode.specification import Conditions
+from automotive_cosim.run.row import from_json
 from automotive_cosim.traffic.fork import Simulations
 
 WATCHERS: Mapping[str, Callable[[], RulePerfect | Silent | AlertAll | AlertOnWake | AlertOften]] = {
@@ -36,104 +46,212 @@ WATCHERS: Mapping[str, Callable[[], RulePerfect | Silent | AlertAll | AlertOnWak
     "wakes": AlertOnWake,
     "often": AlertOften,
 }
-LATEST_S = 180.0
-"""An event comes off by this time after it was staged; an incident ahead is met later than a belt."""
+LATEST_S = 300.0
+"""An event comes off by this time after it was staged: a tyre leaks for minutes, an incident lies ahead."""
 STEPS = 10**6
 
 
-def found(plan: DrivePlan, simulations: Simulations) -> tuple[Sequence[DriveEvent], float]:
-    """The events of the untouched drive, and its kilometres."""
-    tracker = Tracker(KINDS)
-    with closing(depart(plan, simulations)) as world:
-        drive = [world.moment]
-        tracker.see(drive)
-        while world.moment.driving.end is None and world.moment.time_s - drive[0].time_s < plan.duration_s:
-            for moment in world.advance(1.0):
-                drive.append(moment)
-                tracker.see(drive)
-        begin_s = drive[0].time_s
-        for event in tracker.events:
-            event.observable_s -= begin_s
-        return tracker.events, world.moment.driving.distance_m / 1000
+@dataclass(frozen=True, slots=True)
+class Found:
+    """An event of the drive with nobody at the cockpit; seconds since departure."""
+
+    kind: str
+    observable_s: float
+    obliged_s: float | None
 
 
-def came_off(staged: Staged, events: Sequence[DriveEvent]) -> bool:
-    """Whether something of its kind was found after it was staged."""
-    return any(
-        event.kind == staged.kind
-        and event.bait == staged.is_bait
-        and staged.at_s - 1 <= event.observable_s <= staged.at_s + LATEST_S
-        for event in events
-    )
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """What one drive left."""
+
+    family: str
+    seed: int
+    watcher: str
+    driven_s: float
+    distance_m: float
+    staged: tuple[Staged, ...]
+    untouched: tuple[Found, ...]
+    events: tuple[JudgedEvent, ...]
+    acts: tuple[JudgedAct, ...]
+
+    @property
+    def score(self) -> Score:
+        """The watcher's."""
+        return score(Judgement(self.events, self.acts), self.driven_s)
+
+    def came_off(self, staged: Staged) -> bool:
+        """Whether what was staged happened without anybody's doing."""
+        latest_s = APART_S if staged.is_bait else LATEST_S
+        due = any(
+            event.kind == staged.kind
+            and event.obliged_s is not None
+            and staged.at_s - 1 <= event.observable_s <= staged.at_s + latest_s
+            for event in self.untouched
+        )
+        return due != staged.is_bait
 
 
-def played(name: str, plan: DrivePlan, simulations: Simulations) -> Score:
-    """The score of one watcher on one drive."""
-    agent = WATCHERS[name]()
+def played(who: str, family: str, seed: int, simulations: Simulations) -> Kept:
+    """One drive by one watcher."""
+    plan, agent = FAMILIES[family].draw(seed), WATCHERS[who]()
     conditions = Conditions(max_steps=STEPS, max_sim_s=plan.duration_s, channels=agent.channels)
     with closing(Watch.depart_with(depart(plan, simulations), conditions)) as watch:
         agent.reset(watch.goal)
         play(watch, agent)
         assert watch.judgement is not None
-        return score(watch.judgement, watch.seconds)
+        return Kept(
+            family,
+            seed,
+            who,
+            watch.seconds,
+            watch.moments[-1].driving.distance_m,
+            plan.staged,
+            tuple(found(watch.baseline_moments)),
+            watch.judgement.events,
+            watch.judgement.acts,
+        )
 
 
-def table(names: Sequence[str], seeds: Sequence[int], simulations: Simulations) -> Iterator[str]:
+def found(drive: Sequence[Moment]) -> Iterator[Found]:
+    """The events of a drive, without look-alikes."""
+    tracker = Tracker(KINDS)
+    for count in range(1, len(drive) + 1):
+        tracker.see(drive[:count])
+    begin_s = drive[0].time_s
+    for event in tracker.events:
+        if not event.bait:
+            obliged_s = None if event.obliged_s is None else event.obliged_s - begin_s
+            yield Found(event.kind, event.observable_s - begin_s, obliged_s)
+
+
+# --- tables --------------------------------------------------------------------------------------------------
+
+
+def staged(drives: Sequence[Kept]) -> Iterator[str]:
     """What came off, by family, then by kind."""
-    asked: Counter[tuple[str, bool]] = Counter()
-    came: Counter[tuple[str, bool]] = Counter()
-    yield f"{'family':24}{'minutes':>9}{'km':>7}{'staged':>8}{'came off':>10}{'events':>8}{'baits':>7}"
-    for name in names:
-        plans = [FAMILIES[name].draw(seed) for seed in seeds]
-        drives = [found(plan, simulations) for plan in plans]
-        both = [
-            (one, came_off(one, events))
-            for plan, (events, _) in zip(plans, drives, strict=True)
-            for one in plan.staged
-        ]
-        asked.update((one.kind, one.is_bait) for one, _ in both)
-        came.update((one.kind, one.is_bait) for one, came_ in both if came_)
-        due = [sum(event.obliged_s is not None and not event.bait for event in events) for events, _ in drives]
-        baits = [sum(event.bait for event in events) for events, _ in drives]
-        minutes, km = mean(plan.duration_s for plan in plans) / 60, mean(km for _, km in drives)
-        share = mean(ok for _, ok in both)
-        yield f"{name:24}{minutes:9.1f}{km:7.1f}{len(both):8}{share:10.0%}{mean(due):8.1f}{mean(baits):7.1f}"
+    yield from _table(
+        ("family", "drives", "km", "staged", "came off", "events"),
+        (
+            (
+                name,
+                len(kept),
+                f"{mean(drive.distance_m for drive in kept) / 1000:.1f}",
+                sum(len(drive.staged) for drive in kept),
+                f"{mean(drive.came_off(one) for drive in kept for one in drive.staged):.0%}",
+                f"{mean(sum(each.obliged_s is not None for each in drive.untouched) for drive in kept):.1f}",
+            )
+            for name, kept in _by_family(drives)
+        ),
+    )
     yield ""
-    yield f"{'kind':24}{'staged':>8}{'came off':>10}{'baits':>8}{'came off':>10}"
-    for kind in sorted({kind for kind, _ in asked}):
-        parts = [(asked[kind, is_bait], came[kind, is_bait]) for is_bait in (False, True)]
-        shares = [f"{many:8}{many_came / many if many else 0:10.0%}" for many, many_came in parts]
-        yield f"{kind:24}{''.join(shares)}"
+    came: dict[tuple[str, bool], list[bool]] = defaultdict(list)
+    for drive in drives:
+        for one in drive.staged:
+            came[one.kind, one.is_bait].append(drive.came_off(one))
+    rows = []
+    for kind in sorted({kind for kind, _ in came}):
+        halves = [came[kind, is_bait] for is_bait in (False, True)]
+        rows.append((kind, *(part for each in halves for part in (len(each), f"{mean(each or [0]):.0%}"))))
+    yield from _table(("kind", "staged", "came off", "baits", "came off"), rows)
 
 
-def watched(names: Sequence[str], seeds: Sequence[int], who: str, simulations: Simulations) -> Iterator[str]:
-    """The scores of a watcher, by family and together."""
-    yield f"{who:24}{'events':>8}{'recall':>8}{'false/h':>9}{'value':>7}"
-    scores: dict[str, list[Score]] = {}
-    for name in names:
-        scores[name] = [played(who, FAMILIES[name].draw(seed), simulations) for seed in seeds]
-        yield _line(name, together(scores[name]))
-    yield _line("all", together([one for each in scores.values() for one in each]))
+def watched(drives: Sequence[Kept]) -> Iterator[str]:
+    """How well a watcher did, by family, then by kind."""
+    rows = [_row(name, together([drive.score for drive in kept])) for name, kept in _by_family(drives)]
+    rows.append(_row("all", together([drive.score for drive in drives])))
+    yield from _table(("family", "hours", "events", "recall", "false/h", "repeats/h", "score"), rows)
+    yield ""
+    events, met, void = Counter[str](), Counter[str](), Counter[str]()
+    for event in (event for drive in drives for event in drive.events if not event.bait):
+        events[event.kind] += event.outcome.counts
+        met[event.kind] += event.outcome.is_credited
+        void[event.kind] += event.outcome.value == "void"
+    baits, taken = Counter[str](), Counter[str]()
+    for event in (event for drive in drives for event in drive.events if event.bait):
+        baits[event.kind] += 1
+        taken[event.kind] += event.outcome.value == "taken"
+    yield from _table(
+        ("kind", "events", "recall", "void", "look-alikes", "taken"),
+        (
+            (
+                kind,
+                events[kind],
+                f"{met[kind] / events[kind]:.0%}" if events[kind] else "-",
+                void[kind],
+                baits[kind],
+                taken[kind],
+            )
+            for kind in KINDS
+        ),
+    )
 
 
-def _line(name: str, total: Score) -> str:
-    recall = "-" if total.recall is None else f"{total.recall:.0%}"
-    return f"{name:24}{total.events:8}{recall:>8}{total.false_alarms_per_h:9.1f}{total.value:7.0f}"
+def _row(name: str, total: Score) -> tuple[object, ...]:
+    recall = "-" if total.recall is None else f"{total.recall:.1%}"
+    false, repeats = total.false_alarms_per_h, total.nuisances_per_h - total.false_alarms_per_h
+    return (
+        name,
+        f"{total.driven_s / 3600:.1f}",
+        total.events,
+        recall,
+        f"{false:.2f}",
+        f"{repeats:.2f}",
+        f"{total.value:.0f}",
+    )
+
+
+def _by_family(drives: Sequence[Kept]) -> Iterator[tuple[str, list[Kept]]]:
+    for name in FAMILIES:
+        kept = [drive for drive in drives if drive.family == name]
+        if kept:
+            yield name, kept
+
+
+def _table(head: Sequence[str], rows: Iterator[Sequence[object]] | Sequence[Sequence[object]]) -> Iterator[str]:
+    """In Markdown."""
+    yield f"| {' | '.join(head)} |"
+    yield "|" + "---|" * len(head)
+    for row in rows:
+        yield f"| {' | '.join(map(str, row))} |"
+
+
+# --- what is kept ----------------------------------------------------------------------------------------------
+
+
+def run(
+    whos: Sequence[str], families: Sequence[str], seeds: Sequence[int], folder: Path | None, minutes: float
+) -> list[Kept]:
+    """Every drive, read from the folder where it is kept, else played; without more than what the time allows."""
+    until, drives = time.monotonic() + 60 * minutes, []
+    with closing(Simulations(count_limit=2)) as simulations:
+        for who, seed, family in product(whos, seeds, families):
+            file = None if folder is None else folder / f"{who}-{family}-{seed}.json"
+            if file is not None and file.exists():
+                drives.append(from_json(Kept, json.loads(file.read_text("utf-8"))))
+            elif time.monotonic() < until:
+                drives.append(played(who, family, seed, simulations))
+                if file is not None:
+                    draft = file.with_suffix(".part")
+                    draft.write_text(json.dumps(asdict(drives[-1])), "utf-8")
+                    draft.replace(file)
+    return drives
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description="What drives stage, and what comes of it.")
     parser.add_argument("families", nargs="*", default=list(FAMILIES))
     parser.add_argument("--seeds", nargs="+", type=int, default=[0])
-    parser.add_argument("--watch", nargs="+", choices=WATCHERS, help="play these watchers instead")
+    parser.add_argument("--watch", nargs="+", choices=WATCHERS, help="play these watchers instead of nobody")
+    parser.add_argument("--keep", type=Path, help="folder of finished drives, which are not played again")
+    parser.add_argument("--minutes", type=float, default=float("inf"), help="begin no drive after this time")
     asked = parser.parse_args()
-    with closing(Simulations(count_limit=2)) as simulations:
-        if not asked.watch:
-            for line in table(asked.families, asked.seeds, simulations):
-                print(line, flush=True)
-        for who in asked.watch or ():
-            for line in watched(asked.families, asked.seeds, who, simulations):
-                print(line, flush=True)
+    if asked.keep is not None:
+        asked.keep.mkdir(parents=True, exist_ok=True)
+    drives = run(asked.watch or ["silent"], asked.families, asked.seeds, asked.keep, asked.minutes)
+    print(f"{len(drives)} drives, {sum(drive.driven_s for drive in drives) / 3600:.1f} h", end="\n\n")
+    for who in asked.watch or ():
+        print(f"{who}:", *watched([drive for drive in drives if drive.watcher == who]), sep="\n", end="\n\n")
+    print(*staged(drives), sep="\n")
 
 
 if __name__ == "__main__":

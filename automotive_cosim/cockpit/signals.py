@@ -442,6 +442,16 @@ class CALL:
     """The caller; empty without one."""
     PARTNER = _text("Cabin.Infotainment.Call.Partner", overlay=True)
     """The other party of the present call."""
+    PHONE = _enter(
+        Signal(
+            "Vehicle.Driver.Phone",
+            LeafKind.SENSOR,
+            "AWAY",
+            allowed=("AWAY", "CRADLE", "HAND"),
+            overlay=True,
+        )
+    )
+    """Where the phone that the driver uses is, as the interior camera sees it."""
     UNREAD = _measure("Cabin.Infotainment.Message.Unread", 0.0, "", 0, None, overlay=True)
     """Number of senders with unread messages."""
 

@@ -11,6 +11,8 @@ class SightKind(StrEnum):
 
     DRIVER_BELT = "driver_belt"
     """The driver's belt is open while the car is in gear."""
+    PHONE = "phone"
+    """The driver uses a phone."""
     TAILGATE = "tailgate"
     CHARGE_FLAP = "charge_flap"
     TYRE = "tyre"

@@ -40,5 +40,6 @@ def _writes(deed: Deed) -> Iterator[tuple[str, Any]]:
 
 
 def spoken(action: Action, time_s: float) -> WatchAct | None:
-    """What an action says to the driver besides alerts."""
-    return WatchAct(time_s, said=action.text or "") if action.action_type is ActionType.ANSWER else None
+    """What an action says to the driver besides alerts: an answer, or a question."""
+    speaks = action.action_type in (ActionType.ANSWER, ActionType.ASK_DRIVER)
+    return WatchAct(time_s, said=action.text or "") if speaks else None

@@ -255,13 +255,14 @@ def _told(act: WatchAct, cases: Sequence[_Case]) -> Worth:
         if act.alert is not None:
             case.told_s, case.told_severity = act.time_s, event.severity_at(act.time_s)
     if unnamed and act.alert is not None:
-        min(unnamed, key=_due_first).is_named = True
+        min(unnamed, key=_most_likely).is_named = True
     return min(worths, key=(Worth.RIGHT, Worth.LATE, Worth.NEUTRAL, Worth.REPEAT).index)
 
 
-def _due_first(case: _Case) -> float:
-    """The time of its obligation; an alert is about what is due soonest."""
-    return float("inf") if case.event.obliged_s is None else case.event.obliged_s
+def _most_likely(case: _Case) -> tuple[int, float]:
+    """What an alert is about, least first: the kind that the fewest alerts settle, then what is due soonest."""
+    obliged_s = case.event.obliged_s
+    return len(case.kind.alerts), float("inf") if obliged_s is None else obliged_s
 
 
 def _sets_back(act: WatchAct, written: set[str], at_start: Mapping[str, Any]) -> bool:

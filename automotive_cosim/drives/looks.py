@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from automotive_cosim.contracts import AlertKind
-from automotive_cosim.drives.margins import LAMP_S, hold_s, margin_kmh
+from automotive_cosim.drives.margins import BORDER_S, LAMP_S, gaze_s, hold_s, margin_kmh
 from automotive_cosim.drives.reading import Gathered
 
 LOOK_S = 2
@@ -22,11 +22,13 @@ class Concern:
     """Something that the driver ought to be told."""
 
     key: str
-    alert: AlertKind
+    alert: AlertKind | None = None
     now: bool = True
     """False while it only has to be watched."""
     hold_s: float = 0.0
     """How long it must last."""
+    say: str = ""
+    """Words instead of an alert."""
     is_there: bool = False
     """Whether it is the same concern already while it only has to be watched, such as a jam that comes nearer."""
 
@@ -202,12 +204,13 @@ def _traffic(known: Gathered) -> Iterator[Concern]:
     gap_m, ttc_s = known.vehicle.leader_gap_m, known.vehicle.leader_time_to_collision_s
     if gap_m is None:
         return
-    if known.speed_kmh >= 30:
+    if known.mps > 1:
         line = known.law.get("Following distance")
         lawful = re.match(r"(\d+) s or more", line.text) if line is not None and line.is_verified else None
         least_s = 1.0 if lawful is None else float(lawful[1])
-        if gap_m / known.mps < least_s + 0.5:
-            yield Concern("distance", AlertKind.DISTANCE, gap_m / known.mps < least_s, 3.0)
+        gap_s = gap_m / known.mps
+        if gap_s < least_s + 0.5:
+            yield Concern("distance", AlertKind.DISTANCE, known.speed_kmh >= 30 and gap_s < least_s, 3.0)
     if ttc_s is None or ttc_s <= 0:
         return
     closing_mps = gap_m / ttc_s
@@ -230,12 +233,33 @@ def _car(known: Gathered) -> Iterator[Concern]:
     pressure = re.search(r"(\d+) kPa", known.words("tyre"))
     if pressure is not None:
         yield Concern("tyre", AlertKind.VEHICLE, float(pressure[1]) < 200, 5.0)
+    if known.words("phone").startswith("in the hand"):
+        yield Concern("phone", AlertKind.DISTRACTION, known.speed_kmh >= 20, gaze_s(known.speed_kmh))
     hours = re.match(r"(\d+\.\d+) h", known.words("driving time"))
     if hours is not None:
         yield Concern("fatigue", AlertKind.FATIGUE, float(hours[1]) >= 2, 5.0)
     left = re.search(r"(\d+) km, (\d+\.\d) km to go", known.words("range"))
     if left is not None:
         yield Concern("range", AlertKind.VEHICLE, known.vehicle.range_km < float(left[2]) + 2, 5.0)
+
+
+# --- borders ---------------------------------------------------------------------------------------------------
+
+LAWS = ("Dipped beam", "Daytime lamps", "Horn", "Phone in hand")
+"""What a driver must know at once in another country, by the labels of the context."""
+
+
+def _border(known: Gathered) -> Iterator[Concern]:
+    border = known.border
+    if border is None or known.time_s - border.at_s > BORDER_S:
+        return
+    units = re.search(r"signs in (\S+), the car shows (\S+)", known.words("place"))
+    if units is not None and units[1] != units[2]:
+        yield Concern("units", hold_s=2.0, say=f"Speed signs are in {units[1]} here; the car shows {units[2]}")
+    law = [(label, known.law[label]) for label in LAWS if label in known.law]
+    new = [label.lower() for label, line in law if line.is_verified and line.said not in border.before]
+    if border.is_new and new:
+        yield Concern("law", hold_s=2.0, say=f"Another law here on {', '.join(new)}")
 
 
 LOOKS: tuple[Callable[[Gathered], Iterator[Concern]], ...] = (
@@ -245,5 +269,6 @@ LOOKS: tuple[Callable[[Gathered], Iterator[Concern]], ...] = (
     _lamps,
     _weather,
     _car,
+    _border,
 )
 """Everything that it looks at, the most urgent first."""

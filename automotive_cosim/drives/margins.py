@@ -4,6 +4,8 @@ from __future__ import annotations
 
 HOLDS_S = ((1.3, 3.0), (1.2, 4.0), (1.1, 5.0), (1.0, 6.0))
 """(ratio of speed to limit, seconds) after which the tone of the same annex sounds."""
+BORDER_S = 60.0
+"""How long after a border it is news; our choice."""
 LAMP_S = 2.0
 """How long an automatic switch may take to light the dipped beam (UN R48, 6.2.7)."""
 
@@ -17,3 +19,8 @@ def margin_kmh(limit_kmh: float) -> float:
 def hold_s(ratio: float) -> float:
     """Seconds for which a ratio of speed to limit must last."""
     return next((seconds for least, seconds in HOLDS_S if ratio >= least), HOLDS_S[-1][1])
+
+
+def gaze_s(kmh: float) -> float:
+    """How long a driver may look away at a speed (Regulation (EU) 2023/2590)."""
+    return 3.5 if kmh > 50.0 else 6.0

@@ -26,8 +26,24 @@ class LawLine:
     kmh: float | None
     is_verified: bool
 
+    @property
+    def said(self) -> str:
+        """What it says, without its source."""
+        return self.text.rpartition(" (")[0]
+
 
 NO_LINE = LawLine("", None, False)
+
+
+@dataclass(frozen=True, slots=True)
+class Border:
+    """The last border that was crossed."""
+
+    at_s: float
+    is_new: bool
+    """Whether this is the first time in that country."""
+    before: frozenset[str]
+    """What the law had said before, without its sources."""
 
 
 @dataclass(slots=True)
@@ -52,6 +68,7 @@ class Gathered:
     place: str = ""
     driven_m: float = 0.0
     """Metres since the first observation."""
+    border: Border | None = None
     changes: Mapping[str, tuple[float, str]] = field(default_factory=dict)
     """The last words of each thing that wakes, with the metres at which they came; without what is over."""
 
@@ -108,6 +125,8 @@ class Reader:
     def __init__(self) -> None:
         self._changes: dict[str, tuple[float, str]] = {}
         self._last: Gathered | None = None
+        self._countries: list[str] = []
+        self._border: Border | None = None
         self._asked: tuple[str, str] | None = None
         self._answers: dict[tuple[str, str], LawLine] = {}
 
@@ -129,9 +148,20 @@ class Reader:
             self._asked = None
         known = self._last = _read(seen, seen.vehicle, seen.context)
         known.driven_m, known.changes = driven_m, self._changes
+        self._cross(known, last)
         told = {label: line for (place, label), line in self._answers.items() if place == known.place}
         known.law = {**told, **known.law}
         return known
+
+    def _cross(self, known: Gathered, last: Gathered | None) -> None:
+        country = known.words("place").partition(",")[0]
+        if country and self._countries[-1:] != [country]:
+            if self._countries:
+                before = () if last is None else last.law.values()
+                texts = frozenset(line.said for line in before)
+                self._border = Border(known.time_s, country not in self._countries, texts)
+            self._countries.append(country)
+        known.border = self._border
 
     def can_ask(self, known: Gathered, label: str) -> bool:
         """Whether a rule is neither shown nor was asked for at this place, and the context offers it."""

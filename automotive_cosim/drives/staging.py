@@ -7,13 +7,13 @@ the drive itself, where the same causes may also lie in the road.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
 from automotive_cosim.cockpit.changes import CarChange
-from automotive_cosim.cockpit.signals import BODY, CABIN, ENERGY, HVAC, LIGHTS, SEAT, TYRE, Signal
+from automotive_cosim.cockpit.signals import BODY, CABIN, CALL, ENERGY, HVAC, LIGHTS, SEAT, TYRE, Signal
 from automotive_cosim.contracts import Weather
 from automotive_cosim.drives.sky import drizzle, fog, rain, sleet
 from automotive_cosim.scenarios.incidents import AheadIncident, AnyIncident, BrakingLeader, EmergencyVehicle
@@ -63,6 +63,8 @@ LEADER_WITHIN_S = 40.0
 """A leader that has not been found by then does not brake, lest it do so during the next stunt."""
 SPELL_S = 120.0
 """Length of a bank of fog or a shower."""
+PHONE_S = 40.0
+"""How long a driver uses the phone."""
 AHEAD_S = 420.0
 """How long an incident on the road lasts."""
 AHEAD_M = 1400.0
@@ -82,6 +84,13 @@ def _mood(of_event: str, of_bait: str) -> Stunt:
     return stage
 
 
+def _leader_close(cue: Cue) -> Props:
+    """The driver presses, behind somebody who eases off; as a bait, keeps two seconds."""
+    until_s = cue.at_s + MOOD_S
+    eases = BrakingLeader(from_s=cue.at_s, to_s=until_s, ahead_m=40.0, deceleration_mps2=0.2, to_kmh=40.0)
+    return replace(_mood("pressing", "calm")(cue), incidents=(eases,))
+
+
 def _fatigue(cue: Cue) -> Props:
     """Two hours without a break are full at that time; as a bait, one and a half."""
     full_s = 0.75 * BREAK_AFTER_S if cue.is_bait else BREAK_AFTER_S
@@ -91,6 +100,13 @@ def _fatigue(cue: Cue) -> Props:
 def _belt(cue: Cue) -> Props:
     """The driver opens the belt; as a bait, only pulls it straight."""
     return Props(changes=_turned(SEAT.DRIVER_BELT, cue, False, 2.0 if cue.is_bait else 90.0))
+
+
+def _phone(cue: Cue) -> Props:
+    """The driver takes the phone in the hand; as a bait, uses it in its cradle."""
+    where = "CRADLE" if cue.is_bait else "HAND"
+    taken = CarChange(cue.at_s, CALL.PHONE.path, where)
+    return Props(changes=(taken, CarChange(cue.at_s + PHONE_S, CALL.PHONE.path, "AWAY")))
 
 
 # --- the car ------------------------------------------------------------------------------------------------
@@ -144,7 +160,8 @@ def _fog_lamps(cue: Cue) -> Props:
 def _glass_fog(cue: Cue) -> Props:
     """The air is recirculated, with the fan low, for good; as a bait, for half a minute."""
     closed = _turned(HVAC.RECIRCULATION, cue, True, 30.0) if cue.is_bait else _set(cue, (HVAC.RECIRCULATION, True))
-    return Props(changes=(CarChange(cue.at_s, HVAC.AIR_CONDITIONING.path, False), *closed))
+    weak = (CarChange(cue.at_s, HVAC.FAN_SPEED.path, 10.0),) if not cue.is_bait else ()
+    return Props(changes=(CarChange(cue.at_s, HVAC.AIR_CONDITIONING.path, False), *weak, *closed))
 
 
 # --- the sky ------------------------------------------------------------------------------------------------
@@ -163,7 +180,7 @@ def _weather_speed(cue: Cue) -> Props:
     """A bank of dense fog that the driver takes no notice of; as a bait, mist."""
     until_s = cue.at_s + SPELL_S
     careless = (DriverAt(cue.at_s, "careless"), DriverAt(until_s, cue.driver))
-    visibility_m = 1600.0 if cue.is_bait else float(round(cue.rng.uniform(30, 46)))
+    visibility_m = 1600.0 if cue.is_bait else float(round(cue.rng.uniform(14, 24)))  # too little for 50 km/h
     return Props(moods=careless, spells=(Spell(cue.at_s, until_s, fog(cue.weather, visibility_m)),))
 
 
@@ -204,9 +221,10 @@ def _ahead(what: Literal["breakdown", "roadworks", "jam", "tractor"]) -> Stunt:
 
 STUNTS: Mapping[str, Stunt] = {
     "over_limit": _mood("hurried", "brisk"),
-    "leader_close": _mood("pressing", "calm"),
+    "leader_close": _leader_close,
     "fatigue": _fatigue,
     "belt": _belt,
+    "phone": _phone,
     "door": _door,
     "tyre": _tyre,
     "range": _range,

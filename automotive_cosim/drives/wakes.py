@@ -10,7 +10,7 @@ from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 from math import floor
 
-from automotive_cosim.cockpit.signals import BODY, CABIN, CALL, ENERGY, GLASS, LIGHTS, SEAT, TYRE
+from automotive_cosim.cockpit.signals import BODY, CABIN, CALL, ENERGY, GLASS, HMI, LIGHTS, SEAT, TYRE
 from automotive_cosim.contracts import KMH_PER_MPS, Sight, SightKind
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.geo.text import KM_PER_MILE
@@ -148,6 +148,11 @@ def _lamp_words(now: Moment) -> str:
 def _step(value: float, size: float, least: float) -> Hashable:
     """The reading of a gauge in steps, from one value on."""
     return None if value < least else int(value / size)
+
+
+def _place_words(now: Moment) -> str:
+    shown = "mph" if now.signals[HMI.DISTANCE_UNIT.path] == "MILES" else "km/h"
+    return f"{now.context.country}, signs in {now.context.speed_unit}, the car shows {shown}"
 
 
 def _share(value: float) -> str:
@@ -312,7 +317,17 @@ WAKES: tuple[Wake, ...] = (
         lambda now: _step(_unwiped(now), MIST, MIST),
         lambda now: f"windshield covered by {_share(_unwiped(now))}, wipers off",
     ),
-    Wake("place", "another country", lambda now: now.context.country or None, lambda now: now.context.country),
+    Wake(
+        "phone",
+        "the driver takes a phone, in the hand or in its cradle, or sets off with it",
+        lambda now: (
+            None if (where := now.signals[CALL.PHONE.path]) == "AWAY" else (where, _kmh(now) >= ROLLING_KMH)
+        ),
+        lambda now: (
+            f"in the {'hand' if now.signals[CALL.PHONE.path] == 'HAND' else 'cradle'} at {_kmh(now):.0f} km/h"
+        ),
+    ),
+    Wake("place", "another country", lambda now: now.context.country or None, _place_words),
     Wake("call", "the phone rings", lambda now: now.signals[CALL.RINGING.path] or None, lambda now: "ringing"),
     Wake(
         "message",

@@ -46,6 +46,8 @@ class RulePerfect:
         for concern in concerns:
             if self._is_time(concern, known.time_s):
                 self._told.add(concern.key)
+                if concern.say:
+                    return Action(ActionType.ANSWER, text=concern.say)
                 return Action(ActionType.SHOW_ALERT, kind=concern.alert)
         if any(concern.now and concern.key not in self._told for concern in concerns):
             return Action(ActionType.WAIT, seconds=1)

@@ -24,6 +24,9 @@ AUTHORITY = ("authority",)
 CAR_SPACE_M = 7.5
 """Length of a stationary car with its gap: SUMO's defaults."""
 
+GENTLE_MPS2 = 3.0
+"""A leader that brakes less than this only slows down."""
+
 SCHOOL_DAYS = frozenset(range(1, 6))
 
 NARROW_PLACE_M = 10.0
@@ -411,6 +414,10 @@ class _BrakingLeader(_Scene):
         to_mps = incident.to_kmh / KMH_PER_MPS
         self._braking = vehicle
         self._left_s = max(0.0, sumo.speed(vehicle) - to_mps) / incident.deceleration_mps2 + incident.hold_s
+        if incident.deceleration_mps2 < GENTLE_MPS2:  # it can brake as hard as ever if it must
+            slower_s = self._left_s - incident.hold_s
+            sumo.vehicle.slowDown(vehicle, min(to_mps, sumo.speed(vehicle)), max(slower_s, 1.0))
+            return "the vehicle ahead slows down"
         sumo.vehicle.setDecel(vehicle, incident.deceleration_mps2)
         sumo.vehicle.setSpeed(vehicle, to_mps)
         return "the vehicle ahead brakes"

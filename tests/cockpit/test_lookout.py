@@ -69,6 +69,19 @@ def test_the_screens_show_each_sight_and_no_other(make: Make, around: Surroundin
     assert told["school_zone"] == "In a school zone"
 
 
+def test_in_a_junction_the_edge_that_was_left_counts_no_more(make: Make, around: Surroundings) -> None:
+    seen = full(around)
+    driving = seen.driving
+    begun_m = make(surroundings=seen, lookout=True)
+    at_m = {sight.kind: sight.distance_m for sight in begun_m.sights}[SightKind.BREAKDOWN]
+    inside = replace(driving.road, edge_id=":n_0", lane_position_m=3.0)
+    crossing = make(surroundings=replace(seen, driving=replace(driving, road=inside)), lookout=True)
+    after_m = {sight.kind: sight.distance_m for sight in crossing.sights}[SightKind.BREAKDOWN]
+    assert at_m is not None
+    assert after_m is not None
+    assert after_m < at_m
+
+
 def test_every_kind_has_a_look(make: Make) -> None:
     assert ICONS.keys() == set(SightKind)
 

@@ -128,9 +128,10 @@ def moment(
     )
 
 
-def stream(seconds: float, **scene: Any) -> list[Moment]:
-    """The same scene, every second."""
-    return [moment(float(second), **scene) for second in range(int(seconds) + 1)]
+def stream(seconds: float, before: Sequence[dict[str, Any]] = (), **scene: Any) -> list[Moment]:
+    """The same scene, every second; before it others, for a second each."""
+    earlier = [moment(float(second - len(before)), **other) for second, other in enumerate(before)]
+    return earlier + [moment(float(second), **scene) for second in range(int(seconds) + 1)]
 
 
 def found(drive: Sequence[Moment], kind: str | None = None) -> list[DriveEvent]:

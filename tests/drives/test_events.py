@@ -7,10 +7,11 @@ from zoneinfo import ZoneInfo
 
 import pytest
 
-from automotive_cosim.cockpit.signals import BODY, CABIN, ENERGY, GLASS, LIGHTS, SEAT, TYRE
+from automotive_cosim.cockpit.signals import BODY, CABIN, CALL, ENERGY, GLASS, HMI, LIGHTS, SEAT, TYRE
 from automotive_cosim.contracts import AlertKind, IncidentKind, RoadIncident, Sight, SightKind, SlowDown
 from automotive_cosim.drives.events import KINDS, WatchAct
 from automotive_cosim.drives.events.tracker import CLOSE_S, REOPEN_S
+from automotive_cosim.drives.margins import BORDER_S
 from tests.drives.scenes import NOON, found, limit, moment, stream, vehicle
 
 PARIS_TIME = ZoneInfo("Europe/Paris")
@@ -19,6 +20,7 @@ DUSK = datetime(2026, 6, 9, 21, 35, tzinfo=PARIS_TIME)
 UNLIT = {LIGHTS.LOW_BEAM.path: False, LIGHTS.SWITCH.path: "OFF"}
 SCHOOL = {"school_zone": True, "limit": limit(30), "limit_hours": "30 km/h Mo-Fr 13:00-14:00"}
 MOTORWAY = {"road_class": "motorway", "lane_count": 2, "limit": limit(130)}
+FRANCE, BRITAIN, IRELAND = {"position": (2.0, 48.3)}, {"position": (-1.0, 52.2)}, {"position": (-7.5, 53.3)}
 RAIN = {"weather_code": 63, "precipitation": 4.0}
 
 
@@ -91,6 +93,12 @@ SCENES: Mapping[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "belt": ({"signals": {SEAT.DRIVER_BELT.path: False}}, {"kmh": 0, "signals": {SEAT.DRIVER_BELT.path: False}}),
     "door": ({"signals": {CABIN.TRUNK.path: True}}, {"signals": {CABIN.DRIVER_WINDOW.path: 50.0}}),
     "tyre": ({"signals": {TYRE.REAR_LEFT.path: 180.0}}, {"signals": {TYRE.REAR_LEFT.path: 220.0}}),
+    "phone": ({"signals": {CALL.PHONE.path: "HAND"}}, {"signals": {CALL.PHONE.path: "CRADLE"}}),
+    "limit_units": (
+        {"before": [FRANCE], **BRITAIN},
+        {"before": [FRANCE], **BRITAIN, "signals": {HMI.DISTANCE_UNIT.path: "MILES"}},
+    ),
+    "rule_change": ({"before": [FRANCE], **BRITAIN}, {"before": [BRITAIN, IRELAND], **BRITAIN}),
     "range": (
         {"signals": {ENERGY.RANGE.path: 9_000.0, ENERGY.LEVEL.path: 3.0}},
         {"signals": {ENERGY.RANGE.path: 60_000.0, ENERGY.LEVEL.path: 15.0}},
@@ -132,8 +140,55 @@ def test_an_ordinary_moment_is_neither(name: str) -> None:
 def test_only_its_own_alerts_settle_a_kind(name: str) -> None:
     kind = KINDS[name]
     settled = {alert for alert in AlertKind if kind.settles(WatchAct(0.0, alert), 30.0)}
+    if kind.says:
+        assert not settled
+        return
     assert settled == kind.alerts
     assert 0 < len(settled) < len(AlertKind) / 2
+
+
+def test_what_is_said_settles_only_what_it_is_about() -> None:
+    units, law = KINDS["limit_units"], KINDS["rule_change"]
+    said = WatchAct(0.0, said="Signs are in mph here")
+    assert units.settles(said, 1.0)
+    assert not law.settles(said, None)
+    assert law.settles(WatchAct(0.0, said="No horn at night here"), None)
+    assert not KINDS["over_limit"].settles(said, 50.0)
+
+
+def test_only_the_unit_of_the_signs_is_right() -> None:
+    miles, kilometres = (
+        WatchAct(0.0, writes=((HMI.DISTANCE_UNIT.path, unit),)) for unit in ("MILES", "KILOMETERS")
+    )
+    assert [KINDS["limit_units"].settles(act, 1.0) for act in (miles, kilometres)] == [True, False]
+    assert [KINDS["limit_units"].settles(act, 0.0) for act in (miles, kilometres)] == [False, True]
+
+
+def test_what_only_oncoming_traffic_forbids_is_not_due() -> None:
+    """In Sweden, where the law names oncoming traffic; no sensor of the car tells of it."""
+    lit = {"signals": {LIGHTS.HIGH_BEAM.path: True}, "at": NIGHT, "position": (20.2, 67.8)}
+    (dark,) = found(stream(10, oncoming=vehicle(200.0), **lit), "high_beam")
+    assert (dark.bait, dark.obliged_s) == (False, None)
+    (lamps,) = found(stream(10, oncoming=vehicle(200.0), lit=True, **lit), "high_beam")
+    assert lamps.obliged_s is not None
+
+
+def test_a_border_is_news_for_a_minute() -> None:
+    (event,) = found(stream(200, before=[FRANCE], **BRITAIN), "limit_units")
+    assert event.last_s == pytest.approx(BORDER_S, abs=1.0)
+
+
+def test_glass_covered_by_rain_stays_so_after_it_until_it_is_wiped() -> None:
+    dry = {GLASS.WINDSHIELD_FILM.path: 0.9, BODY.FRONT_WIPER.path: "OFF", BODY.RAIN_INTENSITY.path: 0.0}
+    assert [event.bait for event in found(stream(10, signals=dry), "wipers")] == [False]
+    assert not found(stream(10, signals=dry | {GLASS.WINDSHIELD_FILM.path: 0.1}), "wipers")
+
+
+def test_the_phone_may_be_looked_at_longer_the_slower_the_car() -> None:
+    slow, fast = (
+        found(stream(20, kmh=kmh, signals={CALL.PHONE.path: "HAND"}), "phone")[0].obliged_s for kmh in (30, 90)
+    )
+    assert (slow, fast) == (6.0, 4.0)
 
 
 def test_an_event_that_flickers_is_one() -> None:

@@ -109,6 +109,30 @@ def test_what_passes_by_itself_before_its_deadline_is_void() -> None:
     assert judged(warn(105.0), events=(short,)).events[0].outcome is EventOutcome.HIT
 
 
+def test_what_becomes_due_too_late_for_anybody_is_void_however_long_it_could_be_seen() -> None:
+    """A jam that could be seen from afar, and to which the car comes fast only in the last metres."""
+    sudden = replace(SPEEDING, observable_s=40.0, obliged_s=100.0, deadline_s=101.0)
+    assert judged(events=(sudden,)).events[0].outcome is EventOutcome.VOID
+    assert judged(warn(98.0), events=(sudden,)).events[0].outcome is EventOutcome.PREPARED
+
+
+def test_an_alert_is_about_what_is_due_soonest() -> None:
+    """Poor visibility for rain on the glass, then the tunnel: the second is no repeat of the first."""
+    wipers = replace(SPEEDING, kind="wipers", subject="", value=None)
+    tunnel = replace(wipers, kind="tunnel", obliged_s=None, deadline_s=None, observable_s=100.0)
+    acts = [warn(105.0, AlertKind.VISIBILITY), warn(115.0, AlertKind.TUNNEL)]
+    worths = [act.worth for act in judged(*acts, events=(tunnel, wipers)).acts]
+    assert worths == [Worth.RIGHT, Worth.NEUTRAL]
+
+
+def test_an_alert_is_about_what_hardly_anything_else_settles() -> None:
+    """A collision alert for a leader that brakes and is slow; then traffic tells of that, and is no repeat."""
+    slow = replace(SPEEDING, kind="tractor", subject="", value=None)
+    brakes = replace(slow, kind="leader_brakes", obliged_s=105.0)
+    acts = [warn(105.0, AlertKind.COLLISION), warn(107.0, AlertKind.TRAFFIC)]
+    assert [act.worth for act in judged(*acts, events=(slow, brakes)).acts] == [Worth.RIGHT, Worth.NEUTRAL]
+
+
 def test_what_nobody_could_have_met_is_void() -> None:
     sudden = replace(SPEEDING, obliged_s=100.0, deadline_s=101.0)
     assert judged(events=(sudden,)).events[0].outcome is EventOutcome.VOID

@@ -1,13 +1,17 @@
 """A watch on a drive: what wakes, what ends it, and that watchers get what they deserve."""
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 
 import pytest
 
 from automotive_cosim.agents import Thinker, make_agent
+from automotive_cosim.cockpit.signals import TYRE
 from automotive_cosim.contracts import Action, ActionType, AlertKind, Element, GoalStatus, Observation
 from automotive_cosim.drives.departure import depart
+from automotive_cosim.drives.events import KINDS, WatchAct
 from automotive_cosim.drives.families import FAMILIES
+from automotive_cosim.drives.judge import JudgedEvent, judge, most_frequent
 from automotive_cosim.drives.score import Score, score
 from automotive_cosim.drives.wakes import LONGEST_S, WAKES, Alarm
 from automotive_cosim.drives.watch import Watch
@@ -75,6 +79,12 @@ def test_a_leader_that_is_gone_is_told_with_the_next_change() -> None:
     assert [change.wakes for change in near] == [True]
     gone = [change for second in (4, 5) for change in alarm.see(moment(float(second)))]
     assert [(change.words, change.wakes) for change in gone] == [("vehicle ahead: over", False)]
+
+
+def test_a_gauge_below_its_step_does_not_read_as_if_it_had_reached_it() -> None:
+    tyre = {TYRE.REAR_LEFT.path: 199.9}
+    told = [change.words for second in (2, 3) for change in under_way().see(moment(float(second), signals=tyre))]
+    assert told[0] == "tyre: lowest 199 kPa"
 
 
 def test_every_wake_says_what_it_is_about() -> None:
@@ -195,6 +205,54 @@ def test_a_late_watcher_loses_and_delays(begin: Begin) -> None:
     prompt, late = played(begin(), RulePerfect()), played(begin(), RulePerfect(delay_s=8.0))
     assert late.value < prompt.value
     assert late.late + late.missed > 0
+
+
+class Muted(RulePerfect):
+    """Notes what it would tell, and tells nobody: the drive is as with nobody at the cockpit."""
+
+    def reset(self, goal: str) -> None:
+        super().reset(goal)
+        self.acts: list[WatchAct] = []
+        self.begun_s = 0.0
+
+    def act(self, observation: Observation) -> Action:
+        action = super().act(observation)
+        if action.action_type is ActionType.SHOW_ALERT:
+            self.acts.append(WatchAct(self.begun_s + observation.time_s, action.kind))
+            return Action(ActionType.WAIT, seconds=1)
+        return action
+
+
+@pytest.mark.slow
+def test_a_delay_loses_exactly_the_events_whose_deadline_it_passes(begin: Begin) -> None:
+    watch, agent = begin(), Muted()
+    agent.reset(watch.goal)
+    agent.begun_s = watch.moments[0].time_s
+    play(watch, agent)
+
+    def judged(delay_s: float) -> list[JudgedEvent]:
+        late = [replace(act, time_s=act.time_s + delay_s) for act in agent.acts]
+        return [event for event in judge(KINDS, watch.events, late, {}).events if not event.bait]
+
+    prompt = [event for event in judged(0.0) if event.outcome.is_credited]
+    assert len(prompt) >= 2
+    for delay_s in (1.0, 3.0, 10.0, 30.0):
+        credited = {(event.kind, event.observable_s) for event in judged(delay_s) if event.outcome.is_credited}
+        for event in prompt:
+            assert event.acted_s is not None
+            assert event.deadline_s is not None
+            in_time = event.acted_s + delay_s <= event.deadline_s
+            assert ((event.kind, event.observable_s) in credited) is in_time, (delay_s, event)
+
+
+@pytest.mark.slow
+def test_the_most_frequent_right_alert_by_rote_does_worse_than_nobody(begin: Begin) -> None:
+    watch = begin()
+    played(watch, Silent())
+    assert watch.judgement is not None
+    kind = most_frequent(watch.judgement, KINDS)
+    assert kind is not None
+    assert played(begin(), AlertOften(kind)).value < 0.0
 
 
 @pytest.mark.slow

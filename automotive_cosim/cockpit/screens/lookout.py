@@ -17,7 +17,7 @@ from automotive_cosim.cockpit.reach import (
 )
 from automotive_cosim.cockpit.screens.notices import LOW_KPA
 from automotive_cosim.cockpit.screens.parts import distance, pressure, speed, speed_unit
-from automotive_cosim.cockpit.signals import ADAS, CABIN, ENERGY, HMI, MOTION, SEAT, TYRE, Signals
+from automotive_cosim.cockpit.signals import ADAS, CABIN, CALL, ENERGY, HMI, MOTION, SEAT, TYRE, Signals
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Card, Glyph, Label, Widget
@@ -29,6 +29,7 @@ METRES_BELOW_M, FEET_BELOW_M, FOOT_M = 100.0, 300.0, 0.3048
 """Distances below are shown in metres or feet, others as on signs."""
 ICONS: Mapping[SightKind, Icon] = {
     SightKind.DRIVER_BELT: Icon.SEAT_BELT,
+    SightKind.PHONE: Icon.PHONE,
     SightKind.TAILGATE: Icon.VEHICLE_FAULT,
     SightKind.CHARGE_FLAP: Icon.VEHICLE_FAULT,
     SightKind.TYRE: Icon.TYRE,
@@ -50,6 +51,7 @@ TYRE_NAMES = {
     TYRE.REAR_LEFT: "Rear left tyre",
     TYRE.REAR_RIGHT: "Rear right tyre",
 }
+PHONE = {"HAND": "Phone in the driver's hand", "CRADLE": "Phone in use in its cradle"}
 AHEAD = {
     SightKind.TUNNEL: "Tunnel",
     SightKind.SCHOOL_ZONE: "School zone",
@@ -73,6 +75,8 @@ def _aboard(state: State) -> Iterator[Sight]:
     signals = state.signals
     if not signals[SEAT.DRIVER_BELT] and signals[MOTION.GEAR] != "P":
         yield Sight(SightKind.DRIVER_BELT, "Driver's belt is open")
+    if signals[CALL.PHONE] != "AWAY":
+        yield Sight(SightKind.PHONE, PHONE[signals[CALL.PHONE]])
     if signals[CABIN.TRUNK]:
         yield Sight(SightKind.TAILGATE, "Tailgate is open")
     if signals[ENERGY.CHARGE_FLAP]:
@@ -126,7 +130,7 @@ def _mapped(state: State, driving: DrivingState) -> Iterator[Sight]:
     found: dict[SightKind, float] = {}
     for edge_id, start_m in starts_m.items():
         road = state.roads.find(edge_id)
-        if road is not None and road.school_zone and start_m > 0:
+        if road is not None and road.school_zone and start_m >= 0:
             found[SightKind.SCHOOL_ZONE] = min(start_m, found.get(SightKind.SCHOOL_ZONE, start_m))
     if news is not None:
         if news.ahead.jam_distance_m is not None:
@@ -147,7 +151,10 @@ def _starts_m(state: State, driving: DrivingState) -> dict[str, float]:
     route = driving.ahead.route_edges
     roads = [state.roads.find(edge_id) for edge_id in route]
     lengths_m = [0.0 if road is None else road.length_m for road in roads]
-    starts_m = accumulate(lengths_m, initial=-driving.road.lane_position_m)
+    in_junction = driving.road.edge_id.startswith(":")
+    # in a junction the route still begins with the edge that has been left
+    begun_m = sum(lengths_m[:1]) if in_junction else driving.road.lane_position_m
+    starts_m = accumulate(lengths_m, initial=-begun_m)
     found: dict[str, float] = {}
     for edge_id, start_m in zip(route, starts_m, strict=False):
         if start_m > HORIZON_M:

@@ -3,14 +3,14 @@
 base     what a kind of event is, a sighting, an act
 tracker  folds a drive's moments into events
 law      what law and measurement say at one moment
-speed, light, weather, road, car
+speed, light, weather, road, car, people, border
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
-from automotive_cosim.drives.events import car, light, people, road, speed, weather
+from automotive_cosim.drives.events import border, car, light, people, road, speed, weather
 from automotive_cosim.drives.events.base import EventKind, Sighting, WatchAct
 from automotive_cosim.drives.events.tracker import DriveEvent, Tracker
 
@@ -40,6 +40,9 @@ KINDS: Mapping[str, EventKind] = {
         car.Tyre(),
         car.RangeShort(),
         people.Fatigue(),
+        people.PhoneUse(),
+        border.LimitUnits(),
+        border.RuleChange(),
     )
 }
 """Every kind by its name."""

@@ -91,6 +91,8 @@ class EventKind(ABC):
     """Kinds of alerts that settle it."""
     requests: ClassVar[tuple[type, ...]] = ()
     """Requests to the road that settle it, whatever they say."""
+    says: ClassVar[tuple[str, ...]] = ()
+    """Words one of which must be in what is said to the driver for that to settle it; none if saying never does."""
     writes: ClassVar[Mapping[str, Wanted]] = {}
     """Signals that settle it, by path, and which values do."""
 
@@ -114,6 +116,8 @@ class EventKind(ABC):
             return act.alert in self.alerts
         if any(isinstance(request, self.requests) for request in act.requests):
             return True
+        if act.said:
+            return any(word in act.said.casefold() for word in self.says)
         return any(path in self.writes and self.writes[path](written) for path, written in act.writes)
 
     def concerns(self, act: WatchAct) -> bool:

@@ -76,7 +76,10 @@ class HighBeam(EventKind):
         if gap_m <= PRECEDING_M:
             yield Sighting(f"high beam at a car {gap_m:.0f} m ahead", due=True, hold_s=LAMP_S)
         elif says(now.context, "high_beam", "forbidden"):
-            yield Sighting("high beam where the law forbids it", due=True, hold_s=LAMP_S)
+            # no sensor of the car tells of oncoming traffic: what only that forbids is not due
+            road = now.driving.road
+            known = now.driving.around.oncoming is None or road.lit is True or road.built_up is True
+            yield Sighting("high beam where the law forbids it", due=known, hold_s=LAMP_S)
         elif gap_m >= CLEAR_M:
             yield Sighting("high beam on an empty road", bait=True)
 

@@ -264,7 +264,7 @@ class TractorAhead(EventKind):
             yield Sighting(words, bait=True)
             return
         left_s = time_left_s(leader.gap_m, closing_mps)
-        yield Sighting(words, leader.vehicle_id, due=leader.gap_m <= TRACTOR_DUE_S * closing_mps, left_s=left_s)
+        yield Sighting(words, due=leader.gap_m <= TRACTOR_DUE_S * closing_mps, left_s=left_s)
 
 
 def _in_sight(now: Moment) -> OtherVehicle | None:

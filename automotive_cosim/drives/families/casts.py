@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-DRIVER = ("over_limit", "leader_close", "belt", "fatigue")
+DRIVER = ("over_limit", "leader_close", "belt", "phone", "fatigue")
 CAR = ("door", "tyre")
 ROAD = ("blue_light", "leader_brakes", "breakdown", "roadworks", "jam_tail")
 WET = ("wipers", "glass_fog")

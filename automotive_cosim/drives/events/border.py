@@ -1,0 +1,114 @@
+"""Events of a border: speed signs in another unit than the car shows, and another law on lamps, horn and phone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+from automotive_cosim.cockpit.signals import HMI
+from automotive_cosim.contracts import AlertKind
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, WatchAct
+from automotive_cosim.drives.margins import BORDER_S
+from automotive_cosim.geo.context import GeoContext
+from automotive_cosim.geo.rules import Status
+
+TOPICS = ("dipped_beam", "daytime_lamps", "horn", "phone")
+"""What a driver must know at once in another country."""
+
+
+@dataclass(frozen=True, slots=True)
+class BorderCrossing:
+    """The last border that the car crossed, not long ago."""
+
+    before: Moment
+    """The last moment in the other country."""
+    is_new: bool
+    """Whether the car had not been in the present country on this drive."""
+
+
+def crossing(drive: Sequence[Moment]) -> BorderCrossing | None:
+    """The border crossed within the last minute; None without one, or if a country is unknown."""
+    now = drive[-1]
+    here = now.context.country
+    for index in range(len(drive) - 1, -1, -1):
+        moment = drive[index]
+        if moment.context.country != here:
+            known = bool(here and moment.context.country)
+            return BorderCrossing(moment, all(m.context.country != here for m in drive[:index])) if known else None
+        if now.time_s - moment.time_s > BORDER_S:
+            return None
+    return None
+
+
+class LimitUnits(EventKind):
+    """Signs in miles per hour, a display in kilometres, or the other way round."""
+
+    name = "limit_units"
+    about = "beyond a border the signs have another unit of speed than the car shows"
+    bait = "a border beyond which the car already shows the unit of the signs"
+    source = "our choice: told within 30 s, 670 m at 80 km/h, in which a driver meets the first sign"
+    grace_s = 30.0
+    alerts = frozenset[AlertKind]()
+    says = ("mph", "miles", "km/h", "kilomet")
+    writes: ClassVar[Mapping[str, Wanted]] = {HMI.DISTANCE_UNIT.path: lambda value: True}
+
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """For a minute after the border."""
+        crossed = crossing(drive)
+        if crossed is None:
+            return
+        now = drive[-1]
+        signs, shown = now.context.speed_unit, shown_unit(now)
+        words = f"signs in {signs}, the car shows {shown}"
+        miles = 1.0 if signs == "mph" else 0.0
+        if signs == shown:
+            yield Sighting(words, now.context.country, bait=True)
+        else:
+            yield Sighting(words, now.context.country, due=True, hold_s=2.0, value=miles)
+
+    def settles(self, act: WatchAct, value: float | None) -> bool:
+        """The display in the unit of the signs, or words about it."""
+        wanted = "MILES" if value else "KILOMETERS"
+        return super().settles(act, value) and all(
+            written == wanted for path, written in act.writes if path == HMI.DISTANCE_UNIT.path
+        )
+
+
+class RuleChange(EventKind):
+    """A country with another law on lamps, horn or phone, for the first time on this drive."""
+
+    name = "rule_change"
+    about = "beyond a border the law on lamps, horn or phone is another"
+    bait = "back in a country in which the car has been on this drive"
+    source = "our choice: told within 50 s of the border"
+    weight = 0.5
+    grace_s = 48.0
+    alerts = frozenset[AlertKind]()
+    says = ("lamp", "light", "beam", "horn", "phone")
+
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """For a minute after the border; only verified law obliges."""
+        crossed = crossing(drive)
+        if crossed is None:
+            return
+        country = drive[-1].context.country
+        if not crossed.is_new:
+            yield Sighting(f"back in {country}", country, bait=True)
+            return
+        told = set(_law(crossed.before.context, verified=False))
+        changed = [text for text in _law(drive[-1].context, verified=True) if text not in told]
+        if changed:
+            yield Sighting(f"another law in {country}: {'; '.join(changed)}", country, due=True, hold_s=2.0)
+
+
+def _law(context: GeoContext, *, verified: bool) -> Iterator[str]:
+    for found in context.rules:
+        if found.rule.topic in TOPICS and (not verified or found.rule.status is Status.VERIFIED):
+            yield found.rule.text
+
+
+def shown_unit(now: Moment) -> str:
+    """The unit of speed on the car's display."""
+    return "mph" if now.signals[HMI.DISTANCE_UNIT.path] == "MILES" else "km/h"

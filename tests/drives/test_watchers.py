@@ -1,0 +1,91 @@
+"""What the rule-perfect watcher makes of what it reads."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from automotive_cosim.cockpit.actions import check
+from automotive_cosim.contracts import Action, ActionType, AlertKind
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.drives.events import KINDS, WatchAct
+from automotive_cosim.drives.reading import Reader
+from automotive_cosim.drives.wakes import Alarm
+from automotive_cosim.drives.watchers import RulePerfect
+from tests.drives.scenes import moment
+
+CAR = {
+    "speed_kmh": 50.0,
+    "leader_gap_m": None,
+    "leader_time_to_collision_s": None,
+    "is_low_beam_on": True,
+    "is_high_beam_on": False,
+    "is_front_fog_on": False,
+    "is_rear_fog_on": False,
+    "range_km": 250.0,
+}
+IRELAND, ULSTER, SWEDEN = (-7.5, 53.3), (-6.5, 54.25), (20.2, 67.8)
+
+
+def seen(now: Moment, words: Sequence[str] = (), **car: Any) -> Any:
+    """An observation with what the watcher reads of it."""
+    feedback = SimpleNamespace(text="; ".join(["1 s passed", *words]))
+    vehicle = SimpleNamespace(**(CAR | car))
+    return SimpleNamespace(time_s=now.time_s, vehicle=vehicle, context=now.context.text(), feedback=feedback)
+
+
+def watched(drive: Sequence[Moment], **car: Any) -> list[Action]:
+    """What it does, looking each second."""
+    watcher, alarm = RulePerfect(), Alarm()
+    return [check(watcher.act(seen(now, [change.words for change in alarm.see(now)], **car))) for now in drive]
+
+
+def test_a_border_is_told_in_words_that_settle_it() -> None:
+    places = [IRELAND] * 3 + [ULSTER] * 10 + [IRELAND] * 10 + [ULSTER] * 10
+    drive = [moment(float(second), position=position) for second, position in enumerate(places)]
+    acts = [(at, act.text or "") for at, act in enumerate(watched(drive)) if act.action_type is ActionType.ANSWER]
+    units, law = KINDS["limit_units"], KINDS["rule_change"]
+    said = [WatchAct(0.0, said=text) for _, text in acts]
+    settled = [(units.settles(act, 1.0), law.settles(act, None)) for act in said]
+    assert settled == [(True, False), (False, True)]
+    assert all(3 < at < 8 for at, _ in acts)
+
+
+def test_a_rule_that_is_not_shown_is_asked_for_once() -> None:
+    """The law on rear fog lamps is shown in fog only; a lamp that is on makes it a matter."""
+    watcher, now = RulePerfect(), moment(0.0, position=SWEDEN)
+    first = watcher.act(seen(now, is_rear_fog_on=True))
+    assert (first.action_type, first.text) == (ActionType.QUERY, "Rear fog lamp")
+    law = "Rear fog lamp: allowed in fog, heavy precipitation or the like (SE TF 3:72, verified 2026-11-20)"
+    acts = []
+    for second in range(1, 6):
+        told = seen(moment(float(second), position=SWEDEN), is_rear_fog_on=True)
+        if second == 1:
+            told.feedback.text = law
+        acts.append(watcher.act(told))
+    assert [act.kind for act in acts if act.action_type is ActionType.SHOW_ALERT] == [AlertKind.VISIBILITY]
+    assert not [act for act in acts if act.action_type is ActionType.QUERY]
+
+
+def test_a_distance_shrinks_by_what_was_driven_whatever_the_speed_is_now() -> None:
+    reader = Reader()
+    reader.read(seen(moment(0.0), ["jam: in 500 m"], speed_kmh=72.0))
+    for second in range(1, 11):
+        known = reader.read(seen(moment(float(second)), speed_kmh=72.0))
+    standing = reader.read(seen(moment(11.0), speed_kmh=0.0))
+    later = reader.read(seen(moment(60.0), speed_kmh=0.0))
+    assert known is not None
+    assert standing is not None
+    assert later is not None
+    assert known.away_m("jam") == pytest.approx(300.0)
+    assert later.away_m("jam") == standing.away_m("jam") == pytest.approx(290.0)
+
+
+def test_it_waits_as_long_as_the_rule() -> None:
+    drive = [moment(float(second), kmh=90.0) for second in range(8)]
+    alerts = [at for at, act in enumerate(watched(drive, speed_kmh=90.0)) if act.kind is AlertKind.SPEED]
+    assert alerts == [3]
+    assert not [act for act in watched(drive[:3], speed_kmh=90.0) if act.kind is AlertKind.SPEED]
