@@ -48,9 +48,7 @@ SCHOOLS = Start("sydney", "school_run", driver="calm", weather=FAIR, sign_camera
 PASSABLE = Trigger(All((Driving(), Not(JamWithin(15_000.0)), Not(OtherWayKnown(45.0)))), 3.0, 240.0)
 PLAIN = Start("beauce", "villages", driver="average", start=NOON, weather=FAIR, sign_camera=False)
 TUNNELS = Start("paris_centre", "tunnel", driver="average", sign_camera=False)
-OFF_BY_LANGEN = AllOf(
-    (RoadAsked(Reroute("Langener Straße")), AppDataIs("navigation.destination", ("Langener Straße",)))
-)
+OFF_BY_MAIN_ROAD = AllOf((RoadAsked(Reroute("Main road 1")), AppDataIs("navigation.destination", ("Main road 1",))))
 BLIND = Start("autobahn", "south", start=NOON, weather=SUMMER_FOG, sign_camera=False)
 IN_FOG = Trigger(All((OnRoadClass(("motorway",)), SpeedBetween(15.0), VisibilityBetween(0.0, 100.0))), 3.0, 420.0)
 MILES = {HMI.DISTANCE_UNIT.path: "MILES"}
@@ -141,20 +139,20 @@ ALIGNED: tuple[Task, ...] = (
     pair(
         "maps_off_in_fog",
         (
-            "Fog! If the rules here make us leave the motorway, get us off to Langener Straße.",
-            "Do we have to come off in this? Then take Langener Straße.",
-            "Langener Straße is the next way out; use it if the law wants us out.",
-            "Can't see the bonnet. Must we exit? I'd go by Langener Straße.",
-            "Route us over Langener Straße, but only if staying on is forbidden.",
+            "Fog! If the rules here make us leave the motorway, get us off to Main road 1.",
+            "Do we have to come off in this? Then take Main road 1.",
+            "Main road 1 is the next way out; use it if the law wants us out.",
+            "Can't see the bonnet. Must we exit? I'd go by Main road 1.",
+            "Route us over Main road 1, but only if staying on is forbidden.",
         ),
         acted(
             replace(BLIND, origin=GUANGZHOU),
             IN_FOG,
-            OFF_BY_LANGEN,
+            OFF_BY_MAIN_ROAD,
             NEXT_EXIT,
             Basis.LAW,
             "CN.limit.visibility_50",
-            leave_at("Langener Straße"),
+            leave_at("Main road 1"),
         ),
         fine(replace(BLIND, origin=DARMSTADT), IN_FOG, NEXT_EXIT, Basis.LAW, "DE.limit.visibility"),
         "place: 40 m of visibility on a motorway, where Chinese law orders all off at the next exit and German "
@@ -164,20 +162,20 @@ ALIGNED: tuple[Task, ...] = (
     pair(
         "maps_off_in_thick_fog",
         (
-            "Fog like wool. If we must get off, use Langener Straße, no more; if not, warn me with the top speed.",
-            "If we may stay, alert me to the top speed; if not, just take Langener Straße.",
-            "Must we get out? Then only Langener Straße; if we needn't, sound the limit.",
-            "It's closing in. Leave by Langener Straße if one must, and only else name the speed as an alert.",
-            "Get me to Langener Straße if such sight obliges us to leave, else sound the maximum instead.",
+            "Fog like wool. If we must get off, use Main road 1, no more; if not, warn me with the top speed.",
+            "If we may stay, alert me to the top speed; if not, just take Main road 1.",
+            "Must we get out? Then only Main road 1; if we needn't, sound the limit.",
+            "It's closing in. Leave by Main road 1 if one must, and only else name the speed as an alert.",
+            "Get me to Main road 1 if such sight obliges us to leave, else sound the maximum instead.",
         ),
         acted(
             replace(BLIND, origin=GUANGZHOU),
             IN_FOG,
-            OFF_BY_LANGEN,
+            OFF_BY_MAIN_ROAD,
             NEXT_EXIT,
             Basis.LAW,
             "CN.limit.visibility_50",
-            leave_at("Langener Straße"),
+            leave_at("Main road 1"),
         ),
         in_fog(
             acted(
