@@ -13,7 +13,7 @@ from automotive_cosim.tasks.forms import ON_THE_WAY, PARIS, TALK
 from automotive_cosim.tasks.maps import SETS_OUT
 
 OTHER = {"City": "Modern", "Science": "Maritime", "Modern": "City", "Maritime": "Science"}
-DEGREES = {23: 22.9, 24: 23.9, 25: 24.9, 26: 25.9}
+DEGREES = {22: 21.9, 23: 22.9, 24: 23.9}
 """What the driver asks for first, and the setting above which he has got it."""
 SHUFFLED = Tap("media.shuffle")
 
