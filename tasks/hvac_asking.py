@@ -48,11 +48,11 @@ TASKS = (
         SignalIs(param("which", FRONT_SEATS), (0.0,)),
         CLIMATE,
         Tap("hvac.{which}_seat_heating"),
-        untold=replace(PARIS, signals={seat.path: param("heat") for seat in FRONT_SEATS.values()}),
+        untold=replace(PARIS, signals={seat.path: 100.0 for seat in FRONT_SEATS.values()}),
         told=replace(PARIS, signals=only(FRONT_SEATS, 100.0, 0.0)),
         look=(CLIMATE,),
         difference="settings: both front seats are heated, or only one of them",
-        parameters={"which": tuple(FRONT_SEATS), "heat": (50.0, 100.0)},
+        parameters={"which": tuple(FRONT_SEATS)},
         trigger=ON_THE_WAY,
     ),
     unclear(
