@@ -95,6 +95,8 @@ TASKS = (
             "I'd like {degrees} degrees here where I sit.",
             "Driver's side, {degrees}, please.",
             "Warm me up to {degrees}.",
+            "Only my side, please: {degrees} degrees.",
+            "Turn the driver's side up to {degrees}.",
             "My half of the car should have {degrees} degrees.",
         ),
         Says(

@@ -85,9 +85,12 @@ class _Tools:
         tasks: Annotated[
             str, Field(description="Ids, patterns, modules, general, safety or all; separated by commas.")
         ] = "all",
+        suite: Annotated[
+            str, Field(description="standard, hard or all; an id names its task in any.")
+        ] = "standard",
     ) -> CallToolResult:
         """List the tasks that `start` takes, with their halves."""
-        chosen = [CATALOGUE[name] for name in choose(word.strip() for word in tasks.split(","))]
+        chosen = [CATALOGUE[name] for name in choose((word.strip() for word in tasks.split(",")), suite)]
         return _result({"tasks": [{"id": task.id, "halves": list(task.halves)} for task in chosen]})
 
     @_told

@@ -270,5 +270,6 @@ def failed_watch(job: WatchJob, kind: str, why: str) -> WatchRow:
 
 
 def _keep(record: WatchRecord, folder: Path, name: str) -> None:
+    (folder / TIMELINES).mkdir(exist_ok=True)  # on a node of a cluster, each job has a folder of its own
     (folder / TIMELINES / f"{name}.json").write_text(json.dumps(record.timeline), "utf-8")
     write_trace(folder, name, record.steps)

@@ -16,6 +16,7 @@ from automotive_cosim.models import ModelReply, make_model
 from automotive_cosim.run.episode import End, EpisodeSetup, run_episode
 from automotive_cosim.run.estimates import estimates
 from automotive_cosim.run.record import Recorder
+from automotive_cosim.tasking.task import Suite
 
 QUICK = EpisodeSetup(task="hvac_fan_max", scenario="grid")
 
@@ -103,7 +104,7 @@ def test_a_model_out_of_reach_is_an_error_and_no_failure(simulations):
 def test_unreadable_answers_are_recorded_steps(simulations, tmp_path, text):
     result = _run(simulations, ModelAgent(T3A, Says(text)), tmp_path / "out")
     lines = _lines(tmp_path / "out")[1:]
-    assert result.steps == QUICK.max_steps == len(lines)
+    assert result.steps == Suite.STANDARD.max_steps == len(lines)
     for line in lines:
         assert line["action"] is None
         assert line["feedback"]["code"] == "malformed"

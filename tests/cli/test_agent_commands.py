@@ -125,7 +125,7 @@ def test_a_single_run_is_replayed_and_a_change_is_found(cli, tmp_path):
     record["manifest"]["setup"]["seed"] += 1
     (tmp_path / "one/episode.json").write_text(json.dumps(record), encoding="utf-8")
     assert cli("replay", "one").code == 1
-    record["manifest"]["setup"]["sede"] = 1
+    record["manifest"]["setup"]["seedd"] = 1
     (tmp_path / "one/episode.json").write_text(json.dumps(record), encoding="utf-8")
     assert "did you mean 'seed'" in cli("replay", "one").err
 

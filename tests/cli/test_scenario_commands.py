@@ -66,7 +66,7 @@ def test_origin_and_places(cli):
     there = _episode(cli(*RUN, "--scenario", "grid", "--origin", "-3.7,40.4"))
     assert here["trace_sha256"] != there["trace_sha256"]
     ran = cli(
-        "run", "--task", "hvac_fan_max", "--scenario", "grid", "--origin", "151.2,-33.9", "--from", "rue du sud"
+        "run", "--task", "hvac_fan_max", "--scenario", "grid", "--origin", "151.2,-33.9", "--from", "street 7"
     )
     assert ran.code == 0, ran.err
     assert "note: traffic keeps right in this network, but left in Australia" in ran.out

@@ -16,6 +16,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
 from automotive_cosim.run.script import ScriptedAgent
 from automotive_cosim.service import EpisodeService, ServiceLimits
+from automotive_cosim.tasking.task import Suite
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
 
@@ -166,13 +167,15 @@ def test_a_turn_has_a_picture_and_nothing_of_the_verdict(service: EpisodeService
 
 def test_the_list_says_no_more_of_a_task_than_its_name_and_halves(service: EpisodeService) -> None:
     async def talk(client: Client) -> Json:
-        return await call(client, "list_tasks", {})
+        return {suite: await call(client, "list_tasks", {"suite": suite}) for suite in Suite}
 
-    listed = inside(service, talk)["tasks"]
-    assert [(task["id"], tuple(task["halves"])) for task in listed] == [
-        (task.id, task.halves) for task in CATALOGUE.values()
-    ]
-    assert {frozenset(task) for task in listed} == {frozenset({"id", "halves"})}
+    told = inside(service, talk)
+    for suite in Suite:
+        listed = told[suite]["tasks"]
+        assert [(task["id"], tuple(task["halves"])) for task in listed] == [
+            (task.id, task.halves) for task in CATALOGUE.of(suite)
+        ]
+        assert {frozenset(task) for task in listed} == {frozenset({"id", "halves"})}
 
 
 @pytest.mark.parametrize(

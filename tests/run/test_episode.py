@@ -16,6 +16,7 @@ from automotive_cosim.interface import trace
 from automotive_cosim.run.episode import End, EpisodeSetup, run_episode
 from automotive_cosim.run.script import ScriptedAgent
 from automotive_cosim.tasking.instance import draw
+from automotive_cosim.tasking.task import Suite
 from automotive_cosim.tasks import CATALOGUE
 
 TASK = "hvac_fan_max"
@@ -74,7 +75,7 @@ def test_doing_nothing_fails_at_the_last_step(run):
     assert result.success is False
     assert result.reward == 0.0
     assert result.end is End.OUT_OF_STEPS
-    assert result.steps == EpisodeSetup().max_steps
+    assert result.steps == Suite.STANDARD.max_steps
 
 
 def test_the_same_setup_gives_the_same_trace_and_another_seed_another(run):
@@ -181,7 +182,7 @@ def test_watchers_hear_of_drive_steps_and_aftermath(run):
 def test_an_unreadable_answer_costs_a_step(run):
     result = run(Broken(ActionError("the answer has no action"))).result
     assert result.end is End.OUT_OF_STEPS
-    assert result.steps == EpisodeSetup().max_steps
+    assert result.steps == Suite.STANDARD.max_steps
 
 
 def test_a_failing_road_is_an_error_and_no_failure(run):

@@ -172,6 +172,7 @@ def test_a_drive_by_the_models_clock_is_repeated_exactly(sumo: None, monkeypatch
     )
 
 
+@pytest.mark.sumo
 @pytest.mark.slow
 def test_one_command_gives_the_scores_at_fixed_latencies(tmp_path: Path) -> None:
     values = PLAN | {"agents": ["rule-perfect"]}
