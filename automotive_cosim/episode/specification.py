@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from enum import StrEnum
-from typing import Annotated
+from typing import Annotated, TypeVar
 
 import numpy as np
 from annotated_types import Ge, Gt
@@ -17,6 +17,8 @@ from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.interface.feedback import FeedbackDetail
 from automotive_cosim.interface.observe import ALL, Channel, See
 from automotive_cosim.tasking.draws import SEED_LIMIT
+
+Named = TypeVar("Named", bound=StrEnum)
 
 ACTION_COST_S = 1.0
 """Simulated seconds per action: about the time of a person's tap (NHTSA 2013 counts glances of up to 2 s)."""
@@ -130,15 +132,19 @@ class EpisodeSpec:
         )
 
 
+def _named(kind: type[Named], what: str, name: str) -> Named:
+    if name not in set(kind):
+        raise UnknownNameError(what, name, kind)
+    return kind(name)
+
+
 def clock_of(name: str) -> Clock:
     """The clock by name.
 
     Raises:
         UnknownNameError: there is none.
     """
-    if name not in set(Clock):
-        raise UnknownNameError("clock", name, Clock)
-    return Clock(name)
+    return _named(Clock, "clock", name)
 
 
 def see_of(name: str) -> See:
@@ -147,9 +153,7 @@ def see_of(name: str) -> See:
     Raises:
         UnknownNameError: there is none.
     """
-    if name not in set(See):
-        raise UnknownNameError("way to see the screen", name, See)
-    return See(name)
+    return _named(See, "way to see the screen", name)
 
 
 def feedback_of(name: str) -> FeedbackDetail:
@@ -158,9 +162,7 @@ def feedback_of(name: str) -> FeedbackDetail:
     Raises:
         UnknownNameError: there is none.
     """
-    if name not in set(FeedbackDetail):
-        raise UnknownNameError("kind of feedback", name, FeedbackDetail)
-    return FeedbackDetail(name)
+    return _named(FeedbackDetail, "kind of feedback", name)
 
 
 @dataclass(frozen=True, slots=True)
