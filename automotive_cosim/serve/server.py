@@ -33,13 +33,14 @@ from automotive_cosim.serve.play import Game
 from automotive_cosim.serve.shelf import NotHereError, Shelf
 
 SECURITY = {
-    "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; "
+    "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
     "Cross-Origin-Resource-Policy": "same-origin",
     "Cross-Origin-Opener-Policy": "same-origin",
 }
+PLAYING = tuple(f"/api/play/{what}" for what in ("start", "pace", "act", "leave"))
 MOST_BYTES = 10_000
 """Longest request."""
 WAIT_S = 1.0
@@ -143,7 +144,7 @@ class Site:
             RefusedRequestError: there is no such thing to do, or it cannot be done now.
         """
         game = self._game
-        if game is None or path not in ("/api/play/start", "/api/play/act", "/api/play/leave"):
+        if game is None or path not in PLAYING:
             raise RefusedRequestError(HTTPStatus.METHOD_NOT_ALLOWED, "these pages only read")
         try:
             asked = parse_json(body or b"{}")
@@ -156,9 +157,14 @@ class Site:
                     raise UserError("task, half and name are texts, and seed is a whole number")
                 if not 0 <= seed < 2**31:
                     raise UserError(f"seed {seed} is not a whole number from 0 to {2**31 - 1}")
-                game.start(given["task"], given["half"], seed, given["name"])
+                game.start(given["task"], given["half"], seed, given["name"], practice=bool(asked.get("practice")))
+            elif path == "/api/play/pace":
+                speed = asked.get("speed", 1)
+                if not isinstance(speed, (int, float)):
+                    raise UserError("speed is a number")
+                game.pace(float(speed), paused=bool(asked.get("paused")))
             elif path == "/api/play/act":
-                game.act(asked)
+                return WebAnswer(game.act(asked), "image/jpeg")
             else:
                 game.leave()
         except (UserError, ValueError) as error:
@@ -177,7 +183,13 @@ class Site:
         scene = self._game.scene(_number(query), WAIT_S) if query else self._game.scene()
         record = None if scene.folder is None else self._content.shelf.of(scene.folder).id
         shown = {"version": scene.version, "state": scene.state, "progress": scene.progress, "error": scene.error}
-        return _json({**shown, "told": scene.told, "record": record, "has_screen": bool(scene.screen)})
+        shown |= {
+            "practice": scene.is_practice,
+            "paused": scene.is_paused,
+            "speed": scene.speed,
+            "look": scene.look,
+        }
+        return _json({**shown, "told": scene.told, "record": record, "episode": scene.episode})
 
     def _screen(self, path: Mapping[str, str], query: Mapping[str, str]) -> WebAnswer:
         screen = b"" if self._game is None else self._game.scene().screen
@@ -248,6 +260,8 @@ class RequestHandler(BaseHTTPRequestHandler):
     protocol_version = "HTTP/1.1"
     server_version, sys_version = "automotive-cosim", ""
     timeout = 60
+    disable_nagle_algorithm = True
+    """A body does not wait until the browser has acknowledged the headers."""
 
     def do_GET(self) -> None:
         """Answers, or says why not."""

@@ -176,7 +176,7 @@ def test_a_person_plays_by_keyboard_and_mouse(serving: Serving, opened: Callable
     expect(fan).to_have_count(1)
     box = fan.bounding_box()
     page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
-    expect(page.locator(".playing [role=status]")).to_contain_text("FanSpeed is 100")
+    expect(page.locator(".playing [role=status]")).to_contain_text("Max: done")
     page.get_by_role("button", name="Done").click()
     page.get_by_role("link", name="See the verdict").click(timeout=60_000)
     expect(page.locator(".pill")).to_have_text("Success")
