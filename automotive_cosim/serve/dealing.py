@@ -1,9 +1,9 @@
 """Deals a study's episodes to people: what each of them plays, and in what order.
 
-Everybody plays every half of every task with every seed, in two rounds; a pair has one half in each. In a round, the
-order is a row of a Williams design: over n people for n tasks (2n, if n is odd) every task stands at every place
-equally often, and follows every other equally often. ``order_seed`` shuffles which task is which, and which half of
-the people meets the first half of a pair first. Nobody gets both halves of a pair in a row.
+Everybody plays every half of every task with every seed, in two rounds; a pair has one half in each. In a round,
+the order is a row of a Williams design: over n people for n tasks (2n, if n is odd) every task stands at every
+place equally often, and follows every other equally often. ``order_seed`` shuffles which task is which, and which
+half of the people meets the first half of a pair first. Nobody gets both halves of a pair in a row.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from annotated_types import Ge, Le, MinLen
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.toml import read_toml
 from automotive_cosim.run.plan import EpisodeJob, Plan, choose
+from automotive_cosim.scenery import open_scenario
 from automotive_cosim.serve.played import check_code_name, people_plan
 
 MOST_PEOPLE = 100
@@ -50,6 +51,8 @@ class StudyPlan:
             check_code_name(name)
         if len(set(self.people)) < len(self.people) or len(self.people) > MOST_PEOPLE:
             raise UserError(f"people must be up to {MOST_PEOPLE} different code names")
+        if self.scenario is not None:
+            open_scenario(self.scenario)
         plan = people_plan(choose(self.tasks), self.people, sorted(set(self.seeds)), scenario=self.scenario)
         units = {_unit(job) for job in plan.jobs()}
         if len(units) < 2 and any(job.task.second for job in plan.jobs()):
@@ -68,7 +71,9 @@ def read_study(path: Path) -> StudyPlan:
     return read_toml(path).read(StudyPlan)
 
 
-def deal(jobs: Sequence[EpisodeJob], people: Sequence[str], order_seed: int) -> Mapping[str, tuple[EpisodeJob, ...]]:
+def deal(
+    jobs: Sequence[EpisodeJob], people: Sequence[str], order_seed: int
+) -> Mapping[str, tuple[EpisodeJob, ...]]:
     """What everybody plays, in order.
 
     Args:
@@ -111,7 +116,9 @@ def williams(count: int, row: int) -> tuple[int, ...]:
     return order[::-1] if count % 2 and (row // count) % 2 else order
 
 
-def _parted(first: list[tuple[str, str, int]], second: list[tuple[str, str, int]]) -> tuple[list[tuple[str, str, int]], ...]:
+def _parted(
+    first: list[tuple[str, str, int]], second: list[tuple[str, str, int]]
+) -> tuple[list[tuple[str, str, int]], ...]:
     """Both rounds, changed if the second would begin with what the first ends with."""
     if first and second and first[-1] == second[0]:
         if len(second) > 1:

@@ -155,6 +155,11 @@ class Game(Watcher):
         """
         self._begin(Person(job.setup.model, counts=True), lambda: self._count(job, folder, keep))
 
+    @property
+    def is_running(self) -> bool:
+        """Whether an episode is under way."""
+        return self._thread is not None and self._thread.is_alive()
+
     def pace(self, speed: float, *, paused: bool) -> None:
         """Slows an episode of practice, or stops its clock.
 
@@ -194,7 +199,8 @@ class Game(Watcher):
             self._tell(state=PlayState.ENDING)
 
     def close(self) -> None:
-        """Ends everything, and waits until it has ended."""
+        """Breaks off what is going on, which leaves no row, and waits until it has ended."""
+        self._person.counts = False
         self.leave()
         if self._thread is not None:
             self._thread.join()
@@ -262,7 +268,7 @@ class Game(Watcher):
 
     def _begin(self, person: Person, play: Callable[[], None]) -> None:
         with self._news:
-            if self._thread is not None and self._thread.is_alive():
+            if self.is_running:
                 raise UserError("an episode is running already; finish or leave it first")
             self._person = person
             state = PlayState.WARMING
@@ -273,7 +279,7 @@ class Game(Watcher):
     def _run(self, play: Callable[[], None]) -> None:
         try:
             play()
-        except StoppedError:
+        except (StoppedError, PersonLeftError):
             self._tell(state=PlayState.IDLE, told=None, screen=b"")
         except Exception as error:
             self._tell(state=PlayState.FAILED, error=str(error) or type(error).__name__)

@@ -4,8 +4,8 @@ The folder is an evaluation of the agent ``human``, which every report reads, wi
 
     log.jsonl    a line whenever an episode is begun or has ended, or the questions after it are answered
 
-Both are on the disk before anything goes on, so that a server that was killed continues where it was; the episode under
-way is begun again, and the export says so.
+Both are on the disk before anything goes on, so that a server that was killed continues where it was; the episode
+under way is begun again, and the export says so.
 """
 
 from __future__ import annotations
@@ -169,8 +169,10 @@ class Study:
             job = self._next(seat.person)
             if self._asked(seat.person) or job is None:
                 raise UserError("answer the questions first" if job else "everything has been played")
-            seat.game.begin(job, self.folder, lambda row: self._keep(job, row))
+            if seat.game.is_running:
+                raise UserError("an episode is running already")
             self._note("begun", job)
+            seat.game.begin(job, self.folder, lambda row: self._keep(job, row))
 
     def answer(self, secret: str, answers: Mapping[str, Any]) -> None:
         """Takes the answers to the questions, each 1 to 5.

@@ -24,7 +24,7 @@ export function rulesCard() {
 }
 
 // Plays one person's episodes: `base` is where the server is asked, `query` says for whom, `say` shows an error.
-export function cockpitPanel({ base = "/api/play", query = {}, say, canLeave = true }) {
+export function cockpitPanel({ base = "/api/play", query = {}, say, leaveLabel = "Leave" }) {
   const address = (what, more = {}) => `${base}${what}?${new URLSearchParams({ ...query, ...more })}`;
   const act = async (action) => { try { foresee(await send(address("/act"), action)); say(null); } catch (error) { say(error); } };
   let scene = null;
@@ -58,7 +58,7 @@ export function cockpitPanel({ base = "/api/play", query = {}, say, canLeave = t
       h("form", { class: "filters say", onsubmit: (event) => { event.preventDefault(); speak("answer"); } }, answer, h("button", { type: "submit" }, "Say"), button("Ask", () => speak("ask_driver")), button("Look up", () => speak("query")))),
     h("div", { class: "card transport" },
       button("Done", () => declare("complete"), "main"), button("Not needed", () => declare("not_needed")), button("Cannot or must not", () => declare("infeasible")), reason,
-      canLeave && button("Leave", async () => { try { await send(address("/leave"), {}); } catch (error) { say(error); } })),
+      button(leaveLabel, async () => { try { await send(address("/leave"), {}); } catch (error) { say(error); } })),
     told, h("details", { class: "card", open: true }, h("summary", {}, "What is known of the place"), context),
     h("details", { class: "card" }, h("summary", {}, "Readings of the car and its receivers"), readings));
 
