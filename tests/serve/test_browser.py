@@ -189,7 +189,7 @@ def test_a_person_plays_by_keyboard_and_mouse(serving: Serving, opened: Callable
 def test_two_people_take_part_in_a_study_at_once_and_a_new_server_goes_on(
     serving: Serving, opened: Callable[..., Any], tmp_path: Path
 ) -> None:
-    plan = StudyPlan(("heron", "fox"), ("hvac_fan_max", "hvac_ac_off"), scenario="grid")
+    plan = StudyPlan(("heron", "fox"), ("hvac_fan_max", "hvac_fan_percent"), scenario="grid")
     folder = tmp_path / "mine"
 
     def sit_down(browser: Browser, name: str) -> Any:
