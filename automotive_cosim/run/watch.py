@@ -20,7 +20,7 @@ from automotive_cosim.drives.judge import JudgedEvent
 from automotive_cosim.drives.plan import DrivePlan
 from automotive_cosim.drives.score import score
 from automotive_cosim.drives.watch import Watch
-from automotive_cosim.episode.listener import Listener
+from automotive_cosim.episode.listener import Listener, Listeners
 from automotive_cosim.episode.loop import play
 from automotive_cosim.episode.specification import Clock, Conditions
 from automotive_cosim.errors import UnknownNameError
@@ -65,6 +65,19 @@ class WatchRecord:
     """Action, thinking time and result of each step, with hashes of the state that followed."""
 
 
+class WatchWatcher(Listener):
+    """Sees a drive while it runs, e.g. to show or record it. It changes nothing."""
+
+    def departed(self, watch: Watch) -> None:
+        """The drive begins."""
+
+    def acted(self, watch: Watch, seen: Sequence[Element]) -> None:
+        """The agent has acted on a screen with these elements."""
+
+    def arrived(self, watch: Watch, record: WatchRecord) -> None:
+        """The drive is over, and judged."""
+
+
 def family_named(name: str) -> Family:
     """The family of drives by name.
 
@@ -102,7 +115,7 @@ def run_watch(
     agent: Agent,
     *,
     simulations: Simulations | None = None,
-    listener: Listener | None = None,
+    watchers: Sequence[WatchWatcher] = (),
     plan: DrivePlan | None = None,
 ) -> WatchRecord:
     """Runs a drive to its end and judges it.
@@ -112,7 +125,7 @@ def run_watch(
         setup: what to run.
         agent: who watches.
         simulations: warm simulations to use; by default its own, closed with the drive.
-        listener: notified of progress.
+        watchers: notified of everything as it happens.
         plan: used instead of the family's plan for the seed.
 
     Raises:
@@ -121,6 +134,7 @@ def run_watch(
     """
     planned = planned_row(job_id, setup)
     drive = plan or family_named(setup.family).draw(setup.seed)
+    listener = Listeners(watchers)
     with ExitStack() as ends:
         own = simulations or ends.enter_context(closing(Simulations()))
         world = depart(drive, own, listener)
@@ -140,12 +154,17 @@ def run_watch(
         ends.callback(watch.close)
         meter, channels = _Meter(setup, agent), tuple(sorted(agent.channels))
         agent.reset(watch.goal)
-        end = play(watch, agent, (meter.stepped,), meter.thought_s)
-        return WatchRecord(
+        for watcher in watchers:
+            watcher.departed(watch)
+        end = play(watch, agent, (meter.stepped, *(watcher.acted for watcher in watchers)), meter.thought_s)
+        record = WatchRecord(
             row=replace(planned, end=end, channels=channels, **_figures(watch), **meter.totals()),
             timeline=_timeline(watch),
             steps=tuple(_steps(watch)),
         )
+        for watcher in watchers:
+            watcher.arrived(watch, record)
+        return record
 
 
 class _Meter:

@@ -9,9 +9,11 @@ from typing import Any
 
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import KMH_PER_MPS, Element, Json
+from automotive_cosim.drives.judge import EventOutcome
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import parse_json, read_json
 from automotive_cosim.report.page import PARTS, element
+from automotive_cosim.run.drive_recorder import SHOWN as DRIVE_STEPS
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.road import FORMAT, read_road
 from automotive_cosim.run.road import NAME as ROAD
@@ -30,6 +32,7 @@ SHOWN = (
     *("success", "error", "error_kind", "end", "steps", "sim_seconds", "held_out", "goal_s"),
 )
 """Fields of a row that the table of results shows."""
+CREDITED = frozenset(outcome.value for outcome in EventOutcome if outcome.is_credited)
 OWN_ROAD = ("limit_kmh", "speed_kmh", "road")
 
 
@@ -51,6 +54,8 @@ class Content:
             UserError: it is not here, or cannot be read.
         """
         entry = self.shelf.entry(name)
+        if entry.is_drive:
+            return self._drive(entry)
         result = self._result(entry, episode)
         head = _head(result) if result else self._unfinished(entry, episode)
         return {
@@ -75,6 +80,13 @@ class Content:
             UserError: it is not here, or cannot be read.
         """
         entry = self.shelf.entry(name)
+        if entry.is_drive:
+            path = self.shelf.file(entry, DRIVE_STEPS)
+            lines = _json_lines(path, *_stamp(path))[skip:]
+            return {
+                "steps": [{**line, "has_picture": True} for line in lines],
+                "running": self._is_running(entry, None),
+            }
         lines = self._lines(entry, episode)
         steps = _steps(entry, self.shelf, episode, lines)
         return {"steps": steps[skip:], "running": self._is_running(entry, episode)}
@@ -131,6 +143,13 @@ class Content:
             done = (entry.folder / "episodes.jsonl").read_bytes().count(b"\n")
             started = manifest["starts"][-1]["started"]
             return {**shared, "kind": kind, "done": done, "planned": manifest.get("episodes"), "started": started}
+        if entry.is_drive:
+            drive = self._drive(entry)
+            return {
+                **shared,
+                "kind": "drive",
+                **{name: drive[name] for name in (*HEAD, "running", "value", "started")},
+            }
         path = entry.folder / "episode.json"
         head = _head_of(self.shelf.file(entry, path.name), *_stamp(path)) if path.is_file() else None
         return {
@@ -150,6 +169,38 @@ class Content:
             if episode is not None:
                 self._road(entry, episode)
             return None
+
+    def _drive(self, entry: ShelfEntry) -> Json:
+        """A drive, with its events and acts once it is over."""
+        head = self._unfinished(entry, None)
+        path = entry.folder / "row.json"
+        row = _object(self.shelf.file(entry, path.name)) if path.is_file() else {}
+        events, acts = row.get("events", ()), row.get("acts", ())
+        head |= {name: row[name] for name in HEAD if row.get(name) is not None}
+        head["task"] = row.get("family", head["task"])
+        met = [event for event in events if not event["bait"]]
+        return {
+            **head,
+            "id": entry.id,
+            "episode": None,
+            "name": entry.folder.name,
+            "kind": "drive",
+            "running": self._is_running(entry, None),
+            "started": None,
+            "parts": {},
+            "success": None,
+            "value": row.get("value"),
+            "score": row.get("score"),
+            "verdict": None,
+            "spans": [_span(event) for event in events],
+            "acts": [{"at_s": act["time_s"], "text": act["words"], "worth": act["worth"]} for act in acts],
+            "timeline": _drive_timeline(events, acts),
+            "met": sum(event["outcome"] in CREDITED for event in met),
+            "path": (),
+            "violations": (),
+            "manifest": None,
+            "trace_sha256": row.get("trace_sha256"),
+        }
 
     def _trace(self, entry: ShelfEntry, episode: str) -> list[Json]:
         self.shelf.file(entry, "traces", f"{episode}.jsonl.gz")
@@ -181,6 +232,24 @@ class Content:
             "task": begun.get("task") or episode or entry.folder.name,
             "end": "running" if self._is_running(entry, episode) else "stopped before its end",
         }
+
+
+def _span(event: Json) -> Json:
+    """An event of a drive from when it can be known to its deadline, or to its end."""
+    told = {name: event[name] for name in ("kind", "words", "bait", "outcome", "obliged_s", "deadline_s")}
+    return {**told, "from_s": event["observable_s"], "to_s": event["deadline_s"] or event["ends_s"]}
+
+
+def _drive_timeline(events: Sequence[Json], acts: Sequence[Json]) -> list[Json]:
+    """Every instant that the page lists, in order."""
+    told = []
+    for event in events:
+        what = f"{'look-alike' if event['bait'] else 'event'} {event['kind']}: {event['words']}"
+        told.append((event["observable_s"], "event", f"{what} [{event['outcome']}]"))
+        if event["deadline_s"] is not None and not event["bait"]:
+            told.append((event["deadline_s"], "deadline", f"deadline of {event['kind']}"))
+    told += [(act["time_s"], "alert", f"{act['words']} [{act['worth']}]") for act in acts]
+    return [{"at_s": at_s, "kind": kind, "text": text} for at_s, kind, text in sorted(told)]
 
 
 def _stamp(path: Path) -> tuple[int, int]:

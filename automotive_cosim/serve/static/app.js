@@ -4,6 +4,7 @@ import { ask, h } from "./dom.js";
 import { runsPage, resultsPage } from "./runs.js";
 import { replayPage } from "./replay.js";
 import { playPage } from "./play.js";
+import { besidePage, comparePage } from "./compare.js";
 import { studyPage } from "./study.js";
 import { scenariosPage, taskPage, tasksPage } from "./browse.js";
 
@@ -16,6 +17,8 @@ const PAGES = [
   [/^\/scenarios$/, scenariosPage],
   [/^\/play$/, playPage],
   [/^\/study$/, studyPage],
+  [/^\/compare\/([0-9a-f]{12})\/([0-9a-f]{12})$/, comparePage],
+  [/^\/beside\/([0-9a-f]{12})\/([^/]+)\/([0-9a-f]{12})\/([^/]+)$/, besidePage],
 ];
 
 let leave = null;

@@ -60,7 +60,7 @@ export async function replayPage(query, id, episode) {
     const told = [run.half && `${run.half} half`, run.scenario, run.agent, run.model !== "none" && run.model, run.seed !== null && `seed ${run.seed}`];
     heading.replaceChildren(
       h("div", {}, h("h1", {}, run.task), run.goal && h("p", { class: "said" }, `“${run.goal}”`), h("p", { class: "muted" }, told.filter(Boolean).join(" · "))),
-      outcome({ ...run, running }));
+      run.kind === "drive" && !running ? h("span", { class: "pill" }, run.value === null ? plain(run.end) || "No judgement" : `Score ${Math.round(run.value)} · ${run.met} of ${run.spans.filter((each) => !each.bait && each.outcome !== "void").length} events met`) : outcome({ ...run, running }));
     live.hidden = !running;
     const parts = Object.entries(run.verdict?.parts ?? {});
     verdict.replaceChildren(...(parts.length ? [h("h2", {}, "Verdict"), h("ol", { class: "card parts" },
@@ -82,6 +82,12 @@ export async function replayPage(query, id, episode) {
       mark.style.left = `${100 * (event.at_s - begin()) / span}%`;
       return mark;
     }));
+    marks.append(...(run.spans ?? []).filter((each) => each.outcome !== "void").map((each) => {
+      const bar = h("i", { class: `span ${each.bait ? "bait" : ["hit", "prepared", "prevented"].includes(each.outcome) ? "good" : "bad"}`, title: `${each.kind}: ${each.words} [${plain(each.outcome)}]` });
+      bar.style.left = `${100 * (each.from_s - begin()) / span}%`;
+      bar.style.width = `max(3px, ${100 * (each.to_s - each.from_s) / span}%)`;
+      return bar;
+    }));
     const path = run.path.length ? run.path : road.seconds;
     plot.replaceChildren(speedPlot(path, jump));
     plot.hidden = path.length < 2;
@@ -90,7 +96,7 @@ export async function replayPage(query, id, episode) {
 
   function show() {
     slider.value = at;
-    slider.setAttribute("aria-valuetext", `${seconds(at)} from the hand-over`);
+    slider.setAttribute("aria-valuetext", `${seconds(at)} from the ${run.kind === "drive" ? "departure" : "hand-over"}`);
     clock.textContent = seconds(at);
     view.draw(at);
     const second = road.second(at);
@@ -132,7 +138,7 @@ export async function replayPage(query, id, episode) {
     noScreen.hidden = Boolean(pictured);
     noScreen.textContent = index < 0 ? "Before the hand-over: nobody acts yet." : "No picture of this screen was kept.";
     if (pictured) {
-      screen.src = `${base}/pictures/${pictured.number}`;
+      screen.src = `${base}/pictures/${pictured.picture ?? pictured.number}`;
       screen.alt = `The cockpit's screen after step ${pictured.number}: ${pictured.words}`;
     }
     const next = steps[index + 1];
@@ -146,7 +152,7 @@ export async function replayPage(query, id, episode) {
 
   function told(now) {
     return [
-      h("h3", {}, now.number ? `Step ${now.number}: ${now.words}` : "Hand-over"),
+      h("h3", {}, now.number ? `Step ${now.number}: ${now.words}` : run.kind === "drive" ? "Departure" : "Hand-over"),
       now.thought && h("p", { class: "thought" }, now.thought),
       now.feedback.text && h("p", { class: "muted" }, `${plain(now.feedback.code)}: ${now.feedback.text}`),
       now.action && h("p", {}, h("code", {}, JSON.stringify(now.action))),

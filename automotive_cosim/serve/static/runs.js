@@ -33,7 +33,7 @@ function line(record) {
     h("div", {}, h("a", { href: `#/run/${record.id}` }, record.task),
       record.goal && h("p", {}, `“${record.goal}”`),
       h("p", { class: "muted" }, about.filter(Boolean).join(" · "))),
-    outcome(record));
+    record.kind === "drive" && !record.running && record.value !== null ? h("span", { class: "pill" }, `Score ${Math.round(record.value)}`) : outcome(record));
 }
 
 const when = (text) => (text ? text.slice(0, 16).replace("T", " ") : "");
@@ -87,10 +87,14 @@ export async function resultsPage(query, id) {
     fill();
   };
   const timer = setInterval(() => again().catch(() => {}), EVERY_MS);
+  const { records } = await ask("/api/runs");
+  const others = records.filter((record) => record.kind === "evaluation");
+  const beside = h("select", { "aria-label": "Compare with", onchange: () => { if (beside.value) location.hash = `#/compare/${id}/${beside.value}`; } },
+    h("option", { value: "" }, "Compare with …"), others.map((record) => h("option", { value: record.id }, record.id === id ? "itself: two of its agents" : record.name)));
   const head = ["Task", "Half", "Scenario", "Agent", "Seed", "Steps", "Outcome", "Not held"].map((name) => h("th", { scope: "col" }, name));
   return {
     title: results.name,
-    content: [h("h1", {}, results.name), heading, now, h("div", { class: "filters" }, search, choices), count,
+    content: [h("h1", {}, results.name), heading, now, h("div", { class: "filters" }, search, choices, beside), count,
       h("div", { class: "card scroll", tabindex: 0, role: "region", "aria-label": "Episodes" }, h("table", {}, h("thead", {}, h("tr", {}, head)), table))],
     leave: () => clearInterval(timer),
     ready: fill,
