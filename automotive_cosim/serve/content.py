@@ -19,7 +19,9 @@ from automotive_cosim.run.road import FORMAT, read_road
 from automotive_cosim.run.road import NAME as ROAD
 from automotive_cosim.run.road_recorder import is_being_written
 from automotive_cosim.run.store import read_manifest, read_rows, read_trace
+from automotive_cosim.run.watch_row import WatchRow
 from automotive_cosim.run.words import action_in_words
+from automotive_cosim.serve.decisions import decision_map, decisions
 from automotive_cosim.serve.shelf import NotHereError, Shelf, ShelfEntry
 
 HEAD = (
@@ -54,8 +56,9 @@ class Content:
             UserError: it is not here, or cannot be read.
         """
         entry = self.shelf.entry(name)
-        if entry.is_drive:
-            return self._drive(entry)
+        drive = self._drive_in(entry, episode)
+        if drive is not None:
+            return self._drive(entry, drive, episode)
         result = self._result(entry, episode)
         head = _head(result) if result else self._unfinished(entry, episode)
         return {
@@ -80,12 +83,13 @@ class Content:
             UserError: it is not here, or cannot be read.
         """
         entry = self.shelf.entry(name)
-        if entry.is_drive:
-            path = self.shelf.file(entry, DRIVE_STEPS)
+        drive = self._drive_in(entry, episode)
+        if drive is not None:
+            path = self.shelf.file(entry, *drive, DRIVE_STEPS)
             lines = _json_lines(path, *_stamp(path))[skip:]
             return {
                 "steps": [{**line, "has_picture": True} for line in lines],
-                "running": self._is_running(entry, None),
+                "running": self._is_running(entry, episode),
             }
         lines = self._lines(entry, episode)
         steps = _steps(entry, self.shelf, episode, lines)
@@ -115,11 +119,15 @@ class Content:
         if not entry.is_evaluation:
             raise NotHereError(f"record {name!r} is not an evaluation")
         manifest = read_manifest(entry.folder)
-        if "agents" not in manifest["plan"]:
+        kind = _kind(manifest["plan"])
+        if kind == "drives":
+            return self._drives(entry, manifest)
+        if kind != "evaluation":
             raise NotHereError(f"{entry.folder.name} has no episodes of agents")
         rows = read_rows(entry.folder, EpisodeRow)
         return {
             "id": entry.id,
+            "kind": kind,
             "name": entry.folder.name,
             "plan": manifest["plan"],
             "planned": manifest.get("episodes"),
@@ -133,18 +141,34 @@ class Content:
             ],
         }
 
+    def decisions(self, name: str) -> Json:
+        """Every decision of a study of rerouting.
+
+        Raises:
+            UserError: it is not here, or cannot be read.
+        """
+        return decisions(self._study(name))
+
+    def decision_map(self, name: str, decision: str) -> Json:
+        """The ways of a decision on one road.
+
+        Raises:
+            UserError: it is not here, or cannot be read.
+        """
+        return decision_map(self._study(name), decision)
+
     # --- inside -----------------------------------------------------------------------------------------------
 
     def _line(self, entry: ShelfEntry) -> Json:
         shared = {"id": entry.id, "name": entry.folder.name, "folder": str(entry.folder)}
         if entry.is_evaluation:
             manifest = read_manifest(entry.folder)
-            kind = "evaluation" if "agents" in manifest["plan"] else "other"
+            kind = _kind(manifest["plan"])
             done = (entry.folder / "episodes.jsonl").read_bytes().count(b"\n")
             started = manifest["starts"][-1]["started"]
             return {**shared, "kind": kind, "done": done, "planned": manifest.get("episodes"), "started": started}
         if entry.is_drive:
-            drive = self._drive(entry)
+            drive = self._drive(entry, (), None)
             return {
                 **shared,
                 "kind": "drive",
@@ -170,11 +194,53 @@ class Content:
                 self._road(entry, episode)
             return None
 
-    def _drive(self, entry: ShelfEntry) -> Json:
+    def _study(self, name: str) -> Path:
+        entry = self.shelf.entry(name)
+        if not entry.is_evaluation or _kind(read_manifest(entry.folder)["plan"]) != "study":
+            raise NotHereError(f"record {name!r} is not a study")
+        return entry.folder
+
+    def _drives(self, entry: ShelfEntry, manifest: Json) -> Json:
+        """The plan and the rows of an evaluation of drives."""
+        rows = read_rows(entry.folder, WatchRow)
+        names = ("id", "family", "scenario", "season", "agent", "model", "geo", "see", "feedback", "seed", "repeat",
+                 "value", "error", "error_kind", "end", "steps")  # fmt: skip
+        return {
+            "id": entry.id,
+            "kind": "drives",
+            "name": entry.folder.name,
+            "plan": manifest["plan"],
+            "planned": manifest.get("episodes"),
+            "rows": [
+                {name: getattr(row, name) for name in names}
+                | {
+                    "met": row.score and row.score.met,
+                    "events": row.score and row.score.events,
+                    "nuisances": row.score and row.score.nuisances,
+                    "has_road": self._drive_in(entry, row.id) is not None,
+                }
+                for row in rows.values()
+            ],
+        }
+
+    def _drive_in(self, entry: ShelfEntry, episode: str | None) -> tuple[str, ...] | None:
+        """Where in a record the drive is; None if this is none."""
+        if entry.is_drive:
+            return ()
+        parts = () if episode is None else ("pictures", episode)
+        try:
+            self.shelf.file(entry, *parts, DRIVE_STEPS)
+        except NotHereError:
+            return None
+        return parts
+
+    def _drive(self, entry: ShelfEntry, parts: tuple[str, ...], episode: str | None) -> Json:
         """A drive, with its events and acts once it is over."""
-        head = self._unfinished(entry, None)
-        path = entry.folder / "row.json"
-        row = _object(self.shelf.file(entry, path.name)) if path.is_file() else {}
+        head = self._unfinished(entry, episode)
+        try:
+            row = _object(self.shelf.file(entry, *parts, "row.json"))
+        except NotHereError:
+            row = {}
         events, acts = row.get("events", ()), row.get("acts", ())
         head |= {name: row[name] for name in HEAD if row.get(name) is not None}
         head["task"] = row.get("family", head["task"])
@@ -182,10 +248,10 @@ class Content:
         return {
             **head,
             "id": entry.id,
-            "episode": None,
+            "episode": episode,
             "name": entry.folder.name,
             "kind": "drive",
-            "running": self._is_running(entry, None),
+            "running": self._is_running(entry, episode),
             "started": None,
             "parts": {},
             "success": None,
@@ -232,6 +298,12 @@ class Content:
             "task": begun.get("task") or episode or entry.folder.name,
             "end": "running" if self._is_running(entry, episode) else "stopped before its end",
         }
+
+
+def _kind(plan: Json) -> str:
+    """What a folder with rows is, by its plan."""
+    marks = {"study": "study", "drives": "drives", "agents": "evaluation"}
+    return next((kind for mark, kind in marks.items() if mark in plan), "other")
 
 
 def _span(event: Json) -> Json:

@@ -365,6 +365,8 @@ class Game(Watcher, WatchWatcher):
             record = run_watch(job.id, job.setup, person, simulations=self._simulations, watchers=(self, recorder))
             if keep is not None:
                 keep(record)
+                self._tell(state=PlayState.OVER, folder=self._drives.folder, episode=job.id)
+                return
         self._tell(state=PlayState.OVER, folder=folder)
 
     def _count(self, job: EpisodeJob, folder: Path, keep: Callable[[EpisodeRow], None]) -> None:

@@ -135,6 +135,11 @@ class Site:
                 ),
                 (rf"/api/runs/{run}{episode}/pictures/(?P<step>\d{{1,6}})", self._picture),
                 (rf"/api/evaluations/{run}", lambda path, _: _json(content.evaluation(path["run"]))),
+                (rf"/api/studies/{run}", lambda path, _: _json(content.decisions(path["run"]))),
+                (
+                    rf"/api/studies/{run}/(?P<decision>[\w.+-]+)",
+                    lambda path, _: _json(content.decision_map(path["run"], path["decision"])),
+                ),
                 (r"/api/tasks", lambda _, __: _json(catalogue.tasks())),
                 (r"/api/tasks/(?P<name>[\w-]+)", lambda path, _: _json(catalogue.task(path["name"]))),
                 (r"/api/drives", lambda _, __: _json(catalogue.drives())),
@@ -152,7 +157,8 @@ class Site:
         if path == "/api/about":
             about = {"version": __version__, "plays": self._game is not None, "visitor": visitor}
             return _json(about | {"study": self._study and self._study.name})
-        for pattern, route in (*self._for_everybody, *(self._routes if visitor is Visitor.OWNER else ())):
+        routes: Routes = self._for_everybody + (self._routes if visitor is Visitor.OWNER else [])
+        for pattern, route in routes:
             found = pattern.fullmatch(path)
             if found:
                 try:

@@ -7,7 +7,7 @@ import http.client
 import json
 import threading
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +20,8 @@ from automotive_cosim.run.row import as_json
 from automotive_cosim.serve.play import Game
 from automotive_cosim.serve.server import WebServer
 from automotive_cosim.serve.study import PeopleStudy
+from automotive_cosim.studies.plan import StudyPlan
+from automotive_cosim.studies.rows import NOTHING, Branch, Decision, DriveRow, News, OthersTotals
 from automotive_cosim.tasking.task import Dimension, Module
 
 HOSTILE = "<img src=x onerror=\"document.title='broken in'\">"
@@ -161,6 +163,32 @@ def write_evaluation(folder: Path, won: tuple[bool, bool] = (True, False)) -> Pa
     trace = [*map(step, range(4)), {"result": result()}]
     (folder / "traces" / "one.jsonl.gz").write_bytes(packed(trace))
     Image.new("RGB", (320, 180)).save(folder / "pictures" / "one" / "step_000.jpg")
+    return folder
+
+
+def write_study(folder: Path) -> Path:
+    """A study of rerouting in the small scenario: a decision with another way, and one of an older version."""
+    plan = StudyPlan(scenario="grid", seeds=(0,), policies=("never", "always"))
+    job = plan.jobs()[0]
+    manifest = {"format": 1, "plan": plan.as_json(), "starts": [{"started": "2026-11-22T18:00:00"}]}
+    branch = Branch(
+        gains=replace(NOTHING, time_s=30.0),
+        totals=NOTHING,
+        others=OthersTotals(count=3, gain_s=-4.0, changed=1, unfinished_stay=0, unfinished=0),
+    )
+    old = Decision(
+        at_s=900.0, edge="cwc0", delay_s=70.0, eta_s=100.0, relative_speed=0.5, complies=True,
+        news=(News(age_s=0.0, stay_s=100.0, delay_s=70.0, offered_s=80.0, branch=0),), own=None, agents={},
+        agents_rerouted=(), branches=(branch,),
+    )  # fmt: skip
+    new = replace(old, at_s=950.0, ways=(("cwc0", "c0c1", "c1c2"), ("cwc0", "c0n0", "n0n1")))
+    row = DriveRow(
+        id=job.id, scenario="grid", share=job.share, seed=0, departure_s=0.0, trip=job.trip.name, stay=NOTHING,
+        decisions=(old, new),
+    )  # fmt: skip
+    folder.mkdir(parents=True)
+    (folder / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+    (folder / "episodes.jsonl").write_text(json.dumps(as_json(row)) + "\n", encoding="utf-8")
     return folder
 
 

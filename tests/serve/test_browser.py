@@ -24,7 +24,7 @@ from automotive_cosim.serve.play import Game
 from automotive_cosim.serve.study import PeopleStudy
 from automotive_cosim.tasking.task import Module
 
-from .conftest import HOSTILE, Browser, result, road, step, write_drive, write_evaluation, write_record
+from .conftest import HOSTILE, Browser, result, road, step, write_drive, write_evaluation, write_record, write_study
 
 playwright = pytest.importorskip("playwright.sync_api", reason="pip install 'automotive-cosim[browser]'")
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
@@ -376,6 +376,27 @@ def test_a_drive_is_replayed_with_its_events_on_the_slider(
     expect(page.get_by_role("heading", name="Step 2")).to_be_visible()
 
 
+def test_the_ways_of_a_decision_are_on_one_road(
+    serving: Serving, opened: Callable[..., Any], tmp_path: Path
+) -> None:
+    write_study(tmp_path / "reroute")
+    page = opened(serving(tmp_path))
+    page.get_by_role("link", name="reroute").click()
+    expect(page.locator("tbody tr")).to_have_count(2)
+    page.get_by_label("Which decisions").select_option("worse")
+    expect(page.locator("tbody tr")).to_have_count(0)
+    page.get_by_label("Which decisions").select_option("better")
+    page.locator("tbody a").nth(1).click()
+    expect(page.get_by_role("heading", level=1)).to_have_text("avenue at 950 s")
+    expect(page.locator(".way")).to_have_count(2)
+    assert page.locator(".street").count() > 20
+    expect(page.locator("tbody tr").nth(1)).to_contain_text("way 1+30 s")
+    expect(page.locator("tbody tr").nth(1)).to_contain_text("−4 s1always")
+    page.go_back()
+    page.locator("tbody a").first.click()
+    expect(page.get_by_text("older than the record of the ways")).to_be_visible()
+
+
 def test_two_evaluations_are_compared_down_to_a_step(
     serving: Serving, opened: Callable[..., Any], tmp_path: Path
 ) -> None:
@@ -403,11 +424,13 @@ def test_every_page_fits_in_light_and_dark(serving: Serving, opened: Callable[..
     write_record(tmp_path / "run", goal="x" * 300)
     write_evaluation(tmp_path / "mine")
     write_drive(tmp_path / "drive")
+    write_study(tmp_path / "reroute")
     study = PeopleStudy(PeoplePlan(("heron",), ("hvac_fan_max",)), tmp_path / "study")
     browser = serving(tmp_path, game=Game(tmp_path), study=study)
     records = [each for each in browser("/api/runs").json["records"] if each["name"] != "study"]
-    run, mine, drive = (
-        next(each["id"] for each in records if each["kind"] == kind) for kind in ("run", "evaluation", "drive")
+    run, mine, drive, reroute = (
+        next(each["id"] for each in records if each["kind"] == kind)
+        for kind in ("run", "evaluation", "drive", "study")
     )
     pages = (
         "#/",
@@ -416,6 +439,8 @@ def test_every_page_fits_in_light_and_dark(serving: Serving, opened: Callable[..
         f"#/results/{mine}",
         f"#/compare/{mine}/{mine}",
         f"#/beside/{mine}/one/{mine}/one",
+        f"#/decisions/{reroute}",
+        f"#/decision/{reroute}/share0.6-seed0-at0-avenue-1",
         "#/tasks",
         "#/tasks/road_horn_abroad",
         "#/scenarios",
