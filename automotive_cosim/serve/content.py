@@ -141,6 +141,21 @@ class Content:
             ],
         }
 
+    def reference(self, task: str) -> Json:
+        """The reference solution of each half of a task, where it has been recorded with pictures.
+
+        Raises:
+            UserError: a record cannot be read.
+        """
+        found: dict[str, Json] = {}
+        for entry in self.shelf.entries():
+            for half, episode in _safely(entry, lambda each: self._solved(each, task)).get("solved", ()):
+                if half not in found:
+                    steps = self.steps(entry.id, episode, 0)["steps"]
+                    told = [{name: each[name] for name in ("number", "words", "has_picture")} for each in steps]
+                    found[half] = {"run": entry.id, "episode": episode, "steps": told}
+        return {"halves": found}
+
     def decisions(self, name: str) -> Json:
         """Every decision of a study of rerouting.
 
@@ -193,6 +208,23 @@ class Content:
             if episode is not None:
                 self._road(entry, episode)
             return None
+
+    def _solved(self, entry: ShelfEntry, task: str) -> Json:
+        """Half and id of each episode of a record in which the oracle solves a task and pictures were kept."""
+        solved: list[tuple[str, str | None]] = []
+        if entry.is_evaluation:
+            plan = read_manifest(entry.folder)["plan"]
+            is_told = _kind(plan) == "evaluation" and "oracle" in plan["agents"]
+            for row in read_rows(entry.folder, EpisodeRow).values() if is_told else ():
+                is_solved = (row.task, row.agent, row.success) == (task, "oracle", True)
+                if is_solved and _has_picture(self.shelf, entry, row.id, 0):
+                    solved.append((row.half, row.id))
+        elif not entry.is_drive and (entry.folder / "episode.json").is_file():
+            path = entry.folder / "episode.json"
+            head = _head_of(self.shelf.file(entry, path.name), *_stamp(path))
+            if (head["task"], head["agent"], head["success"]) == (task, "oracle", True):
+                solved.append((head["half"], None))
+        return {"solved": solved}
 
     def _study(self, name: str) -> Path:
         entry = self.shelf.entry(name)

@@ -142,6 +142,7 @@ class Site:
                 ),
                 (r"/api/tasks", lambda _, __: _json(catalogue.tasks())),
                 (r"/api/tasks/(?P<name>[\w-]+)", lambda path, _: _json(catalogue.task(path["name"]))),
+                (r"/api/tasks/(?P<name>[\w-]+)/reference", lambda path, _: _json(content.reference(path["name"]))),
                 (r"/api/drives", lambda _, __: _json(catalogue.drives())),
                 (r"/api/scenarios", lambda _, __: _json(catalogue.all_scenarios())),
                 (r"/api/scenarios/(?P<name>[\w-]+)/map", _map),

@@ -397,6 +397,20 @@ def test_the_ways_of_a_decision_are_on_one_road(
     expect(page.get_by_text("older than the record of the ways")).to_be_visible()
 
 
+def test_a_task_shows_its_reference_solution_as_pictures(
+    serving: Serving, opened: Callable[..., Any], tmp_path: Path
+) -> None:
+    write_record(tmp_path / "run")
+    write_record(tmp_path / "lost", success=False, half="second")
+    page = opened(serving(tmp_path), "#/tasks/road_speed_80_in_50")
+    expect(page.locator(".film li")).to_have_count(4)
+    expect(page.locator(".film li").nth(1)).to_contain_text("1  taps “Warn driver”")
+    assert page.locator(".film img").first.evaluate("image => image.decode().then(() => image.naturalWidth)") == 320
+    expect(page.get_by_text("--half second --agent oracle")).to_be_visible()
+    page.get_by_role("link", name="See it on the road").click()
+    expect(page.locator(".pill")).to_have_text("Success")
+
+
 def test_two_evaluations_are_compared_down_to_a_step(
     serving: Serving, opened: Callable[..., Any], tmp_path: Path
 ) -> None:
