@@ -56,7 +56,7 @@ export async function taskPage(query, id) {
 
 // The reference solution as pictures, if a record here has them.
 function reference(found, id, half) {
-  if (!found) return h("p", { class: "muted" }, "To see the reference solution as pictures: ", h("code", {}, `automotive-cosim run ${id} --half ${half} --agent oracle`));
+  if (!found) return h("p", { class: "muted" }, "To see the reference solution as pictures: ", h("code", {}, `automotive-cosim run --task ${id} --half ${half} --agent oracle`));
   const base = `/api/runs/${found.run}${found.episode ? `/episodes/${encodeURIComponent(found.episode)}` : ""}`;
   return h("details", { open: true }, h("summary", {}, "The reference solution"), h("ol", { class: "film" }, found.steps.filter((each) => each.has_picture).map((each) => h("li", {},
     h("img", { src: `${base}/pictures/${each.number}`, alt: `The screen after: ${each.words}`, loading: "lazy" }), h("span", {}, each.number ? `${each.number}  ${each.words}` : "what the agent takes over")))),

@@ -5,6 +5,7 @@ import { RoadRecord, RoadView, signals } from "./road.js";
 import { speedPlot } from "./plot.js";
 
 const POLL_MS = 1000;
+const WEATHER = [[0, "clear"], [3, "cloudy"], [48, "fog"], [57, "drizzle"], [67, "rain"], [77, "snow"], [82, "showers"], [86, "snow showers"], [99, "thunderstorm"]]; // up to each WMO code
 const SPEEDS = [0.25, 0.5, 1, 2, 4, 8];
 
 export async function replayPage(query, id, episode) {
@@ -104,7 +105,7 @@ export async function replayPage(query, id, episode) {
       const others = second.seen.size - ([...second.seen.keys()].some((number) => road.vehicles.get(number)?.id === "ego") ? 1 : 0);
       const limit = second.limit_kmh === null ? "no limit known" : `limit ${speedInWords(second.limit_kmh, second.speed_unit).split(" ")[0]}`;
       about.replaceChildren(h("b", { class: second.limit_kmh !== null && second.speed_kmh > second.limit_kmh + 1 ? "over" : "" }, speedInWords(second.speed_kmh, second.speed_unit)),
-        ` ${limit} · ${second.road || "a road without a name"}${second.local_time ? ` · ${second.local_time.slice(11, 16)}` : ""} · `,
+        ` ${limit} · ${second.road || "a road without a name"}${second.local_time ? ` · ${second.local_time.slice(11, 16)}` : ""}${sky(second)} · `,
         road.alone ? "other vehicles were not recorded" : `${counted(others, "other vehicle")} in sight`,
         view.ghost ? h("span", { class: "ghost" }, "Dashed: the same drive with nobody at the cockpit") : "");
       canvas.setAttribute("aria-label", `The road from above. ${about.textContent}`);
@@ -113,6 +114,11 @@ export async function replayPage(query, id, episode) {
     showVehicle();
     const index = step();
     if (index !== shownStep) showStep(index);
+  }
+
+  function sky({ weather_code: code, sun_deg: sun }) {
+    if (code === null || code === undefined) return "";
+    return `, ${WEATHER.find(([most]) => code <= most)?.[1] ?? "weather unknown"}${sun !== null && sun <= -0.833 ? ", dark" : ""}`;
   }
 
   function showVehicle() {
