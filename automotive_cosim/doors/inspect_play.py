@@ -10,7 +10,7 @@ from typing import Any
 
 import anyio
 import anyio.to_thread
-from inspect_ai.model import ChatMessageSystem, ChatMessageUser, ContentImage, ContentText
+from inspect_ai.model import ChatMessageSystem, ChatMessageUser, Content, ContentImage, ContentText
 from inspect_ai.solver import Generate, TaskState
 from inspect_ai.tool import ToolDef, ToolError
 
@@ -105,7 +105,7 @@ async def _threaded(call: Callable[[], Any]) -> Any:
 
 
 def _act(service: EpisodeService, episode_id: str) -> Any:
-    async def act(action: dict[str, Any]) -> list[ContentText | ContentImage]:
+    async def act(action: dict[str, Any]) -> list[Content]:
         try:
             turn = await _threaded(lambda: service.act(episode_id, action))
         except UserError as error:
@@ -117,8 +117,8 @@ def _act(service: EpisodeService, episode_id: str) -> Any:
     return ToolDef(act, name="act", description=about, parameters=described, max_output=0).as_tool()
 
 
-def _content(turn: EpisodeTurn) -> list[ContentText | ContentImage]:
-    found: list[ContentText | ContentImage] = [ContentText(text=json.dumps(turn.as_json(), ensure_ascii=False))]
+def _content(turn: EpisodeTurn) -> list[Content]:
+    found: list[Content] = [ContentText(text=json.dumps(turn.as_json(), ensure_ascii=False))]
     picture = turn.picture
     if picture is not None:
         found.append(ContentImage(image=f"data:image/png;base64,{base64.b64encode(picture).decode()}"))

@@ -64,8 +64,8 @@ class DriveSpec:
             world.close()
             raise
 
-    def outcome(self, episode_id: str, watch: Watch) -> DriveOutcome:
+    def outcome(self, episode_id: str, session: Watch) -> DriveOutcome:
         """What came of it, once it is over."""
-        assert watch.end is not None
-        seconds = round(watch.seconds, 3)
-        return DriveOutcome(episode_id, self.family, self.seed, watch.end, seconds, result_of(watch))
+        assert session.end is not None
+        seconds = round(session.seconds, 3)
+        return DriveOutcome(episode_id, self.family, self.seed, session.end, seconds, result_of(session))
