@@ -26,6 +26,7 @@ from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import KMH_PER_MPS, Element, Json, RoadSnapshot
 from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.watch import Watch
 from automotive_cosim.interface.trace import plain
 from automotive_cosim.run.collect import PICTURE_QUALITY
@@ -33,7 +34,7 @@ from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.road import NAME
 from automotive_cosim.run.road_recorder import RoadWriter
 from automotive_cosim.run.row import as_json
-from automotive_cosim.run.watch import WatchRecord, WatchSetup, WatchWatcher, family_named
+from automotive_cosim.run.watch import WatchRecord, WatchSetup, WatchWatcher
 from automotive_cosim.run.words import action_in_words
 
 SHOWN = "shown.jsonl"

@@ -25,6 +25,7 @@ from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import ActionType, Element, Json, Observation
 from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.watch import Watch
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.errors import UserError
@@ -37,7 +38,7 @@ from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.plan import HUMAN, NO_MODEL, EpisodeJob
 from automotive_cosim.run.record import Recorder, default_folder
 from automotive_cosim.run.road_recorder import RoadRecorder
-from automotive_cosim.run.watch import WatchRecord, WatchSetup, WatchWatcher, family_named, run_watch
+from automotive_cosim.run.watch import WatchRecord, WatchSetup, WatchWatcher, run_watch
 from automotive_cosim.run.watches import WatchJob
 from automotive_cosim.run.worker import run_with
 from automotive_cosim.serve.person import SPEEDS, Person, PersonLeftError, Preview
