@@ -109,7 +109,9 @@ class Shelf:
         Raises:
             NotHereError: there is none.
         """
-        folder = ("screenshots",) if episode is None else ("pictures", episode)
+        folder = () if episode is None else ("pictures", episode)
+        if episode is None or entry.folder.joinpath(*folder, SHOWN).is_file():  # a record of its own
+            folder = (*folder, "screenshots")
         kind = "png" if episode is None and not entry.is_drive else "jpg"
         return self.file(entry, *folder, f"step_{step:03d}.{kind}"), PICTURES[kind]
 
