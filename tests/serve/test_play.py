@@ -21,6 +21,7 @@ from automotive_cosim.errors import AgentError, UserError
 from automotive_cosim.report.drives import write_drives
 from automotive_cosim.report.evaluation import write_report
 from automotive_cosim.report.results import read_results
+from automotive_cosim.run.rerun import rerun
 from automotive_cosim.run.road import read_record
 from automotive_cosim.run.store import read_rows
 from automotive_cosim.run.watch_row import WatchRow
@@ -201,6 +202,8 @@ def test_a_person_is_judged_as_an_agent_and_can_leave(serving: Serving, tmp_path
     write_report(tmp_path / "people")
     assert "blue heron" in (tmp_path / "people" / "report.html").read_text(encoding="utf-8")
     assert read_record(tmp_path / "people" / "pictures" / rows[0].id / "road.jsonl.gz").seconds
+    again = rerun(tmp_path / "people", rows[0].id)
+    assert not [step for step in again if step.differs], "neither looking nor showing an act at once changed it"
 
     assert post(browser, "/api/play/start", {"task": "hvac_fan_max", "practice": True}).status == 200
     until("acting")
