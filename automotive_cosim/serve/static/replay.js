@@ -78,7 +78,7 @@ export async function replayPage(query, id, episode) {
       h("span", { class: "time" }, seconds(event.at_s)), h("span", {}, event.text)))));
     [slider.min, slider.max] = [begin(), end()];
     const span = end() - begin() || 1;
-    marks.replaceChildren(...told.filter(({ kind }) => kind !== "departure").map((event) => {
+    marks.replaceChildren(...told.filter(({ kind }) => !["departure", "event", "deadline"].includes(kind)).map((event) => {
       const mark = h("i", { class: `k-${event.kind}` });
       mark.style.left = `${100 * (event.at_s - begin()) / span}%`;
       return mark;
@@ -135,7 +135,7 @@ export async function replayPage(query, id, episode) {
     for (const button of list.querySelectorAll("button")) {
       if (Number(button.dataset.step) === index) {
         button.setAttribute("aria-current", "step");
-        list.scrollTop = button.offsetTop - list.offsetTop - list.clientHeight / 2;
+        list.scrollTop = button.offsetTop - list.clientHeight / 2;
       } else button.removeAttribute("aria-current");
     }
     const now = steps[index];
