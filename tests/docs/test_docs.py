@@ -101,6 +101,7 @@ TREATED: list[tuple[str, tuple[str, ...], str]] = [
     (r"study reroute --scenario resco", HELP, "needs the scenario of others"),
     (r"study suite", HELP, "needs a network of the reader's; tests/studies run one"),
     (r"study reroute", DRY, "takes minutes; tests/studies run studies"),
+    (r"run .*--model '?replay/", ("--force", "--out", "runs/last"), ""),
     (r"run .*--model", HELP, "asks a language model"),
     (r"run .*(city|my|any)\.(net|sumocfg)", HELP, "needs a network of the reader's"),
     (r"run --agent (my_package|\$agent)", HELP, "needs what only the reader has"),
