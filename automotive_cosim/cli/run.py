@@ -42,7 +42,7 @@ def run(
     ] = "asurada",
     model: Annotated[
         str,
-        typer.Option(help="Model for the agent: rules, replay/FOLDER, replay/NAME, openai/NAME or PROVIDER/NAME."),
+        typer.Option(help="Model for the agent: rules, replay/FOLDER, replay/NAME, openai/NAME, PROVIDER/NAME."),
     ] = "rules",
     tasks_from: TasksFrom = None,
     mode: NoMode = None,

@@ -56,6 +56,8 @@ class Settings:
     """Maximum number of questions per minute."""
     usd_per_million_in: float = 0.0
     usd_per_million_out: float = 0.0
+    usd_per_million_cached: float | None = None
+    """Of those that go in, the ones that the provider has cached; None for the same price."""
 
     @classmethod
     def read(cls, query: str) -> Settings:
@@ -279,18 +281,27 @@ class Remote:
     def _read(self, body: bytes) -> ModelReply:
         try:
             reply = self._api.read(json.loads(body))
-            if not (0 <= reply.tokens_in <= MOST_TOKENS and 0 <= reply.tokens_out <= MOST_TOKENS):
+            if not (
+                0 <= reply.tokens_cached <= reply.tokens_in <= MOST_TOKENS
+                and 0 <= reply.tokens_out <= MOST_TOKENS
+                and 0 <= reply.tokens_reasoning <= MOST_TOKENS
+            ):
                 raise ValueError("no number of tokens")
         except (ArithmeticError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
             shown = self._endpoint.clean(body.decode(errors="replace"))[:80]  # cut first, half a key would pass
             raise _PassingError(f"the answer is not one of its protocol: {shown!r}") from None
         settings = self._settings
-        dollars = reply.tokens_in * settings.usd_per_million_in + reply.tokens_out * settings.usd_per_million_out
+        in_usd, cached_usd = settings.usd_per_million_in, settings.usd_per_million_cached
+        dollars = (reply.tokens_in - reply.tokens_cached) * in_usd
+        dollars += reply.tokens_cached * (in_usd if cached_usd is None else cached_usd)
+        dollars += reply.tokens_out * settings.usd_per_million_out
         # Half a surrogate pair is valid JSON but not valid text: it could not be written into a record.
-        text, finish = (
-            self._endpoint.clean(each).encode("utf-8", "replace").decode() for each in (reply.text, reply.finish)
+        text, finish, reasoning = (
+            self._endpoint.clean(each).encode("utf-8", "replace").decode()
+            for each in (reply.text, reply.finish, reply.reasoning)
         )
-        return replace(reply, text=text, finish=finish[:LONGEST_FINISH], cost_usd=dollars / 1e6)
+        finish = finish[:LONGEST_FINISH]
+        return replace(reply, text=text, finish=finish, reasoning=reasoning, cost_usd=dollars / 1e6)
 
 
 def _pause(header: str | None) -> float | None:

@@ -28,6 +28,7 @@ os.environ.setdefault("RAY_DEDUP_LOGS_SKIP_REGEX", "^")
 try:
     import ray
     from ray.exceptions import RayActorError, RayError, RayTaskError, RuntimeEnvSetupError
+    from ray.util.scheduling_strategies import NodeAffinitySchedulingStrategy
 except ImportError as error:
     raise SetupError("the ray package is missing; install it with `pip install 'automotive-cosim[ray]'`") from error
 
@@ -98,8 +99,9 @@ class OnRay:
 
     @contextmanager
     def metered(self, budget: Budget, before: Spent) -> Iterator[MeterHandle]:
-        """See ``Executor.metered``; the meter is an actor without a CPU of its own."""
-        yield _RayMeter(_METER.remote(budget, before))
+        """See ``Executor.metered``; the meter is an actor on this node, without a CPU of its own."""
+        here = NodeAffinitySchedulingStrategy(ray.get_runtime_context().get_node_id(), soft=True)
+        yield _RayMeter(_METER.options(scheduling_strategy=here).remote(budget, before))
 
     def start(self, opener: Opener[J, R], folder: Path) -> _Actor[J, R]:
         """See ``Executor.start``; the worker becomes ready when a node has a free CPU."""

@@ -258,6 +258,83 @@ def test_an_endless_body_is_not_read(server):
         model("local/m?retries=0").chat(ASK)
 
 
+@pytest.mark.parametrize(
+    ("form", "body", "expected"),
+    [
+        (
+            "json",
+            {
+                "choices": [{"message": {"content": "hi", "reasoning_content": "Hm."}}],
+                "usage": {
+                    "prompt_tokens": 100,
+                    "completion_tokens": 30,
+                    "prompt_tokens_details": {"cached_tokens": 80},
+                    "completion_tokens_details": {"reasoning_tokens": 20},
+                },
+            },
+            (100, 30, 20, 80),
+        ),
+        (
+            "openai",
+            {
+                "output": [
+                    {"type": "reasoning", "summary": [{"type": "summary_text", "text": "Hm."}]},
+                    {"type": "message", "content": [{"type": "output_text", "text": "hi"}]},
+                ],
+                "usage": {
+                    "input_tokens": 100,
+                    "output_tokens": 30,
+                    "input_tokens_details": {"cached_tokens": 80},
+                    "output_tokens_details": {"reasoning_tokens": 20},
+                },
+            },
+            (100, 30, 20, 80),
+        ),
+        (
+            "anthropic",
+            {
+                "content": [{"type": "thinking", "thinking": "Hm."}, {"type": "text", "text": "hi"}],
+                "usage": {
+                    "input_tokens": 5,
+                    "cache_read_input_tokens": 80,
+                    "cache_creation_input_tokens": 15,
+                    "output_tokens": 30,
+                },
+            },
+            (100, 30, 0, 80),
+        ),
+        (
+            "gemini",
+            {
+                "candidates": [{"content": {"parts": [{"text": "Hm.", "thought": True}, {"text": "hi"}]}}],
+                "usageMetadata": {
+                    "promptTokenCount": 100,
+                    "candidatesTokenCount": 10,
+                    "thoughtsTokenCount": 20,
+                    "cachedContentTokenCount": 80,
+                },
+            },
+            (100, 30, 20, 80),
+        ),
+    ],
+)
+def test_reasoning_and_cached_tokens_are_told_and_paid(server, form, body, expected):
+    server.behaviours = [lambda handler: send(handler, 200, json.dumps(body).encode())]
+    prices = "usd_per_million_in=10&usd_per_million_out=20"
+    for cached, usd in (("", 1600), ("&usd_per_million_cached=1", 880)):
+        reply = make_model(f"local/m?{prices}{cached}", FORMATS[form].api).chat(ASK)
+        assert (reply.tokens_in, reply.tokens_out, reply.tokens_reasoning, reply.tokens_cached) == expected
+        assert reply.reasoning == "Hm."
+        assert "Hm." not in reply.text
+        assert reply.cost_usd == pytest.approx(usd / 1e6)
+
+
+def test_a_key_in_the_reasoning_is_hidden_too(server):
+    body = {"choices": [{"message": {"content": "hi", "reasoning": f"the key is {KEY}"}}]}
+    server.behaviours = [lambda handler: send(handler, 200, json.dumps(body).encode())]
+    assert model().chat(ASK).reasoning == "the key is ***"
+
+
 def test_the_rate_is_kept(server):
     made = model("local/m?per_minute=30")
     for _ in range(3):
