@@ -7,6 +7,7 @@ cluster in an actor. A worker's model asks it before and after each question.
 from __future__ import annotations
 
 import secrets
+import socket
 import threading
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -150,8 +151,16 @@ def served(meter: Meter) -> Iterator[MeterHandle]:
             yield MeterClient(listener.address, key)
         finally:
             is_over.set()
-            with suppress(OSError, EOFError), connection.Client(listener.address, authkey=key):
-                accepts.join(CLOSE_S)  # it was waiting for a client
+            _knock(listener.address)
+            accepts.join(CLOSE_S)
+
+
+def _knock(address: Any) -> None:
+    """Wakes whoever waits for a client; where that cannot be done, its thread ends with the process."""
+    if hasattr(socket, "AF_UNIX"):
+        with suppress(OSError), socket.socket(socket.AF_UNIX) as visitor:
+            visitor.settimeout(CLOSE_S)
+            visitor.connect(address)
 
 
 def _accept(listener: Listener, meter: Meter, is_over: threading.Event) -> None:
