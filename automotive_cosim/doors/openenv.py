@@ -50,7 +50,7 @@ class CarState(State):
     seed: int = 0
 
 
-class Cockpit(Environment[CarAction, CarObservation, CarState]):
+class CarEnvironment(Environment[CarAction, CarObservation, CarState]):
     """One session's episodes, one after the other, on the service that all sessions share."""
 
     SUPPORTS_CONCURRENT_SESSIONS = True
@@ -138,5 +138,10 @@ def _observation(turn: EpisodeTurn, outcome: Json | None = None) -> CarObservati
 def app() -> FastAPI:
     """The server."""
     return create_app(
-        Cockpit, CarAction, CarObservation, "automotive_cosim", max_concurrent_envs=SESSIONS, state_cls=CarState
+        CarEnvironment,
+        CarAction,
+        CarObservation,
+        "automotive_cosim",
+        max_concurrent_envs=SESSIONS,
+        state_cls=CarState,
     )

@@ -54,7 +54,7 @@ class CockpitState(vf.State):
     """What broke on the road, if anything did."""
 
 
-class Cockpit(vf.Toolset[vf.ToolsetConfig, CockpitState]):
+class CockpitToolset(vf.Toolset[vf.ToolsetConfig, CockpitState]):
     """The tools of one episode."""
 
     TOOL_PREFIX = None
@@ -96,7 +96,7 @@ class CockpitTask(vf.Task[CockpitData, CockpitState]):
     @classmethod
     def toolsets(cls, config: vf.TaskConfig) -> list[vf.Toolset]:
         """A server of its own for each rollout."""
-        return [Cockpit(vf.ToolsetConfig())]
+        return [CockpitToolset(vf.ToolsetConfig())]
 
     async def finalize(self, trace: vf.Trace, runtime: vf.Runtime) -> None:
         """Makes what broke on the road an error of the rollout, never a zero."""
@@ -161,4 +161,4 @@ class CockpitTaskset(vf.Taskset[CockpitTask, CockpitConfig]):
 
 
 if __name__ == "__main__":
-    Cockpit.run()
+    CockpitToolset.run()
