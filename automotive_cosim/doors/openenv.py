@@ -9,6 +9,7 @@ Needs the package ``openenv`` (extra ``openenv``).
 from __future__ import annotations
 
 import base64
+from contextlib import suppress
 from typing import Any
 
 from fastapi import FastAPI
@@ -18,7 +19,7 @@ from pydantic import Field
 from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Json
 from automotive_cosim.doors.shared import episode_spec, shared_service
-from automotive_cosim.errors import UserError
+from automotive_cosim.errors import CosimError, UserError
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.service import EpisodeTurn
 
@@ -120,7 +121,8 @@ class CarEnvironment(Environment[CarAction, CarObservation, CarState]):
         """Gives up the episode that is under way, if there is one."""
         if self._episode_id is not None:
             episode_id, self._episode_id = self._episode_id, None
-            self._service.finish(episode_id)
+            with suppress(CosimError):  # the road may have failed meanwhile
+                self._service.finish(episode_id)
 
 
 def _observation(turn: EpisodeTurn, outcome: Json | None = None) -> CarObservation:

@@ -19,7 +19,7 @@ from mcp_types import CallToolResult, TextContent
 from automotive_cosim.contracts import Json
 from automotive_cosim.doors.mcp import ActionArgument, CockpitTools
 from automotive_cosim.doors.shared import episode_spec
-from automotive_cosim.errors import InfrastructureError
+from automotive_cosim.errors import CosimError, InfrastructureError
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.run.plan import choose
 from automotive_cosim.service import EpisodeService, ServiceLimits
@@ -60,12 +60,15 @@ class CockpitToolset(vf.Toolset[vf.ToolsetConfig, CockpitState]):
     TOOL_PREFIX = None
 
     async def setup_task(self, task: CockpitData) -> None:
-        """Drives to the hand-over."""
+        """Drives to the hand-over. What goes wrong is told at the first call: a server that ends is waited for."""
         service = self._exit_stack.enter_context(closing(EpisodeService(limits=LIMITS)))
-        spec = episode_spec(task=task.task, half=task.half, seed=task.seed, **task.conditions)
         channels = ALL if task.pictures else ALL - {Channel.SCREENSHOT}
-        self._tools = CockpitTools(service)
-        self._episode_id = (await asyncio.to_thread(service.start, spec, channels)).episode_id
+        self._tools, self._episode_id, self._failed = CockpitTools(service), "", ""
+        try:
+            spec = episode_spec(task=task.task, half=task.half, seed=task.seed, **task.conditions)
+            self._episode_id = (await asyncio.to_thread(service.start, spec, channels)).episode_id
+        except CosimError as error:
+            self._failed = str(error)
 
     @vf.tool
     async def observe(self) -> CallToolResult:
@@ -82,12 +85,14 @@ class CockpitToolset(vf.Toolset[vf.ToolsetConfig, CockpitState]):
 
     async def _call(self, tool: Callable[..., CallToolResult], *given: Any) -> CallToolResult:
         try:
-            return await asyncio.to_thread(tool, self._episode_id, *given)
+            if not self._failed:
+                return await asyncio.to_thread(tool, self._episode_id, *given)
         except ToolError as error:
             if not isinstance(error.__cause__, InfrastructureError):
                 raise
-            self.state.broken = str(error.__cause__)  # which would be lost if this raised
-            return CallToolResult(content=[TextContent(type="text", text=str(error))], is_error=True)
+            self._failed = str(error.__cause__)
+        self.state.broken = self._failed  # which would be lost if this raised
+        return CallToolResult(content=[TextContent(type="text", text=self._failed)], is_error=True)
 
 
 class CockpitTask(vf.Task[CockpitData, CockpitState]):

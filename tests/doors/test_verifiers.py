@@ -42,8 +42,8 @@ def rollout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, sumo: None) -> Call
     """A whole rollout with these actions: its trace, and what the tools told."""
     monkeypatch.setenv("HOME", str(tmp_path))
 
-    def run(actions: list[Json]) -> tuple[vf.Trace, list[Json]]:
-        [task] = CockpitTaskset(CockpitConfig(tasks="hvac_fan_max", scenario="grid"))
+    def run(actions: list[Json], **named: str) -> tuple[vf.Trace, list[Json]]:
+        [task] = CockpitTaskset(CockpitConfig(**{"tasks": "hvac_fan_max", "scenario": "grid"} | named))
         config = vf.AgentConfig(harness=vf.HarnessConfig(id="null"), runtime=vf.SubprocessConfig(), model="none")
         agent = vf.Agent(config)
         agent.harness = Plays(config.harness)
@@ -70,6 +70,12 @@ def test_who_stops_early_earns_nothing(rollout) -> None:
     trace, _ = rollout([{"action_type": "wait"}])
     assert not trace.errors
     assert (trace.reward, trace.state.outcome) == (0.0, None)
+
+
+def test_what_cannot_begin_is_an_error_of_the_rollout(rollout) -> None:
+    trace, _ = rollout([], scenario="no_such_place")
+    assert "no_such_place" in trace.errors[0].message
+    assert "success" not in {name for name, value in trace.rewards.items() if value is not None}
 
 
 def test_tasks_are_named_and_what_is_wrong_is_told() -> None:
