@@ -77,7 +77,7 @@ def made(simulations: Simulations) -> dict[str, Json]:
     run_episode(setup, make_agent("oracle"), (watcher,), simulations=simulations)
     found = {}
     for name, form in FORMATS.items():
-        bodies = (body(name, text) for text in texts(name, watcher.actions))
+        bodies = (provider_body(name, text) for text in texts(name, watcher.actions))
         found[name] = _recorded("native", f"replay/{name}?format={name}", bodies, form.api or Chat(), simulations)
     for name in PROFILES:
         found[name] = _recorded(name, f"replay/{name}", None, Chat(), simulations)
@@ -101,7 +101,7 @@ def texts(form: str, actions: Sequence[Action]) -> list[str]:
     return said
 
 
-def body(form: str, text: str) -> Json:
+def provider_body(form: str, text: str) -> Json:
     """An answer as the provider of a format sends it.
 
     Args:
