@@ -346,7 +346,7 @@ def _take_pauses(agent: Any) -> None:
             setattr(agent, name, pause)
     for name, module in list(sys.modules.items()):
         if name.startswith(DEVICE) and getattr(module, "time", None) is time:
-            module.time = _NoPauses()
+            vars(module)["time"] = _NoPauses()
 
 
 def _catch_up(env: _Environment, data: Any) -> None:
