@@ -26,7 +26,7 @@ from inspect_ai.tool import ToolDef, ToolError
 from automotive_cosim.agents.settings import geo_input
 from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Json
-from automotive_cosim.episode.specification import EpisodeSpec, feedback_of, see_of
+from automotive_cosim.episode.specification import EpisodeSpec, feedback_of, language_of, see_of
 from automotive_cosim.errors import InfrastructureError, UserError
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.report.stats import Interval, wilson
@@ -64,6 +64,7 @@ def _cockpit(
     pictures: bool = True,
     see: str = "both",
     feedback: str = "quiet",
+    language: str = "en",
 ) -> Task:
     """The tasks at the cockpit.
 
@@ -75,15 +76,19 @@ def _cockpit(
         pictures: whether it sees the screen.
         see: how it sees the screen: ``tree``, ``picture`` or ``both``.
         feedback: what it is told of its last action: ``quiet`` or ``verbose``.
+        language: what the driver speaks and the car shows: ``en``, ``fr``, ``de`` or ``ja``; tasks without phrasings
+            in it are left out.
     """
     numbers = _words(seeds)
     if not all(number.isdecimal() for number in numbers):
         raise UserError(f"seeds are {', '.join(numbers)}; give whole numbers from 0, separated by commas")
+    spoken = language_of(language)
     named = {
         "scenario": scenario,
         "geo": str(geo_input(geo)),
         "see": str(see_of(see)),
         "feedback": str(feedback_of(feedback)),
+        "language": str(spoken),
     }
     samples = [
         Sample(
@@ -92,6 +97,7 @@ def _cockpit(
             metadata={"task": each, "half": half, "seed": int(seed), **named},
         )
         for each in choose(_words(tasks))
+        if CATALOGUE[each].is_said_in(spoken)
         for half in CATALOGUE[each].halves
         for seed in numbers
     ]
@@ -117,6 +123,7 @@ def _driver(pictures: bool = True) -> Solver:
                 "geo": geo_input(named["geo"]),
                 "see": see_of(named["see"]),
                 "feedback": feedback_of(named["feedback"]),
+                "language": language_of(named["language"]),
             }
         )
         turn = await asyncio.to_thread(service.start, spec, channels)
