@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from automotive_cosim.cockpit.language import Language, Table, said
+from automotive_cosim.cockpit.language import Language, Table, table
 from automotive_cosim.tasking.dialogue import Topic
 from automotive_cosim.tasking.parameters import Parameter
 
@@ -34,7 +34,9 @@ class Speech:
 
     def word(self, value: Parameter) -> Parameter:
         """A parameter's value as the driver says it: by his own word for it, or else as the car shows it."""
-        return self.words.get(value) or said(self.language, value) if isinstance(value, str) else value
+        if not isinstance(value, str):
+            return value
+        return self.words.get(value) or table(self.language).words.get(value, value)
 
     def topic(self, topic: Topic) -> Topic:
         """The topic, to be asked about in this language or in English, and answered in this one."""
