@@ -55,15 +55,17 @@ def _cockpit(
         pictures: whether it sees the screen.
         see: how it sees the screen: ``tree``, ``picture`` or ``both``.
         feedback: what it is told of its last action: ``quiet`` or ``verbose``.
-        language: what the driver speaks and the car shows: ``en``, ``fr``, ``de`` or ``ja``; tasks without phrasings
-            in it are left out.
+        language: what the driver speaks and the car shows: ``en``, ``fr``, ``de`` or ``ja``; tasks without
+            phrasings in it are left out.
     """
     spoken = language_of(language)
     given = {"scenario": scenario} | conditions_of(geo, see, feedback) | {"language": str(spoken)}
     chosen = [CATALOGUE[each] for each in choose(words(tasks))]
     said = [each for each in chosen if each.is_said_in(spoken)]
     if not said:
-        raise UserError(f"none of the tasks has phrasings in {spoken.words}; name some of the hard suite, such as hard_car_wash")
+        raise UserError(
+            f"none of the tasks has phrasings in {spoken.words}; name some of the hard suite, such as hard_car_wash"
+        )
     samples = [
         Sample(
             id=f"{each.id}-{half}-seed{seed}",

@@ -11,8 +11,8 @@ import numpy.typing as npt
 
 from automotive_cosim.cockpit.actions import check, parse
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.contracts import Action
 from automotive_cosim.cockpit.language import Language
+from automotive_cosim.contracts import Action
 from automotive_cosim.envs.pool import POOL
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.listener import Listener

@@ -35,9 +35,9 @@ PLANNED = (
 )  # fmt: skip
 """Fields of a row that the plan and the catalogue determine."""
 ALSO_IN_RESULT = (
-    "task", "half", "scenario", "agent", "model", "geo", "see", "feedback", "language", "seed", "traffic_seed", "success",
-    "reward", "steps", "sim_seconds", "end", "error", "error_kind", "agent_error", "held_out", "trace_sha256",
-    "tokens_in", "tokens_out", "model_seconds", "cost_usd", "drive", "baseline_drive",
+    "task", "half", "scenario", "agent", "model", "geo", "see", "feedback", "language", "seed", "traffic_seed",
+    "success", "reward", "steps", "sim_seconds", "end", "error", "error_kind", "agent_error", "held_out",
+    "trace_sha256", "tokens_in", "tokens_out", "model_seconds", "cost_usd", "drive", "baseline_drive",
 )  # fmt: skip
 """Fields of a row that the result at the end of the trace has too."""
 FROM_MOMENTS = (
