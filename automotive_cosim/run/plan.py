@@ -210,7 +210,7 @@ class Plan:
     def _spoken(self) -> list[Task]:
         """The chosen tasks that the driver has words for in every language."""
         chosen = [CATALOGUE[task_id] for task_id in choose(self.tasks, self.suite)]
-        return [task for task in chosen if all(task.is_said_in(Language(each)) for each in self.language)]
+        return [task for task in chosen if set(self.language) <= set(task.languages)]
 
     def _each(self) -> Iterator[EpisodeJob]:
         for agent, model, (task, scenario), seed, geo, latency_s, repeat, see, feedback, language in product(

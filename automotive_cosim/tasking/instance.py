@@ -114,7 +114,7 @@ def speech(task: Task, language: Language) -> Speech:
     Raises:
         UserError: he has no words for it.
     """
-    if not task.is_said_in(language):
+    if language not in task.languages:
         why = f": {task.only_english}" if task.only_english else ""
         raise UserError(
             f"task {task.id!r} has no phrasings in {language.words}{why}; choose another task, such as one of the "

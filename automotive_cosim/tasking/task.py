@@ -242,9 +242,10 @@ class Task:
     only_english: str = ""
     """Why it is said in English alone, if it is for a reason: its point is the car's language."""
 
-    def is_said_in(self, language: Language) -> bool:
-        """Whether the driver has words for it in that language."""
-        return language is Language.ENGLISH or language in self.spoken
+    @property
+    def languages(self) -> tuple[Language, ...]:
+        """The languages that the driver has words for it in, English first."""
+        return Language.ENGLISH, *self.spoken
 
     @property
     def max_steps(self) -> int:
