@@ -45,7 +45,7 @@ WRONG = {
 }
 """Marks as another language, or a careless typist, sets them."""
 QUOTES = {Language.FRENCH: "«»", Language.GERMAN: "„“", Language.JAPANESE: "「」"}
-NUMBERS = 12
+NUMBERS = 6
 """Instances to try of each task."""
 ON_THE_GRID = (
     "hard_fitting_moved",
