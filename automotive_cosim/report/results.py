@@ -98,8 +98,8 @@ class Results:
             missing = len(plan.unspoken())
         except UserError:  # the catalogue has changed since
             return ""
-        of = f"{counted(missing, 'task')} of those chosen {'has' if missing == 1 else 'have'}"
-        return f"{of} no phrasings in {languages_in_words(plan.language)} and left out." if missing else ""
+        were = f"{counted(missing, 'task')} {'was' if missing == 1 else 'were'}"
+        return f"{were} left out: no phrasings in {languages_in_words(plan.language)}." if missing else ""
 
     @property
     def contestants(self) -> tuple[Contestant, ...]:
