@@ -338,8 +338,8 @@ class EpisodeJob:
 
 
 def languages_in_words(codes: Iterable[str]) -> str:
-    """For example ``French and German``."""
-    *others, last = (Language(code).words for code in codes)
+    """For example ``French and German``; English, which every task has, is not named beside others."""
+    *others, last = [Language(code).words for code in codes if code != Language.ENGLISH] or ["English"]
     return f"{', '.join(others)} and {last}" if others else last
 
 
