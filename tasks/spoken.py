@@ -30,7 +30,7 @@ ANY = "any"
 
 def spoken(task: Task) -> Task:
     """The task with its phrasings in every language that has them."""
-    found = {
+    found: dict[Language, Speech] = {
         language: _speech(language, phrasings(language)[task.id]) for language in FOREIGN if _has(task, language)
     }
     return replace(task, spoken=found) if found else task
