@@ -200,6 +200,10 @@ class BrakingLeader(EgoIncident):
     kind: Literal["braking_leader"] = "braking_leader"
     within_m: Annotated[float, Gt(0)] = 80.0
     """How near a vehicle must be to count as the one ahead."""
+    beyond_m: Annotated[float, Ge(0)] = 0.0
+    """How far away it must be at least; a nearer one is waited for."""
+    from_kmh: Annotated[float, Ge(0)] = 0.0
+    """How fast the ego must be; until then it is waited for."""
     ahead_m: Annotated[float, Gt(0)] = 30.0
     """Gap to a car that pulls out."""
     deceleration_mps2: Annotated[float, Gt(0), Le(10)] = 6.0

@@ -146,6 +146,10 @@ class ScriptedCar:
         self._stop_m, self._stop_s = stop_m, for_s
         return f"in {needed_m:.0f} m"
 
+    def is_parked(self) -> bool:
+        """Whether it has stopped where it was asked to."""
+        return self._standing_s > 0 and self._along_m > self._stop_m - 1.0
+
     def change_lane(self, lanes_from_kerb: int, for_s: float) -> bool:
         """False: there are no other lanes."""
         return False

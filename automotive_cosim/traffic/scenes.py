@@ -401,9 +401,12 @@ class _BrakingLeader(_Scene):
             if self._left_s <= 0:
                 self._release()
             return ""
-        found = self._stage.sumo.leader(self._stage.ego_id, self._incident.within_m)
-        if found and found[0] and found[1] <= self._incident.within_m:
-            return self._brake(found[0])
+        stage, incident = self._stage, self._incident
+        if stage.sumo.speed(stage.ego_id) < incident.from_kmh / KMH_PER_MPS:
+            return ""
+        found = stage.sumo.leader(stage.ego_id, incident.within_m)
+        if found and found[0] and found[1] <= incident.within_m:
+            return self._brake(found[0]) if found[1] >= incident.beyond_m else ""
         if not self._has_called:
             self._has_called = True
             self._call()
@@ -429,7 +432,8 @@ class _BrakingLeader(_Scene):
         here, _ = sensor.route.edge_at(sensor.position_m)
         index, on_edge_m = sensor.route.edge_at(sensor.position_m + self._incident.ahead_m + CAR_SPACE_M)
         lane = stage.sumo.lane_of(ego) if index == here else ""
-        speed = f"{stage.sumo.speed(ego):.2f}"
+        fastest_mps = stage.sumo.type.getMaxSpeed(CAR_TYPE)  # less in fog, which the ego may take no notice of
+        speed = f"{min(stage.sumo.speed(ego), fastest_mps):.2f}"
         stage.car("leader", sensor.route.edge_ids[index:], lane, on_edge_m, speed)
 
     def end(self) -> str:

@@ -123,6 +123,10 @@ class SumoPedals:
                 return f"in {away_m:.0f} m" + (f" on {edge.name}" if edge.name else "")
         raise RefusedError("there is no place to stop on the rest of the route")
 
+    def is_parked(self) -> bool:
+        """See ``ego.Pedals``."""
+        return bool(self._sumo.vehicle.isStoppedParking(self._ego))
+
     def change_lane(self, lanes_from_kerb: int, for_s: float) -> bool:
         """See ``ego.Pedals``; SUMO changes as soon as there is a gap."""
         lane = self._sumo.lane_of(self._ego)
