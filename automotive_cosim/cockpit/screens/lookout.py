@@ -78,13 +78,15 @@ def _aboard(state: State) -> Iterator[Sight]:
     signals = state.signals
     if not signals[SEAT.DRIVER_BELT] and signals[MOTION.GEAR] != "P":
         yield Sight(SightKind.DRIVER_BELT, "Driver's belt is open")
-    others = [one for one in seated(signals) if one.seat is not Seat.DRIVER]
-    for one in others:
-        if not one.belted and signals[MOTION.GEAR] != "P":
-            yield Sight(SightKind.PASSENGER_BELT, f"Belt is open: {one.seat.words}, {one.kind}")
+    others = sorted(
+        (one for one in seated(signals) if one.seat is not Seat.DRIVER), key=lambda one: not one.kind.needs_care
+    )
+    unbelted = [one for one in others if not one.belted]
+    if unbelted and signals[MOTION.GEAR] != "P":
+        yield Sight(SightKind.PASSENGER_BELT, f"Belt is open: {unbelted[0].seat.words.capitalize()}")
     if state.parked_s is not None and not signals[OCCUPANT.DRIVER.occupied]:
-        who = ", ".join(one.kind for one in others) or "nobody"
-        yield Sight(SightKind.WITHOUT_DRIVER, f"Driver has left; aboard: {who}")
+        who = f"aboard: {others[0].kind.capitalize()}" if others else "nobody aboard"
+        yield Sight(SightKind.WITHOUT_DRIVER, f"Driver has left, {who}")
     if signals[CALL.PHONE] != "AWAY":
         yield Sight(SightKind.PHONE, PHONE[signals[CALL.PHONE]])
     if signals[CABIN.TRUNK]:
