@@ -96,7 +96,9 @@ def _mood(of_event: str, of_bait: str) -> Stunt:
 def _leader_close(cue: Cue) -> Props:
     """The driver presses, behind somebody who eases off; as a bait, keeps two seconds."""
     until_s = cue.at_s + MOOD_S
-    eases = BrakingLeader(from_s=cue.at_s, to_s=until_s, ahead_m=40.0, deceleration_mps2=0.2, to_kmh=40.0)
+    eases = BrakingLeader(
+        from_s=cue.at_s, to_s=until_s, ahead_m=40.0, deceleration_mps2=0.2, to_kmh=40.0, keeps_lane=True
+    )
     return replace(_mood("pressing", "calm")(cue), incidents=(eases,))
 
 
@@ -161,9 +163,9 @@ def _door(cue: Cue) -> Props:
 
 
 def _tyre(cue: Cue) -> Props:
-    """A tyre loses a third of its air in four minutes; as a bait, a twentieth."""
+    """A tyre loses a third of its air in two minutes; as a bait, a twentieth."""
     tyre = (TYRE.FRONT_LEFT, TYRE.FRONT_RIGHT, TYRE.REAR_LEFT, TYRE.REAR_RIGHT)[int(cue.rng.integers(4))]
-    return Props(changes=(CarChange(cue.at_s, tyre.path, 237.0 if cue.is_bait else 165.0, 240.0),))
+    return Props(changes=(CarChange(cue.at_s, tyre.path, 237.0 if cue.is_bait else 165.0, 120.0),))
 
 
 def _range(cue: Cue) -> Props:
@@ -251,6 +253,7 @@ def _leader_brakes(cue: Cue) -> Props:
         ahead_m=LATE_M,
         deceleration_mps2=9.0,
         to_kmh=0.0,
+        keeps_lane=True,
     )
     return replace(_mood("pressing", "pressing")(cue), incidents=(brakes,))
 

@@ -212,6 +212,8 @@ class BrakingLeader(EgoIncident):
     """The speed that it brakes to."""
     hold_s: Annotated[float, Ge(0)] = 4.0
     """How long it keeps that speed before it drives on."""
+    keeps_lane: bool = False
+    """Whether it stays in its lane meanwhile, where it would let the ego pass or go round somebody."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

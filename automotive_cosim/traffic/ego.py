@@ -120,6 +120,10 @@ class Pedals(Protocol):
         """How unevenly the speed is kept, 0 to 1."""
         ...
 
+    def set_overtaking(self, readiness: float) -> None:
+        """How readily lanes are changed to go faster; 0 is never."""
+        ...
+
     def set_grip(self, friction: float) -> None:
         """Limits braking to ``friction * g``."""
         ...
@@ -377,6 +381,7 @@ class Driver:
         self._choose_speed()
         self.pedals.set_headway(self._headway_s * self._adapted(self._condition.headway_ratio))
         self.pedals.set_imperfection(self._profile.imperfection)
+        self.pedals.set_overtaking(self._profile.overtaking)
 
     def _halt(self, halt: HaltAt, now: Instant) -> Iterator[Event]:
         """Looks for a place to park once it is time, parks there, and drives on."""

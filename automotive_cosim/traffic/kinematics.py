@@ -127,6 +127,9 @@ class ScriptedCar:
         """Time gap to the leader."""
         self._headway_s = headway_s
 
+    def set_overtaking(self, readiness: float) -> None:
+        """Does nothing: there are no other lanes."""
+
     def set_grip(self, friction: float) -> None:
         """Limits the braking."""
         self._hardest_mps2 = friction * G_MPS2

@@ -27,6 +27,9 @@ CAR_SPACE_M = 7.5
 GENTLE_MPS2 = 3.0
 """A leader that brakes less than this only slows down."""
 
+NO_LANE_CHANGE, ANY_LANE_CHANGE = 0, 1621
+"""SUMO's lane change modes: only for safety, and its default."""
+
 SCHOOL_DAYS = frozenset(range(1, 6))
 
 NARROW_PLACE_M = 10.0
@@ -416,6 +419,8 @@ class _BrakingLeader(_Scene):
         sumo, incident = self._stage.sumo, self._incident
         to_mps = incident.to_kmh / KMH_PER_MPS
         self._braking = vehicle
+        if incident.keeps_lane:
+            sumo.vehicle.setLaneChangeMode(vehicle, NO_LANE_CHANGE)
         self._left_s = max(0.0, sumo.speed(vehicle) - to_mps) / incident.deceleration_mps2 + incident.hold_s
         if incident.deceleration_mps2 < GENTLE_MPS2:  # it can brake as hard as ever if it must
             slower_s = self._left_s - incident.hold_s
@@ -444,6 +449,8 @@ class _BrakingLeader(_Scene):
     def _release(self) -> None:
         with suppress(*self._stage.sumo.refusals):  # it may have left
             self._stage.sumo.vehicle.setSpeed(self._braking, -1.0)
+            if self._incident.keeps_lane:
+                self._stage.sumo.vehicle.setLaneChangeMode(self._braking, ANY_LANE_CHANGE)
         self._braking, self._left_s = "", -1.0
 
 

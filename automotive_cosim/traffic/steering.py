@@ -74,6 +74,10 @@ class SumoPedals:
         """See ``ego.Pedals``."""
         self._sumo.set_imperfection(self._ego, imperfection)
 
+    def set_overtaking(self, readiness: float) -> None:
+        """See ``ego.Pedals``."""
+        self._sumo.set_parameter(self._ego, "laneChangeModel.lcSpeedGain", f"{readiness:g}")
+
     def set_grip(self, friction: float) -> None:
         """See ``ego.Pedals``."""
         hardest_mps2 = friction * G_MPS2
