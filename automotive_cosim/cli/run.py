@@ -41,7 +41,8 @@ def run(
         str, typer.Option(help="Agent; `agents` lists them; package.module:Class is one of your own.")
     ] = "asurada",
     model: Annotated[
-        str, typer.Option(help="Model for the agent: rules, replay/FOLDER, openai/NAME or PROVIDER/NAME.")
+        str,
+        typer.Option(help="Model for the agent: rules, replay/FOLDER, replay/NAME, openai/NAME, PROVIDER/NAME."),
     ] = "rules",
     tasks_from: TasksFrom = None,
     mode: NoMode = None,

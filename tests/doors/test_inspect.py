@@ -9,15 +9,12 @@ from typing import Any
 
 import pytest
 
-from automotive_cosim.agents import make_agent
-from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import Json
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.watchers import RulePerfect
 from automotive_cosim.errors import TrafficError, UserError
 from automotive_cosim.interface.observe import ALL
 from automotive_cosim.report.drives import FIGURES, LEAST_DRIVES, WITH_INTERVAL, interval
-from automotive_cosim.run.episode import EpisodeSetup, Shot, Watcher, run_episode
 from automotive_cosim.run.watch import WatchRecord, WatchSetup, run_watch
 from automotive_cosim.service import EpisodeService
 from automotive_cosim.tasking.verdict import PARTS
@@ -34,24 +31,6 @@ from inspect_ai.scorer import SampleScore, Score
 from automotive_cosim.doors import inspect_drives, inspect_play, inspect_tasks, shared
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore")]
-
-
-class Actions(Watcher):
-    def __init__(self) -> None:
-        self.played: list[Json] = []
-
-    def stepped(self, shot: Shot) -> None:
-        assert shot.step.action
-        self.played.append(to_json(shot.step.action))
-
-
-@pytest.fixture(scope="module")
-def oracle(simulations: Simulations) -> tuple[list[Json], str | None]:
-    """The reference solution's actions, and the trace that they give on the command line."""
-    watcher = Actions()
-    setup = EpisodeSetup("hvac_fan_max", scenario="grid", agent="oracle", model="none")
-    result = run_episode(setup, make_agent("oracle"), (watcher,), simulations=simulations)
-    return watcher.played, result.trace_sha256
 
 
 @pytest.fixture
