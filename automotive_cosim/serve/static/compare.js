@@ -36,6 +36,7 @@ export async function comparePage(query, first, second) {
     const all = [...found.values()].map((pair) => [pair[0], pair[1]]);
     const kept = all.filter(([one, other]) => (!which.value || change(one, other)[which.value])
       && (!module.value || (one ?? other).module === module.value) && (one ?? other).task.includes(search.value.toLowerCase()));
+    heads.forEach((each, index) => { each.textContent = first === second ? sides[index].value : `${runs[index].name}: ${sides[index].value}`; });
     const tally = (name) => all.filter(([one, other]) => change(one, other)[name]).length;
     count.textContent = `${counted(all.length, "instance")}: both won ${tally("both")}, only the first ${tally("worse")}, only the second ${tally("better")}, neither ${tally("neither")}. ${kept.length} shown${kept.length > MOST ? `, the first ${MOST}` : ""}.`;
     body.replaceChildren(...kept.slice(0, MOST).map(([one, other]) => {
@@ -58,7 +59,8 @@ export async function comparePage(query, first, second) {
 
   for (const each of [...sides, which, module]) each.addEventListener("change", fill);
   search.addEventListener("input", fill);
-  const head = ["Task", "Half", "Scenario", "Seed", `First: ${runs[0].name}`, `Second: ${runs[1].name}`, "Both"].map((name) => h("th", { scope: "col" }, name));
+  const head = ["Task", "Half", "Scenario", "Seed", "", "", "Both"].map((name) => h("th", { scope: "col" }, name));
+  const heads = head.slice(4, 6);
   return {
     title: `${runs[0].name} and ${runs[1].name}`,
     content: [h("h1", {}, first === second ? `Agents of ${runs[0].name}` : `${runs[0].name} and ${runs[1].name}`), h("div", { class: "filters" }, sides, which, module, search), count,
@@ -100,7 +102,7 @@ export async function besidePage(query, ...names) {
     content: [h("h1", {}, runs[0].task), h("p", { class: "said" }, `“${runs[0].goal}”`),
       h("div", { class: "columns even" }, columns.map((each) => each.element)),
       h("div", { class: "card transport" }, button("‹ Step", -1), button("Step ›", 1), h("div", { class: "time-line" }, slider), clock),
-      h("figure", { class: "card map" }, canvas, h("figcaption", { class: "muted" }, "The first episode's road; dashed, the car of the second."))],
+      h("figure", { class: "card map alone" }, canvas, h("figcaption", { class: "muted" }, "The first episode's road; dashed, the car of the second."))],
     ready: () => jump(Number(query.get("at")) || 0),
     leave: () => view.leave(),
   };
@@ -113,8 +115,9 @@ function side(run, steps, base, jump) {
   const said = h("p", { class: "muted" });
   const parts = Object.entries(run.verdict?.parts ?? {}).filter(([, part]) => !part.ok).map(([name, part]) => `${run.parts[name] ?? plain(name)}: ${part.why}`);
   return {
-    element: h("section", {}, h("h2", {}, [run.agent, run.model !== "none" && run.model].filter(Boolean).join(" · "), " ", outcome(run)), parts.length ? h("p", { class: "muted" }, parts.join("; ")) : null,
-      h("div", { class: "card stage-one" }, h("div", { class: "frame" }, screen, empty)), said, h("div", { class: "card" }, list)),
+    element: h("section", {}, h("h2", {}, [run.agent, run.model !== "none" && run.model].filter(Boolean).join(" · "), " ", outcome(run)),
+      h("div", { class: "card stage-one" }, h("div", { class: "frame" }, screen, empty)), said, h("div", { class: "card" }, list),
+      parts.length ? h("p", { class: "muted" }, parts.join("; ")) : null),
     show(at) {
       const index = steps.findLastIndex((each) => each.at_s <= at + 1e-6);
       const now = steps[index];
