@@ -100,8 +100,8 @@ export async function besidePage(query, ...names) {
   return {
     title: `${runs[0].task}, two runs`,
     content: [h("h1", {}, runs[0].task), h("p", { class: "said" }, `“${runs[0].goal}”`),
-      h("div", { class: "columns even" }, columns.map((each) => each.element)),
       h("div", { class: "card transport" }, button("‹ Step", -1), button("Step ›", 1), h("div", { class: "time-line" }, slider), clock),
+      h("div", { class: "pair" }, columns.map((each) => each.element)),
       h("figure", { class: "card map alone" }, canvas, h("figcaption", { class: "muted" }, "The first episode's road; dashed, the car of the second."))],
     ready: () => jump(Number(query.get("at")) || 0),
     leave: () => view.leave(),
