@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from contextlib import closing
+from functools import cache
 from string import Formatter
 
 import pytest
@@ -57,8 +57,14 @@ def fields(template: str) -> list[str]:
     return sorted(name for _, name, _, _ in Formatter().parse(template) if name)
 
 
-def instances(task: Task, language: Language) -> Iterator[Instance]:
-    return (draw(task, half, number, language=language) for half in task.halves for number in range(NUMBERS))
+def instances(task: Task, language: Language) -> tuple[Instance, ...]:
+    return _instances(task.id, language)
+
+
+@cache
+def _instances(task_id: str, language: Language) -> tuple[Instance, ...]:
+    task = CATALOGUE[task_id]
+    return tuple(draw(task, half, number, language=language) for half in task.halves for number in range(NUMBERS))
 
 
 def test_the_languages_are_those_of_the_car():
