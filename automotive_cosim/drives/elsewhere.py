@@ -16,8 +16,8 @@ from automotive_cosim.traffic.rounds import planned
 
 
 def elsewhere(plan: DrivePlan, place: str) -> DrivePlan:
-    """The same date, weather, people, car and stunts on other roads: as many of the place's trips as can be driven in
-    turn and over again.
+    """The same date, weather, people, car and stunts on other roads: as many of the place's trips as can be driven
+    one after another and over again.
 
     Args:
         plan: a drive of a family.
