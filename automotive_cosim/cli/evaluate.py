@@ -115,6 +115,14 @@ def evaluate(
             show_default="quiet",
         ),
     ] = None,
+    language: Annotated[
+        str | None,
+        typer.Option(
+            help="What the driver speaks and the car shows, separated by commas: en, fr, de, ja. Tasks without "
+            "phrasings in one of them are left out.",
+            show_default="en",
+        ),
+    ] = None,
     mode: NoMode = None,
     clock: Annotated[
         str | None,
@@ -205,7 +213,7 @@ def evaluate(
     if pictures not in set(Pictures):
         raise UnknownNameError("choice of pictures", pictures, Pictures)
     named = {"agents": agents, "models": models, "tasks": tasks, "scenarios": scenarios, "geo": geo}
-    named |= {"see": see, "feedback": feedback}
+    named |= {"see": see, "feedback": feedback, "language": language}
     values: dict[str, Any] = read_plan(plan_file) if plan_file else {}
     values |= {name: words(name, text) for name, text in named.items() if text is not None}
     values |= {"seeds": seeds_in(seeds)} if seeds is not None else {}
@@ -297,6 +305,8 @@ def _said(progress: Progress[EpisodeRow]) -> str:
 def _announce(console: Console, plan: Plan, folder: Path) -> None:
     from rich.table import Table
 
+    from automotive_cosim.run.plan import languages_in_words
+
     jobs = plan.jobs()
     table = Table.grid(padding=(0, 2))
     table.add_row("agents", ", ".join(sorted({f"{job.setup.agent} ({job.setup.model})" for job in jobs})))
@@ -306,9 +316,14 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
         table.add_row(
             "left out", f"{counted(len(left_out), 'task')} that cannot run there; --everywhere includes them"
         )
+    if unspoken := plan.unspoken():
+        table.add_row(
+            "not said", f"{counted(len(unspoken), 'task')} without phrasings in {languages_in_words(plan.language)}"
+        )
     table.add_row("seeds", ", ".join(map(str, plan.seeds)))
     table.add_row("geo controls", ", ".join(plan.geo))
     table.add_row("screen", f"as {', '.join(plan.see)}; feedback {', '.join(plan.feedback)}")
+    table.add_row("language", ", ".join(plan.language))
     table.add_row("clock", f"{plan.clock}; latency {', '.join(f'{each:g}' for each in plan.latency)} s")
     table.add_row("repeats", str(plan.repeats))
     table.add_row("phrasings", "held out" if plan.held_out else "any")
