@@ -68,7 +68,7 @@ class DriveRecorder(WatchWatcher):
         (self.folder / "screenshots").mkdir(parents=True, exist_ok=True)
         about: Json = {
             "task": setup.family,
-            "scenario": family_named(setup.family).scenario,
+            "scenario": setup.scenario or family_named(setup.family).scenario,
             "agent": setup.agent,
             "model": setup.model,
             "seed": setup.seed,
