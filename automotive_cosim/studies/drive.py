@@ -8,7 +8,9 @@ once more, with random numbers of its own from the decision on.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import os
+from collections import deque
+from collections.abc import Iterable, Sequence
 from contextlib import ExitStack, closing
 from dataclasses import replace
 
@@ -36,6 +38,9 @@ NO_ROOM = "no room to enter"
 NO_CONGESTION = "no congestion met"
 NO_ALTERNATIVE = "no alternative"
 """Reasons to exclude a drive from the averages."""
+
+AT_ONCE = os.cpu_count() or 1
+"""Decisions whose branches are driven while the drive goes on; each takes some 50 MB per branch."""
 
 
 def planned(job: DriveJob) -> DriveRow:
@@ -75,14 +80,14 @@ def run_drive(job: DriveJob, simulation: Forked, history: Sequence[Pulse]) -> Dr
         if job.plan.whole_drives:
             fresh = simulation.fresh() if job.plan.draws.stop else None
             row = replace(row, fresh=fresh, whole=whole_drives(job, traffic, fresh, history))
-        drive = _Drive(job, traffic, simulation)
-        drive.go()
-        if not drive.points:
-            excluded, why = drive.why_not()
-            return replace(row, looks=drive.looks, excluded=excluded, why=why)
-        groups = [point.group for point in drive.points]
-        settled = traffic.settle(groups, job.plan.arrived, job.plan.limit_s)
-        stay = Future(traffic.state, settled)
+        with closing(_Drive(job, traffic, simulation)) as drive:
+            drive.go()
+            if not drive.points:
+                excluded, why = drive.why_not()
+                return replace(row, looks=drive.looks, excluded=excluded, why=why)
+            traffic.begin_settling([point.group for point in drive.points], job.plan.arrived, job.plan.limit_s)
+            drive.wait()
+            stay = _ended(traffic)
     decisions = tuple(compared(point, stay, history) for point in drive.points)
     return replace(row, looks=drive.looks, fresh=drive.fresh or row.fresh, stay=stay.totals(), decisions=decisions)
 
@@ -120,6 +125,8 @@ class _Drive:
         self.looks = 0
         """Number of instants with congestion ahead but no alternative route."""
         self._draws = np.random.default_rng([*job.entropy, 1])
+        self._running: deque[tuple[Point, Sequence[RemoteTraffic | None]]] = deque()
+        """Decisions whose branches are still being driven; None stands for the drive itself."""
         self._rules = {parse_policy(text).rule for text in job.plan.policies}
         self._most_delay_s = 0.0
 
@@ -127,6 +134,19 @@ class _Drive:
         """Drives and decides until the drive or its decisions are over."""
         plan = self.job.plan
         self._most_delay_s = drive_on(self.traffic, plan, self._decide, plan.per_drive)
+
+    def wait(self, but: int = 0) -> None:
+        """Waits for the branches of all decisions, or of all but so many."""
+        while len(self._running) > but:
+            point, branches = self._running[0]
+            point.branches = [branch and _ended(branch) for branch in branches]
+            _close(branches)
+            self._running.popleft()
+
+    def close(self) -> None:
+        """Ends the branches that are still being driven."""
+        while self._running:
+            _close(self._running.popleft()[1])
 
     def why_not(self) -> tuple[str, str]:
         """The reason why there was no decision at all, with its figures."""
@@ -149,19 +169,23 @@ class _Drive:
         agents: dict[str, int] = {}
         turned: list[str] = []
         with ExitStack() as stack:
-            begun: list[RemoteTraffic] = []
+            begun: list[RemoteTraffic | None] = []
             for edges in ways:
                 branch = traffic.branch()
                 stack.callback(branch.close)
                 if branch.request(Reroute(edges=edges)).accepted:  # else it is too late to take it
                     numbers[edges] = len(begun)
                     begun.append(branch)
+                else:
+                    branch.close()
             for agent in plan.agents:
                 branch = traffic.branch()
                 stack.callback(branch.close)
                 decided(agent, self.job, branch)
                 agents[agent] = len(begun)
-                begun.append(branch)
+                begun.append(branch if branch.is_steered else None)
+                if not branch.is_steered:
+                    branch.close()
                 edges = branch.state.ahead.route_edges
                 if now.ahead.route_edges[-len(edges) :] != edges:
                     turned.append(agent)
@@ -172,12 +196,14 @@ class _Drive:
             offered = next((number for edges, number in numbers.items() if edges == _offered(news)), None)
             diverted: list[Diverted] = []
             shut: list[Shut] = []
-            if offered is not None and not self.points:
+            if offered is not None and (other := begun[offered]) is not None and not self.points:
                 ways_apart = section(now.ahead.route_edges, _offered(news))
                 seeds = [0, *(each.seed for each in replicates[: plan.draws.start])]
-                diverted = self._diverted(begun[offered], ways_apart, seeds, group)
-                shut = self._shut(begun, offered, ways_apart[0], seeds, group)
-            branches = [self._left(branch, group) for branch in begun]
+                diverted = self._diverted(other, ways_apart, seeds, group)
+                shut = self._shut(other, offered, ways_apart[0], seeds, group)
+            for other in begun:
+                self._begin(other, group)
+            stack.pop_all()  # they are driven while the drive goes on
         decision = Decision(
             at_s=now.time_s,
             edge=now.road.edge_id,
@@ -189,11 +215,13 @@ class _Drive:
             own=numbers.get(own),
             agents=agents,
             agents_rerouted=tuple(turned),
-            planned_draws=1 + plan.draws.start,
+            planned_draws=1 + plan.draws.start if replicates else 1,
         )
-        point = Point(decision, group, pulse, branches, replicates=replicates, together=diverted, shut=shut)
-        if not self.points and self._has_placebo() and not replicates:
-            point.placebo = self._renewed(traffic, self._seed(1), group)
+        point = Point(decision, group, pulse, replicates=replicates, together=diverted, shut=shut)
+        self._running.append((point, begun))
+        self.wait(but=AT_ONCE)
+        if not self.points and self._has_placebo() and not plan.draws.stop:
+            (point.placebo,) = self._renewed([traffic], self._seed(1), group)
         self.points.append(point)
         return True
 
@@ -208,14 +236,18 @@ class _Drive:
             branch=None if offered is None else numbers.get(offered.edges),
         )
 
-    def _replicates(self, begun: Sequence[RemoteTraffic], group: Sequence[str]) -> list[Drawn]:
-        """Further draws of keeping the route and of every branch, which are as after their choice."""
+    def _replicates(self, begun: Sequence[RemoteTraffic | None], group: Sequence[str]) -> list[Drawn]:
+        """Further draws of keeping the route and of every branch, which are as after their choice; none if nobody
+        left the route, since all futures of a draw are then the same."""
         drawn: list[Drawn] = []
         fewest, most = self.job.plan.draws.start, self.job.plan.draws.stop
+        if not any(begun):
+            return drawn
         while len(drawn) < fewest or (len(drawn) < most and not shows_signs(drawn)):
             seed = self._seed(len(drawn) + 1)
-            stay, *branches = (self._renewed(traffic, seed, group) for traffic in (self.traffic, *begun))
-            drawn.append(Drawn(seed, stay, branches))
+            stay, *others = self._renewed([self.traffic, *filter(None, begun)], seed, group)
+            driven = iter(others)
+            drawn.append(Drawn(seed, stay, [stay if branch is None else next(driven) for branch in begun]))
         return drawn
 
     def _diverted(
@@ -230,11 +262,12 @@ class _Drive:
                     took, could = copy.divert(old, new, share, self._seed(0))
                     if draw:
                         copy.renew(self._simulation.fresh(), seed)
-                    found.append(Diverted(share, draw, self._left(copy, group), took, could))
+                    self._begin(copy, group)
+                    found.append(Diverted(share, draw, _ended(copy), took, could))
         return found
 
     def _shut(
-        self, begun: Sequence[RemoteTraffic], offered: int, own: Edges, seeds: Sequence[int], group: Sequence[str]
+        self, begun: RemoteTraffic, offered: int, own: Edges, seeds: Sequence[int], group: Sequence[str]
     ) -> list[Shut]:
         """The futures of the two ways with a road closed now, in the scored draws."""
         edge = self.job.plan.close
@@ -242,37 +275,51 @@ class _Drive:
             edge = own[len(own) // 2] if len(own) > 2 else ""
         found: list[Shut] = []
         for draw, seed in enumerate(seeds if edge else ()):
-            futures = []
-            for traffic in (self.traffic, begun[offered]):
-                with closing(traffic.branch()) as copy:
+            with ExitStack() as stack:
+                copies = [stack.enter_context(closing(way.branch())) for way in (self.traffic, begun)]
+                for copy in copies:
                     copy.shut(edge)
                     if draw:
                         copy.renew(self._simulation.fresh(), seed)
-                    futures.append(self._left(copy, group))
-            found.append(Shut(edge, draw, offered, *futures))
+                    self._begin(copy, group)
+                found.append(Shut(edge, draw, offered, *map(_ended, copies)))
         return found
 
-    def _renewed(self, traffic: RemoteTraffic, seed: int, group: Sequence[str]) -> Future:
-        """The future of a copy with fresh random numbers."""
+    def _renewed(self, drives: Sequence[RemoteTraffic], seed: int, group: Sequence[str]) -> list[Future]:
+        """The futures of copies with fresh random numbers, driven at the same time."""
         self.fresh = self._simulation.fresh()
-        with closing(traffic.branch()) as copy:
-            copy.renew(self.fresh, seed)
-            return self._left(copy, group)
+        with ExitStack() as stack:
+            copies = [stack.enter_context(closing(each.branch())) for each in drives]
+            for copy in copies:
+                copy.renew(self.fresh, seed)
+                self._begin(copy, group)
+            return [_ended(copy) for copy in copies]
 
     def _seed(self, draw: int) -> int:
         """The seed of a draw of the decision at hand."""
         entropy = (*self.job.entropy, 4, len(self.points), draw)
         return int(np.random.default_rng(entropy).integers(SEED_RANGE))
 
-    def _left(self, branch: RemoteTraffic, group: Sequence[str]) -> Future:
-        """Drives it to its end."""
-        settled = branch.settle([group], self.job.plan.arrived, self.job.plan.limit_s)
-        return Future(branch.state, settled)
+    def _begin(self, branch: RemoteTraffic | None, group: Sequence[str]) -> None:
+        """Begins to drive it to its end."""
+        if branch is not None:
+            branch.begin_settling([group], self.job.plan.arrived, self.job.plan.limit_s)
 
     def _has_placebo(self) -> bool:
         """Drawn randomly, so that it does not depend on the results of other drives."""
         every = self.job.plan.placebo_every
         return every > 0 and self._draws.random() < 1 / every
+
+
+def _ended(traffic: RemoteTraffic) -> Future:
+    """The future of a drive that has begun to settle."""
+    settled = traffic.settled()
+    return Future(traffic.state, settled)
+
+
+def _close(branches: Iterable[RemoteTraffic | None]) -> None:
+    for branch in filter(None, branches):
+        branch.close()
 
 
 def _offered(news: dict[float, tuple[RouteOption, ...]]) -> tuple[str, ...]:

@@ -41,8 +41,9 @@ class Ledger:
     def note(self) -> None:
         """Records the step that has just been made."""
         sumo, now_s = self._sumo, self._sumo.time()
-        departed, self.arrived = sumo.departed(), sumo.arrived()
-        teleporting = sumo.teleporting()
+        departed = sumo.departed() if sumo.departed_count() else ()
+        self.arrived = sumo.arrived() if sumo.arrived_count() else ()
+        teleporting = sumo.teleporting() if sumo.teleporting_count() else ()
         self._departed += len(departed)
         self._teleported += len(teleporting)
         self.arrivals_s.update(dict.fromkeys(self.arrived, now_s))
@@ -145,19 +146,18 @@ def settle(
     most = [(1 - share) * len(group) + 1e-9 for group in groups]
 
     def is_complete() -> bool:
-        return drive.state.end is not None and all(
-            len(each) <= limit for each, limit in zip(left, most, strict=True)
-        )
+        return drive.has_ended and all(len(each) <= limit for each, limit in zip(left, most, strict=True))
 
+    world.look_away()
     for _ in range(round(limit_s / world.step_s)):
         if is_complete():
             break
-        if drive.state.end is None:
-            drive.advance(world.step_s, after_step)
-        else:
+        if drive.has_ended:
             world.step()
-            after_step()
-        for each in left:
+        else:
+            drive.step()
+        after_step()
+        for each in left if ledger.arrived else ():
             each.difference_update(ledger.arrived)
     everybody = {vehicle for group in groups for vehicle in group}
     arrivals_s = {vehicle: at_s for vehicle, at_s in ledger.arrivals_s.items() if vehicle in everybody}

@@ -392,14 +392,18 @@ def test_an_agent_gains_what_its_taps_do_and_one_that_does_nothing_changes_nothi
     (tmp_path / "mine.py").write_text(AGENTS)
     monkeypatch.chdir(tmp_path)
     policies = ("never", "always", "agent:mine:Idle", "agent:mine:Taps")
-    plan = StudyPlan(str(two_ways()), (0.0,), seeds=(0,), per_drive=1, policies=policies, agent_steps=6)
+    plan = StudyPlan(
+        str(two_ways()), (0.0,), seeds=(0,), per_drive=1, policies=policies, agent_steps=6, replicates=2
+    )
     run_study(plan, tmp_path / "agent")
     study = read_study(tmp_path / "agent")
     (point,) = study.decisions
     decision = point.decision
-    idle = decision.branches[decision.agents["mine:Idle"]]
-    assert idle.gains == NOTHING
-    assert idle.others.changed == 0
+    (again,) = decision.replicates
+    for draw in (decision, again):
+        idle = draw.branches[decision.agents["mine:Idle"]]
+        assert idle.gains == NOTHING
+        assert idle.others.changed == 0
     taps = decision.branches[decision.agents["mine:Taps"]]
     always = decision.branches[decision.news[0].branch]
     assert taps.totals == always.totals, "the way is the same, wherever on the first road it was chosen"
