@@ -17,6 +17,7 @@ import time
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from decisions import Children, spent_s
@@ -73,28 +74,34 @@ def decisions(plan: StudyPlan) -> int:
     count = 0
     with drives() as run:
         for job in plan.jobs():
-            row = run(job, None)
+            row = run(job, Path())
             assert not row.error, row.error
             count += len(row.decisions)
     return count
 
 
-def show(plan: StudyPlan) -> None:
+def show(plan: StudyPlan, *, bare: bool) -> None:
     """Measures one plan and prints a line."""
     with Children().counted() as children:
         begun_s, clock_s, spent = time.process_time(), time.perf_counter(), children.spent_s
         count = decisions(plan)
         ours_s, sumo_s = time.process_time() - begun_s, children.spent_s - spent
         wall_s = time.perf_counter() - clock_s
-    tally = Tally()
-    with counted(tally):
-        decisions(plan)
     print(
         f"| {plan.replicates} | {count} | {(ours_s + sumo_s) / count:.2f} | {ours_s / count:.2f} "
-        f"| {tally.futures / count:.1f} | {tally.steps / tally.futures:.0f} | {tally.ours_s / count:.2f} "
-        f"| {tally.bare_s / count:.2f} | {wall_s / count:.2f} |",
+        f"| {wall_s / count:.2f} |",
+        end="" if bare else "\n",
         flush=True,
     )
+    if bare:
+        tally = Tally()
+        with counted(tally):
+            decisions(plan)
+        print(
+            f" {tally.futures / count:.1f} | {tally.steps / tally.futures:.0f} | {tally.ours_s / count:.2f} "
+            f"| {tally.bare_s / count:.2f} |",
+            flush=True,
+        )
 
 
 def main() -> None:
@@ -108,11 +115,16 @@ def main() -> None:
     parser.add_argument("--delay", type=float, default=30.0)
     parser.add_argument("--every", type=float, default=60.0)
     parser.add_argument("--per-drive", type=int, default=5)
+    parser.add_argument("--ages", type=float, nargs="*", default=[0.0])
+    parser.add_argument("--policies", nargs="*", default=list(POLICIES))
+    parser.add_argument("--placebo-every", type=int, default=3)
+    parser.add_argument("--no-bare", action="store_true", help="leave out the bare steps, which take as long again")
     parser.add_argument("--replicates", type=int, nargs="*", default=[1, 2, 4])
     given = parser.parse_args()
     print(f"load {os.getloadavg()[0]:.1f}; seconds of one processor per decision")
-    print("| draws | decisions | all | this process | futures | steps | futures, s | bare SUMO, s | by the clock |")
-    print("|---:|---:|---:|---:|---:|---:|---:|---:|---:|")
+    columns = ["draws", "decisions", "all", "of this process", "by the clock"]
+    columns += [] if given.no_bare else ["futures", "steps of each", "futures, s", "bare SUMO, s"]
+    print(f"| {' | '.join(columns)} |\n|{'---:|' * len(columns)}")
     for draws in given.replicates:
         show(
             StudyPlan(
@@ -124,9 +136,12 @@ def main() -> None:
                 least_delay_s=given.delay,
                 every_s=given.every,
                 per_drive=given.per_drive,
-                policies=POLICIES,
+                ages_s=tuple(given.ages),
+                policies=tuple(given.policies),
+                placebo_every=given.placebo_every,
                 replicates=draws,
-            )
+            ),
+            bare=not given.no_bare,
         )
 
 

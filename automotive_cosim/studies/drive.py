@@ -13,6 +13,7 @@ from collections import deque
 from collections.abc import Iterable, Sequence
 from contextlib import ExitStack, closing
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
@@ -26,6 +27,7 @@ from automotive_cosim.studies.plan import AHEAD, DriveJob
 from automotive_cosim.studies.points import Diverted, Drawn, Point, Shut, compared, shows_signs
 from automotive_cosim.studies.policies import PolicyRule, parse_policy
 from automotive_cosim.studies.rows import Decision, DriveRow, News
+from automotive_cosim.studies.tracks import write_tracks
 from automotive_cosim.studies.whole import whole_drives
 from automotive_cosim.traffic.accounts import Pulse
 from automotive_cosim.traffic.base import EgoPlan
@@ -55,13 +57,14 @@ def planned(job: DriveJob) -> DriveRow:
     )
 
 
-def run_drive(job: DriveJob, simulation: Forked, history: Sequence[Pulse]) -> DriveRow:
+def run_drive(job: DriveJob, simulation: Forked, history: Sequence[Pulse], tracks: Path | None = None) -> DriveRow:
     """Runs a drive, branches at every decision point, and compares the futures.
 
     Args:
         job: the drive to run.
         simulation: its traffic at the ego's departure, watched.
         history: measurements of the traffic so far, ``traffic.PULSE_S`` apart.
+        tracks: folder for the ego's tracks in a simulation that keeps them; None leaves them out.
 
     Raises:
         TrafficError: the simulation failed.
@@ -88,6 +91,8 @@ def run_drive(job: DriveJob, simulation: Forked, history: Sequence[Pulse]) -> Dr
             traffic.begin_settling([point.group for point in drive.points], job.plan.arrived, job.plan.limit_s)
             drive.wait()
             stay = _ended(traffic)
+    if tracks is not None:
+        write_tracks(tracks, job.id, stay, drive.points)
     decisions = tuple(compared(point, stay, history) for point in drive.points)
     return replace(row, looks=drive.looks, fresh=drive.fresh or row.fresh, stay=stay.totals(), decisions=decisions)
 

@@ -94,18 +94,19 @@ class Forked:
             raise TrafficError("the simulation is closed")
         return self._source.departed(plan)
 
-    def watch(self, *, consumptions: bool = False) -> None:
+    def watch(self, *, consumptions: bool = False, tracks: bool = False) -> None:
         """Makes this traffic and every drive that departs from it keep a ledger, which studies read.
 
         Args:
             consumptions: also of what every vehicle emits and consumes.
+            tracks: also of where the ego is.
 
         Raises:
             SetupError: the platform cannot fork.
         """
         if self._source.by_replay:
             raise SetupError("studies branch a running simulation, which requires fork: use Linux")
-        self._source.warm_call("watch", consumptions)
+        self._source.warm_call("watch", consumptions, tracks)
 
     def run_on(self, duration_s: float) -> Pulse:
         """Lets the watched traffic run, so that later drives depart later; returns its state.

@@ -156,10 +156,10 @@ class Server:
 
     # --- calls of studies ---------------------------------------------------------------------------------
 
-    def do_watch(self, consumptions: bool) -> None:
+    def do_watch(self, consumptions: bool, tracks: bool) -> None:
         """Records every step from now on in a ledger, which forks copy."""
         assert self._world is not None
-        self._ledger = Ledger(load_library(), self._world.step_s, consumptions=consumptions)
+        self._ledger = Ledger(load_library(), self._world.step_s, consumptions=consumptions, tracks=tracks)
 
     def do_run_on(self, duration_s: float) -> Pulse:
         """Lets the traffic run without an ego."""

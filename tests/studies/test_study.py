@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import gzip
 import hashlib
 import json
 from dataclasses import replace
@@ -19,6 +20,7 @@ from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.row import steady as steady_part
 from automotive_cosim.run.store import read_rows
 from automotive_cosim.studies.batch import run_study
+from automotive_cosim.studies.data import futures
 from automotive_cosim.studies.demand import read_demand
 from automotive_cosim.studies.drive import NO_ROOM
 from automotive_cosim.studies.page import write_study
@@ -26,6 +28,7 @@ from automotive_cosim.studies.plan import StudyPlan
 from automotive_cosim.studies.points import NOT_CLEARED
 from automotive_cosim.studies.results import load_study, read_study
 from automotive_cosim.studies.rows import NOTHING, DriveRow
+from automotive_cosim.studies.tracks import TRACKS
 from automotive_cosim.traffic.chance import Fresh
 
 from .conftest import EDGES, MORE_TRIPS, Draw
@@ -393,7 +396,14 @@ def test_an_agent_gains_what_its_taps_do_and_one_that_does_nothing_changes_nothi
     monkeypatch.chdir(tmp_path)
     policies = ("never", "always", "agent:mine:Idle", "agent:mine:Taps")
     plan = StudyPlan(
-        str(two_ways()), (0.0,), seeds=(0,), per_drive=1, policies=policies, agent_steps=6, replicates=2
+        str(two_ways()),
+        (0.0,),
+        seeds=(0,),
+        per_drive=1,
+        policies=policies,
+        agent_steps=6,
+        replicates=2,
+        trajectories=True,
     )
     run_study(plan, tmp_path / "agent")
     study = read_study(tmp_path / "agent")
@@ -411,6 +421,16 @@ def test_an_agent_gains_what_its_taps_do_and_one_that_does_nothing_changes_nothi
     turned = {each.policy: each.rerouted for each in study.choices}
     assert turned["agent:mine:Taps"]
     assert not turned["agent:mine:Idle"]
+    last_s = {}
+    with gzip.open(tmp_path / "agent" / TRACKS / f"{point.drive.id}.csv.gz", "rt") as file:
+        for row in csv.DictReader(file):
+            last_s[row["id"], int(row["draw"]), row["branch"]] = float(row["time_s"])
+    driven = list(futures(study))
+    assert len(last_s) == len(driven) == 2 * (1 + len(decision.branches))
+    for each in driven:
+        if each.branch is not None:
+            kept_s, own_s = (last_s[each.id, each.draw, branch] for branch in ("", str(each.branch)))
+            assert kept_s - own_s == pytest.approx(each.gain.time_s), "the tracks end when the drives do"
 
 
 @pytest.mark.parametrize("name", ["t3a", "asurada"])
