@@ -6,6 +6,8 @@ import csv
 import gzip
 import hashlib
 import json
+import re
+import runpy
 from dataclasses import replace
 from pathlib import Path
 
@@ -431,6 +433,30 @@ def test_an_agent_gains_what_its_taps_do_and_one_that_does_nothing_changes_nothi
         if each.branch is not None:
             kept_s, own_s = (last_s[each.id, each.draw, branch] for branch in ("", str(each.branch)))
             assert kept_s - own_s == pytest.approx(each.gain.time_s), "the tracks end when the drives do"
+
+
+ANSWERS = {
+    "chance": r"1 branches, each driven 2 to 2 times\n.*within a decision: \d",
+    "gain": r"always +\+33\.\d s ± nan, 1 decisions of 1 seeds",
+    "policy": r"always +1\.0 +33\.",
+    "ways": r"kept route: .*main.*\nbranch 0: .*out, back",
+    "who_pays": r"the ego gains: 2 futures, mean \+33",
+}
+
+
+def test_every_question_has_a_script_that_answers_it(
+    small: StudyPlan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scripts = sorted((Path(__file__).parents[2] / "docs/examples/studies").glob("*.py"))
+    assert [path.stem for path in scripts] == sorted(ANSWERS)
+    plan = replace(small, replicates=2, whole_drives=True, trajectories=True, policies=("never", "always"))
+    run_study(plan, tmp_path / "study")
+    write_study(tmp_path / "study")
+    for path in scripts:
+        monkeypatch.setattr("sys.argv", [str(path), str(tmp_path / "study")])
+        capsys.readouterr()
+        runpy.run_path(str(path))
+        assert re.search(ANSWERS[path.stem], capsys.readouterr().out), path.stem
 
 
 @pytest.mark.parametrize("name", ["t3a", "asurada"])
