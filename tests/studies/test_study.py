@@ -457,6 +457,9 @@ def test_every_question_has_a_script_that_answers_it(
         capsys.readouterr()
         runpy.run_path(str(path))
         assert re.search(ANSWERS[path.stem], capsys.readouterr().out), path.stem
+    page = (tmp_path / "study/decisions.html").read_text(encoding="utf-8")
+    for word in ("The news expected", "kept route", "branch 0", "always", "+33", "<polyline"):
+        assert word in page
 
 
 @pytest.mark.parametrize("name", ["t3a", "asurada"])
