@@ -17,6 +17,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
+import numpy as np
+import numpy.typing as npt
+
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats import files
 from automotive_cosim.scenarios import Scenario
@@ -104,6 +107,21 @@ class EdgeTimes:
     def at(self, edge: str, interval: int) -> float:
         """The time of an edge that is entered in an interval."""
         return self._means_s.get((edge, interval), self._free_s[edge])
+
+    def table(self, edges: Mapping[str, int]) -> tuple[int, npt.NDArray[np.float64]]:
+        """The first interval of all, and the times of some edges in it and the following ones.
+
+        Args:
+            edges: edge -> row of an array, (edges, intervals + 1), whose last column is the free time.
+        """
+        intervals = [interval for _, interval in self._means_s] or [0]
+        first, count = min(intervals), max(intervals) + 1 - min(intervals)
+        free_s = np.array([self._free_s[edge] for edge in edges])
+        table = np.repeat(free_s[:, None], count + 1, axis=1)
+        for (edge, interval), mean_s in self._means_s.items():
+            if edge in edges:
+                table[edges[edge], interval - first] = mean_s
+        return first, table
 
     def of(self, edges: Sequence[str], from_s: float) -> float:
         """The time of a route whose first edge is left at an instant, to its end."""

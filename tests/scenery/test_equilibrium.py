@@ -57,7 +57,14 @@ def test_the_settings_keep_the_routes() -> None:
     assert "0.6" not in text
 
 
-NODES = {"west": (0, 0), "fork": (300, 0), "side": (800, 300), "join": (1300, 0), "east": (1600, 0)}
+NODES = {
+    "west": (0, 0),
+    "fork": (300, 0),
+    "gate": (1100, 0),
+    "side": (800, 300),
+    "join": (1300, 0),
+    "east": (1600, 0),
+}
 EDGES = {
     "access": ("west", "fork", 300.0, 3),
     "main": ("fork", "join", 1000.0, 1),
@@ -93,16 +100,17 @@ to_edge = "exit"
 @pytest.fixture
 def jammed(sumo: None, tmp_path: Path) -> Path:
     """Two ways of about the same length, and everybody on the shorter one, at more than a lane can carry."""
-    return two_ways(tmp_path, EDGES)
+    return two_ways(tmp_path, EDGES, "access main exit", 1.2)
 
 
-def two_ways(tmp_path: Path, drawn: Mapping[str, tuple[str, str, float, int]]) -> Path:
-    """A scenario in which everybody is on the main way."""
+def two_ways(tmp_path: Path, drawn: Mapping[str, tuple[str, str, float, int]], route: str, period_s: float) -> Path:
+    """A scenario in which everybody is on one way; the edge ``neck``, if there is one, is slow."""
     folder = tmp_path / "two"
     folder.mkdir()
     nodes = "".join(f'<node id="{name}" x="{x}" y="{y}" type="priority"/>' for name, (x, y) in NODES.items())
     edges = "".join(
-        f'<edge id="{name}" from="{begin}" to="{end}" numLanes="{lanes}" speed="13" length="{length_m}"/>'
+        f'<edge id="{name}" from="{begin}" to="{end}" numLanes="{lanes}" speed="{5 if name == "neck" else 13}" '
+        f'length="{length_m}"/>'
         for name, (begin, end, length_m, lanes) in drawn.items()
     )
     (tmp_path / "n.nod.xml").write_text(f"<nodes>{nodes}</nodes>")
@@ -111,8 +119,8 @@ def two_ways(tmp_path: Path, drawn: Mapping[str, tuple[str, str, float, int]]) -
     built, printed = sumo_programs.run("netconvert", [*files, "--no-turnarounds"])
     assert built, printed
     (folder / "two.rou.xml").write_text(
-        '<routes><vType id="car"/><flow id="f" type="car" begin="0" end="900" period="1.2" departLane="best" '
-        'departSpeed="max"><route edges="access main exit"/></flow></routes>'
+        f'<routes><vType id="car"/><flow id="f" type="car" begin="0" end="900" period="{period_s:g}" '
+        f'departLane="best" departSpeed="max"><route edges="{route}"/></flow></routes>'
     )
     (folder / "two.sumocfg").write_text(
         '<configuration><input><net-file value="two.net.xml"/><route-files value="two.rou.xml"/></input>'
@@ -156,11 +164,18 @@ def test_others_lose_by_what_a_road_takes_longer_than_when_it_is_calm() -> None:
 @pytest.mark.slow
 @pytest.mark.long
 def test_routes_that_take_less_in_all_than_those_that_drivers_find(sumo: None, tmp_path: Path) -> None:
-    """The other way takes 108 s longer, and the main one carries about 0.5 of 0.83 vehicles a second. Drivers queue
-    until that takes as long, so nearly everybody loses 108 s; without a queue, two in five do: by hand, a price of
-    anarchy of (123 + 95) / (123 + 43) = 1.31. What a search finds lies between that and 1."""
-    longer = EDGES | {"out": ("fork", "side", 1200.0, 1), "back": ("side", "join", 1200.0, 1)}
-    folder, found, target = two_ways(tmp_path, longer), tmp_path / "found", tmp_path / "optimum"
+    """The other way takes 83 s longer, and the neck of the main one carries 0.4 of 0.5 vehicles a second: at 5 m/s,
+    7.5 m and a headway of 1 s. Drivers queue until that takes 83 s too, on average 68 s each; without a queue, one
+    in five would lose 83 s: by hand, a price of anarchy of (163 + 68) / (163 + 17) = 1.28. What a search finds lies
+    between that and 1."""
+    longer = EDGES | {
+        "main": ("fork", "gate", 1000.0, 1),
+        "neck": ("gate", "join", 200.0, 1),
+        "out": ("fork", "side", 1300.0, 1),
+        "back": ("side", "join", 1300.0, 1),
+    }
+    folder = two_ways(tmp_path, longer, "access main neck exit", 2.0)
+    found, target = tmp_path / "found", tmp_path / "optimum"
     options = Options(steps=6, gap=0.01, observe_s=900.0)
     equilibrate(folder, found, options, lambda step: None)
     told: list[optimum.OptimumStep] = []
@@ -170,7 +185,7 @@ def test_routes_that_take_less_in_all_than_those_that_drivers_find(sumo: None, t
     assert 1.03 < low < compared.price_of_anarchy < high < 1.4
     assert compared.kept > 0
     assert len(compared.equilibrium) == len(compared.optimum) == 3
-    ways = [(path / "equilibrium.rou.xml").read_text().count("access main exit") for path in (found, target)]
+    ways = [(path / "equilibrium.rou.xml").read_text().count("access main neck exit") for path in (found, target)]
     assert ways[1] < ways[0], "fewer take the short way"
     assert json.loads((target / optimum.RECORD).read_text())["price_of_anarchy"] == compared.price_of_anarchy
     with pytest.raises(UserError, match="exists"):
