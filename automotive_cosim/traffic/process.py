@@ -42,6 +42,9 @@ if sys.platform != "win32":
 BEAT_S = 1.0
 """Wall time between two signs of life during a long call."""
 
+SETTLING_BEAT_S = 5.0
+"""The same while a future is settled: nobody may read for a while, and a full socket would hold up the simulation."""
+
 DESCRIPTORS = Path("/proc/self/fd")
 
 
@@ -61,6 +64,7 @@ class Server:
         self._drive: EgoDrive | None = None
         self._ledger: Ledger | None = None
         self._last_beat_s = 0.0
+        self._beat_s = BEAT_S
 
     def run(self) -> None:
         """Serves until the connection closes."""
@@ -180,6 +184,7 @@ class Server:
         assert self._world is not None
         assert self._drive is not None
         assert self._ledger is not None
+        self._beat_s = SETTLING_BEAT_S
         outcome = settle(self._world, self._drive, self._ledger, groups, share, limit_s, self._after_step)
         return pack_state(self._drive.state), outcome
 
@@ -227,7 +232,7 @@ class Server:
 
     def _beat(self) -> None:
         now_s = time.monotonic()
-        if now_s - self._last_beat_s >= BEAT_S:
+        if now_s - self._last_beat_s >= self._beat_s:
             self._last_beat_s = now_s
             self._set_alarm()
             self._channel.send(("beat", None))
