@@ -43,7 +43,7 @@ BEAT_S = 1.0
 """Wall time between two signs of life during a long call."""
 
 SETTLING_BEAT_S = 5.0
-"""The same while a future is settled: nobody may read for a while, and a full socket would hold up the simulation."""
+"""The same while a future is settled: nobody may read for minutes, and a full socket would hold it up."""
 
 DESCRIPTORS = Path("/proc/self/fd")
 
