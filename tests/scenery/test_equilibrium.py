@@ -164,10 +164,8 @@ def test_others_lose_by_what_a_road_takes_longer_than_when_it_is_calm() -> None:
 @pytest.mark.slow
 @pytest.mark.long
 def test_routes_that_take_less_in_all_than_those_that_drivers_find(sumo: None, tmp_path: Path) -> None:
-    """The other way takes 83 s longer, and the neck of the main one carries 0.4 of 0.5 vehicles a second: at 5 m/s,
-    7.5 m and a headway of 1 s. Drivers queue until that takes 83 s too, on average 68 s each; without a queue, one
-    in five would lose 83 s: by hand, a price of anarchy of (163 + 68) / (163 + 17) = 1.28. What a search finds lies
-    between that and 1."""
+    """The neck of the main way carries less than comes, and the other way takes 83 s longer: drivers queue until
+    that takes as long, though fewer of them on the main way would cost less in all."""
     longer = EDGES | {
         "main": ("fork", "gate", 1000.0, 1),
         "neck": ("gate", "join", 200.0, 1),
@@ -182,8 +180,10 @@ def test_routes_that_take_less_in_all_than_those_that_drivers_find(sumo: None, t
     compared = optimum.compare(found, target, options, 3, told.append, force=False)
     assert tuple(told) == compared.steps
     low, high = compared.interval
-    assert 1.03 < low < compared.price_of_anarchy < high < 1.4
+    assert low < compared.price_of_anarchy < high
+    assert 1.03 < compared.price_of_anarchy < 1.2
     assert compared.kept > 0
+    assert compared.steps[compared.kept].total.total_s < 0.96 * compared.steps[0].total.total_s
     assert len(compared.equilibrium) == len(compared.optimum) == 3
     ways = [(path / "equilibrium.rou.xml").read_text().count("access main neck exit") for path in (found, target)]
     assert ways[1] < ways[0], "fewer take the short way"
