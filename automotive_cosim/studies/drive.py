@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 from collections import deque
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack, closing
 from dataclasses import replace
 from pathlib import Path
@@ -20,19 +20,18 @@ import numpy as np
 from automotive_cosim.contracts import DrivingState, Reroute, RouteOption
 from automotive_cosim.errors import NoRoomError
 from automotive_cosim.geo.forecast import drawn_weather
-from automotive_cosim.studies.compare import Future
 from automotive_cosim.studies.driver import decided
+from automotive_cosim.studies.futures import Futures, close_all, ended
 from automotive_cosim.studies.looks import drive_on
-from automotive_cosim.studies.plan import AHEAD, DriveJob
-from automotive_cosim.studies.points import Diverted, Drawn, Point, Shut, compared, shows_signs
+from automotive_cosim.studies.plan import DriveJob
+from automotive_cosim.studies.points import Diverted, Point, Shut, compared
 from automotive_cosim.studies.policies import PolicyRule, parse_policy
 from automotive_cosim.studies.rows import Decision, DriveRow, News
 from automotive_cosim.studies.tracks import write_tracks
 from automotive_cosim.studies.whole import whole_drives
 from automotive_cosim.traffic.accounts import Pulse
 from automotive_cosim.traffic.base import EgoPlan
-from automotive_cosim.traffic.chance import SEED_RANGE, Fresh
-from automotive_cosim.traffic.divert import Edges, section
+from automotive_cosim.traffic.divert import section
 from automotive_cosim.traffic.fork import Forked, RemoteTraffic
 
 SAME_PLACE = "start is goal"
@@ -90,11 +89,13 @@ def run_drive(job: DriveJob, simulation: Forked, history: Sequence[Pulse], track
                 return replace(row, looks=drive.looks, excluded=excluded, why=why)
             traffic.begin_settling([point.group for point in drive.points], job.plan.arrived, job.plan.limit_s)
             drive.wait()
-            stay = _ended(traffic)
+            stay = ended(traffic)
     if tracks is not None:
         write_tracks(tracks, job.id, stay, drive.points)
     decisions = tuple(compared(point, stay, history) for point in drive.points)
-    return replace(row, looks=drive.looks, fresh=drive.fresh or row.fresh, stay=stay.totals(), decisions=decisions)
+    return replace(
+        row, looks=drive.looks, fresh=drive.futures.fresh or row.fresh, stay=stay.totals(), decisions=decisions
+    )
 
 
 def depart(job: DriveJob, simulation: Forked) -> RemoteTraffic:
@@ -123,9 +124,7 @@ class _Drive:
     def __init__(self, job: DriveJob, traffic: RemoteTraffic, simulation: Forked) -> None:
         self.job = job
         self.traffic = traffic
-        self.fresh: Fresh | None = None
-        """How futures got fresh random numbers, once one did."""
-        self._simulation = simulation
+        self.futures = Futures(job, traffic, simulation)
         self.points: list[Point] = []
         self.looks = 0
         """Number of instants with congestion ahead but no alternative route."""
@@ -144,14 +143,14 @@ class _Drive:
         """Waits for the branches of all decisions, or of all but so many."""
         while len(self._running) > but:
             point, branches = self._running[0]
-            point.branches = [branch and _ended(branch) for branch in branches]
-            _close(branches)
+            point.branches = [branch and ended(branch) for branch in branches]
+            close_all(branches)
             self._running.popleft()
 
     def close(self) -> None:
         """Ends the branches that are still being driven."""
         while self._running:
-            _close(self._running.popleft()[1])
+            close_all(self._running.popleft()[1])
 
     def why_not(self) -> tuple[str, str]:
         """The reason why there was no decision at all, with its figures."""
@@ -162,7 +161,7 @@ class _Drive:
 
     def _decide(self, now: DrivingState) -> bool:
         """Runs the branches of a decision; false if there is no decision here."""
-        plan, traffic = self.job.plan, self.traffic
+        plan, traffic, futures = self.job.plan, self.traffic, self.futures
         news = {age_s: traffic.alternatives(age_s) for age_s in plan.ages_s}
         own = traffic.own_choice() if PolicyRule.SUMO in self._rules else now.ahead.route_edges
         ways = _ways(now, news, own)
@@ -197,17 +196,17 @@ class _Drive:
             if not begun:
                 self.looks += 1
                 return False
-            replicates = self._replicates(begun, group)
+            replicates = futures.replicates(begun, group)
             offered = next((number for edges, number in numbers.items() if edges == _offered(news)), None)
             diverted: list[Diverted] = []
             shut: list[Shut] = []
             if offered is not None and (other := begun[offered]) is not None and not self.points:
                 ways_apart = section(now.ahead.route_edges, _offered(news))
                 seeds = [0, *(each.seed for each in replicates[: plan.draws.start])]
-                diverted = self._diverted(other, ways_apart, seeds, group)
-                shut = self._shut(other, offered, ways_apart[0], seeds, group)
+                diverted = futures.diverted(other, ways_apart, seeds, group)
+                shut = futures.shut(other, offered, ways_apart[0], seeds, group)
             for other in begun:
-                self._begin(other, group)
+                futures.begin(other, group)
             stack.pop_all()  # they are driven while the drive goes on
         decision = Decision(
             at_s=now.time_s,
@@ -226,8 +225,9 @@ class _Drive:
         self._running.append((point, begun))
         self.wait(but=AT_ONCE)
         if not self.points and self._has_placebo() and not plan.draws.stop:
-            (point.placebo,) = self._renewed([traffic], self._seed(1), group)
+            (point.placebo,) = futures.renewed([traffic], futures.seed(1), group)
         self.points.append(point)
+        futures.decisions += 1
         return True
 
     def _told(self, age_s: float, options: Sequence[RouteOption], numbers: dict[tuple[str, ...], int]) -> News:
@@ -241,90 +241,10 @@ class _Drive:
             branch=None if offered is None else numbers.get(offered.edges),
         )
 
-    def _replicates(self, begun: Sequence[RemoteTraffic | None], group: Sequence[str]) -> list[Drawn]:
-        """Further draws of keeping the route and of every branch, which are as after their choice; none if nobody
-        left the route, since all futures of a draw are then the same."""
-        drawn: list[Drawn] = []
-        fewest, most = self.job.plan.draws.start, self.job.plan.draws.stop
-        if not any(begun):
-            return drawn
-        while len(drawn) < fewest or (len(drawn) < most and not shows_signs(drawn)):
-            seed = self._seed(len(drawn) + 1)
-            stay, *others = self._renewed([self.traffic, *filter(None, begun)], seed, group)
-            driven = iter(others)
-            drawn.append(Drawn(seed, stay, [stay if branch is None else next(driven) for branch in begun]))
-        return drawn
-
-    def _diverted(
-        self, begun: RemoteTraffic, ways: tuple[Edges, Edges], seeds: Sequence[int], group: Sequence[str]
-    ) -> list[Diverted]:
-        """The futures in which others take the way that the ego has begun, in the scored draws."""
-        found: list[Diverted] = []
-        old, new = ways
-        for share in self.job.plan.together if old else ():
-            for draw, seed in enumerate(seeds):
-                with closing(begun.branch()) as copy:
-                    took, could = copy.divert(old, new, share, self._seed(0))
-                    if draw:
-                        copy.renew(self._simulation.fresh(), seed)
-                    self._begin(copy, group)
-                    found.append(Diverted(share, draw, _ended(copy), took, could))
-        return found
-
-    def _shut(
-        self, begun: RemoteTraffic, offered: int, own: Edges, seeds: Sequence[int], group: Sequence[str]
-    ) -> list[Shut]:
-        """The futures of the two ways with a road closed now, in the scored draws."""
-        edge = self.job.plan.close
-        if edge == AHEAD:  # in the middle of the part of its route that the other way does not have
-            edge = own[len(own) // 2] if len(own) > 2 else ""
-        found: list[Shut] = []
-        for draw, seed in enumerate(seeds if edge else ()):
-            with ExitStack() as stack:
-                copies = [stack.enter_context(closing(way.branch())) for way in (self.traffic, begun)]
-                for copy in copies:
-                    copy.shut(edge)
-                    if draw:
-                        copy.renew(self._simulation.fresh(), seed)
-                    self._begin(copy, group)
-                found.append(Shut(edge, draw, offered, *map(_ended, copies)))
-        return found
-
-    def _renewed(self, drives: Sequence[RemoteTraffic], seed: int, group: Sequence[str]) -> list[Future]:
-        """The futures of copies with fresh random numbers, driven at the same time."""
-        self.fresh = self._simulation.fresh()
-        with ExitStack() as stack:
-            copies = [stack.enter_context(closing(each.branch())) for each in drives]
-            for copy in copies:
-                copy.renew(self.fresh, seed)
-                self._begin(copy, group)
-            return [_ended(copy) for copy in copies]
-
-    def _seed(self, draw: int) -> int:
-        """The seed of a draw of the decision at hand."""
-        entropy = (*self.job.entropy, 4, len(self.points), draw)
-        return int(np.random.default_rng(entropy).integers(SEED_RANGE))
-
-    def _begin(self, branch: RemoteTraffic | None, group: Sequence[str]) -> None:
-        """Begins to drive it to its end."""
-        if branch is not None:
-            branch.begin_settling([group], self.job.plan.arrived, self.job.plan.limit_s)
-
     def _has_placebo(self) -> bool:
         """Drawn randomly, so that it does not depend on the results of other drives."""
         every = self.job.plan.placebo_every
         return every > 0 and self._draws.random() < 1 / every
-
-
-def _ended(traffic: RemoteTraffic) -> Future:
-    """The future of a drive that has begun to settle."""
-    settled = traffic.settled()
-    return Future(traffic.state, settled)
-
-
-def _close(branches: Iterable[RemoteTraffic | None]) -> None:
-    for branch in filter(None, branches):
-        branch.close()
 
 
 def _offered(news: dict[float, tuple[RouteOption, ...]]) -> tuple[str, ...]:
