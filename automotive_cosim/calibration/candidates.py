@@ -193,19 +193,19 @@ def passes(
             row_of[names[name], hour] = row
     places = _Places.of(routes)
     met = np.array(list(_met(routes, names)), dtype=int).reshape(-1, 3)
-    number, place, name = met.T
+    numbers, at, named = met.T
     starts_s = _starts_s(clock)[:, None]
     left_s = places.left_s(times, clock, starts_s + _first_s(routes, free_s))
-    late_h = (left_s[:, place] - starts_s) / HOUR_S
+    late_h = (left_s[:, at] - starts_s) / HOUR_S
     whole = np.floor(late_h).astype(int)
     rest = late_h - whole
     hours = np.arange(clock.hours)[:, None]
-    departures = hours * len(routes) + number
+    departures = hours * len(routes) + numbers
     found: list[tuple[Ints, Ints, Floats]] = []
 
     def put(hour: Ints, share: Floats, column: Ints) -> None:
         """Entries of those that pass in an hour that is wanted."""
-        row = row_of[name, np.minimum(hour, clock.hours)]
+        row = row_of[named, np.minimum(hour, clock.hours)]
         kept = (row >= 0) & (share > 0)
         found.append((row[kept], column[kept], share[kept]))
 
@@ -213,7 +213,7 @@ def passes(
     put(hours + whole + 1, rest, departures)
     for early in range(int(whole[0].max(initial=-1)) + 1):
         share = np.where(whole[0] > early, 1.0, np.where(whole[0] == early, rest[0], 0.0))
-        put(np.full_like(name, early), share, departures[0])
+        put(np.full_like(named, early), share, departures[0])
     rows, columns, shares = zip(*found, strict=True)
     return Passes(np.concatenate(rows), np.concatenate(columns), np.concatenate(shares))
 

@@ -143,7 +143,7 @@ class _Drive:
         """Waits for the branches of all decisions, or of all but so many."""
         while len(self._running) > but:
             point, branches = self._running[0]
-            point.branches = [branch and ended(branch) for branch in branches]
+            point.branches = [None if branch is None else ended(branch) for branch in branches]
             close_all(branches)
             self._running.popleft()
 

@@ -74,6 +74,7 @@ class Sensor:
         self._oncoming_id = ""
         self._follower_id = ""
         self._follower_min_gap_m = 0.0
+        self.route: Route
         self.refresh()
 
     def refresh(self) -> None:

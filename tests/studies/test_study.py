@@ -437,10 +437,10 @@ def test_an_agent_gains_what_its_taps_do_and_one_that_does_nothing_changes_nothi
 
 ANSWERS = {
     "chance": r"1 branches, each driven 2 to 2 times\n.*within a decision: \d",
-    "gain": r"always +\+33\.\d s ± nan, 1 decisions of 1 seeds",
-    "policy": r"always +1\.0 +33\.",
+    "gain": r"always +\+31\.\d s ± nan, 1 decisions of 1 seeds",
+    "policy": r"always +1\.0 +31\.",
     "ways": r"kept route: .*main.*\nbranch 0: .*out, back",
-    "who_pays": r"the ego gains: 2 futures, mean \+33",
+    "who_pays": r"the ego gains: 2 futures, mean \+31",
 }
 
 
@@ -458,7 +458,7 @@ def test_every_question_has_a_script_that_answers_it(
         runpy.run_path(str(path))
         assert re.search(ANSWERS[path.stem], capsys.readouterr().out), path.stem
     page = (tmp_path / "study/decisions.html").read_text(encoding="utf-8")
-    for word in ("The news expected", "kept route", "branch 0", "always", "+33", "<polyline"):
+    for word in ("The news expected", "kept route", "branch 0", "always", "+31", "<polyline"):
         assert word in page
 
 
