@@ -8,6 +8,7 @@ from collections.abc import Callable, Hashable, Iterator, Mapping
 from contextlib import closing, contextmanager
 from dataclasses import asdict, dataclass, field, fields, replace
 from fnmatch import fnmatchcase
+from functools import partial
 from itertools import product
 from pathlib import Path
 from typing import Annotated, Any
@@ -16,6 +17,7 @@ from annotated_types import Ge, Gt, Le, MinLen
 
 from automotive_cosim.agents import MODELLED, AgentSettings, make_agent
 from automotive_cosim.contracts import Json
+from automotive_cosim.drives.elsewhere import elsewhere
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.episode.specification import Clock, Conditions
 from automotive_cosim.errors import CosimError, UnknownNameError, UserError
@@ -25,8 +27,9 @@ from automotive_cosim.formats.toml import dotted
 from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.interface.feedback import FeedbackDetail
 from automotive_cosim.interface.observe import See
-from automotive_cosim.run.batch import Progress, run_jobs
+from automotive_cosim.run.batch import Progress, run_jobs, spent_before
 from automotive_cosim.run.executor import Executor, Runner
+from automotive_cosim.run.meter import Budget, MeterHandle
 from automotive_cosim.run.nursery import Nursery
 from automotive_cosim.run.outside import check_agent
 from automotive_cosim.run.plan import NO_MODEL, Limits, digest
@@ -49,6 +52,8 @@ class WatchPlan:
 
     drives: Annotated[tuple[str, ...], MinLen(1)]
     """Families of drives, patterns such as ``grid_*``, scenarios, seasons, or ``all``."""
+    scenarios: tuple[str, ...] = ()
+    """Scenarios, or paths of scenarios and networks, to drive on instead of each family's own."""
     agents: tuple[str, ...] = ()
     """Agents; ``package.module:Class`` is one of your own."""
     models: Annotated[tuple[str, ...], MinLen(1)] = ("rules",)
@@ -80,8 +85,11 @@ class WatchPlan:
         """Checks every name before anything runs.
 
         Raises:
-            UserError: a family, agent or model does not exist, or an agent needs a person.
+            UserError: a family, scenario, agent or model does not exist, one cannot drive on and on there, or an
+                agent needs a person.
         """
+        for scenario in self.scenarios:
+            elsewhere(FAMILIES[families_named(self.drives)[0]].draw(0), scenario)
         for agent, model, see in {(job.setup.agent, job.model, job.setup.see) for job in self.jobs()}:
             if agent == "human":
                 raise UserError("agent 'human' needs a person, and a drive nobody can watch at a terminal")
@@ -99,8 +107,9 @@ class WatchPlan:
         limits = replace(DRIVE_LIMITS, wall_s=self.wall_s)
         found = {
             job.id: job
-            for family, agent, model, seed, geo, latency_s, repeat, see, feedback in product(
+            for family, scenario, agent, model, seed, geo, latency_s, repeat, see, feedback in product(
                 families_named(self.drives),
+                self.scenarios or ("",),
                 self.agents,
                 self.models,
                 self.seeds,
@@ -123,6 +132,7 @@ class WatchPlan:
                         repeat,
                         See(see),
                         FeedbackDetail(feedback),
+                        scenario,
                     ),
                     limits,
                 )
@@ -146,7 +156,7 @@ class WatchJob:
     @property
     def simulation(self) -> tuple[str, int]:
         """The warm simulation that it starts from: scenario and seed."""
-        return FAMILIES[self.setup.family].scenario, self.setup.seed
+        return self.setup.scenario or FAMILIES[self.setup.family].scenario, self.setup.seed
 
     @property
     def situation(self) -> Hashable:
@@ -169,6 +179,7 @@ class WatchJob:
         setup = self.setup
         exactly = (
             setup.family, setup.agent, setup.model, setup.geo, f"s{setup.seed}", f"r{setup.repeat}",
+            *([setup.scenario] if setup.scenario else []),
             *([f"{setup.clock}_clock"] if setup.clock != Clock.FIXED else []),
             *([f"latency{setup.latency_s:g}"] if setup.latency_s else []),
             *([f"see_{setup.see}"] if setup.see is not See.BOTH else []),
@@ -217,6 +228,7 @@ def run_watch_plan(
     *,
     executor: Executor = Processes(),  # noqa: B008, frozen
     retries: int = 2,
+    budget: Budget = Budget(),  # noqa: B008, frozen
     tell: Callable[[Progress[WatchRow]], None] = lambda progress: None,
 ) -> Progress[WatchRow]:
     """Runs the remaining drives of a plan and retries those that ended in an error.
@@ -226,6 +238,7 @@ def run_watch_plan(
         folder: results folder, new or to be resumed.
         executor: where to run it; the results do not depend on it.
         retries: how often a drive is retried after an infrastructure error.
+        budget: what it may spend on its models, with all earlier starts.
         tell: called at the start and after every drive.
 
     Raises:
@@ -233,18 +246,26 @@ def run_watch_plan(
     """
     plan.check()
     jobs = plan.jobs()
-    with opened(folder, plan.as_json(), WatchRow, parts=("traces", TIMELINES), planned=len(jobs)) as store:
-        return run_jobs(jobs, store, watches, failed_watch, executor=executor, retries=retries, tell=tell)
+    with (
+        opened(folder, plan.as_json(), WatchRow, parts=("traces", TIMELINES), planned=len(jobs)) as store,
+        executor.metered(budget, spent_before(store)) as meter,
+    ):
+        opener, limit = partial(watches, meter), meter if budget.is_limited else None
+        return run_jobs(
+            jobs, store, opener, failed_watch, executor=executor, retries=retries, limit=limit, tell=tell
+        )
 
 
 @contextmanager
-def watches() -> Iterator[Runner[WatchJob, WatchRow]]:
-    """Makes the runner of the drives in a worker."""
+def watches(meter: MeterHandle | None = None) -> Iterator[Runner[WatchJob, WatchRow]]:
+    """Makes the runner of the drives in a worker; ``meter`` is what all workers share."""
     with closing(Simulations(count_limit=WARM)) as simulations, closing(Nursery()) as nursery:
-        yield lambda job, folder: run_watch_job(job, folder, simulations, nursery)
+        yield lambda job, folder: run_watch_job(job, folder, simulations, nursery, meter)
 
 
-def run_watch_job(job: WatchJob, folder: Path, simulations: Simulations, nursery: Nursery) -> WatchRow:
+def run_watch_job(
+    job: WatchJob, folder: Path, simulations: Simulations, nursery: Nursery, meter: MeterHandle | None = None
+) -> WatchRow:
     """Runs one drive, writes its steps and timeline, and returns its row; an error becomes a row too.
 
     Raises:
@@ -253,7 +274,7 @@ def run_watch_job(job: WatchJob, folder: Path, simulations: Simulations, nursery
     setup = job.setup
     try:
         settings = AgentSettings(setup.geo, seed=setup.seed, see=setup.see)
-        with agent_for(setup.agent, job.model, settings, job.limits, nursery) as agent:
+        with agent_for(setup.agent, job.model, settings, job.limits, nursery, meter) as agent:
             record = run_watch(job.id, setup, agent, simulations=simulations)
     except CosimError as error:
         return failed_watch(job, type(error).__name__, str(error))
