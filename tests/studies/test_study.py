@@ -439,7 +439,7 @@ ANSWERS = {
     "chance": r"1 branches, each driven 2 to 2 times\n.*within a decision: \d",
     "gain": r"always +\+31\.\d s ± nan, 1 decisions of 1 seeds",
     "policy": r"always +1\.0 +31\.",
-    "ways": r"kept route: .*main.*\nbranch 0: .*out, back",
+    "ways": r"branch 0: .*out, back.*\nkept route: .*main",
     "who_pays": r"the ego gains: 2 futures, mean \+31",
 }
 
