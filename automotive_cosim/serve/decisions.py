@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+import csv
+import gzip
 from functools import lru_cache
 from pathlib import Path
 
 from automotive_cosim.contracts import Json
+from automotive_cosim.errors import UserError
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.scenery.opening import network_of
 from automotive_cosim.serve.shelf import NotHereError
 from automotive_cosim.studies.results import Study, all_decisions, choices_at, read_study
 from automotive_cosim.studies.rows import Branch, DecisionPoint
+from automotive_cosim.studies.tracks import TRACKS
 from automotive_cosim.traffic.network import Network
 
 AROUND_M = 400.0
 """Roads that are drawn beyond the ways."""
+EVERY_S = 1.0
+"""Between two places of a car."""
 
 
 def decisions(folder: Path) -> Json:
@@ -56,7 +62,32 @@ def decision_map(folder: Path, name: str) -> Json:
         "box": [round(each) for each in (left, bottom, right, top)],
         "roads": [_flat(shape) for shape in near],
         "ways": [_flat(way) for way in ways],
+        "tracks": _tracks(folder, point, len(ways)),
     }
+
+
+def _tracks(folder: Path, point: DecisionPoint, count: int) -> list[list[list[float]]]:
+    """Where the car is in each future, as ``[seconds since the decision, x, y]`` about once a second; empty lists
+    without ``study --trajectories``.
+
+    Raises:
+        UserError: what is stored cannot be read.
+    """
+    tracks: list[list[list[float]]] = [[] for _ in range(count)]
+    path = folder / TRACKS / f"{point.drive.id}.csv.gz"
+    if not path.is_file():
+        return tracks
+    try:
+        with gzip.open(path, "rt", encoding="utf-8", newline="") as file:
+            for row in csv.DictReader(file):
+                if row["id"] == point.id and row["draw"] == "0" and row["is_placebo"] == "False":
+                    track = tracks[0 if row["branch"] == "" else int(row["branch"]) + 1]
+                    at_s = round(float(row["time_s"]) - point.decision.at_s, 1)
+                    if not track or at_s >= track[-1][0] + EVERY_S:
+                        track.append([at_s, round(float(row["x_m"]), 1), round(float(row["y_m"]), 1)])
+    except (OSError, EOFError, LookupError, ValueError) as error:
+        raise UserError(f"cannot read {path}: {error}") from error
+    return tracks
 
 
 def _decision(study: Study, point: DecisionPoint) -> Json:

@@ -189,6 +189,12 @@ def write_study(folder: Path) -> Path:
     folder.mkdir(parents=True)
     (folder / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
     (folder / "episodes.jsonl").write_text(json.dumps(as_json(row)) + "\n", encoding="utf-8")
+    track = ["id,draw,branch,is_placebo,time_s,x_m,y_m,speed_mps,edge"]
+    for branch_, seconds in (("", 40), ("0", 10)):
+        track += [f"{job.id}-1,0,{branch_},False,{950 + s},{100.0 + s},{200.0},1,a" for s in range(seconds + 1)]
+    (folder / "trajectories").mkdir()
+    text = gzip.compress("\n".join([*track, ""]).encode())
+    (folder / "trajectories" / f"{job.id}.csv.gz").write_bytes(text)
     return folder
 
 

@@ -402,6 +402,9 @@ def test_the_ways_of_a_decision_are_on_one_road(
     expect(page.get_by_role("heading", level=1)).to_have_text("avenue at 950 s")
     expect(page.locator(".way")).to_have_count(2)
     assert page.locator(".street").count() > 20
+    page.get_by_label("Seconds since the decision").fill("12")
+    expect(page.get_by_role("status")).to_have_text("+12 s · way 1: there after 10 s")
+    expect(page.locator(".car")).to_have_count(2)
     expect(page.locator("tbody tr").nth(1)).to_contain_text("way 1+30 s")
     expect(page.locator("tbody tr").nth(1)).to_contain_text("−4 s1always")
     page.go_back()

@@ -45,17 +45,51 @@ export async function decisionPage(query, id, name) {
   const map = found.has_ways ? await ask(`/api/studies/${id}/${encodeURIComponent(name)}`) : null;
   const rows = [{ number: null, gain_s: 0, stops: 0, distance_m: 0, co2_g: 0, others_s: 0, changed: 0 }, ...found.futures];
   const chosen = (number) => [...new Set(found.choices.filter(({ branch }) => branch === number).map(({ policy }) => policy))].join(", ");
+  const picture = map && drawn(map);
+  const moving = picture && map.tracks.some((track) => track.length) ? cursor(picture, map) : null;
   return {
     title: `${found.trip} at ${Math.round(found.at_s)} s`,
     content: [h("h1", {}, `${found.trip} at ${Math.round(found.at_s)} s`),
       h("p", { class: "muted" }, h("a", { href: `#/decisions/${id}` }, study.name), ` · seed ${found.seed} · ${Math.round(found.delay_s)} s of delay ahead, ${Math.round(found.eta_s)} s to the destination · ${counted(found.draws, "draw")}${found.complies ? "" : " · the driver would not comply"}`),
       found.excluded && h("p", { class: "warning" }, `Excluded: ${found.excluded}. ${found.why}`),
-      map ? h("figure", { class: "card ways" }, drawn(map), h("figcaption", {}, map.ways.map((_, index) => h("span", {}, h("i", { class: `key way-${index}` }), WAYS[index])))) : h("p", { class: "card" }, "This study is older than the record of the ways."),
+      map ? h("figure", { class: "card ways" }, picture, moving?.element, h("figcaption", {}, map.ways.map((_, index) => h("span", {}, h("i", { class: `key way-${index}` }), WAYS[index])))) : h("p", { class: "card" }, "This study is older than the record of the ways."),
       h("div", { class: "card scroll", tabindex: 0, role: "region", "aria-label": "Futures" }, h("table", {},
         h("thead", {}, h("tr", {}, ["Future", "Saves", "Stops saved", "Distance saved", "CO₂ saved", "All others save", "Others who notice", "Chosen by"].map((each) => h("th", { scope: "col" }, each)))),
         h("tbody", {}, rows.map((each) => h("tr", {}, h("td", {}, wayOf(each.number)), h("td", {}, signed(each.gain_s, "s")), h("td", {}, signed(each.stops, "")), h("td", {}, signed(each.distance_m, "m")), h("td", {}, signed(each.co2_g, "g")), h("td", {}, signed(each.others_s, "s")), h("td", {}, String(each.changed)), h("td", {}, chosen(each.number))))))),
     ].filter(Boolean),
+    leave: () => moving?.stop(),
   };
+}
+
+// The cars of all futures at one instant, with a slider and a button that lets time run.
+function cursor(picture, { box: [left, , , top], tracks }) {
+  const end = Math.max(...tracks.map((track) => track.at(-1)?.[0] ?? 0));
+  const size = picture.viewBox.baseVal.width / 90;
+  const cars = tracks.map((_, index) => svg("circle", { r: size, class: `car way-${index}` }));
+  picture.append(...cars);
+  const slider = h("input", { type: "range", min: 0, max: end, step: 1, value: 0, "aria-label": "Seconds since the decision" });
+  const told = h("p", { class: "muted", role: "status" });
+  const run = h("button", { type: "button", class: "main" }, "Play");
+  let timer = 0;
+  const show = () => {
+    const at = Number(slider.value);
+    tracks.forEach((track, index) => {
+      const place = track.findLast(([when]) => when <= at + 0.01);
+      cars[index].style.visibility = place ? "visible" : "hidden";
+      if (place) { cars[index].setAttribute("cx", place[1] - left); cars[index].setAttribute("cy", top - place[2]); }
+    });
+    told.textContent = [`+${at} s`, ...tracks.flatMap((track, index) => (track.length && track.at(-1)[0] <= at ? [`${WAYS[index]}: there after ${Math.round(track.at(-1)[0])} s`] : []))].join(" · ");
+  };
+  const stop = () => { clearInterval(timer); timer = 0; run.textContent = "Play"; };
+  run.addEventListener("click", () => {
+    if (timer) return stop();
+    if (Number(slider.value) >= end) slider.value = 0;
+    run.textContent = "Pause";
+    timer = setInterval(() => { slider.value = Math.min(end, Number(slider.value) + 1); show(); if (Number(slider.value) >= end) stop(); }, 100);
+  });
+  slider.addEventListener("input", show);
+  show();
+  return { element: h("div", { class: "transport" }, run, h("div", { class: "time-line" }, slider), told), stop };
 }
 
 // The roads around, each way in its own colour, and a dot where the drive is when it decides.
