@@ -275,6 +275,8 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
         table.add_row(
             "left out", f"{counted(len(left_out), 'task')} that cannot run there; --everywhere includes them"
         )
+    if beyond := plan.beyond_the_list():
+        table.add_row("not as tree", f"{counted(len(beyond), 'task')} that need the picture")
     table.add_row("seeds", ", ".join(map(str, plan.seeds)))
     table.add_row("geo controls", ", ".join(plan.geo))
     table.add_row("screen", f"as {', '.join(plan.see)}; feedback {', '.join(plan.feedback)}")

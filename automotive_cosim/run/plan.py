@@ -172,7 +172,15 @@ class Plan:
         placed = {task.id for task, _ in self._placed()}
         return tuple(task_id for task_id in choose(self.tasks, self.suite) if task_id not in placed)
 
+    def beyond_the_list(self) -> tuple[str, ...]:
+        """Ids of the chosen tasks that are not run with ``see`` tree: something needed is in the picture alone."""
+        if See.TREE not in self.see:
+            return ()
+        return tuple(task_id for task_id in choose(self.tasks, self.suite) if CATALOGUE[task_id].needs_picture)
+
     def _nowhere(self) -> str:
+        if self._placed() and all(task.needs_picture for task, _ in self._placed()):
+            return "these tasks need the picture, which see = tree withholds; give picture or both"
         if self._placed():
             held_out = " in held-out phrasings, which are all test" if self.held_out else ""
             return f"no episode of these tasks and seeds is of the split {self.split!r}{held_out}; give other seeds"
@@ -205,6 +213,8 @@ class Plan:
             self.see,
             self.feedback,
         ):
+            if task.needs_picture and See(see) is See.TREE:
+                continue
             for half in task.halves:
                 is_own = scenario == task.half(half).start.scenario  # which a half may move to another place
                 setup = EpisodeSetup(

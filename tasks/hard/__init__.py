@@ -7,11 +7,12 @@ from automotive_cosim.tasks.hard import (
     errands,
     interrupted,
     over_time,
+    pictured,
     prepared,
     several,
     side_effects,
 )
 
-_MODULES = (carried, prepared, interrupted, side_effects, over_time, several, dialogue, errands, aboard)
+_MODULES = (carried, prepared, interrupted, side_effects, over_time, several, dialogue, errands, aboard, pictured)
 TASKS = tuple(task for module in _MODULES for task in module.TASKS)
 """All of them."""
