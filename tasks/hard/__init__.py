@@ -3,6 +3,7 @@
 from automotive_cosim.tasks.hard import (
     aboard,
     carried,
+    decided,
     dialogue,
     errands,
     interrupted,
@@ -13,6 +14,18 @@ from automotive_cosim.tasks.hard import (
     side_effects,
 )
 
-_MODULES = (carried, prepared, interrupted, side_effects, over_time, several, dialogue, errands, aboard, pictured)
+_MODULES = (
+    carried,
+    prepared,
+    interrupted,
+    side_effects,
+    over_time,
+    several,
+    dialogue,
+    errands,
+    aboard,
+    pictured,
+    decided,
+)
 TASKS = tuple(task for module in _MODULES for task in module.TASKS)
 """All of them."""
