@@ -14,8 +14,8 @@ from automotive_cosim.cockpit.widgets import Button, Glyph, Label, Look, Picture
 
 PHOTO = "thread.photo"
 """Id of the photo that came with a message."""
-PHOTO_HIGH = 313
-"""It keeps its shape at the thread's width."""
+PHOTO_WIDE, PHOTO_HIGH = 460, 288
+"""As wide for its height as photos are; above it, one line of the thread has room."""
 
 
 def contact(state: State) -> tuple[Widget, ...]:
@@ -132,7 +132,11 @@ def thread(state: State) -> tuple[Widget, ...]:
                 ),
             )
         ),
-        *((Picture(rect=seen, key=PHOTO, description="Photo", photo=photo),) if photo else ()),
+        *(
+            (Picture(rect=seen.middle(PHOTO_WIDE, PHOTO_HIGH), key=PHOTO, description="Photo", photo=photo),)
+            if photo
+            else ()
+        ),
         Button(
             rect=read,
             key="thread.read",
