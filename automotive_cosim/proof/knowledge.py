@@ -13,6 +13,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
+from functools import lru_cache
 from typing import Any
 
 from automotive_cosim.cockpit.photos import Photo
@@ -272,6 +273,7 @@ def _open_in(value: Any) -> Iterator[Any]:
             yield from _open_in(getattr(value, field.name))
 
 
+@lru_cache(maxsize=4096)
 def normal(text: str) -> str:
     """A text in small letters and with single spaces; hours up to 24, numbers in figures and with a point."""
     small = " ".join(text.casefold().split())

@@ -101,18 +101,18 @@ WHOSE_DAY = hard(
         " refuse the other with 'No'.",
     ),
     done(
-        _day("2026-05-12"),
+        _day("2026-11-18"),
         _plays("USB", param("percent", YUSUFS_PERCENT), BEA),
         YUSUFS_MUSIC,
         slips=(BEAS_MUSIC, _music("usb", param("percent"), BEA)),
     ),
     done(
-        _day("2026-05-13"),
+        _day("2026-11-17"),
         _plays("DAB", param("percent"), YUSUF),
         BEAS_MUSIC,
         slips=(YUSUFS_MUSIC,),
     ),
-    "date: the twelfth of May, or the thirteenth",
+    "date: the eighteenth of November, or the seventeenth",
     parameters={"percent": BEAS_PERCENT},
     tags=frozenset({"two_modules", "conflict"}),
 )
@@ -285,15 +285,15 @@ def _at_the_gate(date: str, codes: Check, moves: Moves, wrong: Moves) -> Half:
     start = with_papers(
         replace(PARKED, start=f"{date}T14:05:00"),
         memos=(
-            "Gate till April: dial 7700 {code}",
-            param("code", {old: f"Gate from May on: dial 7700 {new}" for old, new in NEW_CODES.items()}),
+            "Gate till November: dial 7700 {code}",
+            param("code", {old: f"Gate from December on: dial 7700 {new}" for old, new in NEW_CODES.items()}),
         ),
     )
     return done(start, codes, moves, slips=(wrong,), may_write=frozenset())
 
 
-GATE_FROM_MAY = hard(
-    "hard_gate_from_may",
+GATE_FROM_DECEMBER = hard(
+    "hard_gate_from_december",
     Module.COMMS,
     (
         "Open the gate for me: ring its number, it's in my memos, the one that's valid now.",
@@ -302,13 +302,13 @@ GATE_FROM_MAY = hard(
         "Phone the gate, please; mind that its number changes, I've noted from when.",
     ),
     _at_the_gate(
-        "2026-05-12",
+        "2026-12-02",
         Entered("calls", param("code", {old: f"7700{new}" for old, new in NEW_CODES.items()})),
         _gate(True),
         _gate(False),
     ),
-    _at_the_gate("2026-04-28", Entered("calls", "7700{code}"), _gate(False), _gate(True)),
-    "date: the twelfth of May, or the end of April",
+    _at_the_gate("2026-11-18", Entered("calls", "7700{code}"), _gate(False), _gate(True)),
+    "date: the second of December, or the middle of November",
     parameters={"code": OLD_CODES},
 )
 
@@ -551,7 +551,7 @@ TASKS = (
     WHOSE_DAY,
     HOW_THEY_AGREE,
     LIGHTER_CHILD,
-    GATE_FROM_MAY,
+    GATE_FROM_DECEMBER,
     DEVICE_FROM_OSKAR,
     MIXED_UP,
     NOT_THAT_MEETING,

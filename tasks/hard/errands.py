@@ -213,8 +213,7 @@ OFF_OR_LATER = hard(
         "Priya has written about our coffee. Bring my calendar into line with that and thank her.",
         "Something's up with Priya's coffee; do to my diary what she writes, then send 'Thank you'.",
         "Update the coffee date as Priya's message says, be it gone or moved, and reply Thank you.",
-        "See what Priya has to say about this afternoon and put the calendar right by it; she gets a"
-        " thank you.",
+        "See what Priya has to say about this afternoon and put the calendar right by it; she gets a thank you.",
     ),
     done(
         with_letter(PARKED, PRIYA, "Would {time} have been better?", "I'm ill, so no coffee today", agenda=TODAY),

@@ -295,7 +295,7 @@ BEAS_THERMOSTAT = pictured(
 )
 
 PSI = {1: 32, 2: 34, 3: 36, 4: 38, 5: 40}
-BAR = {1: 2.2, 2: 2.3, 3: 2.5, 4: 2.7, 5: 2.9}
+BAR = {1: 2.8, 2: 2.7, 3: 2.2, 4: 2.3, 5: 2.4}
 BAR_IN_PSI = {turn: round(bar * 14.504) for turn, bar in BAR.items()}
 
 
