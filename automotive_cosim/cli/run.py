@@ -28,6 +28,7 @@ HEADLINE = (
     "geo",
     "see",
     "feedback",
+    "language",
     "tokens_in",
     "tokens_out",
     "cost_usd",
@@ -41,7 +42,8 @@ def run(
         str, typer.Option(help="Agent; `agents` lists them; package.module:Class is one of your own.")
     ] = "asurada",
     model: Annotated[
-        str, typer.Option(help="Model for the agent: rules, replay/FOLDER, openai/NAME or PROVIDER/NAME.")
+        str,
+        typer.Option(help="Model for the agent: rules, replay/FOLDER, replay/NAME, openai/NAME, PROVIDER/NAME."),
     ] = "rules",
     tasks_from: TasksFrom = None,
     mode: NoMode = None,
@@ -57,6 +59,9 @@ def run(
             "(also what became of the car)."
         ),
     ] = "quiet",
+    language: Annotated[
+        str, typer.Option(help="What the driver speaks and the car shows: en, fr, de or ja.")
+    ] = "en",
     without: Annotated[
         str,
         typer.Option(
@@ -139,7 +144,7 @@ def run(
     from automotive_cosim.agents.settings import geo_input, parts
     from automotive_cosim.cli.console import Console
     from automotive_cosim.cli.live import Live, Notes
-    from automotive_cosim.episode.specification import clock_of, feedback_of, see_of
+    from automotive_cosim.episode.specification import clock_of, feedback_of, language_of, see_of
     from automotive_cosim.report.film import Film
     from automotive_cosim.report.page import write_page
     from automotive_cosim.run.episode import EpisodeSetup, run_episode
@@ -170,6 +175,7 @@ def run(
         latency_s=latency,
         see=sees,
         feedback=told,
+        language=language_of(language),
     )
     setup.conditions(frozenset(player.channels))
     folder = out or default_folder(setup)

@@ -9,6 +9,7 @@ from typing import Annotated, TypeVar
 import numpy as np
 from annotated_types import Ge, Gt
 
+from automotive_cosim.cockpit.language import Language
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.annotations import Latitude, Longitude, OneOf
 from automotive_cosim.formats.checked import checked
@@ -112,6 +113,8 @@ class EpisodeSpec:
     """How the agent sees the screen."""
     feedback: Annotated[FeedbackDetail, OneOf(FeedbackDetail, "kind of feedback")] = FeedbackDetail.QUIET
     """What it is told of its last action."""
+    language: Annotated[Language, OneOf(Language, "language")] = Language.ENGLISH
+    """What the driver speaks, and the car shows."""
 
     def check(self) -> None:
         """Tries the values; whether there is such a task or scenario is found out where those are looked up.
@@ -163,6 +166,15 @@ def feedback_of(name: str) -> FeedbackDetail:
         UnknownNameError: there is none.
     """
     return _named(FeedbackDetail, "kind of feedback", name)
+
+
+def language_of(name: str) -> Language:
+    """The language by its code.
+
+    Raises:
+        UnknownNameError: there is none.
+    """
+    return _named(Language, "language", name)
 
 
 @dataclass(frozen=True, slots=True)

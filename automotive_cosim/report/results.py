@@ -7,14 +7,16 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from automotive_cosim.cockpit.language import Language
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.episode.specification import Clock
-from automotive_cosim.errors import SetupError
+from automotive_cosim.errors import SetupError, UserError
 from automotive_cosim.interface.feedback import FeedbackDetail
 from automotive_cosim.interface.observe import See
 from automotive_cosim.run.coverage import Coverage, coverage
 from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.plan import languages_in_words, make_plan
 from automotive_cosim.run.row import columns
 from automotive_cosim.run.store import read_evaluation, read_rows
 from automotive_cosim.run.versions import ran_with
@@ -51,6 +53,7 @@ class Contestant:
     latency_s: float = 0.0
     see: str = str(See.BOTH)
     feedback: str = str(FeedbackDetail.QUIET)
+    language: str = str(Language.ENGLISH)
 
     @property
     def base_model(self) -> str:
@@ -70,7 +73,7 @@ class Contestant:
         geo = "" if self.geo == "full" else f"geo {self.geo}"
         clock = "" if self.clock == Clock.FIXED else f"{self.clock}'s clock"
         latency = f"latency {self.latency_s:g} s" if self.latency_s else ""
-        parts = (self.method, model, geo, *seen_and_told(self.see, self.feedback), clock, latency)
+        parts = (self.method, model, geo, *seen_and_told(self.see, self.feedback), *spoken(self), clock, latency)
         return ", ".join(part for part in parts if part)
 
 
@@ -87,6 +90,17 @@ class Results:
     def version(self) -> str:
         """The version of the suite that ran it."""
         return ran_with(self.manifest)
+
+    @property
+    def unspoken(self) -> str:
+        """How many of the tasks were left out for want of phrasings, as a sentence; empty if none was."""
+        try:
+            plan = make_plan(self.manifest["plan"])
+            missing = len(plan.unspoken())
+        except UserError:  # the catalogue has changed since
+            return ""
+        were = f"{counted(missing, 'task')} {'was' if missing == 1 else 'were'}"
+        return f"{were} left out: no phrasings in {languages_in_words(plan.language)}." if missing else ""
 
     @property
     def contestants(self) -> tuple[Contestant, ...]:
@@ -120,13 +134,18 @@ class Results:
 
 def contestant(row: EpisodeRow) -> Contestant:
     """The contestant that an episode belongs to."""
-    return Contestant(row.agent, row.model, row.geo, row.clock, row.latency_s, row.see, row.feedback)
+    return Contestant(row.agent, row.model, row.geo, row.clock, row.latency_s, row.see, row.feedback, row.language)
 
 
 def seen_and_told(see: str, feedback: str) -> tuple[str, ...]:
     """How the screen is seen and an action's feedback told, in words, as far as it is not the default."""
     sight = () if see == See.BOTH else (f"{see} alone",)
     return sight if feedback == FeedbackDetail.QUIET else (*sight, f"{feedback} feedback")
+
+
+def spoken(each: Contestant) -> tuple[str, ...]:
+    """The driver's language, in words, unless it is English."""
+    return () if each.language == Language.ENGLISH else (f"in {Language(each.language).words}",)
 
 
 def standings(results: Results) -> list[str]:

@@ -16,6 +16,7 @@ from annotated_types import Ge, Gt, Le, MinLen
 
 from automotive_cosim import scenarios
 from automotive_cosim.agents import MODELLED, AgentSettings, make_agent
+from automotive_cosim.cockpit.language import Language
 from automotive_cosim.contracts import Json
 from automotive_cosim.episode.specification import Clock, Conditions
 from automotive_cosim.errors import SetupError, UnknownNameError, UserError
@@ -37,6 +38,8 @@ from automotive_cosim.tasks import CATALOGUE
 PRESETS: Mapping[str, Json] = {"2026": {"limits": {"steps": 10}}}
 """Values of a plan by the name of who evaluates so: the authors' newer edition allows ten steps."""
 NO_MODEL = "none"
+HUMAN = "human"
+"""The agent that is a person; in the place of the model stands a code name."""
 MOST_RUNS = 10_000_000
 """At a second each, four months."""
 ALL_SUITES, BOTH = "all", "both"
@@ -101,6 +104,9 @@ class Plan:
         "quiet",
     )
     """What an agent is told of its last action: ``quiet`` or ``verbose``."""
+    language: Annotated[tuple[Annotated[str, OneOf(tuple(Language), "language")], ...], MinLen(1)] = ("en",)
+    """What the driver speaks and the car shows: ``en``, ``fr``, ``de`` or ``ja``. Tasks that he has no words for in
+    any of them are left out of all."""
     repeats: Annotated[int, Ge(1), Le(1000)] = 1
     """Runs of each episode, for models that do not answer the same twice."""
     held_out: bool = False
@@ -134,8 +140,10 @@ class Plan:
         if not self.jobs():
             raise UserError(f"the plan has nothing to run: {self._nowhere()}")
         for agent, model, see in {(job.setup.agent, job.model, job.setup.see) for job in self.jobs()}:
-            if agent == "human":
-                raise UserError("agent 'human' needs a person; use `automotive-cosim run --agent human`")
+            if agent == HUMAN:
+                raise UserError(
+                    "agent 'human' needs a person; use `automotive-cosim serve --play`, or `run --agent human`"
+                )
             if ":" in agent:
                 check_agent(agent)
             else:
@@ -158,7 +166,7 @@ class Plan:
         """
         lists = (
             *(self.agents, self.models, self._placed(), self.seeds),
-            *(self.geo, self.latency, self.see, self.feedback),
+            *(self.geo, self.latency, self.see, self.feedback, self.language),
         )
         if (most := prod(map(len, lists)) * self.repeats) > MOST_RUNS:
             raise UserError(
@@ -170,7 +178,12 @@ class Plan:
     def left_out(self) -> tuple[str, ...]:
         """Ids of the chosen tasks that cannot run in any of the scenarios."""
         placed = {task.id for task, _ in self._placed()}
-        return tuple(task_id for task_id in choose(self.tasks, self.suite) if task_id not in placed)
+        return tuple(task.id for task in self._spoken() if task.id not in placed)
+
+    def unspoken(self) -> tuple[str, ...]:
+        """Ids of the chosen tasks that have no phrasings in one of the languages."""
+        spoken = {task.id for task in self._spoken()}
+        return tuple(task_id for task_id in choose(self.tasks, self.suite) if task_id not in spoken)
 
     def beyond_the_list(self) -> tuple[str, ...]:
         """Ids of the chosen tasks that are not run with ``see`` tree: something needed is in the picture alone."""
@@ -181,6 +194,11 @@ class Plan:
     def _nowhere(self) -> str:
         if self._placed() and all(task.needs_picture for task, _ in self._placed()):
             return "these tasks need the picture, which see = tree withholds; give picture or both"
+        if not self._spoken():
+            return (
+                f"none of the tasks has phrasings in {languages_in_words(self.language)}; the hard suite has "
+                "(--suite hard)"
+            )
         if self._placed():
             held_out = " in held-out phrasings, which are all test" if self.held_out else ""
             return f"no episode of these tasks and seeds is of the split {self.split!r}{held_out}; give other seeds"
@@ -191,7 +209,7 @@ class Plan:
 
     def _placed(self) -> list[tuple[Task, str | None]]:
         """Each task with each scenario that it runs in; None for its own."""
-        chosen = [CATALOGUE[task_id] for task_id in choose(self.tasks, self.suite)]
+        chosen = self._spoken()
         if not self.scenarios:
             return [(task, None) for task in chosen]
         shipped = scenarios.shipped()
@@ -201,8 +219,13 @@ class Plan:
             if self.everywhere or name not in shipped or task.runs_whole_in(name)
         ]
 
+    def _spoken(self) -> list[Task]:
+        """The chosen tasks that the driver has words for in every language."""
+        chosen = [CATALOGUE[task_id] for task_id in choose(self.tasks, self.suite)]
+        return [task for task in chosen if set(self.language) <= set(task.languages)]
+
     def _each(self) -> Iterator[EpisodeJob]:
-        for agent, model, (task, scenario), seed, geo, latency_s, repeat, see, feedback in product(
+        for agent, model, (task, scenario), seed, geo, latency_s, repeat, see, feedback, language in product(
             self.agents,
             self.models,
             self._placed(),
@@ -212,6 +235,7 @@ class Plan:
             range(self.repeats),
             self.see,
             self.feedback,
+            self.language,
         ):
             if task.needs_picture and See(see) is See.TREE:
                 continue
@@ -222,7 +246,7 @@ class Plan:
                     half,
                     None if is_own else scenario,
                     agent=agent,
-                    model=model if agent in MODELLED else NO_MODEL,
+                    model=model if agent in MODELLED or agent == HUMAN else NO_MODEL,
                     seed=seed,
                     max_steps=self.limits.hard_steps if task.suite is Suite.HARD else self.limits.steps,
                     max_sim_s=self.limits.sim_s,
@@ -233,6 +257,7 @@ class Plan:
                     latency_s=latency_s,
                     see=See(see),
                     feedback=FeedbackDetail(feedback),
+                    language=Language(language),
                 )
                 yield EpisodeJob(setup, repeat, self.limits)
 
@@ -316,9 +341,16 @@ class EpisodeJob:
             *([f"latency{setup.latency_s:g}"] if setup.latency_s else []),
             *([f"see_{setup.see}"] if setup.see is not See.BOTH else []),
             *([str(setup.feedback)] if setup.feedback is not FeedbackDetail.QUIET else []),
+            *([str(setup.language)] if setup.language is not Language.ENGLISH else []),
         )  # fmt: skip
         words = "-".join(re.sub(r"[^A-Za-z0-9_.]+", "_", Path(word).name) for word in exactly)
         return f"{words[:150]}-{digest(exactly)[:8]}"
+
+
+def languages_in_words(codes: Iterable[str]) -> str:
+    """For example ``French and German``; English, which every task has, is not named beside others."""
+    *others, last = [Language(code).words for code in codes if code != Language.ENGLISH] or ["English"]
+    return f"{', '.join(others)} and {last}" if others else last
 
 
 def digest(value: object) -> str:

@@ -13,7 +13,8 @@ import pytest
 from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.cockpit import actions
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.signals import ACTUATORS, difference, named
+from automotive_cosim.cockpit.language import Language
+from automotive_cosim.cockpit.signals import ACTUATORS, HMI, difference, named
 from automotive_cosim.contracts import ActionType, Answer, Feedback, FeedbackCode, Observation, RoadNetwork
 from automotive_cosim.episode.counterfactual import counterfactual
 from automotive_cosim.episode.situation import PARKED
@@ -26,7 +27,12 @@ from automotive_cosim.tasks import CATALOGUE
 from ..cockpit.conftest import outside, town
 
 HALVES = [(task, name) for task in CATALOGUE.values() for name in task.halves]
-TRIED = [pytest.param(task, half, id=f"{task.id}-{half}") for task, half in HALVES]
+SPOKEN = [
+    pytest.param(task, half, language, id=f"{task.id}-{half}-{language}")
+    for number, (task, half) in enumerate((task, half) for task, half in HALVES if task.spoken)
+    for language in [sorted(task.spoken)[number % len(task.spoken)]]
+]
+"""Each half in one of the languages, in turn."""
 FROM_S = 900.0
 SECONDS_LIMIT = 120
 
@@ -68,18 +74,21 @@ def _hand_over_s(start: Start) -> int:
     return 2 + int(min(rings) if rings else max((arrival.at_s for arrival in start.arrivals), default=0.0))
 
 
-def _taken_over(task: Task, half: str, network: RoadNetwork) -> tuple[Instance, Cockpit]:
+def _taken_over(
+    task: Task, half: str, network: RoadNetwork, language: Language = Language.ENGLISH
+) -> tuple[Instance, Cockpit]:
     """The instance, and the cockpit some seconds after departure."""
     content = None
     for _ in range(2):  # what the cockpit holds is known only when there is one
-        instance = draw(task, half, 0, content)
+        instance = draw(task, half, 0, content, language=language)
         start = instance.half.start
+        signals = {HMI.LANGUAGE.path: str(language), **start.signals}
         cockpit = Cockpit(
             network,
             rng=np.random.default_rng(1),
             aboard=start.aboard,
             cabin=start.cabin,
-            signals={**PARKED, **start.signals} if start.parked else start.signals,
+            signals={**PARKED, **signals} if start.parked else signals,
             arrivals=start.arrivals,
             belongings=start.belongings,
             sign_camera=start.sign_camera,
@@ -127,31 +136,42 @@ def _solved(instance: Instance, cockpit: Cockpit, way: tuple[Move, ...], *, by_p
     return Solved(car, moments, dict(beside))
 
 
-@pytest.mark.parametrize(("task", "half"), TRIED)
-def test_a_reference_solution_reaches_its_goal_and_leaves_nothing_else(task, half, network):
-    instance, cockpit = _taken_over(task, half, network)
-    for way in (instance.half.moves, *instance.half.ways):
-        solved = _solved(instance, cockpit, way)
+@pytest.fixture(scope="module", params=HALVES, ids=lambda case: f"{case[0].id}-{case[1]}")
+def played(request: pytest.FixtureRequest, network: RoadNetwork) -> tuple[Instance, Cockpit, Solved]:
+    """A half's instance, the cockpit at its hand-over, and its first solution: played once for all laws over it."""
+    instance, cockpit = _taken_over(*request.param, network)
+    return instance, cockpit, _solved(instance, cockpit, instance.half.moves)
+
+
+def test_a_reference_solution_reaches_its_goal_and_leaves_nothing_else(played):
+    instance, cockpit, first = played
+    others = (_solved(instance, cockpit, way) for way in instance.half.ways)
+    for way, solved in zip((instance.half.moves, *instance.half.ways), (first, *others), strict=True):
         assert instance.half.goal.holds(solved.moments[0], solved.moments[-1], solved.moments), way
         assert solved.surplus(solved.cockpit, instance.half.allowed_writes) == set(), way
 
 
-@pytest.mark.parametrize(("task", "half"), TRIED)
-def test_the_picture_alone_is_enough(task, half, network):
+@pytest.mark.parametrize(("task", "half", "language"), SPOKEN)
+def test_it_is_solved_in_another_language(task, half, language, network):
+    """What the reference solution looks for is on the screens of that language, and so is what it waits to hear."""
+    instance, cockpit = _taken_over(task, half, network, language)
+    solved = _solved(instance, cockpit, instance.half.moves)
+    assert instance.half.goal.holds(solved.moments[0], solved.moments[-1], solved.moments)
+    assert solved.surplus(solved.cockpit, instance.half.allowed_writes) == set()
+
+
+def test_the_picture_alone_is_enough(played):
     """By points alone, with no text but what is drawn, the reference solution comes to the same."""
-    instance, cockpit = _taken_over(task, half, network)
-    listed = _solved(instance, cockpit, instance.half.moves)
+    instance, cockpit, listed = played
     pictured = _solved(instance, cockpit, instance.half.moves, by_pixels=True)
     assert instance.half.goal.holds(pictured.moments[0], pictured.moments[-1], pictured.moments)
     assert pictured.cockpit.commands() == listed.cockpit.commands()
 
 
-@pytest.mark.parametrize(("task", "half"), TRIED)
-def test_one_switch_more_is_seen(task, half, network):
+def test_one_switch_more_is_seen(played):
     """Whether the car couples it to the goal or not; unless the task allows it, or it ends the goal."""
-    instance, cockpit = _taken_over(task, half, network)
+    instance, _, solved = played
     allowed = instance.half.allowed_writes
-    solved = _solved(instance, cockpit, instance.half.moves)
     turned = 0
     for path in sorted(set(ACTUATORS) - allowed):
         car = solved.cockpit.copy()
