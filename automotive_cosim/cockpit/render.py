@@ -15,10 +15,7 @@ from automotive_cosim.cockpit.theme import (
     BUTTON_RADIUS,
     CARD_RADIUS,
     DAY,
-    DOCK_HEIGHT,
     NIGHT,
-    SCREEN_HEIGHT,
-    SCREEN_WIDTH,
     Colour,
     Icon,
     Palette,
@@ -51,23 +48,22 @@ NARROW = 150
 """Tiles narrower than this stack icon and text."""
 TALL = 110
 """Stacked choices this high have large icons."""
-DOCK = Rect(0, SCREEN_HEIGHT - DOCK_HEIGHT, SCREEN_WIDTH, DOCK_HEIGHT)
-"""The background of the dock."""
 ROOMY = 230
 """Low tiles narrower than this have a light where name and toggle do not fit."""
 SPILL = 4
 """How far letters and icons may extend out of their box, in logical pixels."""
-WORTH_IT = 0.7 * SCREEN_WIDTH * SCREEN_HEIGHT
+WORTH_IT = 0.7
 """Above this share of changes, everything is redrawn."""
 LOW = 76
 """Tiles lower than this put icon and text on one line."""
 
 
-def render(screen: Screen, width: int = SCREEN_WIDTH, height: int = SCREEN_HEIGHT) -> Canvas:
-    """Draws the tree."""
+def render(screen: Screen, scale: float = 1.0) -> Canvas:
+    """Draws the tree, with ``scale`` pixels per logical pixel."""
     palette = NIGHT if screen.night else DAY
-    canvas = Canvas.plain(width, height, width / SCREEN_WIDTH, palette.background)
-    canvas.box(DOCK, palette.surface)
+    _, _, width, height = screen.rect.edges(scale)
+    canvas = Canvas.plain(width, height, scale, palette.background)
+    canvas.box(screen.dock, palette.surface)
     _children(canvas, screen, palette)
     return canvas
 
@@ -80,16 +76,18 @@ def repaint(before: Screen, picture: Image.Image, screen: Screen) -> tuple[Image
     """
     gone = [widget for widget in before.children if widget not in screen.children]
     come = [widget for widget in screen.children if widget not in before.children]
-    reaches = [(widget, _reach(widget)) for widget in screen.children]
-    boxes = _grown([_reach(widget) for widget in (*gone, *come)], [reach for _, reach in reaches])
-    if before.night is not screen.night or sum(box.width * box.height for box in boxes) > WORTH_IT:
-        return render(screen, *picture.size).image, (screen.rect,)
+    reaches = [(widget, _reach(widget, screen)) for widget in screen.children]
+    boxes = _grown([_reach(widget, screen) for widget in (*gone, *come)], [reach for _, reach in reaches])
+    scale = picture.width / screen.rect.width
+    worth_it = WORTH_IT * screen.rect.width * screen.rect.height
+    if before.night is not screen.night or sum(box.width * box.height for box in boxes) > worth_it:
+        return render(screen, scale).image, (screen.rect,)
     palette = NIGHT if screen.night else DAY
-    canvas = Canvas(picture.copy(), picture.width / SCREEN_WIDTH)
+    canvas = Canvas(picture.copy(), scale)
     for box in boxes:
         canvas.box(box, palette.background)
-        if box.overlaps(DOCK):
-            canvas.box(box.within(DOCK), palette.surface)
+        if box.overlaps(screen.dock):
+            canvas.box(box.within(screen.dock), palette.surface)
     for widget, reach in reaches:
         if any(reach.overlaps(box) for box in boxes):
             _PAINT[type(widget)](canvas, widget, palette)
@@ -97,9 +95,9 @@ def repaint(before: Screen, picture: Image.Image, screen: Screen) -> tuple[Image
     return canvas.image, boxes
 
 
-def _reach(widget: Widget) -> Rect:
-    """The canvas."""
-    return widget.rect.inset(-SPILL).within(Rect(0, 0, SCREEN_WIDTH, SCREEN_HEIGHT))
+def _reach(widget: Widget, screen: Screen) -> Rect:
+    """The part of the screen that drawing the widget may touch."""
+    return widget.rect.inset(-SPILL).within(screen.rect)
 
 
 def _grown(boxes: list[Rect], reaches: list[Rect]) -> tuple[Rect, ...]:

@@ -19,6 +19,7 @@ from automotive_cosim.cockpit.people import Directory, Phone
 from automotive_cosim.cockpit.places import Gazetteer
 from automotive_cosim.cockpit.restrictions import ENTRIES_LIMIT, REASONS, Restriction, restrictions
 from automotive_cosim.cockpit.signals import HMI, MOTION, Signals
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.cockpit.tyres import Tyres
 from automotive_cosim.cockpit.vehicle import Vehicle
@@ -125,6 +126,7 @@ class State:
     """The road at the last report of the traffic service, for the lookout."""
     driven_s: float = 0.0
     """How long the driver had been driving without a break before departure."""
+    size: ScreenSize = ScreenSize.STANDARD
     screen: str = "home"
     past: tuple[tuple[str, str], ...] = ()
     """Screens to go back to, with their items."""

@@ -75,6 +75,8 @@ class Screen(Widget):
     """The whole picture."""
 
     night: bool
+    dock: Rect
+    """The dock's ground."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -26,7 +26,7 @@ from inspect_ai.tool import ToolDef, ToolError
 from automotive_cosim.agents.settings import geo_input
 from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Json
-from automotive_cosim.episode.specification import EpisodeSpec, feedback_of, see_of
+from automotive_cosim.episode.specification import EpisodeSpec, feedback_of, screen_of, see_of
 from automotive_cosim.errors import InfrastructureError, UserError
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.report.stats import Interval, wilson
@@ -64,6 +64,7 @@ def _cockpit(
     pictures: bool = True,
     see: str = "both",
     feedback: str = "quiet",
+    screen: str = "1280x720",
 ) -> Task:
     """The tasks at the cockpit.
 
@@ -75,6 +76,7 @@ def _cockpit(
         pictures: whether it sees the screen.
         see: how it sees the screen: ``tree``, ``picture`` or ``both``.
         feedback: what it is told of its last action: ``quiet`` or ``verbose``.
+        screen: size of the screen: ``1280x720``, ``1920x720`` or ``1080x1920``.
     """
     numbers = _words(seeds)
     if not all(number.isdecimal() for number in numbers):
@@ -84,6 +86,7 @@ def _cockpit(
         "geo": str(geo_input(geo)),
         "see": str(see_of(see)),
         "feedback": str(feedback_of(feedback)),
+        "screen": str(screen_of(screen)),
     }
     samples = [
         Sample(
@@ -117,6 +120,7 @@ def _driver(pictures: bool = True) -> Solver:
                 "geo": geo_input(named["geo"]),
                 "see": see_of(named["see"]),
                 "feedback": feedback_of(named["feedback"]),
+                "screen": screen_of(named["screen"]),
             }
         )
         turn = await asyncio.to_thread(service.start, spec, channels)

@@ -23,7 +23,7 @@ from automotive_cosim.agents.settings import geo_input
 from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Json
 from automotive_cosim.episode.listener import Listener
-from automotive_cosim.episode.specification import EpisodeSpec, feedback_of, see_of
+from automotive_cosim.episode.specification import EpisodeSpec, feedback_of, screen_of, see_of
 from automotive_cosim.errors import CosimError, InfrastructureError, UnknownNameError
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.run.plan import choose
@@ -104,6 +104,9 @@ class _Tools:
         geo: Annotated[str, Field(description="full, gps, context, wrong, irrelevant or none.")] = "full",
         see: Annotated[str, Field(description="How to see the screen: tree, picture or both.")] = "both",
         feedback: Annotated[str, Field(description="What to be told of an action: quiet or verbose.")] = "quiet",
+        screen: Annotated[
+            str, Field(description="Size of the screen: 1280x720, 1920x720 or 1080x1920.")
+        ] = "1280x720",
         channels: Annotated[
             list[str] | None, Field(description=f"What to observe: {', '.join(Channel)}; all by default.")
         ] = None,
@@ -117,6 +120,7 @@ class _Tools:
             geo=geo_input(geo),
             see=see_of(see),
             feedback=feedback_of(feedback),
+            screen=screen_of(screen),
         )
         return _turn(self._service.start(spec, _channels(channels), _Progress(context)))
 

@@ -31,13 +31,13 @@ from automotive_cosim.tasking.parameters import bind
 ROWS = "episodes.jsonl"
 PLANNED = (
     "task", "half", "pair", "dimension", "module", "basis", "suite", "tags", "skills", "declines", "agent", "model",
-    "geo", "seed", "repeat", "clock", "latency_s", "see", "feedback", "split",
+    "geo", "seed", "repeat", "clock", "latency_s", "see", "feedback", "screen", "split",
 )  # fmt: skip
 """Fields of a row that the plan and the catalogue determine."""
 ALSO_IN_RESULT = (
-    "task", "half", "scenario", "agent", "model", "geo", "see", "feedback", "seed", "traffic_seed", "success",
-    "reward", "steps", "sim_seconds", "end", "error", "error_kind", "agent_error", "held_out", "trace_sha256",
-    "tokens_in", "tokens_out", "model_seconds", "cost_usd", "drive", "baseline_drive",
+    "task", "half", "scenario", "agent", "model", "geo", "see", "feedback", "screen", "seed", "traffic_seed",
+    "success", "reward", "steps", "sim_seconds", "end", "error", "error_kind", "agent_error", "held_out",
+    "trace_sha256", "tokens_in", "tokens_out", "model_seconds", "cost_usd", "drive", "baseline_drive",
 )  # fmt: skip
 """Fields of a row that the result at the end of the trace has too."""
 FROM_MOMENTS = (

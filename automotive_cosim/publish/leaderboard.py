@@ -29,7 +29,7 @@ from automotive_cosim.run.store import cannot_write
 from automotive_cosim.run.versions import minor
 
 COLUMNS = (
-    "Agent", "Model", "Input", "Geo", "Screen", "Feedback", "Clock", *DIMENSIONS.values(),
+    "Agent", "Model", "Input", "Geo", "Sees", "Feedback", "Screen", "Clock", *DIMENSIONS.values(),
     "Safety pairs", "All episodes", "Bundle",
 )  # fmt: skip
 
@@ -162,12 +162,13 @@ def _table(number: int, entries: Sequence[BoardEntry]) -> Table:
                 each.geo,
                 each.see,
                 each.feedback,
+                each.screen,
                 _speed(each),
                 *(rate_in_words(rate) if rate.planned else NONE for rate in entry.rates),
                 f"{entry.bundle} ({entry.version}), {entry.sha256[:12]}",
             )
         )
-    return Table(f"table_{number}", f"Table {number}", COLUMNS, tuple(rows), heads=7)
+    return Table(f"table_{number}", f"Table {number}", COLUMNS, tuple(rows), heads=8)
 
 
 def _speed(each: Contestant) -> str:

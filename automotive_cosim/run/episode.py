@@ -94,6 +94,7 @@ class EpisodeResult:
     geo: str = "full"
     see: str = "both"
     feedback: str = "verbose"
+    screen: str = "1280x720"
     without: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     """Assumptions where the scenario says nothing, e.g. that there is no GPS."""
@@ -317,6 +318,7 @@ class _Run:
             "geo": str(setup.geo),
             "see": str(setup.see),
             "feedback": str(setup.feedback),
+            "screen": str(setup.screen),
             "without": setup.without,
             "tokens_in": sum(reply.tokens_in for reply in self._replies),
             "tokens_out": sum(reply.tokens_out for reply in self._replies),

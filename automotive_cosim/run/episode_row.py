@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Annotated, Any
 
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.episode.specification import Clock, End
 from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.interface.feedback import FeedbackDetail
@@ -73,6 +74,8 @@ class EpisodeRow(JobRow):
     """How the agent saw the screen."""
     feedback: FeedbackDetail = FeedbackDetail.VERBOSE
     """What it was told of its last action."""
+    screen: ScreenSize = ScreenSize.STANDARD
+    """Size of the car's screen."""
     thought_s: float = 0.0
     """Simulated seconds that all answers took."""
     parameters: Mapping[str, Any] | None = None

@@ -16,6 +16,7 @@ from annotated_types import Ge, Gt, Le, MinLen
 
 from automotive_cosim import scenarios
 from automotive_cosim.agents import MODELLED, AgentSettings, make_agent
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import Json
 from automotive_cosim.episode.specification import Clock, Conditions
 from automotive_cosim.errors import SetupError, UnknownNameError, UserError
@@ -101,6 +102,10 @@ class Plan:
         "quiet",
     )
     """What an agent is told of its last action: ``quiet`` or ``verbose``."""
+    screen: Annotated[tuple[Annotated[str, OneOf(tuple(ScreenSize), "size of the screen")], ...], MinLen(1)] = (
+        "1280x720",
+    )
+    """Size of the car's screen: ``1280x720``, ``1920x720`` or ``1080x1920``."""
     repeats: Annotated[int, Ge(1), Le(1000)] = 1
     """Runs of each episode, for models that do not answer the same twice."""
     held_out: bool = False
@@ -158,7 +163,7 @@ class Plan:
         """
         lists = (
             *(self.agents, self.models, self._placed(), self.seeds),
-            *(self.geo, self.latency, self.see, self.feedback),
+            *(self.geo, self.latency, self.see, self.feedback, self.screen),
         )
         if (most := prod(map(len, lists)) * self.repeats) > MOST_RUNS:
             raise UserError(
@@ -194,7 +199,7 @@ class Plan:
         ]
 
     def _each(self) -> Iterator[EpisodeJob]:
-        for agent, model, (task, scenario), seed, geo, latency_s, repeat, see, feedback in product(
+        for agent, model, (task, scenario), seed, geo, latency_s, repeat, see, feedback, screen in product(
             self.agents,
             self.models,
             self._placed(),
@@ -204,6 +209,7 @@ class Plan:
             range(self.repeats),
             self.see,
             self.feedback,
+            self.screen,
         ):
             for half in task.halves:
                 is_own = scenario == task.half(half).start.scenario  # which a half may move to another place
@@ -223,6 +229,7 @@ class Plan:
                     latency_s=latency_s,
                     see=See(see),
                     feedback=FeedbackDetail(feedback),
+                    screen=ScreenSize(screen),
                 )
                 yield EpisodeJob(setup, repeat, self.limits)
 
@@ -278,6 +285,7 @@ class EpisodeJob:
             latency_s=0.0,
             see=See.BOTH,
             feedback=FeedbackDetail.QUIET,
+            screen=ScreenSize.STANDARD,
         )
 
     @property
@@ -306,6 +314,7 @@ class EpisodeJob:
             *([f"latency{setup.latency_s:g}"] if setup.latency_s else []),
             *([f"see_{setup.see}"] if setup.see is not See.BOTH else []),
             *([str(setup.feedback)] if setup.feedback is not FeedbackDetail.QUIET else []),
+            *([str(setup.screen)] if setup.screen is not ScreenSize.STANDARD else []),
         )  # fmt: skip
         words = "-".join(re.sub(r"[^A-Za-z0-9_.]+", "_", Path(word).name) for word in exactly)
         return f"{words[:150]}-{digest(exactly)[:8]}"

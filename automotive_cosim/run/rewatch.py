@@ -74,6 +74,7 @@ def watched(row: WatchRow, steps: Sequence[Json], simulations: Simulations | Non
         row.repeat,
         row.see,
         row.feedback,
+        row.screen,
     )
     player = Player(steps[1:], frozenset(row.channels), row.agent_error)
     return run_watch(row.id, setup, player, simulations=simulations)

@@ -10,6 +10,7 @@ from typing import Any
 
 from automotive_cosim.agents import Agent, Thinker
 from automotive_cosim.cockpit.actions import to_json
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import KMH_PER_MPS, Element, Json
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.departure import depart
@@ -52,6 +53,7 @@ class WatchSetup:
     repeat: int = 0
     see: See = See.BOTH
     feedback: FeedbackDetail = FeedbackDetail.QUIET
+    screen: ScreenSize = ScreenSize.STANDARD
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,6 +95,7 @@ def planned_row(job_id: str, setup: WatchSetup) -> WatchRow:
         repeat=setup.repeat,
         see=setup.see,
         feedback=setup.feedback,
+        screen=setup.screen,
     )
 
 
@@ -132,6 +135,7 @@ def run_watch(
                 drive.duration_s,
                 see=setup.see,
                 feedback=setup.feedback,
+                screen=setup.screen,
             )
             watch = Watch.depart_with(world, conditions, listener)
         except BaseException:

@@ -15,6 +15,7 @@ from typing import Annotated, Any
 from annotated_types import Ge, Gt, Le, MinLen
 
 from automotive_cosim.agents import MODELLED, AgentSettings, make_agent
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import Json
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.episode.specification import Clock, Conditions
@@ -69,6 +70,10 @@ class WatchPlan:
         "quiet",
     )
     """What an agent is told of its last action."""
+    screen: Annotated[tuple[Annotated[str, OneOf(tuple(ScreenSize), "size of the screen")], ...], MinLen(1)] = (
+        "1280x720",
+    )
+    """Size of the car's screen."""
     wall_s: Annotated[float, Gt(0)] = DRIVE_LIMITS.wall_s
     """Wall seconds of one drive; exceeding them is an infrastructure error."""
 
@@ -99,7 +104,7 @@ class WatchPlan:
         limits = replace(DRIVE_LIMITS, wall_s=self.wall_s)
         found = {
             job.id: job
-            for family, agent, model, seed, geo, latency_s, repeat, see, feedback in product(
+            for family, agent, model, seed, geo, latency_s, repeat, see, feedback, screen in product(
                 families_named(self.drives),
                 self.agents,
                 self.models,
@@ -109,6 +114,7 @@ class WatchPlan:
                 range(self.repeats),
                 self.see,
                 self.feedback,
+                self.screen,
             )
             for job in [
                 WatchJob(
@@ -123,6 +129,7 @@ class WatchPlan:
                         repeat,
                         See(see),
                         FeedbackDetail(feedback),
+                        ScreenSize(screen),
                     ),
                     limits,
                 )
@@ -173,6 +180,7 @@ class WatchJob:
             *([f"latency{setup.latency_s:g}"] if setup.latency_s else []),
             *([f"see_{setup.see}"] if setup.see is not See.BOTH else []),
             *([str(setup.feedback)] if setup.feedback is not FeedbackDetail.QUIET else []),
+            *([str(setup.screen)] if setup.screen is not ScreenSize.STANDARD else []),
         )  # fmt: skip
         words = "-".join(re.sub(r"[^A-Za-z0-9_.]+", "_", Path(word).name) for word in exactly)
         return f"{words[:150]}-{digest(exactly)[:8]}"

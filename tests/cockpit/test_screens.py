@@ -19,6 +19,7 @@ from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.render import render
 from automotive_cosim.cockpit.screens import SCREENS
 from automotive_cosim.cockpit.signals import ACTUATORS, difference
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.cockpit.theme import TOUCH, Colour
 from automotive_cosim.cockpit.widgets import Rows, Screen, Slider
 from automotive_cosim.contracts import (
@@ -38,7 +39,6 @@ from automotive_cosim.contracts import (
 )
 
 Make = Callable[..., Cockpit]
-WHOLE = Rect(0, 0, 1280, 720)
 DOES = (FeedbackCode.OK, FeedbackCode.READ_OUT, FeedbackCode.REFUSED)
 
 
@@ -113,10 +113,29 @@ CASES: dict[str, Callable[[Make, Surroundings], Cockpit]] = {
             "Vehicle.Cabin.Infotainment.HMI.TemperatureUnit": "F",
         },
     ),
+    "wide": lambda make, o: make(surroundings=o, size=ScreenSize.WIDE),
+    "portrait": lambda make, o: make(surroundings=o, size=ScreenSize.PORTRAIT),
+    "wide, parked in German by night, on the left": lambda make, o: make(
+        surroundings=replace(o, sun_elevation_deg=-20.0, driving=replace(o.driving, speed_mps=0.0)),
+        aboard=FULL,
+        signals={**_speaking("de"), "Vehicle.Powertrain.Transmission.Gear": "P"},
+        size=ScreenSize.WIDE,
+        left_hand=True,
+    ),
+    "portrait, a call, busy in French, on the left": lambda make, o: busy(
+        make(
+            surroundings=o,
+            signals=_speaking("fr"),
+            aboard=FULL,
+            arrivals=[Arrival("call", 0.0, "Tilda Lindqvist")],
+            size=ScreenSize.PORTRAIT,
+            left_hand=True,
+        )
+    ),
 }
 
 
-FAST = ("day", "night", "busy", "parked", "parked in German by night", "a call rings")
+FAST = ("day", "night", "busy", "parked", "parked in German by night", "a call rings", "wide", "portrait")
 """The others are left to the whole run."""
 
 
@@ -133,8 +152,11 @@ def screens(
 ) -> list[Cockpit]:
     """Every view from home, in each case. The cockpits are only looked at."""
 
-    def make(seed: int = 1, surroundings: Surroundings | None = None, **options: Any) -> Cockpit:
-        cockpit = Cockpit(network, rng=np.random.default_rng(seed), **options)
+    def make(
+        seed: int = 1, surroundings: Surroundings | None = None, left_hand: bool = False, **options: Any
+    ) -> Cockpit:
+        here = replace(network, left_hand=left_hand)
+        cockpit = Cockpit(here, rng=np.random.default_rng(seed), **options)
         cockpit.sense(surroundings or outdoors(), 0.0)
         return cockpit
 
@@ -172,7 +194,9 @@ def test_what_can_be_touched_lies_on_the_screen_is_named_large_and_unique(screen
         assert [key for key, count in keys.items() if count > 1] == []
         for element in cockpit.elements():
             box = element.bbox_pixels
-            assert WHOLE.encloses(Rect(box.x_min, box.y_min, box.x_max - box.x_min, box.y_max - box.y_min))
+            assert cockpit.size.whole.encloses(
+                Rect(box.x_min, box.y_min, box.x_max - box.x_min, box.y_max - box.y_min)
+            )
             if element.is_clickable:
                 assert element.text or element.content_description
                 assert element.resource_id
@@ -373,6 +397,26 @@ def test_other_resolutions_show_and_hit_the_same(network: object, around: Surrou
     assert cockpit.screenshot().shape == (width * 9 // 16, width, 3)
     assert press(cockpit, "dock.climate") is FeedbackCode.OK
     assert press(cockpit, "hvac.fan.max") is FeedbackCode.OK
+
+
+@pytest.mark.parametrize("size", ScreenSize)
+def test_a_screen_of_any_size_has_its_pixels(network: RoadNetwork, around: Surroundings, size: ScreenSize) -> None:
+    cockpit = Cockpit(network, rng=np.random.default_rng(1))
+    cockpit.sense(around, 0.0)
+    cockpit.screenshot()
+    cockpit.fit(size)
+    assert cockpit.screenshot().shape == (size.height, size.width, 3)
+    assert press(cockpit, "dock.climate") is FeedbackCode.OK
+    repainted = cockpit.screenshot()
+    assert repainted.tobytes() == render(cockpit.tree).pixels().tobytes()
+
+
+def test_the_companion_stands_beside_every_app_without_a_map_of_its_own(
+    make: Make, around: Surroundings, walker: Any
+) -> None:
+    for view in walker(make(size=ScreenSize.PORTRAIT)):
+        keys = {element.resource_id for element in view.cockpit.elements()}
+        assert len(keys & {"companion.map", "map.view", "home.map"}) == 1, view.name
 
 
 def test_the_picture_changes_only_with_the_tree(cockpit: Cockpit) -> None:

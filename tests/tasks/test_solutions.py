@@ -14,6 +14,7 @@ from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.cockpit import actions
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.signals import ACTUATORS, difference, named
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import ActionType, Answer, Feedback, FeedbackCode, Observation, RoadNetwork
 from automotive_cosim.episode.counterfactual import counterfactual
 from automotive_cosim.episode.situation import PARKED
@@ -27,6 +28,13 @@ from ..cockpit.conftest import outside, town
 
 HALVES = [(task, name) for task in CATALOGUE.values() for name in task.halves]
 TRIED = [pytest.param(task, half, id=f"{task.id}-{half}") for task, half in HALVES]
+OTHER_SIZES = (ScreenSize.WIDE, ScreenSize.PORTRAIT)
+SAMPLED = [
+    pytest.param(task, "first", size, id=f"{task.id}-{size}")
+    for module in sorted({task.module for task in CATALOGUE.values()})
+    for task, size in zip([task for task in CATALOGUE.values() if task.module == module], OTHER_SIZES, strict=False)
+]
+"""Two tasks of every module, one on each of the other screens."""
 FROM_S = 900.0
 SECONDS_LIMIT = 120
 
@@ -91,8 +99,16 @@ def _taken_over(task: Task, half: str, network: RoadNetwork) -> tuple[Instance, 
     return instance, cockpit
 
 
-def _solved(instance: Instance, cockpit: Cockpit, way: tuple[Move, ...], *, by_pixels: bool = False) -> Solved:
+def _solved(
+    instance: Instance,
+    cockpit: Cockpit,
+    way: tuple[Move, ...],
+    *,
+    by_pixels: bool = False,
+    size: ScreenSize = ScreenSize.STANDARD,
+) -> Solved:
     start, car = instance.half.start, cockpit.copy()
+    car.fit(size)
     oracle, feedback = Oracle(), Feedback(FeedbackCode.NONE, "")
     oracle.reset(instance.goal)
     oracle.brief(instance, way, drawn=car.drawn)
@@ -142,6 +158,16 @@ def test_the_picture_alone_is_enough(task, half, network):
     instance, cockpit = _taken_over(task, half, network)
     listed = _solved(instance, cockpit, instance.half.moves)
     pictured = _solved(instance, cockpit, instance.half.moves, by_pixels=True)
+    assert instance.half.goal.holds(pictured.moments[0], pictured.moments[-1], pictured.moments)
+    assert pictured.cockpit.commands() == listed.cockpit.commands()
+
+
+@pytest.mark.parametrize(("task", "half", "size"), SAMPLED)
+def test_any_screen_is_enough(task, half, size, network):
+    """By points alone on another screen, a reference solution comes to the same as by the list on the usual one."""
+    instance, cockpit = _taken_over(task, half, network)
+    listed = _solved(instance, cockpit, instance.half.moves)
+    pictured = _solved(instance, cockpit, instance.half.moves, by_pixels=True, size=size)
     assert instance.half.goal.holds(pictured.moments[0], pictured.moments[-1], pictured.moments)
     assert pictured.cockpit.commands() == listed.cockpit.commands()
 

@@ -46,8 +46,8 @@ def _page(state: State, *cards: Widget) -> tuple[Widget, ...]:
     return car_card(state), tabs(state), *cards
 
 
-def _area() -> Rect:
-    return right_side().below(64 + GAP)
+def _area(state: State) -> Rect:
+    return right_side(state).below(64 + GAP)
 
 
 # --- driving ----------------------------------------------------------------------------------------------
@@ -56,7 +56,7 @@ def _area() -> Rect:
 def driving(state: State) -> tuple[Widget, ...]:
     """Drive mode, brakes and tyres."""
     signals = state.signals
-    area = _area()
+    area = _area(state)
     mode, lower = area.top(132), area.below(132 + GAP)
     left, right = lower.columns(2, GAP)
     inner, hold = mode.inset(20, 14), left.inset(20, 16)
@@ -153,7 +153,7 @@ def _tyres(rect: Rect, state: State) -> Widget:
 def doors(state: State) -> tuple[Widget, ...]:
     """Locks, windows and the roof."""
     signals = state.signals
-    upper, _, lower = column(_area(), 176, GAP, REST)
+    upper, _, lower = column(_area(state), 176, GAP, REST)
     head, _, tiles = column(upper.inset(20, 14), 28, 4, REST)
     locked = all(signals[lock] for lock in LOCKS)
     cells = [cell for line in tiles.rows(2, 8) for cell in line.columns(4, 8)]
@@ -260,7 +260,7 @@ _SEATS: dict[str, tuple[tuple[str, str, Signal[float], str], ...]] = {
 def seats(state: State) -> tuple[Widget, ...]:
     """Positions of the front seats, massage, and the driver's memory."""
     signals = state.signals
-    area = _area()
+    area = _area(state)
     who = state.picked["seats"]
     left, right = area.left(540), area.right_part(area.width - 540 - GAP)
     inner = left.inset(20, 16)
@@ -349,7 +349,7 @@ def _memory(rect: Rect, state: State) -> Widget:
 
 def mirrors(state: State) -> tuple[Widget, ...]:
     """Outside mirrors, and the light in the cabin."""
-    area = _area()
+    area = _area(state)
     upper, lower = area.top(252), area.below(252 + GAP)
     left, right = upper.columns(2, GAP)
     return _page(

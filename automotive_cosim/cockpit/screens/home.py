@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from automotive_cosim.cockpit.drawing import text_width
 from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.layout import REST, column, row
+from automotive_cosim.cockpit.layout import REST, column, panes, row
 from automotive_cosim.cockpit.map import camera_of
 from automotive_cosim.cockpit.mapscene import ego
 from automotive_cosim.cockpit.messages import Set, Show, Skip
@@ -13,7 +13,7 @@ from automotive_cosim.cockpit.screens.map import map_view, next_turn, street
 from automotive_cosim.cockpit.screens.notices import NOTICED
 from automotive_cosim.cockpit.screens.outside import PHENOMENA
 from automotive_cosim.cockpit.screens.parts import (
-    CONTENT,
+    content,
     distance,
     heading,
     speed,
@@ -27,22 +27,32 @@ from automotive_cosim.cockpit.widgets import Bar, Button, Card, Glyph, Label, Lo
 
 METRES_PER_PIXEL = 1.6
 """Scale of the small map."""
+CARDS_WIDTH, CARDS_HEIGHT = 656, 544
 
 
 def home(state: State) -> tuple[Widget, ...]:
     """The home screen."""
-    left, _, right = row(CONTENT, 560, GAP, REST)
+    left, right = _two(content(state))
     drive, _, first, _, second, _, media = column(right, 136, GAP, 114, GAP, 114, REST, 132)
     cells = (*first.columns(2, GAP), *second.columns(2, GAP))
     return (
         _map_card(left, state),
-        _drive_card(drive, state),
+        drive_card(drive, state),
         _climate_card(cells[0], state),
         _outside_card(cells[1], state),
         _safety_card(cells[2], state),
         _phone_card(cells[3], state),
-        _media_card(media, state),
+        media_card(media, state),
     )
+
+
+def _two(rect: Rect) -> tuple[Rect, Rect]:
+    """The map, and the cards beside it; where it is taller than wide, below."""
+    if rect.height > rect.width:
+        above, _, below = column(rect, REST, GAP, CARDS_HEIGHT)
+        return above, below
+    left, right = panes(rect, REST, CARDS_WIDTH)
+    return left, right
 
 
 def _map_card(rect: Rect, state: State) -> Widget:
@@ -108,7 +118,8 @@ def _map_card(rect: Rect, state: State) -> Widget:
     )
 
 
-def _drive_card(rect: Rect, state: State) -> Widget:
+def drive_card(rect: Rect, state: State) -> Widget:
+    """Speed, range and battery."""
     signals = state.signals
     level = signals[ENERGY.LEVEL]
     inner = rect.inset(24, 14)
@@ -280,7 +291,8 @@ def _phone_line(state: State) -> tuple[Icon, str, str]:
     return Icon.PHONE, new, "Do not disturb" if phone.do_not_disturb else state.desk.device
 
 
-def _media_card(rect: Rect, state: State) -> Widget:
+def media_card(rect: Rect, state: State) -> Widget:
+    """What plays now."""
     signals = state.signals
     playing = signals[MEDIA.ACTION] == "PLAY"
     inner = rect.inset(16, 16)

@@ -7,7 +7,7 @@ from automotive_cosim.cockpit.layout import REST, column, row
 from automotive_cosim.cockpit.messages import BACKSPACE, Dial, Key, Pick, Show
 from automotive_cosim.cockpit.people import PastCall
 from automotive_cosim.cockpit.restrictions import Restriction
-from automotive_cosim.cockpit.screens.handset import RIGHT, handset
+from automotive_cosim.cockpit.screens.handset import handset, handset_and_page
 from automotive_cosim.cockpit.screens.parts import choices, note, rows, search
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
@@ -34,14 +34,15 @@ def phone(state: State) -> tuple[Widget, ...]:
         "messages": _messages,
         "keypad": _keypad,
     }
+    _, page = handset_and_page(state)
     return (
         handset(state),
         choices(
-            RIGHT.top(64),
+            page.top(64),
             "phone.tab",
             [(name, text, icon, shown == name, Pick("phone", name)) for name, text, icon in TABS],
         ),
-        *pages[shown](RIGHT.below(64 + GAP), state),
+        *pages[shown](page.below(64 + GAP), state),
     )
 
 
