@@ -293,7 +293,8 @@ def perform(action: Action, cockpit: Cockpit, elements: tuple[Element, ...]) -> 
     match kind:
         case ActionType.SCROLL:
             target = None if action.index is None else elements[action.index]
-            return cockpit.scroll(target.resource_id if target else None, action.direction or Direction.DOWN)
+            key = cockpit.key_of(target.resource_id) if target else ""
+            return cockpit.scroll(key, action.direction or Direction.DOWN)
         case ActionType.KEYBOARD_ENTER:
             return cockpit.key_enter()
         case ActionType.NAVIGATE_HOME:

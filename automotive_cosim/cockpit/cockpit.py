@@ -63,6 +63,7 @@ from automotive_cosim.contracts import (
     Surroundings,
     VehicleState,
 )
+from automotive_cosim.contracts.ids import resource_id
 from automotive_cosim.errors import SignalError, UnknownNameError, UserError
 
 W = TypeVar("W", bound=Widget)
@@ -310,21 +311,26 @@ class Cockpit:
             return self._pan(view, OPPOSITE[direction], far)
         return Feedback(FeedbackCode.NO_EFFECT, f"nothing at ({x}, {y}) moves {direction}")
 
-    def scroll(self, resource_id: str | None, direction: Direction) -> Feedback:
+    def key_of(self, shown_as: str) -> str:
+        """Key of the widget that is shown under that resource id; empty if none on the screen is."""
+        keys = (widget.key for widget in self._screen.walk() if widget.key)
+        return next((key for key in keys if resource_id(key) == shown_as), "")
+
+    def scroll(self, key: str, direction: Direction) -> Feedback:
         """Scrolls a list by a page; ``down`` reveals what is below.
 
         Args:
-            resource_id: id of the list or of something in it; without one, the first list on the screen.
+            key: of the list or of something in it; empty for the first list on the screen.
             direction: the direction to scroll.
         """
         lists = [widget for widget in self._screen.walk() if isinstance(widget, Rows)]
-        if resource_id:
-            if all(widget.key != resource_id for widget in self._screen.walk()):
-                return Feedback(FeedbackCode.NO_SUCH_ELEMENT, f"{resource_id} is not on the screen")
-            view = next((w for w in self._screen.walk() if w.key == resource_id and isinstance(w, MapView)), None)
+        if key:
+            if all(widget.key != key for widget in self._screen.walk()):
+                return Feedback(FeedbackCode.NO_SUCH_ELEMENT, f"{key} is not on the screen")
+            view = next((w for w in self._screen.walk() if w.key == key and isinstance(w, MapView)), None)
             if view is not None and view.pans:
                 return self._pan(view, direction)
-            lists = [rows for rows in lists if any(widget.key == resource_id for widget in rows.walk())]
+            lists = [rows for rows in lists if any(widget.key == key for widget in rows.walk())]
         if not lists:
             return Feedback(FeedbackCode.NO_EFFECT, "there is nothing to scroll here")
         return self._scroll(lists[0], direction)
@@ -523,11 +529,11 @@ class Cockpit:
         step = by * {Direction.DOWN: 1, Direction.UP: -1}.get(direction, 0)
         first = min(rows.last_first, max(0, rows.first + step))
         if first == rows.first:
-            return Feedback(FeedbackCode.NO_EFFECT, f"{rows.key} cannot move further {direction}")
+            return Feedback(FeedbackCode.NO_EFFECT, f"{rows.description} cannot move further {direction}")
         self._state.scrolled = {**self._state.scrolled, rows.key: first}
         self._tree = None
         return Feedback(
-            FeedbackCode.OK, f"{rows.key} shows rows {first + 1} to {first + rows.shown} of {rows.total}"
+            FeedbackCode.OK, f"{rows.description} shows rows {first + 1} to {first + rows.shown} of {rows.total}"
         )
 
     def _pan(self, view: MapView, direction: Direction, far: float | None = None) -> Feedback:

@@ -1,7 +1,8 @@
 """The one widget tree: drawn, listed for accessibility and hit by fingers.
 
 Widgets are frozen data with absolute boxes; a parent's children lie within it and are drawn after it. ``key`` is
-the stable resource id (``climate.front_defroster``). A widget says something (``on_tap``) only by a message.
+its name in the code (``climate.front_defroster``), from which its resource id is made (``contracts.ids``). A widget
+says something (``on_tap``) only by a message.
 """
 
 from __future__ import annotations

@@ -16,6 +16,7 @@ import pytest
 
 from automotive_cosim.agents.androidworld import AndroidWorldAgent
 from automotive_cosim.contracts import Action, ActionType, BoundingBox, Direction, Element, GoalStatus, Observation
+from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.errors import ActionError
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
 from automotive_cosim.traffic.fork import Simulations
@@ -276,10 +277,10 @@ class Chooses:
 
     def action(self) -> str:
         ids = [element.resource_id for element in self.env.get_state().ui_elements]
-        if self.asked == 1:
-            return f'Reason: I see.\nAction: {{"action_type": "click", "index": {ids.index("dock.climate")}}}'
-        if self.asked == 3:
-            return f'Reason: I see.\nAction: {{"action_type": "click", "index": {ids.index("hvac.fan.max")}}}'
+        wanted = {1: "dock.climate", 3: "hvac.fan.max"}.get(self.asked)
+        if wanted:
+            index = ids.index(shown_id(wanted))
+            return f'Reason: I see.\nAction: {{"action_type": "click", "index": {index}}}'
         return f'Reason: I see.\nAction: {{"action_type": "status", "goal_status": "{self.last}"}}'
 
 
@@ -317,7 +318,7 @@ def test_agents_that_act_by_adb_run_whole_episodes(checkout: None, simulations: 
             if not self.wanted:
                 return Result(True, {"action": json_action.JSONAction("status", goal_status="complete")})
             elements = self.env.get_state().ui_elements
-            index = [element.resource_id for element in elements].index(self.wanted.pop(0))
+            index = [element.resource_id for element in elements].index(shown_id(self.wanted.pop(0)))
             action = json_action.JSONAction("click", index=index)
             actuation.execute_adb_action(action, elements, self.env.logical_screen_size, self.env.controller)
             return Result(False, {"action": action})

@@ -26,6 +26,7 @@ from automotive_cosim.contracts import (
     RouteOption,
     Surroundings,
 )
+from automotive_cosim.contracts.ids import resource_id as shown_id
 
 Make = Callable[..., Cockpit]
 
@@ -35,7 +36,7 @@ def view(cockpit: Cockpit) -> MapView:
 
 
 def press(cockpit: Cockpit, key: str) -> FeedbackCode:
-    box = next(element for element in cockpit.elements() if element.resource_id == key).bbox_pixels
+    box = next(element for element in cockpit.elements() if element.resource_id == shown_id(key)).bbox_pixels
     return cockpit.tap((box.x_min + box.x_max) // 2, (box.y_min + box.y_max) // 2).code
 
 
@@ -84,12 +85,12 @@ def test_the_map_shows_ways_traffic_and_a_jam(make: Make, around: Surroundings) 
     assert scene.slow == (("e6_6", 0.2),)
     assert scene.alternatives == (("e6_5", "n7_5"),)
     assert scene.route == ahead.route_edges
-    assert any(element.resource_id == "map.jam" for element in cockpit.elements())
+    assert any(element.resource_id == shown_id("map.jam") for element in cockpit.elements())
 
 
 def incidents_seen(cockpit: Cockpit) -> dict[str, str]:
-    found = [one for one in cockpit.elements() if one.resource_id.startswith("map.incident.")]
-    return {element.resource_id: element.content_description for element in found}
+    found = {cockpit.key_of(one.resource_id): one.content_description for one in cockpit.elements()}
+    return {key: words for key, words in found.items() if key.startswith("map.incident.")}
 
 
 def with_incidents(around: Surroundings, *incidents: RoadIncident, online: bool = True) -> Surroundings:
@@ -143,7 +144,7 @@ def test_of_two_marks_of_one_jam_the_route_s_is_shown(make: Make, around: Surrou
         ahead = replace(news.driving.ahead, jam_distance_m=jam_distance_m)
         cockpit = make(surroundings=replace(news, driving=replace(news.driving, ahead=ahead)))
         cockpit.open_app("map")
-        assert any(element.resource_id == "map.jam" for element in cockpit.elements()) is marked
+        assert any(element.resource_id == shown_id("map.jam") for element in cockpit.elements()) is marked
         assert bool(incidents_seen(cockpit)) is not marked
 
 
@@ -199,9 +200,9 @@ def test_every_place_is_reached_while_driving_by_a_short_way(cockpit: Cockpit) -
     def look_through(rows: str) -> None:
         for scrolls in range(5):
             for element in cockpit.elements():
-                if element.resource_id.startswith(rows) and element.is_clickable:
+                if cockpit.key_of(element.resource_id).startswith(rows) and element.is_clickable:
                     found.setdefault(element.text, scrolls)
-            if cockpit.scroll(None, Direction.DOWN).code is not FeedbackCode.OK:
+            if cockpit.scroll("", Direction.DOWN).code is not FeedbackCode.OK:
                 return
 
     cockpit.open_app("map")
@@ -209,7 +210,7 @@ def test_every_place_is_reached_while_driving_by_a_short_way(cockpit: Cockpit) -
     press(cockpit, "map.list.explore")
     kinds = [kind for kind in PlaceKind if kind not in (PlaceKind.HOME, PlaceKind.WORK)]
     for kind in kinds:
-        while all(element.resource_id != f"explore.kind.{kind}" for element in cockpit.elements()):
+        while all(element.resource_id != shown_id(f"explore.kind.{kind}") for element in cockpit.elements()):
             assert cockpit.scroll("explore.kinds", Direction.DOWN).code is FeedbackCode.OK
         press(cockpit, f"explore.kind.{kind}")
         look_through("explore.place.")

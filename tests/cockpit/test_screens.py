@@ -37,13 +37,14 @@ from automotive_cosim.contracts import (
     Surroundings,
     Weather,
 )
+from automotive_cosim.contracts.ids import resource_id as shown_id
 
 Make = Callable[..., Cockpit]
 DOES = (FeedbackCode.OK, FeedbackCode.READ_OUT, FeedbackCode.REFUSED)
 
 
 def press(cockpit: Cockpit, key: str) -> FeedbackCode:
-    element = next(element for element in cockpit.elements() if element.resource_id == key)
+    element = next(element for element in cockpit.elements() if element.resource_id == shown_id(key))
     return cockpit.tap(*middle(element)).code
 
 
@@ -209,7 +210,7 @@ def test_a_tap_on_the_middle_reaches_the_widget(screens: list[Cockpit]) -> None:
             if element.is_clickable:
                 hit = cockpit.tree.at(*middle(element))
                 assert hit is not None
-                assert hit.key == element.resource_id
+                assert shown_id(hit.key) == element.resource_id
 
 
 def test_every_usable_widget_does_something_and_every_other_says_why_not(screens: list[Cockpit]) -> None:
@@ -218,7 +219,7 @@ def test_every_usable_widget_does_something_and_every_other_says_why_not(screens
         for element in cockpit.elements():
             if not element.is_clickable or (cockpit.screen, element.resource_id) in known:
                 continue
-            if element.resource_id.startswith(("dock.", "status.")):
+            if cockpit.key_of(element.resource_id).startswith(("dock.", "status.")):
                 known.add((cockpit.screen, element.resource_id))
             twin = cockpit.copy()
             feedback = twin.tap(*middle(element))
@@ -226,7 +227,7 @@ def test_every_usable_widget_does_something_and_every_other_says_why_not(screens
             changed = twin.commands() != cockpit.commands() or twin.tree != cockpit.tree
             if element.is_enabled:
                 same = element.is_selected or element.is_scrollable or element.is_focused
-                same |= element.resource_id == "hvac.fan.max"
+                same |= element.resource_id == shown_id("hvac.fan.max")
                 assert same or feedback.code in DOES, element.resource_id
                 assert changed or feedback.code is not FeedbackCode.OK, element.resource_id
             else:
@@ -360,12 +361,12 @@ def test_long_lists_end_early_while_driving(make: Make, around: Surroundings, wa
                 continue
             cut.add(rows.key)
             assert len(seen) == 21 + 1
-            last = next(one for one in cockpit.elements() if one.resource_id == f"{rows.key}.rest")
+            last = next(one for one in cockpit.elements() if one.resource_id == shown_id(f"{rows.key}.rest"))
             assert not last.is_enabled
             assert "while driving" in last.content_description
             assert press(cockpit, f"{rows.key}.rest") is FeedbackCode.RESTRICTED
             cockpit.sense(still, 1.0)
-            assert all(element.resource_id != f"{rows.key}.rest" for element in cockpit.elements())
+            assert all(element.resource_id != shown_id(f"{rows.key}.rest") for element in cockpit.elements())
             assert cockpit.scroll(rows.key, Direction.DOWN).code is FeedbackCode.OK
     assert cut >= {"phone.contacts", "media.entries"}
 
@@ -415,7 +416,7 @@ def test_the_companion_stands_beside_every_app_without_a_map_of_its_own(
     make: Make, around: Surroundings, walker: Any
 ) -> None:
     for view in walker(make(size=ScreenSize.PORTRAIT)):
-        keys = {element.resource_id for element in view.cockpit.elements()}
+        keys = {view.cockpit.key_of(element.resource_id) for element in view.cockpit.elements()}
         assert len(keys & {"companion.map", "map.view", "home.map"}) == 1, view.name
 
 
@@ -429,9 +430,10 @@ def numbers(cockpit: Cockpit) -> dict[str, int]:
     """Index of every element of status bar and dock that is always there."""
     passing = {"status.notice", "status.limit_sign", *(f"status.{lamp}" for lamp in LAMPS)}
     return {
-        element.resource_id: index
+        key: index
         for index, element in enumerate(cockpit.elements())
-        if element.resource_id.startswith(("status.", "dock.")) and element.resource_id not in passing
+        for key in [cockpit.key_of(element.resource_id)]
+        if key.startswith(("status.", "dock.")) and key not in passing
     }
 
 

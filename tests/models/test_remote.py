@@ -22,6 +22,7 @@ from automotive_cosim.agents.native.grid import GuiScreen
 from automotive_cosim.agents.native.verbs import call_for
 from automotive_cosim.agents.settings import T3A
 from automotive_cosim.contracts import Action, ActionType
+from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.errors import ModelError, SetupError, UserError
 from automotive_cosim.models import ChatMessage, make_model
 from automotive_cosim.models.remote import _Endpoint
@@ -367,7 +368,7 @@ class Touches(Watcher):
         index = action.index
         if action.action_type is ActionType.OPEN_APP:  # for which not every format has a word
             ids = [element.resource_id for element in shot.seen]
-            index = ids.index(f"dock.{action.app_name}")
+            index = ids.index(shown_id(f"dock.{action.app_name}"))
             action = Action(ActionType.CLICK)
         if index is not None:
             box = shot.seen[index].bbox_pixels
