@@ -3,7 +3,8 @@
 #   docker build -t automotive-cosim .
 #   docker run --rm -v "$PWD/runs:/work/runs" automotive-cosim run
 #
-# libsumo's wheel requires the system libraries below (automotive_cosim.traffic.sumo.DEBIAN_PACKAGES).
+# libsumo's wheel requires the system libraries below (automotive_cosim.traffic.sumo.DEBIAN_PACKAGES); with libfribidi0,
+# Pillow sets Arabic and Hebrew names.
 FROM python:3.11-slim AS build
 COPY . /source
 RUN python -m pip install --no-cache-dir build && python -m build --wheel --outdir /dist /source
@@ -11,7 +12,7 @@ RUN python -m pip install --no-cache-dir build && python -m build --wheel --outd
 FROM python:3.11-slim
 ARG EXTRAS=llm,report
 RUN apt-get update \
-    && apt-get install -y --no-install-recommends libgl1 libx11-6 libxext6 libxrender1 libatomic1 libexpat1 \
+    && apt-get install -y --no-install-recommends libgl1 libx11-6 libxext6 libxrender1 libatomic1 libexpat1 libfribidi0 \
     && rm -rf /var/lib/apt/lists/*
 COPY constraints.txt /tmp/constraints.txt
 COPY --from=build /dist /tmp/dist

@@ -41,6 +41,10 @@ class Oracle:
     def __init__(self) -> None:
         self._moves: deque[Move] = deque()
         self._end = Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE)
+        self._count = 0
+        self.begun = 0
+        """Number of the move that the last action belongs to, a repeated tap counted as several; with all of them
+        done, how many there were."""
         self._pressed = 0
         self._lists_seen: set[str] = set()
         self._list = ""
@@ -75,6 +79,7 @@ class Oracle:
         for move in instance.moves if moves is None else moves:
             repeats = move.times if isinstance(move, Tap) else 1
             self._moves.extend([move] * repeats)
+        self._count = len(self._moves)
         reason = min(instance.half.reasons, default=None)
         self._end = Action(ActionType.STATUS, goal_status=declares or instance.half.declares, reason=reason)
 
@@ -90,6 +95,7 @@ class Oracle:
         while self._moves and _is_reached(self._moves[0], elements, observation.said):
             self._moves.popleft()
             self._pressed = 0
+        self.begun = self._count - len(self._moves)
         if not self._moves:
             return self._end
         match self._moves[0]:

@@ -28,7 +28,7 @@ FRONT_LEFT = {TYRE.FRONT_LEFT.path: param("kpa")}
 FROST = Weather(-16.0, 85.0, 0.0, 3, 90.0, 9000.0, 6.0)
 MILD = Weather(14.0, 70.0, 0.0, 3, 90.0, 9000.0, 6.0)
 NOW_OR_NEVER = Deadline(30.0, "requested at once; a card terminal times out after half a minute")
-SOFT = Deadline(60.0, "a monitor may take ten minutes (UN R141, 5.2); someone asked to look takes one at most")
+SOFT = Deadline(30.0, "ten taps at 2.5 s (Card, Moran and Newell 1983): somebody asked to look has seen all tyres")
 
 PAY = Task(
     id="apps_pay_on_the_move",

@@ -32,6 +32,11 @@ PARIS = Start("paris_centre", "centre")
 AT_THE_KERB = Start("paris_centre", "centre", parked=True)
 COMFORT = Deadline(30.0, "a wish for comfort: the driver would reach for the knob within half a minute")
 ERRAND = Deadline(60.0, "an errand on the screen: a passenger would have it done within a minute")
+LOCKED_OUT = Deadline(
+    12.0,
+    "four taps at 2.5 s (Card, Moran and Newell 1983) show that it is locked, and a driver who does it himself may "
+    "look away for 12 s in total (NHTSA 2013)",
+)
 TALK = Deadline(60.0, "an errand: a passenger would have asked, or looked, and done it within a minute")
 LOOKS = frozenset({"messages.read"})
 """What may be commanded besides where something has to be found out."""
@@ -136,7 +141,11 @@ def locked(
         says,
         Half(Start(scenario, trip, parked=True), AT_REST, goal, moves, ERRAND, Basis.WISH, may_write=may_write),
         decline(
-            Start(scenario, trip), ON_THE_WAY, ERRAND, Basis.WISH, reasons=(Reason.SAFETY, Reason.NOT_POSSIBLE)
+            Start(scenario, trip),
+            ON_THE_WAY,
+            LOCKED_OUT,
+            Basis.WISH,
+            reasons=(Reason.SAFETY, Reason.NOT_POSSIBLE),
         ),
         difference="motion: parked, where it can be done, or moving, where the car locks it",
         parameters=parameters,
@@ -202,6 +211,7 @@ def unclear(
     look: tuple[Move, ...],
     difference: str,
     parameters: Mapping[str, Choices],
+    find: tuple[Move, ...] = (),
     trigger: Trigger = WHEN_WRITTEN,
     deadline: Deadline = TALK,
     scenarios: tuple[str, ...] = (),
@@ -224,6 +234,7 @@ def unclear(
         told: start of the second half, in which what is meant can be found out.
         untold: start of the first half, which looks the same at first sight.
         look: how to find it out.
+        find: where the choices are to be seen, unless every phrasing names them.
         difference: what the second half changes, as in ``Task.difference``.
         parameters: what is drawn, among it what is meant.
         trigger: what hands over.
@@ -236,7 +247,7 @@ def unclear(
         untold,
         trigger,
         AllOf((AskedFirst(topic), goal)),
-        (Consult(question), *moves),
+        (*find, Consult(question), *moves),
         deadline,
         Basis.WISH,
         may_write=LOOKS,

@@ -20,9 +20,14 @@ SCHOOLS = ("Hill School", "River School", "Oak School", "Meadow School")
 AVOIDED = {"toll roads": "tolls", "tunnels": "tunnels"}
 
 
+def _of(kind: str) -> tuple[Move, ...]:
+    """The places of that kind."""
+    return Open("map"), Tap("map.list.explore"), Tap(f"explore.kind.{kind}")
+
+
 def _to(kind: str, name: str) -> tuple[Move, ...]:
     """Guidance to a place of that kind."""
-    return Open("map"), Tap("map.list.explore"), Tap(f"explore.kind.{kind}"), Tap(text=name), SETS_OUT
+    return *_of(kind), Tap(text=name), SETS_OUT
 
 
 TASKS = (
@@ -109,6 +114,7 @@ TASKS = (
         untold=wrote(PARIS, ("{school}", "The outing ends at four. Please be punctual.")),
         told=wrote(PARIS, ("{school}", "The outing ends at four, at the {which} Museum. Please be punctual.")),
         look=read_out("{school}"),
+        find=_of("museum"),
         difference="content: the school writes when the outing ends, or also where",
         parameters={"which": ("City", "Science", "Modern", "Maritime"), "school": SCHOOLS},
         dimension=Dimension.IMPLICIT_INTENT,
@@ -188,6 +194,7 @@ TASKS = (
         untold=wrote(PARIS, ("{who}", "I'm on the train, we're on time.")),
         told=wrote(PARIS, ("{who}", "I'm on the train to {which} Station, we're on time.")),
         look=read_out("{who}"),
+        find=_of("station"),
         difference="content: she writes that she is on the train, or also where she gets off",
         parameters={"which": ("Central", "East", "West"), "who": FRIENDS},
         dimension=Dimension.IMPLICIT_INTENT,

@@ -49,6 +49,7 @@ TASKS = (
         untold=PARIS,
         told=replace(PARIS, signals=only(LANE, True, False)),
         look=ASSIST,
+        find=ASSIST,
         difference="settings: lane keeping and lane departure are both on, or only one of them",
         parameters={"which": tuple(LANE)},
         trigger=ON_THE_WAY,
@@ -77,6 +78,7 @@ TASKS = (
         untold=PARIS,
         told=replace(PARIS, signals=only(BEEPERS, True, False)),
         look=ASSIST,
+        find=ASSIST,
         difference="settings: blind spot and parking sensors are both on, or only one of them",
         parameters={"which": tuple(BEEPERS)},
         trigger=ON_THE_WAY,
@@ -103,12 +105,15 @@ TASKS = (
         SignalIs(ADAS.CRUISE_GAP, (param("which"),)),
         *ASSIST,
         Tap("adas.cruise_gap", times=param("which", TAPS)),
-        untold=wrote(CLOSE_SET, ("{who}", "Well done yesterday! Mind the gap, and see you on Monday.")),
+        untold=wrote(
+            CLOSE_SET, ("{who}", "Well done yesterday! 1.5 or 2.5 seconds, you know your gap. See you on Monday.")
+        ),
         told=wrote(
-            CLOSE_SET, ("{who}", "Well done yesterday! Keep a gap of {which} seconds, and see you on Monday.")
+            CLOSE_SET, ("{who}", "Well done yesterday! {which} seconds, that's your gap. See you on Monday.")
         ),
         look=read_out("{who}"),
-        difference="content: the instructor reminds of the gap, or also states it",
+        find=read_out("{who}"),
+        difference="content: the instructor names two gaps, or the one",
         parameters={"which": (1.5, 2.5), "who": ("Ms Novak", "Mr Novak", "Ms Stern", "Mr Stern")},
     ),
     unclear(
@@ -127,10 +132,11 @@ TASKS = (
         *ASSIST,
         TapUntil("adas.limiter_speed.increase", "adas.limiter_speed.value", "{which} km/h"),
         Tap("adas.limiter"),
-        untold=wrote(SLOW_SET, ("{who}", "Please don't drive so fast with me today!")),
-        told=wrote(SLOW_SET, ("{who}", "Please don't drive faster than {which} with me today!")),
+        untold=wrote(SLOW_SET, ("{who}", "No faster than 30 or 40 with me today, as I told you!")),
+        told=wrote(SLOW_SET, ("{who}", "No faster than {which} with me today, as I told you!")),
         look=read_out("{who}"),
-        difference="content: the passenger asks not to go fast, or also says how fast at most",
+        find=read_out("{who}"),
+        difference="content: the passenger names two speeds, or the one",
         parameters={"which": (30, 40), "who": ("Grandma", "Grandpa", "Aunt Ida", "Uncle Leo")},
     ),
     unclear(

@@ -753,7 +753,6 @@ BEDTIME = meant(
             on(REAR_RIGHT, Kind.CHILD, asleep=True),
             signals=_CINEMA,
         ),
-        deadline=ERRAND,
     ),
     "occupants: both children are asleep, or one is awake",
 )

@@ -56,7 +56,7 @@ class Extra(NamedTuple):
 
 EXTRAS = {
     "browser": Extra("playwright", "the tests of the pages in a browser"),
-    "import": Extra("osmium", "scenarios import, day and download"),
+    "import": Extra("osmium", "scenarios import and download"),
     "inspect": Extra("inspect_ai", "inspect eval automotive_cosim/cockpit"),
     "llm": Extra("openai", "--model openai/NAME"),
     "mcp": Extra("mcp", "mcp"),
@@ -116,14 +116,17 @@ def _sumo() -> Finding:
 
 
 def _fonts() -> Finding:
-    from automotive_cosim.cockpit.theme import Weight, font
+    from automotive_cosim.cockpit.theme import Weight, font, sets_right_to_left
     from automotive_cosim.errors import SetupError
 
     try:
-        for weight in Weight:
+        for weight in set(Weight) - {Weight.RIGHT_TO_LEFT}:
             font(weight, 16)
     except (SetupError, OSError) as error:
         return Finding("fonts", Health.MISSING, str(error), "pip install --force-reinstall automotive-cosim")
+    if not sets_right_to_left():
+        fix = "for those: pip install 'automotive-cosim[report]'; on Debian also apt-get install libfribidi0"
+        return Finding("fonts", Health.OK, "all faces of the screens, but no Arabic and Hebrew", fix)
     return Finding("fonts", Health.OK, "all faces of the screens")
 
 

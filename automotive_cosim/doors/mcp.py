@@ -19,11 +19,10 @@ from mcp_types import CallToolResult, ContentBlock, ImageContent, TextContent
 from pydantic import Field
 
 from automotive_cosim import __version__
-from automotive_cosim.agents.settings import geo_input
 from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Json
+from automotive_cosim.doors.shared import episode_spec
 from automotive_cosim.episode.listener import Listener
-from automotive_cosim.episode.specification import EpisodeSpec, feedback_of, screen_of, see_of
 from automotive_cosim.errors import CosimError, InfrastructureError, UnknownNameError
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.run.plan import choose
@@ -52,7 +51,7 @@ def make_server(service: EpisodeService) -> MCPServer[Any]:
     server: MCPServer[Any] = MCPServer(
         "automotive-cosim", instructions=INSTRUCTIONS, version=__version__, log_level="WARNING"
     )
-    tools = _Tools(service)
+    tools = CockpitTools(service)
     for tool in (tools.list_tasks, tools.start, tools.observe, tools.act, tools.finish):
         server.add_tool(tool)
     return server
@@ -73,7 +72,7 @@ def _told(call: Callable[..., CallToolResult]) -> Callable[..., CallToolResult]:
     return told
 
 
-class _Tools:
+class CockpitTools:
     """The tools; the server calls them on threads of its own. Their docstrings are what the client reads."""
 
     def __init__(self, service: EpisodeService) -> None:
@@ -112,16 +111,8 @@ class _Tools:
         ] = None,
     ) -> CallToolResult:
         """Start an episode: a car drives until the situation of the task arises, then you take over its cockpit."""
-        spec = EpisodeSpec(
-            task,
-            half,
-            scenario,
-            seed=seed,
-            geo=geo_input(geo),
-            see=see_of(see),
-            feedback=feedback_of(feedback),
-            screen=screen_of(screen),
-        )
+        seen = {"geo": geo, "see": see, "feedback": feedback, "screen": screen}
+        spec = episode_spec(task=task, half=half, scenario=scenario, seed=seed, **seen)
         return _turn(self._service.start(spec, _channels(channels), _Progress(context)))
 
     @_told

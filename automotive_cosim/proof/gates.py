@@ -11,6 +11,7 @@
 | undone | with the goal's own writes reverted, it fails |
 | near | another zone, value or direction fails |
 | coupled | the reference solution and one switch more fails, for every switch of the car |
+| knowable | what was drawn has been told before the reference solution uses it |
 | lawful | the reference solution breaks no sign and no verified rule, nor has cruise control break one |
 | trivial | no negative control wins both halves of a pair, or the only half |
 | random | random actions win at most one of twenty |
@@ -43,6 +44,7 @@ from automotive_cosim.geo.breaches import EQUAL_UP_TO_KMH, binding_limit, violat
 from automotive_cosim.geo.rules import Status
 from automotive_cosim.proof import mutations
 from automotive_cosim.proof.ground import Ground, Played, Script, finish
+from automotive_cosim.proof.knowledge import Drawn, unknown
 from automotive_cosim.proof.place import mistagged
 from automotive_cosim.proof.sight import undeclared
 from automotive_cosim.proof.world import implausible
@@ -50,7 +52,8 @@ from automotive_cosim.tasking.binding import rules_of
 from automotive_cosim.tasking.checks import NothingDone
 from automotive_cosim.tasking.dialogue import Topic
 from automotive_cosim.tasking.moves import Consult, Move
-from automotive_cosim.tasking.task import Basis, Half, Task
+from automotive_cosim.tasking.parameters import FromCockpit
+from automotive_cosim.tasking.task import Basis, Differs, Half, Task
 from automotive_cosim.tasking.triggers import All, Parked, Standing, TriggerCondition
 from automotive_cosim.tasking.verdict import judge
 from automotive_cosim.traffic.fork import Simulations
@@ -191,6 +194,34 @@ def lawful(ground: Ground, right: Played) -> Wrong:
     limit, set_kmh = binding_limit(start.context), end.signals[ADAS.CRUISE_SPEED.path]
     if engaged and limit is not None and limit.status is Status.VERIFIED and set_kmh > limit.kmh + EQUAL_UP_TO_KMH:
         yield f"has cruise control hold {set_kmh:g} km/h where the limit is {limit.kmh:.0f} ({limit.rule})"
+
+
+def knowable(ground: Ground, right: Played) -> Wrong:
+    """Looks for acts of the reference solution that depend on what nothing observed before has told."""
+    instance, cockpit = ground.instance, ground.episode.world.cockpit
+    said = (words for words in ground.task.templates if words.format_map(instance.parameters) in instance.goal)
+    choices = {
+        name: cockpit.content[drawn.kind] if isinstance(drawn, FromCockpit) else drawn
+        for name, drawn in ground.task.parameters.items()
+    }
+    drawn = Drawn(instance.parameters, choices)
+    half = ground.task.half(ground.half_name)
+    yield from unknown(half, next(said), drawn, right.steps, ground.move_of_action)
+
+
+def parted(grounds: dict[str, Ground]) -> Wrong:
+    """Looks for halves that differ in content alone, and whose solutions part before either has seen it."""
+    if any(ground.task.differs != {Differs.CONTENT} or ground.half.needed_topics for ground in grounds.values()):
+        return
+    if len(grounds) < 2 or not all(ground.half.moves for ground in grounds.values()):
+        return
+    one, other = (ground.reference for ground in grounds.values())
+    for mine, theirs, act, another in zip(one.steps, other.steps, one.actions, other.actions, strict=False):
+        if (mine.elements, mine.feedback, mine.said) != (theirs.elements, theirs.feedback, theirs.said):
+            return
+        if act != another:
+            yield f"the halves part at action {mine.number + 1}, before anything seen differs"
+            return
 
 
 def random(ground: Ground) -> Wrong:

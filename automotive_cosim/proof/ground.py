@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -20,7 +20,7 @@ from automotive_cosim.errors import ActionError, OutOfBudgetError
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.interface.trace import Hash, Step
 from automotive_cosim.tasking.instance import Instance
-from automotive_cosim.tasking.moves import Move
+from automotive_cosim.tasking.moves import Move, Tap
 from automotive_cosim.tasking.task import Half, Task
 from automotive_cosim.tasking.verdict import Verdict
 from automotive_cosim.traffic.fork import Simulations
@@ -99,6 +99,7 @@ class Ground:
     half_name: str
     seed: int
     episode: Episode
+    _begun: list[int] = field(default_factory=list)
 
     @classmethod
     def reach(
@@ -130,7 +131,15 @@ class Ground:
     @cached_property
     def reference(self) -> Played:
         """The episode of the reference solution."""
-        return self.play(self.oracle())
+        return self.play(_Noting(self.oracle(), self._begun))
+
+    @property
+    def move_of_action(self) -> tuple[int | None, ...]:
+        """For each action of the reference solution, the number of the move it belongs to; None for its end."""
+        assert self.reference.steps
+        taps = [move.times if isinstance(move, Tap) else 1 for move in self.half.moves]
+        numbers = [number for number, times in enumerate(taps) for _ in range(times)]
+        return tuple(numbers[begun] if begun < len(numbers) else None for begun in self._begun)
 
     def oracle(self, moves: Sequence[Move] | None = None, declares: GoalStatus | None = None) -> Oracle:
         """An oracle for this instance, or for other moves or another declaration."""
@@ -153,6 +162,19 @@ class Ground:
     def close(self) -> None:
         """Ends the drive."""
         self.episode.close()
+
+
+@dataclass(slots=True)
+class _Noting:
+    """An oracle, with a note of how far it was at each action."""
+
+    oracle: Oracle
+    begun: list[int]
+
+    def act(self, observation: Observation) -> Action:
+        action = self.oracle.act(observation)
+        self.begun.append(self.oracle.begun)
+        return action
 
 
 SENT = frozenset({"alerts", "requests", "horn", "washer"})

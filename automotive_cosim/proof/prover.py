@@ -27,6 +27,7 @@ GATES = (
     "undone",
     "near",
     "coupled",
+    "knowable",
     "lawful",
     "trivial",
     "random",
@@ -117,6 +118,8 @@ class Prover:
             for gate in ("trivial", "law", "sight", "place"):
                 if gate in self._chosen:
                     found.take(gate, getattr(gates, gate)(grounds))
+            if "knowable" in self._chosen:
+                found.take("knowable", gates.parted(grounds))
             if "reach" in self._chosen:
                 found.take("reach", gates.reach(CATALOGUE[task_id], seed, self._simulations))
             if "residue" in self._chosen:
@@ -152,7 +155,7 @@ class Prover:
         for gate in ("oracle", "start", "world", "slip", "prefix", "late", "random"):
             if gate in self._chosen:
                 found.take(gate, getattr(gates, gate)(ground), half)
-        for gate in ("undone", "near", "coupled", "lawful"):
+        for gate in ("undone", "near", "coupled", "knowable", "lawful"):
             if gate in self._chosen and right.success:
                 found.take(gate, getattr(gates, gate)(ground, right), half)
         for gate in ("leak", "road", "repeat"):

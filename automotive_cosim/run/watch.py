@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Sequence
 from contextlib import ExitStack, closing
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from automotive_cosim.agents import Agent, Thinker
@@ -13,30 +13,23 @@ from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import KMH_PER_MPS, Element, Json
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.drives.departure import depart
-from automotive_cosim.drives.families import FAMILIES
-from automotive_cosim.drives.family import Family
-from automotive_cosim.drives.harm import distraction_s
-from automotive_cosim.drives.judge import JudgedEvent
+from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.plan import DrivePlan
-from automotive_cosim.drives.score import score
+from automotive_cosim.drives.result import DriveResult, result_of
+from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.drives.watch import Watch
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.loop import play
-from automotive_cosim.episode.specification import Clock, Conditions
-from automotive_cosim.errors import UnknownNameError
+from automotive_cosim.episode.specification import Clock, End
 from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.interface.feedback import FeedbackDetail
-from automotive_cosim.interface.observe import See
+from automotive_cosim.interface.observe import Channel, See
 from automotive_cosim.interface.trace import Step, canonical, plain
 from automotive_cosim.models.base import ModelReply
 from automotive_cosim.run.episode import Replayed, Timed
 from automotive_cosim.run.watch_row import WatchRow
 from automotive_cosim.traffic.fork import Simulations
-
-MOST_STEPS = 100_000
-"""Far more than a drive has seconds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,17 +60,6 @@ class WatchRecord:
     """Action, thinking time and result of each step, with hashes of the state that followed."""
 
 
-def family_named(name: str) -> Family:
-    """The family of drives by name.
-
-    Raises:
-        UnknownNameError: there is none.
-    """
-    if name not in FAMILIES:
-        raise UnknownNameError("family of drives", name, FAMILIES, "automotive-cosim drive --list")
-    return FAMILIES[name]
-
-
 def planned_row(job_id: str, setup: WatchSetup) -> WatchRow:
     """The row of a drive before it has run."""
     family = family_named(setup.family)
@@ -97,6 +79,22 @@ def planned_row(job_id: str, setup: WatchSetup) -> WatchRow:
         feedback=setup.feedback,
         screen=setup.screen,
     )
+
+
+def judged_row(
+    planned: WatchRow, end: End, channels: tuple[Channel, ...], result: DriveResult, **totals: Any
+) -> WatchRow:
+    """The row of a drive that is over.
+
+    Args:
+        planned: its row before it had run.
+        end: why it is over.
+        channels: what the agent was given.
+        result: what came of it.
+        totals: fields of the row about the agent's model.
+    """
+    found = {entry.name: getattr(result, entry.name) for entry in fields(result)}
+    return replace(planned, end=end, channels=channels, **found, **totals)
 
 
 def run_watch(
@@ -123,30 +121,16 @@ def run_watch(
         InfrastructureError: traffic or model failed.
     """
     planned = planned_row(job_id, setup)
-    drive = plan or family_named(setup.family).draw(setup.seed)
+    spec = DriveSpec(setup.family, setup.seed, setup.geo, setup.see, setup.feedback, setup.screen)
     with ExitStack() as ends:
         own = simulations or ends.enter_context(closing(Simulations()))
-        world = depart(drive, own, listener)
-        try:
-            conditions = Conditions(
-                agent.channels,
-                setup.geo,
-                MOST_STEPS,
-                drive.duration_s,
-                see=setup.see,
-                feedback=setup.feedback,
-                screen=setup.screen,
-            )
-            watch = Watch.depart_with(world, conditions, listener)
-        except BaseException:
-            world.close()
-            raise
+        watch = spec.begin(own, agent.channels, listener, plan)
         ends.callback(watch.close)
         meter, channels = _Meter(setup, agent), tuple(sorted(agent.channels))
         agent.reset(watch.goal)
         end = play(watch, agent, (meter.stepped,), meter.thought_s)
         return WatchRecord(
-            row=replace(planned, end=end, channels=channels, **_figures(watch), **meter.totals()),
+            row=judged_row(planned, end, channels, result_of(watch), **meter.totals()),
             timeline=_timeline(watch),
             steps=tuple(_steps(watch)),
         )
@@ -190,45 +174,6 @@ class _Meter:
             "cost_usd": sum(reply.cost_usd for reply in replies),
             "model_seconds": round(sum(reply.seconds for reply in replies), 3),
         }
-
-
-def _figures(watch: Watch) -> dict[str, Any]:
-    judgement = watch.judgement
-    assert judgement is not None
-    begun_s = watch.moments[0].time_s
-    found = score(judgement, watch.seconds)
-    mine, nobodys = watch.harms
-    texts = [str(step.action.text) for step in watch.steps if step.action is not None and step.action.text]
-    return {
-        "agent_error": watch.failure,
-        "score": found,
-        "value": found.value,
-        "harm": mine,
-        "baseline_harm": nobodys,
-        "distraction_s": distraction_s(watch.acts, texts),
-        "events": tuple(_since(event, begun_s) for event in judgement.events),
-        "acts": tuple(replace(act, time_s=round(act.time_s - begun_s, 3)) for act in judgement.acts),
-        "steps": len(watch.steps) - 1,
-        "waits": watch.waits,
-        "wakes": watch.wakes,
-        "trace_sha256": watch.trace_sha256,
-    }
-
-
-def _since(event: JudgedEvent, begun_s: float) -> JudgedEvent:
-    """The event with times since departure."""
-
-    def since(time_s: float | None) -> float | None:
-        return None if time_s is None else round(time_s - begun_s, 3)
-
-    return replace(
-        event,
-        observable_s=round(event.observable_s - begun_s, 3),
-        obliged_s=since(event.obliged_s),
-        deadline_s=since(event.deadline_s),
-        ends_s=round(event.ends_s - begun_s, 3),
-        acted_s=since(event.acted_s),
-    )
 
 
 def _timeline(watch: Watch) -> Json:

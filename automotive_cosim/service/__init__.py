@@ -5,6 +5,8 @@
 episodes   the service: ids, a lock per episode, limits, expiry of idle ones
 turn       what an agent is told after each step, and the outcome at the end; as JSON
 
+An episode is one on a task, or whatever else can begin a session and say what came of it (``Startable``): a drive.
+
 There is no transport in it; ``doors`` adapts it to protocols.
 """
 

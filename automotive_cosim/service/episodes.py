@@ -8,12 +8,14 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from typing import Any, Protocol
 
 from automotive_cosim.cockpit.actions import check, parse
 from automotive_cosim.contracts import Action, Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.listener import Listener
+from automotive_cosim.episode.session import Session
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import End, EpisodeSpec, SeedSource
 from automotive_cosim.errors import ActionError, InfrastructureError, UserError
@@ -41,10 +43,66 @@ class ServiceLimits:
             )
 
 
+class Judged(Protocol):
+    """The result of an episode that is over."""
+
+    @property
+    def trace_sha256(self) -> str:
+        """Hash of all steps: equal for the same specification and actions, whoever sent them."""
+        ...
+
+    def as_json(self) -> Json:
+        """It as a JSON object."""
+        ...
+
+
+class Startable(Protocol):
+    """What the service can run."""
+
+    def begin(self, simulations: Simulations, channels: frozenset[Channel], listener: Listener | None) -> Session:
+        """The session, which the service closes."""
+        ...
+
+    def outcome(self, episode_id: str, session: Any) -> Judged:
+        """What came of the session that ``begin`` returned, once it is over."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class _OnTask:
+    """An episode on a task."""
+
+    spec: EpisodeSpec
+
+    def begin(self, simulations: Simulations, channels: frozenset[Channel], listener: Listener | None) -> Episode:
+        spec = self.spec
+        hand_over = SituationFinder(spec, simulations, listener=listener).find(SeedSource(spec.seed).next())
+        try:
+            return Episode.take_over(hand_over, spec.conditions(channels))
+        except BaseException:
+            hand_over.world.close()
+            raise
+
+    def outcome(self, episode_id: str, session: Episode) -> Outcome:
+        assert session.verdict is not None
+        return Outcome(
+            episode_id,
+            self.spec.task,
+            self.spec.half,
+            self.spec.seed,
+            str(session.end),
+            session.verdict.success,
+            len(session.steps) - 1,
+            round(session.seconds, 3),
+            session.trace_sha256,
+            session.verdict,
+        )
+
+
 @dataclass(slots=True)
 class _Running:
-    spec: EpisodeSpec
-    episode: Episode
+    spec: Startable
+    episode: Session
     used_s: float
     lock: threading.Lock = field(default_factory=threading.Lock)
 
@@ -79,12 +137,12 @@ class EpisodeService:
         threading.Thread(target=self._sweep, name="expiry of idle episodes", daemon=True).start()
 
     def start(
-        self, spec: EpisodeSpec, channels: frozenset[Channel] = ALL, listener: Listener | None = None
+        self, spec: EpisodeSpec | Startable, channels: frozenset[Channel] = ALL, listener: Listener | None = None
     ) -> EpisodeTurn:
-        """Drives to a task's hand-over and returns the first turn, with the episode's id.
+        """Drives to a task's hand-over, or begins what else is given, and returns the first turn, with its id.
 
         Args:
-            spec: what to run.
+            spec: the task's episode, or something else to run.
             channels: what the agent wants to see.
             listener: notified of the progress up to the hand-over, on this thread.
 
@@ -94,15 +152,10 @@ class EpisodeService:
             TrafficError: the traffic simulation failed.
         """
         with self._room() as episode_id:
-            finder = SituationFinder(spec, self._simulations, listener=listener)
-            hand_over = finder.find(SeedSource(spec.seed).next())
-            try:
-                episode = Episode.take_over(hand_over, spec.conditions(channels))
-            except BaseException:
-                hand_over.world.close()
-                raise
+            startable = _OnTask(spec) if isinstance(spec, EpisodeSpec) else spec
+            episode = startable.begin(self._simulations, channels, listener)
             with self._lock:
-                self._running[episode_id] = _Running(spec, episode, self._clock())
+                self._running[episode_id] = _Running(startable, episode, self._clock())
                 self._starting.discard(episode_id)
             if self._closed.is_set():
                 self._drop(episode_id)
@@ -136,8 +189,10 @@ class EpisodeService:
                 episode.step(known)
             return _turn(episode_id, episode)
 
-    def finish(self, episode_id: str) -> Outcome:
+    def finish(self, episode_id: str) -> Judged:
         """Judges the episode and closes it. One that is not over is cut off and judged as it is.
+
+        The rest of a drive that is cut off is driven without the agent.
 
         Raises:
             UserError: there is no such episode.
@@ -147,7 +202,7 @@ class EpisodeService:
             episode = running.episode
             if episode.end is None:
                 episode.cut_off(End.OUT_OF_BUDGET)
-            outcome = _outcome(episode_id, running)
+            outcome = running.spec.outcome(episode_id, episode)
             self._drop(episode_id)
             return outcome
 
@@ -221,22 +276,5 @@ class EpisodeService:
             running.episode.close()
 
 
-def _turn(episode_id: str, episode: Episode) -> EpisodeTurn:
+def _turn(episode_id: str, episode: Session) -> EpisodeTurn:
     return EpisodeTurn(episode_id, len(episode.steps) - 1, episode.observation, episode.end)
-
-
-def _outcome(episode_id: str, running: _Running) -> Outcome:
-    spec, episode = running.spec, running.episode
-    assert episode.verdict is not None
-    return Outcome(
-        episode_id,
-        spec.task,
-        spec.half,
-        spec.seed,
-        str(episode.end),
-        episode.verdict.success,
-        len(episode.steps) - 1,
-        round(episode.seconds, 3),
-        episode.trace_sha256,
-        episode.verdict,
-    )

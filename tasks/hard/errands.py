@@ -39,17 +39,17 @@ CITY = with_papers(Start("london", "bloomsbury", start="2026-11-18T16:10:00"), c
 UNION, SUN = "Union Market", "Sun Pharmacy"
 
 
+def _looked_up(kind: str, name: str) -> Moves:
+    return (Open("map"), Tap("map.list.explore"), Tap(f"explore.kind.{kind}"), Tap(text=name))
+
+
 def _via(kind: str, first: str, second_kind: str, second: str) -> Moves:
     return (
-        Open("map"),
-        Tap("map.list.explore"),
-        Tap(f"explore.kind.{second_kind}"),
-        Tap(text=second),
+        *_looked_up("shop", UNION),
+        *_looked_up("pharmacy", SUN),
+        *_looked_up(second_kind, second),
         SETS_OUT,
-        Open("map"),
-        Tap("map.list.explore"),
-        Tap(f"explore.kind.{kind}"),
-        Tap(text=first),
+        *_looked_up(kind, first),
         STOPS_THERE,
         *write_to(BEA),
         Tap(text=param("words")),

@@ -303,15 +303,20 @@ NEXT_ONE = hard(
 
 CITY = Start("london", "bloomsbury", start="2026-11-18T16:10:00")
 PHARMACIES = ("Linden Pharmacy", "Crown Pharmacy", "Park Pharmacy", "Sun Pharmacy", "Eagle Pharmacy")
-OTHERS_CLOSED = dict.fromkeys((*PHARMACIES, "Bridge Pharmacy"), "Open until 16:00")
+EVERY_PHARMACY = (*PHARMACIES, "Bridge Pharmacy")
+OTHERS_CLOSED = dict.fromkeys(EVERY_PHARMACY, "Closed since 16:00")
+HOURS = (
+    *letter(MALIK),
+    Open("map"),
+    Tap("map.list.explore"),
+    Tap("explore.kind.pharmacy"),
+    *(move for name in EVERY_PHARMACY for move in (Tap(text=name), Tap("place.back"))),
+)
 
 
 def _pharmacy(name: str) -> Moves:
     return (
-        *letter(MALIK),
-        Open("map"),
-        Tap("map.list.explore"),
-        Tap("explore.kind.pharmacy"),
+        *HOURS,
         Tap(text=name),
         SETS_OUT,
         *write_to(MALIK),
@@ -368,14 +373,7 @@ STILL_OPEN = hard(
             details=param("name", {n: OTHERS_CLOSED | {n: "Open until 17:00"} for n in PHARMACIES}),
         ),
         Entered("messages.sent", {"to": MALIK, "text": "No"}),
-        (
-            *letter(MALIK),
-            Open("map"),
-            Tap("map.list.explore"),
-            Tap("explore.kind.pharmacy"),
-            *write_to(MALIK),
-            Tap(text="No"),
-        ),
+        (*HOURS, *write_to(MALIK), Tap(text="No")),
         slips=(_pharmacy("{name}"),),
     ),
     "content: one pharmacy is open late, or all are closed by then",
@@ -384,17 +382,18 @@ STILL_OPEN = hard(
 )
 
 GOLDEN, FAMILY = "Golden Market", "Family Market"
+MARKETS = (Open("map"), Tap("map.list.explore"), Tap("explore.kind.shop"))
 
 
 def _by_way_of(market: str) -> Moves:
     return (
         Open("memo"),
+        *MARKETS,
+        Tap(text=GOLDEN),
         Open("map"),
         Tap(text="Home"),
         SETS_OUT,
-        Open("map"),
-        Tap("map.list.explore"),
-        Tap("explore.kind.shop"),
+        *MARKETS,
         Tap(text=market),
         STOPS_THERE,
         *write_to(BEA),
@@ -402,12 +401,12 @@ def _by_way_of(market: str) -> Moves:
     )
 
 
-def _markets(golden: str, family: str) -> Start:
+def _markets(golden: str) -> Start:
     return with_papers(
         CITY,
         contacts=knowing(BEA),
         memos=("Golden Market has the good bread", "Passport photos"),
-        details={GOLDEN: f"Open until {golden}", FAMILY: f"Open until {family}"},
+        details={GOLDEN: golden, FAMILY: "Open until 22:00"},
     )
 
 
@@ -437,7 +436,7 @@ BREAD_FIRST = hard(
         " instead, please. And write Bea '{words}'.",
     ),
     done(
-        _markets("20:00", "22:00"),
+        _markets("Open until 20:00"),
         _stops(GOLDEN),
         _by_way_of(GOLDEN),
         slips=(
@@ -447,7 +446,7 @@ BREAD_FIRST = hard(
         may_write=frozenset(),
     ),
     done(
-        _markets("15:00", "22:00"),
+        _markets("Closed since 15:00"),
         _stops(FAMILY),
         _by_way_of(FAMILY),
         slips=(_by_way_of(GOLDEN),),

@@ -69,6 +69,15 @@ def test_missing_fonts_are_found(monkeypatch):
     assert "font_roboto" in found.found
 
 
+def test_a_plain_installation_sets_no_arabic_and_is_ready_all_the_same(monkeypatch):
+    monkeypatch.setattr(theme, "find_spec", _no_spec(lambda name: name == "matplotlib"))
+    monkeypatch.setattr(theme, "sets_right_to_left", lambda: False)
+    theme.font.cache_clear()
+    found = doctor._fonts()
+    assert found.state is doctor.Health.OK
+    assert "libfribidi0" in found.fix
+
+
 def test_a_system_without_fork_is_limited_not_refused(monkeypatch):
     monkeypatch.delattr(os, "fork")
     assert doctor._processes().state is doctor.Health.LIMITED

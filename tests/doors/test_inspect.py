@@ -1,8 +1,10 @@
-"""Inspect's own evaluation over the cockpit: the reference solution wins, and its trace is the command line's."""
+"""Inspect's own evaluation over cockpit and drives: the reference gets the command line's trace and figures."""
 
 from collections.abc import Callable, Iterator
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -10,19 +12,26 @@ import pytest
 from automotive_cosim.agents import make_agent
 from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import Json
+from automotive_cosim.drives.families import FAMILIES
+from automotive_cosim.drives.watchers import RulePerfect
 from automotive_cosim.errors import TrafficError, UserError
+from automotive_cosim.interface.observe import ALL
+from automotive_cosim.report.drives import FIGURES, LEAST_DRIVES, WITH_INTERVAL, interval
 from automotive_cosim.run.episode import EpisodeSetup, Shot, Watcher, run_episode
+from automotive_cosim.run.watch import WatchRecord, WatchSetup, run_watch
 from automotive_cosim.service import EpisodeService
 from automotive_cosim.tasking.verdict import PARTS
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
 
 pytest.importorskip("inspect_ai", reason="the extra inspect is not installed")
+from inspect_ai import Task
 from inspect_ai import eval as evaluate
 from inspect_ai.log import EvalLog
 from inspect_ai.model import ModelOutput, ModelUsage, get_model
+from inspect_ai.scorer import SampleScore, Score
 
-from automotive_cosim.doors import inspect_tasks
+from automotive_cosim.doors import inspect_drives, inspect_play, inspect_tasks, shared
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore")]
 
@@ -47,22 +56,22 @@ def oracle(simulations: Simulations) -> tuple[list[Json], str | None]:
 
 @pytest.fixture
 def service(simulations: Simulations, monkeypatch: pytest.MonkeyPatch) -> Iterator[EpisodeService]:
-    with closing(EpisodeService(simulations, inspect_tasks.LIMITS)) as made:
-        monkeypatch.setattr(inspect_tasks, "shared_service", lambda: made)
+    with closing(EpisodeService(simulations, shared.LIMITS)) as made:
+        monkeypatch.setattr(inspect_play, "shared_service", lambda: made)
         yield made
 
 
 @pytest.fixture
 def inspect(service: EpisodeService, tmp_path: Path) -> Callable[..., EvalLog]:
-    def run(actions: list[Json], **options: Any) -> EvalLog:
+    def run(actions: list[Json], of: Task | None = None, **options: Any) -> EvalLog:
         usage = ModelUsage(input_tokens=1, output_tokens=1, total_tokens=2)
         outputs = [ModelOutput.for_tool_call("mockllm/model", "act", {"action": action}) for action in actions]
         outputs.append(ModelOutput.from_content("mockllm/model", "Done."))
         for output in outputs:
             output.usage = usage  # without it the mock model looks for a tokenizer in the network
         model = get_model("mockllm/model", custom_outputs=outputs)
-        cockpit = inspect_tasks.cockpit(tasks="hvac_fan_max", scenario="grid")
-        [log] = evaluate(cockpit, model=model, log_dir=str(tmp_path), display="none", **options)
+        of = of or inspect_tasks.cockpit(tasks="hvac_fan_max", scenario="grid")
+        [log] = evaluate(of, model=model, log_dir=str(tmp_path), display="none", **options)
         return log
 
     return run
@@ -126,3 +135,98 @@ def test_what_is_wrong_is_told() -> None:
     for wrong in ({"tasks": "no_such_task"}, {"geo": "moon"}, {"seeds": "one"}):
         with pytest.raises(UserError):
             inspect_tasks.cockpit(**wrong)
+
+
+# --- drives ------------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def short(monkeypatch: pytest.MonkeyPatch) -> str:
+    """A family of drives that are over after four minutes."""
+    family = FAMILIES["grid_june"]
+    shorter = replace(family.draw(55), duration_s=240.0)
+    drawn = SimpleNamespace(id=family.id, scenario=family.scenario, season=family.season, draw=lambda seed: shorter)
+    monkeypatch.setitem(FAMILIES, family.id, drawn)  # type: ignore[call-overload]
+    return family.id
+
+
+class Seeing(RulePerfect):
+    """Gets what Inspect's models get."""
+
+    channels = ALL
+
+
+@pytest.fixture
+def watched(short: str, simulations: Simulations) -> WatchRecord:
+    """The rule-perfect watcher's drive on the command line."""
+    return run_watch("rule-perfect", WatchSetup(short, 55), Seeing(), simulations=simulations)
+
+
+def test_the_rule_perfect_watchers_acts_give_the_command_lines_drive(inspect, short, watched) -> None:
+    acts = [step["action"] for step in watched.steps if step["action"]]
+    log = inspect(acts, inspect_tasks.drives(families=short, seeds=55, pictures=False))
+    assert log.status == "success", log.error
+    [sample] = log.samples
+    score, row = sample.scores["watched"], watched.row
+    assert row.score.met > 0
+    assert score.metadata["trace_sha256"] == row.trace_sha256
+    assert score.metadata["end"] == "watch_over"
+    assert list(score.value.values()) == [figure([row]) for _, figure, _ in FIGURES[:WITH_INTERVAL]]
+    assert [each.name for each in log.results.scores] == list(inspect_drives.SCORES)
+    assert [next(iter(each.metrics.values())).value for each in log.results.scores] == list(score.value.values())
+    assert not {"event", "obliged_s", "bait"} & set(sample.messages[1].content[0].text.split('"'))
+
+
+def test_the_rest_of_a_drive_that_a_limit_cuts_short_goes_on_without_the_model(inspect, service, short) -> None:
+    waits = [{"action_type": "wait", "seconds": 1}] * 9
+    log = inspect(waits, inspect_tasks.drives(short, 55), message_limit=6)
+    [sample] = log.samples
+    assert sample.limit.type == "message"
+    found = sample.scores["watched"]
+    assert (found.metadata["end"], found.metadata["sim_seconds"]) == ("out_of_budget", 240.0)
+    assert found.value["score"] == 0.0
+    assert not service._running
+
+
+def test_a_drive_that_the_road_breaks_is_an_error_of_the_sample(inspect, service, short, monkeypatch) -> None:
+    def fails(episode_id: str, action: Json) -> None:
+        raise TrafficError("the simulation died")
+
+    monkeypatch.setattr(service, "act", fails)
+    log = inspect([{"action_type": "wait"}], inspect_tasks.drives(short, 55))
+    assert log.status == "error"
+    assert "the simulation died" in log.samples[0].error.message
+    assert not log.samples[0].scores
+
+
+def test_figures_of_several_drives_are_the_reports_with_its_intervals(inspect, short, watched) -> None:
+    acts = [step["action"] for step in watched.steps if step["action"]]
+    [sample] = inspect(acts, inspect_tasks.drives(families=short, seeds=55)).samples
+    score = sample.scores["watched"]
+
+    def of(seed: int) -> SampleScore:
+        met = score.metadata["result"]["score"] | {"nuisances": seed % 3}
+        outcome = score.metadata | {"seed": seed, "result": score.metadata["result"] | {"score": met}}
+        return SampleScore(score=Score(value=score.value, metadata=outcome))
+
+    for count in (LEAST_DRIVES - 1, LEAST_DRIVES + 1):
+        rows = [
+            replace(watched.row, seed=seed, score=replace(watched.row.score, nuisances=seed % 3))
+            for seed in range(count)
+        ]
+        for name, figure in inspect_drives.SCORES.items():
+            found = inspect_drives.figure(name)([of(seed) for seed in range(count)])
+            bounds = interval(rows, figure)
+            assert found["value"] == figure(rows)
+            assert (found.get("low"), found.get("high")) == ((bounds.low, bounds.high) if bounds else (None, None))
+
+
+def test_samples_of_drives_are_families_and_seeds() -> None:
+    dataset = inspect_tasks.drives("grid,nordic_*", "0,3").dataset
+    families = {"grid_january", "grid_june", "nordic_december", "nordic_july"}
+    assert {(sample.metadata["family"], sample.metadata["seed"]) for sample in dataset} == {
+        (family, seed) for family in families for seed in (0, 3)
+    }
+    for wrong in ({"families": "moon_*"}, {"seeds": "-1"}, {"see": "nothing"}):
+        with pytest.raises(UserError):
+            inspect_tasks.drives(**wrong)

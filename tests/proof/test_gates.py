@@ -112,7 +112,7 @@ def test_a_sound_task_passes(ground, gate):
     assert list(getattr(gates, gate)(ground(SOUND))) == []
 
 
-@pytest.mark.parametrize("gate", ["undone", "near", "coupled", "lawful"])
+@pytest.mark.parametrize("gate", ["undone", "near", "coupled", "knowable", "lawful"])
 def test_a_sound_end_state_passes(ground, gate):
     stand = ground(SOUND)
     assert list(getattr(gates, gate)(stand, stand.reference)) == []
@@ -443,3 +443,27 @@ def test_asking_always_or_never_wins_only_where_a_half_does_not_care(ground, loo
     task = replace(ASKING, **halves)
     won = {why.partition(" wins")[0] for why in gates.trivial({name: ground(task, name) for name in halves})}
     assert won & TALKERS == winner
+
+
+EITHER = replace(
+    changed(moves=(Open("climate"), Tap("hvac.{seat}_seat_heating"))),
+    templates=("Warm a seat.", "Seat heating on.", "One seat, please.", "Heat this seat."),
+    parameters={"seat": ("driver", "passenger")},
+)
+
+
+def test_an_expert_who_guesses_is_seen(ground):
+    stand = ground(EITHER)
+    (wrong,) = gates.knowable(stand, stand.reference)
+    assert "depends on seat" in wrong
+    told = ground(replace(EITHER, templates=tuple(f"{words} {{seat}}" for words in EITHER.templates)))
+    assert list(gates.knowable(told, told.reference)) == []
+
+
+def test_halves_that_part_before_they_differ_are_seen(ground):
+    other = replace(EITHER.first, moves=(Open("climate"), Tap("hvac.passenger_seat_heating")))
+    blind = replace(SOUND, second=other, difference="content: a message that nobody opens, or none")
+    (wrong,) = gates.parted({half: ground(blind, half) for half in blind.halves})
+    assert wrong == "the halves part at action 2, before anything seen differs"
+    seen = replace(blind, second=replace(other, start=replace(GRID, signals={HVAC.FAN_SPEED.path: 70.0})))
+    assert list(gates.parted({half: ground(seen, half) for half in seen.halves})) == []

@@ -149,7 +149,7 @@ def test_a_drive_by_the_models_clock_is_repeated_exactly(sumo: None, monkeypatch
     family = FAMILIES["grid_june"]
     shorter = replace(family.draw(1), duration_s=110.0)
     drawn = SimpleNamespace(id=family.id, scenario=family.scenario, season=family.season, draw=lambda seed: shorter)
-    monkeypatch.setattr("automotive_cosim.run.watch.family_named", lambda name: drawn)
+    monkeypatch.setitem(FAMILIES, family.id, drawn)  # type: ignore[call-overload]
 
     class Slow(RulePerfect):
         """Takes another time for each answer, as a model does."""

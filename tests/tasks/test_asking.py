@@ -10,7 +10,7 @@ from automotive_cosim.contracts import Observation
 from automotive_cosim.tasking.checks import NotAsked
 from automotive_cosim.tasking.dialogue import topic_of
 from automotive_cosim.tasking.instance import Instance, draw
-from automotive_cosim.tasking.moves import Consult, Hear
+from automotive_cosim.tasking.moves import Consult, Hear, Open, Tap
 from automotive_cosim.tasking.parameters import names
 from automotive_cosim.tasking.task import Module, Suite, Task
 from automotive_cosim.tasks import CATALOGUE
@@ -40,7 +40,8 @@ def test_the_question_comes_first_names_every_choice_and_gets_what_is_meant(task
     for instance in drawn(task):
         (topic,) = instance.half.topics
         question = question_of(instance)
-        assert isinstance(instance.moves[0], Consult)
+        asks_at = next(number for number, move in enumerate(instance.moves) if isinstance(move, Consult))
+        assert all(isinstance(move, Open | Tap) for move in instance.moves[:asks_at])  # only looks before
         assert len(question) <= TEXT_LIMIT
         assert topic.named(question) == len(topic.choices) >= 2
         assert topic_of(question, instance.half.topics) is topic

@@ -46,6 +46,13 @@ def test_a_verdict_has_a_basis_and_a_deadline_its_reason(task, half):
     assert bool(played.rule) == (played.basis is not Basis.WISH)
 
 
+@pytest.mark.parametrize(("task", "half"), HALVES, ids=IDS)
+def test_a_refusal_does_not_wait_for_luck(task, half):
+    """Random actions decline sooner or later; a person has half a minute at most."""
+    played = task.half(half)
+    assert played.declares is GoalStatus.COMPLETE or played.deadline.seconds <= 30
+
+
 @pytest.mark.parametrize("task", [task for task in TASKS if task.second], ids=lambda task: task.id)
 def test_what_is_right_in_one_half_is_wrong_in_the_other(task):
     assert (task.first.goal, task.first.declares) != (task.second.goal, task.second.declares)

@@ -8,8 +8,21 @@ from automotive_cosim.drives.families.country import COUNTRY
 from automotive_cosim.drives.families.motorways import MOTORWAYS
 from automotive_cosim.drives.families.towns import TOWNS
 from automotive_cosim.drives.family import Family
+from automotive_cosim.errors import UnknownNameError
 
 FAMILIES: Mapping[str, Family] = {family.id: family for family in (*COUNTRY, *MOTORWAYS, *TOWNS)}
 """Every family by its id."""
 
-__all__ = ["FAMILIES"]
+
+def family_named(name: str) -> Family:
+    """The family of drives by name.
+
+    Raises:
+        UnknownNameError: there is none.
+    """
+    if name not in FAMILIES:
+        raise UnknownNameError("family of drives", name, FAMILIES, "automotive-cosim drive --list")
+    return FAMILIES[name]
+
+
+__all__ = ["FAMILIES", "family_named"]

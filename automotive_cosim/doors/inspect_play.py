@@ -1,0 +1,130 @@
+"""What both of Inspect's tasks share: the tool ``act``, and an episode from start to verdict."""
+
+# pyright: reportMissingImports=false
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Callable
+from typing import Any
+
+import anyio
+import anyio.to_thread
+from inspect_ai.model import ChatMessageSystem, ChatMessageUser, Content, ContentImage, ContentText
+from inspect_ai.solver import Generate, TaskState
+from inspect_ai.tool import ToolDef, ToolError
+
+from automotive_cosim.agents.settings import geo_input
+from automotive_cosim.cockpit.actions import grammar
+from automotive_cosim.contracts import Json
+from automotive_cosim.doors.shared import shared_service
+from automotive_cosim.episode.specification import EpisodeSpec, feedback_of, screen_of, see_of
+from automotive_cosim.errors import InfrastructureError, UserError
+from automotive_cosim.interface.observe import ALL, Channel
+from automotive_cosim.service import EpisodeService
+from automotive_cosim.service.episodes import Startable
+from automotive_cosim.service.turn import EpisodeTurn
+
+OUTCOME = "automotive_cosim/outcome"
+"""Key of an episode's outcome in its sample's store."""
+
+
+def words(given: object) -> list[str]:
+    """Words separated by commas; Inspect's command line makes a list of them."""
+    parts = given if isinstance(given, list) else str(given).split(",")
+    return [str(part).strip() for part in parts]
+
+
+def seeds_of(given: int | str | list[int]) -> list[int]:
+    """Seeds, one or several.
+
+    Raises:
+        UserError: not whole numbers from 0.
+    """
+    numbers = words(given)
+    if not all(number.isdecimal() for number in numbers):
+        raise UserError(f"seeds are {', '.join(numbers)}; give whole numbers from 0, separated by commas")
+    return [int(number) for number in numbers]
+
+
+def conditions_of(geo: str, see: str, feedback: str, screen: str) -> dict[str, str]:
+    """The conditions of a sample, as its metadata.
+
+    Raises:
+        UnknownNameError: there is no such word.
+    """
+    return {
+        "geo": str(geo_input(geo)),
+        "see": str(see_of(see)),
+        "feedback": str(feedback_of(feedback)),
+        "screen": str(screen_of(screen)),
+    }
+
+
+async def played(
+    state: TaskState, generate: Generate, spec: EpisodeSpec | Startable, instructions: str, pictures: bool
+) -> TaskState:
+    """Plays an episode, in which the model acts until it is over, the model stops acting or meets a limit.
+
+    The outcome goes into the sample's store.
+
+    Raises:
+        UserError: something in the specification does not exist.
+        InfrastructureError: the road failed; the sample has no outcome.
+    """
+    service, channels = shared_service(), ALL if pictures else ALL - {Channel.SCREENSHOT}
+    turn = await _threaded(lambda: service.start(spec, channels))
+    state.messages = [ChatMessageSystem(content=instructions), ChatMessageUser(content=_content(turn))]
+    state.tools = [_act(service, turn.episode_id)]
+    try:
+        state = await generate(state, tool_calls="loop")
+    except InfrastructureError:
+        raise
+    except BaseException:  # a limit of Inspect's, or the user's Ctrl-C
+        with anyio.CancelScope(shield=True):
+            await _finish(state, service, turn.episode_id)
+        raise
+    await _finish(state, service, turn.episode_id)
+    return state
+
+
+def outcome_of(state: TaskState) -> Json:
+    """The outcome of a sample's episode.
+
+    Raises:
+        InfrastructureError: it was not judged.
+    """
+    stored: Json | None = state.store.get(OUTCOME)
+    if stored is None:
+        raise InfrastructureError("the episode was not judged")
+    return stored
+
+
+async def _finish(state: TaskState, service: EpisodeService, episode_id: str) -> None:
+    outcome = await _threaded(lambda: service.finish(episode_id))
+    state.store.set(OUTCOME, outcome.as_json())
+
+
+async def _threaded(call: Callable[[], Any]) -> Any:
+    return await anyio.to_thread.run_sync(call)
+
+
+def _act(service: EpisodeService, episode_id: str) -> Any:
+    async def act(action: dict[str, Any]) -> list[Content]:
+        try:
+            turn = await _threaded(lambda: service.act(episode_id, action))
+        except UserError as error:
+            raise ToolError(str(error)) from error
+        return _content(turn)
+
+    described = {"action": f"One action as a JSON object:\n{grammar()}\n`index` is that of the element list."}
+    about = "Perform one action, let its time pass, and observe."
+    return ToolDef(act, name="act", description=about, parameters=described, max_output=0).as_tool()
+
+
+def _content(turn: EpisodeTurn) -> list[Content]:
+    found: list[Content] = [ContentText(text=json.dumps(turn.as_json(), ensure_ascii=False))]
+    picture = turn.picture
+    if picture is not None:
+        found.append(ContentImage(image=f"data:image/png;base64,{base64.b64encode(picture).decode()}"))
+    return found

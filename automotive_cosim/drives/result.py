@@ -1,0 +1,97 @@
+"""What came of a drive that is over; times of events and acts are seconds since departure."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, replace
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.drives.harm import Harm, distraction_s
+from automotive_cosim.drives.judge import JudgedAct, JudgedEvent
+from automotive_cosim.drives.score import Score, score
+from automotive_cosim.drives.watch import Watch
+from automotive_cosim.episode.specification import End
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DriveResult:
+    """The figures of a judged drive."""
+
+    agent_error: str | None
+    """How the agent's side failed: the rest of the drive then went on without it."""
+    score: Score
+    value: float
+    """The headline: 0 is doing nothing, 100 the rule-perfect watcher."""
+    harm: Harm
+    baseline_harm: Harm
+    """The same of the drive with nobody at the cockpit."""
+    distraction_s: float
+    """Seconds for which what the driver was told took the eyes off the road."""
+    events: tuple[JudgedEvent, ...]
+    acts: tuple[JudgedAct, ...]
+    steps: int
+    waits: int
+    wakes: int
+    """Waits and acts after which something had changed."""
+    trace_sha256: str
+
+
+@dataclass(frozen=True, slots=True)
+class DriveOutcome:
+    """The result of a drive that is over."""
+
+    episode_id: str
+    family: str
+    seed: int
+    end: End
+    sim_seconds: float
+    """Simulated seconds from departure to the end."""
+    result: DriveResult
+
+    @property
+    def trace_sha256(self) -> str:
+        """Hash of all steps: equal for the same specification and actions, whoever sent them."""
+        return self.result.trace_sha256
+
+    def as_json(self) -> Json:
+        """The outcome as a JSON object."""
+        return asdict(self) | {"trace_sha256": self.trace_sha256}
+
+
+def result_of(watch: Watch) -> DriveResult:
+    """The figures of a watch that is over."""
+    judgement = watch.judgement
+    assert judgement is not None
+    begun_s = watch.moments[0].time_s
+    found = score(judgement, watch.seconds)
+    mine, nobodys = watch.harms
+    texts = [str(step.action.text) for step in watch.steps if step.action is not None and step.action.text]
+    return DriveResult(
+        agent_error=watch.failure,
+        score=found,
+        value=found.value,
+        harm=mine,
+        baseline_harm=nobodys,
+        distraction_s=distraction_s(watch.acts, texts),
+        events=tuple(_since(event, begun_s) for event in judgement.events),
+        acts=tuple(replace(act, time_s=round(act.time_s - begun_s, 3)) for act in judgement.acts),
+        steps=len(watch.steps) - 1,
+        waits=watch.waits,
+        wakes=watch.wakes,
+        trace_sha256=watch.trace_sha256,
+    )
+
+
+def _since(event: JudgedEvent, begun_s: float) -> JudgedEvent:
+    """The event with times since departure."""
+
+    def since(time_s: float | None) -> float | None:
+        return None if time_s is None else round(time_s - begun_s, 3)
+
+    return replace(
+        event,
+        observable_s=round(event.observable_s - begun_s, 3),
+        obliged_s=since(event.obliged_s),
+        deadline_s=since(event.deadline_s),
+        ends_s=round(event.ends_s - begun_s, 3),
+        acted_s=since(event.acted_s),
+    )

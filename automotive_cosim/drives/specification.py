@@ -1,0 +1,80 @@
+"""The specification of a drive, and how it begins."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from automotive_cosim.cockpit.size import ScreenSize
+from automotive_cosim.drives.departure import depart
+from automotive_cosim.drives.families import family_named
+from automotive_cosim.drives.plan import DrivePlan
+from automotive_cosim.drives.result import DriveOutcome, result_of
+from automotive_cosim.drives.watch import Watch
+from automotive_cosim.episode.listener import Listener
+from automotive_cosim.episode.specification import Conditions
+from automotive_cosim.interface.controls import GeoInput
+from automotive_cosim.interface.feedback import FeedbackDetail
+from automotive_cosim.interface.observe import ALL, Channel, See
+from automotive_cosim.traffic.fork import Simulations
+
+MOST_STEPS = 100_000
+"""Far more than a drive has seconds."""
+
+
+@dataclass(frozen=True, slots=True)
+class DriveSpec:
+    """One drive, by name: the same specification and the same actions give the same trace."""
+
+    family: str
+    """Id of the family that it is drawn from."""
+    seed: int = 0
+    geo: GeoInput = GeoInput.FULL
+    """What the agent is told of where it is."""
+    see: See = See.BOTH
+    """How the agent sees the screen."""
+    feedback: FeedbackDetail = FeedbackDetail.QUIET
+    """What it is told of its last action."""
+    screen: ScreenSize = ScreenSize.STANDARD
+    """Size of the car's screen."""
+
+    def begin(
+        self,
+        simulations: Simulations,
+        channels: frozenset[Channel] = ALL,
+        listener: Listener | None = None,
+        plan: DrivePlan | None = None,
+    ) -> Watch:
+        """Departs; the caller closes the watch.
+
+        Args:
+            simulations: warm traffic, shared with others.
+            channels: what the agent wants to see.
+            listener: notified of progress.
+            plan: used instead of the family's plan for the seed.
+
+        Raises:
+            UserError: something in the specification does not exist.
+            InfrastructureError: no gap opened for the car, or the traffic simulation failed.
+        """
+        drive = plan or family_named(self.family).draw(self.seed)
+        conditions = Conditions(
+            channels,
+            self.geo,
+            MOST_STEPS,
+            drive.duration_s,
+            see=self.see,
+            feedback=self.feedback,
+            screen=self.screen,
+        )
+        world = depart(drive, simulations, listener)
+        try:
+            return Watch.depart_with(world, conditions, listener)
+        except BaseException:
+            world.close()
+            raise
+
+    def outcome(self, episode_id: str, session: Watch) -> DriveOutcome:
+        """What came of it, once it is over."""
+        assert session.end is not None
+        seconds = round(session.seconds, 3)
+        return DriveOutcome(episode_id, self.family, self.seed, session.end, seconds, result_of(session))
