@@ -63,7 +63,6 @@ from automotive_cosim.contracts import (
     Surroundings,
     VehicleState,
 )
-from automotive_cosim.contracts.ids import resource_id
 from automotive_cosim.errors import SignalError, UnknownNameError, UserError
 
 W = TypeVar("W", bound=Widget)
@@ -310,11 +309,6 @@ class Cockpit:
         if view is not None and view.pans:
             return self._pan(view, OPPOSITE[direction], far)
         return Feedback(FeedbackCode.NO_EFFECT, f"nothing at ({x}, {y}) moves {direction}")
-
-    def key_of(self, shown_as: str) -> str:
-        """Key of the widget that is shown under that resource id; empty if none on the screen is."""
-        keys = (widget.key for widget in self._screen.walk() if widget.key)
-        return next((key for key in keys if resource_id(key) == shown_as), "")
 
     def scroll(self, key: str, direction: Direction) -> Feedback:
         """Scrolls a list by a page; ``down`` reveals what is below.

@@ -26,6 +26,7 @@ from automotive_cosim.cockpit.forecast import cabin_c
 from automotive_cosim.cockpit.signals import HVAC, MOTION, OUTSIDE, SEAT, Signals
 from automotive_cosim.cockpit.vehicle import WINDOWS, Vehicle
 from automotive_cosim.contracts import FeedbackCode, Surroundings
+from automotive_cosim.contracts.ids import key_of
 from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.errors import SignalError, UserError
 
@@ -80,7 +81,7 @@ def test_screen_reading_and_signals_tell_the_same(make: Make) -> None:
     )
     cockpit = make(aboard=party)
     assert cockpit.open_app("cabin").code is FeedbackCode.OK
-    shown = {cockpit.key_of(one.resource_id): one.text for one in cockpit.elements()}
+    shown = {key_of(one.resource_id): one.text for one in cockpit.elements()}
     assert (shown["cabin.rear_left"], shown["cabin.rear_left.awake"]) == ("Baby", "Asleep")
     assert (shown["cabin.rear_middle"], shown["cabin.rear_middle.belt"]) == ("Object", "Belt open")
     assert (shown["cabin.rear_right"], shown["cabin.rear_right.weight"]) == ("Pet", "24 kg")

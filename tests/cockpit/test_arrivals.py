@@ -13,6 +13,7 @@ from automotive_cosim.cockpit.people import TEMPLATES
 from automotive_cosim.cockpit.screens import SCREENS
 from automotive_cosim.cockpit.signals import CALL, LINK, difference
 from automotive_cosim.contracts import Connectivity, Element, FeedbackCode, Surroundings
+from automotive_cosim.contracts.ids import key_of
 from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.errors import UserError
 
@@ -34,7 +35,7 @@ def press(cockpit: Cockpit, *keys: str) -> FeedbackCode:
 
 
 def keys(cockpit: Cockpit) -> set[str]:
-    return {cockpit.key_of(element.resource_id) for element in cockpit.elements()}
+    return {key_of(element.resource_id) for element in cockpit.elements()}
 
 
 def drive(cockpit: Cockpit, around: Surroundings, from_s: float, to_s: float, **changes: object) -> None:

@@ -10,6 +10,7 @@ import pytest
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.signals import HMI
 from automotive_cosim.contracts import Element, FeedbackCode, Surroundings
+from automotive_cosim.contracts.ids import key_of
 from automotive_cosim.contracts.ids import resource_id as shown_id
 
 FIELDS = {"map": "map.search", "media": "media.search", "manual": "manual.search"}
@@ -28,11 +29,11 @@ def press(cockpit: Cockpit, *keys: str) -> FeedbackCode:
 
 
 def has_keys(cockpit: Cockpit) -> bool:
-    return any(cockpit.key_of(element.resource_id).startswith("keyboard.") for element in cockpit.elements())
+    return any(key_of(element.resource_id).startswith("keyboard.") for element in cockpit.elements())
 
 
 def entries(cockpit: Cockpit) -> list[Element]:
-    return [each for each in cockpit.elements() if cockpit.key_of(each.resource_id).startswith("media.entry.")]
+    return [each for each in cockpit.elements() if key_of(each.resource_id).startswith("media.entry.")]
 
 
 @pytest.fixture
@@ -45,7 +46,7 @@ def test_a_tap_on_a_field_brings_the_keys_and_they_write_into_it(standing: Cockp
     standing.visit(screen)
     assert not has_keys(standing)
     assert press(standing, FIELDS[screen]) is FeedbackCode.OK
-    assert not any(standing.key_of(element.resource_id).startswith("dock.") for element in standing.elements())
+    assert not any(key_of(element.resource_id).startswith("dock.") for element in standing.elements())
     press(standing, "keyboard.f", "keyboard.o", "keyboard.k", "keyboard.backspace", "keyboard.g", "keyboard.space")
     assert find(standing, FIELDS[screen]).text == "fog "
 

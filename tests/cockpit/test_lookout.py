@@ -22,6 +22,7 @@ from automotive_cosim.contracts import (
     SightKind,
     Surroundings,
 )
+from automotive_cosim.contracts.ids import key_of
 
 Make = Callable[..., Cockpit]
 BLUE = OtherVehicle("ambulance", 120.0, 25.0, 10.0)
@@ -43,7 +44,7 @@ def full(around: Surroundings) -> Surroundings:
 
 def shown(cockpit: Cockpit, screen: str) -> dict[str, str]:
     cockpit.open_app(screen)
-    found = {cockpit.key_of(one.resource_id): one.text for one in cockpit.elements()}
+    found = {key_of(one.resource_id): one.text for one in cockpit.elements()}
     return {key.removeprefix("ahead."): text for key, text in found.items() if key.startswith("ahead.")}
 
 

@@ -37,6 +37,7 @@ from automotive_cosim.contracts import (
     Surroundings,
     Weather,
 )
+from automotive_cosim.contracts.ids import key_of
 from automotive_cosim.contracts.ids import resource_id as shown_id
 
 Make = Callable[..., Cockpit]
@@ -219,7 +220,7 @@ def test_every_usable_widget_does_something_and_every_other_says_why_not(screens
         for element in cockpit.elements():
             if not element.is_clickable or (cockpit.screen, element.resource_id) in known:
                 continue
-            if cockpit.key_of(element.resource_id).startswith(("dock.", "status.")):
+            if key_of(element.resource_id).startswith(("dock.", "status.")):
                 known.add((cockpit.screen, element.resource_id))
             twin = cockpit.copy()
             feedback = twin.tap(*middle(element))
@@ -416,7 +417,7 @@ def test_the_companion_stands_beside_every_app_without_a_map_of_its_own(
     make: Make, around: Surroundings, walker: Any
 ) -> None:
     for view in walker(make(size=ScreenSize.PORTRAIT)):
-        keys = {view.cockpit.key_of(element.resource_id) for element in view.cockpit.elements()}
+        keys = {key_of(element.resource_id) for element in view.cockpit.elements()}
         assert len(keys & {"companion.map", "map.view", "home.map"}) == 1, view.name
 
 
@@ -432,7 +433,7 @@ def numbers(cockpit: Cockpit) -> dict[str, int]:
     return {
         key: index
         for index, element in enumerate(cockpit.elements())
-        for key in [cockpit.key_of(element.resource_id)]
+        for key in [key_of(element.resource_id)]
         if key.startswith(("status.", "dock.")) and key not in passing
     }
 

@@ -18,7 +18,7 @@ MOVES_MIN = (
     ("later", "+15 min", 15),
     ("hour_later", "+1 h", 60),
 )
-"""Resource id, text and minutes of the buttons that move an appointment."""
+"""Key, text and minutes of the buttons that move an appointment."""
 
 
 def appointment(state: State) -> tuple[Widget, ...]:

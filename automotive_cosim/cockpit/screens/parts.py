@@ -323,7 +323,7 @@ def rows(
 
     Args:
         rect: where it is; the rightmost 16 pixels are left to the scroll bar.
-        key: its resource id, under which the state remembers how far it is scrolled.
+        key: its own, under which the state remembers how far it is scrolled.
         name: what it lists.
         state: of the cockpit.
         total: number of entries.
