@@ -16,6 +16,7 @@ from automotive_cosim.cockpit.places import PlaceKind
 from automotive_cosim.cockpit.render import render
 from automotive_cosim.cockpit.screens import APPS
 from automotive_cosim.cockpit.signals import LINK
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.cockpit.theme import DAY
 from automotive_cosim.cockpit.widgets import MapView
 from automotive_cosim.contracts import (
@@ -178,17 +179,18 @@ def test_without_mobile_data_no_traffic_is_heard(make: Make, around: Surrounding
 
 def test_a_frame_drawn_in_part_is_the_frame_drawn_anew(make: Make, around: Surroundings) -> None:
     rng = np.random.default_rng(5)
-    for width in (1280, 960):
-        cockpit, now = make(width=width), around
+    for size, scale in ((ScreenSize.STANDARD, 1.0), (ScreenSize.STANDARD, 0.75), (ScreenSize.PORTRAIT, 1.0)):
+        width, height = round(size.width * scale), round(size.height * scale)
+        cockpit, now = make(size=size, width=width), around
         for step in range(60):
             if rng.random() < 0.3:
                 cockpit.open_app(str(rng.choice(APPS)))
             else:
-                cockpit.tap(int(rng.integers(width)), int(rng.integers(width * 9 // 16)))
+                cockpit.tap(int(rng.integers(width)), int(rng.integers(height)))
             driving = replace(now.driving, time_s=now.driving.time_s + 1, x_m=now.driving.x_m + 3.0)
             now = replace(now, driving=driving, sun_elevation_deg=-20.0 if step % 25 > 18 else 40.0)
             cockpit.sense(now, 1.0)
-            anew = render(cockpit.tree, width, width * 9 // 16).pixels()
+            anew = render(cockpit.tree, scale).pixels()
             assert np.array_equal(cockpit.screenshot(), anew), cockpit.screen
 
 
