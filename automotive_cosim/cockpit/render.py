@@ -11,6 +11,7 @@ from automotive_cosim.cockpit.carview import car
 from automotive_cosim.cockpit.drawing import Canvas, fits, text_width
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.mapdraw import draw
+from automotive_cosim.cockpit.telltales import colour, sign_picture, symbol
 from automotive_cosim.cockpit.theme import (
     BUTTON_RADIUS,
     CARD_RADIUS,
@@ -38,7 +39,9 @@ from automotive_cosim.cockpit.widgets import (
     Row,
     Rows,
     Screen,
+    SignView,
     Slider,
+    Telltales,
     Tile,
     Widget,
 )
@@ -54,6 +57,7 @@ SPILL = 4
 """How far letters and icons may extend out of their box, in logical pixels."""
 WORTH_IT = 0.7
 """Above this share of changes, everything is redrawn."""
+TELLTALE, TELLTALE_GAP = 28, 3
 LOW = 76
 """Tiles lower than this put icon and text on one line."""
 
@@ -365,6 +369,22 @@ def _sign(canvas: Canvas, sign: LimitSign, palette: Palette) -> None:
     canvas.text(sign.rect.inset(8), sign.text, Type.STRONG, (12, 14, 18), "centre")
 
 
+def _telltales(canvas: Canvas, row: Telltales, palette: Palette) -> None:
+    side, step = TELLTALE, TELLTALE + TELLTALE_GAP
+    across, lines = ((length + TELLTALE_GAP) // step for length in (row.rect.width, row.rect.height))
+    for at, telltale in enumerate(row.lit[: across * lines]):
+        line, column = divmod(at, across)
+        box = Rect(row.rect.x + column * step, row.rect.y + line * step, side, side)
+        canvas.stencil(box, symbol(telltale, canvas.pixels_across(box)), colour(telltale, night=palette is NIGHT))
+
+
+def _sign_view(canvas: Canvas, view: SignView, palette: Palette) -> None:
+    if view.sign is None:
+        return
+    picture = sign_picture(view.sign.kind, view.figure, canvas.pixels_across(view.rect))
+    canvas.stencil(view.rect, picture.getchannel("A"), picture.convert("RGB"))
+
+
 def _pill(canvas: Canvas, pill: Pill, palette: Palette) -> None:
     fill, ink = {
         Severity.INFO: (palette.tint, palette.on_tint),
@@ -412,6 +432,8 @@ _PAINT: dict[type[Widget], Callable[[Canvas, Any, Palette], None]] = {
     Bar: _bar,
     LimitSign: _sign,
     Pill: _pill,
+    Telltales: _telltales,
+    SignView: _sign_view,
     MapView: _map,
     Badge: _badge,
     CarView: _car_view,

@@ -20,6 +20,7 @@ from automotive_cosim.cockpit.places import Gazetteer
 from automotive_cosim.cockpit.restrictions import ENTRIES_LIMIT, REASONS, Restriction, restrictions
 from automotive_cosim.cockpit.signals import HMI, MOTION, Signals
 from automotive_cosim.cockpit.size import ScreenSize
+from automotive_cosim.cockpit.telltales import RoadSign
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.cockpit.tyres import Tyres
 from automotive_cosim.cockpit.vehicle import Vehicle
@@ -142,6 +143,10 @@ class State:
     """Text by field."""
     zoom: int = 1
     north_up: bool = False
+    last_sign: RoadSign | None = None
+    """The road sign that the camera read last; None without one."""
+    signs_here: tuple[bool, bool, float | None] | None = None
+    """What decides whether a sign is passed: tunnel, school zone, and the posted limit in km/h."""
     panned: tuple[float, float] | None = None
     """The map's point in metres of the network, if not the car."""
     draft: AlertDraft = field(default_factory=AlertDraft)

@@ -17,6 +17,7 @@ from automotive_cosim.cockpit.map import RoadMap
 from automotive_cosim.cockpit.mapdraw import MapScene
 from automotive_cosim.cockpit.messages import Message, Set
 from automotive_cosim.cockpit.signals import Signal
+from automotive_cosim.cockpit.telltales import RoadSign, Telltale
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.contracts import Severity
 
@@ -256,6 +257,26 @@ class Bar(Widget):
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LimitSign(Widget):
     """The limit sign the camera read last."""
+
+    class_name: ClassVar[str] = "ImageView"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Telltales(Widget):
+    """Tell-tales that are lit, line by line; as many as there is room for. The list only names them together."""
+
+    lit: tuple[Telltale, ...]
+
+    class_name: ClassVar[str] = "ImageView"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SignView(Widget):
+    """The road sign that was read last. The list only says that there is one."""
+
+    sign: RoadSign | None
+    figure: str = ""
+    """The limit in the unit of the display."""
 
     class_name: ClassVar[str] = "ImageView"
 

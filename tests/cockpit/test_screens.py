@@ -429,16 +429,13 @@ def test_the_picture_changes_only_with_the_tree(cockpit: Cockpit) -> None:
 
 def numbers(cockpit: Cockpit) -> dict[str, int]:
     """Index of every element of status bar and dock that is always there."""
-    passing = {"status.notice", "status.limit_sign", *(f"status.{lamp}" for lamp in LAMPS)}
+    passing = {"status.notice", "status.limit_sign"}
     return {
         key: index
         for index, element in enumerate(cockpit.elements())
         for key in [key_of(element.resource_id)]
         if key.startswith(("status.", "dock.")) and key not in passing
     }
-
-
-LAMPS = ("low_beam", "high_beam", "front_fog", "rear_fog", "hazard")
 
 
 @pytest.mark.parametrize("case", CASES)

@@ -11,13 +11,25 @@ from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.language import translated
 from automotive_cosim.cockpit.layout import REST, row
 from automotive_cosim.cockpit.messages import Back, DeclineCall, Put, Show, TakeCall
-from automotive_cosim.cockpit.screens.notices import wanting
+from automotive_cosim.cockpit.screens.notices import lit, wanting
 from automotive_cosim.cockpit.screens.parts import speed, speed_unit, stepper, switch, temperature
-from automotive_cosim.cockpit.signals import ADAS, ENERGY, HMI, HVAC, LIGHTS, LINK, MOTION, OUTSIDE, Signal, Signals
+from automotive_cosim.cockpit.signals import ADAS, ENERGY, HMI, HVAC, LINK, MOTION, OUTSIDE, Signal, Signals
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.cockpit.state import Notice, State
+from automotive_cosim.cockpit.telltales import Telltale
 from automotive_cosim.cockpit.theme import MARGIN, Icon, Type
-from automotive_cosim.cockpit.widgets import Button, Choice, Glyph, Label, LimitSign, Look, Pill, Tile, Widget
+from automotive_cosim.cockpit.widgets import (
+    Button,
+    Choice,
+    Glyph,
+    Label,
+    LimitSign,
+    Look,
+    Pill,
+    Telltales,
+    Tile,
+    Widget,
+)
 
 DOCK: dict[str, tuple[str, Icon]] = {
     "home": ("Home", Icon.HOME),
@@ -69,7 +81,8 @@ DOCKED: tuple[Signal[Any], ...] = (
 """Everything that the dock depends on, besides the present screen."""
 NOTICE_WIDTH = 640
 """At most; notices in a wider bar leave the rest free."""
-LAMP = 31
+LAMP, FEW = 31, 5
+"""Width of a tell-tale, and how many the smallest status bar has room for."""
 BEFORE, AFTER = 212, 424
 """Widths of what is always in the status bar, left and right of what comes and goes."""
 _SIGNAL = (Icon.SIGNAL_0, Icon.SIGNAL_1, Icon.SIGNAL_2, Icon.SIGNAL_3, Icon.SIGNAL_3)
@@ -97,7 +110,9 @@ def _bar(size: ScreenSize) -> _Bar:
     comes and goes."""
     lines = size.status.rows(size.bars, 0)
     left, between, right = row(lines[0], BEFORE, REST, AFTER)
-    _, lamps, _, notice, _ = row(lines[1].inset(MARGIN, 0) if size.bars > 1 else between, 4, 5 * LAMP, 1, REST, 12)
+    room = lines[1].inset(MARGIN, 0) if size.bars > 1 else between
+    many = FEW if size is ScreenSize.STANDARD else len(Telltale)
+    _, lamps, _, notice, _ = row(room, 4, many * LAMP, 1, REST, 12)
     _, clock, _, air, _, bell = row(left, MARGIN - 4, 76, 2, 68, -2, 48)
     mobile, _, fix, _, cell, _, charge, _, gear, _, pace, _, unit, _, sign, _ = row(
         right, 28, 8, 28, 8, 28, -2, 56, 10, 36, 6, 76, 8, 52, 8, 50, MARGIN
@@ -115,7 +130,7 @@ def _bar(size: ScreenSize) -> _Bar:
 
 
 def status_bar(state: State) -> tuple[Widget, ...]:
-    """What is there on every screen: clock, weather, bell, links, battery, gear and speed."""
+    """What is there on every screen: clock, weather, bell, tell-tales, links, battery, gear and speed."""
     signals = state.signals
     bar = _bar(state.size)
     return (
@@ -143,20 +158,21 @@ def status_bar(state: State) -> tuple[Widget, ...]:
             look=Look.PLAIN,
             on_tap=Back() if state.screen == "notifications" else Show("notifications"),
         ),
+        Telltales(rect=bar.lamps, key="status.telltales", description="Telltales", lit=lit(state)),
         *_links(bar.links, state),
         *_motion(bar.motion, state),
     )
 
 
 def callouts(state: State) -> tuple[Widget, ...]:
-    """What comes and goes in the status bar: tell-tales, a caller or a notice, and the limit sign of the camera."""
+    """What comes and goes in the status bar: a caller or a notice, and the limit sign of the camera."""
     told: tuple[Widget, ...] = ()
     bar = _bar(state.size)
     if state.phone.ringing is not None:
         told = _incoming(bar.notice, state.phone.ringing.who, state)
     elif state.notice is not None:
         told = (_pill(bar.notice, state.notice, state),)
-    return (*_lamps(bar.lamps, state), *told, *_limit_sign(bar.sign, state))
+    return (*told, *_limit_sign(bar.sign, state))
 
 
 def _pill(rect: Rect, notice: Notice, state: State) -> Pill:
@@ -214,30 +230,6 @@ def _incoming(rect: Rect, who: str, state: State) -> tuple[Widget, ...]:
             else "",
         ),
     )
-
-
-def _lamps(rect: Rect, state: State) -> list[Widget]:
-    """Tell-tales of the lamps that are lit."""
-    signals = state.signals
-    lit = (
-        ("low_beam", "Low beam is on", Icon.LOW_BEAM, signals[LIGHTS.LOW_BEAM] and not signals[LIGHTS.HIGH_BEAM]),
-        ("high_beam", "High beam is on", Icon.HIGH_BEAM, signals[LIGHTS.HIGH_BEAM]),
-        ("front_fog", "Front fog lamps are on", Icon.FRONT_FOG, signals[LIGHTS.FRONT_FOG]),
-        ("rear_fog", "Rear fog lamp is on", Icon.REAR_FOG, signals[LIGHTS.REAR_FOG]),
-        ("hazard", "Hazard lights are on", Icon.HAZARD, signals[LIGHTS.HAZARD]),
-    )
-    shown = [lamp for lamp in lit if lamp[3]]
-    return [
-        Glyph(
-            rect=box.left(28),
-            key=f"status.{key}",
-            description=words,
-            icon=icon,
-            size=26,
-            tone="accent" if key == "high_beam" else "good",
-        )
-        for box, (key, words, icon, _) in zip(rect.columns(len(lit), 0), shown, strict=False)
-    ]
 
 
 def _links(boxes: tuple[Rect, Rect, Rect, Rect], state: State) -> tuple[Widget, ...]:

@@ -9,8 +9,8 @@ from automotive_cosim.cockpit.map import camera_of
 from automotive_cosim.cockpit.mapscene import ego
 from automotive_cosim.cockpit.messages import Set, Show, Skip
 from automotive_cosim.cockpit.screens import lookout
-from automotive_cosim.cockpit.screens.map import map_view, next_turn, street
-from automotive_cosim.cockpit.screens.notices import NOTICED
+from automotive_cosim.cockpit.screens.map import map_view, next_turn, sign_view, street
+from automotive_cosim.cockpit.screens.notices import NOTICED, lit
 from automotive_cosim.cockpit.screens.outside import PHENOMENA
 from automotive_cosim.cockpit.screens.parts import (
     content,
@@ -23,11 +23,12 @@ from automotive_cosim.cockpit.screens.parts import (
 from automotive_cosim.cockpit.signals import ENERGY, GLASS, HVAC, MEDIA, MOTION
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
-from automotive_cosim.cockpit.widgets import Bar, Button, Card, Glyph, Label, Look, Widget
+from automotive_cosim.cockpit.widgets import Bar, Button, Card, Glyph, Label, Look, Telltales, Widget
 
 METRES_PER_PIXEL = 1.6
 """Scale of the small map."""
 CARDS_WIDTH, CARDS_HEIGHT = 656, 544
+LAMPS_WIDTH = 3 * 31 - 3
 
 
 def home(state: State) -> tuple[Widget, ...]:
@@ -61,7 +62,8 @@ def _map_card(rect: Rect, state: State) -> Widget:
     name, _, then, _ = column(words, 34, 2, 24, REST)
     camera = camera_of(state.roads, ego(state), METRES_PER_PIXEL)
     noticed = lookout.plate(plate.x, rect.inset(20).y, plate.width, state)
-    over = (plate, *(card.rect for card in noticed))
+    sign = sign_view(plate.moved(0, -76).top(64).right_part(64), "home.sign", state)
+    over = (plate, *(card.rect for card in (*noticed, *sign)))
     view = map_view(rect, "home.map", state, camera, over, Show("map"))
     ahead = None if state.outside is None else state.outside.driving.ahead
     way = "" if ahead is None else distance(state.signals, ahead.route_left_m)
@@ -72,6 +74,7 @@ def _map_card(rect: Rect, state: State) -> Widget:
         children=(
             view,
             *noticed,
+            *sign,
             Card(
                 rect=plate,
                 look="plate",
@@ -126,7 +129,7 @@ def drive_card(rect: Rect, state: State) -> Widget:
     head, _, reach, _, bar, _ = column(inner.right_part(220), 28, 2, 40, 14, 12, REST)
     far, charge = row(reach, 130, 90)
     shown = speed(signals, signals[MOTION.SPEED])
-    figure, _, unit = row(inner, round(text_width(shown, Type.HUGE)) + 4, 12, 60)
+    figure, _, unit, _, lamps = row(inner, round(text_width(shown, Type.HUGE)) + 4, 12, 60, 8, REST)
     return Card(
         rect=rect,
         children=(
@@ -143,6 +146,12 @@ def drive_card(rect: Rect, state: State) -> Widget:
                 text=speed_unit(signals),
                 tone="muted",
                 style=Type.LABEL,
+            ),
+            Telltales(
+                rect=lamps.left(LAMPS_WIDTH).middle(LAMPS_WIDTH, LAMPS_WIDTH),
+                key="home.telltales",
+                description="Telltales",
+                lit=lit(state),
             ),
             heading(head, "Range"),
             Label(

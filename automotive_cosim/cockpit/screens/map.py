@@ -13,7 +13,7 @@ from automotive_cosim.cockpit.messages import Follow, Guide, Message, Pick, Set,
 from automotive_cosim.cockpit.navigation import Turn, turns
 from automotive_cosim.cockpit.restrictions import ENTRIES_LIMIT
 from automotive_cosim.cockpit.screens import lookout
-from automotive_cosim.cockpit.screens.parts import choices, content, distance, heading, rows, search
+from automotive_cosim.cockpit.screens.parts import choices, content, distance, heading, rows, search, speed
 from automotive_cosim.cockpit.signals import VOICE
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
@@ -26,6 +26,7 @@ from automotive_cosim.cockpit.widgets import (
     Look,
     MapView,
     Row,
+    SignView,
     Widget,
 )
 from automotive_cosim.contracts import IncidentKind, Road, RoadHere
@@ -72,7 +73,17 @@ def sight(state: State) -> Widget:
     ahead = next_turn(state)
     closer_in = Zoom(-1) if state.zoom else None
     noticed = lookout.plate(rect.x + 20, turn.bottom + 12 if ahead else turn.y, 440, state)
-    over = (plate, voice, closer, further, north, *((turn,) if ahead else ()), *(card.rect for card in noticed))
+    sign = sign_view(Rect(plate.right + 12, plate.bottom - 64, 64, 64), "map.sign", state)
+    over = (
+        *(each.rect for each in sign),
+        plate,
+        voice,
+        closer,
+        further,
+        north,
+        *((turn,) if ahead else ()),
+        *(card.rect for card in noticed),
+    )
     silent = state.signals[VOICE.GUIDANCE] == "MUTED"
     return Card(
         rect=rect,
@@ -81,6 +92,7 @@ def sight(state: State) -> Widget:
             map_view(rect, "map.view", state, map_camera(state), over, None, closer_in, pans=True),
             *((_turn_plate(turn, ahead, state),) if ahead else ()),
             *noticed,
+            *sign,
             street_plate(plate, state),
             _orientation(north, state),
             Button(
@@ -111,6 +123,15 @@ def sight(state: State) -> Widget:
             ),
         ),
     )
+
+
+def sign_view(rect: Rect, key: str, state: State) -> tuple[SignView, ...]:
+    """The last road sign over a map; none without the camera."""
+    if not state.sign_camera:
+        return ()
+    sign = state.last_sign
+    figure = "" if sign is None or sign.limit_kmh is None else speed(state.signals, sign.limit_kmh)
+    return (SignView(rect=rect, key=key, description="Last sign", sign=sign, figure=figure),)
 
 
 def _orientation(rect: Rect, state: State) -> Button:

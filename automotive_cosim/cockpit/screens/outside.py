@@ -10,6 +10,7 @@ from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, column, panes, row
 from automotive_cosim.cockpit.messages import Message, Pick, Set, WarnDriver, Wash
 from automotive_cosim.cockpit.screens.climate import glass_words
+from automotive_cosim.cockpit.screens.notices import ICE_C
 from automotive_cosim.cockpit.screens.parts import content, distance, heading, speed, speed_unit, temperature
 from automotive_cosim.cockpit.signals import (
     ADAS,
@@ -32,8 +33,6 @@ from automotive_cosim.contracts import Alert, AlertKind
 
 FOG_M, MIST_M = 1000.0, 5000.0
 """Fog and mist by the WMO's definitions."""
-ICE_C = 3.0
-"""Temperature below which cars warn of ice: the road can be colder than the air."""
 
 
 @dataclass(frozen=True, slots=True)
