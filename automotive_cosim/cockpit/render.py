@@ -8,6 +8,7 @@ from typing import Any
 from PIL import Image
 
 from automotive_cosim.cockpit.carview import car
+from automotive_cosim.cockpit.covers import cover
 from automotive_cosim.cockpit.drawing import Canvas, fits, text_width
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.mapdraw import draw
@@ -29,6 +30,7 @@ from automotive_cosim.cockpit.widgets import (
     Card,
     CarView,
     Choice,
+    Cover,
     Field,
     Glyph,
     Label,
@@ -385,6 +387,10 @@ def _sign_view(canvas: Canvas, view: SignView, palette: Palette) -> None:
     canvas.stencil(view.rect, picture.getchannel("A"), picture.convert("RGB"))
 
 
+def _cover(canvas: Canvas, view: Cover, palette: Palette) -> None:
+    canvas.picture(view.rect, cover(view.name, canvas.pixels_across(view.rect)), BUTTON_RADIUS)
+
+
 def _pill(canvas: Canvas, pill: Pill, palette: Palette) -> None:
     fill, ink = {
         Severity.INFO: (palette.tint, palette.on_tint),
@@ -434,6 +440,7 @@ _PAINT: dict[type[Widget], Callable[[Canvas, Any, Palette], None]] = {
     Pill: _pill,
     Telltales: _telltales,
     SignView: _sign_view,
+    Cover: _cover,
     MapView: _map,
     Badge: _badge,
     CarView: _car_view,

@@ -282,6 +282,16 @@ class SignView(Widget):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Cover(Widget):
+    """The cover of what plays. The list only says that there is one."""
+
+    name: str
+    """What it is made from."""
+
+    class_name: ClassVar[str] = "ImageView"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Pill(Widget):
     """A notice in the status bar."""
 

@@ -23,7 +23,7 @@ from automotive_cosim.cockpit.screens.parts import (
 from automotive_cosim.cockpit.signals import ENERGY, GLASS, HVAC, MEDIA, MOTION
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
-from automotive_cosim.cockpit.widgets import Bar, Button, Card, Glyph, Label, Look, Telltales, Widget
+from automotive_cosim.cockpit.widgets import Bar, Button, Card, Cover, Glyph, Label, Look, Telltales, Widget
 
 METRES_PER_PIXEL = 1.6
 """Scale of the small map."""
@@ -314,10 +314,11 @@ def media_card(rect: Rect, state: State) -> Widget:
         description="Media",
         on_tap=Show("media"),
         children=(
-            Card(
+            Cover(
                 rect=art,
-                look="raised",
-                children=(Glyph(rect=art.middle(48, 48), icon=Icon.NOTE, size=48, tone="accent"),),
+                key="home.media.cover",
+                description="Cover",
+                name=f"{signals[MEDIA.TRACK]}, {signals[MEDIA.ARTIST]}",
             ),
             Label(
                 rect=name,

@@ -10,7 +10,7 @@ from automotive_cosim.cockpit.screens.parts import choices, content, rows, searc
 from automotive_cosim.cockpit.signals import LINK, MEDIA
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
-from automotive_cosim.cockpit.widgets import Bar, Button, Card, Glyph, Label, Look, Row, Tile, Widget
+from automotive_cosim.cockpit.widgets import Bar, Button, Card, Cover, Label, Look, Row, Tile, Widget
 
 SOURCES = (
     ("bluetooth", "Phone", Icon.BLUETOOTH),
@@ -250,11 +250,7 @@ def _now(rect: Rect, state: State) -> Widget:
     return Card(
         rect=rect,
         children=(
-            Card(
-                rect=art,
-                look="raised",
-                children=(Glyph(rect=art.middle(72, 72), icon=_art(entry), size=72, tone="accent"),),
-            ),
+            Cover(rect=art, key="media.cover", description="Cover", name=f"{entry.title}, {entry.by}"),
             Label(
                 rect=title,
                 key="media.title",
@@ -346,12 +342,6 @@ def _now(rect: Rect, state: State) -> Widget:
 def _sign(rect: Rect, key: str, name: str, icon: Icon, on: bool, message: Message) -> Tile:
     """A switch that is an icon alone."""
     return Tile(rect=rect, key=key, description=name, icon=icon, checked=on, on_tap=message)
-
-
-def _art(entry: Entry) -> Icon:
-    if entry.length_s is None:
-        return Icon.RADIO
-    return Icon.PODCAST if entry.uri.startswith("podcast") else Icon.NOTE
 
 
 def _progress(rect: Rect, state: State, length_s: float | None) -> tuple[Widget, ...]:
