@@ -170,7 +170,7 @@ def _vehicle(vehicle: VehicleState | None) -> str:
 
 def _connectivity(observation: Observation) -> str:
     link = observation.connectivity
-    return "unknown" if link is None else f"{'online' if link.online else 'offline'}, {link.kind}"
+    return "unknown" if link is None else f"{'a network' if link.online else 'no network'} in reach, {link.kind}"
 
 
 def _gps(fix: GpsFix | None) -> str:

@@ -7,6 +7,7 @@ from typing import Any
 
 from PIL import Image
 
+from automotive_cosim.cockpit.camera import camera
 from automotive_cosim.cockpit.carview import car
 from automotive_cosim.cockpit.covers import cover
 from automotive_cosim.cockpit.drawing import Canvas, fits, text_width
@@ -27,6 +28,7 @@ from automotive_cosim.cockpit.widgets import (
     Badge,
     Bar,
     Button,
+    CameraView,
     Card,
     CarView,
     Choice,
@@ -391,6 +393,11 @@ def _cover(canvas: Canvas, view: Cover, palette: Palette) -> None:
     canvas.picture(view.rect, cover(view.name, canvas.pixels_across(view.rect)), BUTTON_RADIUS)
 
 
+def _camera(canvas: Canvas, view: CameraView, palette: Palette) -> None:
+    left, top, right, bottom = view.rect.edges(canvas.scale)
+    canvas.picture(view.rect, camera(view.scene, right - left, bottom - top), CARD_RADIUS)
+
+
 def _pill(canvas: Canvas, pill: Pill, palette: Palette) -> None:
     fill, ink = {
         Severity.INFO: (palette.tint, palette.on_tint),
@@ -441,6 +448,7 @@ _PAINT: dict[type[Widget], Callable[[Canvas, Any, Palette], None]] = {
     Telltales: _telltales,
     SignView: _sign_view,
     Cover: _cover,
+    CameraView: _camera,
     MapView: _map,
     Badge: _badge,
     CarView: _car_view,

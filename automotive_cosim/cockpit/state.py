@@ -141,6 +141,8 @@ class State:
     """Whether its keys are on the screen."""
     typed: Mapping[str, str] = field(default_factory=dict)
     """Text by field."""
+    aside: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    """Text by field of the screens that were left because of a call, by screen."""
     zoom: int = 1
     north_up: bool = False
     last_sign: RoadSign | None = None

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import ClassVar, Literal
 
+from automotive_cosim.cockpit.camera import CameraScene
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.map import RoadMap
 from automotive_cosim.cockpit.mapdraw import MapScene
@@ -287,6 +288,15 @@ class Cover(Widget):
 
     name: str
     """What it is made from."""
+
+    class_name: ClassVar[str] = "ImageView"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CameraView(Widget):
+    """What a camera shows. The list only says which camera it is."""
+
+    scene: CameraScene
 
     class_name: ClassVar[str] = "ImageView"
 

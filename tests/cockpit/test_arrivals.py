@@ -192,3 +192,21 @@ def test_arrivals_leave_the_rest_of_the_car_as_it_is(make: Make) -> None:
 def test_an_arrival_that_cannot_be_is_refused(make: Make, arrival: Arrival, says: str) -> None:
     with pytest.raises(UserError, match=says):
         make(arrivals=[arrival])
+
+
+def test_a_search_survives_a_call(make: Callable[..., Cockpit], around: Surroundings) -> None:
+    """And is gone after any other way off the screen."""
+    still = replace(around, driving=replace(around.driving, speed_mps=0.0))
+    cockpit = make(surroundings=still, arrivals=[Arrival("call", 5.0, "Tilda Lindqvist")])
+    cockpit.open_app("map")
+    press(cockpit, "map.search")
+    cockpit.type_text("rue")
+    cockpit.sense(replace(still, driving=replace(still.driving, time_s=still.driving.time_s + 6.0)), 6.0)
+    press(cockpit, "call.reply")
+    assert cockpit.screen == "thread"
+    cockpit.back()
+    assert (cockpit.screen, element(cockpit, "map.search").text) == ("map", "rue")
+    press(cockpit, "call.decline")
+    cockpit.open_app("media")
+    cockpit.open_app("map")
+    assert element(cockpit, "map.search").text == ""

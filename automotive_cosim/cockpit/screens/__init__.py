@@ -45,6 +45,7 @@ SCREENS: dict[str, Callable[[State], tuple[Widget, ...]]] = {
     "doors": body.doors,
     "seats": body.seats,
     "mirrors": body.mirrors,
+    "interior": body.interior,
     "outside": outside,
     "media": media,
     "playlist": playlist,

@@ -11,7 +11,7 @@ from automotive_cosim.cockpit.screens.notices import wanting
 from automotive_cosim.cockpit.screens.parts import content, note, rows, title
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
-from automotive_cosim.cockpit.widgets import Button, Card, Choice, Row, Widget
+from automotive_cosim.cockpit.widgets import Button, Card, Row, Widget
 
 
 def apps(state: State) -> tuple[Widget, ...]:
@@ -30,12 +30,12 @@ def apps(state: State) -> tuple[Widget, ...]:
             "Apps",
             state,
             len(offered),
-            lambda index, cell: Choice(
+            lambda index, cell: Button(
                 rect=cell,
                 key=f"apps.{offered[index][0]}",
                 text=offered[index][1],
                 icon=offered[index][2],
-                look="boxed",
+                icon_size=44,
                 stacked=True,
                 style=Type.STRONG,
                 on_tap=Show(offered[index][0]),

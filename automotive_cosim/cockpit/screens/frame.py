@@ -52,6 +52,7 @@ PART_OF = {
     "doors": "vehicle",
     "seats": "vehicle",
     "mirrors": "vehicle",
+    "interior": "vehicle",
     "emergency": "safety",
     "comfort": "climate",
     "explore": "map",

@@ -11,7 +11,7 @@ from automotive_cosim.cockpit.screens.handset import handset, handset_and_page
 from automotive_cosim.cockpit.screens.parts import choices, note, rows, search
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
-from automotive_cosim.cockpit.widgets import Button, Card, Choice, Label, Look, Row, Widget
+from automotive_cosim.cockpit.widgets import Button, Card, Label, Look, Row, Widget
 
 WAYS = {"in": Icon.CALL_IN, "out": Icon.CALL_OUT, "missed": Icon.CALL_MISSED}
 TABS = (
@@ -57,12 +57,12 @@ def _favourites(rect: Rect, state: State) -> tuple[Widget, ...]:
             "Favourites",
             state,
             len(names),
-            lambda index, cell: Choice(
+            lambda index, cell: Button(
                 rect=cell,
                 key=f"phone.favourite.{index}",
                 text=names[index],
                 icon=Icon.ACCOUNT,
-                look="boxed",
+                icon_size=44,
                 stacked=True,
                 on_tap=Show("contact", names[index]),
             ),

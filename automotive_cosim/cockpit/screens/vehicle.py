@@ -127,6 +127,7 @@ def tabs(state: State) -> Widget:
                 ("doors", "Doors", Icon.DOOR, "doors"),
                 ("seats", "Seats", Icon.SEAT, "seats"),
                 ("mirrors", "Mirrors", Icon.MIRROR, "mirrors"),
+                ("interior", "Inside", Icon.DOME_LIGHT, "interior"),
             )
         ],
     )

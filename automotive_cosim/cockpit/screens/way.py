@@ -14,7 +14,7 @@ from automotive_cosim.cockpit.screens.parts import choices, distance, heading, n
 from automotive_cosim.cockpit.signals import VOICE
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
-from automotive_cosim.cockpit.widgets import Button, Card, Choice, Glyph, Label, Look, Row, Tile, Widget
+from automotive_cosim.cockpit.widgets import Button, Card, Glyph, Label, Look, Row, Tile, Widget
 
 _EVERYDAY = tuple(kind for kind in PlaceKind if kind not in (PlaceKind.HOME, PlaceKind.WORK))
 
@@ -68,12 +68,12 @@ def _kinds(state: State) -> Widget:
         "Place types",
         state,
         len(_EVERYDAY),
-        lambda index, cell: Choice(
+        lambda index, cell: Button(
             rect=cell,
             key=f"explore.kind.{_EVERYDAY[index]}",
             text=SORTS[_EVERYDAY[index]].title,
             icon=SORTS[_EVERYDAY[index]].icon,
-            look="boxed",
+            icon_size=30,
             stacked=True,
             on_tap=Show("explore", _EVERYDAY[index]),
         ),
