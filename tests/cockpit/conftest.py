@@ -167,8 +167,11 @@ def network() -> RoadNetwork:
 def make(network: RoadNetwork) -> Callable[..., Cockpit]:
     """A cockpit that has looked outside."""
 
-    def build(seed: int = 1, surroundings: Surroundings | None = None, **options: object) -> Cockpit:
-        cockpit = Cockpit(network, rng=np.random.default_rng(seed), **options)  # type: ignore[arg-type]
+    def build(
+        seed: int = 1, surroundings: Surroundings | None = None, left_hand: bool = False, **options: object
+    ) -> Cockpit:
+        here = replace(network, left_hand=left_hand)
+        cockpit = Cockpit(here, rng=np.random.default_rng(seed), **options)  # type: ignore[arg-type]
         cockpit.sense(surroundings or outside(), 0.0)
         return cockpit
 
