@@ -31,27 +31,41 @@ def serve(
             "--play", help="Let one person at a time play: work the cockpit, and be judged as agents are."
         ),
     ] = False,
+    study: Annotated[
+        Path | None,
+        typer.Option(
+            help="TOML file of a study: deals its episodes to several people, each on a page of their own.",
+            metavar="FILE",
+            show_default=False,
+        ),
+    ] = None,
     tasks_from: TasksFrom = None,
 ) -> None:
     """Show runs, results, tasks and scenarios in a browser; a run that is under way is shown live.
 
     Open the address that it prints: whoever has it can read what is in the folders and, with --play, play; played
-    episodes are recorded in the first folder. Ctrl-C ends it; no run depends on it.
+    episodes are recorded in the first folder, a study in one of its own there, named after the file. Ctrl-C ends
+    it; no run depends on it, and a study goes on where it was.
     """
     from automotive_cosim.serve.server import WebServer
 
     default = Path("runs")
-    if play and folders is None:
+    if (play or study) and folders is None:
         default.mkdir(exist_ok=True)
     shown = folders if folders is not None else [default] if default.is_dir() else []
-    game = None
-    if play:
+    game = dealt = None
+    if play or study:
         from automotive_cosim.errors import UserError
+        from automotive_cosim.serve.dealing import read_study
         from automotive_cosim.serve.play import Game
+        from automotive_cosim.serve.study import Study
 
         if (shown[0] / "steps.jsonl").exists() or (shown[0] / "manifest.json").exists():
-            raise UserError(f"{shown[0]} is a record itself; give --play a folder that holds records")
-        game = Game(shown[0])
-    with WebServer(shown, host, port, game) as server:
+            raise UserError(f"{shown[0]} is a record itself; give a folder that holds records")
+        game = Game(shown[0]) if play else None
+        dealt = Study(read_study(study), shown[0] / study.stem) if study else None
+    with WebServer(shown, host, port, game, dealt) as server:
         typer.echo(f"Open {server.address}")
+        if dealt is not None:
+            typer.echo(f"People who take part open {server.people_address}")
         server.serve_forever(poll_interval=0.2)

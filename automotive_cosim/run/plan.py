@@ -38,6 +38,8 @@ from automotive_cosim.tasks import CATALOGUE
 PRESETS: Mapping[str, Json] = {"2026": {"limits": {"steps": 10}}}
 """Values of a plan by the name of who evaluates so: the authors' newer edition allows ten steps."""
 NO_MODEL = "none"
+HUMAN = "human"
+"""The agent that is a person; in the place of the model stands a code name."""
 MOST_RUNS = 10_000_000
 """At a second each, four months."""
 ALL_SUITES, BOTH = "all", "both"
@@ -139,8 +141,10 @@ class Plan:
         if not self.jobs():
             raise UserError(f"the plan has nothing to run: {self._nowhere()}")
         for agent, model, see in {(job.setup.agent, job.model, job.setup.see) for job in self.jobs()}:
-            if agent == "human":
-                raise UserError("agent 'human' needs a person; use `automotive-cosim run --agent human`")
+            if agent == HUMAN:
+                raise UserError(
+                    "agent 'human' needs a person; use `automotive-cosim serve --play`, or `run --agent human`"
+                )
             if ":" in agent:
                 check_agent(agent)
             else:
@@ -218,7 +222,7 @@ class Plan:
                     half,
                     None if is_own else scenario,
                     agent=agent,
-                    model=model if agent in MODELLED else NO_MODEL,
+                    model=model if agent in MODELLED or agent == HUMAN else NO_MODEL,
                     seed=seed,
                     max_steps=self.limits.hard_steps if task.suite is Suite.HARD else self.limits.steps,
                     max_sim_s=self.limits.sim_s,

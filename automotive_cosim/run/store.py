@@ -69,6 +69,7 @@ def opened(
     parts: Sequence[str] = ("traces", "pictures"),
     *,
     planned: int | None = None,
+    grows: bool = False,
 ) -> Iterator[Store[R]]:
     """Creates or resumes an evaluation's folder, and locks it until it is closed.
 
@@ -78,6 +79,7 @@ def opened(
         kind: kind of its rows.
         parts: folders in it.
         planned: how many jobs the plan has, for the manifest of an evaluation.
+        grows: the plan may be another one than before, as where nobody knows what will be run; see ``replan``.
 
     Raises:
         UserError: it cannot be written, is not an evaluation's, is in use, or was begun with another plan or
@@ -89,11 +91,24 @@ def opened(
         for name in parts:
             (folder / name).mkdir(parents=True, exist_ok=True)
         with _locked(folder):
-            _manifest(folder, plan, planned)
+            _manifest(folder, plan, planned, grows=grows)
             path = folder / "episodes.jsonl"
             _mend(path)
             with path.open("ab", buffering=0) as lines:
                 yield Store(folder, read_rows(folder, kind), lines)
+    except OSError as error:
+        raise cannot_write(folder, error) from error
+
+
+def replan(folder: Path, plan: Json, planned: int) -> None:
+    """Writes another plan into the manifest of an open folder whose plan grows.
+
+    Raises:
+        UserError: it cannot be written.
+    """
+    manifest = read_manifest(folder) | {"plan": plan, "episodes": planned}
+    try:
+        write_whole(folder / "manifest.json", json.dumps(manifest, indent=1))
     except OSError as error:
         raise cannot_write(folder, error) from error
 
@@ -243,7 +258,7 @@ def _check(folder: Path) -> None:
             raise UserError(f"{folder} contains something else; give --out an empty folder or an evaluation's")
 
 
-def _manifest(folder: Path, plan: Json, planned: int | None) -> None:
+def _manifest(folder: Path, plan: Json, planned: int | None, *, grows: bool) -> None:
     """Writes the manifest, or adds this start to an existing one."""
     now = {"started": datetime.now().astimezone().isoformat(timespec="seconds"), **stamp()}
     if not (folder / "manifest.json").exists():
@@ -251,7 +266,8 @@ def _manifest(folder: Path, plan: Json, planned: int | None) -> None:
         manifest: Json = {"format": FORMAT, "plan": plan, **count, "starts": [now]}
     else:
         manifest = read_manifest(folder)
-        _same("plan", manifest["plan"], plan, folder)
+        if not grows:
+            _same("plan", manifest["plan"], plan, folder)
         try:
             before = dict(manifest["starts"][0]["versions"])
         except (LookupError, TypeError, ValueError) as error:

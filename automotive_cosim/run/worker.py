@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, closing, contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -10,7 +10,7 @@ from pathlib import Path
 from automotive_cosim.agents import Agent, AgentSettings, make_agent
 from automotive_cosim.errors import CosimError
 from automotive_cosim.run.collect import Collector, Pictures, failed
-from automotive_cosim.run.episode import run_episode
+from automotive_cosim.run.episode import Watcher, run_episode
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.executor import Runner
 from automotive_cosim.run.moments import write_judged
@@ -35,17 +35,41 @@ def episodes(pictures: Pictures) -> Iterator[Runner[EpisodeJob, EpisodeRow]]:
 def run_job(
     job: EpisodeJob, folder: Path, pictures: Pictures, simulations: Simulations, nursery: Nursery
 ) -> EpisodeRow:
+    """Runs one episode with its agent, as ``run_with`` does.
+
+    Raises:
+        OSError: trace or pictures cannot be written.
+    """
+    return run_with(agent_of(job, nursery), job, folder, pictures, simulations)
+
+
+def run_with(
+    agent: AbstractContextManager[Agent],
+    job: EpisodeJob,
+    folder: Path,
+    pictures: Pictures,
+    simulations: Simulations,
+    watchers: Sequence[Watcher] = (),
+) -> EpisodeRow:
     """Runs one episode, writes its trace, screenshots and road, and returns its row; an error becomes a row too.
+
+    Args:
+        agent: who acts.
+        job: what to run.
+        folder: the evaluation's.
+        pictures: whether to keep screenshots and road.
+        simulations: warm simulations to use.
+        watchers: notified before anything is kept.
 
     Raises:
         OSError: trace or pictures cannot be written.
     """
     collector = Collector(pictures)
     road = RoadRecorder(folder / "pictures" / job.id, job.setup)
-    watchers = (collector,) if pictures is Pictures.NONE else (collector, road)
+    watchers = (*watchers, collector, *(() if pictures is Pictures.NONE else (road,)))
     try:
-        with closing(road), agent_of(job, nursery) as agent:
-            result = run_episode(job.setup, agent, watchers, simulations=simulations)
+        with closing(road), agent as acting:
+            result = run_episode(job.setup, acting, watchers, simulations=simulations)
     except CosimError as error:
         return failed(job, type(error).__name__, str(error))
     except Exception as error:

@@ -1,19 +1,17 @@
 """Play: a person at the cockpit, in real time, judged as agents are.
 
-The episode is one of ``run``: found, paced, recorded and judged by the same code. Only its agent is a person, whose
-acts come from a page. An act takes a simulated second, as any agent's does; in a second without an act, the car
-drives on. If the person acts faster than that, the next act waits; if the simulation is slower than real time, the
-clock slips.
+The episode is one of ``eval``, or in practice one of ``run``: found, recorded and judged by the same code. Only its
+agent is a person, whose acts come from a page. An act takes a simulated second, as any agent's does; in a second
+without an act, the car drives on. If the person acts faster than that, the next act waits; if the simulation is
+slower than real time, the clock slips. Who leaves an episode that counts has not succeeded in it.
 """
 
 from __future__ import annotations
 
-import queue
 import threading
-import time
 from collections.abc import Callable
-from contextlib import suppress
-from dataclasses import dataclass, replace
+from contextlib import nullcontext, suppress
+from dataclasses import dataclass, fields, replace
 from enum import StrEnum
 from io import BytesIO
 from pathlib import Path
@@ -24,26 +22,25 @@ from PIL import Image
 
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.contracts import Action, ActionType, Json, Observation
+from automotive_cosim.contracts import ActionType, Json, Observation
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
-from automotive_cosim.errors import CosimError, UserError
-from automotive_cosim.interface.observe import ALL
+from automotive_cosim.errors import UserError
 from automotive_cosim.report.film import Film
 from automotive_cosim.report.page import write_page
+from automotive_cosim.run.collect import Pictures
 from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, Shot, Watcher, run_episode
+from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.plan import HUMAN, NO_MODEL, EpisodeJob
 from automotive_cosim.run.record import Recorder, default_folder
 from automotive_cosim.run.road_recorder import RoadRecorder
+from automotive_cosim.run.worker import run_with
+from automotive_cosim.serve.person import SPEEDS, Person, PersonLeftError, Preview
+from automotive_cosim.serve.played import FOLDER, MOST_S, MOST_STEPS, PlayedRows, check_code_name
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
 
-MOST_S, MOST_STEPS = 120.0, 1000
-"""Simulated seconds, and acts, after which an episode ends."""
-TICK_S = 1.0
-"""Time that an act takes."""
 QUALITY = 88
-WAITING = 4
-"""Acts that may wait for their second; more are refused."""
 
 
 class PlayState(StrEnum):
@@ -60,8 +57,8 @@ class PlayState(StrEnum):
     FAILED = "failed"
 
 
-class StoppedError(CosimError):
-    """The person has left."""
+class StoppedError(KeyboardInterrupt):
+    """The person has left before there was anything to record."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,30 +73,48 @@ class PlayScene:
     """What an agent would be told, as JSON."""
     screen: bytes = b""
     """The cockpit as a JPEG."""
+    look: int = 0
+    """Another number for another screen."""
     error: str = ""
     folder: Path | None = None
-    """The record, once the episode is over."""
+    """The record, or the evaluation that it is in, once the episode is over."""
+    episode: str | None = None
+    """Its id in the evaluation."""
+    is_practice: bool = False
+    is_paused: bool = False
+    speed: float = 1.0
+    """Simulated seconds per second."""
 
 
 class Game(Watcher):
     """One person's episodes, one at a time. Any method may be called from any thread."""
 
-    def __init__(self, folder: Path, scenario: str | None = None) -> None:
+    def __init__(self, folder: Path, scenario: str | None = None, simulations: Simulations | None = None) -> None:
         """Nothing runs yet.
 
         Args:
-            folder: where episodes are recorded, each in a folder of its own.
+            folder: where practice is recorded, each episode in a folder of its own, and the rest as an evaluation
+                in ``people``.
             scenario: instead of the tasks' own.
+            simulations: warm simulations to use, which the caller closes; by default its own.
         """
         self._scenario = scenario
         self._folder = folder
-        self._simulations = Simulations()
+        self._rows = PlayedRows(folder / FOLDER, scenario)
+        self._own = Simulations() if simulations is None else None
+        self._simulations = simulations or self._own
         self._news = threading.Condition()
         self._scene = PlayScene()
         self._thread: threading.Thread | None = None
         self._person = Person()
+        self._preview = Preview()
+        self._shown = Shown()
+        self._hand = threading.Lock()
+        """Held while an act or a step changes what is shown, so that none overtakes another."""
+        self._cockpit: Cockpit | None = None
+        """The true one, of the episode under way."""
 
-    def start(self, task: str, half: str, seed: int, name: str) -> None:
+    def start(self, task: str, half: str, seed: int, name: str, *, practice: bool) -> None:
         """Begins an episode.
 
         Args:
@@ -107,43 +122,75 @@ class Game(Watcher):
             half: ``first``, ``second``, or empty to be dealt one by the seed.
             seed: seed of the episode.
             name: code name of the person.
+            practice: it may be paused and slowed, and gives no row.
 
         Raises:
-            UserError: one is running, or there is no such task or half.
+            UserError: one is running, there is no such task or half, or the name is no code name.
         """
         chosen = CATALOGUE[task]
         half = half or chosen.halves[int(np.random.default_rng([seed, 5]).integers(len(chosen.halves)))]
         chosen.half(half)
-        if len(name) > 40 or not all(letter.isalnum() or letter in " -_" for letter in name):
-            raise UserError(f"{name[:40]!r} is not a code name; give up to 40 letters, digits, spaces, - or _")
-        with self._news:
-            if self._thread is not None and self._thread.is_alive():
-                raise UserError("an episode is running already; finish or leave it first")
-            setup = EpisodeSetup(
-                task,
-                half,
-                self._scenario,
-                seed=seed,
-                agent="human",
-                model=name or "none",
-                max_steps=1000,
-                max_sim_s=MOST_S,
-            )
-            folder = self._folder / default_folder(setup).name
-            self._person = Person(name or "none")
-            self._scene = PlayScene(self._scene.version + 1, PlayState.WARMING)
-            self._thread = threading.Thread(target=self._run, args=(setup, folder), name="play", daemon=True)
-            self._thread.start()
+        if name or not practice:
+            check_code_name(name)
+        if not practice:
+            self.begin(self._rows.job(task, half, seed, name), self._rows.folder, self._rows.keep)
+            return
+        setup = EpisodeSetup(
+            task, half, self._scenario, seed=seed, agent=HUMAN, model=name or NO_MODEL, max_steps=MOST_STEPS,
+            max_sim_s=MOST_S,
+        )  # fmt: skip
+        folder = self._folder / default_folder(setup).name
+        self._begin(Person(setup.model), lambda: self._practise(setup, folder))
 
-    def act(self, action: Json) -> None:
+    def begin(self, job: EpisodeJob, folder: Path, keep: Callable[[EpisodeRow], None]) -> None:
+        """Begins an episode that counts.
+
+        Args:
+            job: what to play.
+            folder: the evaluation that it belongs to.
+            keep: takes its row.
+
+        Raises:
+            UserError: one is running.
+        """
+        self._begin(Person(job.setup.model, counts=True), lambda: self._count(job, folder, keep))
+
+    @property
+    def is_running(self) -> bool:
+        """Whether an episode is under way."""
+        return self._thread is not None and self._thread.is_alive()
+
+    def pace(self, speed: float, *, paused: bool) -> None:
+        """Slows an episode of practice, or stops its clock.
+
+        Raises:
+            UserError: the episode counts, nothing runs, or the speed is none of ``SPEEDS``.
+        """
+        if speed not in SPEEDS:
+            raise UserError(f"speed {speed:g} is none of {', '.join(f'{each:g}' for each in SPEEDS)}")
+        if not self._scene.is_practice or self._scene.state is not PlayState.ACTING:
+            raise UserError("only practice can be paused or slowed, and only while it runs")
+        self._person.pace(speed, paused=paused)
+        self._tell(speed=speed, is_paused=paused)
+
+    def act(self, action: Json) -> bytes:
         """Performs an action in its second.
+
+        Returns:
+            The screen as the action will leave it, as a JPEG, before the road has taken that second.
 
         Raises:
             UserError: it is malformed, too many wait, or nobody can act now.
         """
-        if self._scene.state is not PlayState.ACTING:
-            raise UserError("nobody can act now")
-        self._person.give(parse(action))
+        given = parse(action)
+        with self._hand:
+            if self._scene.state is not PlayState.ACTING:
+                raise UserError("nobody can act now")
+            self._person.give(given)
+            self._shown.show(self._preview.after(given))
+            with self._news:  # the page has it from here: nobody else needs to hear of it
+                self._scene = replace(self._scene, screen=self._shown.jpeg, look=self._shown.look)
+            return self._shown.jpeg
 
     def leave(self) -> None:
         """Ends the episode, if one is running, soon."""
@@ -152,11 +199,14 @@ class Game(Watcher):
             self._tell(state=PlayState.ENDING)
 
     def close(self) -> None:
-        """Ends everything, and waits until it has ended."""
+        """Breaks off what is going on, which leaves no row, and waits until it has ended."""
+        self._person.counts = False
         self.leave()
         if self._thread is not None:
             self._thread.join()
-        self._simulations.close()
+        if self._own is not None:
+            self._own.close()
+        self._rows.close()
 
     def scene(self, seen: int = -1, wait_s: float = 0.0) -> PlayScene:
         """The newest scene.
@@ -185,52 +235,82 @@ class Game(Watcher):
 
     def handed_over(self, episode: Episode, shot: Shot) -> None:
         """Shows the screen, and starts the clock."""
+        self._cockpit = episode.world.cockpit
+        self._preview.follow(self._cockpit)
         self._show(episode.observation, shot.screenshot)
         self._person.listen(self._show_told)
 
     def stepped(self, shot: Shot) -> None:
-        """Shows the screen after a second."""
+        """Shows the screen after a second, unless an act that waits has changed what the person sees."""
         action = shot.step.action
         has_declared = action is not None and action.action_type is ActionType.STATUS
-        self._tell(screen=_jpeg(shot.screenshot), state=PlayState.ENDING if has_declared else self._scene.state)
+        with self._hand:
+            if not self._person.has_acts:
+                assert self._cockpit is not None
+                self._preview.follow(self._cockpit)
+                self._shown.show(shot.screenshot)
+                self._tell(screen=self._shown.jpeg, look=self._shown.look)
+            if has_declared:
+                self._tell(state=PlayState.ENDING)
 
     def _check_stays(self) -> None:
         """Before the hand-over, there is nothing to record of an episode that is left."""
         if self._person.has_left:
-            raise StoppedError("the person has left")
+            raise StoppedError
 
     def _show(self, observation: Observation, screenshot: npt.NDArray[np.uint8]) -> None:
-        self._tell(state=PlayState.ACTING, told=_told(observation), screen=_jpeg(screenshot))
+        self._shown.show(screenshot)
+        told, shown = _told(observation), self._shown
+        self._tell(state=PlayState.ACTING, told=told, screen=shown.jpeg, look=shown.look)
 
     def _show_told(self, observation: Observation) -> None:
         self._tell(told=_told(observation))
 
-    def _run(self, setup: EpisodeSetup, folder: Path) -> None:
-        recorder = Recorder(folder, setup, {})
-        watchers = (self, recorder, RoadRecorder(folder, setup), Film(folder))  # the person first
+    def _begin(self, person: Person, play: Callable[[], None]) -> None:
+        with self._news:
+            if self.is_running:
+                raise UserError("an episode is running already; finish or leave it first")
+            self._person = person
+            state = PlayState.WARMING
+            self._scene = PlayScene(self._scene.version + 1, state, is_practice=not person.counts)
+            self._thread = threading.Thread(target=self._run, args=(play,), name="play", daemon=True)
+            self._thread.start()
+
+    def _run(self, play: Callable[[], None]) -> None:
         try:
-            run_episode(setup, self._person, watchers, simulations=self._simulations)
-        except StoppedError:
+            play()
+        except (StoppedError, PersonLeftError):
             self._tell(state=PlayState.IDLE, told=None, screen=b"")
-        except KeyboardInterrupt:  # how a person's leaving ends an episode that has begun
-            self._end(recorder)
         except Exception as error:
             self._tell(state=PlayState.FAILED, error=str(error) or type(error).__name__)
+
+    def _practise(self, setup: EpisodeSetup, folder: Path) -> None:
+        """Plays an episode and records it as ``run`` does."""
+        recorder = Recorder(folder, setup, {})
+        watchers = (self, recorder, RoadRecorder(folder, setup), Film(folder))  # the person first
+        with suppress(PersonLeftError):
+            run_episode(setup, self._person, watchers, simulations=self._simulations)
+        if not recorder.begun:
+            self._tell(state=PlayState.FAILED, error=self._scene.error or "the situation did not arise")
+            return
+        with suppress(UserError, OSError):
+            write_page(folder)
+        self._tell(state=PlayState.OVER, folder=folder)
+
+    def _count(self, job: EpisodeJob, folder: Path, keep: Callable[[EpisodeRow], None]) -> None:
+        """Plays an episode and keeps its row."""
+        assert self._simulations is not None
+        row = run_with(nullcontext(self._person), job, folder, Pictures.ALL, self._simulations, (self,))
+        keep(row)
+        if row.trace_sha256 is None:
+            self._tell(state=PlayState.FAILED, error=row.error or "the situation did not arise")
         else:
-            self._end(recorder)
+            self._tell(state=PlayState.OVER, folder=folder, episode=job.id)
 
     def finished(self, result: EpisodeResult) -> None:
         """Keeps the error of an episode that could not be judged."""
         if result.error is not None:
             self._tell(error=result.error)
-
-    def _end(self, recorder: Recorder) -> None:
-        if not recorder.begun:
-            self._tell(state=PlayState.FAILED, error=self._scene.error or "the situation did not arise")
-            return
-        with suppress(UserError, OSError):
-            write_page(recorder.folder)
-        self._tell(state=PlayState.OVER, folder=recorder.folder)
 
     def _tell(self, **changes: object) -> None:
         with self._news:
@@ -238,84 +318,15 @@ class Game(Watcher):
             self._news.notify_all()
 
 
-class Person:
-    """The agent: whoever gives actions."""
-
-    name = "human"
-    channels = ALL
-
-    def __init__(self, model: str = "none", clock: Callable[[], float] = time.monotonic) -> None:
-        """Nobody is there yet.
-
-        Args:
-            model: the code name, which stands where agents have their model.
-            clock: wall seconds.
-        """
-        self.model = model
-        self.has_left = False
-        self._clock = clock
-        self._given: queue.Queue[Action | None] = queue.Queue()
-        self._due_s = 0.0
-        """Wall time at which the present second is over."""
-        self._told: Callable[[Observation], None] | None = None
-
-    def give(self, action: Action) -> None:
-        """Hands in an action.
-
-        Raises:
-            UserError: too many wait already.
-        """
-        if self._given.qsize() >= WAITING:
-            raise UserError("an act takes a second; wait until the last ones are done")
-        self._given.put(action)
-
-    def stop(self) -> None:
-        """The person leaves."""
-        self.has_left = True
-        self._given.put(None)
-
-    def listen(self, told: Callable[[Observation], None]) -> None:
-        """Sets who hears what the person is told, and starts the clock."""
-        self._told = told
-        self._due_s = self._clock() + TICK_S
-
-    def reset(self, goal: str) -> None:
-        """Does nothing: the page shows the driver's words."""
-
-    def act(self, observation: Observation) -> Action:
-        """The action given within the present second, else to wait.
-
-        Raises:
-            KeyboardInterrupt: the person has left.
-        """
-        if self._told is not None:
-            self._told(observation)
-        now_s = self._clock()
-        ahead_s = self._due_s - now_s - TICK_S
-        if ahead_s > 0:  # time has run ahead of the clock by an act
-            time.sleep(ahead_s)
-            now_s = self._clock()
-        self._due_s = max(self._due_s, now_s)
-        try:
-            action = self._given.get(timeout=max(0.0, self._due_s - now_s))
-        except queue.Empty:
-            action = Action(ActionType.WAIT, seconds=1)
-        if action is None:
-            raise KeyboardInterrupt
-        self._due_s += TICK_S * (action.seconds or 1 if action.action_type is ActionType.WAIT else 1)
-        return action
-
-
 def _told(seen: Observation) -> Json:
     """What the person is told: the same as an agent."""
-    car = seen.vehicle
     return {
         "goal": seen.goal,
         "said": list(seen.said),
         "time_s": round(seen.time_s, 1),
         "feedback": [seen.feedback.code, seen.feedback.text],
         "context": seen.context or "",
-        "speed_kmh": None if car is None else round(car.speed_kmh),
+        "readings": _readings(seen),
         "elements": [
             {
                 "text": ": ".join(part for part in (element.text, element.content_description) if part)
@@ -331,7 +342,35 @@ def _told(seen: Observation) -> Json:
     }
 
 
-def _jpeg(screenshot: npt.NDArray[np.uint8]) -> bytes:
-    data = BytesIO()
-    Image.fromarray(screenshot).save(data, format="JPEG", quality=QUALITY, subsampling=0)
-    return data.getvalue()
+def _readings(seen: Observation) -> Json:
+    """The car's sensors and receivers by name, without those that it lacks."""
+    parts = {"": seen.vehicle, "link ": seen.connectivity, "gps ": seen.gps}
+    named = {
+        prefix + each.name: getattr(part, each.name)
+        for prefix, part in parts.items()
+        if part is not None
+        for each in fields(part)
+    }
+    return {
+        name: round(value, 5 if name.startswith("gps") else 1) if isinstance(value, float) else str(value)
+        for name, value in named.items()
+        if value is not None
+    }
+
+
+class Shown:
+    """The screen that the page shows, as a JPEG with a number that changes with it."""
+
+    def __init__(self) -> None:
+        """Nothing yet."""
+        self.look = 0
+        self.jpeg = b""
+        self._screenshot: npt.NDArray[np.uint8] | None = None
+
+    def show(self, screenshot: npt.NDArray[np.uint8]) -> None:
+        """Takes another screenshot, (height, width, 3); the same array is the same screen."""
+        if screenshot is self._screenshot:
+            return
+        data = BytesIO()
+        Image.fromarray(screenshot).save(data, format="JPEG", quality=QUALITY, subsampling=0)
+        self._screenshot, self.jpeg, self.look = screenshot, data.getvalue(), self.look + 1

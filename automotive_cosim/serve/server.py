@@ -17,6 +17,7 @@ import secrets
 import socket
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from enum import StrEnum
 from http import HTTPStatus
 from http.cookies import CookieError, SimpleCookie
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -25,15 +26,17 @@ from pathlib import Path
 from urllib.parse import parse_qs, unquote, urlsplit
 
 from automotive_cosim import __version__
+from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.files import parse_json
 from automotive_cosim.serve import catalogue
 from automotive_cosim.serve.content import Content
 from automotive_cosim.serve.play import Game
 from automotive_cosim.serve.shelf import NotHereError, Shelf
+from automotive_cosim.serve.study import Study
 
 SECURITY = {
-    "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; "
+    "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
@@ -68,35 +71,56 @@ class RefusedRequestError(Exception):
 
 WebRoute = Callable[[Mapping[str, str], Mapping[str, str]], WebAnswer]
 """Parts of the path and of the query, to an answer."""
+Routes = list[tuple[re.Pattern[str], WebRoute]]
+
+
+class Visitor(StrEnum):
+    """Who asks, by the token."""
+
+    OWNER = "owner"
+    """Whoever started the server: sees everything."""
+    PERSON = "person"
+    """Who takes part in a study: sees no task, no record and nobody's verdicts."""
 
 
 class Site:
     """The routes, and what is behind them."""
 
-    def __init__(self, folders: list[Path], game: Game | None = None) -> None:
+    def __init__(self, folders: list[Path], game: Game | None = None, study: Study | None = None) -> None:
         """Reads the static files.
 
         Args:
             folders: what to show.
             game: lets a person play; None if nobody may.
+            study: deals episodes to several people; None if there is none.
 
         Raises:
             UserError: a folder does not exist.
         """
         self._game = game
+        self._study = study
         self._content = Content(Shelf(folders))
         static = Path(str(files("automotive_cosim.serve") / "static"))
         self._static = {path.name: path.read_bytes() for path in static.iterdir() if path.is_file()}
         run, episode = r"(?P<run>[0-9a-f]{12})", r"(?:/episodes/(?P<episode>[\w.+-]+))?"
         content = self._content
-        self._routes: list[tuple[re.Pattern[str], WebRoute]] = [
+        self._for_everybody: Routes = [
             (re.compile(pattern), route)
             for pattern, route in (
                 (r"/", lambda _, __: self._file("index.html")),
                 (r"/static/(?P<name>[\w.-]+)", lambda path, _: self._file(path["name"])),
-                (r"/api/about", lambda _, __: _json({"version": __version__, "plays": game is not None})),
+                (r"/api/study", lambda _, __: _json(self._studied.overview())),
+                (r"/api/study/seat", lambda _, query: _json(self._studied.turn(query.get("seat", "")))),
+                (r"/api/study/play", self._scene),
+                (r"/api/study/play/screen", self._screen),
+            )
+        ]
+        self._routes: Routes = [
+            (re.compile(pattern), route)
+            for pattern, route in (
                 (r"/api/play", self._scene),
                 (r"/api/play/screen", self._screen),
+                (r"/api/study/rows\.(?P<kind>csv|json)", self._rows),
                 (r"/api/runs", lambda _, __: _json(content.runs())),
                 (rf"/api/runs/{run}{episode}", lambda path, _: _json(content.run(path["run"], path["episode"]))),
                 (
@@ -118,13 +142,16 @@ class Site:
             )
         ]
 
-    def answer(self, path: str, query: Mapping[str, str]) -> WebAnswer:
+    def answer(self, path: str, query: Mapping[str, str], visitor: Visitor = Visitor.OWNER) -> WebAnswer:
         """The answer to a path.
 
         Raises:
-            RefusedRequestError: there is no such page, or it cannot be made.
+            RefusedRequestError: there is no such page, it is not for this visitor, or it cannot be made.
         """
-        for pattern, route in self._routes:
+        if path == "/api/about":
+            about = {"version": __version__, "plays": self._game is not None, "visitor": visitor}
+            return _json(about | {"study": self._study and self._study.name})
+        for pattern, route in (*self._for_everybody, *(self._routes if visitor is Visitor.OWNER else ())):
             found = pattern.fullmatch(path)
             if found:
                 try:
@@ -136,51 +163,104 @@ class Site:
                     raise RefusedRequestError(HTTPStatus.UNPROCESSABLE_ENTITY, why) from error
         raise RefusedRequestError(HTTPStatus.NOT_FOUND, "there is no such page")
 
-    def change(self, path: str, body: bytes) -> WebAnswer:
-        """Lets the person who plays do something.
+    def change(self, path: str, query: Mapping[str, str], body: bytes, visitor: Visitor) -> WebAnswer:
+        """Lets somebody who plays do something.
 
         Raises:
             RefusedRequestError: there is no such thing to do, or it cannot be done now.
         """
-        game = self._game
-        if game is None or path not in ("/api/play/start", "/api/play/act", "/api/play/leave"):
+        is_study = path.startswith("/api/study/") and self._study is not None
+        is_play = path.startswith("/api/play/") and self._game is not None and visitor is Visitor.OWNER
+        if not is_study and not is_play:
             raise RefusedRequestError(HTTPStatus.METHOD_NOT_ALLOWED, "these pages only read")
         try:
             asked = parse_json(body or b"{}")
             if not isinstance(asked, dict):
                 raise UserError("give a JSON object")
-            if path == "/api/play/start":
+            what = path.rpartition("/")[2]
+            if is_study and path.count("/") == 3:
+                return _json(self._take_part(what, query, asked))
+            return self._play(what, self._game_of(query), asked, is_free=is_play)
+        except (UserError, ValueError) as error:
+            raise RefusedRequestError(HTTPStatus.UNPROCESSABLE_ENTITY, str(error)) from error
+
+    def _play(self, what: str, game: Game, asked: Json, *, is_free: bool) -> WebAnswer:
+        """One episode: nobody in a study chooses it, or stops its clock."""
+        match what:
+            case "act":
+                return WebAnswer(game.act(asked), "image/jpeg")
+            case "leave":
+                game.leave()
+            case "start" if is_free:
                 given = {name: asked.get(name, "") for name in ("task", "half", "name")}
                 seed = asked.get("seed", 0)
                 if not all(isinstance(value, str) for value in given.values()) or type(seed) is not int:
                     raise UserError("task, half and name are texts, and seed is a whole number")
                 if not 0 <= seed < 2**31:
                     raise UserError(f"seed {seed} is not a whole number from 0 to {2**31 - 1}")
-                game.start(given["task"], given["half"], seed, given["name"])
-            elif path == "/api/play/act":
-                game.act(asked)
-            else:
-                game.leave()
-        except (UserError, ValueError) as error:
-            raise RefusedRequestError(HTTPStatus.UNPROCESSABLE_ENTITY, str(error)) from error
+                game.start(given["task"], given["half"], seed, given["name"], practice=bool(asked.get("practice")))
+            case "pace" if is_free:
+                speed = asked.get("speed", 1)
+                if not isinstance(speed, (int, float)):
+                    raise UserError("speed is a number")
+                game.pace(float(speed), paused=bool(asked.get("paused")))
+            case _:
+                raise RefusedRequestError(HTTPStatus.METHOD_NOT_ALLOWED, "there is no such thing to do")
         return _json({})
 
+    def _take_part(self, what: str, query: Mapping[str, str], asked: Json) -> Json:
+        study, seat = self._studied, query.get("seat", "")
+        match what:
+            case "join":
+                return {"seat": study.join(str(asked.get("name", "")), str(asked.get("seat", "")))}
+            case "begin":
+                study.begin(seat)
+            case "answer":
+                study.answer(seat, asked)
+            case _:
+                raise RefusedRequestError(HTTPStatus.METHOD_NOT_ALLOWED, "there is no such thing to do")
+        return {}
+
     def close(self) -> None:
-        """Ends the game."""
+        """Ends game and study."""
         if self._game is not None:
             self._game.close()
+        if self._study is not None:
+            self._study.close()
+
+    @property
+    def _studied(self) -> Study:
+        if self._study is None:
+            raise NotHereError("there is no study here; start `automotive-cosim serve --study FILE`")
+        return self._study
+
+    def _game_of(self, query: Mapping[str, str]) -> Game:
+        """The game of whoever sits in a seat of the study; without a seat, the one that anybody plays."""
+        if "seat" in query:
+            return self._studied.seat(query["seat"]).game
+        if self._game is None:
+            raise NotHereError("nobody can play here; start `automotive-cosim serve --play`")
+        return self._game
+
+    def _rows(self, path: Mapping[str, str], query: Mapping[str, str]) -> WebAnswer:
+        if path["kind"] == "json":
+            return _json(self._studied.export())
+        return WebAnswer(self._studied.as_csv().encode(), "text/csv")
 
     def _scene(self, path: Mapping[str, str], query: Mapping[str, str]) -> WebAnswer:
         """The newest scene, or after a while the same if nothing happens."""
-        if self._game is None:
-            raise NotHereError("nobody can play here; start `automotive-cosim serve --play`")
-        scene = self._game.scene(_number(query), WAIT_S) if query else self._game.scene()
-        record = None if scene.folder is None else self._content.shelf.of(scene.folder).id
+        game = self._game_of(query)
+        scene = game.scene(_number(query), WAIT_S) if "seen" in query else game.scene()
         shown = {"version": scene.version, "state": scene.state, "progress": scene.progress, "error": scene.error}
-        return _json({**shown, "told": scene.told, "record": record, "has_screen": bool(scene.screen)})
+        shown |= {"practice": scene.is_practice, "paused": scene.is_paused, "speed": scene.speed}
+        shown |= {"look": scene.look, "told": scene.told}
+        if "seat" not in query:
+            record = None if scene.folder is None else self._content.shelf.of(scene.folder).id
+            shown |= {"record": record, "episode": scene.episode}
+        return _json(shown)
 
     def _screen(self, path: Mapping[str, str], query: Mapping[str, str]) -> WebAnswer:
-        screen = b"" if self._game is None else self._game.scene().screen
+        screen = self._game_of(query).scene().screen
         if not screen:
             raise NotHereError("there is no screen now")
         return WebAnswer(screen, "image/jpeg")
@@ -202,21 +282,28 @@ class WebServer(ThreadingHTTPServer):
     daemon_threads = True
 
     def __init__(
-        self, folders: list[Path], host: str = "127.0.0.1", port: int = 0, game: Game | None = None
+        self,
+        folders: list[Path],
+        host: str = "127.0.0.1",
+        port: int = 0,
+        game: Game | None = None,
+        study: Study | None = None,
     ) -> None:
         """Binds the address.
 
         Args:
             folders: what to show.
             game: lets a person play; None if nobody may. The server closes it.
+            study: deals episodes to several people. The server closes it.
             host: address to listen on.
             port: port to listen on; 0 takes a free one.
 
         Raises:
             UserError: a folder does not exist, or the address cannot be used.
         """
-        self.site = Site(folders, game)
+        self.site = Site(folders, game, study)
         self.token = secrets.token_urlsafe(24)
+        self.people_token = secrets.token_urlsafe(24)
         self.host = host
         if ":" in host:
             self.address_family = socket.AF_INET6
@@ -230,8 +317,16 @@ class WebServer(ThreadingHTTPServer):
     @property
     def address(self) -> str:
         """What to open in a browser, token included."""
+        return self._address(self.token, "")
+
+    @property
+    def people_address(self) -> str:
+        """What people who take part in the study open."""
+        return self._address(self.people_token, "#/study")
+
+    def _address(self, token: str, page: str) -> str:
         host = socket.gethostname() if self.host in ("0.0.0.0", "::") else self.host
-        return f"http://{f'[{host}]' if ':' in host else host}:{self.server_port}/?token={self.token}"
+        return f"http://{f'[{host}]' if ':' in host else host}:{self.server_port}/?token={token}{page}"
 
     def server_close(self) -> None:
         """Frees the port and ends a game."""
@@ -248,15 +343,17 @@ class RequestHandler(BaseHTTPRequestHandler):
     protocol_version = "HTTP/1.1"
     server_version, sys_version = "automotive-cosim", ""
     timeout = 60
+    disable_nagle_algorithm = True
+    """A body does not wait until the browser has acknowledged the headers."""
 
     def do_GET(self) -> None:
         """Answers, or says why not."""
         try:
-            path, query = self._request()
+            path, query, visitor = self._request()
             if query.get("token"):
-                self._welcome(path)
+                self._welcome(path, query["token"])
                 return
-            self._send(HTTPStatus.OK, self._web.site.answer(path, query))
+            self._send(HTTPStatus.OK, self._web.site.answer(path, query, visitor))
         except RefusedRequestError as refusal:
             is_data = self.path.startswith("/api/")
             why = _json({"error": str(refusal)}) if is_data else WebAnswer(f"{refusal}\n".encode(), "text/plain")
@@ -269,13 +366,13 @@ class RequestHandler(BaseHTTPRequestHandler):
     def do_POST(self) -> None:
         """Does something in a game; nothing else here can be changed."""
         try:
-            path, _ = self._request()
+            path, query, visitor = self._request()
             if self.headers.get("Origin") is None:
                 raise RefusedRequestError(HTTPStatus.FORBIDDEN, "only the pages themselves may do this")
             length = self.headers.get("Content-Length", "")
             if not length.isdecimal() or int(length) > MOST_BYTES:
                 raise RefusedRequestError(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"give at most {MOST_BYTES} bytes")
-            self._send(HTTPStatus.OK, self._web.site.change(path, self.rfile.read(int(length))))
+            self._send(HTTPStatus.OK, self._web.site.change(path, query, self.rfile.read(int(length)), visitor))
         except RefusedRequestError as refusal:
             self.close_connection = True  # what it sent has perhaps not been read
             self._send(refusal.status, _json({"error": str(refusal)}))
@@ -288,8 +385,8 @@ class RequestHandler(BaseHTTPRequestHandler):
         assert isinstance(self.server, WebServer)
         return self.server
 
-    def _request(self) -> tuple[str, dict[str, str]]:
-        """The path and the query of a request that may be answered.
+    def _request(self) -> tuple[str, dict[str, str], Visitor]:
+        """The path, the query and who asks, of a request that may be answered.
 
         Raises:
             RefusedRequestError: it comes from elsewhere, or without the token.
@@ -305,11 +402,12 @@ class RequestHandler(BaseHTTPRequestHandler):
         parts = urlsplit(self.path)
         query = {name: values[-1] for name, values in parse_qs(parts.query).items()}
         given = query.get("token") or self._cookie()
-        if not hmac.compare_digest(given.encode(), self._web.token.encode()):
-            raise RefusedRequestError(
-                HTTPStatus.FORBIDDEN, "the token is missing or wrong; open the address that the server printed"
-            )
-        return unquote(parts.path), query
+        for token, visitor in ((self._web.token, Visitor.OWNER), (self._web.people_token, Visitor.PERSON)):
+            if hmac.compare_digest(given.encode(), token.encode()):
+                return unquote(parts.path), query, visitor
+        raise RefusedRequestError(
+            HTTPStatus.FORBIDDEN, "the token is missing or wrong; open the address that the server printed"
+        )
 
     def _is_own(self, host: str) -> bool:
         """Whether a request names this server: a foreign name that resolves to it would get around the browser."""
@@ -330,11 +428,11 @@ class RequestHandler(BaseHTTPRequestHandler):
     def _cookie_name(self) -> str:
         return f"automotive_cosim_{self._web.server_port}"
 
-    def _welcome(self, path: str) -> None:
+    def _welcome(self, path: str, token: str) -> None:
         """Swaps the token in the address for a cookie."""
         self.send_response(HTTPStatus.SEE_OTHER)
         self.send_header("Location", path if path.startswith("/") and not path.startswith("//") else "/")
-        cookie = f"{self._cookie_name}={self._web.token}; HttpOnly; SameSite=Strict; Path=/"
+        cookie = f"{self._cookie_name}={token}; HttpOnly; SameSite=Strict; Path=/"
         self.send_header("Set-Cookie", cookie)
         self._end(b"")
 

@@ -19,6 +19,7 @@ from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.row import as_json
 from automotive_cosim.serve.play import Game
 from automotive_cosim.serve.server import WebServer
+from automotive_cosim.serve.study import Study
 from automotive_cosim.tasking.task import Dimension, Module
 
 HOSTILE = "<img src=x onerror=\"document.title='broken in'\">"
@@ -166,8 +167,10 @@ class Browser:
 def serving() -> Iterator[Callable[..., Browser]]:
     servers: list[tuple[WebServer, threading.Thread]] = []
 
-    def start(*folders: Path, host: str = "127.0.0.1", game: Game | None = None) -> Browser:
-        server = WebServer(list(folders), host, game=game)
+    def start(
+        *folders: Path, host: str = "127.0.0.1", game: Game | None = None, study: Study | None = None
+    ) -> Browser:
+        server = WebServer(list(folders), host, game=game, study=study)
         thread = threading.Thread(target=server.serve_forever, args=(0.01,))
         thread.start()
         servers.append((server, thread))

@@ -14,7 +14,9 @@ from typing import Any
 import pytest
 
 from automotive_cosim.run.road_recorder import mark_as_written
+from automotive_cosim.serve.dealing import StudyPlan
 from automotive_cosim.serve.play import Game
+from automotive_cosim.serve.study import Study
 
 from .conftest import HOSTILE, Browser, result, road, step, write_evaluation, write_record
 
@@ -44,7 +46,7 @@ def opened(chromium: Any) -> Iterator[Callable[..., Any]]:
     """Opens a server's address and goes to a page; at the end, nothing may have gone wrong or elsewhere."""
     contexts, wrong = [], list[str]()
 
-    def open_(browser: Browser, page: str = "#/", **options: Any) -> Any:
+    def open_(browser: Browser, page: str = "#/", address: str = "", **options: Any) -> Any:
         context = chromium.new_context(**({"viewport": {"width": 1280, "height": 900}} | options))
         contexts.append(context)
         tab = context.new_page()
@@ -52,7 +54,7 @@ def opened(chromium: Any) -> Iterator[Callable[..., Any]]:
         tab.on("pageerror", lambda error: wrong.append(str(error)))
         tab.on("console", lambda said: wrong.append(said.text) if "Content Security" in said.text else None)
         tab.on("request", lambda asked: None if "//127.0.0.1:" in asked.url else wrong.append(asked.url))
-        tab.goto(browser.server.address)
+        tab.goto(address or browser.server.address)
         tab.goto(f"http://127.0.0.1:{browser.server.server_port}/{page}")
         return tab
 
@@ -176,18 +178,78 @@ def test_a_person_plays_by_keyboard_and_mouse(serving: Serving, opened: Callable
     expect(fan).to_have_count(1)
     box = fan.bounding_box()
     page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
-    expect(page.locator(".playing [role=status]")).to_contain_text("FanSpeed is 100")
+    expect(page.locator(".playing [role=status]")).to_contain_text("Max: done")
     page.get_by_role("button", name="Done").click()
     page.get_by_role("link", name="See the verdict").click(timeout=60_000)
     expect(page.locator(".pill")).to_have_text("Success")
     expect(page.locator(".head")).to_contain_text("human · blue heron")
 
 
+@pytest.mark.sumo
+def test_two_people_take_part_in_a_study_at_once_and_a_new_server_goes_on(
+    serving: Serving, opened: Callable[..., Any], tmp_path: Path
+) -> None:
+    plan = StudyPlan(("heron", "fox"), ("hvac_fan_max", "hvac_fan_percent"), scenario="grid")
+    folder = tmp_path / "mine"
+
+    def sit_down(browser: Browser, name: str) -> Any:
+        page = opened(browser, "#/study", address=browser.server.people_address)
+        expect(page.get_by_role("link", name="Tasks")).to_be_hidden()
+        page.get_by_label("Your code name").select_option(name)
+        page.get_by_role("button", name="Take part").click()
+        return page
+
+    def answer(page: Any) -> None:
+        for box in page.locator("fieldset").all():
+            box.get_by_label("mostly").check()
+        page.get_by_role("button", name="Go on").click()
+
+    first = Study(plan, folder)
+    browser = serving(tmp_path, study=first)
+    pages = [sit_down(browser, name) for name in plan.people]
+    for page in pages:
+        page.get_by_role("button", name="Begin the next episode").click()
+    for page in pages:
+        expect(page.locator(".said")).to_be_visible(timeout=60_000)
+    for page in pages:
+        page.get_by_role("button", name="Not needed").click()
+    for page in pages:
+        expect(page.get_by_text("About what you just did")).to_be_visible(timeout=60_000)
+        expect(page.get_by_text(re.compile("success|not solved"))).to_have_count(0)
+    answer(pages[0])
+    expect(pages[0].get_by_text("1 of 2 episodes are done.")).to_be_visible()
+    pages[0].get_by_role("button", name="Begin the next episode").click()
+    expect(pages[0].locator(".said")).to_be_visible(timeout=60_000)
+    first.close()  # as the server ends, in the middle of an episode
+
+    second = Study(plan, folder)
+    browser = serving(tmp_path, study=second)
+    pages = [sit_down(browser, name) for name in plan.people]
+    answer(pages[1])
+    for page in pages:
+        expect(page.get_by_text("1 of 2 episodes are done.")).to_be_visible()
+    page = pages[0]
+    page.get_by_role("button", name="Begin the next episode").click()
+    expect(page.locator(".said")).to_be_visible(timeout=60_000)
+    page.get_by_role("button", name="Give up").click()
+    expect(page.get_by_text("About what you just did")).to_be_visible(timeout=60_000)
+    answer(page)
+    expect(page.locator("tbody tr")).to_have_count(2)
+    expect(page.locator("tbody")).to_contain_text("not solved")
+    lines = [line for line in second.export() if line["person"] == "heron"]
+    assert [line["times_begun"] for line in lines] == [1, 2]
+    assert [line["understood"] for line in lines] == [4, 4]
+    owner = opened(browser, "#/study")
+    expect(owner.get_by_text("heron: 2 of 2")).to_be_visible()
+    expect(owner.get_by_text("fox: 1 of 2")).to_be_visible()
+
+
 def test_every_page_fits_in_light_and_dark(serving: Serving, opened: Callable[..., Any], tmp_path: Path) -> None:
     write_record(tmp_path / "run", goal="x" * 300)
     write_evaluation(tmp_path / "mine")
-    browser = serving(tmp_path)
-    records = browser("/api/runs").json["records"]
+    study = Study(StudyPlan(("heron",), ("hvac_fan_max",)), tmp_path / "study")
+    browser = serving(tmp_path, game=Game(tmp_path), study=study)
+    records = [each for each in browser("/api/runs").json["records"] if each["name"] != "study"]
     run, mine = (next(each["id"] for each in records if each["kind"] == kind) for kind in ("run", "evaluation"))
     pages = (
         "#/",
@@ -197,6 +259,7 @@ def test_every_page_fits_in_light_and_dark(serving: Serving, opened: Callable[..
         "#/tasks/road_horn_abroad",
         "#/scenarios",
         "#/play",
+        "#/study",
         "#/no",
     )
     for width, scheme in ((1400, "light"), (820, "dark"), (360, "light")):
@@ -209,7 +272,7 @@ def test_every_page_fits_in_light_and_dark(serving: Serving, opened: Callable[..
             unnamed = page.evaluate(
                 "[...document.querySelectorAll('button, a, input, select, canvas, img')].filter((each) => "
                 "!each.textContent.trim() && !each.getAttribute('aria-label') && each.getAttribute('alt') === null "
-                "&& !each.querySelector('img[alt]'))"
+                "&& !each.querySelector('img[alt]') && !each.closest('label')?.textContent.trim())"
                 ".length"
             )
             assert unnamed == 0, f"something on {name} has no name for a screen reader"

@@ -8,19 +8,27 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
+from automotive_cosim.cockpit.actions import perform
+from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCode, Observation
-from automotive_cosim.errors import UserError
+from automotive_cosim.errors import AgentError, UserError
+from automotive_cosim.report.evaluation import write_report
+from automotive_cosim.report.results import read_results
 from automotive_cosim.run.road import read_record
-from automotive_cosim.serve.play import WAITING, Game, Person
+from automotive_cosim.serve.person import WAITING, Person, Preview
+from automotive_cosim.serve.play import Game
 
+from ..cockpit.conftest import town
 from .conftest import Browser, Reply
 
 Serving = Callable[..., Browser]
 
 NOTHING = Observation("", 0.0, Feedback(FeedbackCode.NONE, ""))
 CLICK = Action(ActionType.CLICK, x=1, y=1)
+HOME_SCREEN = Action(ActionType.NAVIGATE_HOME)
 
 
 def post(browser: Browser, path: str, value: Any, **headers: str) -> Reply:
@@ -58,6 +66,22 @@ def test_only_a_few_acts_may_wait() -> None:
         person.give(CLICK)
 
 
+def test_an_act_is_shown_before_its_second_and_leaves_the_true_cockpit_alone() -> None:
+    cockpit = Cockpit(town(), rng=np.random.default_rng(0))
+    before, commands = cockpit.screenshot(), cockpit.commands()
+    preview = Preview()
+    preview.follow(cockpit)
+    climate = preview.after(Action(ActionType.OPEN_APP, app_name="climate"))
+    assert not np.array_equal(climate, before)
+    again = preview.after(HOME_SCREEN)
+    assert np.array_equal(again, before), "acts follow on each other"
+    assert cockpit.screenshot() is before
+    assert cockpit.commands() == commands
+    real = cockpit.copy()
+    perform(Action(ActionType.OPEN_APP, app_name="climate"), real, ())
+    assert np.array_equal(real.screenshot(), climate)
+
+
 def test_nobody_plays_unless_the_server_says_so(serving: Serving, tmp_path: Path) -> None:
     browser = serving(tmp_path)
     assert browser("/api/about").json["plays"] is False
@@ -80,12 +104,15 @@ def test_only_the_pages_themselves_may_act(serving: Serving, tmp_path: Path) -> 
 @pytest.mark.parametrize(
     ("path", "value", "why"),
     [
-        ("start", {"task": "no_such_task"}, "no_such_task"),
+        ("start", {"task": "no_such_task", "name": "x"}, "no_such_task"),
         ("start", {"task": 3}, "texts"),
         ("start", {"task": "hvac_fan_max", "seed": True}, "whole number"),
         ("start", {"task": "hvac_fan_max", "seed": -1}, "whole number"),
         ("start", {"task": "hvac_fan_max", "half": "second"}, "half"),
         ("start", {"task": "hvac_fan_max", "name": "../../x"}, "code name"),
+        ("start", {"task": "hvac_fan_max", "name": " "}, "code name"),
+        ("pace", {"paused": True}, "only practice"),
+        ("pace", {"speed": "x"}, "a number"),
         ("act", {"action_type": "click", "x": 1, "y": 1}, "nobody can act"),
         ("act", [], "object"),
     ],
@@ -98,6 +125,23 @@ def test_what_makes_no_sense_is_refused_in_words(
     assert refused.status == 422
     assert why in refused.json["error"]
     assert browser("/api/play?seen=9").json["state"] == "idle"
+
+
+def test_a_slowed_second_is_longer_and_a_stopped_clock_takes_no_act() -> None:
+    person = Person(clock=lambda: 0.0)
+    person.pace(0.25, paused=True)
+    with pytest.raises(UserError, match="stands"):
+        person.give(CLICK)
+    person.pace(1.0, paused=False)
+    person.give(CLICK)
+    assert person.act(NOTHING) == CLICK
+
+
+def test_leaving_what_counts_is_the_persons_failure() -> None:
+    person = Person(counts=True)
+    person.stop()
+    with pytest.raises(AgentError, match="left"):
+        person.act(NOTHING)
 
 
 @pytest.mark.slow
@@ -119,8 +163,9 @@ def test_a_person_is_judged_as_an_agent_and_can_leave(serving: Serving, tmp_path
         x, y = (box[0] + box[2]) // 2, (box[1] + box[3]) // 2
         assert post(browser, "/api/play/act", {"action_type": "click", "x": x, "y": y}).status == 200
 
-    assert post(browser, "/api/play/start", {"task": "hvac_fan_max", "name": "blue heron"}).status == 200
-    assert post(browser, "/api/play/start", {"task": "hvac_fan_max"}).status == 422, "one at a time"
+    mine = {"task": "hvac_fan_max", "name": "blue heron"}
+    assert post(browser, "/api/play/start", mine).status == 200
+    assert post(browser, "/api/play/start", mine).status == 422, "one at a time"
     first = until("acting")
     assert first["told"]["goal"]
     assert browser("/api/play/screen").body.startswith(b"\xff\xd8")
@@ -130,14 +175,37 @@ def test_a_person_is_judged_as_an_agent_and_can_leave(serving: Serving, tmp_path
     assert post(browser, "/api/play/act", {"action_type": "status", "goal_status": "complete"}).status == 200
     over = until("over", "failed")
     assert over["error"] == ""
-    run = browser(f"/api/runs/{over['record']}").json
+    run = browser(f"/api/runs/{over['record']}/episodes/{over['episode']}").json
     assert (run["agent"], run["model"], run["success"]) == ("human", "blue heron", True)
-    (folder,) = (path for path in tmp_path.iterdir() if path.is_dir())
-    assert {path.name for path in folder.iterdir()} >= {"episode.json", "episode.webp", "summary.html"}
-    assert read_record(folder / "road.jsonl.gz").seconds
+    assert post(browser, "/api/play/pace", {"paused": True}).status == 422, "what counts is never paused"
 
-    assert post(browser, "/api/play/start", {"task": "hvac_fan_max"}).status == 200
+    assert post(browser, "/api/play/start", mine).status == 200
     until("acting")
+    assert post(browser, "/api/play/leave", {}).status == 200
+    assert until("over")["episode"] != over["episode"], "a second try is another episode"
+
+    results = read_results(tmp_path / "people")
+    assert results.coverage.is_complete
+    rows = sorted(results.rows, key=lambda row: row.repeat)
+    assert [(row.repeat, row.success, row.end) for row in rows] == [
+        (0, True, "declared"),
+        (1, False, "agent_failed"),
+    ]
+    assert {each.label for each in results.contestants} == {"human, blue heron, model's clock"}
+    write_report(tmp_path / "people")
+    assert "blue heron" in (tmp_path / "people" / "report.html").read_text(encoding="utf-8")
+    assert read_record(tmp_path / "people" / "pictures" / rows[0].id / "road.jsonl.gz").seconds
+
+    assert post(browser, "/api/play/start", {"task": "hvac_fan_max", "practice": True}).status == 200
+    until("acting")
+    assert post(browser, "/api/play/pace", {"paused": True, "speed": 0.5}).status == 200
+    stands = until("acting", when=lambda scene: scene["paused"])
+    assert stands["speed"] == 0.5
+    assert post(browser, "/api/play/act", {"action_type": "navigate_home"}).status == 422, "the clock stands"
+    assert post(browser, "/api/play/pace", {"paused": False, "speed": 3}).status == 422
     assert post(browser, "/api/play/leave", {}).status == 200
     left = until("over")
     assert browser(f"/api/runs/{left['record']}").json["end"] == "interrupted"
+    assert len(read_results(tmp_path / "people").rows) == 2, "practice gives no row"
+    (folder,) = (path for path in tmp_path.iterdir() if path.name != "people")
+    assert {path.name for path in folder.iterdir()} >= {"episode.json", "episode.webp", "summary.html"}

@@ -1,9 +1,10 @@
 // Which page an address shows. Everything after # stays in the browser, so links outlive the server.
 
-import { h } from "./dom.js";
+import { ask, h } from "./dom.js";
 import { runsPage, resultsPage } from "./runs.js";
 import { replayPage } from "./replay.js";
 import { playPage } from "./play.js";
+import { studyPage } from "./study.js";
 import { scenariosPage, taskPage, tasksPage } from "./browse.js";
 
 const PAGES = [
@@ -14,6 +15,7 @@ const PAGES = [
   [/^\/tasks\/([\w-]+)$/, taskPage],
   [/^\/scenarios$/, scenariosPage],
   [/^\/play$/, playPage],
+  [/^\/study$/, studyPage],
 ];
 
 let leave = null;
@@ -45,12 +47,25 @@ async function show() {
 }
 
 function mark(path) {
-  const top = ["/tasks", "/scenarios", "/play"].find((page) => path.startsWith(page)) ?? "/";
+  const top = ["/tasks", "/scenarios", "/play", "/study"].find((page) => path.startsWith(page)) ?? "/";
   for (const link of document.querySelectorAll("nav a")) {
     if (link.getAttribute("href") === `#${top}`) link.setAttribute("aria-current", "page");
     else link.removeAttribute("aria-current");
   }
 }
 
+// Who takes part in a study sees nothing else.
+async function greet() {
+  const { study, visitor } = await ask("/api/about");
+  for (const link of document.querySelectorAll("nav a")) {
+    const isStudy = link.getAttribute("href") === "#/study";
+    link.hidden = isStudy ? !study : visitor !== "owner";
+  }
+  if (visitor !== "owner") {
+    document.querySelector(".brand").setAttribute("href", "#/study");
+    if (location.hash !== "#/study") location.hash = "#/study";
+  }
+}
+
 addEventListener("hashchange", show);
-show();
+greet().catch(() => {}).then(show);

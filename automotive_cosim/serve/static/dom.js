@@ -52,6 +52,7 @@ export async function send(path, value) {
   return answered(path, { method: "POST", credentials: "same-origin", body: JSON.stringify(value) });
 }
 
+// Answers with a picture, or with an object if it is none.
 async function answered(path, request) {
   let answer;
   try {
@@ -61,6 +62,7 @@ async function answered(path, request) {
   }
   let body;
   try {
+    if (answer.ok && answer.headers.get("Content-Type").startsWith("image/")) return await answer.blob();
     body = await answer.json();
   } catch {
     throw new Error(`The server's answer cannot be read (${answer.status}).`);

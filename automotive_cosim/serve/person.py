@@ -1,0 +1,142 @@
+"""The person who plays, as the agent of an episode, and what the person's hands do at once."""
+
+from __future__ import annotations
+
+import queue
+import threading
+import time
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+
+from automotive_cosim.cockpit.actions import perform
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.contracts import Action, ActionType, Observation
+from automotive_cosim.errors import AgentError, UserError
+from automotive_cosim.interface.observe import ALL
+from automotive_cosim.run.plan import HUMAN, NO_MODEL
+
+TICK_S = 1.0
+"""Time that an act takes."""
+SPEEDS = (1.0, 0.5, 0.25)
+"""Simulated seconds per second, in practice."""
+WAITING = 4
+"""Acts that may wait for their second; more are refused."""
+
+
+class PersonLeftError(KeyboardInterrupt):
+    """The person has left an episode that does not count."""
+
+
+class Person:
+    """The agent: whoever gives actions."""
+
+    name = HUMAN
+    channels = ALL
+
+    def __init__(
+        self, model: str = NO_MODEL, *, counts: bool = False, clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        """Nobody is there yet.
+
+        Args:
+            model: the code name, which stands where agents have their model.
+            counts: whether leaving counts, as the failure of an agent.
+            clock: wall seconds.
+        """
+        self.model = model
+        self.counts = counts
+        self.has_left = False
+        self._clock = clock
+        self._given: queue.Queue[Action | None] = queue.Queue()
+        self._due_s = 0.0
+        """Wall time at which the present second is over."""
+        self._tick_s = TICK_S
+        """Wall seconds in a simulated one."""
+        self._goes = threading.Event()
+        self._goes.set()
+        self._told: Callable[[Observation], None] | None = None
+
+    def give(self, action: Action) -> None:
+        """Hands in an action.
+
+        Raises:
+            UserError: too many wait already, or the clock stands.
+        """
+        if not self._goes.is_set():
+            raise UserError("the clock stands; go on first")
+        if self._given.qsize() >= WAITING:
+            raise UserError("an act takes a second; wait until the last ones are done")
+        self._given.put(action)
+
+    @property
+    def has_acts(self) -> bool:
+        """Whether an act waits for its second."""
+        return not self._given.empty()
+
+    def pace(self, speed: float, *, paused: bool) -> None:
+        """Sets how many simulated seconds pass in a second; while paused, none after the present one."""
+        self._tick_s = TICK_S / speed
+        (self._goes.clear if paused else self._goes.set)()
+
+    def stop(self) -> None:
+        """The person leaves."""
+        self.has_left = True
+        self._goes.set()
+        self._given.put(None)
+
+    def listen(self, told: Callable[[Observation], None]) -> None:
+        """Sets who hears what the person is told, and starts the clock."""
+        self._told = told
+        self._due_s = self._clock() + self._tick_s
+
+    def reset(self, goal: str) -> None:
+        """Does nothing: the page shows the driver's words."""
+
+    def act(self, observation: Observation) -> Action:
+        """The action given within the present second, else to wait.
+
+        Raises:
+            AgentError: the person has left an episode that counts.
+            PersonLeftError: the person has left another one.
+        """
+        if self._told is not None:
+            self._told(observation)
+        tick_s = self._tick_s
+        ahead_s = self._due_s - self._clock() - tick_s
+        if ahead_s > 0:  # time has run ahead of the clock by an act
+            time.sleep(ahead_s)
+        self._goes.wait()
+        now_s = self._clock()
+        self._due_s = max(self._due_s, now_s)
+        try:
+            action = self._given.get(timeout=max(0.0, self._due_s - now_s))
+        except queue.Empty:
+            action = Action(ActionType.WAIT, seconds=1)
+        if action is None:
+            raise AgentError("the person has left") if self.counts else PersonLeftError
+        self._due_s += tick_s * (action.seconds or 1 if action.action_type is ActionType.WAIT else 1)
+        return action
+
+
+class Preview:
+    """The screen as the acts that wait will leave it, drawn before the road has taken their seconds.
+
+    Acts are performed on a copy of the cockpit, which nothing else ever sees.
+    """
+
+    def __init__(self) -> None:
+        """Nothing to show yet."""
+        self._cockpit: Cockpit | None = None
+        """A copy of the true one, and further only by the acts that wait."""
+
+    def follow(self, cockpit: Cockpit) -> None:
+        """Goes on from the true cockpit."""
+        self._cockpit = cockpit.copy()
+
+    def after(self, action: Action) -> npt.NDArray[np.uint8]:
+        """The screen after another act, (height, width, 3)."""
+        assert self._cockpit is not None, "there is no cockpit yet"
+        perform(action, self._cockpit, ())
+        return self._cockpit.screenshot()

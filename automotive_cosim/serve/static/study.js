@@ -1,0 +1,97 @@
+// A study: a person sits down under a code name, plays what is dealt, and answers after each episode.
+
+import { ask, h, plain, send } from "./dom.js";
+import { cockpitPanel, listen, rulesCard, waiting } from "./cockpit.js";
+
+const KEPT = "automotive-cosim seat"; // in this tab: a second tab is another person
+
+export async function studyPage() {
+  const { visitor } = await ask("/api/about");
+  const study = await ask("/api/study");
+  const main = h("div");
+  const note = h("p", { class: "warning", hidden: true, role: "alert" });
+  const status = h("p", { class: "muted", role: "status" });
+  const heading = h("h1", {}, "Study");
+  const say = (error) => { note.textContent = error?.message ?? ""; note.hidden = !error; };
+  const trying = (what) => async (event) => { event?.preventDefault(); try { say(null); await what(event); } catch (error) { say(error); } };
+  let seat = sessionStorage.getItem(KEPT) ?? "";
+  let [stop, cockpit, turn, gone] = [() => {}, null, null, false];
+
+  const at = (what) => `/api/study/${what}?${new URLSearchParams({ seat })}`;
+
+  function welcome(people) {
+    status.textContent = "";
+    const name = h("select", { required: true }, h("option", { value: "" }, "Choose"), people.map((each) => h("option", { value: each.name }, each.name)));
+    main.replaceChildren(h("form", { class: "card filters", onsubmit: trying(async () => {
+      ({ seat } = await send("/api/study/join", { name: name.value, seat }));
+      sessionStorage.setItem(KEPT, seat);
+      await sitDown();
+    }) }, h("label", {}, "Your code name", name), h("button", { type: "submit", class: "main" }, "Take part")), rulesCard(), ...(visitor === "owner" ? [owners(people)] : []));
+  }
+
+  function owners(people) {
+    return h("section", {}, h("h2", {}, "How far everybody is"), h("div", { class: "card" },
+      h("ul", {}, people.map((each) => h("li", {}, `${each.name}: ${each.done} of ${each.planned}`))),
+      h("p", { class: "muted" }, "Rows, answers and times: ", h("a", { href: "/api/study/rows.csv", download: "study.csv" }, "CSV"), " · ", h("a", { href: "/api/study/rows.json", download: "study.json" }, "JSON"))));
+  }
+
+  async function sitDown() {
+    turn = await ask(at("seat"));
+    heading.textContent = `Study · ${turn.person}`;
+    cockpit?.leave();
+    stop();
+    cockpit = cockpitPanel({ base: "/api/study/play", query: { seat }, say, leaveLabel: "Give up" });
+    stop = listen({ base: "/api/study/play", query: { seat }, say, changed: trying2(show) });
+  }
+
+  const trying2 = (what) => (scene) => what(scene).catch(say);
+
+  async function show(scene) {
+    if (scene.state === "acting") {
+      if (main.firstChild !== cockpit.element) main.replaceChildren(cockpit.element);
+      cockpit.show(scene);
+      status.textContent = "";
+      return;
+    }
+    cockpit.hide();
+    if (["warming", "driving", "ending"].includes(scene.state)) {
+      const [text, bar] = waiting(scene);
+      status.textContent = text;
+      main.replaceChildren(...[bar, rulesCard()].filter(Boolean));
+      return;
+    }
+    turn = await ask(at("seat"));
+    if (gone) return;
+    status.textContent = `${turn.done} of ${turn.planned} episodes are done.${scene.state === "failed" ? " The last one could not be judged, through no fault of yours." : ""}`;
+    if (turn.phase === "ask") main.replaceChildren(questions(scene));
+    else if (turn.phase === "play") main.replaceChildren(h("form", { class: "card filters", onsubmit: trying(() => send(at("begin"), {})) }, h("p", {}, "When you begin, the car drives to where the driver says something. From then on, time does not wait."), h("button", { type: "submit", class: "main" }, "Begin the next episode")), rulesCard());
+    else main.replaceChildren(...verdicts());
+  }
+
+  function questions(scene) {
+    return h("form", { class: "card questions", onsubmit: trying(async (event) => {
+      const given = new FormData(event.target);
+      await send(at("answer"), Object.fromEntries(study.questions.map(({ name }) => [name, Number(given.get(name))])));
+      await show(scene);
+    }) }, h("h2", {}, "About what you just did"), study.questions.map(({ name, text }) => h("fieldset", {}, h("legend", {}, text),
+      h("div", { class: "scale" }, study.scale.map((words, index) => h("label", {}, h("input", { type: "radio", name, value: index + 1, required: true }), words))))),
+    h("button", { type: "submit", class: "main" }, "Go on"));
+  }
+
+  function verdicts() {
+    const said = (each) => (each.success ? "✓ success" : each.success === false ? `✗ not solved: ${each.missing.map(plain).join(", ")}` : "no verdict");
+    return [h("p", { class: "card said" }, "That was all. Thank you!"), h("div", { class: "card scroll", tabindex: 0, role: "region", "aria-label": "Your verdicts" }, h("table", {},
+      h("thead", {}, h("tr", {}, ["Task", "Half", "Verdict"].map((name) => h("th", { scope: "col" }, name)))),
+      h("tbody", {}, turn.verdicts.map((each) => h("tr", {}, h("td", {}, each.task), h("td", {}, each.half), h("td", {}, said(each)))))))];
+  }
+
+  return {
+    title: "Study",
+    content: [heading, note, status, main],
+    ready: async () => {
+      if (!seat) return welcome(study.people);
+      try { await sitDown(); } catch { welcome(study.people); }
+    },
+    leave: () => { gone = true; stop(); cockpit?.leave(); },
+  };
+}

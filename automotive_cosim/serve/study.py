@@ -1,0 +1,288 @@
+"""A study with people: dealt by ``dealing``, played by several at once, with three questions after each episode.
+
+The folder is an evaluation of the agent ``human``, which every report reads, with one file more:
+
+    log.jsonl    a line whenever an episode is begun or has ended, or the questions after it are answered
+
+Both are on the disk before anything goes on, so that a server that was killed continues where it was; the episode
+under way is begun again, and the export says so.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import os
+import secrets
+import threading
+import time
+from collections.abc import Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.errors import UserError
+from automotive_cosim.formats.files import parse_json
+from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.plan import EpisodeJob
+from automotive_cosim.run.store import opened
+from automotive_cosim.serve.dealing import StudyPlan, deal
+from automotive_cosim.serve.play import Game
+from automotive_cosim.traffic.fork import Simulations
+
+QUESTIONS: Mapping[str, str] = {
+    "understood": "I understood what the driver wanted.",
+    "sure": "I am sure that I ended it the right way.",
+    "hard": "It was hard to do.",
+}
+SCALE = ("not at all", "a little", "half and half", "mostly", "entirely")
+"""Answers 1 to 5."""
+LOG = "log.jsonl"
+AWAY_S = 20.0
+"""After that time without a sign, somebody else may sit down under a code name."""
+
+
+@dataclass(slots=True)
+class StudySeat:
+    """A browser in which somebody plays under a code name."""
+
+    person: str
+    game: Game
+    heard_s: float
+
+
+class Study:
+    """A study under way. Any method may be called from any thread."""
+
+    def __init__(self, plan: StudyPlan, folder: Path) -> None:
+        """Begins it, or goes on with it.
+
+        Args:
+            plan: what is dealt.
+            folder: of the study, new or begun with the same plan.
+
+        Raises:
+            UserError: the plan does not fit, or the folder belongs to something else or is in use.
+        """
+        whole = plan.plan
+        jobs = whole.jobs()
+        self.name = folder.name
+        self.folder = folder
+        self._orders = deal(jobs, plan.people, plan.order_seed)
+        self._ends = ExitStack()
+        self._store = self._ends.enter_context(opened(folder, whole.as_json(), EpisodeRow, planned=len(jobs)))
+        self._log = folder / LOG
+        self._events = _read(self._log)
+        self._simulations = Simulations()
+        self._seats: dict[str, StudySeat] = {}
+        self._lock = threading.RLock()
+
+    def overview(self) -> Json:
+        """Who takes part, and how far everybody is; no verdicts."""
+        with self._lock:
+            return {
+                "name": self.name,
+                "questions": [{"name": name, "text": text} for name, text in QUESTIONS.items()],
+                "scale": list(SCALE),
+                "people": [
+                    {"name": name, "done": self._done(name), "planned": len(order)}
+                    for name, order in self._orders.items()
+                ],
+            }
+
+    def join(self, person: str, seat: str = "") -> str:
+        """Sits down under a code name, and returns the secret of the seat.
+
+        Args:
+            person: the code name.
+            seat: a secret from before, which keeps its seat.
+
+        Raises:
+            UserError: there is no such person, or somebody else sits there.
+        """
+        with self._lock:
+            if person not in self._orders:
+                raise UserError(f"nobody in this study is called {person[:40]!r}")
+            taken = next((each for each, its in self._seats.items() if its.person == person), None)
+            if taken is not None and taken == seat:
+                return taken
+            now_s = time.monotonic()
+            if taken is not None and now_s - self._seats[taken].heard_s < AWAY_S:
+                raise UserError(f"somebody plays as {person} in another window; close it and wait {AWAY_S:.0f} s")
+            game = self._seats.pop(taken).game if taken else Game(self.folder, simulations=self._simulations)
+            made = secrets.token_urlsafe(16)
+            self._seats[made] = StudySeat(person, game, now_s)
+            return made
+
+    def seat(self, secret: str) -> StudySeat:
+        """Who sits there.
+
+        Raises:
+            UserError: nobody does, e.g. since the server was started again.
+        """
+        with self._lock:
+            if secret not in self._seats:
+                raise UserError("sit down again: choose your code name")
+            self._seats[secret].heard_s = time.monotonic()
+            return self._seats[secret]
+
+    def turn(self, secret: str) -> Json:
+        """What a person has to do now; the verdicts once everything is done.
+
+        Raises:
+            UserError: nobody sits there.
+        """
+        person = self.seat(secret).person
+        with self._lock:
+            order = self._orders[person]
+            asked, following = self._asked(person), self._next(person)
+            told = {
+                "person": person,
+                "done": self._done(person),
+                "planned": len(order),
+                "phase": "ask" if asked else "play" if following else "over",
+            }
+            if asked or following:
+                return told
+            rows = self._store.rows
+            return told | {
+                "verdicts": [
+                    {"task": job.setup.task, "half": job.setup.half, "success": row.success, "missing": row.missing,
+                     "error": row.error}
+                    for job in order
+                    for row in [rows[job.id]]
+                ]
+            }  # fmt: skip
+
+    def begin(self, secret: str) -> None:
+        """Begins the next episode of a person.
+
+        Raises:
+            UserError: nobody sits there, there is none, the last one's questions are open, or one is running.
+        """
+        seat = self.seat(secret)
+        with self._lock:
+            job = self._next(seat.person)
+            if self._asked(seat.person) or job is None:
+                raise UserError("answer the questions first" if job else "everything has been played")
+            if seat.game.is_running:
+                raise UserError("an episode is running already")
+            self._note("begun", job)
+            seat.game.begin(job, self.folder, lambda row: self._keep(job, row))
+
+    def answer(self, secret: str, answers: Mapping[str, Any]) -> None:
+        """Takes the answers to the questions, each 1 to 5.
+
+        Raises:
+            UserError: nobody sits there, nothing is asked, or an answer is missing or none.
+        """
+        person = self.seat(secret).person
+        for name in QUESTIONS:
+            if type(answers.get(name)) is not int or not 1 <= answers[name] <= len(SCALE):
+                raise UserError(f"answer {name!r} is {answers.get(name)!r}; give a number from 1 to {len(SCALE)}")
+        with self._lock:
+            job = self._asked(person)
+            if job is None:
+                raise UserError("nothing is asked now")
+            self._note("answered", job, {name: answers[name] for name in QUESTIONS})
+
+    def export(self) -> list[Json]:
+        """A line for each planned episode, in everybody's order: row, answers and times."""
+        with self._lock:
+            return [self._line(job, place) for order in self._orders.values() for place, job in enumerate(order, 1)]
+
+    def as_csv(self) -> str:
+        """The same as CSV."""
+        lines = self.export()
+        text = io.StringIO()
+        writer = csv.DictWriter(text, list(lines[0]))
+        writer.writeheader()
+        writer.writerows(lines)
+        return text.getvalue()
+
+    def close(self) -> None:
+        """Ends the episodes under way, which will be begun again."""
+        for seat in list(self._seats.values()):
+            seat.game.close()
+        self._simulations.close()
+        self._ends.close()
+
+    # --- inside -----------------------------------------------------------------------------------------------
+
+    def _next(self, person: str) -> EpisodeJob | None:
+        return next((job for job in self._orders[person] if job.id not in self._store.rows), None)
+
+    def _asked(self, person: str) -> EpisodeJob | None:
+        """The judged episode whose questions are open."""
+        rows = self._store.rows
+        judged = (job for job in self._orders[person] if job.id in rows and rows[job.id].success is not None)
+        return next((job for job in judged if not self._of("answered", job)), None)
+
+    def _done(self, person: str) -> int:
+        return sum(job.id in self._store.rows for job in self._orders[person])
+
+    def _keep(self, job: EpisodeJob, row: EpisodeRow) -> None:
+        with self._lock:
+            self._store.append(row)
+            self._note("ended", job)
+
+    def _note(self, kind: str, job: EpisodeJob, values: Json | None = None) -> None:
+        event = {"at": datetime.now().astimezone().isoformat(timespec="milliseconds"), "kind": kind, "id": job.id}
+        event |= values or {}
+        with self._log.open("a", encoding="utf-8", newline="\n") as file:
+            file.write(json.dumps(event) + "\n")
+            file.flush()
+            os.fsync(file.fileno())
+        self._events.append(event)
+
+    def _of(self, kind: str, job: EpisodeJob) -> list[Json]:
+        return [event for event in self._events if event["kind"] == kind and event["id"] == job.id]
+
+    def _line(self, job: EpisodeJob, place: int) -> Json:
+        row = self._store.rows.get(job.id)
+        begun, ended, answered = (self._of(kind, job) for kind in ("begun", "ended", "answered"))
+        setup, answers = job.setup, answered[-1] if answered else {}
+        return {
+            "person": setup.model,
+            "place": place,
+            "task": setup.task,
+            "half": setup.half,
+            "seed": setup.seed,
+            "id": job.id,
+            "success": row.success if row else None,
+            **{f"part_{name}": getattr(row.parts, name) if row and row.parts else None for name in PARTS},
+            "end": str(row.end) if row else None,
+            "error": row.error if row else None,
+            "steps": row.steps if row else None,
+            "sim_seconds": row.sim_seconds if row else None,
+            "times_begun": len(begun),
+            "begun": begun[-1]["at"] if begun else None,
+            "ended": ended[-1]["at"] if ended else None,
+            "answered": answers.get("at"),
+            **{name: answers.get(name) for name in QUESTIONS},
+        }
+
+
+PARTS = ("goal", "clean", "safe", "in_time", "declared")
+
+
+def _read(path: Path) -> list[Json]:
+    """The whole lines of a log; a last one that a kill cut short is removed.
+
+    Raises:
+        UserError: another line cannot be read.
+    """
+    if not path.is_file():
+        return []
+    content = path.read_bytes()
+    whole = content[: content.rfind(b"\n") + 1]
+    if whole != content:
+        os.truncate(path, len(whole))
+    try:
+        return [parse_json(line) for line in whole.splitlines()]
+    except ValueError as error:
+        raise UserError(f"cannot read {path}: {error}") from error

@@ -1,0 +1,152 @@
+"""A study with people whose episodes end at once: nothing here starts SUMO."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from automotive_cosim.errors import UserError
+from automotive_cosim.report.results import read_results
+from automotive_cosim.run.collect import failed, planned
+from automotive_cosim.run.episode_row import PartsHeld
+from automotive_cosim.run.plan import EpisodeJob
+from automotive_cosim.serve import play
+from automotive_cosim.serve.dealing import StudyPlan
+from automotive_cosim.serve.study import LOG, QUESTIONS, Study
+
+from .conftest import Browser
+
+PLAN = StudyPlan(("heron", "fox"), ("road_speed_80_in_50", "hvac_fan_max"))
+ANSWERS = dict.fromkeys(QUESTIONS, 4)
+
+
+@pytest.fixture(autouse=True)
+def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Episodes end as they begin: those of the first half are won, hvac_fan_max could not be judged."""
+
+    def begin(game: play.Game, job: EpisodeJob, folder: Path, keep: Callable[[Any], None]) -> None:
+        won = job.setup.half == "first"
+        if job.setup.task == "hvac_fan_max" and job.setup.model == "fox":
+            keep(failed(job, "TrafficError", "it broke"))
+        else:
+            keep(replace(planned(job), success=won, parts=PartsHeld(won, True, True, True, True), trace_sha256="0"))
+
+    monkeypatch.setattr(play.Game, "begin", begin)
+
+
+def finish(study: Study, seat: str) -> list[str]:
+    phases = []
+    while (phase := study.turn(seat)["phase"]) != "over":
+        phases.append(phase)
+        if phase == "play":
+            study.begin(seat)
+        else:
+            study.answer(seat, ANSWERS)
+    return phases
+
+
+def test_a_study_is_resumed_and_becomes_results_and_an_export(tmp_path: Path) -> None:
+    folder = tmp_path / "mine"
+    study = Study(PLAN, folder)
+    heron = study.join("heron")
+    assert "verdicts" not in study.turn(heron)
+    study.begin(heron)
+    assert study.turn(heron)["phase"] == "ask"
+    with pytest.raises(UserError, match="answer the questions first"):
+        study.begin(heron)
+    study.close()
+    with (folder / LOG).open("ab") as log:
+        log.write(b'{"at": "2026-')  # a kill in the middle of a line
+
+    study = Study(PLAN, folder)
+    with pytest.raises(UserError, match="sit down again"):
+        study.turn(heron)
+    heron, fox = study.join("heron", heron), study.join("fox")
+    assert finish(study, heron) == ["ask", *["play", "ask"] * 2]
+    assert finish(study, fox).count("ask") == 2, "nobody is asked about what could not be judged"
+    told = study.turn(heron)
+    assert sum(each["success"] for each in told["verdicts"]) == 2
+    assert told["verdicts"] != study.turn(fox)["verdicts"]
+
+    lines = study.export()
+    assert [line["person"] for line in lines] == ["heron"] * 3 + ["fox"] * 3
+    assert [line["place"] for line in lines] == [1, 2, 3] * 2
+    for line in lines:
+        assert line["times_begun"] == 1
+        assert (line["sure"] == 4) is (line["error"] is None)
+        assert line["begun"] <= line["ended"] <= (line["answered"] or line["ended"])
+    back = list(csv.DictReader(io.StringIO(study.as_csv())))
+    assert [line["success"] for line in back] == [str(line["success"] or "") if line["success"] is None
+                                                  else str(line["success"]) for line in lines]  # fmt: skip
+    results = read_results(folder)
+    assert results.coverage.is_complete
+    assert [each.model for each in results.contestants] == ["fox", "heron"]
+    study.close()
+    with pytest.raises(UserError, match="other plan"):
+        Study(replace(PLAN, people=("heron", "fox", "owl")), folder)
+
+
+def test_a_code_name_is_for_one_window(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    study = Study(PLAN, tmp_path / "mine")
+    with pytest.raises(UserError, match="nobody in this study"):
+        study.join("owl")
+    seat = study.join("heron")
+    assert study.join("heron", seat) == seat
+    with pytest.raises(UserError, match="another window"):
+        study.join("heron")
+    with pytest.raises(UserError, match="another window"):
+        study.join("heron", study.join("fox"))
+    monkeypatch.setattr("automotive_cosim.serve.study.AWAY_S", 0.0)
+    assert study.join("heron") != seat
+    with pytest.raises(UserError, match="sit down again"):
+        study.begin(seat)
+    study.close()
+
+
+@pytest.mark.parametrize("wrong", [0, 6, 2.5, "3", True, None])
+def test_an_answer_is_a_number_of_the_scale(tmp_path: Path, wrong: object) -> None:
+    study = Study(PLAN, tmp_path / "mine")
+    seat = study.join("heron")
+    with pytest.raises(UserError, match="nothing is asked"):
+        study.answer(seat, ANSWERS)
+    study.begin(seat)
+    with pytest.raises(UserError, match="1 to 5"):
+        study.answer(seat, ANSWERS | {"hard": wrong})
+    study.answer(seat, ANSWERS)
+    study.close()
+
+
+def test_who_takes_part_sees_the_study_alone(serving: Callable[..., Browser], tmp_path: Path) -> None:
+    (tmp_path / "shown").mkdir()
+    browser = serving(tmp_path / "shown", study=Study(PLAN, tmp_path / "shown" / "mine"))
+    person = browser.server.people_token
+    origin = {"Origin": f"http://127.0.0.1:{browser.server.server_port}"}
+
+    def post(path: str, value: object) -> Any:
+        return browser(path, "POST", body=json.dumps(value), token=person, **origin)
+
+    assert browser("/api/about", token=person).json["visitor"] == "person"
+    assert browser("/", token=person).status == 200
+    for path in ("/api/runs", "/api/tasks", "/api/tasks/hvac_fan_max", "/api/scenarios", "/api/study/rows.csv",
+                 "/api/study/rows.json", "/api/play"):  # fmt: skip
+        assert browser(path, token=person).status == 404, path
+    assert post("/api/play/start", {"task": "hvac_fan_max", "name": "x"}).status == 405
+    seat = post("/api/study/join", {"name": "heron"}).json["seat"]
+    assert post(f"/api/study/play/start?seat={seat}", {"task": "hvac_fan_max"}).status == 405, "nobody chooses"
+    assert post(f"/api/study/play/pace?seat={seat}", {"paused": True}).status == 405, "the clock never stands"
+    assert post("/api/study/begin?seat=wrong", {}).status == 422
+    assert post(f"/api/study/begin?seat={seat}", {}).status == 200
+    assert browser(f"/api/study/seat?seat={seat}", token=person).json["phase"] == "ask"
+    scene = browser(f"/api/study/play?seat={seat}", token=person).json
+    assert "record" not in scene
+    assert "verdict" not in json.dumps(scene)
+    assert browser("/api/study/rows.csv").headers["Content-Type"].startswith("text/csv")
+    assert len(browser("/api/study/rows.json").json) == 6
+    assert browser("/api/study", token="wrong").status == 403
