@@ -80,11 +80,11 @@ class _Pen:
 
     def disc(self, x: float, y: float, radius: float, fill: Colour | int = 255) -> None:
         """A filled circle."""
-        self._draw.ellipse(self._at(((x - radius, y - radius), (x + radius, y + radius))), fill)  # type: ignore[arg-type]
+        self._draw.ellipse(self._at(((x - radius, y - radius), (x + radius, y + radius))), fill)
 
     def arc(self, left: float, top: float, right: float, bottom: float, begin: float, end: float) -> None:
         """A part of an ellipse, in degrees clockwise from the right."""
-        self._draw.arc(self._at(((left, top), (right, bottom))), begin, end, 255, round(1.8 * self._unit))  # type: ignore[arg-type]
+        self._draw.arc(self._at(((left, top), (right, bottom))), begin, end, 255, round(1.8 * self._unit))
 
     def wave(self, x: float, top: float, bottom: float) -> None:
         """A wavy line downwards."""

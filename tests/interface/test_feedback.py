@@ -108,7 +108,7 @@ def test_it_is_told_in_the_language_of_the_screens(language: str, outcome: str, 
     car = parked.copy()
     car.command(HMI.LANGUAGE, language)
     said = told(car, touch(car, "dock.climate"))
-    (name,) = {element.text for element in car.elements() if element.resource_id == "dock.climate"}
+    (name,) = {element.text for element in car.elements() if element.resource_id == shown_id("dock.climate")}
     assert said.text == f"{name}: {outcome}"
 
 

@@ -352,7 +352,8 @@ def mirrors(state: State) -> tuple[Widget, ...]:
     """Outside mirrors, and what the cameras see behind."""
     upper, _, lower = column(_area(state), 252, GAP, REST)
     left, right = upper.columns(2, GAP)
-    night, driving = state.signals[HMI.DAY_NIGHT] == "NIGHT", state.outside and state.outside.driving
+    night = state.signals[HMI.DAY_NIGHT] == "NIGHT"
+    driving = None if state.outside is None else state.outside.driving
     cameras = tuple(
         CameraView(
             rect=rect,
