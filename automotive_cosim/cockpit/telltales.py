@@ -70,6 +70,9 @@ class _Pen:
     def _at(self, points: tuple[Point, ...]) -> list[Point]:
         return [(x * self._unit, y * self._unit) for x, y in points]
 
+    def _box(self, left: float, top: float, right: float, bottom: float) -> tuple[float, float, float, float]:
+        return left * self._unit, top * self._unit, right * self._unit, bottom * self._unit
+
     def line(self, *points: Point, width: float = 1.8, fill: Colour | int = 255) -> None:
         """A line with round corners."""
         self._draw.line(self._at(points), fill, round(width * self._unit), joint="curve")
@@ -80,11 +83,11 @@ class _Pen:
 
     def disc(self, x: float, y: float, radius: float, fill: Colour | int = 255) -> None:
         """A filled circle."""
-        self._draw.ellipse(self._at(((x - radius, y - radius), (x + radius, y + radius))), fill)
+        self._draw.ellipse(self._box(x - radius, y - radius, x + radius, y + radius), fill)
 
     def arc(self, left: float, top: float, right: float, bottom: float, begin: float, end: float) -> None:
         """A part of an ellipse, in degrees clockwise from the right."""
-        self._draw.arc(self._at(((left, top), (right, bottom))), begin, end, 255, round(1.8 * self._unit))
+        self._draw.arc(self._box(left, top, right, bottom), begin, end, 255, round(1.8 * self._unit))
 
     def wave(self, x: float, top: float, bottom: float) -> None:
         """A wavy line downwards."""
