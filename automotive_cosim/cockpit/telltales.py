@@ -60,7 +60,7 @@ class RoadSign:
     """On a limit sign."""
 
 
-class _Pen:
+class _SymbolPen:
     """Draws on the grid of a symbol, oversampled."""
 
     def __init__(self, picture: Image.Image) -> None:
@@ -108,31 +108,31 @@ class _Pen:
         self.disc(12, bottom - 0.9, 1.2)
 
 
-def _lamp(pen: _Pen) -> None:
+def _lamp(pen: _SymbolPen) -> None:
     pen.line((12.5, 6), (12.5, 18))
     pen.arc(5, 6, 20.5, 18, -90, 90)
 
 
-def _high_beam(pen: _Pen) -> None:
+def _high_beam(pen: _SymbolPen) -> None:
     _lamp(pen)
     for y in (7.0, 10.3, 13.7, 17.0):
         pen.line((2, y), (10, y))
 
 
-def _low_beam(pen: _Pen) -> None:
+def _low_beam(pen: _SymbolPen) -> None:
     _lamp(pen)
     for y in (6.5, 9.8, 13.1, 16.4):
         pen.line((2, y + 3), (10, y))
 
 
-def _front_fog(pen: _Pen) -> None:
+def _front_fog(pen: _SymbolPen) -> None:
     _lamp(pen)
     for y in (7.0, 11.0, 15.0):
         pen.line((1.5, y + 3), (10.5, y))
     pen.wave(6, 5, 20)
 
 
-def _rear_fog(pen: _Pen) -> None:
+def _rear_fog(pen: _SymbolPen) -> None:
     pen.line((11.5, 6), (11.5, 18))
     pen.arc(3.5, 6, 19, 18, 90, 270)
     for y in (8.0, 12.0, 16.0):
@@ -140,32 +140,32 @@ def _rear_fog(pen: _Pen) -> None:
     pen.wave(18, 5, 19)
 
 
-def _hazard(pen: _Pen) -> None:
+def _hazard(pen: _SymbolPen) -> None:
     pen.line((12, 3), (22, 20), (2, 20), (12, 3), (22, 20))
     pen.line((12, 9.5), (16.5, 17), (7.5, 17), (12, 9.5), (16.5, 17))
 
 
-def _belt(pen: _Pen) -> None:
+def _belt(pen: _SymbolPen) -> None:
     pen.disc(12, 4.5, 2.8)
     pen.line((6.5, 21), (7, 14), (12, 9.5), (17, 14), (17.5, 21), (6.5, 21))
     pen.line((16.5, 10.5), (7, 20))
 
 
-def _tyre(pen: _Pen) -> None:
+def _tyre(pen: _SymbolPen) -> None:
     pen.line((7, 3), (4, 9), (4, 14), (7, 18), (17, 18), (20, 14), (20, 9), (17, 3))
     for x in (8.0, 10.7, 13.3, 16.0):
         pen.line((x, 18), (x, 21.5), width=1.5)
     pen.exclamation(5, 15.5)
 
 
-def _door(pen: _Pen) -> None:
+def _door(pen: _SymbolPen) -> None:
     pen.line((9, 5), (10.5, 2.5), (13.5, 2.5), (15, 5), (15, 20), (13.5, 22), (10.5, 22), (9, 20), (9, 5))
     for x, out in ((9, -6), (15, 6)):
         pen.line((x, 8), (x + out, 12))
         pen.line((x, 14), (x + out, 18))
 
 
-def _frost(pen: _Pen) -> None:
+def _frost(pen: _SymbolPen) -> None:
     for turn in range(6):
         across, down = cos(pi * turn / 3), sin(pi * turn / 3)
         pen.line((12, 12), (12 + 10 * across, 12 + 10 * down), width=1.6)
@@ -175,14 +175,14 @@ def _frost(pen: _Pen) -> None:
             pen.line(start, (start[0] + 3 * cos(branch), start[1] + 3 * sin(branch)), width=1.4)
 
 
-def _stability(pen: _Pen) -> None:
+def _stability(pen: _SymbolPen) -> None:
     pen.line((8.5, 2.5), (15.5, 2.5), (17.5, 7), (17.5, 11), (6.5, 11), (6.5, 7), (8.5, 2.5), (15.5, 2.5))
     pen.line((6.5, 7), (17.5, 7), width=1.4)
     for x in (8.0, 16.0):
         pen.wave(x, 13, 22.5)
 
 
-def _battery(pen: _Pen) -> None:
+def _battery(pen: _SymbolPen) -> None:
     pen.line((3, 8), (21, 8), (21, 19), (3, 19), (3, 8), (21, 8))
     for x in (7.5, 16.5):
         pen.line((x - 2, 5.8), (x + 2, 5.8), width=2.6)
@@ -190,12 +190,12 @@ def _battery(pen: _Pen) -> None:
     pen.line((16.5, 11.5), (16.5, 15.5), width=1.6)
 
 
-def _warning(pen: _Pen) -> None:
+def _warning(pen: _SymbolPen) -> None:
     pen.line((12, 3), (22, 20.5), (2, 20.5), (12, 3), (22, 20.5))
     pen.exclamation(9, 18.5)
 
 
-_DRAWN: dict[Telltale, tuple[Colour, Callable[[_Pen], None]]] = {
+_DRAWN: dict[Telltale, tuple[Colour, Callable[[_SymbolPen], None]]] = {
     Telltale.WARNING: (AMBER, _warning),
     Telltale.BELT: (RED, _belt),
     Telltale.DOOR: (RED, _door),
@@ -221,7 +221,7 @@ def colour(telltale: Telltale, *, night: bool) -> Colour:
 def symbol(telltale: Telltale, side: int) -> Image.Image:
     """The mask of a tell-tale, a square of that side in pixels."""
     picture = Image.new("L", (side * _FINE, side * _FINE), 0)
-    _DRAWN[telltale][1](_Pen(picture))
+    _DRAWN[telltale][1](_SymbolPen(picture))
     return picture.reduce(_FINE)
 
 
@@ -229,7 +229,7 @@ def symbol(telltale: Telltale, side: int) -> Image.Image:
 def sign_picture(kind: SignKind, figure: str, side: int) -> Image.Image:
     """A sign of the Vienna Convention: C,14 with its figure, C,17a, A,13 or E,11a; RGBA, of that side in pixels."""
     picture = Image.new("RGBA", (side * _FINE, side * _FINE), (0, 0, 0, 0))
-    pen = _Pen(picture)
+    pen = _SymbolPen(picture)
     match kind:
         case SignKind.LIMIT:
             pen.disc(12, 12, 11.8, SIGN_RED)
