@@ -18,6 +18,7 @@ from automotive_cosim.agents.trivial import AlwaysAlert, AlwaysAsk, NoOp, PressE
 from automotive_cosim.drives.watchers import AlertAll, AlertOften, AlertOnWake, RulePerfect, Silent
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.models import ChatModel, make_model
+from automotive_cosim.models.turns import Turns
 
 __all__ = [
     "ABOUT",
@@ -123,8 +124,13 @@ def make_agent(
     return SIMPLE[name](settings)
 
 
-def model_of(name: str, model: str) -> ChatModel | None:
+def model_of(name: str, model: str, turns: Turns | None = None) -> ChatModel | None:
     """The model that an agent of this name asks; None if it has none.
+
+    Args:
+        name: the agent.
+        model: the model's name.
+        turns: where a model with a limit of questions a minute takes its turns; by default its own.
 
     Raises:
         as ``make_agent``.
@@ -133,5 +139,5 @@ def model_of(name: str, model: str) -> ChatModel | None:
         return None
     if name == NativeAgent.name:
         without_format, form = chosen(model)
-        return make_model(without_format, form.api)
-    return make_model(model)
+        return make_model(without_format, form.api, turns)
+    return make_model(model, turns=turns)

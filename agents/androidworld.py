@@ -7,7 +7,8 @@ pauses between its actions: ``act`` resumes it until it executes the next one.
     agent thread   step(goal) -> env.get_state() ... env.execute_action(action) | waits
     this thread    act(observation) -------------------------------------------> Action
 
-Their fixed pauses are switched off: here, time passes only on the road.
+Their fixed pauses are switched off, and so are those of the device's modules: here, time passes only on the road.
+A class with ``keeps_pauses = True`` keeps them. ``step`` gets what the driver has said since beneath the goal.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import queue
 import re
 import sys
 import threading
+import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
@@ -23,14 +25,17 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from automotive_cosim.agents import prompt
 from automotive_cosim.agents.adb import Controller
-from automotive_cosim.agents.native.verbs import typed
+from automotive_cosim.agents.native.verbs import STATUSES, typed
 from automotive_cosim.cockpit.actions import FIELDS, check, parse
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import Action, ActionType, BoundingBox, Element, GoalStatus, Observation
 from automotive_cosim.errors import ActionError
 from automotive_cosim.interface.observe import Channel
 
+DEVICE = "android_world.env."
+"""AndroidWorld's modules that work the device."""
 GOAL_STATUS = re.compile(r"""['"]goal_status['"]\s*:\s*['"](\w+)""")
 
 
@@ -225,13 +230,12 @@ class AndroidWorldAgent:
         self._make = make
         self.name = getattr(make, "__name__", "androidworld")
         self._env: _Environment | None = None
-        self._goal = ""
 
     def reset(self, goal: str) -> None:
         """The thread of the previous episode ends; the first observation makes a new agent."""
         if self._env is not None:
             self._env.seen.put(None)
-        self._env, self._goal = None, goal
+        self._env = None
 
     def act(self, observation: Observation) -> Action:
         """Resumes the agent until its next action, or the end of a ``step`` without one.
@@ -241,7 +245,7 @@ class AndroidWorldAgent:
         """
         if self._env is None:
             self._env = _Environment(_screen_px(observation))
-            threading.Thread(target=self._live, args=(self._env, self._goal), daemon=True).start()
+            threading.Thread(target=self._live, args=(self._env,), daemon=True).start()
         self._env.seen.put(observation)
         with _PRINTS:
             done = self._env.done.get()
@@ -255,7 +259,7 @@ class AndroidWorldAgent:
             raise ActionError(f"agent {self.name!r} took no action in this step")
         return Action(ActionType.STATUS, goal_status=_declared(done.data))
 
-    def _live(self, env: _Environment, goal: str) -> None:
+    def _live(self, env: _Environment) -> None:
         agent = None
         try:
             env.now()
@@ -263,8 +267,8 @@ class AndroidWorldAgent:
                 env.acted = False
                 outcome: _Over | Exception | SystemExit
                 try:
-                    agent = agent or _without_pauses(self._make(env))
-                    result = agent.step(goal)
+                    agent = agent or self._made(env)
+                    result = agent.step(_wish(env.now()))
                     outcome = _Over(bool(getattr(result, "done", False)), getattr(result, "data", None))
                     env.controller.flush()
                     if not (env.acted or outcome.declared):
@@ -277,6 +281,17 @@ class AndroidWorldAgent:
                     env.wait()
         except _EpisodeOverError:
             return
+
+    def _made(self, env: _Environment) -> Any:
+        agent = self._make(env)
+        if not getattr(agent, "keeps_pauses", False):
+            _take_pauses(agent)
+        return agent
+
+
+def _wish(seen: Observation) -> str:
+    """What the driver wants, and beneath it what he has said since, as in every prompt."""
+    return prompt.driver_words(seen) if seen.said else seen.goal
 
 
 def _screen_px(seen: Observation) -> tuple[int, int]:
@@ -333,12 +348,24 @@ def translated(
 _ACROSS = {"left": "right", "right": "left"}
 
 
-def _without_pauses(agent: Any) -> Any:
-    """The agent, waiting no fixed time after its actions."""
+class _NoPauses:
+    """The module ``time`` as the device's modules see it: nothing has to come to rest."""
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(time, name)
+
+    def sleep(self, seconds: float) -> None:
+        """Does nothing."""
+
+
+def _take_pauses(agent: Any) -> None:
+    """Lets an agent, and the device that it works, wait no fixed time after an action."""
     for name, pause in (("transition_pause", None), ("wait_after_action_seconds", 0.0)):
         if hasattr(agent, name):
             setattr(agent, name, pause)
-    return agent
+    for name, module in list(sys.modules.items()):
+        if name.startswith(DEVICE) and getattr(module, "time", None) is time:
+            vars(module)["time"] = _NoPauses()
 
 
 def _catch_up(env: _Environment, data: Any) -> None:
@@ -357,6 +384,10 @@ def _declared(data: Any) -> GoalStatus:
         status = getattr(value, "goal_status", None)
         if status in set(GoalStatus):
             return GoalStatus(status)
+    for value in values.values():
+        ending = _values(_values(value).get("arguments"))  # a tool call of the model, which its code has read
+        if ending.get("action") == "terminate" and ending.get("status") in STATUSES:
+            return STATUSES[ending["status"]]
     for name, value in values.items():
         if isinstance(value, str) and name.endswith(("output", "response")):
             said = [word for word in GOAL_STATUS.findall(value) if word in set(GoalStatus)]

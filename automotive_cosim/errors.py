@@ -14,6 +14,7 @@ CosimError                 anything a caller may want to catch at once
 │   ├── TrafficError       the simulation refused a call, died, hung or lost the ego without a reason
 │   │   └── NoRoomError    the ego waited for a gap in the traffic to depart into, and none came
 │   ├── ModelError         a model could not be reached, or did not answer
+│   ├── BudgetSpentError   the evaluation may ask its models nothing more: the episode is left for another run
 │   └── TriggerNotReachedError  the drive up to the hand-over ended before the task's trigger held
 ├── OutOfBudgetError       the agent has spent its tokens or its time: the episode is judged as it is
 └── AgentError             the agent's side crashed, ended or did not answer: the episode is a failure
@@ -118,6 +119,10 @@ class NoRoomError(TrafficError):
 
 class ModelError(InfrastructureError):
     """A model that could not be reached or did not answer."""
+
+
+class BudgetSpentError(InfrastructureError):
+    """An evaluation that may ask its models nothing more; the episode says nothing about its agent."""
 
 
 class TriggerNotReachedError(InfrastructureError):

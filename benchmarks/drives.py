@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import sys
 import time
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -35,6 +36,7 @@ from automotive_cosim.drives.watch import Watch
 from automotive_cosim.drives.watchers import AlertAll, AlertOften, AlertOnWake, RulePerfect, Silent
 from automotive_cosim.episode.loop import play
 from automotive_cosim.episode.specification import Conditions
+from automotive_cosim.errors import CosimError
 from automotive_cosim.run.row import from_json
 from automotive_cosim.traffic.fork import Simulations
 
@@ -229,12 +231,34 @@ def run(
             if file is not None and file.exists():
                 drives.append(from_json(Kept, json.loads(file.read_text("utf-8"))))
             elif time.monotonic() < until:
-                drives.append(played(who, family, seed, simulations))
+                begun_s = time.monotonic()
+                try:
+                    drives.append(played(who, family, seed, simulations))
+                except CosimError as error:
+                    print(f"{who} {family} {seed}: {error}", file=sys.stderr, flush=True)
+                    continue
+                print(*_news(drives[-1], time.monotonic() - begun_s), sep="\n", file=sys.stderr, flush=True)
                 if file is not None:
                     draft = file.with_suffix(".part")
                     draft.write_text(json.dumps(asdict(drives[-1])), "utf-8")
                     draft.replace(file)
     return drives
+
+
+def _news(drive: Kept, took_s: float) -> Iterator[str]:
+    """One drive as it ends: its figures, and each event that was not met and each act that was a nuisance."""
+    found = drive.score
+    yield (
+        f"{drive.watcher} {drive.family} {drive.seed}: {found.met} of {found.events} met, "
+        f"{found.nuisances} nuisances, {took_s:.0f} s"
+    )
+    for event in drive.events:
+        if event.outcome.counts and not event.outcome.is_credited:
+            at_s = event.obliged_s or event.observable_s
+            yield f"    {event.outcome} at {at_s:.0f} s: {event.kind}, {event.words}"
+    for act in drive.acts:
+        if act.worth.is_nuisance:
+            yield f"    {act.worth} at {act.time_s:.0f} s: {act.words} {act.about}"
 
 
 def main() -> None:

@@ -37,6 +37,7 @@ from automotive_cosim.tasks import (
     road_aboard,
     road_asking,
     second_thoughts,
+    spoken,
     system,
     system_aboard,
     system_asking,
@@ -78,7 +79,7 @@ for _module in (
     system_aboard,
     hard,
 ):
-    CATALOGUE.add(*_module.TASKS)
+    CATALOGUE.add(*map(spoken.spoken, _module.TASKS))
 
 if os.environ.get(folder.VARIABLE):
     folder.add_folder(CATALOGUE, Path(os.environ[folder.VARIABLE]))

@@ -10,12 +10,14 @@ from typing import TYPE_CHECKING, Annotated, Any, Generic, TypeVar
 import typer
 
 from automotive_cosim.cli.options import whole_number
+from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UnknownNameError, UserError
 
 if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
     from automotive_cosim.run.batch import Progress
     from automotive_cosim.run.executor import Executor
+    from automotive_cosim.run.meter import Budget
     from automotive_cosim.run.row import JobRow
     from automotive_cosim.scenarios import Scenario
 
@@ -109,6 +111,32 @@ class ProgressView(Generic[R]):
         elif progress.seconds - self._said_s >= self.EVERY_S or progress.done == progress.planned:
             self._said_s = progress.seconds
             self._console.print(f"{progress.done} of {progress.planned} {self._what}; {said}")
+
+
+def check_prices(models: Iterable[str], budget: Budget) -> None:
+    """Refuses a budget in dollars for models without a price.
+
+    Raises:
+        UserError: a model at an endpoint has none.
+    """
+    if budget.usd is None:
+        return
+    for name in models:
+        if not name.startswith(("rules", "replay/")) and "usd_per_million_" not in name:
+            raise UserError(
+                f"--budget-usd needs the price of {name}; add ?usd_per_million_in=...&usd_per_million_out=... to it"
+            )
+
+
+def tell_stopped(end: Progress[Any]) -> None:
+    """Ends a command whose budget did not last.
+
+    Raises:
+        UserError: something was not run for that reason.
+    """
+    if end.stopped:
+        left = counted(end.planned - end.done, "run")
+        raise UserError(f"{end.stopped}; {left} left: rerun with a larger budget to go on")
 
 
 def tell_notes(scenarios: Iterable[Scenario]) -> None:

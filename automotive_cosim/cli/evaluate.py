@@ -17,9 +17,11 @@ from automotive_cosim.cli.batches import (
     RayAddress,
     RaySend,
     Workers,
+    check_prices,
     executor_of,
     seeds_in,
     tell_notes,
+    tell_stopped,
     time_left,
     words,
 )
@@ -119,6 +121,14 @@ def evaluate(
             help="Size of the screen, separated by commas: 1280x720, 1920x720, 1080x1920.", show_default="1280x720"
         ),
     ] = None,
+    language: Annotated[
+        str | None,
+        typer.Option(
+            help="What the driver speaks and the car shows, separated by commas: en, fr, de, ja. Tasks without "
+            "phrasings in one of them are left out.",
+            show_default="en",
+        ),
+    ] = None,
     mode: NoMode = None,
     clock: Annotated[
         str | None,
@@ -157,6 +167,24 @@ def evaluate(
             parser=whole_number(0, 100),
         ),
     ] = 2,
+    budget_tokens: Annotated[
+        int | None,
+        typer.Option(
+            help="Stop once so many tokens have gone to and from the models in all; rerun with more to go on.",
+            metavar="N",
+            parser=whole_number(1, 10**15),
+            show_default=False,
+        ),
+    ] = None,
+    budget_usd: Annotated[
+        float | None,
+        typer.Option(
+            help="The same in dollars, by the prices in the models' names.",
+            metavar="X",
+            parser=number(0.000001, 10**9),
+            show_default=False,
+        ),
+    ] = None,
     pictures: Annotated[
         str, typer.Option(help="Keep the screenshots, and the road with its vehicles, of: none, failures or all.")
     ] = "none",
@@ -183,6 +211,7 @@ def evaluate(
     from automotive_cosim.report.results import read_results, standings
     from automotive_cosim.run.batch import run_plan
     from automotive_cosim.run.collect import Pictures
+    from automotive_cosim.run.meter import Budget
     from automotive_cosim.run.plan import make_plan, read_plan, with_preset
     from automotive_cosim.run.store import megabytes
     from automotive_cosim.scenery import open_scenario
@@ -190,7 +219,7 @@ def evaluate(
     if pictures not in set(Pictures):
         raise UnknownNameError("choice of pictures", pictures, Pictures)
     named = {"agents": agents, "models": models, "tasks": tasks, "scenarios": scenarios, "geo": geo}
-    named |= {"see": see, "feedback": feedback, "screen": screen}
+    named |= {"see": see, "feedback": feedback, "screen": screen, "language": language}
     values: dict[str, Any] = read_plan(plan_file) if plan_file else {}
     values |= {name: words(name, text) for name, text in named.items() if text is not None}
     values |= {"seeds": seeds_in(seeds)} if seeds is not None else {}
@@ -202,15 +231,18 @@ def evaluate(
     values |= {"held_out": True} if held_out else {}
     values |= {"everywhere": True} if everywhere else {}
     values = with_preset(values, preset) if preset is not None else values
+    budget = Budget(budget_tokens, budget_usd)
     if drives is not None:
         where = executor_of(executor, workers, ray_address, ray_send)
-        watch(values | {"drives": words("drives", drives)}, out, where, retries, dry_run=dry_run, as_json=as_json)
+        drives_of = values | {"drives": words("drives", drives)}
+        watch(drives_of, out, where, retries, budget, dry_run=dry_run, as_json=as_json)
         return
     plan = make_plan(values)
     folder = out or _folder(plan)
     where = executor_of(executor, workers, ray_address, ray_send)
     console = Console(stderr=as_json, highlight=False)
     lacks = plan.check(dry=dry_run)
+    check_prices(plan.models, budget)
     tell_notes(map(open_scenario, plan.scenarios))
     _announce(console, plan, folder)
     if dry_run:
@@ -221,7 +253,13 @@ def evaluate(
     with where, ProgressView(console, "episodes", _said) as view:
         try:
             end = run_plan(
-                plan, folder, executor=where, retries=retries, pictures=Pictures(pictures), tell=view.tell
+                plan,
+                folder,
+                executor=where,
+                retries=retries,
+                pictures=Pictures(pictures),
+                budget=budget,
+                tell=view.tell,
             )
         except KeyboardInterrupt:
             reached = f" ({read_results(folder).coverage})" if (folder / "manifest.json").is_file() else ""
@@ -246,6 +284,7 @@ def evaluate(
             f"write report.html with `automotive-cosim report {folder}`",
             soft_wrap=True,
         )
+    tell_stopped(end)
     if errors:
         raise InfrastructureError(
             f"{len(errors)} of {counted(end.planned, 'episode')} ended in an infrastructure error, which no rate "
@@ -272,6 +311,8 @@ def _said(progress: Progress[EpisodeRow]) -> str:
 def _announce(console: Console, plan: Plan, folder: Path) -> None:
     from rich.table import Table
 
+    from automotive_cosim.run.plan import languages_in_words
+
     jobs = plan.jobs()
     table = Table.grid(padding=(0, 2))
     table.add_row("agents", ", ".join(sorted({f"{job.setup.agent} ({job.setup.model})" for job in jobs})))
@@ -281,10 +322,15 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
         table.add_row(
             "left out", f"{counted(len(left_out), 'task')} that cannot run there; --everywhere includes them"
         )
+    if unspoken := plan.unspoken():
+        table.add_row(
+            "not said", f"{counted(len(unspoken), 'task')} without phrasings in {languages_in_words(plan.language)}"
+        )
     table.add_row("seeds", ", ".join(map(str, plan.seeds)))
     table.add_row("geo controls", ", ".join(plan.geo))
     table.add_row("screen", f"{', '.join(plan.screen)}, as {', '.join(plan.see)}")
     table.add_row("feedback", ", ".join(plan.feedback))
+    table.add_row("language", ", ".join(plan.language))
     table.add_row("clock", f"{plan.clock}; latency {', '.join(f'{each:g}' for each in plan.latency)} s")
     table.add_row("repeats", str(plan.repeats))
     table.add_row("phrasings", "held out" if plan.held_out else "any")

@@ -29,6 +29,7 @@ HEADLINE = (
     "see",
     "feedback",
     "screen",
+    "language",
     "tokens_in",
     "tokens_out",
     "cost_usd",
@@ -42,7 +43,8 @@ def run(
         str, typer.Option(help="Agent; `agents` lists them; package.module:Class is one of your own.")
     ] = "asurada",
     model: Annotated[
-        str, typer.Option(help="Model for the agent: rules, replay/FOLDER, openai/NAME or PROVIDER/NAME.")
+        str,
+        typer.Option(help="Model for the agent: rules, replay/FOLDER, replay/NAME, openai/NAME, PROVIDER/NAME."),
     ] = "rules",
     tasks_from: TasksFrom = None,
     mode: NoMode = None,
@@ -59,6 +61,9 @@ def run(
         ),
     ] = "quiet",
     screen: Annotated[str, typer.Option(help="Size of the screen: 1280x720, 1920x720 or 1080x1920.")] = "1280x720",
+    language: Annotated[
+        str, typer.Option(help="What the driver speaks and the car shows: en, fr, de or ja.")
+    ] = "en",
     without: Annotated[
         str,
         typer.Option(
@@ -141,7 +146,7 @@ def run(
     from automotive_cosim.agents.settings import geo_input, parts
     from automotive_cosim.cli.console import Console
     from automotive_cosim.cli.live import Live, Notes
-    from automotive_cosim.episode.specification import clock_of, feedback_of, screen_of, see_of
+    from automotive_cosim.episode.specification import clock_of, feedback_of, language_of, screen_of, see_of
     from automotive_cosim.report.film import Film
     from automotive_cosim.report.page import write_page
     from automotive_cosim.run.episode import EpisodeSetup, run_episode
@@ -173,6 +178,7 @@ def run(
         see=sees,
         feedback=told,
         screen=size,
+        language=language_of(language),
     )
     setup.conditions(frozenset(player.channels))
     folder = out or default_folder(setup)

@@ -140,6 +140,7 @@ def show(
         typer.echo(f"  {{{name}}}: {said}")
     typer.echo(f"skills      {', '.join(sorted(entry.skills)) or 'none'}")
     typer.echo(f"tags        {', '.join(sorted(entry.tags)) or 'none'}")
+    typer.echo(f"languages   {', '.join(entry.languages)}")
     typer.echo(f"scenarios   {', '.join(entry.runs_in)}")
     for name, lines in halves.items():
         typer.echo(f"\n{name} half")

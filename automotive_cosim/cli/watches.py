@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from automotive_cosim.cli.batches import ProgressView, time_left
+from automotive_cosim.cli.batches import ProgressView, check_prices, tell_stopped, time_left
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import InfrastructureError, UserError
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
     from automotive_cosim.run.batch import Progress
     from automotive_cosim.run.executor import Executor
+    from automotive_cosim.run.meter import Budget
     from automotive_cosim.run.watch_row import WatchRow
     from automotive_cosim.run.watches import WatchPlan
 
@@ -26,7 +27,14 @@ TASKS_ONLY = ("tasks", "suite", "split", "scenarios", "everywhere", "held_out", 
 
 
 def watch(
-    values: Mapping[str, Any], out: Path | None, executor: Executor, retries: int, *, dry_run: bool, as_json: bool
+    values: Mapping[str, Any],
+    out: Path | None,
+    executor: Executor,
+    retries: int,
+    budget: Budget,
+    *,
+    dry_run: bool,
+    as_json: bool,
 ) -> None:
     """Runs the drives of a plan, and prints what came of them."""
     from automotive_cosim.cli.console import Console
@@ -41,12 +49,13 @@ def watch(
     folder = out or _folder(plan)
     console = Console(stderr=as_json, highlight=False)
     plan.check()
+    check_prices(plan.models, budget)
     _announce(console, plan, folder)
     if dry_run:
         return
     with executor, ProgressView(console, "drives", _said) as view:
         try:
-            end = run_watch_plan(plan, folder, executor=executor, retries=retries, tell=view.tell)
+            end = run_watch_plan(plan, folder, executor=executor, retries=retries, budget=budget, tell=view.tell)
         except KeyboardInterrupt:
             typer.echo(f"finished drives are in {folder}; rerun the command to resume", err=True)
             raise
@@ -63,6 +72,7 @@ def watch(
         console.print(
             f"Results in {folder}; write report.html with `automotive-cosim report {folder}`", soft_wrap=True
         )
+    tell_stopped(end)
     if end.errors:
         raise InfrastructureError(
             f"{end.errors} of {counted(end.planned, 'drive')} ended in an infrastructure error and do not count"

@@ -9,14 +9,14 @@ An ``Occupant`` is how a task or a drive says it before departure. From then on 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Annotated
+from typing import Annotated, Any
 
 from annotated_types import Gt, Le
 
-from automotive_cosim.cockpit.signals import OCCUPANT, Seated, Signals
+from automotive_cosim.cockpit.signals import OCCUPANT, Seated, Signal, Signals
 from automotive_cosim.errors import UserError
 
 
@@ -50,6 +50,11 @@ class Kind(StrEnum):
     def is_person(self) -> bool:
         """Whether it is a human being."""
         return self not in (Kind.PET, Kind.OBJECT)
+
+    @property
+    def needs_care(self) -> bool:
+        """Whether it cannot get out of a parked car, or roll down a window, by itself."""
+        return self in (Kind.CHILD, Kind.BABY, Kind.PET)
 
     @property
     def speaks(self) -> bool:
@@ -123,10 +128,18 @@ def take_seats(signals: Signals, aboard: Iterable[Occupant]) -> None:
 
 def seated(signals: Signals) -> Iterator[Occupant]:
     """Who is aboard now, by the signals, in the order of the seats."""
+    return _seated(signals.__getitem__)
+
+
+def seated_by(values: Mapping[str, Any]) -> Iterator[Occupant]:
+    """The same, by the values of the signals' paths."""
+    return _seated(lambda signal: values[signal.path])
+
+
+def _seated(read: Callable[[Signal[Any]], Any]) -> Iterator[Occupant]:
     for seat, at in SIGNALS.items():
-        if signals[at.occupied] and signals[at.kind] != "NONE":
-            kind = Kind(signals[at.kind].lower())
-            yield Occupant(seat, kind, signals[at.weight], signals[at.asleep], signals[at.belted])
+        if read(at.occupied) and read(at.kind) != "NONE":
+            yield Occupant(seat, Kind(read(at.kind).lower()), read(at.weight), read(at.asleep), read(at.belted))
 
 
 def in_words(signals: Signals) -> str:

@@ -19,12 +19,14 @@ class CarChange:
     """One change of a signal. A switch can be turned back afterwards, and what is measured goes on from there."""
 
     at_s: Annotated[float, Ge(0)]
-    """Simulated seconds after departure."""
+    """Simulated seconds after departure, or after the car has been parked."""
     path: Annotated[str, OneOf(CATALOGUE, "signal")]
     """VSS path. A tyre's pressure is the one that it has when cold (``tyres.COLD_C``)."""
     value: bool | float | str
     over_s: Annotated[float, Ge(0)] = 0.0
     """How long a number takes to get there, evenly; 0 is at once."""
+    once_parked: bool = False
+    """Whether ``at_s`` counts from when the driver parks on the way, and not from departure."""
 
 
 def schedule(changes: Iterable[CarChange]) -> tuple[CarChange, ...]:

@@ -11,8 +11,10 @@ import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from enum import StrEnum
 from functools import lru_cache
 from importlib.resources import files
+from types import MappingProxyType
 from typing import Any, TypeVar
 
 from automotive_cosim.cockpit.widgets import Field, Row, Tile, Widget
@@ -20,7 +22,21 @@ from automotive_cosim.contracts import Feedback
 
 W = TypeVar("W", bound=Widget)
 
-ENGLISH = "en"
+
+class Language(StrEnum):
+    """The languages of car and driver, by the codes of ``HMI.LANGUAGE``."""
+
+    ENGLISH = "en"
+    FRENCH = "fr"
+    GERMAN = "de"
+    JAPANESE = "ja"
+
+    @property
+    def words(self) -> str:
+        """Its name in English: ``French``."""
+        return self.name.capitalize()
+
+
 _COMMON = ("text", "description", "disabled", "locked")
 _OWN: Mapping[type[Widget], tuple[str, ...]] = {
     Field: ("hint",),
@@ -32,54 +48,66 @@ _WORD = re.compile(r"[^\W\d_]{2}")
 
 
 @dataclass(frozen=True, slots=True)
-class Language:
-    """One language."""
+class Table:
+    """Texts in one language, by the English ones."""
 
     words: Mapping[str, str]
-    keys: Mapping[str, str]
-    """Texts of single widgets by their key, where an English word has several meanings."""
     forms: tuple[tuple[re.Pattern[str], str], ...]
     """Templates, the most specific first."""
+    keys: Mapping[str, str]
+    """Texts of single widgets by their key, where an English word has several meanings."""
+
+    @classmethod
+    def of(cls, texts: Mapping[str, str], keys: Mapping[str, str] = MappingProxyType({})) -> Table:
+        """Sorts whole texts from templates."""
+        forms = sorted((text for text in texts if "{}" in text), key=_fixed, reverse=True)
+        return cls(
+            {text: said for text, said in texts.items() if "{}" not in text},
+            tuple((_pattern(form), texts[form]) for form in forms),
+            keys,
+        )
+
+    def said(self, text: str) -> str:
+        """A text in that language; unchanged if it is not in the table."""
+        if not _WORD.search(text):
+            return text
+        if text in self.words:
+            return self.words[text]
+        for pattern, form in self.forms:
+            found = pattern.fullmatch(text)
+            if found is not None:
+                return form.format(*map(self.said, found.groups()))
+        return text
 
 
 @lru_cache
-def table(language: str, answers: bool = False) -> Language:
+def table(language: str, answers: bool = False) -> Table:
     """The table of a language other than English; with or without what only answers say."""
     given: dict[str, dict[str, str]] = tomllib.loads(
         files("automotive_cosim.cockpit").joinpath("languages", f"{language}.toml").read_text("utf-8")
     )
     texts = given["words"] | (given["answers"] if answers else {})
-    forms = sorted((text for text in texts if "{}" in text), key=_fixed, reverse=True)
-    return Language(
-        {text: said for text, said in texts.items() if "{}" not in text},
-        given["keys"],
-        tuple((_pattern(form), texts[form]) for form in forms),
-    )
+    return Table.of(texts, given["keys"])
 
 
 @lru_cache(maxsize=16384)
 def said(language: str, text: str, answers: bool = False) -> str:
     """A text of the screens, or of feedback, in that language; unchanged if it is not in the table."""
-    if not _WORD.search(text):
-        return text
-    known = table(language, answers)
-    if text in known.words:
-        return known.words[text]
-    for pattern, form in known.forms:
-        found = pattern.fullmatch(text)
-        if found is not None:
-            return form.format(*(said(language, part, answers) for part in found.groups()))
-    return text
+    return table(language, answers).said(text)
 
 
 def answered(feedback: Feedback, language: str) -> Feedback:
     """The feedback to an action in that language."""
-    return feedback if language == ENGLISH else replace(feedback, text=said(language, feedback.text, answers=True))
+    return (
+        feedback
+        if language == Language.ENGLISH
+        else replace(feedback, text=said(language, feedback.text, answers=True))
+    )
 
 
 def translated(widget: W, language: str) -> W:
     """The widget and its children in that language. Typed text stays."""
-    if language == ENGLISH:
+    if language == Language.ENGLISH:
         return widget
     changes: dict[str, Any] = {}
     for name in (*_COMMON, *_OWN.get(type(widget), ())):

@@ -48,6 +48,7 @@ def sense(state: State, surroundings: Surroundings, dt_s: float) -> None:
     before, state.outside = state.outside, surroundings
     driving, weather = surroundings.driving, surroundings.weather
     _motion(state, surroundings)
+    _park(state, surroundings)
     online = bool(state.injected.get(LINK.ONLINE.path, state.signals[LINK.ONLINE]))
     if online:
         state.heard = surroundings
@@ -85,6 +86,15 @@ def _motion(state: State, surroundings: Surroundings) -> None:
     signals[MOTION.LATITUDE] = None if gps is None else gps.lat_deg
     signals[MOTION.LONGITUDE] = None if gps is None else gps.lon_deg
     signals[LINK.ONLINE] = surroundings.connectivity.online and signals[LINK.MOBILE_DATA]
+
+
+def _park(state: State, surroundings: Surroundings) -> None:
+    """Puts the car in park, and in gear again, as the driver does on the way."""
+    if surroundings.parked == (state.parked_s is not None):
+        return
+    state.parked_s = surroundings.driving.time_s if surroundings.parked else None
+    state.signals[MOTION.GEAR] = "P" if surroundings.parked else "D"
+    state.signals[DRIVE.PARKING_BRAKE] = surroundings.parked
 
 
 def _road(state: State, driving: DrivingState) -> None:
@@ -180,7 +190,11 @@ def _change(state: State, dt_s: float) -> None:
     """Makes the changes that are due."""
     going_on = []
     for change in state.changes:
-        since_s = round(state.time_s - state.departed_s - change.at_s, 6)
+        begun_s = state.parked_s if change.once_parked else state.departed_s
+        if begun_s is None:
+            going_on.append(change)
+            continue
+        since_s = round(state.time_s - begun_s - change.at_s, 6)
         if since_s >= 0:
             _make(state, change, since_s, dt_s)
         if since_s < change.over_s:

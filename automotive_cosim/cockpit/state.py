@@ -168,6 +168,8 @@ class State:
     """Changes of the car that are still to come or going on."""
     departed_s: float = 0.0
     """Simulation time of the first ``sense``."""
+    parked_s: float | None = None
+    """Simulation time at which the driver parked on the way; None while under way."""
     played_s: float = 0.0
     """Playing time of the track."""
     deeds: tuple[Deed, ...] = ()

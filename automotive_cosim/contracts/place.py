@@ -69,3 +69,5 @@ class Surroundings:
     gps: GpsFix | None
     """None in a network without projection."""
     connectivity: Connectivity
+    parked: bool = False
+    """Whether the driver has parked on the way, as planned; False for a car that never sets off."""

@@ -11,6 +11,10 @@ class SightKind(StrEnum):
 
     DRIVER_BELT = "driver_belt"
     """The driver's belt is open while the car is in gear."""
+    PASSENGER_BELT = "passenger_belt"
+    """The belt of another seat that is taken is open while the car is in gear."""
+    WITHOUT_DRIVER = "without_driver"
+    """The driver has left the parked car: who or what is still aboard."""
     PHONE = "phone"
     """The driver uses a phone."""
     TAILGATE = "tailgate"

@@ -14,6 +14,7 @@ from automotive_cosim.geo.locate import Geo
 from automotive_cosim.geo.signs import LocalSigns
 from automotive_cosim.scenarios import WeatherAt, weather_at
 from automotive_cosim.traffic.base import Event, Traffic
+from automotive_cosim.traffic.ego import PARKS, SETS_OFF
 
 ALTERNATIVES_FROM_S = 10.0
 ALTERNATIVES_EVERY_S = 60.0
@@ -39,6 +40,8 @@ class Car:
     alternatives: tuple[RouteOption, ...] = ()
     alternatives_asked_s: float | None = None
     """Simulation time at which the navigation last looked for them."""
+    is_parked: bool = False
+    """Whether the driver has parked on the way."""
 
     def copy(self) -> Car:
         """An independent copy that continues exactly as this one would."""
@@ -91,7 +94,11 @@ class Car:
             self.alternatives_asked_s = driving.time_s
             self.alternatives = traffic.alternatives()[1:]
         driving = self._navigated(driving)
-        self.cockpit.sense(around(driving, weather, local_time, gps, connectivity), dt_s)
+        for event in events:
+            if event.kind in (PARKS, SETS_OFF):
+                self.is_parked = event.kind == PARKS
+        outside = around(driving, weather, local_time, gps, connectivity, parked=self.is_parked)
+        self.cockpit.sense(outside, dt_s)
         return Moment(
             time_s=driving.time_s,
             local_time=local_time,

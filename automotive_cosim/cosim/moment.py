@@ -48,7 +48,13 @@ class Moment:
 
 
 def around(
-    driving: DrivingState, weather: Weather, local_time: datetime, gps: GpsFix | None, connectivity: Connectivity
+    driving: DrivingState,
+    weather: Weather,
+    local_time: datetime,
+    gps: GpsFix | None,
+    connectivity: Connectivity,
+    *,
+    parked: bool = False,
 ) -> Surroundings:
     """Everything outside the cockpit, with the sun where it stands then and there."""
     sun_deg = (
@@ -56,4 +62,4 @@ def around(
         if driving.lat_deg is None or driving.lon_deg is None
         else elevation_deg(driving.lat_deg, driving.lon_deg, local_time)
     )
-    return Surroundings(driving, weather, local_time, sun_deg, gps, connectivity)
+    return Surroundings(driving, weather, local_time, sun_deg, gps, connectivity, parked)

@@ -2,5 +2,7 @@
 
 mcp            a server of the Model Context Protocol (extra ``mcp``)
 inspect_tasks  tasks for Inspect (extra ``inspect``), with ``inspect_drives`` and, for both, ``inspect_play``
+openenv        an environment for OpenEnv (extra ``openenv``)
+verifiers      a taskset for verifiers (extra ``verifiers``)
 shared         one service for a whole process, and specifications from plain words
 """

@@ -18,6 +18,8 @@ from inspect_ai.solver import Generate, Solver, TaskState, solver
 from automotive_cosim.doors.inspect_drives import drives
 from automotive_cosim.doors.inspect_play import conditions_of, outcome_of, played, seeds_of, words
 from automotive_cosim.doors.shared import episode_spec
+from automotive_cosim.episode.specification import language_of
+from automotive_cosim.errors import UserError
 from automotive_cosim.report.stats import Interval, wilson
 from automotive_cosim.run.plan import choose
 from automotive_cosim.run.row import from_json
@@ -42,6 +44,7 @@ def _cockpit(
     see: str = "both",
     feedback: str = "quiet",
     screen: str = "1280x720",
+    language: str = "en",
 ) -> Task:
     """The tasks at the cockpit.
 
@@ -54,16 +57,25 @@ def _cockpit(
         see: how it sees the screen: ``tree``, ``picture`` or ``both``.
         feedback: what it is told of its last action: ``quiet`` or ``verbose``.
         screen: size of the screen: ``1280x720``, ``1920x720`` or ``1080x1920``.
+        language: what the driver speaks and the car shows: ``en``, ``fr``, ``de`` or ``ja``; tasks without
+            phrasings in it are left out.
     """
-    given = {"scenario": scenario} | conditions_of(geo, see, feedback, screen)
+    spoken = language_of(language)
+    given = {"scenario": scenario} | conditions_of(geo, see, feedback, screen) | {"language": str(spoken)}
+    chosen = [CATALOGUE[each] for each in choose(words(tasks))]
+    said = [each for each in chosen if spoken in each.languages]
+    if not said:
+        raise UserError(
+            f"none of the tasks has phrasings in {spoken.words}; name some of the hard suite, such as hard_car_wash"
+        )
     samples = [
         Sample(
-            id=f"{each}-{half}-seed{seed}",
+            id=f"{each.id}-{half}-seed{seed}",
             input="The driver speaks when the situation arises.",
-            metadata={"task": each, "half": half, "seed": seed, **given},
+            metadata={"task": each.id, "half": half, "seed": seed, **given},
         )
-        for each in choose(words(tasks))
-        for half in CATALOGUE[each].halves
+        for each in said
+        for half in each.halves
         for seed in seeds_of(seeds)
     ]
     return Task(dataset=MemoryDataset(samples), solver=driver(pictures), scorer=verdict())

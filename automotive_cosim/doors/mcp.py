@@ -106,12 +106,13 @@ class CockpitTools:
         screen: Annotated[
             str, Field(description="Size of the screen: 1280x720, 1920x720 or 1080x1920.")
         ] = "1280x720",
+        language: Annotated[str, Field(description="What the driver speaks: en, fr, de or ja.")] = "en",
         channels: Annotated[
             list[str] | None, Field(description=f"What to observe: {', '.join(Channel)}; all by default.")
         ] = None,
     ) -> CallToolResult:
         """Start an episode: a car drives until the situation of the task arises, then you take over its cockpit."""
-        seen = {"geo": geo, "see": see, "feedback": feedback, "screen": screen}
+        seen = {"geo": geo, "see": see, "feedback": feedback, "screen": screen, "language": language}
         spec = episode_spec(task=task, half=half, scenario=scenario, seed=seed, **seen)
         return _turn(self._service.start(spec, _channels(channels), _Progress(context)))
 

@@ -79,5 +79,6 @@ def _ego_plan(plan: DrivePlan, scenario: Scenario, draws: Draws) -> EgoPlan:
         datetime.fromisoformat(plan.start).replace(tzinfo=scenario.start.tzinfo),
         onward=(*others, first),
         moods=plan.moods,
+        halts=plan.halts,
         incidents=plan.incidents,
     )

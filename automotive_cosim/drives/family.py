@@ -8,11 +8,11 @@ from enum import StrEnum
 
 import numpy as np
 
-from automotive_cosim.cockpit.aboard import Occupant
+from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
 from automotive_cosim.cockpit.arrivals import Arrival
 from automotive_cosim.contracts import Weather
 from automotive_cosim.drives.plan import APART_S, LONGEST_S, QUIET_S, SHORTEST_S, DrivePlan, Staged
-from automotive_cosim.drives.staging import ONCE, STUNTS, Cue, Spell
+from automotive_cosim.drives.staging import ONCE, STUNTS, TAKES_S, Cue, Spell
 from automotive_cosim.scenarios import WeatherAt
 from automotive_cosim.tasking.draws import Draws, Purpose
 
@@ -24,6 +24,9 @@ SPREAD_S = 25.0
 """How far the time between two stunts is drawn above its minimum."""
 FEWEST, MOST = 4, 8
 """Events that a drive stages, and as many baits."""
+IN_FRONT = (Kind.ADULT, Kind.ADULT, Kind.ELDERLY, Kind.OBJECT)
+BEHIND = (Kind.ADULT, Kind.ELDERLY, Kind.CHILD, Kind.BABY, Kind.PET, Kind.OBJECT)
+"""Who may ride on a front seat and behind, drawn evenly."""
 DISTRACTORS = 3
 """Most calls and messages."""
 
@@ -57,8 +60,8 @@ class Family:
     driver: str = "average"
     origin: tuple[float, float] | None = None
     """Longitude and latitude that the network is moved to."""
-    aboard: tuple[Occupant, ...] = ()
-    """Who is in the car besides the driver."""
+    aboard: tuple[Occupant, ...] | None = None
+    """Who is in the car besides the driver; None draws them."""
 
     def draw(self, seed: int) -> DrivePlan:
         """The drive of a seed."""
@@ -70,11 +73,14 @@ class Family:
         if once and rng.random() < 0.5:
             roles.append((once[int(rng.integers(len(once)))], bool(rng.random() < 0.5)))
         order = [roles[index] for index in rng.permutation(len(roles))]
-        times_s, quiet_s, end_s = _times_s(len(order), rng)
+        times_s, quiet_s, end_s = _times_s([TAKES_S.get(kind, 0.0) for kind, _ in order], rng)
+        is_family = any(kind == "left_behind" for kind, _ in order)
+        company = (_in_care if is_family else _company)(rng) if self.aboard is None else self.aboard
         staged = tuple(Staged(kind, at_s, bait) for (kind, bait), at_s in zip(order, times_s, strict=True))
         warmer = round(float(rng.uniform(-1.5, 1.5)), 1)
         weather = replace(self.weather, temperature_2m=round(self.weather.temperature_2m + warmer, 1))
-        props = [STUNTS[one.kind](Cue(one.at_s, one.is_bait, self.driver, weather, rng)) for one in staged]
+        cues = [Cue(one.at_s, one.is_bait, self.driver, weather, rng, company) for one in staged]
+        props = [STUNTS[one.kind](cue) for one, cue in zip(staged, cues, strict=True)]
         turned = int(rng.integers(len(self.trips)))
         return DrivePlan(
             family=self.id,
@@ -86,8 +92,9 @@ class Family:
             weather=_timeline(weather, [spell for each in props for spell in each.spells]),
             origin=self.origin,
             driver=self.driver,
-            aboard=self.aboard,
+            aboard=company,
             moods=tuple(sorted((mood for each in props for mood in each.moods), key=lambda mood: mood.at_s)),
+            halts=tuple(halt for each in props for halt in each.halts),
             changes=tuple(change for each in props for change in each.changes),
             arrivals=_arrivals(rng, end_s),
             incidents=tuple(incident for each in props for incident in each.incidents),
@@ -97,21 +104,47 @@ class Family:
         )
 
 
-def _times_s(count: int, rng: np.random.Generator) -> tuple[list[float], tuple[float, float], float]:
-    """The times of the stunts, the quiet spell among them, and the end."""
-    quiet_before = int(rng.integers(1, count))
+def _times_s(takes_s: Sequence[float], rng: np.random.Generator) -> tuple[list[float], tuple[float, float], float]:
+    """The times of the stunts, the quiet spell among them, and the end.
+
+    Args:
+        takes_s: by how much longer than others each stunt takes.
+        rng: draws them.
+    """
+    quiet_before = int(rng.integers(1, len(takes_s)))
     length_s = QUIET_S + float(round(rng.uniform(0, 60)))
     times_s: list[float] = []
     now_s, quiet_s = FIRST_S, (0.0, 0.0)
-    for index in range(count):
+    for index, longer_s in enumerate(takes_s):
         if index == quiet_before:
             quiet_s = (now_s, now_s + length_s)
             now_s += length_s
         times_s.append(now_s)
-        now_s += APART_S + float(round(rng.uniform(0, SPREAD_S)))
+        now_s += longer_s + APART_S + float(round(rng.uniform(0, SPREAD_S)))
     end_s = max(SHORTEST_S, now_s + LAST_S)
     assert end_s <= LONGEST_S, end_s
     return times_s, quiet_s, end_s
+
+
+def _company(rng: np.random.Generator) -> tuple[Occupant, ...]:
+    """Who rides along: mostly one or two of any kind, all belted but for things."""
+    seats = [Seat.PASSENGER, Seat.REAR_LEFT, Seat.REAR_RIGHT]
+    drawn = [seats[index] for index in rng.permutation(len(seats))[: int(rng.integers(len(seats) + 1))]]
+    return tuple(_occupant(seat, IN_FRONT if seat is Seat.PASSENGER else BEHIND, rng) for seat in sorted(drawn))
+
+
+def _in_care(rng: np.random.Generator) -> tuple[Occupant, ...]:
+    """A child or a pet behind; half of the time something lies beside it."""
+    first, second = [(Seat.REAR_LEFT, Seat.REAR_RIGHT)[index] for index in rng.permutation(2)]
+    in_care = _occupant(first, tuple(kind for kind in Kind if kind.needs_care), rng)
+    thing = (_occupant(second, (Kind.OBJECT,), rng),) if rng.random() < 0.5 else ()
+    return (in_care, *thing)
+
+
+def _occupant(seat: Seat, kinds: Sequence[Kind], rng: np.random.Generator) -> Occupant:
+    kind = kinds[int(rng.integers(len(kinds)))]
+    asleep = kind is not Kind.OBJECT and seat is not Seat.PASSENGER and bool(rng.random() < 0.3)
+    return Occupant(seat, kind, asleep=asleep, belted=kind is not Kind.OBJECT)
 
 
 def _arrivals(rng: np.random.Generator, end_s: float) -> tuple[Arrival, ...]:

@@ -225,8 +225,11 @@ def _traffic(known: Gathered) -> Iterator[Concern]:
 
 
 def _car(known: Gathered) -> Iterator[Concern]:
-    if known.words("belt"):
-        yield Concern("belt", AlertKind.SEAT_BELT, known.speed_kmh >= 25, 2.0, is_there=True)
+    for seat in re.findall(r"([a-z ]+): (?:adult|elderly|child|baby), [^;]*not belted", known.vehicle.aboard):
+        yield Concern(f"belt {seat}", AlertKind.SEAT_BELT, known.speed_kmh >= 25, 2.0, is_there=True)
+    parked = known.words("parked")
+    if "has left" in parked and re.search(r"child|baby|pet", parked) and not re.search(r"adult|elderly", parked):
+        yield Concern("left behind", AlertKind.VEHICLE, hold_s=15.0)
     for part in ("trunk", "charging flap"):
         if part in known.words("open"):
             yield Concern(part, AlertKind.VEHICLE, known.speed_kmh >= 5, 2.0)

@@ -17,7 +17,7 @@ from automotive_cosim.formats.checked import as_json, checked
 from automotive_cosim.formats.toml import dotted
 from automotive_cosim.scenarios import WeatherAt
 from automotive_cosim.scenarios.incidents import AnyIncident
-from automotive_cosim.traffic.base import DriverAt
+from automotive_cosim.traffic.base import DriverAt, HaltAt
 
 SHORTEST_S = 600.0
 LONGEST_S = 1800.0
@@ -70,6 +70,8 @@ class DrivePlan:
     """Who is in the car besides the driver."""
     signals: Mapping[str, bool | float | str] = field(default_factory=dict)
     """VSS paths and values at departure."""
+    halts: tuple[HaltAt, ...] = ()
+    """Where the driver parks for a while."""
     changes: tuple[CarChange, ...] = ()
     """Changes of the car that nobody commands."""
     arrivals: tuple[Arrival, ...] = ()

@@ -12,12 +12,14 @@ from typing import Literal
 
 import numpy as np
 
+from automotive_cosim.cockpit.aboard import SIGNALS, Occupant, Seat
 from automotive_cosim.cockpit.changes import CarChange
-from automotive_cosim.cockpit.signals import BODY, CABIN, CALL, ENERGY, HVAC, LIGHTS, SEAT, TYRE, Signal
+from automotive_cosim.cockpit.reach import RADAR_M
+from automotive_cosim.cockpit.signals import BODY, CABIN, CALL, ENERGY, HVAC, LIGHTS, TYRE, Signal
 from automotive_cosim.contracts import Weather
 from automotive_cosim.drives.sky import drizzle, fog, rain, sleet
 from automotive_cosim.scenarios.incidents import AheadIncident, AnyIncident, BrakingLeader, EmergencyVehicle
-from automotive_cosim.traffic.base import DriverAt
+from automotive_cosim.traffic.base import DriverAt, HaltAt
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +36,7 @@ class Props:
     """What one stunt adds to a plan."""
 
     moods: tuple[DriverAt, ...] = ()
+    halts: tuple[HaltAt, ...] = ()
     changes: tuple[CarChange, ...] = ()
     incidents: tuple[AnyIncident, ...] = ()
     spells: tuple[Spell, ...] = ()
@@ -53,6 +56,8 @@ class Cue:
     weather: Weather
     """What the weather is otherwise."""
     rng: np.random.Generator
+    aboard: tuple[Occupant, ...] = ()
+    """Who is in the car besides the driver."""
 
 
 Stunt = Callable[[Cue], Props]
@@ -61,6 +66,8 @@ MOOD_S = 40.0
 """How long a driver keeps a mood."""
 LEADER_WITHIN_S = 40.0
 """A leader that has not been found by then does not brake, lest it do so during the next stunt."""
+LATE_M = 135.0
+"""How far ahead it brakes: just within the reach of the radar."""
 SPELL_S = 120.0
 """Length of a bank of fog or a shower."""
 PHONE_S = 40.0
@@ -69,6 +76,8 @@ AHEAD_S = 420.0
 """How long an incident on the road lasts."""
 AHEAD_M = 1400.0
 """How far ahead it is staged: news that is a minute old is heard in time at 80 km/h."""
+ALIGHT_S, AWAY_S = 10.0, 120.0
+"""How long after parking the driver gets out, and for how long: beyond the deadline of 90 s."""
 BREAK_AFTER_S = 2 * 3600.0
 """The Highway Code, rule 91: a break of at least 15 minutes after every two hours of driving."""
 
@@ -87,7 +96,9 @@ def _mood(of_event: str, of_bait: str) -> Stunt:
 def _leader_close(cue: Cue) -> Props:
     """The driver presses, behind somebody who eases off; as a bait, keeps two seconds."""
     until_s = cue.at_s + MOOD_S
-    eases = BrakingLeader(from_s=cue.at_s, to_s=until_s, ahead_m=40.0, deceleration_mps2=0.2, to_kmh=40.0)
+    eases = BrakingLeader(
+        from_s=cue.at_s, to_s=until_s, ahead_m=40.0, deceleration_mps2=0.2, to_kmh=40.0, keeps_lane=True
+    )
     return replace(_mood("pressing", "calm")(cue), incidents=(eases,))
 
 
@@ -98,8 +109,32 @@ def _fatigue(cue: Cue) -> Props:
 
 
 def _belt(cue: Cue) -> Props:
-    """The driver opens the belt; as a bait, only pulls it straight."""
-    return Props(changes=_turned(SEAT.DRIVER_BELT, cue, False, 2.0 if cue.is_bait else 90.0))
+    """Somebody aboard opens the belt; as a bait, only pulls it straight."""
+    people = [Seat.DRIVER, *(one.seat for one in cue.aboard if one.kind.is_person and one.belted)]
+    belt = SIGNALS[people[int(cue.rng.integers(len(people)))]].belted
+    return Props(changes=_turned(belt, cue, False, 2.0 if cue.is_bait else 90.0))
+
+
+def _left_behind(cue: Cue) -> Props:
+    """The driver parks and goes away, and who needs care stays; as a bait, the driver takes them along."""
+    gone = [(SIGNALS[Seat.DRIVER], ALIGHT_S, ALIGHT_S + AWAY_S)]
+    if cue.is_bait:  # out before the driver goes, and in after the driver has come
+        gone += [
+            (SIGNALS[one.seat], ALIGHT_S - 2.0, ALIGHT_S + AWAY_S + 2.0)
+            for one in cue.aboard
+            if one.kind.needs_care
+        ]
+    changes = [
+        CarChange(at_s, signal.path, value, once_parked=True)
+        for seat, out_s, in_s in gone
+        for at_s, signal, value in (
+            (out_s - 4.0, seat.belted, False),
+            (out_s, seat.occupied, False),
+            (in_s, seat.occupied, True),
+            (in_s + 4.0, seat.belted, True),
+        )
+    ]
+    return Props(halts=(HaltAt(cue.at_s, AWAY_S + 2 * ALIGHT_S),), changes=tuple(changes))
 
 
 def _phone(cue: Cue) -> Props:
@@ -128,9 +163,9 @@ def _door(cue: Cue) -> Props:
 
 
 def _tyre(cue: Cue) -> Props:
-    """A tyre loses a third of its air in four minutes; as a bait, a twentieth."""
+    """A tyre loses a third of its air in two minutes; as a bait, a twentieth."""
     tyre = (TYRE.FRONT_LEFT, TYRE.FRONT_RIGHT, TYRE.REAR_LEFT, TYRE.REAR_RIGHT)[int(cue.rng.integers(4))]
-    return Props(changes=(CarChange(cue.at_s, tyre.path, 237.0 if cue.is_bait else 165.0, 240.0),))
+    return Props(changes=(CarChange(cue.at_s, tyre.path, 237.0 if cue.is_bait else 165.0, 120.0),))
 
 
 def _range(cue: Cue) -> Props:
@@ -201,11 +236,26 @@ def _blue_light(cue: Cue) -> Props:
 
 
 def _leader_brakes(cue: Cue) -> Props:
-    """The vehicle ahead brakes hard; as a bait, it slows down gently."""
-    hard_mps2, to_kmh = (0.8, 25.0) if cue.is_bait else (6.0, 10.0)
+    """Far ahead a car brakes to a halt, and a driver who presses reacts late; as a bait, it slows down gently.
+
+    Only hard braking helps once 3.4 m/s2 are needed, and from 90 km/h on there are more than two seconds left then.
+    """
     until_s = cue.at_s + LEADER_WITHIN_S
-    brakes = BrakingLeader(from_s=cue.at_s, to_s=until_s, ahead_m=50.0, deceleration_mps2=hard_mps2, to_kmh=to_kmh)
-    return Props(incidents=(brakes,))
+    if cue.is_bait:
+        slows = BrakingLeader(from_s=cue.at_s, to_s=until_s, ahead_m=50.0, deceleration_mps2=0.8, to_kmh=25.0)
+        return Props(incidents=(slows,))
+    brakes = BrakingLeader(
+        from_s=cue.at_s,
+        to_s=until_s,
+        within_m=RADAR_M,
+        beyond_m=LATE_M - 20.0,
+        from_kmh=90.0,
+        ahead_m=LATE_M,
+        deceleration_mps2=9.0,
+        to_kmh=0.0,
+        keeps_lane=True,
+    )
+    return replace(_mood("pressing", "pressing")(cue), incidents=(brakes,))
 
 
 def _ahead(what: Literal["breakdown", "roadworks", "jam", "tractor"]) -> Stunt:
@@ -225,6 +275,7 @@ STUNTS: Mapping[str, Stunt] = {
     "fatigue": _fatigue,
     "belt": _belt,
     "phone": _phone,
+    "left_behind": _left_behind,
     "door": _door,
     "tyre": _tyre,
     "range": _range,
@@ -244,5 +295,8 @@ STUNTS: Mapping[str, Stunt] = {
 }
 """The stunts by the kind of event that they stage."""
 
-ONCE = frozenset({"fatigue", "range"})
-"""Kinds that a drive stages as an event or as a bait, not both: a battery does not fill up again."""
+ONCE = frozenset({"fatigue", "range", "left_behind"})
+"""Kinds that a drive stages as an event or as a bait, not both: a battery does not fill up again, and one halt is
+enough."""
+TAKES_S: Mapping[str, float] = {"left_behind": 2 * ALIGHT_S + AWAY_S + 40.0}
+"""How long a stunt takes that leaves no room for the next until then: with 40 s for finding a place to park."""

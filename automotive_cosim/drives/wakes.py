@@ -10,7 +10,8 @@ from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 from math import floor
 
-from automotive_cosim.cockpit.signals import BODY, CABIN, CALL, ENERGY, GLASS, HMI, LIGHTS, SEAT, TYRE
+from automotive_cosim.cockpit.aboard import Seat, seated_by
+from automotive_cosim.cockpit.signals import BODY, CABIN, CALL, ENERGY, GLASS, HMI, LIGHTS, MOTION, OCCUPANT, TYRE
 from automotive_cosim.contracts import KMH_PER_MPS, Sight, SightKind
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.geo.text import KM_PER_MILE
@@ -160,6 +161,24 @@ def _share(value: float) -> str:
     return f"{floor(1000 * value) / 10:.1f}%"
 
 
+def _unbelted(now: Moment) -> tuple[tuple[str, str], ...]:
+    return tuple((one.seat.words, str(one.kind)) for one in seated_by(now.signals) if not one.belted)
+
+
+def _others(now: Moment) -> tuple[tuple[str, str], ...]:
+    """Who or what is aboard besides the driver."""
+    aboard = seated_by(now.signals)
+    return tuple((one.seat.words, str(one.kind)) for one in aboard if one.seat is not Seat.DRIVER)
+
+
+def _is_left(now: Moment) -> bool:
+    return not now.signals[OCCUPANT.DRIVER.occupied.path]
+
+
+def _who(seats: tuple[tuple[str, str], ...]) -> str:
+    return ", ".join(f"{kind} on the seat {seat}" for seat, kind in seats) or "nobody"
+
+
 def _lowest_kpa(now: Moment) -> float:
     return float(min(now.signals[tyre.path] for tyre in TYRES))
 
@@ -280,9 +299,15 @@ WAKES: tuple[Wake, ...] = (
     ),
     Wake(
         "belt",
-        "the driver's belt is opened, or the car sets off without it",
-        lambda now: None if now.signals[SEAT.DRIVER_BELT.path] else _kmh(now) >= ROLLING_KMH,
-        lambda now: f"driver's belt open at {_kmh(now):.0f} km/h",
+        "the belt of a seat that is taken is opened, or the car sets off without it",
+        lambda now: (_unbelted(now), _kmh(now) >= ROLLING_KMH) if _unbelted(now) else None,
+        lambda now: f"open at {_kmh(now):.0f} km/h: {_who(_unbelted(now))}",
+    ),
+    Wake(
+        "parked",
+        "the driver parks the car on the way, leaves it, or comes back",
+        lambda now: (_is_left(now), _others(now)) if now.signals[MOTION.GEAR.path] == "P" else None,
+        lambda now: f"the driver {'has left' if _is_left(now) else 'is there'}, aboard: {_who(_others(now))}",
     ),
     Wake(
         "open",

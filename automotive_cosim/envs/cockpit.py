@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from automotive_cosim.cockpit.actions import check, parse
+from automotive_cosim.cockpit.language import Language
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import Action
 from automotive_cosim.envs.pool import POOL
@@ -22,6 +23,7 @@ from automotive_cosim.episode.specification import (
     EpisodeSpec,
     SeedSource,
     feedback_of,
+    language_of,
     screen_of,
     see_of,
 )
@@ -73,6 +75,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         see: str = See.BOTH,
         feedback: str = FeedbackDetail.QUIET,
         screen: str = ScreenSize.STANDARD,
+        language: str = Language.ENGLISH,
         held_out: bool = False,
         max_steps: int | None = None,
         action_cost_s: float = ACTION_COST_S,
@@ -84,7 +87,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
 
         Args:
             task: a task or its id.
-            half, scenario, origin, gps, from_place, to_place, held_out: as in ``EpisodeSpec``.
+            half, scenario, origin, gps, from_place, to_place, language, held_out: as in ``EpisodeSpec``.
             channels, geo, see, feedback, screen, max_steps, action_cost_s: as in ``Conditions``.
             render_mode: ``"rgb_array"`` or None.
             simulations: warm simulations; by default those that the environments of this process share.
@@ -93,11 +96,22 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         Raises:
             UnknownNameError: no such task, half or scenario.
             ScenarioError: the scenario cannot be read, or has no such route.
-            UserError: ``origin`` is not a position on earth, or ``see`` leaves nothing of the screen.
+            UserError: ``origin`` is not a position on earth, or ``see`` leaves nothing of the screen,
+                or the driver has no words for the task in that language.
         """
         given = None if isinstance(task, str) else task
         name = task if isinstance(task, str) else task.id
-        spec = EpisodeSpec(name, half, scenario, origin, gps, from_place, to_place, held_out=held_out)
+        spec = EpisodeSpec(
+            name,
+            half,
+            scenario,
+            origin,
+            gps,
+            from_place,
+            to_place,
+            held_out=held_out,
+            language=language_of(language),
+        )
         self._conditions = Conditions(
             frozenset(map(Channel, channels)),
             GeoInput(geo),

@@ -15,7 +15,7 @@ from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.session import Session, beginning
 from automotive_cosim.episode.situation import HandOver
 from automotive_cosim.episode.specification import ROUNDING_S, Conditions, End
-from automotive_cosim.tasking.dialogue import NEUTRAL, Question, Says, dialogue, questions, topic_of
+from automotive_cosim.tasking.dialogue import Question, Says, dialogue, questions, topic_of
 from automotive_cosim.tasking.instance import Instance
 from automotive_cosim.tasking.verdict import Verdict, judge
 
@@ -98,7 +98,7 @@ class Episode(Session):
         """What the driver was asked, and what of it was needed."""
         half = self.instance.half
         texts = (asked["text"] for asked in questions(self.moments[0], self.moments[-1]))
-        return dialogue(texts, half.topics, half.needed_topics)
+        return dialogue(texts, half.topics, half.needed_topics, half.neutral)
 
     @property
     def counterfactual(self) -> Mapping[str, Any]:
@@ -108,8 +108,9 @@ class Episode(Session):
         )
 
     def _reply(self, question: str) -> str:
-        topic = topic_of(question, self.instance.half.topics)
-        return NEUTRAL if topic is None else topic.reply
+        half = self.instance.half
+        topic = topic_of(question, half.topics)
+        return half.neutral if topic is None else topic.reply
 
     def _remarks(self) -> tuple[str, ...]:
         start, now, steps = self.moments[0], self.moments[-1], len(self.steps)

@@ -9,8 +9,9 @@ from itertools import product
 from typing import Any
 
 from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cockpit.language import Language
 from automotive_cosim.cockpit.restrictions import Motion, motion
-from automotive_cosim.cockpit.signals import DRIVE, MOTION
+from automotive_cosim.cockpit.signals import DRIVE, HMI, MOTION
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation, couple
 from automotive_cosim.episode.listener import Listener
@@ -21,7 +22,7 @@ from automotive_cosim.scenarios import Scenario, Trip, WeatherAt
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.tasking.binding import POSTED_LIMIT, UnmetNeedError, bound, needs
 from automotive_cosim.tasking.draws import Draws, Purpose
-from automotive_cosim.tasking.instance import Instance, draw
+from automotive_cosim.tasking.instance import Instance, draw, speech
 from automotive_cosim.tasking.task import Half, Task
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.base import EgoPlan, Simulation, Traffic
@@ -67,12 +68,14 @@ class SituationFinder:
         Raises:
             UnknownNameError: no such task, half or scenario.
             ScenarioError: the scenario cannot be read, or has no such way.
-            UserError: a value is out of its range.
+            UserError: a value is out of its range, or the driver has no words for the task in that language.
         """
         spec.check()
         self.task = CATALOGUE[spec.task] if task is None else task
         half = self.task.half(spec.half)
         start = half.start
+        if spec.language is not Language.ENGLISH:
+            speech(self.task, spec.language)
         self.scenario: Scenario = open_scenario(
             spec.scenario or start.scenario,
             origin=start.origin if spec.origin is None and spec.scenario is None else spec.origin,
@@ -131,7 +134,14 @@ class SituationFinder:
         return f" where it has what the task needs ({', '.join(needed)}): {self._missing}"
 
     def _draw(self, draws: Draws, content: Mapping[str, tuple[str, ...]] | None = None) -> Instance:
-        return draw(self.task, self._spec.half, draws.number, content, held_out=self._spec.held_out)
+        return draw(
+            self.task,
+            self._spec.half,
+            draws.number,
+            content,
+            held_out=self._spec.held_out,
+            language=self._spec.language,
+        )
 
     def _trips(self, half: Half, draws: Draws) -> tuple[Trip, ...]:
         ego = self.scenario.ego
@@ -161,12 +171,15 @@ class SituationFinder:
 
     def _couple(self, traffic: Traffic, half: Half, plan: EgoPlan, draws: Draws) -> CoSimulation:
         start = half.start
+        signals = start.signals
+        if self._spec.language is not Language.ENGLISH:
+            signals = {HMI.LANGUAGE.path: str(self._spec.language), **signals}
         cockpit = Cockpit(
             traffic.network,
             rng=draws.rng(Purpose.CONTENT),
             aboard=start.aboard,
             cabin=start.cabin,
-            signals={**PARKED, **start.signals} if start.parked else start.signals,
+            signals={**PARKED, **signals} if start.parked else signals,
             arrivals=start.arrivals,
             belongings=start.belongings,
             sign_camera=start.sign_camera,

@@ -9,6 +9,7 @@ from typing import Annotated, TypeVar
 import numpy as np
 from annotated_types import Ge, Gt
 
+from automotive_cosim.cockpit.language import Language
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.annotations import Latitude, Longitude, OneOf
@@ -117,6 +118,8 @@ class EpisodeSpec:
     """What it is told of its last action."""
     screen: Annotated[ScreenSize, OneOf(ScreenSize, "size of the screen")] = ScreenSize.STANDARD
     """Size of the car's screen."""
+    language: Annotated[Language, OneOf(Language, "language")] = Language.ENGLISH
+    """What the driver speaks, and the car shows."""
 
     def check(self) -> None:
         """Tries the values; whether there is such a task or scenario is found out where those are looked up.
@@ -184,6 +187,15 @@ def screen_of(name: str) -> ScreenSize:
         UnknownNameError: there is none.
     """
     return _named(ScreenSize, "size of the screen", name)
+
+
+def language_of(name: str) -> Language:
+    """The language by its code.
+
+    Raises:
+        UnknownNameError: there is none.
+    """
+    return _named(Language, "language", name)
 
 
 @dataclass(frozen=True, slots=True)

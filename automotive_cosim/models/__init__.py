@@ -2,6 +2,7 @@
 
 ``rules``               a deterministic stand-in that reads the prompt by keywords; runs anywhere
 ``replay/FOLDER``       the answers recorded in an episode's folder, for an exact re-run
+``replay/NAME``         those of a shipped conversation (``automotive_cosim/replay``)
 ``openai/NAME``         OpenAI, or the server that ``OPENAI_BASE_URL`` names
 ``PROVIDER/NAME``       any OpenAI-compatible endpoint: ``PROVIDER_API_KEY`` and ``PROVIDER_BASE_URL``
 
@@ -10,26 +11,26 @@ The last two take settings: ``openai/NAME?seed=3&timeout_s=30``; see ``remote.Se
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.models.apis import ProviderApi
 from automotive_cosim.models.base import ChatMessage, ChatModel, ModelReply
 from automotive_cosim.models.replay import Replay
 from automotive_cosim.models.rules import Rules
+from automotive_cosim.models.turns import Turns
 
 __all__ = ["MODELS", "ChatMessage", "ChatModel", "ModelReply", "Replay", "Rules", "make_model"]
 
-MODELS = ("rules", "replay/FOLDER", "openai/NAME", "PROVIDER/NAME")
+MODELS = ("rules", "replay/FOLDER", "replay/NAME", "openai/NAME", "PROVIDER/NAME")
 """The forms of a model's name."""
 
 
-def make_model(name: str, api: ProviderApi | None = None) -> ChatModel:
+def make_model(name: str, api: ProviderApi | None = None, turns: Turns | None = None) -> ChatModel:
     """A model by name.
 
     Args:
         name: its name.
         api: the protocol of its endpoint, if it has one; by default chat completions.
+        turns: where a model with a limit of questions a minute takes its turns; by default its own.
 
     Raises:
         UnknownNameError: the name has none of the forms above.
@@ -42,7 +43,7 @@ def make_model(name: str, api: ProviderApi | None = None) -> ChatModel:
     if not slash or not provider or not rest:
         raise UnknownNameError("model", name, MODELS)
     if provider == "replay":
-        return Replay.read(Path(rest))
+        return Replay.named(rest, api)
     from automotive_cosim.models.remote import make_remote
 
-    return make_remote(name, api)
+    return make_remote(name, api, turns)

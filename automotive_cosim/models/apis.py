@@ -14,7 +14,7 @@ from __future__ import annotations
 import base64
 import json
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 from automotive_cosim.contracts import Json
@@ -74,12 +74,16 @@ class Chat:
     def read(self, told: Any) -> ModelReply:
         """See ``ProviderApi``."""
         choice = told["choices"][0]
+        message = choice["message"]
         usage = told.get("usage") or {}
         return ModelReply(
-            _text(choice["message"].get("content")),
+            _text(message.get("content")),
             _count(usage.get("prompt_tokens")),
             _count(usage.get("completion_tokens")),
             finish=str(choice.get("finish_reason") or "stop"),
+            reasoning=_text(message.get("reasoning_content") or message.get("reasoning")),
+            tokens_reasoning=_detail(usage, "completion_tokens_details", "reasoning_tokens"),
+            tokens_cached=_detail(usage, "prompt_tokens_details", "cached_tokens"),
         )
 
     def _message(self, message: ChatMessage) -> Json:
@@ -124,9 +128,11 @@ class OpenAI:
 
     def read(self, told: Any) -> ModelReply:
         """See ``ProviderApi``."""
-        say, calls = "", list[Json]()
+        say, calls, reasoning = "", list[Json](), ""
         for item in told["output"]:
             match item["type"]:
+                case "reasoning":
+                    reasoning += _text(item.get("summary"))
                 case "message":
                     say += "".join(str(part.get("text", "")) for part in item["content"])
                 case "computer_call":
@@ -137,7 +143,13 @@ class OpenAI:
                     calls.append({"name": item["name"], "arguments": json.loads(item["arguments"])})
         usage = told.get("usage") or {}
         cut = (told.get("incomplete_details") or {}).get("reason") == "max_output_tokens"
-        return _reply(say, calls, usage.get("input_tokens"), usage.get("output_tokens"), cut)
+        found = _reply(say, calls, usage.get("input_tokens"), usage.get("output_tokens"), cut)
+        return replace(
+            found,
+            reasoning=reasoning,
+            tokens_reasoning=_detail(usage, "output_tokens_details", "reasoning_tokens"),
+            tokens_cached=_detail(usage, "input_tokens_details", "cached_tokens"),
+        )
 
 
 TOOLSET = "computer_toolset_20260801"
@@ -206,17 +218,22 @@ class Anthropic:
 
     def read(self, told: Any) -> ModelReply:
         """See ``ProviderApi``."""
-        say, calls = "", list[Json]()
+        say, calls, reasoning = "", list[Json](), ""
         for block in told["content"]:
             if block["type"] == "text":
                 say += block["text"]
+            elif block["type"] == "thinking":
+                reasoning += str(block.get("thinking", ""))
             elif block["type"] == "tool_use":
                 given = dict(block["input"])
                 name = given.pop("action") if block["name"] == "computer" else block["name"]
                 calls.append({"name": name, "arguments": given})
         usage = told.get("usage") or {}
         cut = told.get("stop_reason") == "max_tokens"
-        return _reply(say, calls, usage.get("input_tokens"), usage.get("output_tokens"), cut)
+        cached = _count(usage.get("cache_read_input_tokens"))  # which input_tokens leaves out
+        tokens_in = _count(usage.get("input_tokens")) + cached + _count(usage.get("cache_creation_input_tokens"))
+        found = _reply(say, calls, tokens_in, usage.get("output_tokens"), cut)
+        return replace(found, reasoning=reasoning, tokens_cached=cached)
 
 
 @dataclass(frozen=True, slots=True)
@@ -257,16 +274,22 @@ class Gemini:
     def read(self, told: Any) -> ModelReply:
         """See ``ProviderApi``."""
         candidate = told["candidates"][0]
-        say, calls = "", list[Json]()
+        say, calls, reasoning = "", list[Json](), ""
         for part in candidate["content"]["parts"]:
             if "functionCall" in part:
                 called = part["functionCall"]
                 calls.append({"name": called["name"], "arguments": dict(called.get("args") or {})})
-            elif not part.get("thought"):
+            elif part.get("thought"):
+                reasoning += str(part.get("text", ""))
+            else:
                 say += str(part.get("text", ""))
         usage = told.get("usageMetadata") or {}
         cut = candidate.get("finishReason") == "MAX_TOKENS"
-        return _reply(say, calls, usage.get("promptTokenCount"), usage.get("candidatesTokenCount"), cut)
+        thoughts = _count(usage.get("thoughtsTokenCount"))  # which the candidates' count leaves out
+        tokens_out = _count(usage.get("candidatesTokenCount")) + thoughts
+        found = _reply(say, calls, usage.get("promptTokenCount"), tokens_out, cut)
+        cached = _count(usage.get("cachedContentTokenCount"))
+        return replace(found, reasoning=reasoning, tokens_reasoning=thoughts, tokens_cached=cached)
 
 
 def _reply(say: str, calls: Iterable[Json], tokens_in: Any, tokens_out: Any, cut: bool) -> ModelReply:
@@ -276,6 +299,10 @@ def _reply(say: str, calls: Iterable[Json], tokens_in: Any, tokens_out: Any, cut
 
 def _count(tokens: Any) -> int:
     return int(tokens or 0)
+
+
+def _detail(usage: Json, group: str, name: str) -> int:
+    return _count((usage.get(group) or {}).get(name))
 
 
 def _text(content: object) -> str:

@@ -32,12 +32,18 @@ class ModelReply:
 
     text: str
     tokens_in: int = 0
+    """Cached ones included."""
     tokens_out: int = 0
+    """Those of its reasoning included."""
     cost_usd: float = 0.0
     seconds: float = 0.0
     """From the question to the whole answer, including failed attempts; 0 for models in this process."""
     finish: str = "stop"
     """Why it ended: ``"stop"``, ``"length"`` if it was cut off at its limit, or the provider's own word."""
+    reasoning: str = ""
+    """What the provider shows of its reasoning; no agent reads it."""
+    tokens_reasoning: int = 0
+    tokens_cached: int = 0
 
     def as_json(self) -> Json:
         """The reply as a JSON object."""

@@ -22,6 +22,7 @@ from urllib.parse import parse_qsl, quote
 from automotive_cosim.errors import ModelError, SetupError, UnknownNameError, UserError
 from automotive_cosim.models.apis import Chat, ProviderApi
 from automotive_cosim.models.base import ChatMessage, ModelReply
+from automotive_cosim.models.turns import LocalTurns, Turns
 
 if TYPE_CHECKING:
     import openai
@@ -55,6 +56,8 @@ class Settings:
     """Maximum number of questions per minute."""
     usd_per_million_in: float = 0.0
     usd_per_million_out: float = 0.0
+    usd_per_million_cached: float | None = None
+    """Of those that go in, the ones that the provider has cached; None for the same price."""
 
     @classmethod
     def read(cls, query: str) -> Settings:
@@ -86,12 +89,13 @@ def _number(name: str, value: str, kinds: tuple[type, ...]) -> float | int | Non
     return number
 
 
-def make_remote(spec: str, api: ProviderApi | None = None) -> Remote:
+def make_remote(spec: str, api: ProviderApi | None = None, turns: Turns | None = None) -> Remote:
     """The model ``PROVIDER/NAME`` or ``PROVIDER/NAME?settings``.
 
     Args:
         spec: its name.
         api: the protocol of its endpoint; by default chat completions.
+        turns: where it takes its turns; by default its own.
 
     Raises:
         SetupError: the ``openai`` package, the key or the address is missing.
@@ -109,7 +113,7 @@ def make_remote(spec: str, api: ProviderApi | None = None) -> Remote:
     if not base_url and provider != "openai":
         raise SetupError(f"model {whole!r} requires an address in {prefix}_BASE_URL, e.g. http://127.0.0.1:8000/v1")
     spoken = api or Chat("max_completion_tokens" if provider == "openai" else "max_tokens")
-    return Remote(spec, model, settings, _Endpoint(provider, base_url or None, key), spoken)
+    return Remote(spec, model, settings, _Endpoint(provider, base_url or None, key), spoken, turns or LocalTurns())
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,6 +174,7 @@ class Remote:
         settings: Settings,
         endpoint: _Endpoint,
         api: ProviderApi,
+        turns: Turns,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
         """Makes the model without connecting to it.
@@ -180,6 +185,7 @@ class Remote:
             settings: how to ask it.
             endpoint: where to ask it.
             api: the protocol in which to ask it.
+            turns: where it takes its turns.
             sleep: waits for a number of seconds, between attempts and for the rate limit.
 
         Raises:
@@ -190,9 +196,9 @@ class Remote:
         self._settings = settings
         self._endpoint = endpoint
         self._api = api
+        self._turns = turns
         self._sleep = sleep
         self._client = endpoint.client(settings.timeout_s)
-        self._next_s = 0.0
 
     def chat(self, messages: Sequence[ChatMessage]) -> ModelReply:
         """Asks, and repeats the question after a transient failure, each time after a longer pause.
@@ -200,10 +206,10 @@ class Remote:
         Raises:
             ModelError: refused, or every attempt failed.
         """
-        started_s = time.monotonic()
+        started_s, queued_s = time.monotonic(), 0.0
         attempts, why = self._settings.retries + 1, ""
         for attempt in range(attempts):
-            self._keep_pace()
+            queued_s += self._take_turn()
             try:
                 reply = self._ask(messages)
             except _PassingError as error:
@@ -212,19 +218,20 @@ class Remote:
                     longer_s = FIRST_PAUSE_S * 2**attempt
                     self._sleep(min(LONGEST_PAUSE_S, longer_s if pause_s is None else max(pause_s, longer_s)))
             else:
-                return replace(reply, seconds=time.monotonic() - started_s)
+                return replace(reply, seconds=max(0.0, time.monotonic() - started_s - queued_s))
         raise self._error(f"gave no answer in {attempts} attempts: {why}")
 
     def _error(self, what: str) -> ModelError:
         return ModelError(" ".join(self._endpoint.clean(f"{self.name} {what}").split()))
 
-    def _keep_pace(self) -> None:
+    def _take_turn(self) -> float:
+        """Waits for its turn; the seconds that it took, which are not the model's."""
         if self._settings.per_minute is None:
-            return
-        now_s = time.monotonic()
-        if now_s < self._next_s:
-            self._sleep(self._next_s - now_s)
-        self._next_s = max(now_s, self._next_s) + 60 / self._settings.per_minute
+            return 0.0
+        wait_s = self._turns.wait_s(f"{self._endpoint.provider}/{self._model}", self._settings.per_minute)
+        if wait_s > 0:
+            self._sleep(wait_s)
+        return wait_s
 
     def _ask(self, messages: Sequence[ChatMessage]) -> ModelReply:
         import httpx2
@@ -274,18 +281,27 @@ class Remote:
     def _read(self, body: bytes) -> ModelReply:
         try:
             reply = self._api.read(json.loads(body))
-            if not (0 <= reply.tokens_in <= MOST_TOKENS and 0 <= reply.tokens_out <= MOST_TOKENS):
+            if not (
+                0 <= reply.tokens_cached <= reply.tokens_in <= MOST_TOKENS
+                and 0 <= reply.tokens_out <= MOST_TOKENS
+                and 0 <= reply.tokens_reasoning <= MOST_TOKENS
+            ):
                 raise ValueError("no number of tokens")
         except (ArithmeticError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
             shown = self._endpoint.clean(body.decode(errors="replace"))[:80]  # cut first, half a key would pass
             raise _PassingError(f"the answer is not one of its protocol: {shown!r}") from None
         settings = self._settings
-        dollars = reply.tokens_in * settings.usd_per_million_in + reply.tokens_out * settings.usd_per_million_out
+        in_usd, cached_usd = settings.usd_per_million_in, settings.usd_per_million_cached
+        dollars = (reply.tokens_in - reply.tokens_cached) * in_usd
+        dollars += reply.tokens_cached * (in_usd if cached_usd is None else cached_usd)
+        dollars += reply.tokens_out * settings.usd_per_million_out
         # Half a surrogate pair is valid JSON but not valid text: it could not be written into a record.
-        text, finish = (
-            self._endpoint.clean(each).encode("utf-8", "replace").decode() for each in (reply.text, reply.finish)
+        text, finish, reasoning = (
+            self._endpoint.clean(each).encode("utf-8", "replace").decode()
+            for each in (reply.text, reply.finish, reply.reasoning)
         )
-        return replace(reply, text=text, finish=finish[:LONGEST_FINISH], cost_usd=dollars / 1e6)
+        finish = finish[:LONGEST_FINISH]
+        return replace(reply, text=text, finish=finish, reasoning=reasoning, cost_usd=dollars / 1e6)
 
 
 def _pause(header: str | None) -> float | None:

@@ -26,16 +26,17 @@ from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.run.taps import pixel_taps
 from automotive_cosim.scenarios import shipped
 from automotive_cosim.tasking.dialogue import dialogue, questions
-from automotive_cosim.tasking.parameters import bind
+from automotive_cosim.tasking.instance import Instance, phrased
 
 ROWS = "episodes.jsonl"
 PLANNED = (
     "task", "half", "pair", "dimension", "module", "basis", "suite", "tags", "skills", "declines", "agent", "model",
-    "geo", "seed", "repeat", "clock", "latency_s", "see", "feedback", "screen", "split",
+    "geo", "seed", "repeat", "clock", "latency_s", "see", "feedback", "screen", "language", "split",
 )  # fmt: skip
 """Fields of a row that the plan and the catalogue determine."""
 ALSO_IN_RESULT = (
-    "task", "half", "scenario", "agent", "model", "geo", "see", "feedback", "screen", "seed", "traffic_seed",
+    "task", "half", "scenario", "agent", "model", "geo", "see", "feedback", "screen", "language",
+    "seed", "traffic_seed",
     "success", "reward", "steps", "sim_seconds", "end", "error", "error_kind", "agent_error", "held_out",
     "trace_sha256", "tokens_in", "tokens_out", "model_seconds", "cost_usd", "drive", "baseline_drive",
 )  # fmt: skip
@@ -188,9 +189,9 @@ def _questions(job: EpisodeJob, row: EpisodeRow, judged: Judged) -> Json:
     """The row's fields about questions; none of a row that was written before they were counted."""
     if row.questions is None:
         return {}
-    half = bind(job.task.half(row.half), judged.parameters)
+    half = Instance(job.task, row.half, judged.goal, judged.parameters, language=row.language).half
     texts = (asked["text"] for asked in questions(judged.trace[0], judged.trace[-1]))
-    return questioned(dialogue(texts, half.topics, half.needed_topics))
+    return questioned(dialogue(texts, half.topics, half.needed_topics, half.neutral))
 
 
 def _end_problems(job: EpisodeJob, row: EpisodeRow, judged: Judged, steps: int) -> Iterator[Problem]:
@@ -214,7 +215,7 @@ def _end_problems(job: EpisodeJob, row: EpisodeRow, judged: Judged, steps: int) 
 
 def _phrasing_problems(file: str, job: EpisodeJob, row: EpisodeRow, judged: Judged) -> Iterator[Problem]:
     """Whether what the driver said is a phrasing of the task, and held out or not as the row says."""
-    said = [text.format_map(judged.parameters) for text in job.task.templates]
+    said = phrased(job.task, row.half, judged.parameters, row.language)
     if judged.goal not in said:
         yield Problem(file, "goal", f"is {judged.goal!r}, which is not a phrasing of {row.task}")
     elif row.held_out is not (judged.goal == said[-1]) or (job.setup.held_out and not row.held_out):

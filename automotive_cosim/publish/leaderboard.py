@@ -29,7 +29,7 @@ from automotive_cosim.run.store import cannot_write
 from automotive_cosim.run.versions import minor
 
 COLUMNS = (
-    "Agent", "Model", "Input", "Geo", "Sees", "Feedback", "Screen", "Clock", *DIMENSIONS.values(),
+    "Agent", "Model", "Input", "Geo", "Sees", "Feedback", "Screen", "Language", "Clock", *DIMENSIONS.values(),
     "Safety pairs", "All episodes", "Bundle",
 )  # fmt: skip
 
@@ -163,6 +163,7 @@ def _table(number: int, entries: Sequence[BoardEntry]) -> Table:
                 each.see,
                 each.feedback,
                 each.screen,
+                each.language,
                 _speed(each),
                 *(rate_in_words(rate) if rate.planned else NONE for rate in entry.rates),
                 f"{entry.bundle} ({entry.version}), {entry.sha256[:12]}",

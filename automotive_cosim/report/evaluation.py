@@ -73,6 +73,7 @@ def all_tables(results: Results, found: Mapping[str, FailureClass]) -> list[Tabl
         findings.sight(shared),
         findings.feedback(shared),
         findings.screen(shared),
+        findings.language(shared),
         findings.think_time(shared),
         findings.by_label(shared, "Skill", lambda row: row.skills),
         findings.by_label(shared, "Tag", lambda row: row.tags),

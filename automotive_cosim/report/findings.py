@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from automotive_cosim.cockpit.language import Language
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.interface.feedback import FeedbackDetail
 from automotive_cosim.interface.observe import See
@@ -155,6 +156,18 @@ def screen(results: Results) -> Table:
         ("screen", "Success by the size of the screen"),
         ScreenSize,
         lambda each, size: replace(each, screen=size),
+        note,
+    )
+
+
+def language(results: Results) -> Table:
+    """Success by the driver's language; no rows if all heard the same."""
+    note = "The driver's words and the screens are in this language; what other people write stays in English."
+    return _side_by_side(
+        results,
+        ("language", "Success by language"),
+        Language,
+        lambda each, language: replace(each, language=language),
         note,
     )
 

@@ -7,15 +7,17 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from automotive_cosim.cockpit.language import Language
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.episode.specification import Clock
-from automotive_cosim.errors import SetupError
+from automotive_cosim.errors import SetupError, UserError
 from automotive_cosim.interface.feedback import FeedbackDetail
 from automotive_cosim.interface.observe import See
 from automotive_cosim.run.coverage import Coverage, coverage
 from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.plan import languages_in_words, make_plan
 from automotive_cosim.run.row import columns
 from automotive_cosim.run.store import read_evaluation, read_rows
 from automotive_cosim.run.versions import ran_with
@@ -52,6 +54,7 @@ class Contestant:
     see: str = str(See.BOTH)
     feedback: str = str(FeedbackDetail.QUIET)
     screen: str = str(ScreenSize.STANDARD)
+    language: str = str(Language.ENGLISH)
 
     @property
     def base_model(self) -> str:
@@ -71,7 +74,8 @@ class Contestant:
         geo = "" if self.geo == "full" else f"geo {self.geo}"
         clock = "" if self.clock == Clock.FIXED else f"{self.clock}'s clock"
         latency = f"latency {self.latency_s:g} s" if self.latency_s else ""
-        parts = (self.method, model, geo, *seen_and_told(self.see, self.feedback, self.screen), clock, latency)
+        seen = seen_and_told(self.see, self.feedback, self.screen)
+        parts = (self.method, model, geo, *seen, *spoken(self), clock, latency)
         return ", ".join(part for part in parts if part)
 
 
@@ -88,6 +92,17 @@ class Results:
     def version(self) -> str:
         """The version of the suite that ran it."""
         return ran_with(self.manifest)
+
+    @property
+    def unspoken(self) -> str:
+        """How many of the tasks were left out for want of phrasings, as a sentence; empty if none was."""
+        try:
+            plan = make_plan(self.manifest["plan"])
+            missing = len(plan.unspoken())
+        except UserError:  # the catalogue has changed since
+            return ""
+        were = f"{counted(missing, 'task')} {'was' if missing == 1 else 'were'}"
+        return f"{were} left out: no phrasings in {languages_in_words(plan.language)}." if missing else ""
 
     @property
     def contestants(self) -> tuple[Contestant, ...]:
@@ -113,7 +128,8 @@ class Results:
 
 def contestant(row: EpisodeRow) -> Contestant:
     """The contestant that an episode belongs to."""
-    return Contestant(row.agent, row.model, row.geo, row.clock, row.latency_s, row.see, row.feedback, row.screen)
+    seen = row.see, row.feedback, row.screen, row.language
+    return Contestant(row.agent, row.model, row.geo, row.clock, row.latency_s, *seen)
 
 
 def seen_and_told(see: str, feedback: str, screen: str) -> tuple[str, ...]:
@@ -122,6 +138,11 @@ def seen_and_told(see: str, feedback: str, screen: str) -> tuple[str, ...]:
     sight = () if see == See.BOTH else (f"{see} alone",)
     told = () if feedback == FeedbackDetail.QUIET else (f"{feedback} feedback",)
     return (*size, *sight, *told)
+
+
+def spoken(each: Contestant) -> tuple[str, ...]:
+    """The driver's language, in words, unless it is English."""
+    return () if each.language == Language.ENGLISH else (f"in {Language(each.language).words}",)
 
 
 def standings(results: Results) -> list[str]:

@@ -6,30 +6,35 @@ results.
 
 from __future__ import annotations
 
+import json
 import time
 from collections import Counter, defaultdict
 from collections.abc import Callable, Hashable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Generic
 
-from automotive_cosim.errors import InfrastructureError, TriggerNotReachedError
+from automotive_cosim.errors import BudgetSpentError, InfrastructureError, TriggerNotReachedError
 from automotive_cosim.run import worker
 from automotive_cosim.run.collect import Pictures, failed
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.executor import CannotWrite, Executor, J, LostError, Opener, R, Worker
+from automotive_cosim.run.meter import Budget, MeterHandle, Spent
 from automotive_cosim.run.pace import JobTurn, Pace
 from automotive_cosim.run.plan import Plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.queue import JobQueue, SimulationKey
-from automotive_cosim.run.row import JobRow
+from automotive_cosim.run.record import write_whole
+from automotive_cosim.run.row import JobRow, from_json
 from automotive_cosim.run.store import Store, cannot_write, opened
 
 FINAL_KINDS = frozenset({TriggerNotReachedError.__name__})
 """Errors that are certain to recur, so retrying is useless."""
 PATIENCE_S = 600.0
 """Wall time that a batch waits for its first worker, or for another one when all have died."""
+SPENT = "spent.json"
+"""File of an evaluation with a budget that says how much of it is spent."""
 STILLBORN = 3
 """How often in a row all workers may die before they are ready."""
 
@@ -52,6 +57,8 @@ class Progress(Generic[R]):
     """Wall time to the end, as estimated by ``Pace``; None while there is no basis for an estimate."""
     ended: R | None
     """The row of the job that has just ended; None at the start."""
+    stopped: str = ""
+    """Why the rest is not run; empty if it is, or was."""
 
 
 def run_plan(
@@ -61,6 +68,7 @@ def run_plan(
     executor: Executor = Processes(),  # noqa: B008, frozen
     retries: int = 2,
     pictures: Pictures = Pictures.NONE,
+    budget: Budget = Budget(),  # noqa: B008, frozen
     tell: Callable[[Progress[EpisodeRow]], None] = lambda progress: None,
 ) -> Progress[EpisodeRow]:
     """Runs the remaining episodes of a plan and retries those that ended in an error.
@@ -71,6 +79,7 @@ def run_plan(
         executor: where to run it.
         retries: how often an episode is retried after an infrastructure error before the error is recorded.
         pictures: which screenshots to keep.
+        budget: what it may spend on its models, with all earlier starts. Once it is spent, what is left is not run.
         tell: called at the start and after every episode.
 
     Raises:
@@ -80,9 +89,13 @@ def run_plan(
     """
     plan.check()
     jobs = plan.jobs()
-    with opened(folder, plan.as_json(), EpisodeRow, planned=len(jobs)) as store:
-        opener = partial(worker.episodes, pictures)
-        return run_jobs(jobs, store, opener, failed, executor=executor, retries=retries, tell=tell)
+    with (
+        opened(folder, plan.as_json(), EpisodeRow, planned=len(jobs)) as store,
+        executor.metered(budget, spent_before(store)) as meter,
+    ):
+        opener = partial(worker.episodes, pictures, meter)
+        limit = meter if budget.is_limited else None
+        return run_jobs(jobs, store, opener, failed, executor=executor, retries=retries, limit=limit, tell=tell)
 
 
 def run_jobs(
@@ -93,6 +106,7 @@ def run_jobs(
     *,
     executor: Executor = Processes(),  # noqa: B008, frozen
     retries: int = 2,
+    limit: MeterHandle | None = None,
     tell: Callable[[Progress[R]], None] = lambda progress: None,
 ) -> Progress[R]:
     """Runs the jobs that have no row yet, or the row of an error.
@@ -104,12 +118,13 @@ def run_jobs(
         failed: makes the row of a job whose worker died, from the job, the kind of error and the reason.
         executor: where to run them.
         retries: how often a job is retried after an error before its row is written.
+        limit: the meter of its budget, if it has one. Once it is spent, what is left is not run.
         tell: called at the start and after every job.
 
     Raises:
         as ``run_plan``.
     """
-    batch = _Batch(store, jobs, opener, failed, executor, retries, tell)
+    batch = _Batch(store, jobs, opener, failed, executor, retries, tell, limit)
     try:
         batch.run()
     finally:
@@ -168,6 +183,7 @@ class _Batch(Generic[J, R]):
         executor: Executor,
         retries: int,
         tell: Callable[[Progress[R]], None],
+        limit: MeterHandle | None,
     ) -> None:
         self._store = store
         self._opener = opener
@@ -176,6 +192,8 @@ class _Batch(Generic[J, R]):
         self._jobs = {job.id: job for job in jobs}
         self._retries = retries
         self._tell = tell
+        self._limit = limit
+        self._stopped = ""
         self._began_s = time.monotonic()
         self._ran = self._given_up = self._stillborn = 0
         self._newest: R | None = None
@@ -203,10 +221,11 @@ class _Batch(Generic[J, R]):
         for id_, job in self._jobs.items():
             if (row := self._store.rows.get(id_)) is not None:
                 self._give_up_like(job, row)
-        while self._queue or any(place.job for place in self._places):
-            while self._queue and len(self._places) < self._executor.count:
+        while self._goes_on() or any(place.job for place in self._places):
+            while self._goes_on() and len(self._places) < self._executor.count:
                 self._places.append(_Place(self._executor.start(self._opener, self._store.folder)))
-            self._hand_out()
+            if self._goes_on():
+                self._hand_out()
             self._wait()
 
     def close(self) -> None:
@@ -227,6 +246,7 @@ class _Batch(Generic[J, R]):
             seconds=time.monotonic() - self._began_s,
             left_s=self._expected_s(),
             ended=self._newest,
+            stopped=self._stopped,
         )
 
     def _expected_s(self) -> float | None:
@@ -288,7 +308,17 @@ class _Batch(Generic[J, R]):
         self._pace.took(turn, is_out_of_reach=row.error_kind in FINAL_KINDS)
         self._ended(job, replace(row, wall_seconds=round(turn.seconds, 3)))
 
+    def _goes_on(self) -> bool:
+        """Whether there are jobs to hand out, and a budget for them."""
+        if self._queue and self._limit is not None and not self._stopped:
+            self._stopped = self._limit.refusal()
+        return bool(self._queue) and not self._stopped
+
     def _ended(self, job: J, row: R) -> None:
+        self._note_spent()
+        if row.error_kind == BudgetSpentError.__name__:  # it is left as if it had not been run
+            self._stopped = str(row.error)
+            return
         failures = self._failures[job.id]
         if row.error is not None:
             failures.append(f"{row.error_kind}: {row.error}")
@@ -305,12 +335,31 @@ class _Batch(Generic[J, R]):
         self._tell(self.progress)
         self._give_up_like(job, row)
 
+    def _note_spent(self) -> None:
+        if self._limit is None:
+            return
+        path = self._store.folder / SPENT
+        try:
+            write_whole(path, json.dumps(asdict(self._limit.spent())) + "\n")
+        except OSError as error:
+            raise cannot_write(self._store.folder, error) from error
+
     def _give_up_like(self, job: J, row: R) -> None:
         """Records the jobs whose situation is known not to arise as errors, without another attempt."""
         if row.error is not None and row.error_kind in FINAL_KINDS:
             for other in self._alike.pop(job.situation, []):
                 if self._queue.remove(other):
                     self._ended(other, self._failed(other, row.error_kind, row.error))
+
+
+def spent_before(store: Store[R]) -> Spent:
+    """What earlier starts have spent, as they noted it, or at least what their rows say."""
+    rows = store.rows.values()
+    tokens = sum(getattr(row, "tokens_in", 0) + getattr(row, "tokens_out", 0) for row in rows)
+    usd = sum(getattr(row, "cost_usd", 0.0) for row in rows)
+    path = store.folder / SPENT
+    noted = from_json(Spent, json.loads(path.read_text("utf-8"))) if path.is_file() else Spent()
+    return Spent(max(tokens, noted.tokens), max(usd, noted.usd))
 
 
 def _is_open(row: JobRow | None) -> bool:

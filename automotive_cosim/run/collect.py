@@ -172,6 +172,7 @@ def planned(job: EpisodeJob) -> EpisodeRow:
         see=setup.see,
         feedback=setup.feedback,
         screen=setup.screen,
+        language=setup.language,
         held_out=setup.held_out,
         split=job.split,
     )

@@ -95,6 +95,7 @@ class EpisodeResult:
     see: str = "both"
     feedback: str = "verbose"
     screen: str = "1280x720"
+    language: str = "en"
     without: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     """Assumptions where the scenario says nothing, e.g. that there is no GPS."""
@@ -319,6 +320,7 @@ class _Run:
             "see": str(setup.see),
             "feedback": str(setup.feedback),
             "screen": str(setup.screen),
+            "language": str(setup.language),
             "without": setup.without,
             "tokens_in": sum(reply.tokens_in for reply in self._replies),
             "tokens_out": sum(reply.tokens_out for reply in self._replies),

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Annotated, Any
 
+from automotive_cosim.cockpit.language import Language
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.episode.specification import Clock, End
 from automotive_cosim.interface.controls import GeoInput
@@ -76,6 +77,8 @@ class EpisodeRow(JobRow):
     """What it was told of its last action."""
     screen: ScreenSize = ScreenSize.STANDARD
     """Size of the car's screen."""
+    language: Language = Language.ENGLISH
+    """What the driver spoke, and the car showed."""
     thought_s: float = 0.0
     """Simulated seconds that all answers took."""
     parameters: Mapping[str, Any] | None = None

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
+from automotive_cosim.run.meter import Budget, MeterHandle, Spent
 from automotive_cosim.run.row import JobRow
 
 
@@ -102,6 +103,15 @@ class Worker(Protocol[J_contra, R_co]):
 
 class Executor(Protocol):
     """Makes workers and waits for them; a context manager that ends whatever it has started itself."""
+
+    def metered(self, budget: Budget, before: Spent) -> AbstractContextManager[MeterHandle]:
+        """A meter that all its workers can use.
+
+        Args:
+            budget: what the evaluation may spend.
+            before: what it has spent already.
+        """
+        ...
 
     @property
     def count(self) -> int:

@@ -10,14 +10,15 @@ import logging
 import os
 import socket
 import tempfile
-from collections.abc import Mapping, Sequence
-from contextlib import ExitStack
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any, Generic
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.errors import SetupError, UserError
+from automotive_cosim.errors import InfrastructureError, SetupError, UserError
 from automotive_cosim.run.executor import CannotWrite, J, LostError, Opener, R, Runner
+from automotive_cosim.run.meter import Budget, Meter, MeterHandle, Spent
 from automotive_cosim.run.store import keep_files, stamp
 from automotive_cosim.tasks.folder import VARIABLE
 
@@ -27,6 +28,7 @@ os.environ.setdefault("RAY_DEDUP_LOGS_SKIP_REGEX", "^")
 try:
     import ray
     from ray.exceptions import RayActorError, RayError, RayTaskError, RuntimeEnvSetupError
+    from ray.util.scheduling_strategies import NodeAffinitySchedulingStrategy
 except ImportError as error:
     raise SetupError("the ray package is missing; install it with `pip install 'automotive-cosim[ray]'`") from error
 
@@ -95,6 +97,12 @@ class OnRay:
         """As many as requested, else one per CPU, so nodes that join later get some too."""
         return self._workers or max(1, int(ray.cluster_resources().get("CPU", 0)))
 
+    @contextmanager
+    def metered(self, budget: Budget, before: Spent) -> Iterator[MeterHandle]:
+        """See ``Executor.metered``; the meter is an actor on this node, without a CPU of its own."""
+        here = NodeAffinitySchedulingStrategy(ray.get_runtime_context().get_node_id(), soft=True)
+        yield _RayMeter(_METER.options(scheduling_strategy=here).remote(budget, before))
+
     def start(self, opener: Opener[J, R], folder: Path) -> _Actor[J, R]:
         """See ``Executor.start``; the worker becomes ready when a node has a free CPU."""
         return _Actor(opener, folder)
@@ -117,6 +125,35 @@ class OnRay:
             inside = Path(tasks).is_relative_to(sent)
             made["env_vars"] = {VARIABLE: Path(tasks).relative_to(sent).as_posix() if inside else tasks}
         return made
+
+
+class _RayMeter:
+    """The meter, as driver and workers ask it."""
+
+    def __init__(self, actor: Any) -> None:
+        self._actor = actor
+
+    def wait_s(self, model: str, per_minute: float) -> float:
+        return float(_asked(self._actor.wait_s.remote(model, per_minute)))
+
+    def spend(self, tokens: int, usd: float) -> None:
+        _asked(self._actor.spend.remote(tokens, usd))
+
+    def spent(self) -> Spent:
+        found: Spent = _asked(self._actor.spent.remote())
+        return found
+
+    def refusal(self) -> str:
+        return str(_asked(self._actor.refusal.remote()))
+
+
+def _asked(answer: Any) -> Any:
+    try:
+        return ray.get(answer)
+    except RayError as error:
+        raise InfrastructureError(
+            f"the evaluation's meter is gone; rerun the command to resume: {_line(error)}"
+        ) from error
 
 
 class _Actor(Generic[J, R]):
@@ -230,3 +267,4 @@ class _Runs(Generic[J, R]):
 
 
 _ACTOR: Any = ray.remote(num_cpus=1, max_restarts=0, max_task_retries=0, scheduling_strategy="SPREAD")(_Runs)
+_METER: Any = ray.remote(num_cpus=0, max_restarts=0)(Meter)

@@ -16,6 +16,7 @@ from annotated_types import Ge, Gt, Le, MinLen
 
 from automotive_cosim import scenarios
 from automotive_cosim.agents import MODELLED, AgentSettings, make_agent
+from automotive_cosim.cockpit.language import Language
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import Json
 from automotive_cosim.episode.specification import Clock, Conditions
@@ -108,6 +109,9 @@ class Plan:
         "1280x720",
     )
     """Size of the car's screen: ``1280x720``, ``1920x720`` or ``1080x1920``."""
+    language: Annotated[tuple[Annotated[str, OneOf(tuple(Language), "language")], ...], MinLen(1)] = ("en",)
+    """What the driver speaks and the car shows: ``en``, ``fr``, ``de`` or ``ja``. Tasks that he has no words for in
+    any of them are left out of all."""
     repeats: Annotated[int, Ge(1), Le(1000)] = 1
     """Runs of each episode, for models that do not answer the same twice."""
     held_out: bool = False
@@ -167,7 +171,7 @@ class Plan:
         """
         lists = (
             *(self.agents, self.models, self._placed(), self.seeds),
-            *(self.geo, self.latency, self.see, self.feedback, self.screen),
+            *(self.geo, self.latency, self.see, self.feedback, self.screen, self.language),
         )
         if (most := prod(map(len, lists)) * self.repeats) > MOST_RUNS:
             raise UserError(
@@ -179,9 +183,19 @@ class Plan:
     def left_out(self) -> tuple[str, ...]:
         """Ids of the chosen tasks that cannot run in any of the scenarios."""
         placed = {task.id for task, _ in self._placed()}
-        return tuple(task_id for task_id in choose(self.tasks, self.suite) if task_id not in placed)
+        return tuple(task.id for task in self._spoken() if task.id not in placed)
+
+    def unspoken(self) -> tuple[str, ...]:
+        """Ids of the chosen tasks that have no phrasings in one of the languages."""
+        spoken = {task.id for task in self._spoken()}
+        return tuple(task_id for task_id in choose(self.tasks, self.suite) if task_id not in spoken)
 
     def _nowhere(self) -> str:
+        if not self._spoken():
+            return (
+                f"none of the tasks has phrasings in {languages_in_words(self.language)}; the hard suite has "
+                "(--suite hard)"
+            )
         if self._placed():
             held_out = " in held-out phrasings, which are all test" if self.held_out else ""
             return f"no episode of these tasks and seeds is of the split {self.split!r}{held_out}; give other seeds"
@@ -192,7 +206,7 @@ class Plan:
 
     def _placed(self) -> list[tuple[Task, str | None]]:
         """Each task with each scenario that it runs in; None for its own."""
-        chosen = [CATALOGUE[task_id] for task_id in choose(self.tasks, self.suite)]
+        chosen = self._spoken()
         if not self.scenarios:
             return [(task, None) for task in chosen]
         shipped = scenarios.shipped()
@@ -202,8 +216,14 @@ class Plan:
             if self.everywhere or name not in shipped or task.runs_whole_in(name)
         ]
 
+    def _spoken(self) -> list[Task]:
+        """The chosen tasks that the driver has words for in every language."""
+        chosen = [CATALOGUE[task_id] for task_id in choose(self.tasks, self.suite)]
+        return [task for task in chosen if set(self.language) <= set(task.languages)]
+
     def _each(self) -> Iterator[EpisodeJob]:
-        for agent, model, (task, scenario), seed, geo, latency_s, repeat, see, feedback, screen in product(
+        conditions = product(self.see, self.feedback, self.screen, self.language)
+        for agent, model, (task, scenario), seed, geo, latency_s, repeat, condition in product(
             self.agents,
             self.models,
             self._placed(),
@@ -211,10 +231,9 @@ class Plan:
             self.geo,
             self.latency,
             range(self.repeats),
-            self.see,
-            self.feedback,
-            self.screen,
+            conditions,
         ):
+            see, feedback, screen, language = condition
             for half in task.halves:
                 is_own = scenario == task.half(half).start.scenario  # which a half may move to another place
                 setup = EpisodeSetup(
@@ -234,6 +253,7 @@ class Plan:
                     see=See(see),
                     feedback=FeedbackDetail(feedback),
                     screen=ScreenSize(screen),
+                    language=Language(language),
                 )
                 yield EpisodeJob(setup, repeat, self.limits)
 
@@ -319,9 +339,16 @@ class EpisodeJob:
             *([f"see_{setup.see}"] if setup.see is not See.BOTH else []),
             *([str(setup.feedback)] if setup.feedback is not FeedbackDetail.QUIET else []),
             *([str(setup.screen)] if setup.screen is not ScreenSize.STANDARD else []),
+            *([str(setup.language)] if setup.language is not Language.ENGLISH else []),
         )  # fmt: skip
         words = "-".join(re.sub(r"[^A-Za-z0-9_.]+", "_", Path(word).name) for word in exactly)
         return f"{words[:150]}-{digest(exactly)[:8]}"
+
+
+def languages_in_words(codes: Iterable[str]) -> str:
+    """For example ``French and German``; English, which every task has, is not named beside others."""
+    *others, last = [Language(code).words for code in codes if code != Language.ENGLISH] or ["English"]
+    return f"{', '.join(others)} and {last}" if others else last
 
 
 def digest(value: object) -> str:

@@ -7,7 +7,7 @@ import os
 import signal
 import threading
 from collections.abc import Sequence
-from contextlib import suppress
+from contextlib import AbstractContextManager, suppress
 from dataclasses import dataclass
 from multiprocessing import connection, parent_process
 from multiprocessing.connection import Connection
@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, Generic
 
 from automotive_cosim.run.executor import CannotWrite, J, LostError, Opener, R
+from automotive_cosim.run.meter import Budget, Meter, MeterHandle, Spent, served
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,6 +29,10 @@ class Processes:
 
     def __exit__(self, *error: object) -> None:
         """Does nothing: a batch ends its workers."""
+
+    def metered(self, budget: Budget, before: Spent) -> AbstractContextManager[MeterHandle]:
+        """See ``Executor.metered``; the meter is in this process."""
+        return served(Meter(budget, before))
 
     def start(self, opener: Opener[J, R], folder: Path) -> _Process[J, R]:
         """See ``Executor.start``."""

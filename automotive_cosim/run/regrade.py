@@ -64,7 +64,7 @@ def judged_again(row: EpisodeRow, stored: Judged) -> Verdict:
         UserError: there is no such task any more, or it allows other commands than it did.
     """
     assert stored.counterfactual is not None
-    instance = Instance(CATALOGUE[row.task], row.half, stored.goal, stored.parameters)
+    instance = Instance(CATALOGUE[row.task], row.half, stored.goal, stored.parameters, language=row.language)
     if stored.allowed_writes != instance.half.allowed_writes:
         raise UserError(f"{row.task} now allows other commands than it did, so run {row.id} again")
     return judge(

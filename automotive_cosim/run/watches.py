@@ -8,6 +8,7 @@ from collections.abc import Callable, Hashable, Iterator, Mapping
 from contextlib import closing, contextmanager
 from dataclasses import asdict, dataclass, field, fields, replace
 from fnmatch import fnmatchcase
+from functools import partial
 from itertools import product
 from pathlib import Path
 from typing import Annotated, Any
@@ -26,8 +27,9 @@ from automotive_cosim.formats.toml import dotted
 from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.interface.feedback import FeedbackDetail
 from automotive_cosim.interface.observe import See
-from automotive_cosim.run.batch import Progress, run_jobs
+from automotive_cosim.run.batch import Progress, run_jobs, spent_before
 from automotive_cosim.run.executor import Executor, Runner
+from automotive_cosim.run.meter import Budget, MeterHandle
 from automotive_cosim.run.nursery import Nursery
 from automotive_cosim.run.outside import check_agent
 from automotive_cosim.run.plan import NO_MODEL, Limits, digest
@@ -225,6 +227,7 @@ def run_watch_plan(
     *,
     executor: Executor = Processes(),  # noqa: B008, frozen
     retries: int = 2,
+    budget: Budget = Budget(),  # noqa: B008, frozen
     tell: Callable[[Progress[WatchRow]], None] = lambda progress: None,
 ) -> Progress[WatchRow]:
     """Runs the remaining drives of a plan and retries those that ended in an error.
@@ -234,6 +237,7 @@ def run_watch_plan(
         folder: results folder, new or to be resumed.
         executor: where to run it; the results do not depend on it.
         retries: how often a drive is retried after an infrastructure error.
+        budget: what it may spend on its models, with all earlier starts.
         tell: called at the start and after every drive.
 
     Raises:
@@ -241,18 +245,26 @@ def run_watch_plan(
     """
     plan.check()
     jobs = plan.jobs()
-    with opened(folder, plan.as_json(), WatchRow, parts=("traces", TIMELINES), planned=len(jobs)) as store:
-        return run_jobs(jobs, store, watches, failed_watch, executor=executor, retries=retries, tell=tell)
+    with (
+        opened(folder, plan.as_json(), WatchRow, parts=("traces", TIMELINES), planned=len(jobs)) as store,
+        executor.metered(budget, spent_before(store)) as meter,
+    ):
+        opener, limit = partial(watches, meter), meter if budget.is_limited else None
+        return run_jobs(
+            jobs, store, opener, failed_watch, executor=executor, retries=retries, limit=limit, tell=tell
+        )
 
 
 @contextmanager
-def watches() -> Iterator[Runner[WatchJob, WatchRow]]:
-    """Makes the runner of the drives in a worker."""
+def watches(meter: MeterHandle | None = None) -> Iterator[Runner[WatchJob, WatchRow]]:
+    """Makes the runner of the drives in a worker; ``meter`` is what all workers share."""
     with closing(Simulations(count_limit=WARM)) as simulations, closing(Nursery()) as nursery:
-        yield lambda job, folder: run_watch_job(job, folder, simulations, nursery)
+        yield lambda job, folder: run_watch_job(job, folder, simulations, nursery, meter)
 
 
-def run_watch_job(job: WatchJob, folder: Path, simulations: Simulations, nursery: Nursery) -> WatchRow:
+def run_watch_job(
+    job: WatchJob, folder: Path, simulations: Simulations, nursery: Nursery, meter: MeterHandle | None = None
+) -> WatchRow:
     """Runs one drive, writes its steps and timeline, and returns its row; an error becomes a row too.
 
     Raises:
@@ -261,7 +273,7 @@ def run_watch_job(job: WatchJob, folder: Path, simulations: Simulations, nursery
     setup = job.setup
     try:
         settings = AgentSettings(setup.geo, seed=setup.seed, see=setup.see)
-        with agent_for(setup.agent, job.model, settings, job.limits, nursery) as agent:
+        with agent_for(setup.agent, job.model, settings, job.limits, nursery, meter) as agent:
             record = run_watch(job.id, setup, agent, simulations=simulations)
     except CosimError as error:
         return failed_watch(job, type(error).__name__, str(error))

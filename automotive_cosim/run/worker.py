@@ -7,12 +7,13 @@ from contextlib import AbstractContextManager, closing, contextmanager
 from dataclasses import replace
 from pathlib import Path
 
-from automotive_cosim.agents import Agent, AgentSettings, make_agent
+from automotive_cosim.agents import Agent, AgentSettings, make_agent, model_of
 from automotive_cosim.errors import CosimError
 from automotive_cosim.run.collect import Collector, Pictures, failed
 from automotive_cosim.run.episode import Watcher, run_episode
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.executor import Runner
+from automotive_cosim.run.meter import Metered, MeterHandle
 from automotive_cosim.run.moments import write_judged
 from automotive_cosim.run.nursery import Nursery
 from automotive_cosim.run.outside import OutsideAgent, is_outside
@@ -26,21 +27,26 @@ WARM = 2
 
 
 @contextmanager
-def episodes(pictures: Pictures) -> Iterator[Runner[EpisodeJob, EpisodeRow]]:
-    """Makes the runner of an evaluation's jobs."""
+def episodes(pictures: Pictures, meter: MeterHandle | None = None) -> Iterator[Runner[EpisodeJob, EpisodeRow]]:
+    """Makes the runner of an evaluation's jobs; ``meter`` is what its workers share."""
     with closing(Simulations(count_limit=WARM)) as simulations, closing(Nursery()) as nursery:
-        yield lambda job, folder: run_job(job, folder, pictures, simulations, nursery)
+        yield lambda job, folder: run_job(job, folder, pictures, simulations, nursery, meter)
 
 
 def run_job(
-    job: EpisodeJob, folder: Path, pictures: Pictures, simulations: Simulations, nursery: Nursery
+    job: EpisodeJob,
+    folder: Path,
+    pictures: Pictures,
+    simulations: Simulations,
+    nursery: Nursery,
+    meter: MeterHandle | None = None,
 ) -> EpisodeRow:
     """Runs one episode with its agent, as ``run_with`` does.
 
     Raises:
         OSError: trace or pictures cannot be written.
     """
-    return run_with(agent_of(job, nursery), job, folder, pictures, simulations)
+    return run_with(agent_of(job, nursery, meter), job, folder, pictures, simulations)
 
 
 def run_with(
@@ -86,15 +92,22 @@ def run_with(
     return collector.row(job, result)
 
 
-def agent_of(job: EpisodeJob, nursery: Nursery) -> AbstractContextManager[Agent]:
+def agent_of(job: EpisodeJob, nursery: Nursery, meter: MeterHandle | None = None) -> AbstractContextManager[Agent]:
     """The agent of a job; see ``agent_for``."""
     setup = job.setup
     settings = AgentSettings(setup.geo, seed=setup.seed, see=setup.see)
-    return agent_for(setup.agent, job.model, settings, job.limits, nursery)
+    return agent_for(setup.agent, job.model, settings, job.limits, nursery, meter)
 
 
 @contextmanager
-def agent_for(name: str, model: str, settings: AgentSettings, limits: Limits, nursery: Nursery) -> Iterator[Agent]:
+def agent_for(
+    name: str,
+    model: str,
+    settings: AgentSettings,
+    limits: Limits,
+    nursery: Nursery,
+    meter: MeterHandle | None = None,
+) -> Iterator[Agent]:
     """An agent, in a process of its own unless it is a reference or a negative control.
 
     Args:
@@ -103,6 +116,7 @@ def agent_for(name: str, model: str, settings: AgentSettings, limits: Limits, nu
         settings: what it is given, and the seed of an agent that draws.
         limits: of its process and its tokens.
         nursery: starts its process.
+        meter: what it shares with the evaluation's other workers.
 
     Raises:
         UserError: there is no such agent or model.
@@ -111,6 +125,15 @@ def agent_for(name: str, model: str, settings: AgentSettings, limits: Limits, nu
         yield make_agent(name, settings=settings)
         return
     settings = replace(settings, seed=0, most_tokens=limits.tokens)  # it is not told the episode's seed
-    outside = OutsideAgent(nursery, name, model, settings, step_s=limits.agent_step_s, episode_s=limits.agent_s)
+    asked = model_of(name, model, meter)
+    outside = OutsideAgent(
+        nursery,
+        name,
+        model,
+        settings,
+        chat_model=asked if asked is None or meter is None else Metered(asked, meter),
+        step_s=limits.agent_step_s,
+        episode_s=limits.agent_s,
+    )
     with closing(outside) as agent:
         yield agent

@@ -200,6 +200,10 @@ class BrakingLeader(EgoIncident):
     kind: Literal["braking_leader"] = "braking_leader"
     within_m: Annotated[float, Gt(0)] = 80.0
     """How near a vehicle must be to count as the one ahead."""
+    beyond_m: Annotated[float, Ge(0)] = 0.0
+    """How far away it must be at least; a nearer one is waited for."""
+    from_kmh: Annotated[float, Ge(0)] = 0.0
+    """How fast the ego must be; until then it is waited for."""
     ahead_m: Annotated[float, Gt(0)] = 30.0
     """Gap to a car that pulls out."""
     deceleration_mps2: Annotated[float, Gt(0), Le(10)] = 6.0
@@ -208,6 +212,8 @@ class BrakingLeader(EgoIncident):
     """The speed that it brakes to."""
     hold_s: Annotated[float, Ge(0)] = 4.0
     """How long it keeps that speed before it drives on."""
+    keeps_lane: bool = False
+    """Whether it stays in its lane meanwhile, where it would let the ego pass or go round somebody."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

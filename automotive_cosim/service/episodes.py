@@ -43,7 +43,7 @@ class ServiceLimits:
             )
 
 
-class Judged(Protocol):
+class AnyOutcome(Protocol):
     """The result of an episode that is over."""
 
     @property
@@ -63,7 +63,7 @@ class Startable(Protocol):
         """The session, which the service closes."""
         ...
 
-    def outcome(self, episode_id: str, session: Any) -> Judged:
+    def outcome(self, episode_id: str, session: Any) -> AnyOutcome:
         """What came of the session that ``begin`` returned, once it is over."""
         ...
 
@@ -189,7 +189,7 @@ class EpisodeService:
                 episode.step(known)
             return _turn(episode_id, episode)
 
-    def finish(self, episode_id: str) -> Judged:
+    def finish(self, episode_id: str) -> AnyOutcome:
         """Judges the episode and closes it. One that is not over is cut off and judged as it is.
 
         The rest of a drive that is cut off is driven without the agent.

@@ -80,6 +80,7 @@ def described(task: Task) -> dict[str, Any]:
         "safety": task.is_safety,
         "implicit": task.is_implicit,
         "goal_templates": list(task.templates),
+        "languages": [str(language) for language in task.languages],
         "parameters": {
             name: f"<{choices.kind}>" if isinstance(choices, FromCockpit) else list(choices)
             for name, choices in task.parameters.items()

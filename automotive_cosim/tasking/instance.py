@@ -1,4 +1,4 @@
-"""Instances: tasks with their phrasing and parameters drawn."""
+"""Instances: tasks with their phrasing and parameters drawn, in the language of the driver."""
 
 from __future__ import annotations
 
@@ -6,12 +6,16 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 from automotive_cosim.cockpit.aboard import Seat
-from automotive_cosim.errors import UnknownNameError
+from automotive_cosim.cockpit.language import Language, said
+from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.tasking.dialogue import Says, Topic
 from automotive_cosim.tasking.draws import Draws, Purpose
-from automotive_cosim.tasking.moves import Move
-from automotive_cosim.tasking.parameters import Choices, FromCockpit, Parameter, bind
+from automotive_cosim.tasking.moves import Consult, Hear, Move, Tap, TapUntil
+from automotive_cosim.tasking.parameters import KEEP, Choices, FromCockpit, Parameter, bind, rebuilt
+from automotive_cosim.tasking.speech import Speech
 from automotive_cosim.tasking.task import Half, Task
 
 
@@ -27,12 +31,15 @@ class Instance:
     """Whether its phrasing is the task's last, which is held out from the rule model."""
     rule: str = ""
     """The sign or law that it rests on in another network than its own (``binding``); empty in its own."""
+    language: Language = Language.ENGLISH
+    """What the driver speaks, and the car shows."""
 
     @cached_property
     def half(self) -> Half:
         """The half, with the parameters filled in."""
         half = bind(self.task.half(self.half_name), self.parameters)
-        return replace(half, rule=self.rule) if self.rule else half
+        half = replace(half, rule=self.rule) if self.rule else half
+        return half if self.language is Language.ENGLISH else _in_language(half, speech(self.task, self.language))
 
     @property
     def moves(self) -> tuple[Move, ...]:
@@ -47,6 +54,7 @@ def draw(
     content: Mapping[str, tuple[str, ...]] | None = None,
     *,
     held_out: bool = False,
+    language: Language = Language.ENGLISH,
 ) -> Instance:
     """Draws phrasing and parameters, the same for both halves of a task.
 
@@ -61,9 +69,11 @@ def draw(
         content: the cockpit's content (``Cockpit.content``); without it, a parameter that comes from there is its
             kind in angle brackets.
         held_out: whether to use the held-out phrasing, whatever is drawn; the parameters stay the same.
+        language: what the driver speaks; the draw is the same in each.
 
     Raises:
         UnknownNameError: the task has no such half, or the cockpit has nothing of that kind.
+        UserError: the driver has no words for it in that language.
     """
     phrasings, ways = len(task.templates), _ways(task)
     order = Draws(task.id, 0)
@@ -78,13 +88,59 @@ def draw(
         parameters[name] = _choose(choices, pick, content)
     if held_out:
         phrasing = phrasings - 1
-    goal = _heard(task.half(half_name).start.voice, task.templates[phrasing].format_map(parameters))
-    return Instance(task, half_name, goal, parameters, held_out=phrasing == phrasings - 1)
+    goal = phrased(task, half_name, parameters, language)[phrasing]
+    return Instance(task, half_name, goal, parameters, held_out=phrasing == phrasings - 1, language=language)
 
 
-def _heard(voice: Seat, words: str) -> str:
-    """The words, with the seat that they come from unless the driver says them."""
-    return words if voice is Seat.DRIVER else f"From the {voice.words} seat: {words}"
+def phrased(
+    task: Task, half_name: str, parameters: Mapping[str, Parameter], language: Language = Language.ENGLISH
+) -> tuple[str, ...]:
+    """Every phrasing with the parameters filled in, and with the seat that it comes from unless it is the driver's.
+
+    Raises:
+        UserError: the driver has no words for it in that language.
+    """
+    voice = task.half(half_name).start.voice
+    prefix = "" if voice is Seat.DRIVER else f"From the {voice.words} seat: "
+    if language is Language.ENGLISH:
+        return tuple(prefix + template.format_map(parameters) for template in task.templates)
+    own = speech(task, language)
+    return tuple(own.lines.said(prefix + own.phrased(template, parameters)) for template in own.templates)
+
+
+def speech(task: Task, language: Language) -> Speech:
+    """How the driver says a task in a language other than English.
+
+    Raises:
+        UserError: he has no words for it.
+    """
+    if language not in task.languages:
+        why = f": {task.only_english}" if task.only_english else ""
+        raise UserError(
+            f"task {task.id!r} has no phrasings in {language.words}{why}; choose another task, such as one of the "
+            "hard suite, or --language en"
+        )
+    return task.spoken[language]
+
+
+def _in_language(half: Half, own: Speech) -> Half:
+    """The half with what is said, and what a finger looks for on the screens, in that language."""
+    heard = (*(says.text for says in half.says), *(topic.reply for topic in half.topics))
+
+    def change(part: Any) -> Any:
+        match part:
+            case Says(text) | Consult(text):
+                return replace(part, text=own.lines.said(text))
+            case Tap(text=text) | TapUntil(text=text):
+                return replace(part, text=said(own.language, text))
+            case Hear(text):
+                return replace(part, text=next(own.lines.said(line) for line in heard if text in line))
+            case Topic():
+                return own.topic(part)
+        return KEEP
+
+    changed: Half = rebuilt(half, change)
+    return replace(changed, neutral=own.lines.said(half.neutral))
 
 
 def _choose(choices: Choices, pick: int, content: Mapping[str, tuple[str, ...]] | None) -> Parameter:

@@ -7,13 +7,15 @@ A task is written once with ``param("degrees")`` wherever the drawn value belong
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any, TypeVar
 
 T = TypeVar("T")
 
 Parameter = str | int | float
+KEEP = object()
+"""What ``rebuilt`` leaves as it is, but for its parts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,8 +61,33 @@ def bind(value: T, parameters: Mapping[str, Parameter]) -> T:
     Raises:
         KeyError: it names a parameter that does not exist.
     """
-    bound: Any = _bound(value, parameters)
+
+    def filled(part: Any) -> Any:
+        if isinstance(part, Param):
+            found = part.value(parameters)
+            return found if part.means is None else rebuilt(found, filled)  # which may name another one
+        return part.format_map(parameters) if isinstance(part, str) and "{" in part else KEEP
+
+    bound: Any = rebuilt(value, filled)
     return bound  # type: ignore[no-any-return]
+
+
+def rebuilt(value: Any, change: Callable[[Any], Any]) -> Any:
+    """The value with every part changed for which ``change`` returns something else than ``KEEP``: in dataclasses,
+    tuples, sets and mappings. What it returns is not searched."""
+    changed = change(value)
+    if changed is not KEEP:
+        return changed
+    if isinstance(value, tuple | frozenset):
+        return type(value)(rebuilt(entry, change) for entry in value)
+    if isinstance(value, Mapping):
+        return {rebuilt(key, change): rebuilt(entry, change) for key, entry in value.items()}
+    if is_dataclass(value) and not isinstance(value, type):
+        now = {field.name: getattr(value, field.name) for field in fields(value) if field.init}
+        then = {name: rebuilt(entry, change) for name, entry in now.items()}
+        differing = {name: entry for name, entry in then.items() if entry != now[name]}
+        return replace(value, **differing) if differing else value
+    return value
 
 
 def names(value: object) -> frozenset[str]:
@@ -72,26 +99,8 @@ def names(value: object) -> frozenset[str]:
             return Param(name)
 
     asked: set[str] = set()
-    _bound(_without_meanings(value), Asked())
+    bind(_without_meanings(value), Asked())
     return frozenset(asked)
-
-
-def _bound(value: Any, parameters: Mapping[str, Parameter]) -> Any:
-    if isinstance(value, Param):
-        found = value.value(parameters)
-        return found if value.means is None else _bound(found, parameters)  # which may name another one
-    if isinstance(value, str):
-        return value.format_map(parameters) if "{" in value else value
-    if isinstance(value, tuple | frozenset):
-        return type(value)(_bound(entry, parameters) for entry in value)
-    if isinstance(value, Mapping):
-        return {_bound(key, parameters): _bound(entry, parameters) for key, entry in value.items()}
-    if is_dataclass(value) and not isinstance(value, type):
-        now = {field.name: getattr(value, field.name) for field in fields(value) if field.init}
-        then = {name: _bound(entry, parameters) for name, entry in now.items()}
-        changed = {name: entry for name, entry in then.items() if entry != now[name]}
-        return replace(value, **changed) if changed else value
-    return value
 
 
 def _without_meanings(value: Any) -> Any:

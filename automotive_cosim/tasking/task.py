@@ -16,13 +16,15 @@ from automotive_cosim.cockpit.aboard import Occupant, Seat
 from automotive_cosim.cockpit.arrivals import Arrival
 from automotive_cosim.cockpit.belongings import NOTHING, Belongings
 from automotive_cosim.cockpit.changes import CarChange
+from automotive_cosim.cockpit.language import Language
 from automotive_cosim.cockpit.restrictions import Motion
 from automotive_cosim.contracts import GoalStatus, Reason, Weather
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.tasking.checks import Check, asked_in
-from automotive_cosim.tasking.dialogue import Says, Topic
+from automotive_cosim.tasking.dialogue import NEUTRAL, Says, Topic
 from automotive_cosim.tasking.moves import Move, Open, Slide, Tap, TapUntil, TypeText
 from automotive_cosim.tasking.parameters import Choices, names
+from automotive_cosim.tasking.speech import Speech
 from automotive_cosim.tasking.triggers import Trigger
 
 
@@ -197,7 +199,9 @@ class Half:
     slips: tuple[tuple[Move, ...], ...] = ()
     """What is usually done wrong here, as public actions before ``complete``: each must fail."""
     topics: tuple[Topic, ...] = ()
-    """What the driver can be asked about; any other question gets an answer that does not help."""
+    """What the driver can be asked about."""
+    neutral: str = NEUTRAL
+    """What he answers to any other question, which does not help."""
     says: tuple[Says, ...] = ()
     """What the driver says later, besides the wish; the order counts if several are due at once."""
 
@@ -233,6 +237,15 @@ class Task:
     scenarios: tuple[str, ...] = ()
     """Other scenarios in which it can run, in addition to its own."""
     suite: Suite = Suite.STANDARD
+    spoken: Mapping[Language, Speech] = field(default_factory=dict)
+    """How the driver says it in other languages than English."""
+    only_english: str = ""
+    """Why it is said in English alone, if it is for a reason: its point is the car's language."""
+
+    @property
+    def languages(self) -> tuple[Language, ...]:
+        """The languages that the driver has words for it in, English first."""
+        return Language.ENGLISH, *self.spoken
 
     @property
     def max_steps(self) -> int:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Annotated, Protocol
 
-from annotated_types import Ge
+from annotated_types import Ge, Gt
 
 from automotive_cosim.contracts import (
     Answer,
@@ -41,6 +41,15 @@ class DriverAt:
 
 
 @dataclass(frozen=True, slots=True)
+class HaltAt:
+    """The ego is parked beside the road at the next place from ``at_s`` on (seconds after its departure) that is no
+    motorway and no tunnel, and drives on after ``for_s``."""
+
+    at_s: Annotated[float, Ge(0)]
+    for_s: Annotated[float, Gt(0)]
+
+
+@dataclass(frozen=True, slots=True)
 class EgoPlan:
     """How the ego drives: its trip, its driver, the seed of the driver's reactions, and the weather."""
 
@@ -62,6 +71,8 @@ class EgoPlan:
     (``rounds.Round``)."""
     moods: tuple[DriverAt, ...] = ()
     """Changes of the way it is driven, in the order of their times. Acceleration and gap when standing stay."""
+    halts: tuple[HaltAt, ...] = ()
+    """Where it is parked for a while, in the order of the times."""
     incidents: tuple[AnyIncident, ...] = ()
     """Staged on this drive besides the scenario's own; their times count from its departure."""
 
@@ -73,6 +84,7 @@ class Event:
     | kind | meaning |
     |---|---|
     | ``driver_...`` | the driver's reaction to a request: slows, holds, ignores, opens_gap, gives_way, ... |
+    | ``driver_parks``, ``driver_sets_off`` | the ego is parked as planned, and drives on |
     | ``incident`` | an incident of the scenario begins or ends |
     | ``pet`` | the ego and another crossed or merged within five seconds, with their post-encroachment time |
     | ``collision`` | two vehicles touched |

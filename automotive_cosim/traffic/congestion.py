@@ -12,7 +12,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import islice, pairwise
-from typing import Protocol
+from typing import Protocol, TypeAlias
 
 from automotive_cosim.contracts import Limit, RoadAhead, RoadIncident, TrafficLight
 from automotive_cosim.traffic.network import Crossing, Edge, Network
@@ -50,6 +50,12 @@ MOTORWAY_CLASSES = frozenset({"motorway", "trunk"})
 """Road classes with exits."""
 
 
+Seen: TypeAlias = tuple[int, float]
+"""Number of vehicles in all samples, and the sum of their speeds in m/s."""
+
+NOTHING: Seen = (0, 0.0)
+
+
 class Flow(Protocol):
     """Gives the speeds of the traffic."""
 
@@ -70,7 +76,7 @@ class Congestion:
 
         Args:
             network: the network.
-            vehicles: the edge, inside a junction or not, and the speed in m/s of each driving vehicle.
+            vehicles: the lane, inside a junction or not, and the speed in m/s of each driving vehicle.
         """
         self._edges = network.edges
         self._order = {edge_id: number for number, edge_id in enumerate(network.edges)}
@@ -80,21 +86,22 @@ class Congestion:
         self._flow: dict[str, float] = {}
         self._keep = math.exp(-SAMPLE_PERIOD_S / MEMORY_S)
         self._slow: tuple[tuple[str, float], ...] = ()
-        self._samples: deque[dict[str, tuple[int, float]]] = deque(
-            maxlen=round((WINDOW_S + OLDEST_NEWS_S) / SAMPLE_PERIOD_S)
-        )
+        self._samples: deque[dict[str, Seen]] = deque(maxlen=round((WINDOW_S + OLDEST_NEWS_S) / SAMPLE_PERIOD_S))
 
     def sample(self) -> None:
         """Takes the present speeds into account; called every ``SAMPLE_PERIOD_S``."""
         keep, vehicles, flow, edges = self._keep, self._vehicles, self._flow, self._edges
-        seen: dict[str, tuple[int, float]] = {}
-        for edge_id, speed_mps in self._driving():
+        lanes: dict[str, Seen] = {}
+        seen: dict[str, Seen] = {}
+        for lane_id, speed_mps in self._driving():
+            edge_id = lane_id.rpartition("_")[0]
             if edge_id in edges:
-                count, total_mps = seen.get(edge_id, (0, 0.0))
-                seen[edge_id] = (count + 1, total_mps + speed_mps)
+                for name, rows in ((lane_id, lanes), (edge_id, seen)):
+                    count, total_mps = rows.get(name, NOTHING)
+                    rows[name] = (count + 1, total_mps + speed_mps)
         slow: list[tuple[str, float]] = []
         for edge_id in {**vehicles, **seen}:
-            count, total_mps = seen.get(edge_id, (0, 0.0))
+            count, total_mps = seen.get(edge_id, NOTHING)
             weight = vehicles[edge_id] = vehicles.get(edge_id, 0.0) * keep + count * (1 - keep)
             flow[edge_id] = flow.get(edge_id, 0.0) * keep + total_mps * (1 - keep)
             free_mps = edges[edge_id].speed_mps
@@ -102,22 +109,22 @@ class Congestion:
                 slow.append((edge_id, round(self.relative_speed(edge_id), 2)))
             if weight < FORGOTTEN:
                 del vehicles[edge_id], flow[edge_id]
-        self._samples.append(seen)
+        self._samples.append(lanes)
         self._slow = tuple(sorted(slow, key=lambda row: self._order[row[0]]))
 
-    def window_speeds_mps(self, age_s: float = 0.0) -> dict[str, float]:
-        """Mean speeds, weighted by vehicles, of edges with ``SEEN_AT_LEAST`` of them in ``WINDOW_S``.
+    def window(self, age_s: float = 0.0) -> dict[str, Seen]:
+        """What was seen in ``WINDOW_S`` on each lane with any traffic.
 
         Args:
             age_s: how long ago that time ended, at most ``OLDEST_NEWS_S``.
         """
-        sums: dict[str, tuple[int, float]] = {}
+        sums: dict[str, Seen] = {}
         newest, count = round(age_s / SAMPLE_PERIOD_S), round(WINDOW_S / SAMPLE_PERIOD_S)
-        for seen in islice(reversed(self._samples), newest, newest + count):
-            for edge_id, (count, flow) in seen.items():
-                before = sums.get(edge_id, (0, 0.0))
-                sums[edge_id] = (before[0] + count, before[1] + flow)
-        return {edge_id: flow / count for edge_id, (count, flow) in sums.items() if count >= SEEN_AT_LEAST}
+        for lanes in islice(reversed(self._samples), newest, newest + count):
+            for lane_id, (vehicles, total_mps) in lanes.items():
+                before = sums.get(lane_id, NOTHING)
+                sums[lane_id] = (before[0] + vehicles, before[1] + total_mps)
+        return sums
 
     def speed_mps(self, edge_id: str) -> float:
         """Mean speed on an edge."""

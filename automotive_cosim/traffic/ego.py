@@ -8,6 +8,8 @@ falls.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -28,7 +30,7 @@ from automotive_cosim.contracts import (
     Severity,
     SlowDown,
 )
-from automotive_cosim.traffic.base import EgoPlan, Event
+from automotive_cosim.traffic.base import EgoPlan, Event, HaltAt
 from automotive_cosim.traffic.instant import Instant
 from automotive_cosim.traffic.profiles import DriverProfile, profile
 from automotive_cosim.traffic.road_weather import DRY, Forecast, RoadCondition
@@ -84,11 +86,15 @@ statute 316.126)."""
 
 SLOWEST_REQUEST_KMH = 5.0
 FAST_ROADS = frozenset({"motorway", "trunk"})
+MOTORWAYS = frozenset({"motorway", "motorway_link"})
 SLOW_TRAFFIC = 0.5
 """Relative speed of traffic below which driving slowly on a fast road hinders nobody."""
 
 
 FOR_GOOD_S = 86_400.0
+PARKS = "driver_parks"
+SETS_OFF = "driver_sets_off"
+"""Kinds of the events of a planned halt."""
 
 
 class RefusedError(Exception):
@@ -114,6 +120,10 @@ class Pedals(Protocol):
         """How unevenly the speed is kept, 0 to 1."""
         ...
 
+    def set_overtaking(self, readiness: float) -> None:
+        """How readily lanes are changed to go faster; 0 is never."""
+        ...
+
     def set_grip(self, friction: float) -> None:
         """Limits braking to ``friction * g``."""
         ...
@@ -128,6 +138,10 @@ class Pedals(Protocol):
         Raises:
             RefusedError: there is no place for it.
         """
+        ...
+
+    def is_parked(self) -> bool:
+        """Whether the car stands beside the road."""
         ...
 
     def change_lane(self, lanes_from_kerb: int, for_s: float) -> bool:
@@ -199,6 +213,11 @@ class Driver:
     _departed_s: float = math.nan
     _moods: int = 0
     """How many changes of the plan's have come."""
+    _halts: int = 0
+    """How many halts of the plan's have ended."""
+    _halting: bool = False
+    """Whether the place of a halt is chosen."""
+    _sets_off_s: float = math.inf
 
     def __post_init__(self) -> None:
         self._profile = profile(self.plan.driver)
@@ -242,13 +261,15 @@ class Driver:
             self._departed_s = now.time_s
         if self._moods < len(self.plan.moods):
             self._change_mood(now.time_s - self._departed_s)
+        if self._halts < len(self.plan.halts):
+            events = tuple(self._halt(self.plan.halts[self._halts], now))
         if now.time_s >= self._forecast.until_s:
             self._meet(self._forecast.read(now.time_s))
         if self._intents:
             due = [intent for intent in self._intents if intent.due_s <= now.time_s + 1e-9]
             if due:
                 self._intents = [intent for intent in self._intents if intent not in due]
-                events = tuple(event for intent in due for event in self._act(intent, now.state))
+                events += tuple(event for intent in due for event in self._act(intent, now.state))
         if now.time_s >= self._corridor_until_s:
             self._corridor_until_s = math.inf
             self.pedals.leave_corridor(False)
@@ -362,6 +383,23 @@ class Driver:
         self._choose_speed()
         self.pedals.set_headway(self._headway_s * self._adapted(self._condition.headway_ratio))
         self.pedals.set_imperfection(self._profile.imperfection)
+        self.pedals.set_overtaking(self._profile.overtaking)
+
+    def _halt(self, halt: HaltAt, now: Instant) -> Iterator[Event]:
+        """Looks for a place to park once it is time, parks there, and drives on."""
+        if now.time_s >= self._sets_off_s:
+            self._halts, self._halting, self._sets_off_s = self._halts + 1, False, math.inf
+            yield Event(now.time_s, SETS_OFF, "driver drives on")
+        elif self._sets_off_s < math.inf or now.time_s - self._departed_s < halt.at_s - 1e-9:
+            return
+        elif self._halting:
+            if self.pedals.is_parked():
+                self._sets_off_s = now.time_s + halt.for_s
+                yield Event(now.time_s, PARKS, f"driver parks for {halt.for_s:.0f} s")
+        elif now.state.road.road_class not in MOTORWAYS:
+            with suppress(RefusedError):  # further on there may be a place
+                self.pedals.pull_over(now.state, halt.for_s)
+                self._halting = True
 
     # --- weather ------------------------------------------------------------------------------------------
 

@@ -127,6 +127,9 @@ class ScriptedCar:
         """Time gap to the leader."""
         self._headway_s = headway_s
 
+    def set_overtaking(self, readiness: float) -> None:
+        """Does nothing: there are no other lanes."""
+
     def set_grip(self, friction: float) -> None:
         """Limits the braking."""
         self._hardest_mps2 = friction * G_MPS2
@@ -145,6 +148,10 @@ class ScriptedCar:
             raise RefusedError("there is no place to stop within the next metres")
         self._stop_m, self._stop_s = stop_m, for_s
         return f"in {needed_m:.0f} m"
+
+    def is_parked(self) -> bool:
+        """Whether it has stopped where it was asked to."""
+        return self._standing_s > 0 and self._along_m > self._stop_m - 1.0
 
     def change_lane(self, lanes_from_kerb: int, for_s: float) -> bool:
         """False: there are no other lanes."""

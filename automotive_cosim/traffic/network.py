@@ -126,6 +126,8 @@ class Crossing:
     """Speed of its slowest lane."""
     is_straight: bool = True
     has_signal: bool = False
+    lanes: frozenset[tuple[str, str]] = frozenset()
+    """The lanes that it leads from and to, for cars."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -359,8 +361,8 @@ def _crossings(reading: _Reading) -> dict[str, dict[str, Crossing]]:
         origin, goal = reading.edges.get(link.from_edge), reading.edges.get(link.to_edge)
         if origin and goal and link.from_lane in origin.lane_ids and link.to_lane in goal.lane_ids:
             ways = crossings.setdefault(link.from_edge, {})
-            if link.to_edge not in ways:
-                ways[link.to_edge] = _through(link, onward, reading)
+            way = ways.get(link.to_edge) or _through(link, onward, reading)
+            ways[link.to_edge] = replace(way, lanes=way.lanes | {(link.from_lane, link.to_lane)})
     return crossings
 
 

@@ -122,7 +122,7 @@ PROFILES: Mapping[str, DriverProfile] = {
         ),
         DriverProfile(
             name="pressing",
-            about="keeps the limit, close behind whoever is ahead",
+            about="keeps the limit, close behind whoever is ahead, and does not pass",
             speed_ratio=1.0,
             over_limit_max_kmh=0,
             top_speed_kmh=130,
@@ -131,7 +131,7 @@ PROFILES: Mapping[str, DriverProfile] = {
             acceleration_mps2=2.9,
             deceleration_mps2=4.5,
             imperfection=0.1,
-            overtaking=1.0,
+            overtaking=0.0,
             reaction_s=0.9,
             compliance=0.95,
             caution=0.0,

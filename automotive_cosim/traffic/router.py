@@ -1,7 +1,8 @@
 """Routes to a destination with realistic times: SUMO's router over the traffic of the last five minutes.
 
 An edge's time is its length divided by the vehicle-weighted mean speed, so queueing counts and empty intervals do
-not. If too few vehicles were seen, it is free flow plus, at a signal, the mean wait for a random arrival.
+not. If too few vehicles were seen, it is free flow plus, at a signal, the mean wait for a random arrival. The times
+of the routes offered are those of the quickest lane that leads on: a queue to turn left does not delay the others.
 
 The times that SUMO's router uses persist and apply to every vehicle, so they are written for a time that no
 simulation reaches, and the router is queried for a departure then. The query uses the ego's type: its speed does
@@ -10,13 +11,12 @@ not deviate, so no random number is drawn either.
 
 from __future__ import annotations
 
-from collections import ChainMap
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 from automotive_cosim.contracts import RouteOption
-from automotive_cosim.traffic.congestion import Congestion
+from automotive_cosim.traffic.congestion import NOTHING, SEEN_AT_LEAST, Congestion, Seen
 from automotive_cosim.traffic.network import Crossing, Network
 from automotive_cosim.traffic.sumo import LibSumo
 
@@ -42,6 +42,14 @@ SIGNAL_WAIT_S = 13.6
 cycle of 90 s that is green for 45 % of it."""
 
 SLOWEST_MPS = 0.5
+
+
+class _Traffic(NamedTuple):
+    """The traffic of the last minutes."""
+
+    lanes: Mapping[str, Seen]
+    edges_s: Mapping[str, float]
+    """Travel times of the edges with enough vehicles."""
 
 
 class Router:
@@ -73,15 +81,15 @@ class Router:
 
     def quickest(self, start: str, goals: Iterable[str]) -> tuple[str, ...]:
         """The quickest route now from an edge to the destination that is reached first; empty if none can be."""
-        self._put(self._seen_s(0.0))
+        self._put(self._traffic(0.0).edges_s)
         routes = [self._route(start, goal) for goal in goals]
         found = min((route for route in routes if route.edges), key=lambda route: route.travelTime, default=None)
         return () if found is None else tuple(found.edges)
 
     def is_quicker(self, way: Sequence[str], other: Sequence[str], driven_m: float) -> bool:
         """Whether one route is quicker now than another from the same edge, of which ``driven_m`` are driven."""
-        seen_s = self._seen_s(0.0)
-        return self._option(way, seen_s, driven_m).eta_s < self._option(other, seen_s, driven_m).eta_s
+        traffic = self._traffic(0.0)
+        return self._option(way, traffic, driven_m).eta_s < self._option(other, traffic, driven_m).eta_s
 
     def alternatives(
         self, route: Sequence[str], fixed: int, driven_m: float, age_s: float = 0.0
@@ -94,8 +102,8 @@ class Router:
             driven_m: distance driven on the first edge.
             age_s: age of the news, at most ``congestion.OLDEST_NEWS_S``.
         """
-        seen_s = self._seen_s(age_s)
-        network, weights = self._network, dict(seen_s)
+        traffic = self._traffic(age_s)
+        network, weights = self._network, dict(traffic.edges_s)
         found = tuple(route)
         taken = [found]
         for _ in range(TRIES):
@@ -108,22 +116,50 @@ class Router:
             found = (*route[: fixed - 1], *way)
             if all(_shared(found, other, network) <= SAME_AT_MOST for other in taken):
                 taken.append(found)
-        options = [self._option(edges, seen_s, driven_m) for edges in taken]
+        options = [self._option(edges, traffic, driven_m) for edges in taken]
         quick_s = LONGEST * min(option.eta_s for option in options)
         others = sorted((each for each in options[1:] if each.eta_s <= quick_s), key=lambda option: option.eta_s)
         return (options[0], *others)
 
-    def _seen_s(self, age_s: float) -> dict[str, float]:
-        """Travel times of the edges with enough vehicles."""
-        return {
-            edge_id: edge.length_m / max(SLOWEST_MPS, min(edge.speed_mps, speed_mps))
-            for edge_id, speed_mps in self._congestion.window_speeds_mps(age_s).items()
-            for edge in (self._network.edges[edge_id],)
-        }
+    def _traffic(self, age_s: float) -> _Traffic:
+        lanes = self._congestion.window(age_s)
+        edges: dict[str, Seen] = {}
+        for lane_id, seen in lanes.items():
+            edge_id = lane_id.rpartition("_")[0]
+            edges[edge_id] = _sum((edges.get(edge_id, NOTHING), seen))
+        seen_s = {edge_id: self._seen_s(edge_id, seen) for edge_id, seen in edges.items()}
+        return _Traffic(lanes, {edge_id: time_s for edge_id, time_s in seen_s.items() if time_s is not None})
 
-    def _option(self, edges: Sequence[str], seen_s: dict[str, float], driven_m: float) -> RouteOption:
+    def _seen_s(self, edge_id: str, seen: Seen) -> float | None:
+        """Travel time of an edge by what was seen on it; None if that was too little."""
+        count, total_mps = seen
+        if count < SEEN_AT_LEAST:
+            return None
+        edge = self._network.edges[edge_id]
+        return edge.length_m / max(SLOWEST_MPS, min(edge.speed_mps, total_mps / count))
+
+    def _edge_s(self, edge_id: str, lanes: Iterable[str], traffic: _Traffic) -> float:
+        """Travel time of an edge on the quickest of these lanes of it."""
+        times_s = (self._seen_s(edge_id, traffic.lanes.get(lane_id, NOTHING)) for lane_id in lanes)
+        return min(self._free_s[edge_id] if time_s is None else time_s for time_s in times_s)
+
+    def _lanes(self, edges: Sequence[str]) -> list[Collection[str]]:
+        """The lanes of each edge of a route that lead on along it, as far as can be without a change of lanes."""
+        found: list[Collection[str]] = [self._network.edges[edges[-1]].lane_ids]
+        for here, there in reversed(tuple(pairwise(edges))):
+            way = self._network.crossings.get(here, {}).get(there)
+            links = way.lanes if way else ()
+            onward = {lane_id for lane_id, to_lane_id in links if to_lane_id in found[-1]}
+            found.append(onward or {lane_id for lane_id, _ in links} or self._network.edges[here].lane_ids)
+        return found[::-1]
+
+    def _option(self, edges: Sequence[str], traffic: _Traffic, driven_m: float) -> RouteOption:
         """A route without the driven part of its first edge."""
-        network, edges_s = self._network, ChainMap(seen_s, self._free_s)
+        network = self._network
+        edges_s = {
+            edge_id: self._edge_s(edge_id, lanes, traffic)
+            for edge_id, lanes in zip(edges, self._lanes(edges), strict=True)
+        }
         first = network.edges[edges[0]]
         left = max(0.0, 1.0 - driven_m / first.length_m)
         length_m, time_s = first.length_m * left, edges_s[edges[0]] * left
@@ -149,6 +185,11 @@ class Router:
 
     def _route(self, start: str, goal: str) -> Any:
         return self._sumo.find_route(start, goal, self._type, NEVER_S)
+
+
+def _sum(seen: Iterable[Seen]) -> Seen:
+    rows = tuple(seen)
+    return sum(count for count, _ in rows), sum(total_mps for _, total_mps in rows)
 
 
 def _shared(way: Sequence[str], other: Sequence[str], network: Network) -> float:

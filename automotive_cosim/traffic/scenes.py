@@ -27,6 +27,9 @@ CAR_SPACE_M = 7.5
 GENTLE_MPS2 = 3.0
 """A leader that brakes less than this only slows down."""
 
+NO_LANE_CHANGE, ANY_LANE_CHANGE = 0, 1621
+"""SUMO's lane change modes: only for safety, and its default."""
+
 SCHOOL_DAYS = frozenset(range(1, 6))
 
 NARROW_PLACE_M = 10.0
@@ -401,9 +404,12 @@ class _BrakingLeader(_Scene):
             if self._left_s <= 0:
                 self._release()
             return ""
-        found = self._stage.sumo.leader(self._stage.ego_id, self._incident.within_m)
-        if found and found[0] and found[1] <= self._incident.within_m:
-            return self._brake(found[0])
+        stage, incident = self._stage, self._incident
+        if stage.sumo.speed(stage.ego_id) < incident.from_kmh / KMH_PER_MPS:
+            return ""
+        found = stage.sumo.leader(stage.ego_id, incident.within_m)
+        if found and found[0] and found[1] <= incident.within_m:
+            return self._brake(found[0]) if found[1] >= incident.beyond_m else ""
         if not self._has_called:
             self._has_called = True
             self._call()
@@ -413,6 +419,8 @@ class _BrakingLeader(_Scene):
         sumo, incident = self._stage.sumo, self._incident
         to_mps = incident.to_kmh / KMH_PER_MPS
         self._braking = vehicle
+        if incident.keeps_lane:
+            sumo.vehicle.setLaneChangeMode(vehicle, NO_LANE_CHANGE)
         self._left_s = max(0.0, sumo.speed(vehicle) - to_mps) / incident.deceleration_mps2 + incident.hold_s
         if incident.deceleration_mps2 < GENTLE_MPS2:  # it can brake as hard as ever if it must
             slower_s = self._left_s - incident.hold_s
@@ -429,7 +437,8 @@ class _BrakingLeader(_Scene):
         here, _ = sensor.route.edge_at(sensor.position_m)
         index, on_edge_m = sensor.route.edge_at(sensor.position_m + self._incident.ahead_m + CAR_SPACE_M)
         lane = stage.sumo.lane_of(ego) if index == here else ""
-        speed = f"{stage.sumo.speed(ego):.2f}"
+        fastest_mps = stage.sumo.type.getMaxSpeed(CAR_TYPE)  # less in fog, which the ego may take no notice of
+        speed = f"{min(stage.sumo.speed(ego), fastest_mps):.2f}"
         stage.car("leader", sensor.route.edge_ids[index:], lane, on_edge_m, speed)
 
     def end(self) -> str:
@@ -440,6 +449,8 @@ class _BrakingLeader(_Scene):
     def _release(self) -> None:
         with suppress(*self._stage.sumo.refusals):  # it may have left
             self._stage.sumo.vehicle.setSpeed(self._braking, -1.0)
+            if self._incident.keeps_lane:
+                self._stage.sumo.vehicle.setLaneChangeMode(self._braking, ANY_LANE_CHANGE)
         self._braking, self._left_s = "", -1.0
 
 

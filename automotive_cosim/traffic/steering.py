@@ -74,6 +74,10 @@ class SumoPedals:
         """See ``ego.Pedals``."""
         self._sumo.set_imperfection(self._ego, imperfection)
 
+    def set_overtaking(self, readiness: float) -> None:
+        """See ``ego.Pedals``."""
+        self._sumo.set_parameter(self._ego, "laneChangeModel.lcSpeedGain", f"{readiness:g}")
+
     def set_grip(self, friction: float) -> None:
         """See ``ego.Pedals``."""
         hardest_mps2 = friction * G_MPS2
@@ -122,6 +126,10 @@ class SumoPedals:
                 away_m = route.position_m(index, stop_m) - self._sensor.position_m
                 return f"in {away_m:.0f} m" + (f" on {edge.name}" if edge.name else "")
         raise RefusedError("there is no place to stop on the rest of the route")
+
+    def is_parked(self) -> bool:
+        """See ``ego.Pedals``."""
+        return bool(self._sumo.vehicle.isStoppedParking(self._ego))
 
     def change_lane(self, lanes_from_kerb: int, for_s: float) -> bool:
         """See ``ego.Pedals``; SUMO changes as soon as there is a gap."""

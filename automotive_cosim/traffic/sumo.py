@@ -113,12 +113,12 @@ class LibSumo:
         self.edge_vehicles: Callable[[str], Sequence[str]] = edge.getLastStepVehicleIDs
         self.vehicle_ids: Callable[[], Sequence[str]] = vehicle.getIDList
 
-    def on_edges(self) -> Iterator[tuple[str, float]]:
-        """The edge and speed of every vehicle in a lane; parked vehicles and those off the road are not in one."""
+    def on_lanes(self) -> Iterator[tuple[str, float]]:
+        """The lane and speed of every vehicle in one; parked vehicles and those off the road are not."""
         lane_of, speed = self.lane_of, self.speed
         for vehicle in self.vehicle_ids():
             if lane := lane_of(vehicle):
-                yield lane.rpartition("_")[0], speed(vehicle)
+                yield lane, speed(vehicle)
 
     def vehicles_around(
         self, vehicle: str, radius_m: float

@@ -76,7 +76,7 @@ class World:
         self._sumo.copy_type("DEFAULT_VEHTYPE", TEMPLATE_TYPE)
         self._surface = Surface(self._sumo, self.network, (EGO_TYPE, TEMPLATE_TYPE))
         self._forecast = Forecast(scenario.weather[:1], scenario.sumo.warm_up_s)
-        self.congestion = Congestion(self.network, self._sumo.on_edges)
+        self.congestion = Congestion(self.network, self._sumo.on_lanes)
         self._router = Router(self._sumo, self.network, self.congestion, EGO_TYPE)
         self._situations = Situations(IncidentStage(self._sumo, self.network, self._surface, EGO), scenario)
         self._has_incidents = self._situations.are_left

@@ -189,6 +189,7 @@ WHOSE_LANGUAGE = hard(
     ),
     "events: the driver wants the language back, or leaves it to a guest",
     parameters={"percent": (30, 40, 60, 70, 80), "bass": (2, 4, 6)},
+    only_english="the driver wants the car back in English, or leaves it in Japanese",
 )
 
 MUSEUMS = named(PlaceKind.MUSEUM)

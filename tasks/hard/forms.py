@@ -106,6 +106,7 @@ def hard(
     parameters: Mapping[str, Choices] = NO_PARAMETERS,
     tags: frozenset[str] = frozenset(),
     dimension: Dimension = Dimension.EXPLICIT_CONTROL,
+    only_english: str = "",
 ) -> Task:
     """A task of the hard suite."""
     return Task(
@@ -119,4 +120,5 @@ def hard(
         parameters=parameters,
         tags=tags,
         suite=Suite.HARD,
+        only_english=only_english,
     )

@@ -296,6 +296,7 @@ LANGUAGE_MIDWAY = hard(
         deadline=THE_OTHER_WAITS,
     ),
     parameters={"percent": (20, 30, 40, 80, 90)},
+    only_english="a guest turns the car from English to Japanese",
 )
 
 RING_BACK = hard(

@@ -3,21 +3,25 @@ AndroidWorld is at hand, its own classes in whole episodes."""
 
 import io
 import os
+import re
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import redirect_stdout
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from types import SimpleNamespace
+from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
+from automotive_cosim.agents import make_agent
 from automotive_cosim.agents.androidworld import AndroidWorldAgent
 from automotive_cosim.contracts import Action, ActionType, BoundingBox, Direction, Element, GoalStatus, Observation
 from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.errors import ActionError
+from automotive_cosim.replay.make import Touches, texts
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
 from automotive_cosim.traffic.fork import Simulations
 
@@ -215,6 +219,13 @@ def test_a_touch_without_a_target_is_an_error(does: Any, kind: str) -> None:
             GoalStatus.INFEASIBLE,
         ),
         ({"action_output": "Action: {'goal_status': 'not_needed'}"}, GoalStatus.NOT_NEEDED),
+        (
+            {
+                "action": Said(action_type="status", goal_status="task_complete"),
+                "dummy_action": {"name": "mobile_use", "arguments": {"action": "terminate", "status": "failure"}},
+            },
+            GoalStatus.INFEASIBLE,
+        ),
         ({"action_output": 'Action: {"goal_status": "perhaps"}', "summary": None}, GoalStatus.COMPLETE),
     ],
 )
@@ -226,6 +237,55 @@ def test_the_declared_status_arrives(does: Any, data: dict[str, Any], status: Go
 def test_a_wait_of_which_the_device_hears_nothing_is_a_wait(does: Any) -> None:
     said = Said(action_type="wait")
     assert does(lambda env: Result(False, {"action": said}), 1) == [Action(ActionType.WAIT)]
+
+
+def test_it_hears_what_the_driver_says_later(seen: Observation) -> None:
+    heard: list[str] = []
+
+    class Mine:
+        def __init__(self, env: Any) -> None:
+            self.env = env
+
+        def step(self, goal: str) -> Result:
+            heard.append(goal)
+            self.env.execute_action(Said(action_type="wait"))
+            return Result(False, {})
+
+    agent = AndroidWorldAgent(Mine)
+    agent.reset("x")
+    for said in ((), (), ("No, the other one.",), ("No, the other one.", "Thanks.")):
+        agent.act(replace(seen, said=said))
+    agent.reset("x")
+    assert heard == ["x", "x", "x\nLater: No, the other one.", "x\nLater: No, the other one.\nLater: Thanks."]
+
+
+@pytest.mark.parametrize("keeps", [False, True])
+def test_the_devices_modules_pause_only_if_the_class_wants_it(
+    seen: Observation, monkeypatch: pytest.MonkeyPatch, keeps: bool
+) -> None:
+    device, others = ModuleType("android_world.env.actuation"), ModuleType("android_world.agents.infer")
+    for module in (device, others):
+        module.time = time  # type: ignore[attr-defined]
+        monkeypatch.setitem(sys.modules, module.__name__, module)
+
+    class Mine:
+        keeps_pauses = keeps
+
+        def __init__(self, env: Any) -> None:
+            self.transition_pause = 1.0
+
+        def step(self, goal: str) -> Result:
+            return Result(True, {"transition_pause": self.transition_pause})
+
+    agent = AndroidWorldAgent(Mine)
+    agent.reset("x")
+    agent.act(seen)
+    agent.reset("x")
+    assert (device.time is time) is keeps
+    assert others.time is time
+    if not keeps:
+        device.time.sleep(600)
+        assert device.time.monotonic() >= 0
 
 
 def test_its_pauses_are_off_and_what_it_prints_is_not_our_output(seen: Observation) -> None:
@@ -260,6 +320,15 @@ def checkout(monkeypatch: pytest.MonkeyPatch) -> None:
         pytest.skip(f"{folder} has no android_world")
     pytest.importorskip("android_env", reason="AndroidWorld's own dependencies are not installed")
     monkeypatch.setattr(sys, "path", [folder, *sys.path])
+
+
+def needs(*modules: str) -> None:
+    """Skips where one is missing."""
+    for name in modules:
+        try:
+            __import__(name)
+        except ImportError as error:
+            pytest.skip(f"this checkout or its dependencies lack {name}: {error}")
 
 
 class Chooses:
@@ -305,24 +374,59 @@ def test_its_agents_run_whole_episodes(checkout: None, simulations: Simulations,
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore")
-def test_agents_that_act_by_adb_run_whole_episodes(checkout: None, simulations: Simulations) -> None:
-    from android_world.env import actuation, json_action
+def test_seeact_runs_whole_episodes(
+    checkout: None, simulations: Simulations, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    needs("IPython", "matplotlib", "requests")
+    from android_world.agents import seeact, seeact_utils
 
-    class ByAdb:
-        """As SeeAct acts."""
+    wanted = [r"climate", r"max", None]
+    asked: list[str] = []
 
+    def answer(url: str, json: dict[str, Any], **_: Any) -> SimpleNamespace:
+        """OpenAI, asked twice a step: for words, and for the choice that they mean."""
+        text = json["messages"][-1]["content"][0]["text"]
+        said = "I see."
+        if "Multichoice" in text:
+            label = wanted.pop(0)
+            found = label and re.search(rf"^([A-Z]+)\. .*{label}", text, re.MULTILINE | re.IGNORECASE)
+            said = (
+                f"ELEMENT: {found[1] if found else None}\nACTION: {'CLICK' if found else 'TERMINATE'}\nVALUE: None"
+            )
+        asked.append(text)
+        return SimpleNamespace(json=lambda: {"choices": [{"message": {"content": said}}]})
+
+    monkeypatch.setattr(seeact_utils.requests, "post", answer)
+    monkeypatch.setenv("OPENAI_API_KEY", "none")
+    setup = EpisodeSetup("hvac_fan_max", scenario="grid", agent="SeeAct", model="own")
+    result = run_episode(setup, AndroidWorldAgent(seeact.SeeAct), simulations=simulations)
+    assert (result.success, result.steps, result.end) == (True, 3, "declared")
+    assert len(asked) == 6
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("last", ["complete", "infeasible"])
+def test_gui_owl_runs_whole_episodes(
+    checkout: None, simulations: Simulations, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, last: str
+) -> None:
+    needs("android_world.agents.gui_owl", "qwen_agent")
+    from android_world.agents import gui_owl
+
+    watcher = Touches()
+    setup = EpisodeSetup("hvac_fan_max", scenario="grid", agent="oracle", model="none")
+    run_episode(setup, make_agent("oracle"), (watcher,), simulations=simulations)
+    *touches, _ = watcher.actions
+    acts = [*touches, Action(ActionType.STATUS, goal_status=GoalStatus(last))]
+    answers = texts("gui-owl-1.5", acts)
+
+    class Mine(gui_owl.GUIOwl):  # type: ignore[misc]
         def __init__(self, env: Any) -> None:
-            self.env, self.wanted = env, ["dock.climate", "hvac.fan.max"]
+            model = SimpleNamespace(predict_mm=lambda prompt, images, messages: (answers.pop(0), None, None))
+            super().__init__(env, model, "qwen-vl", None, None, output_path=str(tmp_path / "out"))
 
-        def step(self, goal: str) -> Result:
-            if not self.wanted:
-                return Result(True, {"action": json_action.JSONAction("status", goal_status="complete")})
-            elements = self.env.get_state().ui_elements
-            index = [element.resource_id for element in elements].index(shown_id(self.wanted.pop(0)))
-            action = json_action.JSONAction("click", index=index)
-            actuation.execute_adb_action(action, elements, self.env.logical_screen_size, self.env.controller)
-            return Result(False, {"action": action})
-
-    setup = EpisodeSetup("hvac_fan_max", scenario="grid", agent="ByAdb", model="own")
-    result = run_episode(setup, AndroidWorldAgent(ByAdb), simulations=simulations)
-    assert (result.success, result.steps) == (True, 3)
+    setup = EpisodeSetup("hvac_fan_max", scenario="grid", agent="GUIOwl", model="own")
+    result = run_episode(setup, AndroidWorldAgent(Mine), simulations=simulations)
+    assert (result.success, result.steps, result.end) == (last == "complete", len(acts), "declared")
+    assert result.verdict
+    assert result.verdict.goal.ok

@@ -10,7 +10,18 @@ import pytest
 
 from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.signals import BODY, CABIN, ENERGY, LIGHTS, SEAT, TYRE, Signal
+from automotive_cosim.cockpit.signals import (
+    BODY,
+    CABIN,
+    DRIVE,
+    ENERGY,
+    LIGHTS,
+    MOTION,
+    OCCUPANT,
+    SEAT,
+    TYRE,
+    Signal,
+)
 from automotive_cosim.contracts import Surroundings
 from automotive_cosim.errors import CosimError
 
@@ -42,6 +53,22 @@ def test_what_is_locked_while_driving_can_still_spring_open(make: Make, around: 
     cockpit = make(changes=[CarChange(1.0, CABIN.TRUNK.path, True)])
     drive(cockpit, around, 0, 1)
     assert cockpit.signals[CABIN.TRUNK]
+
+
+def test_in_a_parked_car_times_count_from_when_it_was_parked(make: Make, around: Surroundings) -> None:
+    gone = CarChange(3.0, OCCUPANT.DRIVER.occupied.path, False, once_parked=True)
+    cockpit = make(changes=[gone], lookout=True)
+    drive(cockpit, around, 0, 10)
+    assert cockpit.signals[MOTION.GEAR] == "D"
+    parked = replace(around, driving=replace(around.driving, speed_mps=0.0), parked=True)
+    drive(cockpit, parked, 10, 13)
+    assert (cockpit.signals[MOTION.GEAR], cockpit.signals[DRIVE.PARKING_BRAKE]) == ("P", True)
+    assert cockpit.signals[OCCUPANT.DRIVER.occupied]
+    drive(cockpit, parked, 13, 14)
+    assert not cockpit.signals[OCCUPANT.DRIVER.occupied]
+    assert "Driver has left, nobody aboard" in [sight.text for sight in cockpit.sights]
+    drive(cockpit, around, 14, 15)
+    assert (cockpit.signals[MOTION.GEAR], cockpit.signals[DRIVE.PARKING_BRAKE]) == ("D", False)
 
 
 def test_nothing_that_changes_by_itself_counts_as_a_deed(make: Make, around: Surroundings) -> None:

@@ -7,12 +7,13 @@ from dataclasses import replace
 
 import pytest
 
+from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
 from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.language import said
 from automotive_cosim.cockpit.reach import HORIZON_M, NEWS_EVERY_S
 from automotive_cosim.cockpit.screens.lookout import ICONS, LINES
-from automotive_cosim.cockpit.signals import CABIN, ENERGY, HMI, SEAT, TYRE
+from automotive_cosim.cockpit.signals import CABIN, ENERGY, HMI, OCCUPANT, SEAT, TYRE
 from automotive_cosim.contracts import (
     Connectivity,
     IncidentKind,
@@ -145,5 +146,20 @@ def test_news_comes_once_a_minute_and_only_online(make: Make, around: Surroundin
 @pytest.mark.parametrize("language", ["fr", "de", "ja"])
 def test_every_sight_is_translated(make: Make, around: Surroundings, language: str) -> None:
     cockpit = make(surroundings=full(around), lookout=True, changes=[CarChange(0.0, CABIN.TRUNK.path, True)])
-    for sight in cockpit.sights:
-        assert said(language, sight.text) != sight.text or sight.text.startswith("Tunnel")
+    aboard = [Occupant(Seat.REAR_LEFT, Kind.CHILD, belted=False)]
+    gone = CarChange(0.0, OCCUPANT.DRIVER.occupied.path, False, once_parked=True)
+    standing = replace(around, driving=replace(around.driving, speed_mps=0.0))
+    riding = make(surroundings=standing, lookout=True, aboard=aboard)
+    parked, empty = (
+        make(surroundings=standing, lookout=True, aboard=others, changes=[gone]) for others in (aboard, ())
+    )
+    for cockpit_ in (parked, empty):
+        cockpit_.sense(replace(standing, parked=True), 1.0)
+    told = [sight.text for each in (cockpit, riding, parked, empty) for sight in each.sights]
+    assert {"Belt is open: Rear left", "Driver has left, aboard: Child", "Driver has left, nobody aboard"} <= {
+        *told
+    }
+    for text in told:
+        words = said(language, text)
+        assert words != text or text.startswith("Tunnel")
+        assert not {"Child", "Rear left"} & {words.partition(": ")[2]}

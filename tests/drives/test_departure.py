@@ -13,8 +13,8 @@ import pytest
 
 from automotive_cosim.cockpit.arrivals import Arrival
 from automotive_cosim.cockpit.changes import CarChange
-from automotive_cosim.cockpit.signals import CABIN, CALL, SEAT
-from automotive_cosim.contracts import KMH_PER_MPS, Alert, AlertKind, IncidentKind, Weather
+from automotive_cosim.cockpit.signals import CABIN, CALL, MOTION, OCCUPANT, SEAT
+from automotive_cosim.contracts import KMH_PER_MPS, Alert, AlertKind, IncidentKind, SightKind, Weather
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import CoSimulation
 from automotive_cosim.drives.departure import depart
@@ -26,6 +26,7 @@ from automotive_cosim.scenarios import WeatherAt
 from automotive_cosim.scenarios.incidents import AheadIncident, EmergencyVehicle
 from automotive_cosim.traffic.base import DriverAt
 from automotive_cosim.traffic.fork import Simulations
+from tests.drives.scenes import found
 
 DRY = Weather(16.0, 60.0, 0.0, 1, 20.0, 24000.0, 8.0)
 LAPS = DrivePlan(
@@ -128,6 +129,26 @@ def test_a_mood_that_comes_ends_what_an_alert_had_brought_about(simulations: Sim
     fast = [moment.driving.speed_mps > (moment.driving.road.limit.mps or 99.0) + 1 for moment in after]
     assert not any(fast[30:98])
     assert any(fast[102:])
+
+
+@pytest.mark.slow
+def test_a_car_parks_beside_the_road_with_somebody_in_it_and_drives_on(simulations: Simulations) -> None:
+    plan = FAMILIES["grid_june"].draw(2)
+    (left,) = (one for one in plan.staged if one.kind == "left_behind")
+    moments = driven(replace(plan, seed=1), simulations, left.at_s + 260.0)
+    parked = [moment for moment in moments if moment.signals[MOTION.GEAR.path] == "P"]
+    assert [moment.driving.speed_mps for moment in parked] == pytest.approx([0.0] * len(parked), abs=0.1)
+    assert 130 <= len(parked) <= 150
+    alone = [moment for moment in parked if not moment.signals[OCCUPANT.DRIVER.occupied.path]]
+    assert {
+        sight.text for moment in alone for sight in moment.sights if sight.kind is SightKind.WITHOUT_DRIVER
+    } == {"Driver has left, aboard: Child"}
+    (event,) = (event for event in found(moments, "left_behind") if not event.bait)
+    assert event.obliged_s == pytest.approx(event.observable_s + 15.0)
+    assert event.due_until_s is not None
+    assert event.deadline_s is not None
+    assert event.due_until_s > event.deadline_s
+    assert moments[-1].driving.speed_mps > 1.0
 
 
 @pytest.mark.slow

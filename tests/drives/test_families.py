@@ -12,7 +12,8 @@ from typing import Any
 
 import pytest
 
-from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
+from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat, seated, take_seats
+from automotive_cosim.cockpit.signals import Signals, named
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.family import FEWEST, MOST, Season
 from automotive_cosim.drives.plan import APART_S, LONGEST_S, QUIET_S, SHORTEST_S, DrivePlan, plan_json, read_plan
@@ -122,7 +123,45 @@ def test_who_is_aboard_is_drawn_planned_and_read_back() -> None:
     company = (Occupant(Seat.REAR_LEFT, Kind.CHILD, asleep=True), Occupant(Seat.REAR_RIGHT, Kind.PET, 24.0))
     plan = replace(FAMILIES["grid_june"], aboard=company).draw(0)
     assert read_plan(plan_json(plan)).aboard == company
-    assert replace(plan, aboard=()) == FAMILIES["grid_june"].draw(0)
+    assert FAMILIES["grid_june"].draw(0).aboard != company
+
+
+@pytest.mark.parametrize("family", EVERY)
+def test_who_is_aboard_fits_what_is_staged(family: Any) -> None:
+    for plan in plans(family):
+        seats = [one.seat for one in plan.aboard]
+        assert len(set(seats)) == len(seats)
+        assert Seat.DRIVER not in seats
+        parks = [one for one in plan.staged if one.kind == "left_behind"]
+        assert [halt.at_s for halt in plan.halts] == [one.at_s for one in parks]
+        if parks:
+            assert sum(one.kind.needs_care for one in plan.aboard) == 1
+            assert not [one for one in plan.aboard if one.kind.is_person and not one.kind.needs_care]
+
+
+def test_every_seat_is_taken_by_everyone_who_may_sit_there() -> None:
+    drawn = {(one.seat, one.kind) for family in FAMILIES.values() for plan in plans(family) for one in plan.aboard}
+    assert {kind for _, kind in drawn} == set(Kind)
+    assert {seat for seat, _ in drawn} == {Seat.PASSENGER, Seat.REAR_LEFT, Seat.REAR_RIGHT}
+    assert not {(seat, kind) for seat, kind in drawn if seat is Seat.PASSENGER and kind.needs_care}
+
+
+def test_one_stays_alone_in_a_parked_car_only_as_an_event() -> None:
+    """By the signals that the plan sets, second by second of the halt."""
+    for family in FAMILIES.values():
+        for plan in plans(family):
+            for one in plan.staged:
+                if one.kind == "left_behind":
+                    assert any(_is_alone(plan, second) for second in range(150)) is not one.is_bait, plan
+
+
+def _is_alone(plan: DrivePlan, second: int) -> bool:
+    signals = Signals()
+    take_seats(signals, plan.aboard)
+    for change in sorted((change for change in plan.changes if change.once_parked), key=lambda each: each.at_s):
+        if change.at_s <= second:
+            signals[named(change.path)] = change.value
+    return [one.kind.needs_care for one in seated(signals) if one.kind is not Kind.OBJECT] == [True]
 
 
 @pytest.mark.parametrize(

@@ -71,6 +71,25 @@ def test_an_act_long_before_the_obligation_does_not_prepare_for_it() -> None:
     assert judged(warn(101.0), warn(118.0), events=(far,)).events[0].outcome is EventOutcome.PREPARED
 
 
+def test_an_act_that_puts_the_obligation_off_prepares_for_when_it_would_have_come() -> None:
+    """A driver who is told of a breakdown slows down, and comes near it later."""
+    far = replace(SPEEDING, obliged_s=130.0, deadline_s=140.0)
+    found = judged(warn(101.0), events=(far,), due={0: 110.0})
+    assert (found.events[0].outcome, found.acts[0].worth) == (EventOutcome.PREPARED, Worth.RIGHT)
+    early = judged(warn(101.0), events=(far,), due={0: 120.0})
+    assert (early.events[0].outcome, early.acts[0].worth) == (EventOutcome.MISSED, Worth.NEUTRAL)
+
+
+def test_a_switch_or_a_request_prepares_however_early_it_comes() -> None:
+    """Words are forgotten; lamps that are on, and a driver who was asked to go slower, are not."""
+    far = replace(SPEEDING, obliged_s=130.0, deadline_s=140.0)
+    slower = judged(WatchAct(101.0, requests=(SlowDown(50.0),)), events=(far,))
+    assert slower.events[0].outcome is EventOutcome.PREPARED
+    lamps = replace(far, kind="lamps", subject="", value=1.0)
+    lit = judged(WatchAct(101.0, writes=((LIGHTS.LOW_BEAM.path, True),)), events=(lamps,))
+    assert lit.events[0].outcome is EventOutcome.PREPARED
+
+
 def test_a_request_to_the_driver_settles_it_too() -> None:
     assert judged(WatchAct(105.0, requests=(SlowDown(50.0),))).events[0].outcome is EventOutcome.HIT
 

@@ -22,7 +22,7 @@ from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.traffic.fork import Simulations
 from tests.drives.scenes import limit, moment, vehicle
 
-FAMILY, SEED, FOR_S = "grid_june", 55, 420.0
+FAMILY, SEED, FOR_S = "grid_june", 43, 420.0
 
 Begin = Callable[..., Watch]
 

@@ -21,6 +21,7 @@ CAR = {
     "speed_kmh": 50.0,
     "leader_gap_m": None,
     "leader_time_to_collision_s": None,
+    "aboard": "driver: adult, 75 kg, awake, belted",
     "is_low_beam_on": True,
     "is_high_beam_on": False,
     "is_front_fog_on": False,

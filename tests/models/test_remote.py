@@ -9,7 +9,6 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
@@ -18,15 +17,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from automotive_cosim.agents import FORMATS, ModelAgent, make_agent
-from automotive_cosim.agents.native.grid import GuiScreen
-from automotive_cosim.agents.native.verbs import call_for
 from automotive_cosim.agents.settings import T3A
-from automotive_cosim.contracts import Action, ActionType
-from automotive_cosim.contracts.ids import resource_id as shown_id
+from automotive_cosim.contracts import Action
 from automotive_cosim.errors import ModelError, SetupError, UserError
 from automotive_cosim.models import ChatMessage, make_model
 from automotive_cosim.models.remote import _Endpoint
-from automotive_cosim.run.episode import EpisodeSetup, Shot, Watcher, run_episode
+from automotive_cosim.replay.make import Touches, provider_body, texts
+from automotive_cosim.run.episode import EpisodeSetup, run_episode
 from automotive_cosim.run.record import Recorder
 from automotive_cosim.traffic.fork import Simulations
 
@@ -259,6 +256,83 @@ def test_an_endless_body_is_not_read(server):
         model("local/m?retries=0").chat(ASK)
 
 
+@pytest.mark.parametrize(
+    ("form", "body", "expected"),
+    [
+        (
+            "json",
+            {
+                "choices": [{"message": {"content": "hi", "reasoning_content": "Hm."}}],
+                "usage": {
+                    "prompt_tokens": 100,
+                    "completion_tokens": 30,
+                    "prompt_tokens_details": {"cached_tokens": 80},
+                    "completion_tokens_details": {"reasoning_tokens": 20},
+                },
+            },
+            (100, 30, 20, 80),
+        ),
+        (
+            "openai",
+            {
+                "output": [
+                    {"type": "reasoning", "summary": [{"type": "summary_text", "text": "Hm."}]},
+                    {"type": "message", "content": [{"type": "output_text", "text": "hi"}]},
+                ],
+                "usage": {
+                    "input_tokens": 100,
+                    "output_tokens": 30,
+                    "input_tokens_details": {"cached_tokens": 80},
+                    "output_tokens_details": {"reasoning_tokens": 20},
+                },
+            },
+            (100, 30, 20, 80),
+        ),
+        (
+            "anthropic",
+            {
+                "content": [{"type": "thinking", "thinking": "Hm."}, {"type": "text", "text": "hi"}],
+                "usage": {
+                    "input_tokens": 5,
+                    "cache_read_input_tokens": 80,
+                    "cache_creation_input_tokens": 15,
+                    "output_tokens": 30,
+                },
+            },
+            (100, 30, 0, 80),
+        ),
+        (
+            "gemini",
+            {
+                "candidates": [{"content": {"parts": [{"text": "Hm.", "thought": True}, {"text": "hi"}]}}],
+                "usageMetadata": {
+                    "promptTokenCount": 100,
+                    "candidatesTokenCount": 10,
+                    "thoughtsTokenCount": 20,
+                    "cachedContentTokenCount": 80,
+                },
+            },
+            (100, 30, 20, 80),
+        ),
+    ],
+)
+def test_reasoning_and_cached_tokens_are_told_and_paid(server, form, body, expected):
+    server.behaviours = [lambda handler: send(handler, 200, json.dumps(body).encode())]
+    prices = "usd_per_million_in=10&usd_per_million_out=20"
+    for cached, usd in (("", 1600), ("&usd_per_million_cached=1", 880)):
+        reply = make_model(f"local/m?{prices}{cached}", FORMATS[form].api).chat(ASK)
+        assert (reply.tokens_in, reply.tokens_out, reply.tokens_reasoning, reply.tokens_cached) == expected
+        assert reply.reasoning == "Hm."
+        assert "Hm." not in reply.text
+        assert reply.cost_usd == pytest.approx(usd / 1e6)
+
+
+def test_a_key_in_the_reasoning_is_hidden_too(server):
+    body = {"choices": [{"message": {"content": "hi", "reasoning": f"the key is {KEY}"}}]}
+    server.behaviours = [lambda handler: send(handler, 200, json.dumps(body).encode())]
+    assert model().chat(ASK).reasoning == "the key is ***"
+
+
 def test_the_rate_is_kept(server):
     made = model("local/m?per_minute=30")
     for _ in range(3):
@@ -356,26 +430,6 @@ def test_no_key_is_in_the_record_of_an_episode(server, tmp_path):
 # --- native formats -------------------------------------------------------------------------------------------
 
 
-class Touches(Watcher):
-    """The actions of an episode, by where they touch the screen instead of by element."""
-
-    def __init__(self) -> None:
-        self.actions: list[Action] = []
-
-    def stepped(self, shot: Shot) -> None:
-        action = shot.step.action
-        assert action is not None
-        index = action.index
-        if action.action_type is ActionType.OPEN_APP:  # for which not every format has a word
-            ids = [element.resource_id for element in shot.seen]
-            index = ids.index(shown_id(f"dock.{action.app_name}"))
-            action = Action(ActionType.CLICK)
-        if index is not None:
-            box = shot.seen[index].bbox_pixels
-            action = replace(action, index=None, x=(box.x_min + box.x_max) // 2, y=(box.y_min + box.y_max) // 2)
-        self.actions.append(action)
-
-
 @pytest.fixture(scope="module")
 def touches(simulations: Simulations) -> list[Action]:
     """The reference solution of the task below."""
@@ -383,34 +437,6 @@ def touches(simulations: Simulations) -> list[Action]:
     setup = EpisodeSetup("hvac_fan_max", scenario="grid", agent="oracle", model="none")
     assert run_episode(setup, make_agent("oracle"), (watcher,), simulations=simulations).success
     return watcher.actions
-
-
-def body_of(form: str, text: str) -> bytes:
-    """An answer as the provider of a format sends it."""
-    if FORMATS[form].api is None:
-        return completion(text)
-    told = json.loads(text)
-    say, calls = told["say"], [(call["name"], call["arguments"]) for call in told["calls"]]
-    whole: dict
-    if form == "openai":
-        actions = [{"type": "computer_call", "actions": [{"type": name, **given}]} for name, given in calls]
-        message = {"type": "message", "content": [{"type": "output_text", "text": say}]}
-        whole = {"output": [{"type": "reasoning"}, message, *actions]}
-        whole["usage"] = {"input_tokens": 7, "output_tokens": 3}
-    elif form.startswith("anthropic"):
-        uses = [
-            {"type": "tool_use", "toolset_name": "computer", "name": name, "input": given}
-            if form == "anthropic"
-            else {"type": "tool_use", "name": "computer", "input": {"action": name, **given}}
-            for name, given in calls
-        ]
-        whole = {"content": [{"type": "text", "text": say}, *uses]}
-        whole["usage"] = {"input_tokens": 7, "output_tokens": 3}
-    else:
-        parts = [{"text": say}, *({"functionCall": {"name": name, "args": given}} for name, given in calls)]
-        whole = {"candidates": [{"content": {"parts": parts}}]}
-        whole["usageMetadata"] = {"promptTokenCount": 7, "candidatesTokenCount": 3}
-    return json.dumps(whole).encode()
 
 
 ASKS = {
@@ -427,23 +453,19 @@ ASKS = {
 def test_a_model_at_an_endpoint_works_the_car_in_its_own_format(
     server: Server, touches: list[Action], simulations: Simulations, tmp_path: Path, form: str
 ) -> None:
-    chosen = FORMATS[form]
-    screen = GuiScreen(1280, 720, chosen.grid)
-    calls = [call_for(chosen.verbs, action, screen) for action in touches]
-    assert all(calls)
-    texts = [chosen.syntax.write("I see.", [call], chosen.verbs) for call in calls if call]
+    chosen, said = FORMATS[form], texts(form, touches)
 
     def answer(text: str) -> Behave:
-        return lambda handler: send(handler, 200, body_of(form, text))
+        return lambda handler: send(handler, 200, json.dumps(provider_body(form, text)).encode())
 
-    server.behaviours = [answer(text) for text in texts]
+    server.behaviours = [answer(text) for text in said]
     name = f"local/some-model?seed=7&format={form}"
     setup = EpisodeSetup("hvac_fan_max", scenario="grid", agent="native", model=name)
     result = run_episode(
         setup, make_agent("native", name), (Recorder(tmp_path / "out", setup, {}),), simulations=simulations
     )
     assert (result.success, result.model) == (True, name)
-    assert (result.tokens_in, result.tokens_out) == (7 * len(texts), 3 * len(texts))
+    assert (result.tokens_in, result.tokens_out) == (7 * len(said), 3 * len(said))
     for asked, headers in zip(server.asked, server.headers, strict=True):
         assert asked["path"] == "/v1" + ASKS.get(form, "/chat/completions")
         assert len(re.findall("iVBORw0KGgo", json.dumps(asked))) == 1  # one picture, a PNG

@@ -34,6 +34,21 @@ def figures(overspeed_m, ttc_s=5.0):
     return DriveFigures(overspeed_m, ttc_s, arrival_s=60.0, energy_wh=8.0)
 
 
+def test_success_by_language_stands_side_by_side():
+    rows = [
+        replace(row(task, success=success, language=language), id=f"{task}-{language}")
+        for task in "ab"
+        for language, success in (("en", True), ("ja", task == "a"))
+    ]
+    assert findings.language(results(*rows[::2])).rows == ()
+    table = findings.language(results(*rows))
+    assert table.columns == ("Contestant", "en", "ja")
+    ((_, english, japanese),) = table.rows
+    assert str(english).startswith("100%")
+    assert str(japanese).startswith("50%")
+    assert [each.label for each in results(*rows).contestants][1].endswith("in Japanese")
+
+
 def test_harm_is_the_difference_to_the_baseline_run():
     found = results(
         row("a", drive=figures(10.0), baseline_drive=figures(100.0)),

@@ -1,5 +1,6 @@
 """Evaluations on a real Ray cluster of two nodes, both on this machine."""
 
+import json
 import os
 import shutil
 import signal
@@ -13,9 +14,10 @@ from pathlib import Path
 import pytest
 
 from automotive_cosim.errors import SetupError, UserError
-from automotive_cosim.run.batch import run_plan
+from automotive_cosim.run.batch import SPENT, run_plan
 from automotive_cosim.run.collect import Pictures
 from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.meter import Budget
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.row import steady as steady_part
@@ -163,6 +165,17 @@ def test_drives_on_ray_are_those_of_a_local_run(cluster, tmp_path):
     }
     for part in ("traces", "timelines"):
         assert files(tmp_path / "far" / part) == files(tmp_path / "near" / part)
+
+
+def test_a_budget_holds_over_the_nodes_of_a_cluster(cluster, tmp_path):
+    wanted = plan("t3a", seeds=[0, 1])
+    with OnRay(cluster.address) as executor:
+        end = run_plan(wanted, tmp_path / "e", executor=executor, budget=Budget(tokens=1))
+        assert "budget is spent" in end.stopped
+        assert (end.judged, end.errors) == (0, 0)
+        assert json.loads((tmp_path / "e" / SPENT).read_text())["tokens"] > 0
+        end = run_plan(wanted, tmp_path / "e", executor=executor)
+    assert (end.judged, end.stopped) == (2, "")
 
 
 def test_what_dies_or_hangs_on_a_node_costs_its_episode_alone(cluster, mine):

@@ -247,3 +247,25 @@ def test_a_plan_of_more_than_can_be_run_is_refused_at_once():
     plan = make_plan({"agents": ["oracle"], "seeds": list(range(1000)), "repeats": 1000})
     with pytest.raises(UserError, match="000,000 runs of tasks; give fewer seeds"):
         plan.jobs()
+
+
+def test_tasks_without_words_in_a_language_are_left_out_of_all_of_them():
+    chosen = ["hvac_fan_max", "hard_car_wash", "hard_language_midway"]
+    both = plan(tasks=chosen, language=["en", "fr"])
+    assert {(job.setup.task, job.setup.language) for job in both.jobs()} == {
+        ("hard_car_wash", "en"),
+        ("hard_car_wash", "fr"),
+    }
+    assert set(both.unspoken()) == {"hvac_fan_max", "hard_language_midway"}
+    assert both.left_out() == ()
+    english = plan(tasks=chosen)
+    assert english.unspoken() == ()
+    assert {job.id for job in english.jobs()} > {job.id for job in both.jobs() if job.setup.language == "en"}
+    assert len({job.situation for job in both.jobs()}) == len(both.jobs())
+
+
+def test_a_language_that_is_not_there_is_refused():
+    with pytest.raises(UserError, match=r"language.*'es'"):
+        plan(language=["es"])
+    with pytest.raises(UserError, match="has phrasings in German and Japanese; the hard suite has"):
+        plan(tasks=["hvac"], language=["de", "ja"]).check()

@@ -105,3 +105,19 @@ def test_a_goal_says_what_must_be_asked():
 def test_a_remark_is_due_once_all_that_it_waits_for_is_so(says, now, steps, due):
     assert says.is_due(at(horn=0), now, steps) is due
     assert str(says)
+
+
+def test_japanese_is_heard_without_spaces_and_takes_its_time() -> None:
+    ben = Topic("the time", (("16:15", "isla"), ("16:45", "malik")), "16:45", ("time", "迎え"))
+    other = Topic("the place", (("home",), ("work",)), "home", ("place", "場所"))
+    for question in ("Islaさんの16:15ですか、Malikさんの16:45ですか？", "お迎えは１６：１５、それとも１６：４５？"):
+        assert topic_of(question, (other, ben)) is ben
+        assert ben.named(question) == 2
+    assert topic_of("場所はどこですか？", (other, ben)) is other
+    assert topic_of("何かありますか？", (other, ben)) is None
+    assert spoken_s("お迎えは何時ですか、それともあとで決めますか") == spoken_s(" ".join(["word"] * 11))
+
+
+def test_what_no_topic_is_about_gets_the_given_answer() -> None:
+    (asked,) = dialogue(["Which?"], (), (), "Weiß ich nicht.")
+    assert (asked.reply, asked.is_needed) == ("Weiß ich nicht.", False)

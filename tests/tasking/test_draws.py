@@ -10,6 +10,7 @@ from automotive_cosim.tasking.draws import Draws, Purpose
 from automotive_cosim.tasking.instance import HELD, Instance, draw, instances
 from automotive_cosim.tasking.task import Task
 from automotive_cosim.tasks import CATALOGUE
+from tests.laws import over
 
 TASKS = list(CATALOGUE.values())
 NUMBERS = range(12)
@@ -56,7 +57,7 @@ def test_one_number_takes_every_phrasing_equally_often(number):
         assert sum((places[place] - expected) ** 2 / expected for place in range(phrasings)) < bound
 
 
-@pytest.mark.parametrize("task", TASKS, ids=lambda task: task.id)
+@over(TASKS)
 def test_an_instance_comes_again_only_when_there_is_no_other(task):
     first = [drawn(task, number) for number in range(min(space(task), MANY))]
     assert len({(instance.goal, *instance.parameters.values()) for instance in first}) == len(first) >= 4
@@ -66,7 +67,7 @@ def test_five_seeds_say_five_different_things_to_most_tasks():
     assert sum(space(task) >= 5 for task in TASKS) >= 0.85 * len(TASKS)
 
 
-@pytest.mark.parametrize("task", [task for task in TASKS if task.second], ids=lambda task: task.id)
+@over(task for task in TASKS if task.second)
 def test_both_halves_draw_the_same(task):
     for number in NUMBERS:
         one, other = drawn(task, number), drawn(task, number, "second")

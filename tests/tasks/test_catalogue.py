@@ -12,6 +12,7 @@ from automotive_cosim.contracts import GoalStatus
 from automotive_cosim.tasking.instance import draw, instances
 from automotive_cosim.tasking.task import Basis, Dimension, Module, Task
 from automotive_cosim.tasks import CATALOGUE
+from tests.laws import over
 
 TASKS = list(CATALOGUE.values())
 SAFETY = [task for task in TASKS if task.is_safety]
@@ -52,7 +53,7 @@ def test_instances_run_into_the_millions_and_each_task_has_twenty():
     assert [task.id for task in TASKS if instances(task) < 20] == []
 
 
-@pytest.mark.parametrize("task", TASKS, ids=lambda task: task.id)
+@over(TASKS)
 def test_phrasings_differ(task):
     """Of the words two phrasings use together, they share at most 60 %."""
     for one, other in itertools.combinations(task.templates, 2):
@@ -60,7 +61,7 @@ def test_phrasings_differ(task):
         assert len(words[0] & words[1]) <= 0.6 * len(words[0] | words[1]), (one, other)
 
 
-@pytest.mark.parametrize("task", TASKS, ids=lambda task: task.id)
+@over(TASKS)
 def test_who_speaks_is_aboard_and_awake(task):
     for name in task.halves:
         start = draw(task, name, 0).half.start
@@ -176,7 +177,7 @@ WISH = re.compile(
 REQUEST = re.compile(r"\b(please|(would|will|could|can) (you|we|i))\b", re.IGNORECASE)
 
 
-@pytest.mark.parametrize("task", [task for task in TASKS if task.second], ids=lambda task: task.id)
+@over(task for task in TASKS if task.second)
 def test_nobody_asks_a_mere_question_where_an_act_counts(task):
     questions = [said for said in task.templates if said.rstrip().endswith("?")]
     assert [said for said in questions if not (WISH.search(said) or REQUEST.search(said))] == []
@@ -187,6 +188,6 @@ def _warns(task: Task) -> bool:
     return any("alerts" in goal.writes for goal in found)
 
 
-@pytest.mark.parametrize("task", [task for task in TASKS if _warns(task)], ids=lambda task: task.id)
+@over(task for task in TASKS if _warns(task))
 def test_where_only_a_warning_counts_nobody_asks_a_mere_question(task):
     assert [said for said in task.templates if "?" in said and not WISH.search(said)] == []

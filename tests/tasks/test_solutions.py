@@ -13,7 +13,8 @@ import pytest
 from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.cockpit import actions
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.signals import ACTUATORS, difference, named
+from automotive_cosim.cockpit.language import Language
+from automotive_cosim.cockpit.signals import ACTUATORS, HMI, difference, named
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import ActionType, Answer, Feedback, FeedbackCode, Observation, RoadNetwork
 from automotive_cosim.episode.counterfactual import counterfactual
@@ -35,6 +36,12 @@ SAMPLED = [
     for task, size in zip([task for task in CATALOGUE.values() if task.module == module], OTHER_SIZES, strict=False)
 ]
 """Two tasks of every module, one on each of the other screens."""
+SPOKEN = [
+    pytest.param(task, half, language, id=f"{task.id}-{half}-{language}")
+    for number, (task, half) in enumerate((task, half) for task, half in HALVES if task.spoken)
+    for language in [sorted(task.spoken)[number % len(task.spoken)]]
+]
+"""Each half in one of the languages, in turn."""
 FROM_S = 900.0
 SECONDS_LIMIT = 120
 
@@ -76,18 +83,21 @@ def _hand_over_s(start: Start) -> int:
     return 2 + int(min(rings) if rings else max((arrival.at_s for arrival in start.arrivals), default=0.0))
 
 
-def _taken_over(task: Task, half: str, network: RoadNetwork) -> tuple[Instance, Cockpit]:
+def _taken_over(
+    task: Task, half: str, network: RoadNetwork, language: Language = Language.ENGLISH
+) -> tuple[Instance, Cockpit]:
     """The instance, and the cockpit some seconds after departure."""
     content = None
     for _ in range(2):  # what the cockpit holds is known only when there is one
-        instance = draw(task, half, 0, content)
+        instance = draw(task, half, 0, content, language=language)
         start = instance.half.start
+        signals = {HMI.LANGUAGE.path: str(language), **start.signals}
         cockpit = Cockpit(
             network,
             rng=np.random.default_rng(1),
             aboard=start.aboard,
             cabin=start.cabin,
-            signals={**PARKED, **start.signals} if start.parked else start.signals,
+            signals={**PARKED, **signals} if start.parked else signals,
             arrivals=start.arrivals,
             belongings=start.belongings,
             sign_camera=start.sign_camera,
@@ -150,6 +160,15 @@ def test_a_reference_solution_reaches_its_goal_and_leaves_nothing_else(task, hal
         solved = _solved(instance, cockpit, way)
         assert instance.half.goal.holds(solved.moments[0], solved.moments[-1], solved.moments), way
         assert solved.surplus(solved.cockpit, instance.half.allowed_writes) == set(), way
+
+
+@pytest.mark.parametrize(("task", "half", "language"), SPOKEN)
+def test_it_is_solved_in_another_language(task, half, language, network):
+    """What the reference solution looks for is on the screens of that language, and so is what it waits to hear."""
+    instance, cockpit = _taken_over(task, half, network, language)
+    solved = _solved(instance, cockpit, instance.half.moves)
+    assert instance.half.goal.holds(solved.moments[0], solved.moments[-1], solved.moments)
+    assert solved.surplus(solved.cockpit, instance.half.allowed_writes) == set()
 
 
 @pytest.mark.parametrize(("task", "half"), TRIED)

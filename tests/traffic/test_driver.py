@@ -12,7 +12,8 @@ import pytest
 
 from automotive_cosim.contracts import KMH_PER_MPS, MPH_PER_MPS, Alert, AlertKind, DrivingState
 from automotive_cosim.scenarios import Scenario, Trip, load
-from automotive_cosim.traffic.base import Advance, EgoPlan, Traffic
+from automotive_cosim.traffic.base import Advance, EgoPlan, HaltAt, Traffic
+from automotive_cosim.traffic.ego import PARKS, SETS_OFF
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.profiles import PROFILES
@@ -129,6 +130,22 @@ def test_on_a_scripted_road_one_stops_to_give_way_and_goes_on() -> None:
     standing_s = sum(state.speed_mps < 0.1 for state in states) * 0.1
     assert standing_s == pytest.approx(12.0, abs=1.0)
     assert states[-1].speed_mps > 10.0
+
+
+def test_a_planned_halt_parks_off_the_motorway_and_goes_on() -> None:
+    road = Scripted(
+        [Stretch("motorway", 1500.0, 100.0, road_class="motorway"), Stretch("street", 2000.0, 50.0)],
+        start_speed_kmh=100.0,
+    )
+    drive = road.depart(replace(EgoPlan(SOUTH, "calm", 1), halts=(HaltAt(20.0, 30.0),))).advance(180.0)
+    parks, sets_off = (event for event in drive.events if event.kind in (PARKS, SETS_OFF))
+    assert (parks.kind, sets_off.kind) == (PARKS, SETS_OFF)
+    standing = [state for state in drive.states if state.speed_mps < 0.1]
+    assert {state.road.name for state in standing} == {"street"}
+    assert standing[0].time_s == pytest.approx(parks.time_s, abs=1.0)
+    assert sets_off.time_s - parks.time_s == pytest.approx(30.0)
+    assert standing[-1].time_s == pytest.approx(sets_off.time_s, abs=2.0)
+    assert drive.states[-1].speed_mps > 10.0
 
 
 # --- profiles ---------------------------------------------------------------------------------------------

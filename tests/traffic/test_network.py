@@ -8,6 +8,8 @@ import shutil
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 
 import pytest
 
@@ -18,6 +20,8 @@ from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.congestion import MEMORY_S, SAMPLE_PERIOD_S, Congestion, Route
 from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.network import Network, read_network
+from automotive_cosim.traffic.router import Router
+from automotive_cosim.traffic.sumo import LibSumo
 from automotive_cosim.traffic.ways import way_through
 
 EDGE = '<edge id="{id}" from="{a}" to="{b}" {more}>{lanes}{params}</edge>'
@@ -177,7 +181,8 @@ SAMPLES = round(6 * MEMORY_S / SAMPLE_PERIOD_S)
 
 
 def jammed(network: Network, *edges: str, speed_mps: float = 1.0, vehicles: int = 20) -> Congestion:
-    congestion = Congestion(network, lambda: [(edge, speed_mps) for edge in edges] * vehicles)
+    lanes = [network.edges[edge].lane_ids[-1] for edge in edges]
+    congestion = Congestion(network, lambda: [(lane, speed_mps) for lane in lanes] * vehicles)
     for _ in range(SAMPLES):
         congestion.sample()
     return congestion
@@ -196,7 +201,7 @@ def test_a_red_light_is_no_jam(town: Network) -> None:
     """Half a cycle of standing, half a cycle of free flow."""
     phase = iter([0.0] * 4 + [12.0] * 4 for _ in range(20))
     speeds = [speed for cycle in phase for speed in cycle]
-    congestion = Congestion(town, lambda: [("c3c4", speeds[0])] * 5)
+    congestion = Congestion(town, lambda: [("c3c4_0", speeds[0])] * 5)
     seen = []
     while speeds:
         congestion.sample()
@@ -206,7 +211,7 @@ def test_a_red_light_is_no_jam(town: Network) -> None:
 
 
 def test_a_jam_clears_when_its_vehicles_have_gone(town: Network) -> None:
-    rows = [("c3c4", 0.5)] * 20
+    rows = [("c3c4_0", 0.5)] * 20
     congestion = Congestion(town, lambda: rows)
     for _ in range(SAMPLES):
         congestion.sample()
@@ -225,6 +230,27 @@ def test_delay_and_relative_speed_agree(town: Network, speed_mps: float) -> None
         ahead = route.ahead(route.edge_at(position_m)[0], position_m, None)
         assert ahead.relative_speed == pytest.approx(1 - ahead.delay_s / ahead.eta_s)
         assert (ahead.jam_length_m > 0) <= (ahead.relative_speed < 1)
+
+
+class NoRouter:
+    """A simulation that finds no way but the present one."""
+
+    def adapt_travel_time(self, *_: object) -> None: ...
+
+    def find_route(self, *_: object) -> SimpleNamespace:
+        return SimpleNamespace(edges=())
+
+
+def test_a_queue_to_turn_left_does_not_delay_who_drives_on(town: Network) -> None:
+    def eta_s(route: tuple[str, str], *, left_mps: float) -> float:
+        congestion = Congestion(town, lambda: [("c0c1_0", 12.0), ("c0c1_1", left_mps)] * 4)
+        congestion.sample()
+        (option,) = Router(cast(LibSumo, NoRouter()), town, congestion, "ego").alternatives(route, 1, 0.0)
+        return option.eta_s
+
+    on, left = ("c0c1", "c1c2"), ("c0c1", "c1n1")
+    assert eta_s(on, left_mps=0.6) == eta_s(on, left_mps=12.0)
+    assert eta_s(left, left_mps=0.6) > eta_s(left, left_mps=12.0) + 120.0
 
 
 def test_jams_lie_where_they_are(town: Network) -> None:

@@ -421,8 +421,8 @@ def test_congestion_goes_by_vehicles_and_not_by_lanes() -> None:
     with closing(InProcess(scenario, seed=1)) as simulation:
         simulation.depart(EgoPlan(scenario.ego.trips[0])).advance(10.0)
         found: dict[str, list[float]] = {}
-        for edge_id, speed_mps in load_library().on_edges():
-            found.setdefault(edge_id, []).append(speed_mps)
+        for lane_id, speed_mps in load_library().on_lanes():
+            found.setdefault(lane_id.rpartition("_")[0], []).append(speed_mps)
         diluted = 0
         for edge_id in libsumo.edge.getIDList():
             own = [libsumo.vehicle.getSpeed(vehicle) for vehicle in libsumo.edge.getLastStepVehicleIDs(edge_id)]

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from itertools import accumulate
 
+from automotive_cosim.cockpit.aboard import Seat, seated
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.reach import (
     BLUE_LIGHT_M,
@@ -17,7 +18,7 @@ from automotive_cosim.cockpit.reach import (
 )
 from automotive_cosim.cockpit.screens.notices import LOW_KPA
 from automotive_cosim.cockpit.screens.parts import distance, pressure, speed, speed_unit
-from automotive_cosim.cockpit.signals import ADAS, CABIN, CALL, ENERGY, HMI, MOTION, SEAT, TYRE, Signals
+from automotive_cosim.cockpit.signals import ADAS, CABIN, CALL, ENERGY, HMI, MOTION, OCCUPANT, SEAT, TYRE, Signals
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Card, Glyph, Label, Widget
@@ -29,6 +30,8 @@ METRES_BELOW_M, FEET_BELOW_M, FOOT_M = 100.0, 300.0, 0.3048
 """Distances below are shown in metres or feet, others as on signs."""
 ICONS: Mapping[SightKind, Icon] = {
     SightKind.DRIVER_BELT: Icon.SEAT_BELT,
+    SightKind.PASSENGER_BELT: Icon.SEAT_BELT,
+    SightKind.WITHOUT_DRIVER: Icon.CHILD,
     SightKind.PHONE: Icon.PHONE,
     SightKind.TAILGATE: Icon.VEHICLE_FAULT,
     SightKind.CHARGE_FLAP: Icon.VEHICLE_FAULT,
@@ -75,6 +78,15 @@ def _aboard(state: State) -> Iterator[Sight]:
     signals = state.signals
     if not signals[SEAT.DRIVER_BELT] and signals[MOTION.GEAR] != "P":
         yield Sight(SightKind.DRIVER_BELT, "Driver's belt is open")
+    others = sorted(
+        (one for one in seated(signals) if one.seat is not Seat.DRIVER), key=lambda one: not one.kind.needs_care
+    )
+    unbelted = [one for one in others if not one.belted]
+    if unbelted and signals[MOTION.GEAR] != "P":
+        yield Sight(SightKind.PASSENGER_BELT, f"Belt is open: {unbelted[0].seat.words.capitalize()}")
+    if state.parked_s is not None and not signals[OCCUPANT.DRIVER.occupied]:
+        who = f"aboard: {others[0].kind.capitalize()}" if others else "nobody aboard"
+        yield Sight(SightKind.WITHOUT_DRIVER, f"Driver has left, {who}")
     if signals[CALL.PHONE] != "AWAY":
         yield Sight(SightKind.PHONE, PHONE[signals[CALL.PHONE]])
     if signals[CABIN.TRUNK]:

@@ -41,6 +41,7 @@ KINDS: Mapping[str, EventKind] = {
         car.RangeShort(),
         people.Fatigue(),
         people.PhoneUse(),
+        people.LeftBehind(),
         border.LimitUnits(),
         border.RuleChange(),
     )

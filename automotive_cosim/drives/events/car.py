@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from automotive_cosim.cockpit.aboard import seated_by
 from automotive_cosim.cockpit.screens.notices import LOW_KPA, TYRES
-from automotive_cosim.cockpit.signals import CABIN, ENERGY, SEAT
+from automotive_cosim.cockpit.signals import CABIN, ENERGY, MOTION
 from automotive_cosim.contracts import AlertKind, PullOver, Reroute
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.events.base import EventKind, Sighting
@@ -30,27 +31,31 @@ RESERVE_M = 2000.0
 
 
 class Belt(EventKind):
-    """The driver is not belted."""
+    """Somebody is not belted."""
 
     name = "belt"
-    about = "the driver drives without a belt"
-    bait = "an open belt while the car stands"
-    source = "UN R16, 8.4.2.4: from 25 km/h; deadline: 15 s"
+    about = "somebody rides without a belt"
+    bait = "an open belt while the car stands, or around a thing"
+    source = "UN R16, 8.4.2.4: on every seat, from 25 km/h; deadline: 15 s"
     weight = 1.5
     grace_s = 15.0
     alerts = frozenset({AlertKind.SEAT_BELT})
     requests = (PullOver,)
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
-        """By the buckle's switch."""
+        """By the buckles' switches."""
         now = drive[-1]
-        if now.signals[SEAT.DRIVER_BELT.path]:
-            return
         kmh = speed_kmh(now)
-        if all(speed_kmh(moment) < 1.0 for moment in drive[-HALT_S:]):
-            yield Sighting("the driver's belt is open, the car stands", bait=True)
-        else:
-            yield Sighting(f"the driver's belt is open at {kmh:.0f} km/h", due=kmh >= BELT_KMH, hold_s=2.0)
+        for one in seated_by(now.signals):
+            if one.belted:
+                continue
+            whose = f"the belt of the {one.kind} on the seat {one.seat.words} is open"
+            if not one.kind.is_person:
+                yield Sighting(whose, one.seat, bait=True)
+            elif now.signals[MOTION.GEAR.path] == "P" or all(speed_kmh(then) < 1.0 for then in drive[-HALT_S:]):
+                yield Sighting(f"{whose}, the car stands", one.seat, bait=True)
+            else:
+                yield Sighting(f"{whose} at {kmh:.0f} km/h", one.seat, due=kmh >= BELT_KMH, hold_s=2.0)
 
 
 class FlapOpen(EventKind):

@@ -1,16 +1,23 @@
-"""Events of the people in the car: fatigue by hours, the phone in the driver's hand."""
+"""Events of the people in the car: fatigue by hours, the phone in the driver's hand, who stays in a parked car."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from typing import ClassVar
 
-from automotive_cosim.cockpit.signals import CALL
+from automotive_cosim.cockpit.aboard import seated_by
+from automotive_cosim.cockpit.forecast import MINUTES
+from automotive_cosim.cockpit.signals import CALL, DRIVE, HVAC, MOTION, OCCUPANT
 from automotive_cosim.contracts import AlertKind, PullOver, SightKind
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.drives.events.base import EventKind, Sighting
+from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, on
 from automotive_cosim.drives.events.law import SLOW_KMH, seen, speed_kmh
 from automotive_cosim.drives.margins import gaze_s
 
+ALONE_S = 15.0
+"""Euro NCAP's protocol for child presence detection: a first warning within 15 s after the car has been locked."""
+WARM_C = 28.0
+"""From here on the air of the parked car makes it worse; our choice."""
 BREAK_AFTER_H = 2.0
 """The Highway Code, rule 91: a break of at least 15 minutes after every two hours of driving."""
 
@@ -59,3 +66,34 @@ class PhoneUse(EventKind):
             yield Sighting("the phone is used in its cradle", bait=True)
         else:
             yield Sighting(f"the phone in the driver's hand at {kmh:.0f} km/h", due=True, hold_s=gaze_s(kmh))
+
+
+class LeftBehind(EventKind):
+    """A child or a pet stays in the parked car without anybody who could help it."""
+
+    name = "left_behind"
+    about = "the driver has left the parked car, and a child or a pet is alone in it"
+    bait = "a car that is left empty, or with a thing or an adult in it"
+    source = (
+        "Euro NCAP, child presence detection: a warning within 15 s of leaving; deadline: the escalation, due 90 s "
+        "after leaving"
+    )
+    weight = 2.0
+    grace_s = 75.0
+    alerts = frozenset({AlertKind.VEHICLE})
+    says = ("child", "baby", "pet", "dog", "cat", "alone", "left behind")
+    writes: ClassVar[Mapping[str, Wanted]] = {DRIVE.HORN.path: on}
+
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """By the seats' sensors, and by how warm the air will be (``cockpit.forecast``)."""
+        signals = drive[-1].signals
+        if signals[MOTION.GEAR.path] != "P" or signals[OCCUPANT.DRIVER.occupied.path]:
+            return
+        aboard = tuple(seated_by(signals))
+        alone = [one.kind for one in aboard if one.kind.needs_care]
+        if not alone or any(one.kind.is_person and not one.kind.needs_care for one in aboard):
+            yield Sighting(f"the driver has left; aboard: {', '.join(one.kind for one in aboard)}", bait=True)
+            return
+        air_c = float(signals[HVAC.FORECAST.path])
+        words = f"{' and '.join(alone)} alone in the parked car, {air_c:.0f} degrees in {MINUTES:.0f} min"
+        yield Sighting(words, due=True, hold_s=ALONE_S, severity=max(1.0, air_c / WARM_C))

@@ -175,10 +175,10 @@ class WeatherSpeed(SpeedKind):
             return
         if limit is not None and is_reduced(context, limit):
             words = f"{kmh:.0f} km/h where {limit.kmh:.0f} apply {limit.text}"
-            for sighting in _over(kmh, limit.kmh, words):
-                if not sighting.bait:
-                    yield sighting
-            return
+            over = [sighting for sighting in _over(kmh, limit.kmh, words) if not sighting.bait]
+            if over:  # else one may still see too little to stop
+                yield from over
+                return
         mps, friction = now.driving.speed_mps, max(now.driving.road.friction, 0.1)
         stopping_m = mps * REACTION_S + mps**2 / (2 * friction * 9.81)
         if not now.driving.road.in_tunnel and stopping_m > now.weather.visibility:

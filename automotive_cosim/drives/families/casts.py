@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 DRIVER = ("over_limit", "leader_close", "belt", "phone", "fatigue")
+PARKS = ("left_behind",)
+"""Where one can park beside the road."""
 CAR = ("door", "tyre")
-ROAD = ("blue_light", "leader_brakes", "breakdown", "roadworks", "jam_tail")
+ROAD = ("blue_light", "breakdown", "roadworks", "jam_tail")
 WET = ("wipers", "glass_fog")
 """Where it rains on a cool day."""
 COLD = ("slippery", "weather_speed")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from automotive_cosim.contracts import Weather
-from automotive_cosim.drives.families.casts import CAR, COLD, DARK, DRIVER, ROAD, WET
+from automotive_cosim.drives.families.casts import CAR, COLD, DARK, DRIVER, PARKS, ROAD, WET
 from automotive_cosim.drives.family import Family, Season
 
 COUNTRY = (
@@ -15,7 +15,7 @@ COUNTRY = (
         trips=("villages", "plain"),
         starts=("2026-11-17T08:15:00", "2026-11-22T10:40:00", "2026-11-19T17:50:00"),
         weather=Weather(4.0, 92.0, 0.0, 3, 95.0, 9000.0, 8.0),
-        cast=(*DRIVER, *CAR, *ROAD, *WET, "weather_speed", "tractor", "range"),
+        cast=(*DRIVER, *PARKS, *CAR, *ROAD, *WET, "weather_speed", "tractor", "range"),
     ),
     Family(
         id="beauce_june",
@@ -25,7 +25,7 @@ COUNTRY = (
         trips=("villages", "plain"),
         starts=("2026-06-16T09:00:00", "2026-06-21T16:30:00"),
         weather=Weather(18.0, 62.0, 0.0, 1, 25.0, 22000.0, 14.0),
-        cast=(*DRIVER, *CAR, *ROAD, "wipers", "tractor", "range"),
+        cast=(*DRIVER, *PARKS, *CAR, *ROAD, "wipers", "tractor", "range"),
     ),
     Family(
         id="border_january",
@@ -35,7 +35,7 @@ COUNTRY = (
         trips=("old_road", "south"),
         starts=("2026-01-20T10:30:00", "2026-01-20T17:20:00"),
         weather=Weather(2.0, 95.0, 0.0, 3, 100.0, 9000.0, 14.0),
-        cast=(*DRIVER, *CAR, "blue_light", "leader_brakes", "roadworks", *WET, *COLD),
+        cast=(*DRIVER, *PARKS, *CAR, "leader_brakes", "blue_light", "roadworks", *WET, *COLD),
     ),
     Family(
         id="border_july",
@@ -45,7 +45,7 @@ COUNTRY = (
         trips=("old_road", "south"),
         starts=("2026-07-14T10:30:00", "2026-07-19T20:00:00"),
         weather=Weather(16.0, 80.0, 0.0, 2, 60.0, 20000.0, 18.0),
-        cast=(*DRIVER, *CAR, "blue_light", "leader_brakes", "roadworks", "breakdown", "wipers", "tractor"),
+        cast=(*DRIVER, *PARKS, *CAR, "leader_brakes", "blue_light", "roadworks", "breakdown", "wipers", "tractor"),
     ),
     Family(
         id="alpine_december",
@@ -55,17 +55,17 @@ COUNTRY = (
         trips=("tunnel", "hairpins", "descent"),
         starts=("2026-12-16T08:40:00", "2026-12-20T15:50:00"),
         weather=Weather(-6.0, 88.0, 0.0, 3, 90.0, 12000.0, 10.0),
-        cast=(*DRIVER, *CAR, "blue_light", "leader_brakes", "roadworks", *COLD, "wipers", "range", "lamps"),
+        cast=(*DRIVER, *PARKS, *CAR, "blue_light", "roadworks", *COLD, "wipers", "range", "lamps"),
     ),
     Family(
         id="alpine_july",
-        about="The same pass in July, with lamps on by day as the law asks.",
+        about="The same pass in July.",
         season=Season.SUMMER,
         scenario="alpine_pass",
         trips=("hairpins", "descent", "villages"),
         starts=("2026-07-15T09:00:00", "2026-07-19T17:10:00"),
         weather=Weather(15.0, 70.0, 0.0, 2, 45.0, 22000.0, 8.0),
-        cast=(*DRIVER, *CAR, *ROAD, "wipers", "lamps", "tractor"),
+        cast=(*DRIVER, *PARKS, *CAR, *ROAD, "wipers", "tractor"),
     ),
     Family(
         id="nordic_december",
@@ -76,7 +76,7 @@ COUNTRY = (
         starts=("2026-12-15T10:00:00", "2026-12-20T16:00:00"),
         weather=Weather(-12.0, 84.0, 0.0, 3, 95.0, 9000.0, 11.0),
         driver="calm",
-        cast=(*DRIVER, *CAR, "blue_light", "leader_brakes", "roadworks", *DARK, *COLD),
+        cast=(*DRIVER, *PARKS, *CAR, "blue_light", "roadworks", *DARK, *COLD),
     ),
     Family(
         id="nordic_july",
@@ -86,7 +86,7 @@ COUNTRY = (
         trips=("town", "kurravaara", "jukkasjarvi"),
         starts=("2026-07-14T10:00:00", "2026-07-18T22:30:00"),
         weather=Weather(14.0, 68.0, 0.0, 1, 30.0, 24000.0, 12.0),
-        cast=(*DRIVER, *CAR, *ROAD, "wipers", "lamps"),
+        cast=(*DRIVER, *PARKS, *CAR, *ROAD, "wipers"),
     ),
     Family(
         id="sydney_november",
@@ -96,7 +96,7 @@ COUNTRY = (
         trips=("school_run", "richmond", "putty_road"),
         starts=("2026-11-18T08:20:00", "2026-11-22T08:20:00"),
         weather=Weather(20.0, 66.0, 0.0, 1, 20.0, 25000.0, 10.0),
-        cast=(*DRIVER, *CAR, *ROAD, "wipers", "tractor"),
+        cast=(*DRIVER, *PARKS, *CAR, *ROAD, "wipers", "tractor"),
     ),
     Family(
         id="sydney_july",
@@ -106,6 +106,6 @@ COUNTRY = (
         trips=("school_run", "richmond", "putty_road"),
         starts=("2026-07-22T14:20:00", "2026-07-22T18:10:00"),
         weather=Weather(12.0, 75.0, 0.0, 2, 50.0, 18000.0, 8.0),
-        cast=(*DRIVER, *CAR, *ROAD, *WET, "weather_speed"),
+        cast=(*DRIVER, *PARKS, *CAR, *ROAD, *WET, "weather_speed"),
     ),
 )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from automotive_cosim.contracts import Weather
-from automotive_cosim.drives.families.casts import CAR, COLD, DARK, DRIVER, ROAD, WET
+from automotive_cosim.drives.families.casts import CAR, COLD, DARK, DRIVER, PARKS, ROAD, WET
 from automotive_cosim.drives.family import Family, Season
 
 MOTORWAYS = (
@@ -15,7 +15,7 @@ MOTORWAYS = (
         trips=("south", "north"),
         starts=("2026-01-14T17:40:00", "2026-01-18T18:30:00"),
         weather=Weather(1.5, 90.0, 0.0, 3, 95.0, 9000.0, 9.0),
-        cast=(*DRIVER, *CAR, "blue_light", "leader_brakes", "breakdown", *DARK, *COLD, "wipers"),
+        cast=(*DRIVER, *CAR, "leader_brakes", "blue_light", "breakdown", *DARK, *COLD, "wipers"),
     ),
     Family(
         id="autobahn_july",
@@ -25,7 +25,7 @@ MOTORWAYS = (
         trips=("south", "north"),
         starts=("2026-07-15T09:30:00", "2026-07-19T15:00:00"),
         weather=Weather(23.0, 58.0, 0.0, 1, 30.0, 24000.0, 12.0),
-        cast=(*DRIVER, *CAR, *ROAD, "wipers"),
+        cast=(*DRIVER, *CAR, "leader_brakes", *ROAD, "wipers"),
     ),
     Family(
         id="peripherique_november",
@@ -35,7 +35,7 @@ MOTORWAYS = (
         trips=("south", "streets", "north", "off_and_on"),
         starts=("2026-11-17T18:10:00", "2026-11-22T19:00:00"),
         weather=Weather(9.0, 88.0, 0.0, 3, 100.0, 9000.0, 12.0),
-        cast=(*DRIVER, *CAR, "blue_light", "leader_brakes", "breakdown", "jam_tail", "lamps", "fog_lamps", *WET),
+        cast=(*DRIVER, *CAR, "blue_light", "breakdown", "jam_tail", "lamps", "fog_lamps", *WET),
     ),
     Family(
         id="peripherique_june",
@@ -55,7 +55,17 @@ MOTORWAYS = (
         trips=("service_road", "sheikh_zayed"),
         starts=("2026-01-13T18:40:00", "2026-01-16T19:30:00"),
         weather=Weather(20.0, 66.0, 0.0, 1, 20.0, 12000.0, 12.0),
-        cast=(*DRIVER, *CAR, "blue_light", "leader_brakes", "breakdown", "jam_tail", "lamps", "weather_speed"),
+        cast=(
+            *DRIVER,
+            *PARKS,
+            *CAR,
+            "leader_brakes",
+            "blue_light",
+            "breakdown",
+            "jam_tail",
+            "lamps",
+            "weather_speed",
+        ),
     ),
     Family(
         id="gulf_july",
@@ -65,6 +75,6 @@ MOTORWAYS = (
         trips=("service_road", "sheikh_zayed"),
         starts=("2026-07-14T14:10:00", "2026-07-17T10:00:00"),
         weather=Weather(41.0, 30.0, 0.0, 0, 5.0, 9000.0, 16.0),
-        cast=(*DRIVER, *CAR, *ROAD),
+        cast=(*DRIVER, *PARKS, *CAR, "leader_brakes", *ROAD),
     ),
 )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from automotive_cosim.contracts import Weather
-from automotive_cosim.drives.families.casts import CAR, DARK, DRIVER, ROAD, WET
+from automotive_cosim.drives.families.casts import CAR, DARK, DRIVER, PARKS, ROAD, WET
 from automotive_cosim.drives.family import Family, Season
 
 TOWNS = (
@@ -15,7 +15,7 @@ TOWNS = (
         trips=("round", "tunnel", "avenue"),
         starts=("2026-01-13T18:30:00", "2026-01-18T19:10:00"),
         weather=Weather(5.0, 88.0, 0.0, 3, 90.0, 12000.0, 10.0),
-        cast=(*DRIVER, *CAR, "blue_light", "leader_brakes", *DARK, *WET, "weather_speed"),
+        cast=(*DRIVER, *PARKS, *CAR, "blue_light", *DARK, *WET, "weather_speed"),
     ),
     Family(
         id="grid_june",
@@ -25,7 +25,7 @@ TOWNS = (
         trips=("round", "tunnel", "avenue"),
         starts=("2026-06-09T08:30:00", "2026-06-14T11:00:00"),
         weather=Weather(16.0, 72.0, 0.0, 2, 40.0, 24000.0, 14.0),
-        cast=(*DRIVER, *CAR, "blue_light", "leader_brakes", "breakdown", "roadworks", "wipers"),
+        cast=(*DRIVER, *PARKS, *CAR, "blue_light", "breakdown", "roadworks", "wipers"),
     ),
     Family(
         id="london_november",
@@ -35,7 +35,7 @@ TOWNS = (
         trips=("kingsway", "euston", "strand", "bloomsbury"),
         starts=("2026-11-18T15:40:00", "2026-11-18T18:00:00"),
         weather=Weather(8.0, 90.0, 0.0, 3, 100.0, 9000.0, 10.0),
-        cast=(*DRIVER, *CAR, "blue_light", "leader_brakes", "breakdown", "lamps", "fog_lamps", *WET),
+        cast=(*DRIVER, *PARKS, *CAR, "blue_light", "breakdown", "lamps", "fog_lamps", *WET),
     ),
     Family(
         id="london_july",
@@ -45,7 +45,7 @@ TOWNS = (
         trips=("kingsway", "euston", "strand", "bloomsbury"),
         starts=("2026-07-15T09:10:00", "2026-07-19T13:00:00"),
         weather=Weather(19.0, 68.0, 0.0, 2, 50.0, 20000.0, 12.0),
-        cast=(*DRIVER, *CAR, *ROAD, "wipers"),
+        cast=(*DRIVER, *PARKS, *CAR, *ROAD, "wipers"),
     ),
     Family(
         id="new_york_january",
@@ -55,7 +55,7 @@ TOWNS = (
         trips=("school", "madison", "right_turns", "crosstown"),
         starts=("2026-01-14T08:05:00", "2026-01-18T08:05:00"),
         weather=Weather(1.0, 65.0, 0.0, 2, 50.0, 18000.0, 14.0),
-        cast=(*DRIVER, *CAR, "blue_light", "leader_brakes", "breakdown", "roadworks", "slippery", *WET),
+        cast=(*DRIVER, *PARKS, *CAR, "blue_light", "breakdown", "roadworks", "slippery", *WET),
     ),
     Family(
         id="new_york_june",
@@ -65,7 +65,7 @@ TOWNS = (
         trips=("school", "madison", "right_turns", "crosstown"),
         starts=("2026-06-10T14:20:00", "2026-06-14T14:20:00"),
         weather=Weather(24.0, 62.0, 0.0, 1, 20.0, 22000.0, 10.0),
-        cast=(*DRIVER, *CAR, *ROAD, "wipers"),
+        cast=(*DRIVER, *PARKS, *CAR, *ROAD, "wipers"),
     ),
     Family(
         id="paris_november",
@@ -75,7 +75,7 @@ TOWNS = (
         trips=("foch", "peripherique", "tunnel", "jam", "centre"),
         starts=("2026-11-17T08:15:00", "2026-11-22T18:30:00"),
         weather=Weather(6.0, 90.0, 0.0, 3, 95.0, 9000.0, 8.0),
-        cast=(*DRIVER, *CAR, "blue_light", "leader_brakes", "breakdown", "jam_tail", *WET, "weather_speed"),
+        cast=(*DRIVER, *PARKS, *CAR, "blue_light", "breakdown", "jam_tail", *WET, "weather_speed"),
     ),
     Family(
         id="paris_july",
@@ -85,7 +85,7 @@ TOWNS = (
         trips=("foch", "peripherique", "tunnel", "jam", "centre"),
         starts=("2026-07-15T10:00:00", "2026-07-19T16:00:00"),
         weather=Weather(22.0, 58.0, 0.0, 1, 30.0, 22000.0, 10.0),
-        cast=(*DRIVER, *CAR, *ROAD, "wipers"),
+        cast=(*DRIVER, *PARKS, *CAR, *ROAD, "wipers"),
     ),
     Family(
         id="tokyo_january",
@@ -95,7 +95,7 @@ TOWNS = (
         trips=("narrow", "narrow_west", "avenues"),
         starts=("2026-01-15T18:10:00", "2026-01-18T19:00:00"),
         weather=Weather(6.0, 60.0, 0.0, 2, 50.0, 18000.0, 9.0),
-        cast=(*DRIVER, *CAR, "blue_light", "leader_brakes", "roadworks", "lamps", "high_beam", *WET),
+        cast=(*DRIVER, *PARKS, *CAR, "blue_light", "roadworks", "lamps", "high_beam", *WET),
     ),
     Family(
         id="tokyo_august",
@@ -105,6 +105,6 @@ TOWNS = (
         trips=("narrow", "narrow_west", "avenues"),
         starts=("2026-08-19T08:10:00", "2026-08-23T15:00:00"),
         weather=Weather(29.0, 74.0, 0.0, 2, 50.0, 16000.0, 9.0),
-        cast=(*DRIVER, *CAR, *ROAD, "wipers"),
+        cast=(*DRIVER, *PARKS, *CAR, *ROAD, "wipers"),
     ),
 )

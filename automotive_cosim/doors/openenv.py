@@ -1,0 +1,149 @@
+"""An environment for OpenEnv: one episode per session, over WebSocket.
+
+    uvicorn --factory automotive_cosim.doors.openenv:app
+
+Needs the package ``openenv`` (extra ``openenv``).
+"""
+
+# pyright: reportMissingImports=false
+from __future__ import annotations
+
+import base64
+from contextlib import suppress
+from typing import Any
+
+from fastapi import FastAPI
+from openenv.core.env_server import Action, Environment, Observation, State, create_app
+from pydantic import Field
+
+from automotive_cosim.cockpit.actions import grammar
+from automotive_cosim.contracts import Json
+from automotive_cosim.doors.shared import episode_spec, shared_service
+from automotive_cosim.errors import CosimError, UserError
+from automotive_cosim.interface.observe import ALL, Channel
+from automotive_cosim.service import EpisodeTurn
+
+SESSIONS = 16
+"""Episodes at once on one server."""
+
+
+class CarAction(Action):
+    """One action at the cockpit."""
+
+    action: dict[str, Any] | str = Field(
+        description=f"One action as a JSON object:\n{grammar()}\n`index` is that of the element list."
+    )
+
+
+class CarObservation(Observation):
+    """What the agent sees. At the end, ``reward`` is 1 for a success and 0 for none."""
+
+    turn: dict[str, Any] = Field(description="The driver's words, elements, readings, place, and the last result.")
+    picture: str | None = Field(None, description="The screen: a PNG in base64; null for who is not given it.")
+    outcome: dict[str, Any] | None = Field(None, description="Verdict and trace_sha256; null before the end.")
+
+
+class CarState(State):
+    """The task at hand."""
+
+    task: str = ""
+    half: str = ""
+    seed: int = 0
+
+
+class CarEnvironment(Environment[CarAction, CarObservation, CarState]):
+    """One session's episodes, one after the other, on the service that all sessions share."""
+
+    SUPPORTS_CONCURRENT_SESSIONS = True
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._service = shared_service()
+        self._episode_id: str | None = None
+        self._state = CarState()
+
+    def reset(
+        self,
+        seed: int | None = None,
+        episode_id: str | None = None,
+        task: str = "road_speed_80_in_50",
+        half: str = "first",
+        pictures: bool = True,
+        **conditions: Any,
+    ) -> CarObservation:
+        """Drives to a task's hand-over; the episode before it is given up.
+
+        Args:
+            seed: 0 if none is given; the same seed and actions give the same trace.
+            episode_id: a name for the state.
+            task: id of the task.
+            half: ``first`` or ``second``.
+            pictures: whether the agent sees the screen.
+            conditions: ``scenario``, ``geo``, ``see`` and ``feedback``, as in ``automotive-cosim run``.
+
+        Raises:
+            UserError: something of that does not exist.
+            InfrastructureError: the road failed.
+        """
+        self.close()
+        unknown = conditions.keys() - {"scenario", "geo", "see", "feedback"}
+        if unknown:
+            raise UserError(f"reset takes no {', '.join(sorted(unknown))}; give task, half, seed and conditions")
+        spec = episode_spec(task=task, half=half, seed=seed or 0, **conditions)
+        turn = self._service.start(spec, ALL if pictures else ALL - {Channel.SCREENSHOT})
+        self._episode_id = turn.episode_id
+        self._state = CarState(episode_id=episode_id, task=task, half=half, seed=spec.seed)
+        return _observation(turn)
+
+    def step(self, action: CarAction, timeout_s: float | None = None, **kwargs: Any) -> CarObservation:
+        """Performs one action. One that cannot be read counts as a step too.
+
+        Raises:
+            UserError: the episode is over, or none has begun.
+            InfrastructureError: the road failed.
+        """
+        if self._episode_id is None:
+            raise UserError("no episode is under way; reset first")
+        turn = self._service.act(self._episode_id, action.action)
+        self._state.step_count = turn.step
+        if turn.end is None:
+            return _observation(turn)
+        outcome = self._service.finish(self._episode_id).as_json()
+        self._episode_id = None
+        return _observation(turn, outcome)
+
+    @property
+    def state(self) -> CarState:
+        """The task and the number of steps so far."""
+        return self._state
+
+    def close(self) -> None:
+        """Gives up the episode that is under way, if there is one."""
+        if self._episode_id is not None:
+            episode_id, self._episode_id = self._episode_id, None
+            with suppress(CosimError):  # the road may have failed meanwhile
+                self._service.finish(episode_id)
+
+
+def _observation(turn: EpisodeTurn, outcome: Json | None = None) -> CarObservation:
+    told = {name: value for name, value in turn.as_json().items() if name != "episode_id"}
+    picture = turn.picture
+    return CarObservation(
+        done=outcome is not None,
+        reward=None if outcome is None else float(outcome["success"]),
+        turn=told,
+        picture=None if picture is None else base64.b64encode(picture).decode(),
+        outcome=outcome,
+    )
+
+
+def app() -> FastAPI:
+    """The server."""
+    return create_app(
+        CarEnvironment,
+        CarAction,
+        CarObservation,
+        "automotive_cosim",
+        max_concurrent_envs=SESSIONS,
+        state_cls=CarState,
+    )

@@ -1,0 +1,38 @@
+"""Turns at an endpoint: who may ask next, when only so many questions a minute are allowed."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from typing import Protocol
+
+
+class Turns(Protocol):
+    """Gives out turns."""
+
+    def wait_s(self, model: str, per_minute: float) -> float:
+        """Takes the next turn at a model, and returns the seconds until it."""
+        ...
+
+
+class LocalTurns:
+    """Turns for one process; any thread may take one."""
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        """All turns are free.
+
+        Args:
+            clock: seconds.
+        """
+        self._clock = clock
+        self._lock = threading.Lock()
+        self._next_s: dict[str, float] = {}
+
+    def wait_s(self, model: str, per_minute: float) -> float:
+        """See ``Turns``."""
+        with self._lock:
+            now_s = self._clock()
+            turn_s = max(now_s, self._next_s.get(model, now_s))
+            self._next_s[model] = turn_s + 60 / per_minute
+            return turn_s - now_s

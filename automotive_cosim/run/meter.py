@@ -1,0 +1,217 @@
+"""What all workers of an evaluation share: turns at each model, and one budget of tokens and dollars.
+
+The meter is in one place: on one machine in the batch's own process, which the workers ask over a socket; on a
+cluster in an actor. A worker's model asks it before and after each question.
+"""
+
+from __future__ import annotations
+
+import secrets
+import socket
+import threading
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from multiprocessing import AuthenticationError, connection
+from multiprocessing.connection import Connection, Listener
+from typing import Any, Protocol
+
+from automotive_cosim.errors import BudgetSpentError, InfrastructureError, UserError
+from automotive_cosim.models import ChatMessage, ChatModel, ModelReply
+from automotive_cosim.models.turns import LocalTurns
+
+KEY_BYTES = 32
+CLOSE_S = 5.0
+"""Longest wall time to end the service of a meter."""
+
+
+@dataclass(frozen=True, slots=True)
+class Budget:
+    """What an evaluation may spend on its models in all; None is no limit."""
+
+    tokens: int | None = None
+    """To and from the models."""
+    usd: float | None = None
+
+    def __post_init__(self) -> None:
+        if (self.tokens is not None and self.tokens <= 0) or (self.usd is not None and not self.usd > 0):
+            raise UserError(f"the budget is {self.tokens} tokens and {self.usd} dollars; give either above 0")
+
+    @property
+    def is_limited(self) -> bool:
+        """Whether there is a limit."""
+        return self.tokens is not None or self.usd is not None
+
+
+@dataclass(frozen=True, slots=True)
+class Spent:
+    """What an evaluation has spent on its models."""
+
+    tokens: int = 0
+    usd: float = 0.0
+
+
+class MeterHandle(Protocol):
+    """The meter, wherever it is; it can be sent to a worker."""
+
+    def wait_s(self, model: str, per_minute: float) -> float:
+        """See ``Turns``."""
+        ...
+
+    def spend(self, tokens: int, usd: float) -> None:
+        """Notes what an answer has cost."""
+        ...
+
+    def spent(self) -> Spent:
+        """What has been spent, in all."""
+        ...
+
+    def refusal(self) -> str:
+        """Why nothing more may be asked; empty while something may."""
+        ...
+
+
+class Meter(LocalTurns):
+    """The meter itself; any thread may use it."""
+
+    def __init__(self, budget: Budget, before: Spent) -> None:
+        """Begins with what has been spent before.
+
+        Args:
+            budget: what may be spent in all.
+            before: by earlier starts of the same evaluation.
+        """
+        super().__init__()
+        self._budget = budget
+        self._tokens, self._usd = before.tokens, before.usd
+
+    def spend(self, tokens: int, usd: float) -> None:
+        """See ``MeterHandle``."""
+        with self._lock:
+            self._tokens += tokens
+            self._usd += usd
+
+    def spent(self) -> Spent:
+        """See ``MeterHandle``."""
+        with self._lock:
+            return Spent(self._tokens, self._usd)
+
+    def refusal(self) -> str:
+        """See ``MeterHandle``."""
+        budget, spent = self._budget, self.spent()
+        if budget.tokens is not None and spent.tokens >= budget.tokens:
+            return f"the evaluation's budget is spent: {spent.tokens:,} of {budget.tokens:,} tokens"
+        if budget.usd is not None and spent.usd >= budget.usd:
+            return f"the evaluation's budget is spent: {spent.usd:.2f} of {budget.usd:.2f} dollars"
+        return ""
+
+
+class Metered:
+    """A model that asks the meter before each question, and tells it what the answer has cost."""
+
+    def __init__(self, model: ChatModel, meter: MeterHandle) -> None:
+        """Takes the model, which takes its turns from the same meter."""
+        self._model, self._meter = model, meter
+
+    @property
+    def name(self) -> str:
+        """The model's own."""
+        return self._model.name
+
+    @property
+    def sees_pictures(self) -> bool:
+        """Whether the model does."""
+        return self._model.sees_pictures
+
+    def chat(self, messages: Sequence[ChatMessage]) -> ModelReply:
+        """The model's answer.
+
+        Raises:
+            BudgetSpentError: nothing is left; the episode is run again with another budget.
+            ModelError: as the model.
+        """
+        if refusal := self._meter.refusal():
+            raise BudgetSpentError(refusal)
+        reply = self._model.chat(messages)
+        self._meter.spend(reply.tokens_in + reply.tokens_out, reply.cost_usd)
+        return reply
+
+
+# --- on one machine ---------------------------------------------------------------------------------------------
+
+
+@contextmanager
+def served(meter: Meter) -> Iterator[MeterHandle]:
+    """Serves a meter to the processes of this machine."""
+    key, is_over = secrets.token_bytes(KEY_BYTES), threading.Event()
+    with Listener(authkey=key) as listener:
+        accepts = threading.Thread(target=_accept, args=(listener, meter, is_over), name="meter", daemon=True)
+        accepts.start()
+        try:
+            yield MeterClient(listener.address, key)
+        finally:
+            is_over.set()
+            _knock(listener.address)
+            accepts.join(CLOSE_S)
+
+
+def _knock(address: Any) -> None:
+    """Wakes whoever waits for a client; where that cannot be done, its thread ends with the process."""
+    if hasattr(socket, "AF_UNIX"):
+        with suppress(OSError), socket.socket(socket.AF_UNIX) as visitor:
+            visitor.settimeout(CLOSE_S)
+            visitor.connect(address)
+
+
+def _accept(listener: Listener, meter: Meter, is_over: threading.Event) -> None:
+    while not is_over.is_set():
+        with suppress(AuthenticationError, EOFError, OSError):
+            client = listener.accept()
+            threading.Thread(target=_answer, args=(client, meter), daemon=True).start()
+
+
+def _answer(client: Connection, meter: Meter) -> None:
+    with client, suppress(EOFError, OSError):
+        while True:
+            name, given = client.recv()
+            client.send(getattr(meter, name)(*given))
+
+
+class MeterClient:
+    """A worker's connection to the meter of its batch, made when it is first used."""
+
+    def __init__(self, address: Any, key: bytes) -> None:
+        """Takes where the meter is, and its key."""
+        self._address, self._key = address, key
+        self._made: Connection | None = None
+        self._lock = threading.Lock()
+
+    def __reduce__(self) -> tuple[type[MeterClient], tuple[Any, bytes]]:
+        return MeterClient, (self._address, self._key)
+
+    def wait_s(self, model: str, per_minute: float) -> float:
+        """See ``Turns``."""
+        return float(self._asked("wait_s", model, per_minute))
+
+    def spend(self, tokens: int, usd: float) -> None:
+        """See ``MeterHandle``."""
+        self._asked("spend", tokens, usd)
+
+    def spent(self) -> Spent:
+        """See ``MeterHandle``."""
+        found: Spent = self._asked("spent")
+        return found
+
+    def refusal(self) -> str:
+        """See ``MeterHandle``."""
+        return str(self._asked("refusal"))
+
+    def _asked(self, name: str, *given: Any) -> Any:
+        with self._lock:
+            try:
+                if self._made is None:
+                    self._made = connection.Client(self._address, authkey=self._key)
+                self._made.send((name, given))
+                return self._made.recv()
+            except (EOFError, OSError) as error:
+                raise InfrastructureError("the evaluation's meter is gone; rerun the command to resume") from error

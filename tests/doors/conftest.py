@@ -1,0 +1,27 @@
+"""What every door is held to: the reference solution's actions, and their trace on the command line."""
+
+import pytest
+
+from automotive_cosim.agents import make_agent
+from automotive_cosim.cockpit.actions import to_json
+from automotive_cosim.contracts import Json
+from automotive_cosim.run.episode import EpisodeSetup, Shot, Watcher, run_episode
+from automotive_cosim.traffic.fork import Simulations
+
+
+class Actions(Watcher):
+    def __init__(self) -> None:
+        self.played: list[Json] = []
+
+    def stepped(self, shot: Shot) -> None:
+        assert shot.step.action
+        self.played.append(to_json(shot.step.action))
+
+
+@pytest.fixture(scope="module")
+def oracle(simulations: Simulations) -> tuple[list[Json], str | None]:
+    """The reference solution's actions for hvac_fan_max on the grid, and their trace."""
+    watcher = Actions()
+    setup = EpisodeSetup("hvac_fan_max", scenario="grid", agent="oracle", model="none")
+    result = run_episode(setup, make_agent("oracle"), (watcher,), simulations=simulations)
+    return watcher.played, result.trace_sha256

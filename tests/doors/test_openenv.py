@@ -1,0 +1,56 @@
+"""The environment behind OpenEnv's own server, asked by its own client."""
+
+import base64
+import socket
+import sys
+from collections.abc import Iterator
+
+import pytest
+
+from automotive_cosim.contracts import Json
+
+pytest.importorskip("openenv", reason="the extra openenv is not installed")
+from openenv import GenericEnvClient
+
+pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore")]
+APP = "automotive_cosim.doors.openenv:app"
+RESET: Json = {"task": "hvac_fan_max", "scenario": "grid", "seed": 0}
+
+
+@pytest.fixture
+def client(sumo: None, program, until) -> Iterator[GenericEnvClient]:
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    program(sys.executable, "-m", "uvicorn", "--factory", APP, "--port", str(port), "--log-level", "warning")
+
+    def answers() -> bool:
+        with socket.socket() as tried:
+            return tried.connect_ex(("127.0.0.1", port)) == 0
+
+    until(answers)
+    with GenericEnvClient(base_url=f"http://127.0.0.1:{port}", message_timeout_s=120).sync() as made:
+        yield made
+
+
+def test_the_reference_solution_earns_the_reward_with_the_command_lines_trace(client, oracle) -> None:
+    actions, trace = oracle
+    for wrong in ({"task": "no_such_task"}, RESET | {"geo": "moon"}, RESET | {"sead": 1}):
+        with pytest.raises(RuntimeError, match=r"no_such_task|moon|sead"):
+            client.reset(**wrong)
+    result = client.reset(**RESET)
+    assert not result.done
+    assert base64.b64decode(result.observation["picture"]).startswith(b"\x89PNG")
+    for action in actions:
+        assert not result.done
+        assert (result.reward, result.observation["outcome"]) == (None, None)
+        assert "verdict" not in result.observation["turn"]
+        result = client.step({"action": action})
+    assert (result.done, result.reward) == (True, 1.0)
+    assert result.observation["outcome"]["trace_sha256"] == trace
+    assert client.state()["step_count"] == len(actions)
+    with pytest.raises(RuntimeError, match="reset first"):
+        client.step({"action": actions[0]})
+    bare = client.reset(**RESET, pictures=False)
+    assert bare.observation["picture"] is None
+    assert client.step({"action": "no JSON"}).observation["turn"]["feedback"]["code"] == "malformed"
