@@ -15,7 +15,6 @@ LANE_M, FAR_M, LENS_M = 3.3, 160.0, 3.0
 """Width of a lane, how far the road is drawn, and how far behind the picture's lower edge the lens is."""
 MARK_M, MARKS_M = 3.0, 9.0
 """Length of a lane marking, and from one to the next."""
-Point = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +56,7 @@ class _View:
         self._middle, self._horizon = width / 2, height * 0.34
         self._aside_m = aside_m
 
-    def at(self, across_m: float, behind_m: float, up_m: float = 0.0) -> Point:
+    def at(self, across_m: float, behind_m: float, up_m: float = 0.0) -> tuple[float, float]:
         """Pixel of a point on the road, or above it."""
         near = self._height * 0.66 * LENS_M / (behind_m + LENS_M)
         return self._middle + (across_m + self._aside_m) * near * 0.55, self._horizon + near - up_m * near * 0.55

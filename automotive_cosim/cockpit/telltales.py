@@ -22,7 +22,6 @@ _UNITS = 24
 BLUE, GREEN, AMBER, RED = ((11, 99, 206), (14, 122, 69), (176, 98, 0), (198, 38, 46))
 _BY_NIGHT = {BLUE: (79, 168, 255), GREEN: (69, 209, 138), AMBER: (255, 180, 46), RED: (255, 92, 96)}
 WHITE, BLACK, SIGN_RED, SIGN_BLUE = (255, 255, 255), (12, 14, 18), (200, 20, 32), (0, 84, 166)
-Point = tuple[float, float]
 
 
 class Telltale(StrEnum):
@@ -67,17 +66,17 @@ class _SymbolPen:
         self._draw = ImageDraw.Draw(picture)
         self._unit = picture.width / _UNITS
 
-    def _at(self, points: tuple[Point, ...]) -> list[Point]:
+    def _at(self, points: tuple[tuple[float, float], ...]) -> list[tuple[float, float]]:
         return [(x * self._unit, y * self._unit) for x, y in points]
 
     def _box(self, left: float, top: float, right: float, bottom: float) -> tuple[float, float, float, float]:
         return left * self._unit, top * self._unit, right * self._unit, bottom * self._unit
 
-    def line(self, *points: Point, width: float = 1.8, fill: Colour | int = 255) -> None:
+    def line(self, *points: tuple[float, float], width: float = 1.8, fill: Colour | int = 255) -> None:
         """A line with round corners."""
         self._draw.line(self._at(points), fill, round(width * self._unit), joint="curve")
 
-    def area(self, *points: Point, fill: Colour | int = 255) -> None:
+    def area(self, *points: tuple[float, float], fill: Colour | int = 255) -> None:
         """A filled polygon."""
         self._draw.polygon(self._at(points), fill)
 
