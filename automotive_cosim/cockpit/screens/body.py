@@ -439,7 +439,7 @@ def interior(state: State) -> tuple[Widget, ...]:
 
 def _inside(rect: Rect, state: State) -> Widget:
     signals = state.signals
-    head, _, lamps, _, glow, _, name, _, hues = column(rect.inset(20, 16), 28, 8, 112, 16, 84, 12, 28, 4, 52)
+    head, _, lamps, _, glow, _, name, _, hues = column(rect.inset(20, 16), 28, 8, 104, 16, 84, 12, 28, 4, 60)
     tiles = lamps.columns(3, 10)
     colour = signals[CABIN.AMBIENT_COLOUR]
     return Card(
