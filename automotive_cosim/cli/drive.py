@@ -24,6 +24,13 @@ def drive(
             help="Seed; the same seed gives the same drive.", metavar="N", parser=whole_number(0, 2**31 - 1)
         ),
     ] = 0,
+    scenario: Annotated[
+        str,
+        typer.Option(
+            help="Drive there instead: a shipped scenario, or the path of a scenario, .sumocfg or .net.xml.",
+            show_default=False,
+        ),
+    ] = "",
     agent: Annotated[str, typer.Option(help="Agent; `agents` lists them.")] = "rule-perfect",
     model: Annotated[str, typer.Option(help="Model for the agent.")] = "rules",
     clock: Annotated[
@@ -84,6 +91,7 @@ def drive(
         see=sees,
         feedback=told,
         screen=size,
+        scenario=scenario,
     )
     record = run_watch(f"{name}-s{seed}-{player.name}", setup, player)
     if out is not None:

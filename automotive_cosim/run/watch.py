@@ -13,6 +13,7 @@ from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import KMH_PER_MPS, Element, Json
 from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.drives.elsewhere import elsewhere
 from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.plan import DrivePlan
 from automotive_cosim.drives.result import DriveResult, result_of
@@ -47,6 +48,8 @@ class WatchSetup:
     see: See = See.BOTH
     feedback: FeedbackDetail = FeedbackDetail.QUIET
     screen: ScreenSize = ScreenSize.STANDARD
+    scenario: str = ""
+    """Where to drive instead of on the family's own roads; see ``drives.elsewhere``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +70,7 @@ def planned_row(job_id: str, setup: WatchSetup) -> WatchRow:
         id=job_id,
         family=family.id,
         seed=setup.seed,
-        scenario=family.scenario,
+        scenario=setup.scenario or family.scenario,
         season=family.season,
         agent=setup.agent,
         model=setup.model,
@@ -121,6 +124,8 @@ def run_watch(
         InfrastructureError: traffic or model failed.
     """
     planned = planned_row(job_id, setup)
+    if setup.scenario and plan is None:
+        plan = elsewhere(family_named(setup.family).draw(setup.seed), setup.scenario)
     spec = DriveSpec(setup.family, setup.seed, setup.geo, setup.see, setup.feedback, setup.screen)
     with ExitStack() as ends:
         own = simulations or ends.enter_context(closing(Simulations()))

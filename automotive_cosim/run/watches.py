@@ -18,6 +18,7 @@ from annotated_types import Ge, Gt, Le, MinLen
 from automotive_cosim.agents import MODELLED, AgentSettings, make_agent
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import Json
+from automotive_cosim.drives.elsewhere import elsewhere
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.episode.specification import Clock, Conditions
 from automotive_cosim.errors import CosimError, UnknownNameError, UserError
@@ -52,6 +53,8 @@ class WatchPlan:
 
     drives: Annotated[tuple[str, ...], MinLen(1)]
     """Families of drives, patterns such as ``grid_*``, scenarios, seasons, or ``all``."""
+    scenarios: tuple[str, ...] = ()
+    """Scenarios, or paths of scenarios and networks, to drive on instead of each family's own."""
     agents: tuple[str, ...] = ()
     """Agents; ``package.module:Class`` is one of your own."""
     models: Annotated[tuple[str, ...], MinLen(1)] = ("rules",)
@@ -87,8 +90,11 @@ class WatchPlan:
         """Checks every name before anything runs.
 
         Raises:
-            UserError: a family, agent or model does not exist, or an agent needs a person.
+            UserError: a family, scenario, agent or model does not exist, one cannot drive on and on there, or an
+                agent needs a person.
         """
+        for scenario in self.scenarios:
+            elsewhere(FAMILIES[families_named(self.drives)[0]].draw(0), scenario)
         for agent, model, see in {(job.setup.agent, job.model, job.setup.see) for job in self.jobs()}:
             if agent == "human":
                 raise UserError("agent 'human' needs a person, and a drive nobody can watch at a terminal")
@@ -106,17 +112,16 @@ class WatchPlan:
         limits = replace(DRIVE_LIMITS, wall_s=self.wall_s)
         found = {
             job.id: job
-            for family, agent, model, seed, geo, latency_s, repeat, see, feedback, screen in product(
+            for family, scenario, agent, model, seed, geo, latency_s, repeat, (see, feedback, screen) in product(
                 families_named(self.drives),
+                self.scenarios or ("",),
                 self.agents,
                 self.models,
                 self.seeds,
                 self.geo,
                 self.latency,
                 range(self.repeats),
-                self.see,
-                self.feedback,
-                self.screen,
+                product(self.see, self.feedback, self.screen),
             )
             for job in [
                 WatchJob(
@@ -132,6 +137,7 @@ class WatchPlan:
                         See(see),
                         FeedbackDetail(feedback),
                         ScreenSize(screen),
+                        scenario,
                     ),
                     limits,
                 )
@@ -155,7 +161,7 @@ class WatchJob:
     @property
     def simulation(self) -> tuple[str, int]:
         """The warm simulation that it starts from: scenario and seed."""
-        return FAMILIES[self.setup.family].scenario, self.setup.seed
+        return self.setup.scenario or FAMILIES[self.setup.family].scenario, self.setup.seed
 
     @property
     def situation(self) -> Hashable:
@@ -178,6 +184,7 @@ class WatchJob:
         setup = self.setup
         exactly = (
             setup.family, setup.agent, setup.model, setup.geo, f"s{setup.seed}", f"r{setup.repeat}",
+            *([setup.scenario] if setup.scenario else []),
             *([f"{setup.clock}_clock"] if setup.clock != Clock.FIXED else []),
             *([f"latency{setup.latency_s:g}"] if setup.latency_s else []),
             *([f"see_{setup.see}"] if setup.see is not See.BOTH else []),
