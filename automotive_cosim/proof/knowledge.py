@@ -19,7 +19,7 @@ from typing import Any
 from automotive_cosim.cockpit.photos import Photo
 from automotive_cosim.cockpit.screens.climate import SEAT_LEVELS
 from automotive_cosim.cockpit.screens.person import PHOTO
-from automotive_cosim.contracts.ids import key_of
+from automotive_cosim.contracts.ids import key_of, resource_id
 from automotive_cosim.interface.trace import Step
 from automotive_cosim.tasking.dialogue import Topic, topic_of
 from automotive_cosim.tasking.moves import Consult, Move, TypeText
@@ -95,7 +95,7 @@ class Seen:
         for element in step.elements:
             if not element.is_visible:
                 continue
-            self._has_photo |= element.resource_id == PHOTO
+            self._has_photo |= element.resource_id == resource_id(PHOTO)
             for text in filter(None, (element.text, element.content_description, element.hint_text)):
                 self.add(text)
                 is_set = element.is_selected or element.is_checked
