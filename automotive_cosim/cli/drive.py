@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -53,7 +53,10 @@ def drive(
     ] = "quiet",
     screen: Annotated[str, typer.Option(help="Size of the screen: 1280x720, 1920x720 or 1080x1920.")] = "1280x720",
     out: Annotated[
-        Path | None, typer.Option(help="Folder for the row, the steps and the timeline.", show_default=False)
+        Path | None,
+        typer.Option(
+            help="Folder for the row, the steps, the screens and the road, which `serve` shows.", show_default=False
+        ),
     ] = None,
     list_them: Annotated[bool, typer.Option("--list", help="List the families of drives and exit.")] = False,
     as_json: AsJson = False,
@@ -63,6 +66,7 @@ def drive(
     from automotive_cosim.cli.console import Console
     from automotive_cosim.drives.families import FAMILIES
     from automotive_cosim.episode.specification import clock_of, feedback_of, screen_of, see_of
+    from automotive_cosim.run.drive_recorder import DriveRecorder
     from automotive_cosim.run.row import as_json as row_json
     from automotive_cosim.run.watch import WatchSetup, run_watch
 
@@ -93,12 +97,11 @@ def drive(
         screen=size,
         scenario=scenario,
     )
-    record = run_watch(f"{name}-s{seed}-{player.name}", setup, player)
-    if out is not None:
-        out.mkdir(parents=True, exist_ok=True)
-        (out / "row.json").write_text(json.dumps(row_json(record.row), indent=1) + "\n", "utf-8")
-        (out / "timeline.json").write_text(json.dumps(record.timeline) + "\n", "utf-8")
-        (out / "steps.jsonl").write_text("".join(json.dumps(step) + "\n" for step in record.steps), "utf-8")
+    recorders = [] if out is None else [DriveRecorder(out, setup, player)]
+    with ExitStack() as ends:
+        for recorder in recorders:
+            ends.callback(recorder.close)
+        record = run_watch(f"{name}-s{seed}-{player.name}", setup, player, watchers=recorders)
     if as_json:
         print_json(row_json(record.row))
     else:

@@ -322,6 +322,8 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
         table.add_row(
             "left out", f"{counted(len(left_out), 'task')} that cannot run there; --everywhere includes them"
         )
+    if beyond := plan.beyond_the_list():
+        table.add_row("not as tree", f"{counted(len(beyond), 'task')} that need the picture")
     if unspoken := plan.unspoken():
         table.add_row(
             "not said", f"{counted(len(unspoken), 'task')} without phrasings in {languages_in_words(plan.language)}"

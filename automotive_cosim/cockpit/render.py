@@ -13,6 +13,7 @@ from automotive_cosim.cockpit.covers import cover
 from automotive_cosim.cockpit.drawing import Canvas, fits, text_width
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.mapdraw import draw
+from automotive_cosim.cockpit.photos import photo
 from automotive_cosim.cockpit.telltales import colour, sign_picture, symbol
 from automotive_cosim.cockpit.theme import (
     BUTTON_RADIUS,
@@ -39,6 +40,7 @@ from automotive_cosim.cockpit.widgets import (
     LimitSign,
     Look,
     MapView,
+    Picture,
     Pill,
     Row,
     Rows,
@@ -431,6 +433,11 @@ def _car_view(canvas: Canvas, view: CarView, palette: Palette) -> None:
     canvas.picture(view.rect, picture)
 
 
+def _picture(canvas: Canvas, picture: Picture, palette: Palette) -> None:
+    left, top, right, bottom = picture.rect.edges(canvas.scale)
+    canvas.picture(picture.rect, photo(picture.photo, right - left, bottom - top), BUTTON_RADIUS)
+
+
 _PAINT: dict[type[Widget], Callable[[Canvas, Any, Palette], None]] = {
     Card: _card,
     Label: _label,
@@ -452,5 +459,6 @@ _PAINT: dict[type[Widget], Callable[[Canvas, Any, Palette], None]] = {
     MapView: _map,
     Badge: _badge,
     CarView: _car_view,
+    Picture: _picture,
 }
 """The drawing function of each kind of widget."""

@@ -17,6 +17,7 @@ from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.map import RoadMap
 from automotive_cosim.cockpit.mapdraw import MapScene
 from automotive_cosim.cockpit.messages import Message, Set
+from automotive_cosim.cockpit.photos import Photo
 from automotive_cosim.cockpit.signals import Signal
 from automotive_cosim.cockpit.telltales import RoadSign, Telltale
 from automotive_cosim.cockpit.theme import Icon, Type
@@ -333,6 +334,15 @@ class MapView(Widget):
     """Whether a swipe moves it."""
 
     class_name: ClassVar[str] = "View"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Picture(Widget):
+    """A photo, whose content no text tells."""
+
+    photo: Photo
+
+    class_name: ClassVar[str] = "ImageView"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

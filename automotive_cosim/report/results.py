@@ -21,6 +21,7 @@ from automotive_cosim.run.plan import languages_in_words, make_plan
 from automotive_cosim.run.row import columns
 from automotive_cosim.run.store import read_evaluation, read_rows
 from automotive_cosim.run.versions import ran_with
+from automotive_cosim.tasking.task import NEEDS_PICTURE
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -109,6 +110,14 @@ class Results:
         """The contestants, with or without episodes yet; references and negative controls come last."""
         found = {contestant(row) for row in (*self.rows, *self.coverage.not_run)}
         return tuple(sorted(found, key=lambda each: (each.agent in NOT_RANKED, each)))
+
+    @property
+    def beyond_the_list(self) -> tuple[str, ...]:
+        """Tasks that those who see the screen as a list alone are not given, because they need the picture."""
+        if See.TREE not in self.manifest["plan"].get("see", ()):
+            return ()
+        given = (row for row in (*self.rows, *self.coverage.not_run) if NEEDS_PICTURE in row.tags)
+        return tuple(sorted({row.task for row in given}))
 
     def of(self, each: Contestant) -> tuple[EpisodeRow, ...]:
         """The episodes of one contestant."""

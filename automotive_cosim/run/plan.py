@@ -190,7 +190,15 @@ class Plan:
         spoken = {task.id for task in self._spoken()}
         return tuple(task_id for task_id in choose(self.tasks, self.suite) if task_id not in spoken)
 
+    def beyond_the_list(self) -> tuple[str, ...]:
+        """Ids of the chosen tasks that are not run with ``see`` tree: something needed is in the picture alone."""
+        if See.TREE not in self.see:
+            return ()
+        return tuple(task_id for task_id in choose(self.tasks, self.suite) if CATALOGUE[task_id].needs_picture)
+
     def _nowhere(self) -> str:
+        if self._placed() and all(task.needs_picture for task, _ in self._placed()):
+            return "these tasks need the picture, which see = tree withholds; give picture or both"
         if not self._spoken():
             return (
                 f"none of the tasks has phrasings in {languages_in_words(self.language)}; the hard suite has "
@@ -234,6 +242,8 @@ class Plan:
             conditions,
         ):
             see, feedback, screen, language = condition
+            if task.needs_picture and See(see) is See.TREE:
+                continue
             for half in task.halves:
                 is_own = scenario == task.half(half).start.scenario  # which a half may move to another place
                 setup = EpisodeSetup(

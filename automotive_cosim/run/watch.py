@@ -19,7 +19,7 @@ from automotive_cosim.drives.plan import DrivePlan
 from automotive_cosim.drives.result import DriveResult, result_of
 from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.drives.watch import Watch
-from automotive_cosim.episode.listener import Listener
+from automotive_cosim.episode.listener import Listener, Listeners
 from automotive_cosim.episode.loop import play
 from automotive_cosim.episode.specification import Clock, End
 from automotive_cosim.geo.breaches import limit_at
@@ -61,6 +61,19 @@ class WatchRecord:
     """Speed, limit and the do-nothing drive's speed, one value a second."""
     steps: tuple[Json, ...]
     """Action, thinking time and result of each step, with hashes of the state that followed."""
+
+
+class WatchWatcher(Listener):
+    """Sees a drive while it runs, e.g. to show or record it. It changes nothing."""
+
+    def departed(self, watch: Watch) -> None:
+        """The drive begins."""
+
+    def acted(self, watch: Watch, seen: Sequence[Element]) -> None:
+        """The agent has acted on a screen with these elements."""
+
+    def arrived(self, watch: Watch, record: WatchRecord) -> None:
+        """The drive is over, and judged."""
 
 
 def planned_row(job_id: str, setup: WatchSetup) -> WatchRow:
@@ -106,7 +119,7 @@ def run_watch(
     agent: Agent,
     *,
     simulations: Simulations | None = None,
-    listener: Listener | None = None,
+    watchers: Sequence[WatchWatcher] = (),
     plan: DrivePlan | None = None,
 ) -> WatchRecord:
     """Runs a drive to its end and judges it.
@@ -116,7 +129,7 @@ def run_watch(
         setup: what to run.
         agent: who watches.
         simulations: warm simulations to use; by default its own, closed with the drive.
-        listener: notified of progress.
+        watchers: notified of everything as it happens.
         plan: used instead of the family's plan for the seed.
 
     Raises:
@@ -124,6 +137,7 @@ def run_watch(
         InfrastructureError: traffic or model failed.
     """
     planned = planned_row(job_id, setup)
+    listener = Listeners(watchers)
     if setup.scenario and plan is None:
         plan = elsewhere(family_named(setup.family).draw(setup.seed), setup.scenario)
     spec = DriveSpec(setup.family, setup.seed, setup.geo, setup.see, setup.feedback, setup.screen)
@@ -133,12 +147,17 @@ def run_watch(
         ends.callback(watch.close)
         meter, channels = _Meter(setup, agent), tuple(sorted(agent.channels))
         agent.reset(watch.goal)
-        end = play(watch, agent, (meter.stepped,), meter.thought_s)
-        return WatchRecord(
+        for watcher in watchers:
+            watcher.departed(watch)
+        end = play(watch, agent, (meter.stepped, *(watcher.acted for watcher in watchers)), meter.thought_s)
+        record = WatchRecord(
             row=judged_row(planned, end, channels, result_of(watch), **meter.totals()),
             timeline=_timeline(watch),
             steps=tuple(_steps(watch)),
         )
+        for watcher in watchers:
+            watcher.arrived(watch, record)
+        return record
 
 
 class _Meter:

@@ -33,7 +33,7 @@ from automotive_cosim.run.executor import Executor, Runner
 from automotive_cosim.run.meter import Budget, MeterHandle
 from automotive_cosim.run.nursery import Nursery
 from automotive_cosim.run.outside import check_agent
-from automotive_cosim.run.plan import NO_MODEL, Limits, digest
+from automotive_cosim.run.plan import HUMAN, NO_MODEL, Limits, digest
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.store import opened, write_trace
 from automotive_cosim.run.watch import WatchRecord, WatchSetup, planned_row, run_watch
@@ -96,8 +96,8 @@ class WatchPlan:
         for scenario in self.scenarios:
             elsewhere(FAMILIES[families_named(self.drives)[0]].draw(0), scenario)
         for agent, model, see in {(job.setup.agent, job.model, job.setup.see) for job in self.jobs()}:
-            if agent == "human":
-                raise UserError("agent 'human' needs a person, and a drive nobody can watch at a terminal")
+            if agent == HUMAN:
+                raise UserError("agent 'human' needs a person; use `automotive-cosim serve --play`")
             if ":" in agent:
                 check_agent(agent)
             else:
@@ -129,7 +129,7 @@ class WatchPlan:
                         family,
                         seed,
                         agent,
-                        model if agent in MODELLED else NO_MODEL,
+                        model if agent in MODELLED or agent == HUMAN else NO_MODEL,
                         GeoInput(geo),
                         Clock(self.clock),
                         latency_s,
@@ -287,7 +287,7 @@ def run_watch_job(
     except Exception as error:
         # A fault in this package must not end the evaluation; it is counted and listed.
         return failed_watch(job, type(error).__name__, f"{type(error).__name__}: {error}")
-    _keep(record, folder, job.id)
+    keep_watch(record, folder, job.id)
     return record.row
 
 
@@ -296,7 +296,12 @@ def failed_watch(job: WatchJob, kind: str, why: str) -> WatchRow:
     return replace(planned_row(job.id, job.setup), error=why, error_kind=kind)
 
 
-def _keep(record: WatchRecord, folder: Path, name: str) -> None:
+def keep_watch(record: WatchRecord, folder: Path, name: str) -> None:
+    """Writes the steps and the timeline of a drive into an evaluation's folder.
+
+    Raises:
+        OSError: they cannot be written.
+    """
     (folder / TIMELINES).mkdir(exist_ok=True)  # on a node of a cluster, each job has a folder of its own
     (folder / TIMELINES / f"{name}.json").write_text(json.dumps(record.timeline), "utf-8")
     write_trace(folder, name, record.steps)
