@@ -11,6 +11,8 @@ from automotive_cosim.cockpit.people import Contact, Thread
 from automotive_cosim.cockpit.photos import Photo, Shows, photo
 from automotive_cosim.cockpit.signals import MOTION
 from automotive_cosim.contracts import Element, FeedbackCode, RoadNetwork
+from automotive_cosim.contracts.ids import key_of
+from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.episode.situation import PARKED
 
 from .conftest import outside
@@ -53,7 +55,7 @@ def opened(cockpit: Cockpit) -> Cockpit:
         box = next(
             element.bbox_pixels
             for element in cockpit.elements()
-            if name in (element.resource_id, element.text) and element.is_clickable
+            if name in (key_of(element.resource_id), element.text) and element.is_clickable
         )
         cockpit.tap((box.x_min + box.x_max) // 2, (box.y_min + box.y_max) // 2)
     return cockpit
@@ -61,7 +63,7 @@ def opened(cockpit: Cockpit) -> Cockpit:
 
 def photos(cockpit: Cockpit) -> list[Element]:
     """The photos in the list."""
-    return [element for element in cockpit.elements() if element.resource_id == "thread.photo"]
+    return [element for element in cockpit.elements() if element.resource_id == shown_id("thread.photo")]
 
 
 def test_every_kind_is_tried() -> None:
