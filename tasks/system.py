@@ -18,6 +18,7 @@ from automotive_cosim.tasks.hvac import METRIC
 
 DOORS = (Open("vehicle"), Tap("vehicle.tab.doors"))
 SEATS = (Open("vehicle"), Tap("vehicle.tab.seats"))
+MIRRORS = (Open("vehicle"), Tap("vehicle.tab.mirrors"))
 INSIDE = (Open("vehicle"), Tap("vehicle.tab.interior"))
 CONNECTIONS = (Open("settings"), Tap("settings.page.connections"))
 PRIVACY = (Open("settings"), Tap("settings.page.privacy"))
@@ -126,7 +127,7 @@ TASKS = (
             "Make the car slimmer: fold them.",
         ),
         AllOf(tuple(SignalIs(folded, (True,)) for folded in FOLDED)),
-        *INSIDE,
+        *MIRRORS,
         Tap("mirror.driver.fold"),
         Tap("mirror.passenger.fold"),
         scenarios=ANYWHERE,
