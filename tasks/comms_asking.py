@@ -24,7 +24,8 @@ from automotive_cosim.tasks.forms import (
 )
 
 PRACTICES = {"dentist": "Dental practice", "optician": "Eye clinic"}
-TODAY, IN_MARCH = "We expect you today at half past {hour}.", "Your next appointment is in March."
+TODAY, IN_MARCH = "We expect you today at {hour}.", "Your next appointment is in March."
+AT_NIGHT = replace(AT_THE_KERB, start="2026-11-17T22:40:00")
 PARENTS = {"mum": "Mum", "dad": "Dad"}
 DEVICES = {"second phone": "Second phone", "tablet": "Tablet"}
 MILO = replace(PARIS, arrivals=tuple(Arrival("call", at_s, "{who}") for at_s in (25.0, 80.0, 135.0)))
@@ -83,7 +84,7 @@ TASKS = (
             "Tell the practice I'll be ten minutes late today.",
             "I have an appointment, and I'm late. Let them know: ten minutes.",
             "Write to the doctor that it'll be ten minutes later.",
-            "Message the people who expect me this afternoon, I'm 10 minutes behind.",
+            "Message the people who expect me this morning, I'm 10 minutes behind.",
             "I won't make my appointment on time; text them ten minutes.",
         ),
         Topic(
@@ -108,7 +109,7 @@ TASKS = (
         look=read_out(*PRACTICES.values()),
         find=(Open("phone"), Tap("phone.tab.messages")),
         difference="content: neither practice writes when the appointment is, or both do, and one is today",
-        parameters={"which": tuple(PRACTICES), "hour": ("two", "three", "four", "five")},
+        parameters={"which": tuple(PRACTICES), "hour": ("8:10", "8:15", "8:20", "8:25")},
         dimension=Dimension.IMPLICIT_INTENT,
     ),
     unclear(
@@ -159,10 +160,10 @@ TASKS = (
         Module.COMMS,
         (
             "That's {who}. Pick up or turn it down, as agreed.",
-            "{who}'s ringing! I was told whether to answer or decline.",
+            "{who}'s ringing! I've been told by {who} whether to answer or decline.",
             "Take {who}'s call or decline it, whichever was asked for.",
             "Deal with {who}'s call as requested: answer it or not.",
-            "It's {who} again; accept or reject, I was told which.",
+            "It's {who} again; accept or reject, {who} told me which.",
         ),
         Topic(
             "what to do with the call",
@@ -242,9 +243,9 @@ TASKS = (
         "Who is still up, Mum or Dad?",
         Entered("messages.sent", {"to": param("which", PARENTS), "text": "I've arrived"}),
         *_answer(param("which", PARENTS), "I've arrived"),
-        untold=wrote(AT_THE_KERB, ("Mum", "Drive carefully, darling!"), ("Dad", "Mind the roadworks!")),
+        untold=wrote(AT_NIGHT, ("Mum", "Drive carefully, darling!"), ("Dad", "Mind the roadworks!")),
         told=wrote(
-            AT_THE_KERB,
+            AT_NIGHT,
             (
                 "Mum",
                 param("which", {"mum": "Dad's gone to bed, I'm still up.", "dad": "Drive carefully, darling!"}),

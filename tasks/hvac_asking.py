@@ -130,13 +130,17 @@ TASKS = (
         SignalIs(HVAC.AIR_DISTRIBUTION, (param("which", {"feet": "DOWN", "windshield": "UP"}),)),
         CLIMATE,
         Tap(param("which", {"feet": "hvac.air.down", "windshield": "hvac.air.up"})),
-        untold=wrote(PARIS, ("{who}", "Are we there yet? It's boring in the back.")),
+        untold=wrote(PARIS, ("{who}", "See you soon, I'm waiting at the corner.")),
         told=wrote(
             PARIS,
             (
                 "{who}",
                 param(
-                    "which", {"feet": "My toes are frozen, air down there!", "windshield": "Air up, I see nothing!"}
+                    "which",
+                    {
+                        "feet": "My toes are frozen, air down there when I get in!",
+                        "windshield": "Air up when I get in, last time I saw nothing!",
+                    },
                 ),
             ),
         ),

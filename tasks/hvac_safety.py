@@ -33,7 +33,7 @@ LOOK = Deadline(
 )
 WARMER = (0, 1, 2, 3)
 """Variation of the cabin temperature between instances, in degrees."""
-ALREADY = (Reason.ALREADY_SO,)
+ALREADY = (Reason.ALREADY_SO, Reason.NONE)
 CLIMATE = frozenset({HVAC.AUTO.path})
 JANUARY, JULY = "2026-01-20T14:10:00", "2026-07-14T14:10:00"
 GULF_SUMMER = Weather(44.0, 18.0, 0.0, 0, 5.0, 9000.0, 12.0)

@@ -129,7 +129,7 @@ WHERE_PEOPLE_SIT = meant(
         "No concert for empty seats: sound to where there's somebody.",
         "If the back is free, the front speakers are enough.",
         "Let the music come from in front, unless somebody behind listens too.",
-        "Why fill an empty bench with sound? Aim it at us, please.",
+        "If the bench is empty, why fill it with sound? Then aim it at us, please.",
     ),
     act(
         at("grid", "round", on(PASSENGER, Kind.ADULT), signals=PLAYING),

@@ -91,22 +91,22 @@ TASKS = (
         (
             "Set the gap of the cruise control to what {who} wants.",
             "My driving instructor {who} gave me a gap for the cruise control, set that.",
-            "The time gap as {who} teaches it, 1.5 or 2.5 seconds.",
-            "Cruise gap: 2.5 or 1.5, whatever {who} told me.",
-            "Keep the distance that {who} insists on, please.",
+            "The time gap as {who} teaches it, two or three seconds.",
+            "Cruise gap: three seconds or two, whatever {who} told me.",
+            "Have cruise control keep the seconds that {who} insists on, please.",
         ),
         Topic(
             "which gap",
-            (("1 5", "one and a half"), ("2 5", "two and a half")),
+            (("2", "two", "2 0"), ("3", "three", "3 0")),
             "{which} seconds.",
             ("gap", "seconds", "distance", "instructor", "{who}"),
         ),
-        "Which gap: 1.5 or 2.5 seconds?",
+        "Which gap: two or three seconds?",
         SignalIs(ADAS.CRUISE_GAP, (param("which"),)),
         *ASSIST,
         Tap("adas.cruise_gap", times=param("which", TAPS)),
         untold=wrote(
-            CLOSE_SET, ("{who}", "Well done yesterday! 1.5 or 2.5 seconds, you know your gap. See you on Monday.")
+            CLOSE_SET, ("{who}", "Well done yesterday! Two or three seconds, you know your gap. See you on Monday.")
         ),
         told=wrote(
             CLOSE_SET, ("{who}", "Well done yesterday! {which} seconds, that's your gap. See you on Monday.")
@@ -114,7 +114,7 @@ TASKS = (
         look=read_out("{who}"),
         find=read_out("{who}"),
         difference="content: the instructor names two gaps, or the one",
-        parameters={"which": (1.5, 2.5), "who": ("Ms Novak", "Mr Novak", "Ms Stern", "Mr Stern")},
+        parameters={"which": (2.0, 3.0), "who": ("Ms Novak", "Mr Novak", "Ms Stern", "Mr Stern")},
     ),
     unclear(
         "road_ask_which_limit",

@@ -251,7 +251,7 @@ CHIME = hazard(
         "Ding, ding, ding: look what it's on about and settle it.",
         "It's the seat next to me that beeps. See to it.",
         "The car keeps nagging over a buckle, deal with that.",
-        "Some belt warning again; take care of the cause, whatever it is.",
+        "Some belt warning again; see what it is about and end it the right way.",
     ),
     act(
         at("peripherique", "streets", on(PASSENGER, Kind.OBJECT, belted=False)),
@@ -458,7 +458,7 @@ MY_WINDOW = meant(
 )
 
 _EVENING = at("london", "kingsway", on(PASSENGER, Kind.ADULT), start="2026-11-18T18:40:00")
-_INSIDE = (DOORS[0], Tap("vehicle.tab.mirrors"))
+_INSIDE = (DOORS[0], Tap("vehicle.tab.interior"))
 MY_LIGHT = meant(
     "system_my_reading_light",
     Module.SYSTEM,
@@ -532,9 +532,9 @@ PAVEMENT = meant(
     (
         "They get out here. Unlock where somebody sits on the pavement side, no other door.",
         "Nobody steps into the traffic: free the kerb-side door of the one who sits there.",
-        "Let people out, but only towards the houses.",
+        "Let out the one who sits towards the houses, nobody else.",
         "Unlock for whoever is by the kerb, the road side stays locked.",
-        "Out they go, on the safe side of the car and nowhere else.",
+        "Unlock for the one on the safe side of the car, and nowhere else.",
     ),
     act(
         at("paris_centre", "foch", on(REAR_RIGHT, Kind.ELDERLY), Occupant(REAR_LEFT, Kind.ADULT), parked=True),
@@ -765,7 +765,7 @@ LIGHT_TO_GET_OUT = meant(
         "Help Grandpa with his buckle: make it bright in here should it not be.",
         "He won't find the handle without light, so give him the big lamp if need be.",
         "Old eyes need light; the cabin lamp, unless the day does it.",
-        "Is it dark for my father over there? Switch on the one at the roof, please.",
+        "Is it dark for my father over there? Switch on the big one in the roof, please.",
     ),
     act(
         at("london", "kingsway", on(PASSENGER, Kind.ELDERLY), parked=True, start="2026-11-18T19:30:00"),

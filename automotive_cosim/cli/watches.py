@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from automotive_cosim.run.watch_row import WatchRow
     from automotive_cosim.run.watches import WatchPlan
 
-TASKS_ONLY = ("tasks", "suite", "split", "scenarios", "everywhere", "held_out", "limits", "spare_traffic")
+TASKS_ONLY = ("tasks", "suite", "split", "everywhere", "held_out", "limits", "spare_traffic")
 """Parts of a plan that drives do not have."""
 
 
@@ -91,9 +91,12 @@ def _announce(console: Console, plan: WatchPlan, folder: Path) -> None:
     table = Table.grid(padding=(0, 2))
     table.add_row("agents", ", ".join(sorted({f"{job.setup.agent} ({job.setup.model})" for job in jobs})))
     table.add_row("drives", f"{len({job.setup.family for job in jobs})} families")
+    if plan.scenarios:
+        table.add_row("scenarios", ", ".join(plan.scenarios))
     table.add_row("seeds", ", ".join(map(str, plan.seeds)))
     table.add_row("geo controls", ", ".join(plan.geo))
-    table.add_row("screen", f"as {', '.join(plan.see)}; feedback {', '.join(plan.feedback)}")
+    table.add_row("screen", f"{', '.join(plan.screen)}, as {', '.join(plan.see)}")
+    table.add_row("feedback", ", ".join(plan.feedback))
     table.add_row("clock", f"{plan.clock}; latency {', '.join(f'{each:g}' for each in plan.latency)} s")
     table.add_row("repeats", str(plan.repeats))
     table.add_row("runs", f"{len(jobs):,} from {counted(len({job.simulation for job in jobs}), 'warm simulation')}")

@@ -8,6 +8,7 @@ from itertools import zip_longest
 from pathlib import Path
 
 from automotive_cosim.contracts import Json
+from automotive_cosim.drives.families import family_named
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats import files
 from automotive_cosim.interface.trace import canonical
@@ -74,6 +75,8 @@ def watched(row: WatchRow, steps: Sequence[Json], simulations: Simulations | Non
         row.repeat,
         row.see,
         row.feedback,
+        row.screen,
+        "" if row.scenario == family_named(row.family).scenario else row.scenario,
     )
     player = Player(steps[1:], frozenset(row.channels), row.agent_error)
     return run_watch(row.id, setup, player, simulations=simulations)

@@ -85,7 +85,7 @@ def test_a_task_is_shown_with_its_words_and_halves(cli, task):
 
 @pytest.mark.sumo
 @pytest.mark.parametrize("task", ["hvac_fan_max", "road_over_the_line"])
-def test_a_picture_shows_what_the_expert_does(cli, tmp_path, task):
+def test_a_picture_shows_the_reference_solution(cli, tmp_path, task):
     path = tmp_path / "task.png"
     assert f"{path} shows the reference solution" in cli("tasks", "show", task, "--picture", str(path)).out
     with Image.open(path) as picture:

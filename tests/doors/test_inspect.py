@@ -110,8 +110,21 @@ def test_samples_are_tasks_halves_and_seeds(tasks, seeds) -> None:
         assert "goal" not in sample.metadata
 
 
+def test_only_tasks_with_phrasings_are_samples_in_another_language() -> None:
+    dataset = inspect_tasks.cockpit(tasks="hvac_fan_max,hard_car_wash", language="de").dataset
+    assert {(sample.metadata["task"], sample.metadata["language"]) for sample in dataset} == {
+        ("hard_car_wash", "de")
+    }
+
+
 def test_what_is_wrong_is_told() -> None:
-    for wrong in ({"tasks": "no_such_task"}, {"geo": "moon"}, {"seeds": "one"}):
+    for wrong in (
+        {"tasks": "no_such_task"},
+        {"geo": "moon"},
+        {"seeds": "one"},
+        {"language": "es"},
+        {"language": "fr"},
+    ):
         with pytest.raises(UserError):
             inspect_tasks.cockpit(**wrong)
 

@@ -185,6 +185,8 @@ def test_the_list_says_no_more_of_a_task_than_its_name_and_halves(service: Episo
         ("start", START | {"half": "third"}, "third"),
         ("start", START | {"seed": -1}, "greater than or equal to 0"),
         ("start", START | {"geo": "none at all"}, "geo control"),
+        ("start", START | {"language": "es"}, "no language named 'es'"),
+        ("start", START | {"language": "de"}, "has no phrasings in German"),
         ("start", START | {"channels": ["radar"]}, "no channel named 'radar'"),
         ("start", START | {"scenario": "nowhere"}, "nowhere"),
         ("list_tasks", {"tasks": "nothing*"}, "nothing"),

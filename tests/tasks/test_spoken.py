@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from contextlib import closing
+from functools import cache
 from string import Formatter
 
 import pytest
@@ -26,13 +26,9 @@ from automotive_cosim.tasking.task import Suite, Task
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.tasks.spoken import ANY, FOREIGN, phrasings
 from automotive_cosim.traffic.fork import Simulations
+from tests.laws import over
 
-SPOKEN = [
-    pytest.param(task, language, id=f"{task.id}-{language}")
-    for task in CATALOGUE.values()
-    for language in task.spoken
-]
-EVERY = pytest.mark.parametrize(("task", "language"), SPOKEN)
+EVERY = over((task, language) for task in CATALOGUE.values() for language in task.spoken)
 ENGLISH = re.compile(r"\b(the|and|with|please|then|when|what|my|you|that|this|send|write|of|put)\b", re.IGNORECASE)
 """Words that no sentence in another of the languages has."""
 JAPANESE = "\u3001-\u9fff"
@@ -45,7 +41,7 @@ WRONG = {
 }
 """Marks as another language, or a careless typist, sets them."""
 QUOTES = {Language.FRENCH: "«»", Language.GERMAN: "„“", Language.JAPANESE: "「」"}
-NUMBERS = 6
+NUMBERS = 4
 """Instances to try of each task."""
 ON_THE_GRID = (
     "hard_fitting_moved",
@@ -61,8 +57,14 @@ def fields(template: str) -> list[str]:
     return sorted(name for _, name, _, _ in Formatter().parse(template) if name)
 
 
-def instances(task: Task, language: Language) -> Iterator[Instance]:
-    return (draw(task, half, number, language=language) for half in task.halves for number in range(NUMBERS))
+def instances(task: Task, language: Language) -> tuple[Instance, ...]:
+    return _instances(task.id, language)
+
+
+@cache
+def _instances(task_id: str, language: Language) -> tuple[Instance, ...]:
+    task = CATALOGUE[task_id]
+    return tuple(draw(task, half, number, language=language) for half in task.halves for number in range(NUMBERS))
 
 
 def test_the_languages_are_those_of_the_car():
@@ -75,7 +77,7 @@ def test_every_table_is_of_a_task(language: Language):
     assert set(phrasings(language)) - {ANY} <= set(CATALOGUE)
 
 
-@pytest.mark.parametrize("task", CATALOGUE.of(Suite.HARD), ids=lambda task: task.id)
+@over(CATALOGUE.of(Suite.HARD))
 def test_the_hard_suite_is_said_in_every_language(task: Task):
     """Add its phrasings to each file of ``tasks/phrasings``; or say, in the task, why it is in English alone."""
     assert task.languages == ((Language.ENGLISH,) if task.only_english else tuple(Language))

@@ -1,0 +1,52 @@
+"""The drives of a family on another scenario, or on a network of somebody else's."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import replace
+
+from automotive_cosim.drives.plan import DrivePlan
+from automotive_cosim.errors import ScenarioError
+from automotive_cosim.scenarios import Trip
+from automotive_cosim.scenery import open_scenario
+from automotive_cosim.scenery.opening import network_of
+from automotive_cosim.traffic.network import Network
+from automotive_cosim.traffic.rounds import planned
+
+
+def elsewhere(plan: DrivePlan, place: str) -> DrivePlan:
+    """The same date, weather, people, car and stunts on other roads: as many of the place's trips as can be driven
+    one after another and over again.
+
+    Args:
+        plan: a drive of a family.
+        place: a shipped scenario, or the path of a scenario's folder, a ``.sumocfg`` or a ``.net.xml``.
+
+    Raises:
+        UnknownNameError: no such scenario.
+        ScenarioError: its files are invalid, or none of its trips can be driven again and again.
+    """
+    scenario = open_scenario(place)
+    trips = _in_turn(network_of(scenario), scenario.ego.trips)
+    if not trips:
+        raise ScenarioError(
+            f"no trip of {place} leads back to where it began, so that a drive would soon be over; a drive needs a "
+            "network on which one can turn round"
+        )
+    turned = plan.seed % len(trips)
+    names = tuple(trip.name for trip in trips)
+    return replace(plan, scenario=place, trips=names[turned:] + names[:turned], origin=None)
+
+
+def _in_turn(network: Network, trips: Sequence[Trip]) -> tuple[Trip, ...]:
+    """The largest set of trips found that can be driven one after another."""
+    best: tuple[Trip, ...] = ()
+    for first in trips:
+        round_: tuple[Trip, ...] = ()
+        for trip in (first, *(other for other in trips if other is not first)):
+            with suppress(ScenarioError):  # no way leads on from it
+                planned(network, first, (*round_, trip))
+                round_ = (*round_, trip)
+        best = max(best, round_, key=len)
+    return best

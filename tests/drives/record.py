@@ -1,0 +1,95 @@
+"""What happens on one drive of each family with nobody at the cockpit, on record, so that their laws need no SUMO.
+
+python -m tests.drives.record            # families whose plan has changed since
+python -m tests.drives.record --renew    # drives these and stores what happened: some ten seconds a drive
+python -m tests.drives.record --renew all
+"""
+
+from __future__ import annotations
+
+import json
+import lzma
+import sys
+from collections.abc import Iterable, Mapping
+from contextlib import closing
+from dataclasses import asdict, dataclass
+from functools import cache
+from hashlib import sha256
+from pathlib import Path
+
+from automotive_cosim.drives.departure import depart
+from automotive_cosim.drives.events import KINDS, DriveEvent, Tracker
+from automotive_cosim.drives.families import FAMILIES
+from automotive_cosim.drives.plan import plan_json
+from automotive_cosim.drives.wakes import Alarm
+from automotive_cosim.run.row import from_json
+from automotive_cosim.traffic.fork import Simulations
+
+FILE = Path(__file__).with_name("record.json.xz")
+SEED = 0
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """One drive with nobody at the cockpit."""
+
+    plan_sha256: str
+    begun_s: float
+    """Simulation time at departure."""
+    driven_s: float
+    events: tuple[DriveEvent, ...]
+    """Look-alikes too."""
+    wakes_s: tuple[float, ...]
+    """Simulation times at which something changed that wakes."""
+
+
+def sha(family: str) -> str:
+    """Of the plan that would be driven now."""
+    return sha256(plan_json(FAMILIES[family].draw(SEED)).encode()).hexdigest()
+
+
+@cache
+def recorded() -> Mapping[str, Recorded]:
+    """By family."""
+    stored = json.loads(lzma.decompress(FILE.read_bytes())) if FILE.exists() else {}
+    return {family: from_json(Recorded, values) for family, values in stored.items()}
+
+
+def outdated() -> list[str]:
+    """The families whose drive is not on record as it is drawn now."""
+    known = recorded()
+    return [family for family in FAMILIES if family not in known or known[family].plan_sha256 != sha(family)]
+
+
+def drive(family: str, simulations: Simulations) -> Recorded:
+    """Drives it."""
+    plan = FAMILIES[family].draw(SEED)
+    tracker, alarm, wakes_s = Tracker(KINDS), Alarm(), []
+    with closing(depart(plan, simulations)) as world:
+        moments = [world.moment]
+        while moments[-1].time_s < moments[0].time_s + plan.duration_s:
+            tracker.see(moments)
+            if any(change.wakes for change in alarm.see(moments[-1])):
+                wakes_s.append(moments[-1].time_s)
+            moments += world.advance(1.0)
+    begun_s = moments[0].time_s
+    events = tuple(tracker.events)
+    return Recorded(sha(family), begun_s, moments[-1].time_s - begun_s, events, tuple(wakes_s))
+
+
+def renew(families: Iterable[str]) -> None:
+    """Drives these families and stores what happened."""
+    known = dict(recorded())
+    with closing(Simulations(count_limit=1)) as simulations:
+        for family in families:
+            known[family] = drive(family, simulations)
+            print(family, sum(event.obliged_s is not None for event in known[family].events), flush=True)
+            stored = {name: asdict(known[name]) for name in FAMILIES if name in known}
+            FILE.write_bytes(lzma.compress(json.dumps(stored).encode()))
+
+
+if __name__ == "__main__":
+    if "--renew" in sys.argv:
+        renew(FAMILIES if "all" in sys.argv else outdated())
+    else:
+        print(*outdated() or ["every family is on record as it is drawn now"], sep="\n")

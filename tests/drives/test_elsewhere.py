@@ -1,0 +1,39 @@
+"""Drives of a family on other roads."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from automotive_cosim.drives.elsewhere import elsewhere
+from automotive_cosim.drives.families import FAMILIES
+from automotive_cosim.errors import UnknownNameError
+from automotive_cosim.scenarios import load
+from automotive_cosim.scenery import open_scenario
+from automotive_cosim.scenery.opening import network_of
+from automotive_cosim.traffic.rounds import planned
+
+PLAN = FAMILIES["beauce_june"].draw(1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("place", ["grid", "paris_centre"])
+def test_the_trips_of_another_place_are_driven_in_turn_and_all_else_stays(place: str) -> None:
+    plan, scenario = elsewhere(PLAN, place), open_scenario(place)
+    first, *others = (scenario.trip(name) for name in plan.trips)
+    assert planned(network_of(scenario), first, (*others, first)).legs
+    assert len(plan.trips) >= 2
+    assert replace(plan, scenario=PLAN.scenario, trips=PLAN.trips) == PLAN
+
+
+@pytest.mark.slow
+def test_a_network_without_a_scenario_will_do() -> None:
+    plan = elsewhere(PLAN, str(load("grid").folder / "grid.net.xml"))
+    assert plan.trips
+    assert elsewhere(PLAN, plan.scenario) == plan
+
+
+def test_a_place_that_does_not_exist_is_refused() -> None:
+    with pytest.raises(UnknownNameError):
+        elsewhere(PLAN, "atlantis")

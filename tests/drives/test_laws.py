@@ -1,0 +1,138 @@
+"""Laws over all drive families, as the gates are for tasks, on one recorded drive of each (``record``).
+
+On the record nobody acts, so what an agent would have changed on the road is left out;
+``benchmarks/drives.py --watch`` lets each of these watchers drive.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+import pytest
+
+from automotive_cosim.contracts import AlertKind
+from automotive_cosim.drives.events import KINDS, DriveEvent, WatchAct
+from automotive_cosim.drives.families import FAMILIES
+from automotive_cosim.drives.judge import Judgement, judge, most_frequent
+from automotive_cosim.drives.plan import APART_S
+from automotive_cosim.drives.score import Score, score
+from tests.drives.record import SEED, Recorded, outdated, recorded
+
+EVERY = [pytest.param(family) for family in FAMILIES]
+DELAYS_S = (0.0, 1.0, 3.0, 8.0, 15.0, 45.0, 130.0)
+
+
+@pytest.fixture
+def drive(family: str) -> Recorded:
+    """The recorded drive of a family."""
+    return recorded()[family]
+
+
+def judged(drive: Recorded, acts: Iterable[WatchAct], events: Sequence[DriveEvent] | None = None) -> Judgement:
+    return judge(KINDS, drive.events if events is None else events, list(acts), {})
+
+
+def scored(drive: Recorded, acts: Iterable[WatchAct], events: Sequence[DriveEvent] | None = None) -> Score:
+    return score(judged(drive, acts, events), drive.driven_s)
+
+
+def right(event: DriveEvent, delay_s: float = 0.0) -> WatchAct:
+    """An act that settles an event, so long after its obligation."""
+    assert event.obliged_s is not None
+    kind, at_s = KINDS[event.kind], event.obliged_s + delay_s
+    return WatchAct(at_s, min(kind.alerts)) if kind.alerts else WatchAct(at_s, said=f"{kind.says[0]}, mph and km/h")
+
+
+def every(drive: Recorded, seconds: float) -> list[float]:
+    """Simulation times at equal distances."""
+    return [drive.begun_s + seconds * count for count in range(1, int(drive.driven_s / seconds))]
+
+
+def counted(judgement: Judgement) -> list[int]:
+    """The numbers of the events in which something had to be done."""
+    return [index for index, event in enumerate(judgement.events) if event.outcome.counts]
+
+
+def test_the_record_is_of_the_drives_as_they_are_drawn() -> None:
+    assert not outdated(), "run python -m tests.drives.record --renew"
+
+
+@pytest.mark.parametrize("family", EVERY)
+def test_a_drive_has_events_and_look_alikes(drive: Recorded) -> None:
+    silent = scored(drive, ())
+    assert silent.events >= 1
+    assert silent.baits >= 3
+
+
+def test_a_drive_has_several_events_on_average() -> None:
+    assert sum(scored(each, ()).events for each in recorded().values()) >= 5 * len(FAMILIES)
+
+
+def test_nine_in_ten_of_what_is_staged_come_off() -> None:
+    """Events oblige within five minutes, look-alikes to nothing within 45 s, as in ``benchmarks/drives.py``."""
+    came = []
+    for family, drive in recorded().items():
+        for one in FAMILIES[family].draw(SEED).staged:
+            due_s = [
+                event.observable_s - drive.begun_s
+                for event in drive.events
+                if event.kind == one.kind and event.obliged_s is not None
+            ]
+            until_s = one.at_s + (APART_S if one.is_bait else 300.0)
+            came.append(any(one.at_s - 1 <= at_s <= until_s for at_s in due_s) is not one.is_bait)
+    assert sum(came) >= 0.9 * len(came), f"{sum(came)} of {len(came)}"
+
+
+@pytest.mark.parametrize("family", EVERY)
+def test_silence_meets_nothing_and_disturbs_nobody(drive: Recorded) -> None:
+    silent = scored(drive, ())
+    assert (silent.recall, silent.false_alarms, silent.nuisances, silent.value) == (0.0, 0, 0, 0.0)
+
+
+@pytest.mark.parametrize("family", EVERY)
+def test_a_right_act_at_each_obligation_wins(drive: Recorded) -> None:
+    acts = [right(event) for event in drive.events if event.obliged_s is not None]
+    found = scored(drive, sorted(acts, key=lambda act: act.time_s))
+    assert found.recall == 1.0
+    assert found.false_alarms == 0
+    assert found.value > 80.0
+
+
+@pytest.mark.parametrize("family", EVERY)
+def test_who_alerts_by_rote_does_worse_than_nobody(drive: Recorded) -> None:
+    kinds = tuple(AlertKind)
+    in_turn = [WatchAct(at_s, kinds[turn % len(kinds)]) for turn, at_s in enumerate(every(drive, 10.0))]
+    assert scored(drive, in_turn).value < 0.0
+    assert scored(drive, (WatchAct(at_s, AlertKind.SPEED) for at_s in drive.wakes_s)).value < 0.0
+    assert scored(drive, (WatchAct(at_s, AlertKind.SPEED) for at_s in every(drive, 30.0))).value < 0.0
+    likeliest = most_frequent(judged(drive, ()), KINDS)
+    assert scored(drive, (WatchAct(at_s, likeliest) for at_s in every(drive, 30.0))).value < 0.0
+
+
+@pytest.mark.parametrize("family", EVERY)
+def test_a_delay_loses_exactly_the_events_whose_deadline_it_passes(drive: Recorded) -> None:
+    """Each event by itself, since one alert may settle several."""
+    for index in counted(judged(drive, ())):
+        event = drive.events[index]
+        for delay_s in DELAYS_S:
+            (alone,) = judged(drive, [right(event, delay_s)], [event]).events
+            assert event.obliged_s is not None
+            assert event.deadline_s is not None
+            in_time = event.obliged_s + delay_s <= event.deadline_s
+            assert alone.outcome.is_credited is in_time, (event, delay_s)
+
+
+@pytest.mark.parametrize("family", EVERY)
+def test_without_its_events_a_drive_is_won_by_silence(drive: Recorded) -> None:
+    baits = [replace(event) for event in drive.events if event.bait]
+    assert scored(drive, (), baits).value == 100.0
+    assert scored(drive, [WatchAct(drive.begun_s + 100.0, AlertKind.SPEED)], baits).value < 100.0
+
+
+def test_every_kind_comes_in_some_family_as_an_event_and_as_a_look_alike() -> None:
+    """But for what few of the drives on record stage."""
+    events = {event.kind for each in recorded().values() for event in each.events if event.obliged_s is not None}
+    baits = {event.kind for each in recorded().values() for event in each.events if event.bait}
+    assert len(events) >= 0.8 * len(KINDS), KINDS.keys() - events
+    assert len(baits) >= 0.8 * len(KINDS), KINDS.keys() - baits
