@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import atexit
 from functools import cache
 from typing import Any
 
@@ -24,10 +23,8 @@ LIMITS = ServiceLimits(episodes=1000, idle_s=86_400.0)
 
 @cache
 def shared_service() -> EpisodeService:
-    """The episodes of this process, for a host that limits them itself."""
-    service = EpisodeService(limits=LIMITS)
-    atexit.register(service.close)
-    return service
+    """The episodes of this process, for a host that limits them itself; what simulates them ends with it."""
+    return EpisodeService(limits=LIMITS)
 
 
 def episode_spec(**words: Any) -> EpisodeSpec:
