@@ -68,7 +68,7 @@ def _drawing(row: WatchRow, timeline: Json) -> Drawing:
         rows = len(kinds) + 1
         hidden = rows * share / (1 - share)
         axes.set_ylim(rows + hidden - 0.3, -0.7)
-        axes.set_yticks(range(rows), ["acts", *kinds])
+        axes.set_yticks(range(rows), ["acts", *(kind.replace("_", " ") for kind in kinds)])
         _events(axes, row.events, kinds)
         _acts(axes, row)
         end_s = timeline["time_s"][-1]
@@ -130,5 +130,6 @@ def _speeds(axes: Axes, timeline: Json) -> None:
     axes.plot(times_s, limits, color=RED, linewidth=1.0, drawstyle="steps-post", alpha=0.8)
     axes.plot(times_s[: len(nobodys)], nobodys, color=GREY, linewidth=1.0, linestyle=(0, (3, 2)))
     axes.plot(times_s, speeds, color=BLUE, linewidth=1.3)
-    axes.set_ylim(bottom=0)
+    known = [limit for limit in timeline["limit_kmh"] if limit is not None]
+    axes.set_ylim(0, 1.08 * max([1.0, *speeds, *nobodys, *known]))
     axes.set_ylabel("km/h")

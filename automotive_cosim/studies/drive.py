@@ -174,12 +174,14 @@ class _Drive:
         turned: list[str] = []
         with ExitStack() as stack:
             begun: list[RemoteTraffic | None] = []
+            taken = [now.ahead.route_edges]
             for edges in ways:
                 branch = traffic.branch()
                 stack.callback(branch.close)
                 if branch.request(Reroute(edges=edges)).accepted:  # else it is too late to take it
                     numbers[edges] = len(begun)
                     begun.append(branch)
+                    taken.append(edges)
                 else:
                     branch.close()
             for agent in plan.agents:
@@ -191,6 +193,7 @@ class _Drive:
                 if not branch.is_steered:
                     branch.close()
                 edges = branch.state.ahead.route_edges
+                taken.append(edges)
                 if now.ahead.route_edges[-len(edges) :] != edges:
                     turned.append(agent)
             if not begun:
@@ -216,6 +219,7 @@ class _Drive:
             relative_speed=round(now.ahead.relative_speed, 3),
             complies=bool(self._draws.random() < plan.compliance),
             news=tuple(self._told(age_s, options, numbers) for age_s, options in news.items()),
+            ways=tuple(taken),
             own=numbers.get(own),
             agents=agents,
             agents_rerouted=tuple(turned),

@@ -15,8 +15,9 @@ from automotive_cosim.contracts import AlertKind
 from automotive_cosim.drives.events import KINDS, DriveEvent, WatchAct
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.judge import Judgement, judge, most_frequent
+from automotive_cosim.drives.plan import APART_S
 from automotive_cosim.drives.score import Score, score
-from tests.drives.record import Recorded, outdated, recorded
+from tests.drives.record import SEED, Recorded, outdated, recorded
 
 EVERY = [pytest.param(family) for family in FAMILIES]
 DELAYS_S = (0.0, 1.0, 3.0, 8.0, 15.0, 45.0, 130.0)
@@ -66,6 +67,21 @@ def test_a_drive_has_events_and_look_alikes(drive: Recorded) -> None:
 
 def test_a_drive_has_several_events_on_average() -> None:
     assert sum(scored(each, ()).events for each in recorded().values()) >= 5 * len(FAMILIES)
+
+
+def test_nine_in_ten_of_what_is_staged_come_off() -> None:
+    """Events oblige within five minutes, look-alikes to nothing within 45 s, as in ``benchmarks/drives.py``."""
+    came = []
+    for family, drive in recorded().items():
+        for one in FAMILIES[family].draw(SEED).staged:
+            due_s = [
+                event.observable_s - drive.begun_s
+                for event in drive.events
+                if event.kind == one.kind and event.obliged_s is not None
+            ]
+            until_s = one.at_s + (APART_S if one.is_bait else 300.0)
+            came.append(any(one.at_s - 1 <= at_s <= until_s for at_s in due_s) is not one.is_bait)
+    assert sum(came) >= 0.9 * len(came), f"{sum(came)} of {len(came)}"
 
 
 @pytest.mark.parametrize("family", EVERY)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from automotive_cosim.cockpit.aboard import seated_by
+from automotive_cosim.cockpit.aboard import Seat, seated_by
 from automotive_cosim.cockpit.screens.notices import LOW_KPA, TYRES
 from automotive_cosim.cockpit.signals import CABIN, ENERGY, MOTION
 from automotive_cosim.contracts import AlertKind, PullOver, Reroute
@@ -49,7 +49,7 @@ class Belt(EventKind):
         for one in seated_by(now.signals):
             if one.belted:
                 continue
-            whose = f"the belt of the {one.kind} on the seat {one.seat.words} is open"
+            whose = "the driver's belt is open" if one.seat is Seat.DRIVER else f"the {one.kind}'s belt is open"
             if not one.kind.is_person:
                 yield Sighting(whose, one.seat, bait=True)
             elif now.signals[MOTION.GEAR.path] == "P" or all(speed_kmh(then) < 1.0 for then in drive[-HALT_S:]):
