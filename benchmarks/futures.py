@@ -62,7 +62,7 @@ def counted(tally: Tally) -> Iterator[None]:
             tally.bare_s += spent_s(copy.pid) - before_s
         return settled
 
-    RemoteTraffic.begin_settling, RemoteTraffic.settled = begin_both, end_both  # type: ignore[method-assign]
+    RemoteTraffic.begin_settling, RemoteTraffic.settled = begin_both, end_both  # type: ignore[assignment,method-assign]
     try:
         yield
     finally:

@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 from automotive_cosim import scenarios
 from automotive_cosim.calibration import Calibration, CalibrationOptions, calibrate, read_calibration, result
-from automotive_cosim.calibration.candidates import Candidate, Candidates, passes
+from automotive_cosim.calibration.candidates import Candidate, Candidates, Passing, passes
 from automotive_cosim.calibration.driving import CountedTime, DrivenDemand, drive, passed
 from automotive_cosim.calibration.result import RECORD, Carried, Met
 from automotive_cosim.cli.scenarios import app
@@ -47,7 +47,14 @@ def test_departures_of_an_hour_pass_in_it_and_in_the_next() -> None:
     routes = Candidates.of([trip("x", (1.0, 2.0, 3.0))]).routes
     clock, free_s = CountedTime(0.0, 600.0, 2), {"a": 0.0, "b": 900.0, "c": 7200.0}
     times = EdgeTimes(free_s, ())
-    wanted = {("b", 0): 0, ("b", 1): 1, (("b", "c"), 1): 2, ("c", 0): 3, ("c", 1): 4, ("elsewhere", 0): 5}
+    wanted: dict[Passing, int] = {
+        ("b", 0): 0,
+        ("b", 1): 1,
+        (("b", "c"), 1): 2,
+        ("c", 0): 3,
+        ("c", 1): 4,
+        ("elsewhere", 0): 5,
+    }
     found = passes(routes, wanted, times, free_s, clock)
     matrix = np.zeros((6, 2))
     np.add.at(matrix, (found.rows, found.columns), found.shares)
