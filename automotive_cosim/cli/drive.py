@@ -51,6 +51,7 @@ def drive(
             "(also what became of the car)."
         ),
     ] = "quiet",
+    screen: Annotated[str, typer.Option(help="Size of the screen: 1280x720, 1920x720 or 1080x1920.")] = "1280x720",
     out: Annotated[
         Path | None,
         typer.Option(
@@ -64,7 +65,7 @@ def drive(
     from automotive_cosim.agents import AgentSettings, make_agent
     from automotive_cosim.cli.console import Console
     from automotive_cosim.drives.families import FAMILIES
-    from automotive_cosim.episode.specification import clock_of, feedback_of, see_of
+    from automotive_cosim.episode.specification import clock_of, feedback_of, screen_of, see_of
     from automotive_cosim.run.drive_recorder import DriveRecorder
     from automotive_cosim.run.row import as_json as row_json
     from automotive_cosim.run.watch import WatchSetup, run_watch
@@ -82,7 +83,7 @@ def drive(
         raise UserError(f"drive needs the name of a family, such as {next(iter(FAMILIES))}; --list lists them")
     if out is not None and (out / "row.json").exists():
         raise UserError(f"{out} holds the results of a drive; give another folder to --out")
-    sees, told = see_of(see), feedback_of(feedback)
+    sees, told, size = see_of(see), feedback_of(feedback), screen_of(screen)
     player = make_agent(agent, model, AgentSettings(seed=seed, see=sees))
     setup = WatchSetup(
         name,
@@ -93,6 +94,7 @@ def drive(
         latency_s=latency,
         see=sees,
         feedback=told,
+        screen=size,
         scenario=scenario,
     )
     recorders = [] if out is None else [DriveRecorder(out, setup, player)]

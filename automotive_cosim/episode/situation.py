@@ -187,6 +187,7 @@ class SituationFinder:
             arrivals=start.arrivals,
             belongings=start.belongings,
             sign_camera=start.sign_camera,
+            size=self._spec.screen,
         )
         world = couple(
             traffic,

@@ -19,6 +19,7 @@ from typing import Any
 from automotive_cosim.cockpit.photos import Photo
 from automotive_cosim.cockpit.screens.climate import SEAT_LEVELS
 from automotive_cosim.cockpit.screens.person import PHOTO
+from automotive_cosim.contracts.ids import key_of
 from automotive_cosim.interface.trace import Step
 from automotive_cosim.tasking.dialogue import Topic, topic_of
 from automotive_cosim.tasking.moves import Consult, Move, TypeText
@@ -98,7 +99,7 @@ class Seen:
             for text in filter(None, (element.text, element.content_description, element.hint_text)):
                 self.add(text)
                 is_set = element.is_selected or element.is_checked
-                self._settings[normal(f"{element.resource_id} {text}{' (set)' if is_set else ''}")] = None
+                self._settings[normal(f"{key_of(element.resource_id)} {text}{' (set)' if is_set else ''}")] = None
         self._screens["\n".join(normal(element.text) for element in step.elements if element.is_visible)] = None
         for text in (step.feedback.text, *step.said, step.moment.context.text()):
             self.add(text)

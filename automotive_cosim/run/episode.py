@@ -92,6 +92,7 @@ class EpisodeResult:
     geo: str = "full"
     see: str = "both"
     feedback: str = "verbose"
+    screen: str = "1280x720"
     language: str = "en"
     without: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
@@ -316,6 +317,7 @@ class _Run:
             "geo": str(setup.geo),
             "see": str(setup.see),
             "feedback": str(setup.feedback),
+            "screen": str(setup.screen),
             "language": str(setup.language),
             "without": setup.without,
             "tokens_in": sum(reply.tokens_in for reply in self._replies),

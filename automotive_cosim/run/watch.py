@@ -10,6 +10,7 @@ from typing import Any
 
 from automotive_cosim.agents import Agent, Thinker
 from automotive_cosim.cockpit.actions import to_json
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import KMH_PER_MPS, Element, Json
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.elsewhere import elsewhere
@@ -46,6 +47,7 @@ class WatchSetup:
     repeat: int = 0
     see: See = See.BOTH
     feedback: FeedbackDetail = FeedbackDetail.QUIET
+    screen: ScreenSize = ScreenSize.STANDARD
     scenario: str = ""
     """Where to drive instead of on the family's own roads; see ``drives.elsewhere``."""
 
@@ -91,6 +93,7 @@ def planned_row(job_id: str, setup: WatchSetup) -> WatchRow:
         repeat=setup.repeat,
         see=setup.see,
         feedback=setup.feedback,
+        screen=setup.screen,
     )
 
 
@@ -137,7 +140,7 @@ def run_watch(
     listener = Listeners(watchers)
     if setup.scenario and plan is None:
         plan = elsewhere(family_named(setup.family).draw(setup.seed), setup.scenario)
-    spec = DriveSpec(setup.family, setup.seed, setup.geo, setup.see, setup.feedback)
+    spec = DriveSpec(setup.family, setup.seed, setup.geo, setup.see, setup.feedback, setup.screen)
     with ExitStack() as ends:
         own = simulations or ends.enter_context(closing(Simulations()))
         watch = spec.begin(own, agent.channels, listener, plan)

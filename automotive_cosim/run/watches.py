@@ -16,6 +16,7 @@ from typing import Annotated, Any
 from annotated_types import Ge, Gt, Le, MinLen
 
 from automotive_cosim.agents import MODELLED, AgentSettings, make_agent
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import Json
 from automotive_cosim.drives.elsewhere import elsewhere
 from automotive_cosim.drives.families import FAMILIES
@@ -74,6 +75,10 @@ class WatchPlan:
         "quiet",
     )
     """What an agent is told of its last action."""
+    screen: Annotated[tuple[Annotated[str, OneOf(tuple(ScreenSize), "size of the screen")], ...], MinLen(1)] = (
+        "1280x720",
+    )
+    """Size of the car's screen."""
     wall_s: Annotated[float, Gt(0)] = DRIVE_LIMITS.wall_s
     """Wall seconds of one drive; exceeding them is an infrastructure error."""
 
@@ -107,7 +112,7 @@ class WatchPlan:
         limits = replace(DRIVE_LIMITS, wall_s=self.wall_s)
         found = {
             job.id: job
-            for family, scenario, agent, model, seed, geo, latency_s, repeat, see, feedback in product(
+            for family, scenario, agent, model, seed, geo, latency_s, repeat, (see, feedback, screen) in product(
                 families_named(self.drives),
                 self.scenarios or ("",),
                 self.agents,
@@ -116,8 +121,7 @@ class WatchPlan:
                 self.geo,
                 self.latency,
                 range(self.repeats),
-                self.see,
-                self.feedback,
+                product(self.see, self.feedback, self.screen),
             )
             for job in [
                 WatchJob(
@@ -132,6 +136,7 @@ class WatchPlan:
                         repeat,
                         See(see),
                         FeedbackDetail(feedback),
+                        ScreenSize(screen),
                         scenario,
                     ),
                     limits,
@@ -184,6 +189,7 @@ class WatchJob:
             *([f"latency{setup.latency_s:g}"] if setup.latency_s else []),
             *([f"see_{setup.see}"] if setup.see is not See.BOTH else []),
             *([str(setup.feedback)] if setup.feedback is not FeedbackDetail.QUIET else []),
+            *([str(setup.screen)] if setup.screen is not ScreenSize.STANDARD else []),
         )  # fmt: skip
         words = "-".join(re.sub(r"[^A-Za-z0-9_.]+", "_", Path(word).name) for word in exactly)
         return f"{words[:150]}-{digest(exactly)[:8]}"

@@ -26,10 +26,11 @@ from automotive_cosim.serve.shelf import NotHereError, Shelf, ShelfEntry
 
 HEAD = (
     *("task", "half", "scenario", "agent", "model", "seed", "success", "steps", "sim_seconds", "end", "error"),
-    *("goal", "geo", "see", "feedback", "language", "tokens_in", "tokens_out", "model_seconds"),
+    *("goal", "geo", "see", "feedback", "screen", "language", "tokens_in", "tokens_out", "model_seconds"),
 )
 SHOWN = (
-    *("id", "task", "half", "scenario", "agent", "model", "geo", "see", "feedback", "language", "seed", "repeat"),
+    *("id", "task", "half", "scenario", "agent", "model", "geo", "see", "feedback", "screen"),
+    *("language", "seed", "repeat"),
     *("dimension", "module"),
     *("success", "error", "error_kind", "end", "steps", "sim_seconds", "held_out", "goal_s"),
 )

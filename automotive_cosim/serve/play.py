@@ -403,7 +403,7 @@ def _told(seen: Observation) -> Json:
         "elements": [
             {
                 "text": ": ".join(part for part in (element.text, element.content_description) if part)
-                or element.resource_id.rpartition(".")[2],
+                or element.class_name,
                 "box": [box.x_min, box.y_min, box.x_max, box.y_max],
                 "editable": element.is_editable,
                 "checked": element.is_checked,

@@ -57,13 +57,13 @@ AIR_BACK = (
 )
 LIGHT = (
     Open("vehicle"),
-    Tap("vehicle.tab.mirrors"),
+    Tap("vehicle.tab.interior"),
     Slide("light.ambient", param("percent")),
     Tap("light.passenger_reading"),
 )
 LIGHT_BACK = (
     Open("vehicle"),
-    Tap("vehicle.tab.mirrors"),
+    Tap("vehicle.tab.interior"),
     Slide("light.ambient", 30.0),
     Tap("light.passenger_reading"),
 )

@@ -218,7 +218,7 @@ EVENING = replace(
         VOICE.GUIDANCE_VOLUME.path: 80.0,
     },
 )
-INSIDE = (Open("vehicle"), Tap("vehicle.tab.mirrors"))
+INSIDE = (Open("vehicle"), Tap("vehicle.tab.interior"))
 DARKENED = (
     *INSIDE,
     Tap("light.dome"),

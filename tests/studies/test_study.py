@@ -376,6 +376,7 @@ def test_seeds_are_added_only_until_enough_is_known(two_ways: Draw, tmp_path: Pa
 
 AGENTS = """
 from automotive_cosim.contracts import Action, ActionType, GoalStatus
+from automotive_cosim.contracts.ids import resource_id
 
 class Base:
     name, model, channels = "mine", "none", ("elements",)
@@ -397,7 +398,7 @@ class Taps(Base):
         if not self.left:
             return Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE)
         ids = [element.resource_id for element in observation.elements]
-        return Action(ActionType.CLICK, index=ids.index(self.left.pop(0)))
+        return Action(ActionType.CLICK, index=ids.index(resource_id(self.left.pop(0))))
 """
 
 

@@ -6,7 +6,7 @@ from automotive_cosim.cockpit.layout import REST, column, row
 from automotive_cosim.cockpit.messages import Back, Dial, Put, Read, SendReply, Show
 from automotive_cosim.cockpit.people import TEMPLATES
 from automotive_cosim.cockpit.restrictions import Restriction
-from automotive_cosim.cockpit.screens.handset import RIGHT, handset
+from automotive_cosim.cockpit.screens.handset import handset, handset_and_page
 from automotive_cosim.cockpit.screens.parts import heading, note, rows
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
@@ -23,7 +23,8 @@ def contact(state: State) -> tuple[Widget, ...]:
     who = state.picked.get("contact") or state.directory.contacts[0].name
     number = state.directory.number(who)
     favourite = who in state.phone.favourites
-    head, _, acts = column(RIGHT, 264, GAP, 108)
+    _, page = handset_and_page(state)
+    head, _, acts = column(page, 264, GAP, 108)
     _, picture, _, name, _, line = column(head, 24, 120, 8, 48, 6, 36)
     buttons = acts.columns(3, GAP)
     return (
@@ -90,7 +91,8 @@ def thread(state: State) -> tuple[Widget, ...]:
     said = [(text, who) for text in known.lines] if known else []
     lines = [*(said if opened and not hidden else []), *sent]
     photo = known.photo if known and opened and not hidden else None
-    left, _, right = row(RIGHT, 500, GAP, REST)
+    _, page = handset_and_page(state)
+    left, _, right = row(page, 500, GAP, REST)
     bar, _, talk, _, read = column(left, 64, 12, REST, 12, 64)
     talk, _, seen = column(talk, REST, 12, PHOTO_HIGH) if photo else (talk, talk, talk)
     back, _, name, _, figure = row(bar, 64, 16, REST, 12, 172)

@@ -21,9 +21,13 @@ export async function replayPage(query, id, episode) {
   };
   let running = await poll();
 
-  const screen = h("img", { class: "screen", alt: "" });
+  const screen = h("img", { class: "screen", alt: "", onload: () => {
+    const ratio = screen.naturalWidth / screen.naturalHeight;
+    Object.assign(box.style, { aspectRatio: `${ratio}`, maxWidth: ratio < 1 ? `${80 * ratio}vh` : "" });
+  } });
   const target = h("div", { class: "target", hidden: true });
   const noScreen = h("p", { class: "muted empty" }, "No picture of this screen was kept.");
+  const box = h("div", { class: "frame" }, screen, target, noScreen);
   const canvas = h("canvas", { tabindex: 0, role: "img", "aria-label": "The road from above" });
   const about = h("p", { class: "about" });
   const slider = h("input", { type: "range", min: 0, max: 0, step: 0.1, value: 0, "aria-label": "Time in the drive" });
@@ -151,7 +155,9 @@ export async function replayPage(query, id, episode) {
     target.hidden = !(pictured && next?.target);
     if (!target.hidden) {
       const [left, top, right, bottom] = next.target;
-      Object.assign(target.style, { left: `${left / 12.8}%`, top: `${top / 7.2}%`, width: `${(right - left) / 12.8}%`, height: `${(bottom - top) / 7.2}%` });
+      const [wide, high] = (run.screen ?? "1280x720").split("x").map(Number);
+      const share = (part, whole) => `${100 * part / whole}%`;
+      Object.assign(target.style, { left: share(left, wide), top: share(top, high), width: share(right - left, wide), height: share(bottom - top, high) });
     }
     detail.replaceChildren(...(now ? told(now) : [h("h3", {}, "The drive up to the hand-over"), h("p", { class: "muted" }, "Nobody acts yet.")]));
   }
@@ -256,7 +262,7 @@ export async function replayPage(query, id, episode) {
     title: run.task,
     content: [heading, note,
       h("div", { class: "stage" },
-        h("figure", { class: "cockpit card" }, h("div", { class: "frame" }, screen, target, noScreen)),
+        h("figure", { class: "cockpit card" }, box),
         h("figure", { class: "card map" }, canvas,
           h("div", { class: "tools" }, button("+", () => view.zoom(1.4), "Closer (+)"), button("−", () => view.zoom(1 / 1.4), "Further away (−)"), ego, turn, button("All roads", () => view.whole(), "All recorded roads (0)")),
           h("figcaption", {}, about, vehicle))),
