@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from automotive_cosim.agents.oracle import Oracle
-from automotive_cosim.contracts import Action, ActionType
+from automotive_cosim.contracts import Action, ActionType, BoundingBox
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.run.episode import Shot
 from automotive_cosim.run.road_recorder import mark_as_written
@@ -207,16 +207,28 @@ def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("automotive_cosim.serve.person.TICK_S", 0.2)
 
 
+def boxes(game: Overseen) -> dict[str, BoundingBox]:
+    """What can be tapped, by its text."""
+    return {each.text: each.bbox_pixels for each in game.episode.elements if each.is_clickable and each.text}
+
+
+def until(page: Any, holds: Callable[[], bool]) -> None:
+    """Lets the page live until something holds."""
+    for _ in range(1000):
+        if holds():
+            return
+        page.wait_for_timeout(20)
+    raise AssertionError("it never came true")
+
+
 def perform(page: Any, action: Action, game: Overseen) -> int:
     """An action by hand; returns how many acts it takes."""
     if action.action_type is ActionType.OPEN_APP:  # by the dock, or by a tile
-        ids = {each.resource_id: each for each in game.episode.elements}
-        app, dock = f"apps.{action.app_name}", f"dock.{action.app_name}"
-        taps = [dock] if dock in ids else ["dock.apps", app]
+        app = str(action.app_name).capitalize()
+        taps = [app] if app in boxes(game) else ["Apps", app]
         for name in taps:
-            while name not in (ids := {each.resource_id: each for each in game.episode.elements}):
-                page.wait_for_timeout(20)
-            box = ids[name].bbox_pixels
+            until(page, lambda name=name: name in boxes(game))
+            box = boxes(game)[name]
             x, y = (box.x_min + box.x_max) // 2, (box.y_min + box.y_max) // 2
             perform(page, Action(ActionType.CLICK, x=x, y=y), game)
         return len(taps)
@@ -272,8 +284,7 @@ def test_the_reference_solution_of_a_task_of_each_module_succeeds_by_hand(
         while game.scene().state == "acting":
             action, before = oracle.act(replace(episode.observation, elements=None)), game.acts
             hands = perform(page, action, game)
-            while game.acts < before + hands:
-                page.wait_for_timeout(20)
+            until(page, lambda wanted=before + hands: game.acts >= wanted)
             if action.action_type is ActionType.STATUS:
                 break
         page.get_by_role("link", name="See the verdict").click(timeout=60_000)

@@ -135,6 +135,16 @@ def test_old_news_offers_nothing_worth_it(folder: Path) -> None:
     assert len(rule.loc[600.0]) == len(rule.loc[0.0])
 
 
+def test_every_future_of_a_decision_says_its_way(folder: Path) -> None:
+    decisions = [each for row in read_rows(folder, DriveRow).values() for each in row.decisions]
+    assert decisions
+    for decision in decisions:
+        stay, *others = decision.ways
+        assert len(others) == len(decision.branches)
+        assert stay not in others
+        assert len({(way[0], way[-1]) for way in decision.ways}) == 1, "from one place to the same destination"
+
+
 def test_the_report_is_whole(folder: Path) -> None:
     page = write_study(folder).read_text(encoding="utf-8")
     assert "2 seeds with a decision" in page
