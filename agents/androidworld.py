@@ -29,11 +29,11 @@ from automotive_cosim.agents import prompt
 from automotive_cosim.agents.adb import Controller
 from automotive_cosim.agents.native.verbs import STATUSES, typed
 from automotive_cosim.cockpit.actions import FIELDS, check, parse
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import Action, ActionType, BoundingBox, Element, GoalStatus, Observation
 from automotive_cosim.errors import ActionError
 from automotive_cosim.interface.observe import Channel
 
-SCREEN_PX = (1280, 720)
 DEVICE = "android_world.env."
 """AndroidWorld's modules that work the device."""
 GOAL_STATUS = re.compile(r"""['"]goal_status['"]\s*:\s*['"](\w+)""")
@@ -145,25 +145,25 @@ class _Over:
 class _Environment:
     """The environment that an AndroidWorld agent gets. All its methods are called on the agent's thread."""
 
-    logical_screen_size = SCREEN_PX
-    device_screen_size = SCREEN_PX
     orientation = 0
-    physical_frame_boundary = (0, 0, *SCREEN_PX)
     foreground_activity_name = "org.automotive_cosim.cockpit"
 
-    def __init__(self) -> None:
+    def __init__(self, screen_px: tuple[int, int]) -> None:
+        self.logical_screen_size = self.device_screen_size = screen_px
+        self.physical_frame_boundary = (0, 0, *screen_px)
         self.interaction_cache = ""
         self.seen: queue.Queue[Observation | None] = queue.Queue()
         self.done: queue.Queue[Action | _Over | Exception | SystemExit] = queue.Queue()
         self.acted = False
-        self.controller = Controller(self.perform, self.elements, SCREEN_PX)
+        self.controller = Controller(self.perform, self.elements, screen_px)
         self._now: Observation | None = None
 
     def get_state(self, wait_to_stabilize: bool = False) -> AndroidWorldState:
         """The screen as it is now."""
         self.controller.flush()
         now = self.now()
-        pixels = np.zeros((SCREEN_PX[1], SCREEN_PX[0], 3), np.uint8) if now.screenshot is None else now.screenshot
+        width, height = self.logical_screen_size
+        pixels = np.zeros((height, width, 3), np.uint8) if now.screenshot is None else now.screenshot
         return AndroidWorldState(np.array(pixels), [_ui_element(element) for element in now.elements or ()])
 
     def reset(self, go_home: bool = False) -> AndroidWorldState:
@@ -178,7 +178,7 @@ class _Environment:
             ValueError: it lacks its target.
         """
         self.controller.flush()
-        known = translated(action, self.elements(), self.controller.last)
+        known = translated(action, self.elements(), self.controller.last, self.logical_screen_size)
         if known.action_type is ActionType.ANSWER:
             self.interaction_cache = known.text or ""
         self.controller.touch(known)
@@ -232,11 +232,10 @@ class AndroidWorldAgent:
         self._env: _Environment | None = None
 
     def reset(self, goal: str) -> None:
-        """Makes a new agent; the thread of the previous episode ends."""
+        """The thread of the previous episode ends; the first observation makes a new agent."""
         if self._env is not None:
             self._env.seen.put(None)
-        self._env = _Environment()
-        threading.Thread(target=self._live, args=(self._env,), daemon=True).start()
+        self._env = None
 
     def act(self, observation: Observation) -> Action:
         """Resumes the agent until its next action, or the end of a ``step`` without one.
@@ -244,7 +243,9 @@ class AndroidWorldAgent:
         Raises:
             ActionError: it raised, took no action in a step, or took one that does not exist here.
         """
-        assert self._env is not None
+        if self._env is None:
+            self._env = _Environment(_screen_px(observation))
+            threading.Thread(target=self._live, args=(self._env,), daemon=True).start()
         self._env.seen.put(observation)
         with _PRINTS:
             done = self._env.done.get()
@@ -293,13 +294,31 @@ def _wish(seen: Observation) -> str:
     return prompt.driver_words(seen) if seen.said else seen.goal
 
 
-def translated(action: Any, elements: Sequence[Element] = (), last: tuple[int, int] | None = None) -> Action:
+def _screen_px(seen: Observation) -> tuple[int, int]:
+    """Width and height of the screen that is observed; without its picture, of the smallest that holds the list."""
+    if seen.screenshot is not None:
+        height, width = seen.screenshot.shape[:2]
+        return width, height
+    boxes = [element.bbox_pixels for element in seen.elements or ()]
+    right, bottom = max((box.x_max for box in boxes), default=0), max((box.y_max for box in boxes), default=0)
+    holding = [size for size in ScreenSize if right <= size.width and bottom <= size.height]
+    found = min(holding, key=lambda size: size.width * size.height, default=ScreenSize.STANDARD)
+    return found.width, found.height
+
+
+def translated(
+    action: Any,
+    elements: Sequence[Element] = (),
+    last: tuple[int, int] | None = None,
+    screen_px: tuple[int, int] = (ScreenSize.STANDARD.width, ScreenSize.STANDARD.height),
+) -> Action:
     """An AndroidWorld ``JSONAction``, or anything with its attributes, as one of ours.
 
     Args:
         action: the action.
         elements: those on the screen; a text without a target goes to the one with the focus.
         last: the pixel that was touched last.
+        screen_px: width and height; a swipe without a target begins in the middle.
 
     Raises:
         ActionError: there is no such action here.
@@ -317,7 +336,7 @@ def translated(action: Any, elements: Sequence[Element] = (), last: tuple[int, i
                 return check(typed(given.get("text", ""), elements, last, clear=bool(given.get("clear_text"))))
             if kind != ActionType.SWIPE:
                 raise ValueError(f"Invalid {kind} action: {action}")
-            given |= {"x": SCREEN_PX[0] // 2, "y": SCREEN_PX[1] // 2}
+            given |= {"x": screen_px[0] // 2, "y": screen_px[1] // 2}
         if kind == ActionType.SWIPE:  # up and down are the finger's directions there, left and right are not
             given["direction"] = _ACROSS.get(given.get("direction", ""), given.get("direction"))
     for name in ("x", "y", "index"):

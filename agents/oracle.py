@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from automotive_cosim.cockpit.actions import point
 from automotive_cosim.cockpit.cockpit import OPPOSITE
+from automotive_cosim.cockpit.screens import DOCK
 from automotive_cosim.contracts import (
     Action,
     ActionType,
@@ -17,6 +18,7 @@ from automotive_cosim.contracts import (
     GoalStatus,
     Observation,
 )
+from automotive_cosim.contracts.ids import resource_id
 from automotive_cosim.errors import ActionError
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.tasking.instance import Instance
@@ -25,6 +27,7 @@ from automotive_cosim.tasking.moves import Consult, Do, Hear, Move, Open, Slide,
 SLIDER_MARGIN_PX = 20
 """How far inside its element a slider's range begins."""
 LIST = "ListView"
+_DOCK = frozenset(resource_id(f"dock.{app}") for app in DOCK)
 """What scrolls row by row, by class name."""
 
 
@@ -96,24 +99,24 @@ class Oracle:
         if not self._moves:
             return self._end
         match self._moves[0]:
-            case Tap(resource_id, _, text):
-                return self._touch(observation, resource_id, text) or self._search(observation, resource_id or text)
-            case TapUntil(resource_id, shown, text, at_most):
+            case Tap(key, _, text):
+                return self._touch(observation, key, text) or self._search(observation, key or text)
+            case TapUntil(key, shown, text, at_most):
                 if self._pressed >= at_most:
-                    raise ActionError(f"{shown} does not read {text!r} after {at_most} taps on {resource_id}")
+                    raise ActionError(f"{shown} does not read {text!r} after {at_most} taps on {key}")
                 self._pressed += 1
-                index = _index(elements, resource_id, "")
-                return _click(index) if index is not None else self._search(observation, resource_id)
-            case Slide(resource_id, value, low, high):
-                index = _index(elements, resource_id, "")
+                index = _index(elements, key, "")
+                return _click(index) if index is not None else self._search(observation, key)
+            case Slide(key, value, low, high):
+                index = _index(elements, key, "")
                 if index is None:
-                    return self._search(observation, resource_id)
+                    return self._search(observation, key)
                 self._moves.popleft()
                 return _slide(elements[index], (value - low) / (high - low))
-            case TypeText(resource_id, text, enter):
-                index = _index(elements, resource_id, "")
+            case TypeText(key, text, enter):
+                index = _index(elements, key, "")
                 if index is None:
-                    return self._search(observation, resource_id)
+                    return self._search(observation, key)
                 self._moves.popleft()
                 if enter:
                     self._moves.appendleft(Do(Action(ActionType.KEYBOARD_ENTER)))
@@ -136,8 +139,8 @@ class Oracle:
                 self._moves.popleft()
                 return action
 
-    def _touch(self, observation: Observation, resource_id: str, text: str) -> Action | None:
-        index = _index(observation.elements or (), resource_id, text)
+    def _touch(self, observation: Observation, key: str, text: str) -> Action | None:
+        index = _index(observation.elements or (), key, text)
         if index is None:
             return None
         self._moves.popleft()
@@ -163,14 +166,16 @@ def _is_reached(move: Move, elements: Sequence[Element], said: Sequence[str]) ->
         return any(move.text in text for text in said)
     if not isinstance(move, TapUntil):
         return False
-    return any(element.resource_id == move.shown and _reads(element, move.text) for element in elements)
+    shown = resource_id(move.shown)
+    return any(element.resource_id == shown and _reads(element, move.text) for element in elements)
 
 
-def _index(elements: Sequence[Element], resource_id: str, text: str) -> int | None:
+def _index(elements: Sequence[Element], key: str, text: str) -> int | None:
     """Where it is; of several the first, but the dock comes last: a place may be called Home too."""
-    dock_last = sorted(enumerate(elements), key=lambda entry: entry[1].resource_id.startswith("dock."))
+    wanted = resource_id(key)
+    dock_last = sorted(enumerate(elements), key=lambda entry: entry[1].resource_id in _DOCK)
     for index, element in dock_last:
-        if not element.is_visible or (resource_id and element.resource_id != resource_id):
+        if not element.is_visible or (wanted and element.resource_id != wanted):
             continue
         if not text or (element.is_clickable and _reads(element, text)):
             return index

@@ -170,7 +170,7 @@ def _vehicle(vehicle: VehicleState | None) -> str:
 
 def _connectivity(observation: Observation) -> str:
     link = observation.connectivity
-    return "unknown" if link is None else f"{'online' if link.online else 'offline'}, {link.kind}"
+    return "unknown" if link is None else f"{'a network' if link.online else 'no network'} in reach, {link.kind}"
 
 
 def _gps(fix: GpsFix | None) -> str:
@@ -184,15 +184,16 @@ def _gps(fix: GpsFix | None) -> str:
 
 
 def target(action: Action | None, seen: Observation) -> str:
-    """The id of the element that an action refers to; empty if it refers to none."""
+    """The element that an action refers to, by what it says; empty if it refers to none."""
     elements = seen.elements or ()
     if action is None or action.index is None or not 0 <= action.index < len(elements):
         return ""
-    return elements[action.index].resource_id
+    element = elements[action.index]
+    return element.text or element.content_description or element.resource_id
 
 
 def action_words(action: Action | None, seen: Observation) -> str:
-    """An action on one line, with the id of its element instead of the index."""
+    """An action on one line, with the words of its element instead of the index."""
     if action is None:
         return "unreadable answer"
     fields = to_json(action)

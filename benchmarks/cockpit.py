@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import (
     Around,
     Connectivity,
@@ -60,14 +61,14 @@ def outside(network: RoadNetwork, route: tuple[Road, ...], second: int) -> Surro
     return Surroundings(driving, weather, now, 40.0, None, Connectivity(True, "5g", 3))
 
 
-def measure(network: RoadNetwork) -> dict[str, dict[str, float]]:
+def measure(network: RoadNetwork, size: ScreenSize) -> dict[str, dict[str, float]]:
     """Milliseconds by screen: the tree, its elements, a changed, an unchanged and a redrawn frame."""
     x_min, y_min, x_max, y_max = network.bounds_m
     middle = ((x_min + x_max) / 2, (y_min + y_max) / 2)
     route = tuple(sorted(network.roads, key=lambda road: math.dist(road.shape_m[0], middle))[:25])
     figures = {}
     for screen in SCREENS:
-        cockpit = Cockpit(network, rng=np.random.default_rng(1))
+        cockpit = Cockpit(network, rng=np.random.default_rng(1), size=size)
         names = ("tree", "elements", "changed", "unchanged", "redrawn")
         times: dict[str, list[float]] = {name: [] for name in names}
         for second in range(FRAMES):
@@ -92,13 +93,14 @@ def _timed(into: list[float], call: Any) -> None:
 
 
 def main() -> None:
-    """Measures each network and prints one JSON object a line."""
+    """Measures each network and prints a JSON object for each size of screen."""
     folder = Path(__file__).parent.parent / "sumo_scenarios"
     paths = [Path(name) for name in sys.argv[1:]] or [folder / "paris_centre" / "paris_centre.net.xml.gz"]
     for path in paths:
         network = read_network(path).map
-        figures = {"network": path.name, "roads": len(network.roads), "screens": measure(network)}
-        print(json.dumps(figures, indent=1))
+        for size in ScreenSize:
+            figures = {"network": path.name, "roads": len(network.roads), "size": size}
+            print(json.dumps(figures | {"screens": measure(network, size)}, indent=1))
 
 
 if __name__ == "__main__":

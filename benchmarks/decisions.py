@@ -65,7 +65,7 @@ class Children:
         @functools.wraps(close)
         def closed(process: RemoteProcess) -> None:
             if self._running.pop(process.pid, None) is not None:
-                self._ended_s += _spent_s(process.pid)
+                self._ended_s += spent_s(process.pid)
             close(process)
 
         RemoteProcess.receive, RemoteProcess.close = receive, closed  # type: ignore[method-assign]
@@ -77,10 +77,10 @@ class Children:
     @property
     def spent_s(self) -> float:
         """By all of them so far."""
-        return self._ended_s + sum(map(_spent_s, self._running))
+        return self._ended_s + sum(map(spent_s, self._running))
 
 
-def _spent_s(pid: int) -> float:
+def spent_s(pid: int) -> float:
     """A process's own clock (clock_getcpuclockid(3)); Linux."""
     try:
         return time.clock_gettime(((~pid) << 3) | 2)

@@ -18,7 +18,7 @@ from automotive_cosim.tasks.hvac import METRIC
 
 DOORS = (Open("vehicle"), Tap("vehicle.tab.doors"))
 SEATS = (Open("vehicle"), Tap("vehicle.tab.seats"))
-INSIDE = (Open("vehicle"), Tap("vehicle.tab.mirrors"))
+INSIDE = (Open("vehicle"), Tap("vehicle.tab.interior"))
 CONNECTIONS = (Open("settings"), Tap("settings.page.connections"))
 PRIVACY = (Open("settings"), Tap("settings.page.privacy"))
 TWELVE_HOURS = (Tap("settings.page.language"), Tap("language.time.12"))

@@ -458,7 +458,7 @@ MY_WINDOW = meant(
 )
 
 _EVENING = at("london", "kingsway", on(PASSENGER, Kind.ADULT), start="2026-11-18T18:40:00")
-_INSIDE = (DOORS[0], Tap("vehicle.tab.mirrors"))
+_INSIDE = (DOORS[0], Tap("vehicle.tab.interior"))
 MY_LIGHT = meant(
     "system_my_reading_light",
     Module.SYSTEM,

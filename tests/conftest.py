@@ -31,6 +31,7 @@ from automotive_cosim.contracts import (
     Observation,
     VehicleState,
 )
+from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.traffic.fork import Simulations
 
 PROXIES = [f"{kind}_proxy" for kind in ("http", "https", "all")]
@@ -146,7 +147,7 @@ def _observation(goal: str, context: str | None = PARIS, **changes: object) -> O
         goal=goal,
         time_s=0.0,
         feedback=Feedback(FeedbackCode.NONE, ""),
-        elements=(_button("safety.kind.speed", "Speed"), _button("safety.warn", "Warn driver")),
+        elements=(_button(shown_id("safety.kind.speed"), "Speed"), _button(shown_id("safety.warn"), "Warn driver")),
         vehicle=_vehicle(),
         connectivity=Connectivity(True, "5g", 4),
         gps=GpsFix(True, 2.29, 48.87, 3.0, 0.0, 90.0),

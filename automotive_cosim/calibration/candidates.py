@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import pairwise
+from itertools import zip_longest
 
 import numpy as np
+import numpy.typing as npt
 
 from automotive_cosim.calibration.capacity import Movement
 from automotive_cosim.calibration.driving import HOUR_S, CountedTime
@@ -19,6 +20,8 @@ SENSITIVITY = 0.15
 
 UNSEEN = 0.5
 """Weight of a route that nobody drove in the given demand, in trips."""
+
+Ints = npt.NDArray[np.int_]
 
 Ends = tuple[str, str]
 """First and last edge."""
@@ -78,14 +81,11 @@ class Candidates:
 
     def costs_s(self, times: EdgeTimes, free_s: Mapping[str, float], clock: CountedTime) -> Floats:
         """Travel time of each route that begins in the middle of each hour, (hours, routes)."""
-        rows = [
-            [
-                free_s.get(route.edges[0], 0.0) + times.of(route.edges, clock.first_s + (hour + 0.5) * HOUR_S)
-                for route in self.routes
-            ]
-            for hour in range(clock.hours)
-        ]
-        return np.array(rows)
+        starts_s = _starts_s(clock)[:, None]
+        left = _Places.of(self.routes).left_s(times, clock, np.repeat(starts_s, len(self.routes), axis=1))
+        lasts = np.cumsum([len(route.edges) for route in self.routes]) - 1
+        found: Floats = _first_s(self.routes, free_s) + (left[:, lasts] - starts_s)
+        return found
 
     def prior(self, costs_s: Floats) -> Floats:
         """Share of all traffic that each route has, (hours, routes); each hour sums to one."""
@@ -105,12 +105,66 @@ class Candidates:
 
 
 @dataclass(frozen=True, slots=True)
-class Passes:
-    """When each route passes the edges and turns of interest: entries of a matrix."""
+class _Places:
+    """Every edge of every route, one route after the other."""
 
-    rows: list[int]
-    columns: list[int]
-    shares: list[float]
+    index: Mapping[str, int]
+    """Edge -> number."""
+    edges: Ints
+    """(places,), numbers of edges."""
+    begins: Ints
+    """(routes,), the place of each route's first edge."""
+    lengths: Ints
+    """(routes,), edges of each route."""
+
+    @classmethod
+    def of(cls, routes: Sequence[Candidate]) -> _Places:
+        """Those of some routes."""
+        index: dict[str, int] = {}
+        edges = np.array([index.setdefault(edge, len(index)) for route in routes for edge in route.edges])
+        lengths = np.array([len(route.edges) for route in routes])
+        return cls(index, edges, np.cumsum(lengths) - lengths, lengths)
+
+    def left_s(self, times: EdgeTimes, clock: CountedTime, first_left_s: Floats) -> Floats:
+        """When each place is left, (hours, places).
+
+        Args:
+            times: times of the edges.
+            clock: the hours.
+            first_left_s: when the first edge of each route is left, (hours, routes).
+        """
+        first, table = times.table(self.index)
+        count = table.shape[1] - 1
+        left_s = np.empty((clock.hours, len(self.edges)))
+        now_s = first_left_s.copy()
+        left_s[:, self.begins] = now_s
+        for place in range(1, int(self.lengths.max(initial=0))):
+            routes = np.nonzero(self.lengths > place)[0]
+            at = self.begins[routes] + place
+            interval = (now_s[:, routes] // INTERVAL_S).astype(int) - first
+            is_known = (interval >= 0) & (interval < count)
+            now_s[:, routes] += table[self.edges[at], np.where(is_known, interval, count)]
+            left_s[:, at] = now_s[:, routes]
+        return left_s
+
+
+def _starts_s(clock: CountedTime) -> Floats:
+    """The middle of each hour, (hours,)."""
+    return np.array([clock.first_s + (hour + 0.5) * HOUR_S for hour in range(clock.hours)])
+
+
+def _first_s(routes: Sequence[Candidate], free_s: Mapping[str, float]) -> Floats:
+    """Time of the first edge of each route on empty roads, (routes,)."""
+    return np.array([free_s.get(route.edges[0], 0.0) for route in routes])
+
+
+@dataclass(frozen=True, slots=True)
+class Passes:
+    """When each route passes the edges and turns of interest: entries of a matrix, which add up."""
+
+    rows: Ints
+    columns: Ints
+    shares: Floats
 
 
 def passes(
@@ -122,6 +176,9 @@ def passes(
 ) -> Passes:
     """The share of each route's departures of an hour that leaves an edge, or takes a turn, in each hour.
 
+    The departures of an hour are spread evenly over it, so what passes ``x`` hours later falls into two hours. The
+    traffic of the warm-up is that of the first hour, and passes in its place.
+
     Args:
         routes: n routes; column ``hour * n + route`` stands for the departures of one in an hour.
         wanted: edge or turn, and hour -> row.
@@ -129,46 +186,45 @@ def passes(
         free_s: the same on empty roads, for the first edge.
         clock: the hours.
     """
-    found = Passes([], [], [])
-    interesting = {name for name, _ in wanted}
+    names = {name: number for number, name in enumerate(dict.fromkeys(name for name, _ in wanted))}
+    row_of = np.full((len(names) + 1, clock.hours + 1), -1)
+    for (name, hour), row in wanted.items():
+        if 0 <= hour < clock.hours:
+            row_of[names[name], hour] = row
+    places = _Places.of(routes)
+    met = np.array(list(_met(routes, names)), dtype=int).reshape(-1, 3)
+    numbers, at, named = met.T
+    starts_s = _starts_s(clock)[:, None]
+    left_s = places.left_s(times, clock, starts_s + _first_s(routes, free_s))
+    late_h = (left_s[:, at] - starts_s) / HOUR_S
+    whole = np.floor(late_h).astype(int)
+    rest = late_h - whole
+    hours = np.arange(clock.hours)[:, None]
+    departures = hours * len(routes) + numbers
+    found: list[tuple[Ints, Ints, Floats]] = []
+
+    def put(hour: Ints, share: Floats, column: Ints) -> None:
+        """Entries of those that pass in an hour that is wanted."""
+        row = row_of[named, np.minimum(hour, clock.hours)]
+        kept = (row >= 0) & (share > 0)
+        found.append((row[kept], column[kept], share[kept]))
+
+    put(hours + whole, 1 - rest, departures)
+    put(hours + whole + 1, rest, departures)
+    for early in range(int(whole[0].max(initial=-1)) + 1):
+        share = np.where(whole[0] > early, 1.0, np.where(whole[0] == early, rest[0], 0.0))
+        put(np.full_like(named, early), share, departures[0])
+    rows, columns, shares = zip(*found, strict=True)
+    return Passes(np.concatenate(rows), np.concatenate(columns), np.concatenate(shares))
+
+
+def _met(routes: Sequence[Candidate], names: Mapping[str | Movement, int]) -> Iterator[tuple[int, int, int]]:
+    """Number of the route, place, and number of the name, wherever a route leaves an edge or takes a turn."""
+    place = 0
     for number, route in enumerate(routes):
-        turns = list(pairwise(route.edges))
-        if not any(edge in interesting for edge in route.edges) and not any(turn in interesting for turn in turns):
-            continue
-        for hour in range(clock.hours):
-            start_s = clock.first_s + (hour + 0.5) * HOUR_S
-            now_s = start_s
-            for place, edge in enumerate(route.edges):
-                now_s += times.at(edge, int(now_s // INTERVAL_S)) if place else free_s.get(edge, 0.0)
-                names = (edge, turns[place]) if place < len(turns) else (edge,)
-                for name in names:
-                    if name in interesting:
-                        _spread(found, wanted, name, hour, hour * len(routes) + number, (now_s - start_s) / HOUR_S)
-    return found
-
-
-def _spread(
-    found: Passes,
-    wanted: Mapping[Passing, int],
-    name: str | Movement,
-    hour: int,
-    column: int,
-    late_h: float,
-) -> None:
-    """Departures of an hour, spread evenly over it, that pass ``late_h`` hours later; the traffic of the warm-up is
-    that of the first hour, and passes in its place."""
-    whole, rest = divmod(late_h, 1.0)
-    for later, share in ((int(whole), 1 - rest), (int(whole) + 1, rest)):
-        row = wanted.get((name, hour + later))
-        if row is not None and share > 0:
-            found.rows.append(row)
-            found.columns.append(column)
-            found.shares.append(share)
-    if hour == 0:
-        for early in range(int(whole) + 1):
-            row = wanted.get((name, early))
-            share = rest if early == int(whole) else 1.0
-            if row is not None and share > 0:
-                found.rows.append(row)
-                found.columns.append(column)
-                found.shares.append(share)
+        for edge, after in zip_longest(route.edges, route.edges[1:]):
+            if edge in names:
+                yield number, place, names[edge]
+            if after is not None and (edge, after) in names:
+                yield number, place, names[edge, after]
+            place += 1

@@ -299,14 +299,14 @@ def _smoothed(before: Floats | None, now: Floats) -> Floats:
 def _crossed(routes: Sequence[Candidate], names: Sequence[str | Movement]) -> Any:
     """Which routes use which edges and turns, (names, routes)."""
     index = {name: number for number, name in enumerate(names)}
-    found = Passes([], [], [])
-    for number, route in enumerate(routes):
-        for name in (*route.edges, *pairwise(route.edges)):
-            if name in index:
-                found.rows.append(index[name])
-                found.columns.append(number)
-                found.shares.append(1.0)
-    return _matrix(found, len(names), len(routes))
+    used = [
+        (index[name], number)
+        for number, route in enumerate(routes)
+        for name in (*route.edges, *pairwise(route.edges))
+        if name in index
+    ]
+    rows, columns = np.array(used, dtype=int).reshape(-1, 2).T
+    return _matrix(Passes(rows, columns, np.ones(len(used))), len(names), len(routes))
 
 
 def _matrix(found: Passes, rows: int, columns: int) -> Any:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -51,8 +51,12 @@ def drive(
             "(also what became of the car)."
         ),
     ] = "quiet",
+    screen: Annotated[str, typer.Option(help="Size of the screen: 1280x720, 1920x720 or 1080x1920.")] = "1280x720",
     out: Annotated[
-        Path | None, typer.Option(help="Folder for the row, the steps and the timeline.", show_default=False)
+        Path | None,
+        typer.Option(
+            help="Folder for the row, the steps, the screens and the road, which `serve` shows.", show_default=False
+        ),
     ] = None,
     list_them: Annotated[bool, typer.Option("--list", help="List the families of drives and exit.")] = False,
     as_json: AsJson = False,
@@ -61,7 +65,8 @@ def drive(
     from automotive_cosim.agents import AgentSettings, make_agent
     from automotive_cosim.cli.console import Console
     from automotive_cosim.drives.families import FAMILIES
-    from automotive_cosim.episode.specification import clock_of, feedback_of, see_of
+    from automotive_cosim.episode.specification import clock_of, feedback_of, screen_of, see_of
+    from automotive_cosim.run.drive_recorder import DriveRecorder
     from automotive_cosim.run.row import as_json as row_json
     from automotive_cosim.run.watch import WatchSetup, run_watch
 
@@ -78,7 +83,7 @@ def drive(
         raise UserError(f"drive needs the name of a family, such as {next(iter(FAMILIES))}; --list lists them")
     if out is not None and (out / "row.json").exists():
         raise UserError(f"{out} holds the results of a drive; give another folder to --out")
-    sees, told = see_of(see), feedback_of(feedback)
+    sees, told, size = see_of(see), feedback_of(feedback), screen_of(screen)
     player = make_agent(agent, model, AgentSettings(seed=seed, see=sees))
     setup = WatchSetup(
         name,
@@ -89,14 +94,14 @@ def drive(
         latency_s=latency,
         see=sees,
         feedback=told,
+        screen=size,
         scenario=scenario,
     )
-    record = run_watch(f"{name}-s{seed}-{player.name}", setup, player)
-    if out is not None:
-        out.mkdir(parents=True, exist_ok=True)
-        (out / "row.json").write_text(json.dumps(row_json(record.row), indent=1) + "\n", "utf-8")
-        (out / "timeline.json").write_text(json.dumps(record.timeline) + "\n", "utf-8")
-        (out / "steps.jsonl").write_text("".join(json.dumps(step) + "\n" for step in record.steps), "utf-8")
+    recorders = [] if out is None else [DriveRecorder(out, setup, player)]
+    with ExitStack() as ends:
+        for recorder in recorders:
+            ends.callback(recorder.close)
+        record = run_watch(f"{name}-s{seed}-{player.name}", setup, player, watchers=recorders)
     if as_json:
         print_json(row_json(record.row))
     else:

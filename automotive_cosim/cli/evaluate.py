@@ -115,6 +115,12 @@ def evaluate(
             show_default="quiet",
         ),
     ] = None,
+    screen: Annotated[
+        str | None,
+        typer.Option(
+            help="Size of the screen, separated by commas: 1280x720, 1920x720, 1080x1920.", show_default="1280x720"
+        ),
+    ] = None,
     language: Annotated[
         str | None,
         typer.Option(
@@ -213,7 +219,7 @@ def evaluate(
     if pictures not in set(Pictures):
         raise UnknownNameError("choice of pictures", pictures, Pictures)
     named = {"agents": agents, "models": models, "tasks": tasks, "scenarios": scenarios, "geo": geo}
-    named |= {"see": see, "feedback": feedback, "language": language}
+    named |= {"see": see, "feedback": feedback, "screen": screen, "language": language}
     values: dict[str, Any] = read_plan(plan_file) if plan_file else {}
     values |= {name: words(name, text) for name, text in named.items() if text is not None}
     values |= {"seeds": seeds_in(seeds)} if seeds is not None else {}
@@ -316,13 +322,16 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
         table.add_row(
             "left out", f"{counted(len(left_out), 'task')} that cannot run there; --everywhere includes them"
         )
+    if beyond := plan.beyond_the_list():
+        table.add_row("not as tree", f"{counted(len(beyond), 'task')} that need the picture")
     if unspoken := plan.unspoken():
         table.add_row(
             "not said", f"{counted(len(unspoken), 'task')} without phrasings in {languages_in_words(plan.language)}"
         )
     table.add_row("seeds", ", ".join(map(str, plan.seeds)))
     table.add_row("geo controls", ", ".join(plan.geo))
-    table.add_row("screen", f"as {', '.join(plan.see)}; feedback {', '.join(plan.feedback)}")
+    table.add_row("screen", f"{', '.join(plan.screen)}, as {', '.join(plan.see)}")
+    table.add_row("feedback", ", ".join(plan.feedback))
     table.add_row("language", ", ".join(plan.language))
     table.add_row("clock", f"{plan.clock}; latency {', '.join(f'{each:g}' for each in plan.latency)} s")
     table.add_row("repeats", str(plan.repeats))

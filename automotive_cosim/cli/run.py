@@ -28,6 +28,7 @@ HEADLINE = (
     "geo",
     "see",
     "feedback",
+    "screen",
     "language",
     "tokens_in",
     "tokens_out",
@@ -59,6 +60,7 @@ def run(
             "(also what became of the car)."
         ),
     ] = "quiet",
+    screen: Annotated[str, typer.Option(help="Size of the screen: 1280x720, 1920x720 or 1080x1920.")] = "1280x720",
     language: Annotated[
         str, typer.Option(help="What the driver speaks and the car shows: en, fr, de or ja.")
     ] = "en",
@@ -144,7 +146,7 @@ def run(
     from automotive_cosim.agents.settings import geo_input, parts
     from automotive_cosim.cli.console import Console
     from automotive_cosim.cli.live import Live, Notes
-    from automotive_cosim.episode.specification import clock_of, feedback_of, language_of, see_of
+    from automotive_cosim.episode.specification import clock_of, feedback_of, language_of, screen_of, see_of
     from automotive_cosim.report.film import Film
     from automotive_cosim.report.page import write_page
     from automotive_cosim.run.episode import EpisodeSetup, run_episode
@@ -155,7 +157,7 @@ def run(
     if scenario == "":
         raise UserError("--scenario is empty; name a scenario, or omit the option to use the task's own")
     off = parts(name.strip() for name in without.split(",") if name.strip())
-    sees, told = see_of(see), feedback_of(feedback)
+    sees, told, size = see_of(see), feedback_of(feedback), screen_of(screen)
     settings = AgentSettings(geo_input(geo), off, memory, seed, most_tokens, float(most_seconds), sees)
     player = read_script(actions) if actions else make_agent(agent, model, settings)
     setup = EpisodeSetup(
@@ -175,6 +177,7 @@ def run(
         latency_s=latency,
         see=sees,
         feedback=told,
+        screen=size,
         language=language_of(language),
     )
     setup.conditions(frozenset(player.channels))

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from automotive_cosim.osm import ImportReport
     from automotive_cosim.scenarios import Scenario
     from automotive_cosim.scenery.check import ScenarioProof
+    from automotive_cosim.scenery.optimum import SystemOptimum
 
 app = typer.Typer(help="List, check, draw, import and calibrate scenarios.", no_args_is_help=True)
 app.command("calibrate")(calibrate_scenario)
@@ -259,6 +260,13 @@ def equilibrate_scenario(
     seed: Annotated[int, typer.Option(help="Seed of the traffic and of who changes.")] = 0,
     out: Annotated[Path | None, typer.Option(help="Folder to create.", show_default="FOLDER_equilibrium")] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an earlier equilibrium.")] = False,
+    system_optimum: Annotated[
+        bool,
+        typer.Option("--system-optimum", help="Then look for routes that take less time in all, and compare."),
+    ] = False,
+    draws: Annotated[
+        int, typer.Option(parser=whole_number(2, 100), metavar="N", help="Seeds with which both states are driven.")
+    ] = 10,
     as_json: AsJson = False,
 ) -> None:
     """Give a scenario's drivers the routes that they would find: a user equilibrium in the micro simulation.
@@ -266,6 +274,9 @@ def equilibrate_scenario(
     Prints the relative gap of every step, as measured from the trips driven, and keeps the best step.
     """
     from automotive_cosim.scenery.equilibrium import AssignmentStep, Options, equilibrate
+    from automotive_cosim.scenery.optimum import RECORD as OPTIMUM
+    from automotive_cosim.scenery.optimum import OptimumStep, compare
+    from automotive_cosim.scenery.variant import check_target
 
     if not (folder / "scenario.toml").is_file():
         raise UserError(f"{folder} is no scenario's folder: it has no scenario.toml")
@@ -274,7 +285,20 @@ def equilibrate_scenario(
     def tell(step: AssignmentStep) -> None:
         typer.echo(f"step {step.number}: {step.gap}; {step.changed} change", err=as_json)
 
-    found = equilibrate(folder, target, Options(steps, gap, minutes * 60.0, seed), tell, force=force)
+    def tell_total(step: OptimumStep) -> None:
+        total = step.total
+        typer.echo(
+            f"towards the optimum, step {step.number}: {total.mean_s:.1f} s per trip, {total.unfinished} had not "
+            f"arrived, {total.teleports} teleports; {step.changed} change",
+            err=as_json,
+        )
+
+    options = Options(steps, gap, minutes * 60.0, seed)
+    optimum = target.with_name(f"{target.name}_optimum")
+    if system_optimum:
+        check_target(optimum, OPTIMUM, force=force)  # before the equilibrium, which takes minutes
+    found = equilibrate(folder, target, options, tell, force=force)
+    compared = compare(target, optimum, options, draws, tell_total, force=force) if system_optimum else None
     best = min(found, key=lambda step: step.gap.relative)
     if as_json:
         print_json(
@@ -283,10 +307,49 @@ def equilibrate_scenario(
                 "kept": best.number,
                 "relative_gaps": [step.gap.relative for step in found],
             }
+            | ({} if compared is None else compared.as_json() | {"optimum": str(optimum)})
         )
         return
     reached = "" if best.gap.relative <= gap else f"; {gap:.1%} was not reached"
     typer.echo(f"{target}: the demand of step {best.number}, {best.gap}{reached}")
+    if compared is not None:
+        typer.echo(f"{optimum}: the demand of step {compared.kept}\n")
+        _print_states(compared)
+
+
+def _print_states(found: SystemOptimum) -> None:
+    """Both states side by side, means over seeds."""
+    from statistics import fmean
+
+    from rich.table import Table
+
+    from automotive_cosim.cli.console import Console
+
+    table = Table(
+        *("", "trips", "total, h", "per trip, s", "not arrived", "teleports"),
+        box=None,
+        header_style="bold",
+        pad_edge=False,
+    )
+    for name, totals in (("user equilibrium", found.equilibrium), ("system optimum", found.optimum)):
+        table.add_row(
+            name,
+            str(totals[0].trips),
+            f"{fmean(each.total_s for each in totals) / 3600:.2f}",
+            f"{fmean(each.mean_s for each in totals):.1f}",
+            f"{fmean(each.unfinished for each in totals):.1f}",
+            f"{fmean(each.teleports for each in totals):.1f}",
+        )
+    Console().print(table)
+    low, high = found.interval
+    typer.echo(
+        f"\nprice of anarchy: {found.price_of_anarchy:.3f} ({low:.3f} to {high:.3f}, 95 % over {len(found.ratios)} "
+        "seeds), and at least that: the search need not have found the optimum"
+    )
+    if found.kept == 0:
+        typer.echo("the search found no routes that cost less than the equilibrium's")
+    elif low <= 1 <= high:
+        typer.echo("the interval includes 1: these seeds show no difference")
 
 
 @app.command("download")

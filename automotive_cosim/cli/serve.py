@@ -58,12 +58,12 @@ def serve(
         from automotive_cosim.errors import UserError
         from automotive_cosim.serve.dealing import read_study
         from automotive_cosim.serve.play import Game
-        from automotive_cosim.serve.study import Study
+        from automotive_cosim.serve.study import PeopleStudy
 
         if (shown[0] / "steps.jsonl").exists() or (shown[0] / "manifest.json").exists():
             raise UserError(f"{shown[0]} is a record itself; give a folder that holds records")
         game = Game(shown[0]) if play else None
-        dealt = Study(read_study(study), shown[0] / study.stem) if study else None
+        dealt = PeopleStudy(read_study(study), shown[0] / study.stem) if study else None
     with WebServer(shown, host, port, game, dealt) as server:
         typer.echo(f"Open {server.address}")
         if dealt is not None:

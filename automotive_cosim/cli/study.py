@@ -117,6 +117,9 @@ def reroute(
     emissions: Annotated[
         bool, typer.Option("--emissions", help="Measure what every vehicle emits and consumes, by emission class.")
     ] = False,
+    trajectories: Annotated[
+        bool, typer.Option("--trajectories", help="Keep where the ego was in every future, step by step.")
+    ] = False,
     ego_class: Annotated[
         str,
         typer.Option(
@@ -203,6 +206,7 @@ def reroute(
         close=close,
         redraw=redraw,
         emissions=emissions,
+        trajectories=trajectories,
         ego_class=ego_class,
         scale=scale,
         warm_up_s=warm_up,

@@ -23,6 +23,7 @@ from automotive_cosim.cockpit.widgets import (
     Widget,
 )
 from automotive_cosim.contracts import BoundingBox, Element
+from automotive_cosim.contracts.ids import resource_id
 
 PACKAGE = "org.automotive_cosim.cockpit"
 
@@ -69,7 +70,7 @@ def _element(widget: Widget, scale: float) -> Element:
         content_description=_description(widget),
         class_name=widget.class_name,
         bbox_pixels=_box(rect, scale),
-        resource_id=widget.key,
+        resource_id=resource_id(widget.key),
         package_name=PACKAGE,
         hint_text=widget.hint if isinstance(widget, Field) else "",
         is_checked=(isinstance(widget, Tile) and widget.checked) or (kind is Choice and chosen),

@@ -31,6 +31,7 @@ from automotive_cosim.contracts import (
     SlowDown,
     lon_lat,
 )
+from automotive_cosim.contracts.ids import key_of
 from automotive_cosim.errors import ActionError, UnknownNameError
 from automotive_cosim.formats.words import shown
 
@@ -293,7 +294,8 @@ def perform(action: Action, cockpit: Cockpit, elements: tuple[Element, ...]) -> 
     match kind:
         case ActionType.SCROLL:
             target = None if action.index is None else elements[action.index]
-            return cockpit.scroll(target.resource_id if target else None, action.direction or Direction.DOWN)
+            key = key_of(target.resource_id) if target else ""
+            return cockpit.scroll(key, action.direction or Direction.DOWN)
         case ActionType.KEYBOARD_ENTER:
             return cockpit.key_enter()
         case ActionType.NAVIGATE_HOME:

@@ -46,8 +46,8 @@ from automotive_cosim.cockpit.signals import (
     Signals,
     named,
 )
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.cockpit.state import State
-from automotive_cosim.cockpit.theme import SCREEN_HEIGHT, SCREEN_WIDTH
 from automotive_cosim.cockpit.vehicle import Vehicle
 from automotive_cosim.cockpit.widgets import Button, Field, MapView, Rows, Screen, Slider, Widget
 from automotive_cosim.contracts import (
@@ -99,8 +99,6 @@ PAN_SHARE = 0.4
 class Cockpit:
     """One car's cockpit. Copies are independent and cheap: they share only immutable data."""
 
-    WIDTH, HEIGHT = SCREEN_WIDTH, SCREEN_HEIGHT
-
     def __init__(
         self,
         network: RoadNetwork,
@@ -115,7 +113,8 @@ class Cockpit:
         sign_camera: bool = True,
         lookout: bool = False,
         driven_s: float = 0.0,
-        width: int = SCREEN_WIDTH,
+        size: ScreenSize = ScreenSize.STANDARD,
+        width: int | None = None,
     ) -> None:
         """A cockpit before its first ``sense``.
 
@@ -132,7 +131,8 @@ class Cockpit:
             sign_camera: whether it reads limit signs; without it, the status bar shows no sign.
             lookout: whether home and map show what the car notices around, ahead and aboard.
             driven_s: how long the driver had been driving without a break before departure.
-            width: width of the screenshot in pixels; the height follows from 16 to 9.
+            size: size of the display.
+            width: width of the screenshot in pixels, by default that of the size; the height follows.
 
         Raises:
             UnknownNameError: no such signal or initial condition.
@@ -160,7 +160,8 @@ class Cockpit:
         self._state.changes = schedule(changes)
         self._state.lookout, self._state.driven_s = lookout, driven_s
         self._state.picked = {**self._state.picked, "media.show": library.shows[0]}
-        self._display = Display(width)
+        self._state.size = size
+        self._display = Display(1.0 if width is None else width / size.width)
         take_seats(self.signals, aboard)
         for path, value in (signals or {}).items():
             self._set_up(path, value)
@@ -174,6 +175,12 @@ class Cockpit:
         twin._tree = self._tree
         twin._display = copy(self._display)
         return twin
+
+    def fit(self, size: ScreenSize) -> None:
+        """Takes a display of this size in place of its own, unless that is of this size."""
+        if size is not self._state.size:
+            self._state.size, self._tree = size, None
+            self._display = Display(1.0)
 
     # --- the world ----------------------------------------------------------------------------------------
 
@@ -303,21 +310,21 @@ class Cockpit:
             return self._pan(view, OPPOSITE[direction], far)
         return Feedback(FeedbackCode.NO_EFFECT, f"nothing at ({x}, {y}) moves {direction}")
 
-    def scroll(self, resource_id: str | None, direction: Direction) -> Feedback:
+    def scroll(self, key: str, direction: Direction) -> Feedback:
         """Scrolls a list by a page; ``down`` reveals what is below.
 
         Args:
-            resource_id: id of the list or of something in it; without one, the first list on the screen.
+            key: of the list or of something in it; empty for the first list on the screen.
             direction: the direction to scroll.
         """
         lists = [widget for widget in self._screen.walk() if isinstance(widget, Rows)]
-        if resource_id:
-            if all(widget.key != resource_id for widget in self._screen.walk()):
-                return Feedback(FeedbackCode.NO_SUCH_ELEMENT, f"{resource_id} is not on the screen")
-            view = next((w for w in self._screen.walk() if w.key == resource_id and isinstance(w, MapView)), None)
+        if key:
+            if all(widget.key != key for widget in self._screen.walk()):
+                return Feedback(FeedbackCode.NO_SUCH_ELEMENT, f"{key} is not on the screen")
+            view = next((w for w in self._screen.walk() if w.key == key and isinstance(w, MapView)), None)
             if view is not None and view.pans:
                 return self._pan(view, direction)
-            lists = [rows for rows in lists if any(widget.key == resource_id for widget in rows.walk())]
+            lists = [rows for rows in lists if any(widget.key == key for widget in rows.walk())]
         if not lists:
             return Feedback(FeedbackCode.NO_EFFECT, "there is nothing to scroll here")
         return self._scroll(lists[0], direction)
@@ -434,6 +441,11 @@ class Cockpit:
         return self._state.screen
 
     @property
+    def size(self) -> ScreenSize:
+        """Size of its display."""
+        return self._state.size
+
+    @property
     def signals(self) -> Signals:
         """The vehicle's signals."""
         return self._state.signals
@@ -511,11 +523,11 @@ class Cockpit:
         step = by * {Direction.DOWN: 1, Direction.UP: -1}.get(direction, 0)
         first = min(rows.last_first, max(0, rows.first + step))
         if first == rows.first:
-            return Feedback(FeedbackCode.NO_EFFECT, f"{rows.key} cannot move further {direction}")
+            return Feedback(FeedbackCode.NO_EFFECT, f"{rows.description} cannot move further {direction}")
         self._state.scrolled = {**self._state.scrolled, rows.key: first}
         self._tree = None
         return Feedback(
-            FeedbackCode.OK, f"{rows.key} shows rows {first + 1} to {first + rows.shown} of {rows.total}"
+            FeedbackCode.OK, f"{rows.description} shows rows {first + 1} to {first + rows.shown} of {rows.total}"
         )
 
     def _pan(self, view: MapView, direction: Direction, far: float | None = None) -> Feedback:

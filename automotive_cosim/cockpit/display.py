@@ -11,7 +11,6 @@ from PIL import Image
 from automotive_cosim.cockpit import accessibility
 from automotive_cosim.cockpit.drawing import pixels_of
 from automotive_cosim.cockpit.render import render, repaint
-from automotive_cosim.cockpit.theme import SCREEN_HEIGHT, SCREEN_WIDTH
 from automotive_cosim.cockpit.widgets import Screen
 from automotive_cosim.contracts import Element
 
@@ -28,16 +27,16 @@ class _Frame:
 class Display:
     """Keeps the last picture and the last list. Copies are independent: what they keep is never modified."""
 
-    def __init__(self, width: int) -> None:
-        """Nothing is drawn yet; the picture is ``width`` pixels wide, and 16 to 9."""
-        self._width = width
+    def __init__(self, scale: float) -> None:
+        """Nothing is drawn yet; the picture has ``scale`` pixels per logical pixel."""
+        self._scale = scale
         self._frame: _Frame | None = None
         self._listed: tuple[Screen, tuple[Element, ...]] | None = None
 
     @property
     def scale(self) -> float:
         """Pixels of the picture per logical pixel."""
-        return self._width / SCREEN_WIDTH
+        return self._scale
 
     def elements(self, screen: Screen) -> tuple[Element, ...]:
         """The accessibility tree as a list."""
@@ -57,7 +56,7 @@ class Display:
     def _drawn(self, screen: Screen) -> _Frame:
         """Draws the frame, or only where it differs from the last one."""
         if self._frame is None:
-            picture = render(screen, self._width, round(self._width * SCREEN_HEIGHT / SCREEN_WIDTH)).image
+            picture = render(screen, self._scale).image
             return _Frame(screen, picture, pixels_of(picture))
         picture, boxes = repaint(self._frame.screen, self._frame.picture, screen)
         pixels = self._frame.pixels.copy()

@@ -126,6 +126,16 @@ class Canvas:
         mask = _plate(right - left, bottom - top, round(radius * self.scale)) if radius else None
         self.image.paste(picture, (left, top), mask)
 
+    def pixels_across(self, rect: Rect) -> int:
+        """Width of a box in pixels."""
+        left, _, right, _ = rect.edges(self.scale)
+        return right - left
+
+    def stencil(self, rect: Rect, mask: Image.Image, fill: Colour | Image.Image) -> None:
+        """A colour, or a picture, at the box's corner through a mask of the same size in pixels."""
+        left, top, _, _ = rect.edges(self.scale)
+        self.image.paste(fill, (left, top), mask)
+
     def _line(self, line: Rect, box: Rect, text: str, style: Type, colour: Colour, align: str, cut: bool) -> None:
         size = int(style.size * self.scale)  # never wider than measured
         mask, left, top, wide = _mask(text, style.weight, size)

@@ -1,4 +1,4 @@
-"""Rectangles on the screen, in logical pixels (the screen is 1280 by 720 of them at any resolution)."""
+"""Rectangles on the screen, in logical pixels: as many as the display's size says (``size``), at any resolution."""
 
 from __future__ import annotations
 

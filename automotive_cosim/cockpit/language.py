@@ -2,7 +2,7 @@
 
 Screens are written in English. A table (``languages/fr.toml`` and so on) maps texts to texts; one with ``{}``
 is a template whose variable parts are translated in turn: "Sent to {}: {}". Texts that are in no table stay as they
-are: names of people, places and music, numbers and units, messages, and resource ids and signals in feedback.
+are: names of people, places and music, numbers and units, messages, and signals in feedback.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class Table:
     forms: tuple[tuple[re.Pattern[str], str], ...]
     """Templates, the most specific first."""
     keys: Mapping[str, str]
-    """Texts of single widgets by their resource id, where an English word has several meanings."""
+    """Texts of single widgets by their key, where an English word has several meanings."""
 
     @classmethod
     def of(cls, texts: Mapping[str, str], keys: Mapping[str, str] = MappingProxyType({})) -> Table:

@@ -2,6 +2,7 @@
 
     head, _, body = column(card, 40, GAP, REST)     one above the other
     name, value = row(head, 130, REST)              side by side
+    menu, page = panes(content, 264, REST)          side by side; where it is taller than wide, stacked
 
 A part is its size in logical pixels, or ``REST``: what the others leave, in equal shares. Parts follow each other
 without a gap; a gap is a part of its own.
@@ -13,6 +14,7 @@ from itertools import accumulate, pairwise
 from typing import Final
 
 from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.theme import GAP
 
 REST: Final = None
 """A part that takes what the others leave."""
@@ -36,6 +38,19 @@ def row(rect: Rect, *parts: LayoutPart) -> tuple[Rect, ...]:
         ValueError: they are wider than the box.
     """
     return tuple(Rect(rect.x + left, rect.y, end - left, rect.height) for left, end in _edges(rect.width, parts))
+
+
+def panes(rect: Rect, *parts: LayoutPart) -> tuple[Rect, ...]:
+    """The parts of a screen, a gap apart: side by side, or in a box taller than wide one above the other, as high
+    as each other.
+
+    Raises:
+        ValueError: they are wider than the box.
+    """
+    if rect.height > rect.width:
+        return rect.rows(len(parts), GAP)
+    spaced = [part for each in parts for part in (GAP, each)][1:]
+    return row(rect, *spaced)[::2]
 
 
 def _edges(length: int, parts: tuple[LayoutPart, ...]) -> tuple[tuple[int, int], ...]:

@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from automotive_cosim.cockpit.photos import Photo
+
 CONTACTS = 60
 TEMPLATES = (
     "On my way",
@@ -66,6 +68,8 @@ class Thread:
     when: str
     lines: tuple[str, ...]
     unread: bool
+    photo: Photo | None = None
+    """A photo that came with it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +94,8 @@ class Directory:
         for received in phone.received:
             thread = new.pop(received.who, None) or before.get(received.who)
             lines = (*(thread.lines if thread else ()), received.text)
-            new[received.who] = Thread(received.who, received.when, lines, unread=True)
+            photo = thread.photo if thread else None
+            new[received.who] = Thread(received.who, received.when, lines, unread=True, photo=photo)
         return (*reversed(new.values()), *(thread for thread in self.threads if thread.who not in new))
 
     def thread(self, who: str, phone: Phone) -> Thread | None:

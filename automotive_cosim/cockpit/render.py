@@ -7,18 +7,19 @@ from typing import Any
 
 from PIL import Image
 
+from automotive_cosim.cockpit.camera import camera
 from automotive_cosim.cockpit.carview import car
+from automotive_cosim.cockpit.covers import cover
 from automotive_cosim.cockpit.drawing import Canvas, fits, text_width
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.mapdraw import draw
+from automotive_cosim.cockpit.photos import photo
+from automotive_cosim.cockpit.telltales import colour, sign_picture, symbol
 from automotive_cosim.cockpit.theme import (
     BUTTON_RADIUS,
     CARD_RADIUS,
     DAY,
-    DOCK_HEIGHT,
     NIGHT,
-    SCREEN_HEIGHT,
-    SCREEN_WIDTH,
     Colour,
     Icon,
     Palette,
@@ -28,20 +29,25 @@ from automotive_cosim.cockpit.widgets import (
     Badge,
     Bar,
     Button,
+    CameraView,
     Card,
     CarView,
     Choice,
+    Cover,
     Field,
     Glyph,
     Label,
     LimitSign,
     Look,
     MapView,
+    Picture,
     Pill,
     Row,
     Rows,
     Screen,
+    SignView,
     Slider,
+    Telltales,
     Tile,
     Widget,
 )
@@ -51,23 +57,23 @@ NARROW = 150
 """Tiles narrower than this stack icon and text."""
 TALL = 110
 """Stacked choices this high have large icons."""
-DOCK = Rect(0, SCREEN_HEIGHT - DOCK_HEIGHT, SCREEN_WIDTH, DOCK_HEIGHT)
-"""The background of the dock."""
 ROOMY = 230
 """Low tiles narrower than this have a light where name and toggle do not fit."""
 SPILL = 4
 """How far letters and icons may extend out of their box, in logical pixels."""
-WORTH_IT = 0.7 * SCREEN_WIDTH * SCREEN_HEIGHT
+WORTH_IT = 0.7
 """Above this share of changes, everything is redrawn."""
+TELLTALE, TELLTALE_GAP = 28, 3
 LOW = 76
 """Tiles lower than this put icon and text on one line."""
 
 
-def render(screen: Screen, width: int = SCREEN_WIDTH, height: int = SCREEN_HEIGHT) -> Canvas:
-    """Draws the tree."""
+def render(screen: Screen, scale: float = 1.0) -> Canvas:
+    """Draws the tree, with ``scale`` pixels per logical pixel."""
     palette = NIGHT if screen.night else DAY
-    canvas = Canvas.plain(width, height, width / SCREEN_WIDTH, palette.background)
-    canvas.box(DOCK, palette.surface)
+    _, _, width, height = screen.rect.edges(scale)
+    canvas = Canvas.plain(width, height, scale, palette.background)
+    canvas.box(screen.dock, palette.surface)
     _children(canvas, screen, palette)
     return canvas
 
@@ -80,16 +86,18 @@ def repaint(before: Screen, picture: Image.Image, screen: Screen) -> tuple[Image
     """
     gone = [widget for widget in before.children if widget not in screen.children]
     come = [widget for widget in screen.children if widget not in before.children]
-    reaches = [(widget, _reach(widget)) for widget in screen.children]
-    boxes = _grown([_reach(widget) for widget in (*gone, *come)], [reach for _, reach in reaches])
-    if before.night is not screen.night or sum(box.width * box.height for box in boxes) > WORTH_IT:
-        return render(screen, *picture.size).image, (screen.rect,)
+    reaches = [(widget, _reach(widget, screen)) for widget in screen.children]
+    boxes = _grown([_reach(widget, screen) for widget in (*gone, *come)], [reach for _, reach in reaches])
+    scale = picture.width / screen.rect.width
+    worth_it = WORTH_IT * screen.rect.width * screen.rect.height
+    if before.night is not screen.night or sum(box.width * box.height for box in boxes) > worth_it:
+        return render(screen, scale).image, (screen.rect,)
     palette = NIGHT if screen.night else DAY
-    canvas = Canvas(picture.copy(), picture.width / SCREEN_WIDTH)
+    canvas = Canvas(picture.copy(), scale)
     for box in boxes:
         canvas.box(box, palette.background)
-        if box.overlaps(DOCK):
-            canvas.box(box.within(DOCK), palette.surface)
+        if box.overlaps(screen.dock):
+            canvas.box(box.within(screen.dock), palette.surface)
     for widget, reach in reaches:
         if any(reach.overlaps(box) for box in boxes):
             _PAINT[type(widget)](canvas, widget, palette)
@@ -97,9 +105,9 @@ def repaint(before: Screen, picture: Image.Image, screen: Screen) -> tuple[Image
     return canvas.image, boxes
 
 
-def _reach(widget: Widget) -> Rect:
-    """The canvas."""
-    return widget.rect.inset(-SPILL).within(Rect(0, 0, SCREEN_WIDTH, SCREEN_HEIGHT))
+def _reach(widget: Widget, screen: Screen) -> Rect:
+    """The part of the screen that drawing the widget may touch."""
+    return widget.rect.inset(-SPILL).within(screen.rect)
 
 
 def _grown(boxes: list[Rect], reaches: list[Rect]) -> tuple[Rect, ...]:
@@ -367,6 +375,31 @@ def _sign(canvas: Canvas, sign: LimitSign, palette: Palette) -> None:
     canvas.text(sign.rect.inset(8), sign.text, Type.STRONG, (12, 14, 18), "centre")
 
 
+def _telltales(canvas: Canvas, row: Telltales, palette: Palette) -> None:
+    side, step = TELLTALE, TELLTALE + TELLTALE_GAP
+    across, lines = ((length + TELLTALE_GAP) // step for length in (row.rect.width, row.rect.height))
+    for at, telltale in enumerate(row.lit[: across * lines]):
+        line, column = divmod(at, across)
+        box = Rect(row.rect.x + column * step, row.rect.y + line * step, side, side)
+        canvas.stencil(box, symbol(telltale, canvas.pixels_across(box)), colour(telltale, night=palette is NIGHT))
+
+
+def _sign_view(canvas: Canvas, view: SignView, palette: Palette) -> None:
+    if view.sign is None:
+        return
+    picture = sign_picture(view.sign.kind, view.figure, canvas.pixels_across(view.rect))
+    canvas.stencil(view.rect, picture.getchannel("A"), picture.convert("RGB"))
+
+
+def _cover(canvas: Canvas, view: Cover, palette: Palette) -> None:
+    canvas.picture(view.rect, cover(view.name, canvas.pixels_across(view.rect)), BUTTON_RADIUS)
+
+
+def _camera(canvas: Canvas, view: CameraView, palette: Palette) -> None:
+    left, top, right, bottom = view.rect.edges(canvas.scale)
+    canvas.picture(view.rect, camera(view.scene, right - left, bottom - top), CARD_RADIUS)
+
+
 def _pill(canvas: Canvas, pill: Pill, palette: Palette) -> None:
     fill, ink = {
         Severity.INFO: (palette.tint, palette.on_tint),
@@ -400,6 +433,11 @@ def _car_view(canvas: Canvas, view: CarView, palette: Palette) -> None:
     canvas.picture(view.rect, picture)
 
 
+def _picture(canvas: Canvas, picture: Picture, palette: Palette) -> None:
+    left, top, right, bottom = picture.rect.edges(canvas.scale)
+    canvas.picture(picture.rect, photo(picture.photo, right - left, bottom - top), BUTTON_RADIUS)
+
+
 _PAINT: dict[type[Widget], Callable[[Canvas, Any, Palette], None]] = {
     Card: _card,
     Label: _label,
@@ -414,8 +452,13 @@ _PAINT: dict[type[Widget], Callable[[Canvas, Any, Palette], None]] = {
     Bar: _bar,
     LimitSign: _sign,
     Pill: _pill,
+    Telltales: _telltales,
+    SignView: _sign_view,
+    Cover: _cover,
+    CameraView: _camera,
     MapView: _map,
     Badge: _badge,
     CarView: _car_view,
+    Picture: _picture,
 }
 """The drawing function of each kind of widget."""

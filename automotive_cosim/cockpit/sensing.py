@@ -30,6 +30,7 @@ from automotive_cosim.cockpit.signals import (
 )
 from automotive_cosim.cockpit.sky import feel
 from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.telltales import RoadSign, SignKind
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.cockpit.tyres import Tyres
 from automotive_cosim.cockpit.vehicle import DARK_BELOW_DEG
@@ -100,9 +101,26 @@ def _road(state: State, driving: DrivingState) -> None:
     signals, road = state.signals, driving.road
     limit = road.limit.posted_mps
     signals[ADAS.LIMIT_SIGN] = round(limit * KMH_PER_MPS, 1) if state.sign_camera and limit is not None else None
+    if state.sign_camera:
+        _read_sign(state, driving)
     leader = _in_sight(driving.around.leader)
     signals[ADAS.LEADER_DISTANCE] = None if leader is None else leader.gap_m
     signals[ADAS.LEADER_TIME_TO_COLLISION] = None if leader is None else leader.time_to_collision_s
+
+
+def _read_sign(state: State, driving: DrivingState) -> None:
+    """Notes the sign at which tunnel, school zone or limit changed."""
+    road, limit_kmh = driving.road, state.signals[ADAS.LIMIT_SIGN]
+    was_in_tunnel, was_at_school, was_kmh = state.signs_here or (False, False, None)
+    if road.in_tunnel and not was_in_tunnel:
+        state.last_sign = RoadSign(SignKind.TUNNEL)
+    elif road.school_zone and not was_at_school:
+        state.last_sign = RoadSign(SignKind.SCHOOL)
+    elif limit_kmh is not None and limit_kmh != was_kmh:
+        state.last_sign = RoadSign(SignKind.LIMIT, limit_kmh)
+    elif limit_kmh is None and was_kmh is not None:
+        state.last_sign = RoadSign(SignKind.END_OF_LIMIT)
+    state.signs_here = road.in_tunnel, bool(road.school_zone), limit_kmh
 
 
 def _in_sight(leader: OtherVehicle | None) -> OtherVehicle | None:

@@ -19,6 +19,8 @@ from automotive_cosim.cockpit.people import Directory, Phone
 from automotive_cosim.cockpit.places import Gazetteer
 from automotive_cosim.cockpit.restrictions import ENTRIES_LIMIT, REASONS, Restriction, restrictions
 from automotive_cosim.cockpit.signals import HMI, MOTION, Signals
+from automotive_cosim.cockpit.size import ScreenSize
+from automotive_cosim.cockpit.telltales import RoadSign
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.cockpit.tyres import Tyres
 from automotive_cosim.cockpit.vehicle import Vehicle
@@ -125,6 +127,7 @@ class State:
     """The road at the last report of the traffic service, for the lookout."""
     driven_s: float = 0.0
     """How long the driver had been driving without a break before departure."""
+    size: ScreenSize = ScreenSize.STANDARD
     screen: str = "home"
     past: tuple[tuple[str, str], ...] = ()
     """Screens to go back to, with their items."""
@@ -138,8 +141,14 @@ class State:
     """Whether its keys are on the screen."""
     typed: Mapping[str, str] = field(default_factory=dict)
     """Text by field."""
+    aside: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    """Text by field of the screens that were left because of a call, by screen."""
     zoom: int = 1
     north_up: bool = False
+    last_sign: RoadSign | None = None
+    """The road sign that the camera read last; None without one."""
+    signs_here: tuple[bool, bool, float | None] | None = None
+    """What decides whether a sign is passed: tunnel, school zone, and the posted limit in km/h."""
     panned: tuple[float, float] | None = None
     """The map's point in metres of the network, if not the car."""
     draft: AlertDraft = field(default_factory=AlertDraft)

@@ -22,8 +22,8 @@ from automotive_cosim.errors import SetupError
 
 Colour = tuple[int, int, int]
 
-SCREEN_WIDTH, SCREEN_HEIGHT = 1280, 720
 STATUS_HEIGHT, DOCK_HEIGHT = 64, 96
+"""Of one line."""
 MARGIN, GAP = 24, 16
 TOUCH = 48
 """Minimum side of anything that can be tapped."""

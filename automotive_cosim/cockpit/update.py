@@ -295,9 +295,13 @@ def call_emergency(state: State) -> Feedback:
 
 
 def _enter(state: State, screen: str) -> None:
+    """Shows a screen without what was typed on it, unless it was left because of a call."""
+    if state.typed and (state.phone.ringing or state.phone.on_call):
+        state.aside = {**state.aside, state.screen: state.typed}
     state.screen = screen
     state.panned = None
-    state.focus, state.typed = "", {}
+    state.focus, state.typed = "", state.aside.get(screen, {})
+    state.aside = {name: typed for name, typed in state.aside.items() if name != screen}
 
 
 def _change(state: State, name: str, value: Any, words: str) -> Feedback:

@@ -1,7 +1,8 @@
 """The one widget tree: drawn, listed for accessibility and hit by fingers.
 
 Widgets are frozen data with absolute boxes; a parent's children lie within it and are drawn after it. ``key`` is
-the stable resource id (``climate.front_defroster``). A widget says something (``on_tap``) only by a message.
+its name in the code (``climate.front_defroster``), from which its resource id is made (``contracts.ids``). A widget
+says something (``on_tap``) only by a message.
 """
 
 from __future__ import annotations
@@ -11,11 +12,14 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import ClassVar, Literal
 
+from automotive_cosim.cockpit.camera import CameraScene
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.map import RoadMap
 from automotive_cosim.cockpit.mapdraw import MapScene
 from automotive_cosim.cockpit.messages import Message, Set
+from automotive_cosim.cockpit.photos import Photo
 from automotive_cosim.cockpit.signals import Signal
+from automotive_cosim.cockpit.telltales import RoadSign, Telltale
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.contracts import Severity
 
@@ -75,6 +79,8 @@ class Screen(Widget):
     """The whole picture."""
 
     night: bool
+    dock: Rect
+    """The dock's ground."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -258,6 +264,45 @@ class LimitSign(Widget):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Telltales(Widget):
+    """Tell-tales that are lit, line by line; as many as there is room for. The list only names them together."""
+
+    lit: tuple[Telltale, ...]
+
+    class_name: ClassVar[str] = "ImageView"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SignView(Widget):
+    """The road sign that was read last. The list only says that there is one."""
+
+    sign: RoadSign | None
+    figure: str = ""
+    """The limit in the unit of the display."""
+
+    class_name: ClassVar[str] = "ImageView"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cover(Widget):
+    """The cover of what plays. The list only says that there is one."""
+
+    name: str
+    """What it is made from."""
+
+    class_name: ClassVar[str] = "ImageView"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CameraView(Widget):
+    """What a camera shows. The list only says which camera it is."""
+
+    scene: CameraScene
+
+    class_name: ClassVar[str] = "ImageView"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Pill(Widget):
     """A notice in the status bar."""
 
@@ -289,6 +334,15 @@ class MapView(Widget):
     """Whether a swipe moves it."""
 
     class_name: ClassVar[str] = "View"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Picture(Widget):
+    """A photo, whose content no text tells."""
+
+    photo: Photo
+
+    class_name: ClassVar[str] = "ImageView"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -44,6 +44,7 @@ def _drives(
     pictures: bool = True,
     see: str = "both",
     feedback: str = "quiet",
+    screen: str = "1280x720",
 ) -> Task:
     """Drives of ten to thirty minutes, on which the model keeps watch.
 
@@ -54,8 +55,9 @@ def _drives(
         pictures: whether it sees the screen.
         see: how it sees the screen: ``tree``, ``picture`` or ``both``.
         feedback: what it is told of its last action: ``quiet`` or ``verbose``.
+        screen: size of the screen: ``1280x720``, ``1920x720`` or ``1080x1920``.
     """
-    given = conditions_of(geo, see, feedback)
+    given = conditions_of(geo, see, feedback, screen)
     samples = [
         Sample(
             id=f"{family}-seed{seed}",

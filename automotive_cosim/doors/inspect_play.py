@@ -18,7 +18,7 @@ from automotive_cosim.agents.settings import geo_input
 from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Json
 from automotive_cosim.doors.shared import shared_service
-from automotive_cosim.episode.specification import EpisodeSpec, feedback_of, see_of
+from automotive_cosim.episode.specification import EpisodeSpec, feedback_of, screen_of, see_of
 from automotive_cosim.errors import InfrastructureError, UserError
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.service import EpisodeService
@@ -47,13 +47,18 @@ def seeds_of(given: int | str | list[int]) -> list[int]:
     return [int(number) for number in numbers]
 
 
-def conditions_of(geo: str, see: str, feedback: str) -> dict[str, str]:
+def conditions_of(geo: str, see: str, feedback: str, screen: str) -> dict[str, str]:
     """The conditions of a sample, as its metadata.
 
     Raises:
         UnknownNameError: there is no such word.
     """
-    return {"geo": str(geo_input(geo)), "see": str(see_of(see)), "feedback": str(feedback_of(feedback))}
+    return {
+        "geo": str(geo_input(geo)),
+        "see": str(see_of(see)),
+        "feedback": str(feedback_of(feedback)),
+        "screen": str(screen_of(screen)),
+    }
 
 
 async def played(

@@ -44,6 +44,7 @@ def _cockpit(
     pictures: bool = True,
     see: str = "both",
     feedback: str = "quiet",
+    screen: str = "1280x720",
     language: str = "en",
 ) -> Task:
     """The tasks at the cockpit.
@@ -56,11 +57,12 @@ def _cockpit(
         pictures: whether it sees the screen.
         see: how it sees the screen: ``tree``, ``picture`` or ``both``.
         feedback: what it is told of its last action: ``quiet`` or ``verbose``.
+        screen: size of the screen: ``1280x720``, ``1920x720`` or ``1080x1920``.
         language: what the driver speaks and the car shows: ``en``, ``fr``, ``de`` or ``ja``; tasks without
             phrasings in it are left out.
     """
     spoken = language_of(language)
-    given = {"scenario": scenario} | conditions_of(geo, see, feedback) | {"language": str(spoken)}
+    given = {"scenario": scenario} | conditions_of(geo, see, feedback, screen) | {"language": str(spoken)}
     chosen = [CATALOGUE[each] for each in choose(words(tasks))]
     said = [each for each in chosen if spoken in each.languages]
     if not said:

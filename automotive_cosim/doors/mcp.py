@@ -104,22 +104,17 @@ class CockpitTools:
         geo: Annotated[str, Field(description="full, gps, context, wrong, irrelevant or none.")] = "full",
         see: Annotated[str, Field(description="How to see the screen: tree, picture or both.")] = "both",
         feedback: Annotated[str, Field(description="What to be told of an action: quiet or verbose.")] = "quiet",
+        screen: Annotated[
+            str, Field(description="Size of the screen: 1280x720, 1920x720 or 1080x1920.")
+        ] = "1280x720",
         language: Annotated[str, Field(description="What the driver speaks: en, fr, de or ja.")] = "en",
         channels: Annotated[
             list[str] | None, Field(description=f"What to observe: {', '.join(Channel)}; all by default.")
         ] = None,
     ) -> CallToolResult:
         """Start an episode: a car drives until the situation of the task arises, then you take over its cockpit."""
-        spec = episode_spec(
-            task=task,
-            half=half,
-            scenario=scenario,
-            seed=seed,
-            geo=geo,
-            see=see,
-            feedback=feedback,
-            language=language,
-        )
+        seen = {"geo": geo, "see": see, "feedback": feedback, "screen": screen, "language": language}
+        spec = episode_spec(task=task, half=half, scenario=scenario, seed=seed, **seen)
         return _turn(self._service.start(spec, _channels(channels), _Progress(context)))
 
     @_told

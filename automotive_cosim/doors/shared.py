@@ -9,7 +9,13 @@ from typing import Any
 from automotive_cosim.agents.settings import geo_input
 from automotive_cosim.contracts import Json
 from automotive_cosim.drives.specification import DriveSpec
-from automotive_cosim.episode.specification import EpisodeSpec, feedback_of, language_of, see_of
+from automotive_cosim.episode.specification import (
+    EpisodeSpec,
+    feedback_of,
+    language_of,
+    screen_of,
+    see_of,
+)
 from automotive_cosim.service import EpisodeService, ServiceLimits
 
 LIMITS = ServiceLimits(episodes=1000, idle_s=86_400.0)
@@ -28,7 +34,7 @@ def episode_spec(**words: Any) -> EpisodeSpec:
     """An episode of a task, with its conditions in words.
 
     Args:
-        words: fields of ``EpisodeSpec``; ``geo``, ``see``, ``feedback`` and ``language`` as text.
+        words: fields of ``EpisodeSpec``; ``geo``, ``see``, ``feedback``, ``screen`` and ``language`` as text.
 
     Raises:
         UnknownNameError: there is no such condition.
@@ -42,5 +48,11 @@ def drive_spec(**words: Any) -> DriveSpec:
 
 
 def _typed(words: Json) -> Json:
-    kinds = {"geo": geo_input, "see": see_of, "feedback": feedback_of, "language": language_of}
+    kinds = {
+        "geo": geo_input,
+        "see": see_of,
+        "feedback": feedback_of,
+        "screen": screen_of,
+        "language": language_of,
+    }
     return words | {name: kind(words[name]) for name, kind in kinds.items() if name in words}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.drives.departure import depart
 from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.plan import DrivePlan
@@ -33,6 +34,8 @@ class DriveSpec:
     """How the agent sees the screen."""
     feedback: FeedbackDetail = FeedbackDetail.QUIET
     """What it is told of its last action."""
+    screen: ScreenSize = ScreenSize.STANDARD
+    """Size of the car's screen."""
 
     def begin(
         self,
@@ -55,7 +58,13 @@ class DriveSpec:
         """
         drive = plan or family_named(self.family).draw(self.seed)
         conditions = Conditions(
-            channels, self.geo, MOST_STEPS, drive.duration_s, see=self.see, feedback=self.feedback
+            channels,
+            self.geo,
+            MOST_STEPS,
+            drive.duration_s,
+            see=self.see,
+            feedback=self.feedback,
+            screen=self.screen,
         )
         world = depart(drive, simulations, listener)
         try:

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from automotive_cosim.cockpit.actions import check, parse
-from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.language import Language
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import Action
 from automotive_cosim.envs.pool import POOL
 from automotive_cosim.episode.episode import Episode
@@ -24,6 +24,7 @@ from automotive_cosim.episode.specification import (
     SeedSource,
     feedback_of,
     language_of,
+    screen_of,
     see_of,
 )
 from automotive_cosim.interface import spaces
@@ -73,6 +74,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         geo: str = GeoInput.FULL,
         see: str = See.BOTH,
         feedback: str = FeedbackDetail.QUIET,
+        screen: str = ScreenSize.STANDARD,
         language: str = Language.ENGLISH,
         held_out: bool = False,
         max_steps: int | None = None,
@@ -86,7 +88,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         Args:
             task: a task or its id.
             half, scenario, origin, gps, from_place, to_place, language, held_out: as in ``EpisodeSpec``.
-            channels, geo, see, feedback, max_steps, action_cost_s: as in ``Conditions``.
+            channels, geo, see, feedback, screen, max_steps, action_cost_s: as in ``Conditions``.
             render_mode: ``"rgb_array"`` or None.
             simulations: warm simulations; by default those that the environments of this process share.
             listener: told of progress.
@@ -117,6 +119,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
             action_cost_s=action_cost_s,
             see=see_of(see),
             feedback=feedback_of(feedback),
+            screen=(size := screen_of(screen)),
         )
         self._leave: Callable[[], object] | None = None
         if simulations is None:
@@ -126,8 +129,8 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         self._seeds = SeedSource()
         self._episode: Episode | None = None
         self.render_mode = render_mode
-        self.observation_space = spaces.observation_space(self._conditions.given, Cockpit.WIDTH, Cockpit.HEIGHT)
-        self.action_space = spaces.action_space(Cockpit.WIDTH, Cockpit.HEIGHT)
+        self.observation_space = spaces.observation_space(self._conditions.given, size.width, size.height)
+        self.action_space = spaces.action_space(size.width, size.height)
 
     @property
     def episode(self) -> Episode:

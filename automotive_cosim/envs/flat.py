@@ -3,7 +3,7 @@
 | action | meaning |
 |---|---|
 | first ``len(apps)`` | opens an app |
-| then ``len(controls)`` | taps the control with that resource id; a second passes if it is not visible |
+| then ``len(controls)`` | taps that control; a second passes if it is not visible |
 | then 3 | declares ``complete``, ``infeasible`` or ``not_needed`` |
 
 | observation, float32 in [-1, 1] | number |
@@ -28,6 +28,7 @@ import numpy as np
 import numpy.typing as npt
 
 from automotive_cosim.contracts import Action, ActionType, GoalStatus, Observation
+from automotive_cosim.contracts.ids import resource_id
 from automotive_cosim.envs.cockpit import outcome, traffic_seed
 from automotive_cosim.envs.pool import POOL
 from automotive_cosim.episode.episode import Episode
@@ -190,7 +191,7 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
         number -= len(self._apps)
         if number >= len(self._controls):
             return Action(ActionType.STATUS, goal_status=ENDS[number - len(self._controls)])
-        wanted = self._controls[number]
+        wanted = resource_id(self._controls[number])
         for index, element in enumerate(self.episode.elements):
             if element.resource_id == wanted:
                 return Action(ActionType.CLICK, index=index)
@@ -210,7 +211,7 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
         in_sight = {element.resource_id: element for element in seen.elements or ()}
         numbers = []
         for control in self._controls:
-            element = in_sight.get(control)
+            element = in_sight.get(resource_id(control))
             on = element is not None and (element.is_checked or element.is_selected)
             numbers += [float(element is not None), float(on), float(element is not None and element.is_enabled)]
         return numbers

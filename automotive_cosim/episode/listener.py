@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import RoadSnapshot
 from automotive_cosim.cosim.moment import Moment
@@ -25,3 +27,33 @@ class Listener:
 
     def moved(self, moment: Moment, cockpit: Cockpit) -> None:
         """Another simulated second has passed: of the drive to the hand-over, of a step, or of the aftermath."""
+
+
+class Listeners(Listener):
+    """Passes on to several; asks to look if one of them does."""
+
+    def __init__(self, listeners: Sequence[Listener]) -> None:
+        """Keeps them, in the order in which they are notified."""
+        self._listeners = listeners
+        self._lookers = tuple(each for each in listeners if each.looks)
+        self.looks = bool(self._lookers)
+
+    def loading(self, scenario: Scenario) -> None:
+        """See ``Listener.loading``."""
+        for each in self._listeners:
+            each.loading(scenario)
+
+    def warming(self, scenario: str, done_s: float, total_s: float) -> None:
+        """See ``Listener.warming``."""
+        for each in self._listeners:
+            each.warming(scenario, done_s, total_s)
+
+    def looked(self, snapshot: RoadSnapshot) -> None:
+        """See ``Listener.looked``."""
+        for each in self._lookers:
+            each.looked(snapshot)
+
+    def moved(self, moment: Moment, cockpit: Cockpit) -> None:
+        """See ``Listener.moved``."""
+        for each in self._listeners:
+            each.moved(moment, cockpit)

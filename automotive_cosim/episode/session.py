@@ -262,8 +262,9 @@ class Session:
 def beginning(
     world: CoSimulation, goal: str, conditions: Conditions, drive: Sequence[Moment], listener: Listener | None
 ) -> dict[str, Any]:
-    """The fields of a session that begins now."""
+    """The fields of a session that begins now, on the screen that the conditions ask for."""
     first = world.moment
+    world.cockpit.fit(conditions.screen)
     told = shown(conditions.geo, Geo(), drive[0] if drive else first)
     feedback = Feedback(FeedbackCode.NONE, "")
     elements, observation = _seen(world, goal, conditions.given, told, first.time_s, feedback)

@@ -16,8 +16,9 @@ from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation, couple
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.specification import EpisodeSpec, Seeds
-from automotive_cosim.errors import TriggerNotReachedError
+from automotive_cosim.errors import TriggerNotReachedError, UserError
 from automotive_cosim.geo.forecast import drawn_weather
+from automotive_cosim.interface.observe import See
 from automotive_cosim.scenarios import Scenario, Trip, WeatherAt
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.tasking.binding import POSTED_LIMIT, UnmetNeedError, bound, needs
@@ -68,10 +69,13 @@ class SituationFinder:
         Raises:
             UnknownNameError: no such task, half or scenario.
             ScenarioError: the scenario cannot be read, or has no such way.
-            UserError: a value is out of its range, or the driver has no words for the task in that language.
+            UserError: a value is out of its range, the driver has no words for the task in that language, or the
+                screen is not seen as it needs.
         """
         spec.check()
         self.task = CATALOGUE[spec.task] if task is None else task
+        if self.task.needs_picture and spec.see is See.TREE:
+            raise UserError(f"{self.task.id} needs the picture, which see = tree withholds; give picture or both")
         half = self.task.half(spec.half)
         start = half.start
         if spec.language is not Language.ENGLISH:
@@ -183,6 +187,7 @@ class SituationFinder:
             arrivals=start.arrivals,
             belongings=start.belongings,
             sign_camera=start.sign_camera,
+            size=self._spec.screen,
         )
         world = couple(
             traffic,

@@ -10,6 +10,7 @@ import numpy as np
 from annotated_types import Ge, Gt
 
 from automotive_cosim.cockpit.language import Language
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.annotations import Latitude, Longitude, OneOf
 from automotive_cosim.formats.checked import checked
@@ -58,6 +59,8 @@ class Conditions:
     """How the agent sees the screen."""
     feedback: FeedbackDetail = FeedbackDetail.QUIET
     """What it is told of its last action."""
+    screen: ScreenSize = ScreenSize.STANDARD
+    """Size of the car's screen."""
 
     def __post_init__(self) -> None:
         """Refuses to blind the agent.
@@ -113,6 +116,8 @@ class EpisodeSpec:
     """How the agent sees the screen."""
     feedback: Annotated[FeedbackDetail, OneOf(FeedbackDetail, "kind of feedback")] = FeedbackDetail.QUIET
     """What it is told of its last action."""
+    screen: Annotated[ScreenSize, OneOf(ScreenSize, "size of the screen")] = ScreenSize.STANDARD
+    """Size of the car's screen."""
     language: Annotated[Language, OneOf(Language, "language")] = Language.ENGLISH
     """What the driver speaks, and the car shows."""
 
@@ -131,7 +136,14 @@ class EpisodeSpec:
             UserError: it could see nothing of the screen.
         """
         return Conditions(
-            channels, self.geo, self.max_steps, self.max_sim_s, self.action_cost_s, self.see, self.feedback
+            channels,
+            self.geo,
+            self.max_steps,
+            self.max_sim_s,
+            self.action_cost_s,
+            self.see,
+            self.feedback,
+            self.screen,
         )
 
 
@@ -166,6 +178,15 @@ def feedback_of(name: str) -> FeedbackDetail:
         UnknownNameError: there is none.
     """
     return _named(FeedbackDetail, "kind of feedback", name)
+
+
+def screen_of(name: str) -> ScreenSize:
+    """The size of the screen by name.
+
+    Raises:
+        UnknownNameError: there is none.
+    """
+    return _named(ScreenSize, "size of the screen", name)
 
 
 def language_of(name: str) -> Language:

@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from math import inf
 
+from automotive_cosim.contracts.ids import resource_id
+
 KM_PER_MILE = 1.609344
 HEAVY_RAIN_MMH = 7.6
 """Heavy rain by the AMS Glossary of Meteorology (over 0.30 inch per hour)."""
@@ -79,12 +81,13 @@ class Page:
         """Whether it asks about the result of the last action."""
         return bool(self.before or self.after)
 
-    def find(self, resource_id: str) -> ListedElement | None:
-        """The element with that id, or, after ``=``, with that text."""
-        if resource_id.startswith("="):
-            wanted = resource_id[1:].casefold()
+    def find(self, key: str) -> ListedElement | None:
+        """The element of that key, or, after ``=``, with that text."""
+        if key.startswith("="):
+            wanted = key[1:].casefold()
             return next((line for line in self.screen if line.text.casefold() == wanted), None)
-        return next((line for line in self.screen if line.resource_id == resource_id), None)
+        wanted = resource_id(key)
+        return next((line for line in self.screen if line.resource_id == wanted), None)
 
     def number(self, name: str) -> float | None:
         """The number at the start of one of the car's lines."""

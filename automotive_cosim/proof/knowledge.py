@@ -13,9 +13,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
+from functools import lru_cache
 from typing import Any
 
+from automotive_cosim.cockpit.photos import Photo
 from automotive_cosim.cockpit.screens.climate import SEAT_LEVELS
+from automotive_cosim.cockpit.screens.person import PHOTO
+from automotive_cosim.contracts.ids import key_of
 from automotive_cosim.interface.trace import Step
 from automotive_cosim.tasking.dialogue import Topic, topic_of
 from automotive_cosim.tasking.moves import Consult, Move, TypeText
@@ -60,6 +64,13 @@ class _Entry:
     value: Any
 
 
+@dataclass(frozen=True, slots=True)
+class _Pictured:
+    """What a photo shows."""
+
+    value: Any
+
+
 class Seen:
     """What has been observed so far."""
 
@@ -69,6 +80,7 @@ class Seen:
         self._settings: dict[str, None] = {}
         self._numbers: set[str] = set()
         self._words: set[str] = set()
+        self._has_photo = False
 
     def add(self, text: str) -> None:
         """Takes in a text line by line."""
@@ -83,10 +95,11 @@ class Seen:
         for element in step.elements:
             if not element.is_visible:
                 continue
+            self._has_photo |= element.resource_id == PHOTO
             for text in filter(None, (element.text, element.content_description, element.hint_text)):
                 self.add(text)
                 is_set = element.is_selected or element.is_checked
-                self._settings[normal(f"{element.resource_id} {text}{' (set)' if is_set else ''}")] = None
+                self._settings[normal(f"{key_of(element.resource_id)} {text}{' (set)' if is_set else ''}")] = None
         self._screens["\n".join(normal(element.text) for element in step.elements if element.is_visible)] = None
         for text in (step.feedback.text, *step.said, step.moment.context.text()):
             self.add(text)
@@ -104,6 +117,8 @@ class Seen:
         match said, instead:
             case (bool() | None | _Setting(bool()), _) | (_, None):
                 return True  # a switch: on the screen of what it switches, as is that there is none
+            case _Pictured(), _:
+                return self._has_photo
             case _Entry(), _Entry():
                 return self._together(said) and not self._together(instead)
             case _Setting(int() | float() as level), _Setting():
@@ -205,8 +220,8 @@ def _left(name: str, tellings: Sequence[Any], drawn: Drawn, seen: Seen) -> list[
 
 def _leaves(value: Any) -> Iterator[Any]:
     """The texts and numbers in a value."""
-    if isinstance(value, _Setting):
-        yield from map(_Setting, _leaves(value.value))
+    if isinstance(value, _Setting | _Pictured):
+        yield from map(type(value), _leaves(value.value))
     elif isinstance(value, Mapping):
         for name, entry in value.items():
             yield from (_Entry(name, leaf) for leaf in _leaves(entry))
@@ -241,6 +256,8 @@ def _open_in(value: Any) -> Iterator[Any]:
     """The placeholders, and texts with placeholders, in a value."""
     if isinstance(value, Param) or (isinstance(value, str) and "{" in value):
         yield value
+    elif isinstance(value, Photo):
+        yield from map(_Pictured, _open_in((value.value, value.unit)))
     elif isinstance(value, Start):
         yield from map(_Setting, _open_in(tuple(value.signals.values())))
         yield from _open_in([getattr(value, field.name) for field in fields(value) if field.name != "signals"])
@@ -257,6 +274,7 @@ def _open_in(value: Any) -> Iterator[Any]:
             yield from _open_in(getattr(value, field.name))
 
 
+@lru_cache(maxsize=4096)
 def normal(text: str) -> str:
     """A text in small letters and with single spaces; hours up to 24, numbers in figures and with a point."""
     small = " ".join(text.casefold().split())

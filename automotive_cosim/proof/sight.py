@@ -16,6 +16,7 @@ from typing import Any
 from automotive_cosim.cockpit.screens.notices import LOW_KPA, NOTICED, TYRES
 from automotive_cosim.cockpit.signals import GLASS
 from automotive_cosim.contracts import BoundingBox, Element, Observation, VehicleState
+from automotive_cosim.contracts.ids import key_of
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.rules import Rule
@@ -104,9 +105,6 @@ _ELEMENTS: Mapping[str, frozenset[Facet]] = {
         "status.connectivity": {Facet.LINK},
         "status.gps": {Facet.LINK},
         "status.outside_temperature": {Facet.WEATHER},
-        "status.low_beam": {Facet.LIGHT, Facet.ROAD, Facet.SETTINGS},
-        "status.front_fog": {Facet.SETTINGS},
-        "status.rear_fog": {Facet.SETTINGS},
         "status.": {Facet.CAR},
         "home.outside": {Facet.WEATHER, Facet.ROAD, Facet.LIGHT},
         "home.cabin_note": {Facet.CABIN, Facet.WEATHER, Facet.LIGHT, Facet.ABOARD, Facet.SETTINGS, Facet.GEAR},
@@ -206,7 +204,7 @@ def _readings(vehicle: VehicleState) -> Iterator[Fact]:
 def _on_screen(elements: tuple[Element, ...], signals: Mapping[str, Any]) -> Iterator[Fact]:
     counts: dict[str, int] = {}
     for element in elements:
-        name = element.resource_id
+        name = key_of(element.resource_id)
         counts[name] = counts.get(name, 0) + 1
         causes = next(found for begin, found in _ELEMENTS.items() if name.startswith(begin)) if name else _MAP
         told = f"{name or 'map'} {counts[name]}"

@@ -31,11 +31,12 @@ from automotive_cosim.tasking.instance import Instance, phrased
 ROWS = "episodes.jsonl"
 PLANNED = (
     "task", "half", "pair", "dimension", "module", "basis", "suite", "tags", "skills", "declines", "agent", "model",
-    "geo", "seed", "repeat", "clock", "latency_s", "see", "feedback", "language", "split",
+    "geo", "seed", "repeat", "clock", "latency_s", "see", "feedback", "screen", "language", "split",
 )  # fmt: skip
 """Fields of a row that the plan and the catalogue determine."""
 ALSO_IN_RESULT = (
-    "task", "half", "scenario", "agent", "model", "geo", "see", "feedback", "language", "seed", "traffic_seed",
+    "task", "half", "scenario", "agent", "model", "geo", "see", "feedback", "screen", "language",
+    "seed", "traffic_seed",
     "success", "reward", "steps", "sim_seconds", "end", "error", "error_kind", "agent_error", "held_out",
     "trace_sha256", "tokens_in", "tokens_out", "model_seconds", "cost_usd", "drive", "baseline_drive",
 )  # fmt: skip

@@ -29,7 +29,7 @@ from automotive_cosim.run.store import cannot_write
 from automotive_cosim.run.versions import minor
 
 COLUMNS = (
-    "Agent", "Model", "Input", "Geo", "Screen", "Feedback", "Language", "Clock", *DIMENSIONS.values(),
+    "Agent", "Model", "Input", "Geo", "Sees", "Feedback", "Screen", "Language", "Clock", *DIMENSIONS.values(),
     "Safety pairs", "All episodes", "Bundle",
 )  # fmt: skip
 
@@ -162,6 +162,7 @@ def _table(number: int, entries: Sequence[BoardEntry]) -> Table:
                 each.geo,
                 each.see,
                 each.feedback,
+                each.screen,
                 each.language,
                 _speed(each),
                 *(rate_in_words(rate) if rate.planned else NONE for rate in entry.rates),

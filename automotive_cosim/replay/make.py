@@ -16,6 +16,7 @@ from automotive_cosim.agents import FORMATS, PROFILES, make_agent
 from automotive_cosim.agents.native.grid import GuiScreen
 from automotive_cosim.agents.native.verbs import call_for
 from automotive_cosim.contracts import Action, ActionType, Json
+from automotive_cosim.contracts.ids import resource_id
 from automotive_cosim.episode.specification import EpisodeSpec
 from automotive_cosim.models import ChatMessage, ModelReply, Rules
 from automotive_cosim.models.apis import Anthropic, Chat, Gemini, OpenAI, ProviderApi
@@ -41,7 +42,7 @@ class Touches(Watcher):
         assert action is not None
         index = action.index
         if action.action_type is ActionType.OPEN_APP:
-            index = [element.resource_id for element in shot.seen].index(f"dock.{action.app_name}")
+            index = [element.resource_id for element in shot.seen].index(resource_id(f"dock.{action.app_name}"))
             action = Action(ActionType.CLICK)
         if index is not None:
             box = shot.seen[index].bbox_pixels

@@ -12,7 +12,7 @@ from automotive_cosim.cockpit.drawing import Canvas
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.screens import SCREENS
 from automotive_cosim.cockpit.signals import HMI
-from automotive_cosim.cockpit.theme import DAY, SCREEN_HEIGHT, SCREEN_WIDTH, Type
+from automotive_cosim.cockpit.theme import DAY, Type
 
 COLUMNS, CAPTION_HEIGHT, GAP = 6, 22, 10
 
@@ -38,7 +38,8 @@ def sheet(tiles: Sequence[SheetTile], columns: int, width: int = 400) -> Image.I
         columns: tiles per row.
         width: of each screen in pixels.
     """
-    size = width, round(width * SCREEN_HEIGHT / SCREEN_WIDTH)
+    shown = [picture.size for _, picture in tiles if picture is not None] or [(16, 9)]
+    size = width, round(width * shown[0][1] / shown[0][0])
     step_x, step_y = width + GAP, size[1] + CAPTION_HEIGHT + GAP
     lines = -(-len(tiles) // columns)
     canvas = Canvas.plain(columns * step_x + GAP, lines * step_y + GAP, 1.0, DAY.background)

@@ -47,13 +47,14 @@ class WatchedBy:
     latency_s: float
     see: str
     feedback: str
+    screen: str
 
     @property
     def label(self) -> str:
         """In words."""
         parts = [self.agent if self.model == "none" else f"{self.agent} ({self.model})"]
         parts += [f"geo {self.geo}"] if self.geo != "full" else []
-        parts += seen_and_told(self.see, self.feedback)
+        parts += seen_and_told(self.see, self.feedback, self.screen)
         parts += [f"{self.clock} clock"] if self.clock != "fixed" else []
         parts += [f"{self.latency_s:g} s later"] if self.latency_s else []
         return ", ".join(parts)
@@ -61,7 +62,9 @@ class WatchedBy:
 
 def watcher_of(row: WatchRow) -> WatchedBy:
     """Who watched a drive."""
-    return WatchedBy(row.agent, row.model, str(row.geo), str(row.clock), row.latency_s, row.see, row.feedback)
+    return WatchedBy(
+        row.agent, row.model, str(row.geo), str(row.clock), row.latency_s, row.see, row.feedback, row.screen
+    )
 
 
 def grouped(rows: Iterable[WatchRow]) -> dict[WatchedBy, list[WatchRow]]:

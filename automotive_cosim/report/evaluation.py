@@ -72,6 +72,7 @@ def all_tables(results: Results, found: Mapping[str, FailureClass]) -> list[Tabl
         findings.place_effect(shared),
         findings.sight(shared),
         findings.feedback(shared),
+        findings.screen(shared),
         findings.language(shared),
         findings.think_time(shared),
         findings.by_label(shared, "Skill", lambda row: row.skills),

@@ -24,6 +24,7 @@ from enum import StrEnum
 from itertools import pairwise
 
 from automotive_cosim.contracts import ActionType, AlertKind, FeedbackCode, GoalStatus, Json, Reason
+from automotive_cosim.contracts.ids import resource_id
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.tasking.moves import Do, Move, Slide, Tap, TapUntil, TypeText, Warn
@@ -249,10 +250,10 @@ def _targets(half: Half) -> frozenset[str]:
 
 def _target(move: Move) -> str:
     match move:
-        case Tap(resource_id, _, text):
-            return resource_id or text.lower()
+        case Tap(key, _, text):
+            return resource_id(key) or text.lower()
         case TapUntil() | Slide() | TypeText():
-            return move.resource_id
+            return resource_id(move.key)
         case _:
             return ""
 

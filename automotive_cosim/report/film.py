@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
-from PIL import Image
+from PIL import Image, ImageOps
 
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.drawing import Canvas
@@ -131,7 +131,11 @@ class Film(Watcher):
 def _frame(
     time_s: float, screenshot: npt.NDArray[np.uint8], title: str, words: str, milliseconds: int
 ) -> FilmFrame:
-    picture = Image.fromarray(screenshot).resize(_pixels(COCKPIT), Image.Resampling.LANCZOS)
+    """A frame whose picture of the screen is as large as fits, whatever the screen's size."""
+    box = _pixels(COCKPIT)
+    picture = Image.new("RGB", box, NIGHT.background)
+    shown = ImageOps.contain(Image.fromarray(screenshot), box, Image.Resampling.LANCZOS)
+    picture.paste(shown, ((box[0] - shown.width) // 2, (box[1] - shown.height) // 2))
     return FilmFrame(time_s, picture, title, words, milliseconds)
 
 

@@ -8,6 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from automotive_cosim.cockpit.language import Language
+from automotive_cosim.cockpit.size import ScreenSize
+from automotive_cosim.contracts.plain import counted
 from automotive_cosim.interface.feedback import FeedbackDetail
 from automotive_cosim.interface.observe import See
 from automotive_cosim.report.failures import FailureClass, failure_class
@@ -130,6 +132,8 @@ def think_time(results: Results) -> Table:
 def sight(results: Results) -> Table:
     """Success by how the screen is seen; no rows if all saw it alike."""
     note = "The list of elements, the picture, or both; the picture alone comes without ids and descriptions."
+    if beyond := results.beyond_the_list:
+        note += f" Left out: {counted(len(beyond), 'task')} in which something needed is in the picture only."
     return _side_by_side(
         results, ("sight", "Success by how the screen is seen"), See, lambda each, see: replace(each, see=see), note
     )
@@ -143,6 +147,18 @@ def feedback(results: Results) -> Table:
         ("feedback", "Success by feedback"),
         FeedbackDetail,
         lambda each, detail: replace(each, feedback=detail),
+        note,
+    )
+
+
+def screen(results: Results) -> Table:
+    """Success by the size of the screen; no rows if all had the same."""
+    note = "1920x720 shows map and music beside each app, 1080x1920 above it."
+    return _side_by_side(
+        results,
+        ("screen", "Success by the size of the screen"),
+        ScreenSize,
+        lambda each, size: replace(each, screen=size),
         note,
     )
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from automotive_cosim.cockpit.language import Language
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.episode.specification import Clock
@@ -20,6 +21,7 @@ from automotive_cosim.run.plan import languages_in_words, make_plan
 from automotive_cosim.run.row import columns
 from automotive_cosim.run.store import read_evaluation, read_rows
 from automotive_cosim.run.versions import ran_with
+from automotive_cosim.tasking.task import NEEDS_PICTURE
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -52,6 +54,7 @@ class Contestant:
     latency_s: float = 0.0
     see: str = str(See.BOTH)
     feedback: str = str(FeedbackDetail.QUIET)
+    screen: str = str(ScreenSize.STANDARD)
     language: str = str(Language.ENGLISH)
 
     @property
@@ -72,7 +75,8 @@ class Contestant:
         geo = "" if self.geo == "full" else f"geo {self.geo}"
         clock = "" if self.clock == Clock.FIXED else f"{self.clock}'s clock"
         latency = f"latency {self.latency_s:g} s" if self.latency_s else ""
-        parts = (self.method, model, geo, *seen_and_told(self.see, self.feedback), *spoken(self), clock, latency)
+        seen = seen_and_told(self.see, self.feedback, self.screen)
+        parts = (self.method, model, geo, *seen, *spoken(self), clock, latency)
         return ", ".join(part for part in parts if part)
 
 
@@ -107,6 +111,14 @@ class Results:
         found = {contestant(row) for row in (*self.rows, *self.coverage.not_run)}
         return tuple(sorted(found, key=lambda each: (each.agent in NOT_RANKED, each)))
 
+    @property
+    def beyond_the_list(self) -> tuple[str, ...]:
+        """Tasks that those who see the screen as a list alone are not given, because they need the picture."""
+        if See.TREE not in self.manifest["plan"].get("see", ()):
+            return ()
+        given = (row for row in (*self.rows, *self.coverage.not_run) if NEEDS_PICTURE in row.tags)
+        return tuple(sorted({row.task for row in given}))
+
     def of(self, each: Contestant) -> tuple[EpisodeRow, ...]:
         """The episodes of one contestant."""
         return tuple(row for row in self.rows if contestant(row) == each)
@@ -125,13 +137,16 @@ class Results:
 
 def contestant(row: EpisodeRow) -> Contestant:
     """The contestant that an episode belongs to."""
-    return Contestant(row.agent, row.model, row.geo, row.clock, row.latency_s, row.see, row.feedback, row.language)
+    seen = row.see, row.feedback, row.screen, row.language
+    return Contestant(row.agent, row.model, row.geo, row.clock, row.latency_s, *seen)
 
 
-def seen_and_told(see: str, feedback: str) -> tuple[str, ...]:
-    """How the screen is seen and an action's feedback told, in words, as far as it is not the default."""
+def seen_and_told(see: str, feedback: str, screen: str) -> tuple[str, ...]:
+    """The screen, how it is seen and an action's feedback told, in words, as far as it is not the default."""
+    size = () if screen == ScreenSize.STANDARD else (f"{screen} screen",)
     sight = () if see == See.BOTH else (f"{see} alone",)
-    return sight if feedback == FeedbackDetail.QUIET else (*sight, f"{feedback} feedback")
+    told = () if feedback == FeedbackDetail.QUIET else (f"{feedback} feedback",)
+    return (*size, *sight, *told)
 
 
 def spoken(each: Contestant) -> tuple[str, ...]:

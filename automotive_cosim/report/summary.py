@@ -389,7 +389,7 @@ def rate_in_words(found: Rate) -> str:
 def input_of(each: Contestant) -> str:
     """The agent's input, in the paper's words."""
     words = [] if each.geo == "full" else [f"geo {each.geo}"]
-    words += (*seen_and_told(each.see, each.feedback), *spoken(each))
+    words += (*seen_and_told(each.see, each.feedback, each.screen), *spoken(each))
     control = f" ({', '.join(words)})" if words else ""
     if each.agent == NativeAgent.name:
         lacks = chosen(each.model)[1].lacks

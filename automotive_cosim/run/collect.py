@@ -171,6 +171,7 @@ def planned(job: EpisodeJob) -> EpisodeRow:
         latency_s=setup.latency_s,
         see=setup.see,
         feedback=setup.feedback,
+        screen=setup.screen,
         language=setup.language,
         held_out=setup.held_out,
         split=job.split,

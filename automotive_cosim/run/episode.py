@@ -16,11 +16,10 @@ from annotated_types import Ge
 
 from automotive_cosim import geo
 from automotive_cosim.agents import Agent, Learner, Privileged, Stage, StageName, Thinker
-from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.contracts import Element, Json, RoadSnapshot
+from automotive_cosim.contracts import Element, Json
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
-from automotive_cosim.episode.listener import Listener
+from automotive_cosim.episode.listener import Listener, Listeners
 from automotive_cosim.episode.loop import play
 from automotive_cosim.episode.situation import HandOver, SituationFinder
 from automotive_cosim.episode.specification import Clock, End, EpisodeSpec, SeedSource
@@ -34,7 +33,6 @@ from automotive_cosim.run.harm import DriveFigures, drive_figures
 from automotive_cosim.run.load import DriverLoad, driver_load
 from automotive_cosim.run.row import formerly
 from automotive_cosim.run.timeline import Sample, TimelineEntry, samples, timeline
-from automotive_cosim.scenarios import Scenario
 from automotive_cosim.tasking.verdict import Verdict
 from automotive_cosim.traffic.fork import Simulations
 
@@ -94,6 +92,7 @@ class EpisodeResult:
     geo: str = "full"
     see: str = "both"
     feedback: str = "verbose"
+    screen: str = "1280x720"
     language: str = "en"
     without: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
@@ -191,7 +190,7 @@ def run_episode(
     """
     with ExitStack() as ends:
         own = simulations or ends.enter_context(closing(Simulations()))
-        finder = SituationFinder(setup, own, listener=_All(watchers))
+        finder = SituationFinder(setup, own, listener=Listeners(watchers))
         run = _Run(setup, finder, agent, watchers)
         ends.callback(run.close)
         try:
@@ -228,7 +227,7 @@ class _Run:
         except BaseException:  # its process cannot be started
             hand_over.world.close()
             raise
-        episode = self._episode = Episode.take_over(hand_over, conditions, _All(self._watchers))
+        episode = self._episode = Episode.take_over(hand_over, conditions, Listeners(self._watchers))
         agent.reset(episode.goal)
         if isinstance(agent, Privileged):
             agent.brief(episode.instance, drawn=episode.world.cockpit.drawn)
@@ -318,6 +317,7 @@ class _Run:
             "geo": str(setup.geo),
             "see": str(setup.see),
             "feedback": str(setup.feedback),
+            "screen": str(setup.screen),
             "language": str(setup.language),
             "without": setup.without,
             "tokens_in": sum(reply.tokens_in for reply in self._replies),
@@ -366,31 +366,6 @@ class _Run:
                 for found in geo.violations(moments)
             ),
         )
-
-
-class _All(Listener):
-    """Passes on to every watcher."""
-
-    def __init__(self, watchers: Sequence[Watcher]) -> None:
-        self._watchers = watchers
-        self._lookers = tuple(watcher for watcher in watchers if watcher.looks)
-        self.looks = bool(self._lookers)
-
-    def loading(self, scenario: Scenario) -> None:
-        for watcher in self._watchers:
-            watcher.loading(scenario)
-
-    def warming(self, scenario: str, done_s: float, total_s: float) -> None:
-        for watcher in self._watchers:
-            watcher.warming(scenario, done_s, total_s)
-
-    def looked(self, snapshot: RoadSnapshot) -> None:
-        for watcher in self._lookers:
-            watcher.looked(snapshot)
-
-    def moved(self, moment: Moment, cockpit: Cockpit) -> None:
-        for watcher in self._watchers:
-            watcher.moved(moment, cockpit)
 
 
 def _thought(stages: Sequence[Stage]) -> str:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 from typing import Annotated, Any
 
 from automotive_cosim.cockpit.language import Language
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.episode.specification import Clock, End
 from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.interface.feedback import FeedbackDetail
@@ -74,6 +75,8 @@ class EpisodeRow(JobRow):
     """How the agent saw the screen."""
     feedback: FeedbackDetail = FeedbackDetail.VERBOSE
     """What it was told of its last action."""
+    screen: ScreenSize = ScreenSize.STANDARD
+    """Size of the car's screen."""
     language: Language = Language.ENGLISH
     """What the driver spoke, and the car showed."""
     thought_s: float = 0.0

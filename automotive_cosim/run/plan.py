@@ -17,6 +17,7 @@ from annotated_types import Ge, Gt, Le, MinLen
 from automotive_cosim import scenarios
 from automotive_cosim.agents import MODELLED, AgentSettings, make_agent
 from automotive_cosim.cockpit.language import Language
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import Json
 from automotive_cosim.episode.specification import Clock, Conditions
 from automotive_cosim.errors import SetupError, UnknownNameError, UserError
@@ -104,6 +105,10 @@ class Plan:
         "quiet",
     )
     """What an agent is told of its last action: ``quiet`` or ``verbose``."""
+    screen: Annotated[tuple[Annotated[str, OneOf(tuple(ScreenSize), "size of the screen")], ...], MinLen(1)] = (
+        "1280x720",
+    )
+    """Size of the car's screen: ``1280x720``, ``1920x720`` or ``1080x1920``."""
     language: Annotated[tuple[Annotated[str, OneOf(tuple(Language), "language")], ...], MinLen(1)] = ("en",)
     """What the driver speaks and the car shows: ``en``, ``fr``, ``de`` or ``ja``. Tasks that he has no words for in
     any of them are left out of all."""
@@ -166,7 +171,7 @@ class Plan:
         """
         lists = (
             *(self.agents, self.models, self._placed(), self.seeds),
-            *(self.geo, self.latency, self.see, self.feedback, self.language),
+            *(self.geo, self.latency, self.see, self.feedback, self.screen, self.language),
         )
         if (most := prod(map(len, lists)) * self.repeats) > MOST_RUNS:
             raise UserError(
@@ -185,7 +190,15 @@ class Plan:
         spoken = {task.id for task in self._spoken()}
         return tuple(task_id for task_id in choose(self.tasks, self.suite) if task_id not in spoken)
 
+    def beyond_the_list(self) -> tuple[str, ...]:
+        """Ids of the chosen tasks that are not run with ``see`` tree: something needed is in the picture alone."""
+        if See.TREE not in self.see:
+            return ()
+        return tuple(task_id for task_id in choose(self.tasks, self.suite) if CATALOGUE[task_id].needs_picture)
+
     def _nowhere(self) -> str:
+        if self._placed() and all(task.needs_picture for task, _ in self._placed()):
+            return "these tasks need the picture, which see = tree withholds; give picture or both"
         if not self._spoken():
             return (
                 f"none of the tasks has phrasings in {languages_in_words(self.language)}; the hard suite has "
@@ -217,7 +230,8 @@ class Plan:
         return [task for task in chosen if set(self.language) <= set(task.languages)]
 
     def _each(self) -> Iterator[EpisodeJob]:
-        for agent, model, (task, scenario), seed, geo, latency_s, repeat, see, feedback, language in product(
+        conditions = product(self.see, self.feedback, self.screen, self.language)
+        for agent, model, (task, scenario), seed, geo, latency_s, repeat, condition in product(
             self.agents,
             self.models,
             self._placed(),
@@ -225,10 +239,11 @@ class Plan:
             self.geo,
             self.latency,
             range(self.repeats),
-            self.see,
-            self.feedback,
-            self.language,
+            conditions,
         ):
+            see, feedback, screen, language = condition
+            if task.needs_picture and See(see) is See.TREE:
+                continue
             for half in task.halves:
                 is_own = scenario == task.half(half).start.scenario  # which a half may move to another place
                 setup = EpisodeSetup(
@@ -247,6 +262,7 @@ class Plan:
                     latency_s=latency_s,
                     see=See(see),
                     feedback=FeedbackDetail(feedback),
+                    screen=ScreenSize(screen),
                     language=Language(language),
                 )
                 yield EpisodeJob(setup, repeat, self.limits)
@@ -303,6 +319,7 @@ class EpisodeJob:
             latency_s=0.0,
             see=See.BOTH,
             feedback=FeedbackDetail.QUIET,
+            screen=ScreenSize.STANDARD,
         )
 
     @property
@@ -331,6 +348,7 @@ class EpisodeJob:
             *([f"latency{setup.latency_s:g}"] if setup.latency_s else []),
             *([f"see_{setup.see}"] if setup.see is not See.BOTH else []),
             *([str(setup.feedback)] if setup.feedback is not FeedbackDetail.QUIET else []),
+            *([str(setup.screen)] if setup.screen is not ScreenSize.STANDARD else []),
             *([str(setup.language)] if setup.language is not Language.ENGLISH else []),
         )  # fmt: skip
         words = "-".join(re.sub(r"[^A-Za-z0-9_.]+", "_", Path(word).name) for word in exactly)

@@ -75,6 +75,7 @@ def watched(row: WatchRow, steps: Sequence[Json], simulations: Simulations | Non
         row.repeat,
         row.see,
         row.feedback,
+        row.screen,
         "" if row.scenario == family_named(row.family).scenario else row.scenario,
     )
     player = Player(steps[1:], frozenset(row.channels), row.agent_error)

@@ -18,6 +18,7 @@ from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import KMH_PER_MPS, Json, LaneShape, RoadShapes, RoadSnapshot
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
+from automotive_cosim.episode.session import Session
 from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.geo.sun import elevation_deg
 from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, Shot, Watcher
@@ -49,7 +50,7 @@ class RoadRecorder(Watcher):
         self._looked: dict[float, RoadSnapshot] = {}
         """Snapshots whose second has not been reported yet."""
         self._before: list[tuple[Moment, RoadSnapshot]] = []
-        self._writer: _Writer | None = None
+        self._writer: RoadWriter | None = None
         self._episode: Episode | None = None
 
     def looked(self, snapshot: RoadSnapshot) -> None:
@@ -71,7 +72,17 @@ class RoadRecorder(Watcher):
         departed_s, now_s = episode.drive[0].time_s, shot.step.moment.time_s
         self._episode = episode
         self._path.parent.mkdir(parents=True, exist_ok=True)
-        self._writer = _Writer(self._path, episode, self._setup, now_s)
+        setup, instance = self._setup, episode.instance
+        about: Json = {
+            "task": instance.task.id,
+            "half": setup.half,
+            "scenario": setup.scenario or instance.half.start.scenario,
+            "agent": setup.agent,
+            "model": setup.model,
+            "seed": setup.seed,
+            "goal": episode.goal,
+        }
+        self._writer = RoadWriter(self._path, episode, about, now_s)
         for moment, snapshot in self._before:
             if moment.time_s > departed_s:
                 self._writer.second(moment, snapshot)
@@ -96,16 +107,24 @@ class RoadRecorder(Watcher):
             self._path.parent.rmdir()
 
 
-class _Writer:
+class RoadWriter:
     """The file, and what it has told already."""
 
-    def __init__(self, path: Path, episode: Episode, setup: EpisodeSetup, hand_over_s: float) -> None:
+    def __init__(self, path: Path, session: Session, about: Json, begin_s: float) -> None:
+        """Begins the file.
+
+        Args:
+            path: where it goes.
+            session: on the road to be written.
+            about: what is run, by name.
+            begin_s: simulation time from which the file counts.
+        """
         self._raw = path.open("wb")
         mark_as_written(self._raw)
         self._file = gzip.GzipFile(fileobj=self._raw, mode="wb", compresslevel=6, filename="", mtime=0)
-        self._hand_over_s = hand_over_s
-        self._index = ShapeIndex(episode.world.traffic.shapes())
-        self._roads = {road.edge_id: road.shape_m for road in episode.network.roads}
+        self._begin_s = begin_s
+        self._index = ShapeIndex(session.world.traffic.shapes())
+        self._roads = {road.edge_id: road.shape_m for road in session.network.roads}
         self._lanes: set[int] = set()
         self._junctions: set[int] = set()
         self._sought_at: tuple[float, float] | None = None
@@ -113,20 +132,13 @@ class _Writer:
         """Lights at the end of the lanes so far."""
         self._lights: dict[str, str] = {}
         self._numbers: dict[str, int] = {}
-        instance = episode.instance
         self._line(
             {
                 "format": FORMAT,
-                "task": instance.task.id,
-                "half": setup.half,
-                "scenario": setup.scenario or instance.half.start.scenario,
-                "agent": setup.agent,
-                "model": setup.model,
-                "seed": setup.seed,
-                "goal": episode.goal,
+                **about,
                 "radius_m": LOOK_RADIUS_M,
-                "left_hand": episode.network.left_hand,
-                "has_place": episode.network.projection is not None,
+                "left_hand": session.network.left_hand,
+                "has_place": session.network.projection is not None,
             }
         )
 
@@ -155,7 +167,7 @@ class _Writer:
         lat_deg, lon_deg = driving.lat_deg, driving.lon_deg
         self._line(
             {
-                "at_s": round(moment.time_s - self._hand_over_s, 2),
+                "at_s": round(moment.time_s - self._begin_s, 2),
                 "seen": [
                     [
                         self._numbers[each.vehicle_id],
@@ -192,12 +204,13 @@ class _Writer:
         """The same car with nobody at the cockpit."""
         rows = []
         for moment in moments:
-            car, at_s = moment.driving, round(moment.time_s - self._hand_over_s, 2)
+            car, at_s = moment.driving, round(moment.time_s - self._begin_s, 2)
             heading_deg = round(car.heading_deg, 1) % 360
             rows.append([at_s, round(car.x_m, 2), round(car.y_m, 2), heading_deg, round(car.speed_mps, 2)])
         self._line({"baseline": rows})
 
     def close(self) -> None:
+        """Completes the file."""
         self._file.close()
         self._raw.close()
 

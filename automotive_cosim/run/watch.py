@@ -10,6 +10,7 @@ from typing import Any
 
 from automotive_cosim.agents import Agent, Thinker
 from automotive_cosim.cockpit.actions import to_json
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import KMH_PER_MPS, Element, Json
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.elsewhere import elsewhere
@@ -18,7 +19,7 @@ from automotive_cosim.drives.plan import DrivePlan
 from automotive_cosim.drives.result import DriveResult, result_of
 from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.drives.watch import Watch
-from automotive_cosim.episode.listener import Listener
+from automotive_cosim.episode.listener import Listener, Listeners
 from automotive_cosim.episode.loop import play
 from automotive_cosim.episode.specification import Clock, End
 from automotive_cosim.geo.breaches import limit_at
@@ -46,6 +47,7 @@ class WatchSetup:
     repeat: int = 0
     see: See = See.BOTH
     feedback: FeedbackDetail = FeedbackDetail.QUIET
+    screen: ScreenSize = ScreenSize.STANDARD
     scenario: str = ""
     """Where to drive instead of on the family's own roads; see ``drives.elsewhere``."""
 
@@ -59,6 +61,19 @@ class WatchRecord:
     """Speed, limit and the do-nothing drive's speed, one value a second."""
     steps: tuple[Json, ...]
     """Action, thinking time and result of each step, with hashes of the state that followed."""
+
+
+class WatchWatcher(Listener):
+    """Sees a drive while it runs, e.g. to show or record it. It changes nothing."""
+
+    def departed(self, watch: Watch) -> None:
+        """The drive begins."""
+
+    def acted(self, watch: Watch, seen: Sequence[Element]) -> None:
+        """The agent has acted on a screen with these elements."""
+
+    def arrived(self, watch: Watch, record: WatchRecord) -> None:
+        """The drive is over, and judged."""
 
 
 def planned_row(job_id: str, setup: WatchSetup) -> WatchRow:
@@ -78,6 +93,7 @@ def planned_row(job_id: str, setup: WatchSetup) -> WatchRow:
         repeat=setup.repeat,
         see=setup.see,
         feedback=setup.feedback,
+        screen=setup.screen,
     )
 
 
@@ -103,7 +119,7 @@ def run_watch(
     agent: Agent,
     *,
     simulations: Simulations | None = None,
-    listener: Listener | None = None,
+    watchers: Sequence[WatchWatcher] = (),
     plan: DrivePlan | None = None,
 ) -> WatchRecord:
     """Runs a drive to its end and judges it.
@@ -113,7 +129,7 @@ def run_watch(
         setup: what to run.
         agent: who watches.
         simulations: warm simulations to use; by default its own, closed with the drive.
-        listener: notified of progress.
+        watchers: notified of everything as it happens.
         plan: used instead of the family's plan for the seed.
 
     Raises:
@@ -121,21 +137,27 @@ def run_watch(
         InfrastructureError: traffic or model failed.
     """
     planned = planned_row(job_id, setup)
+    listener = Listeners(watchers)
     if setup.scenario and plan is None:
         plan = elsewhere(family_named(setup.family).draw(setup.seed), setup.scenario)
-    spec = DriveSpec(setup.family, setup.seed, setup.geo, setup.see, setup.feedback)
+    spec = DriveSpec(setup.family, setup.seed, setup.geo, setup.see, setup.feedback, setup.screen)
     with ExitStack() as ends:
         own = simulations or ends.enter_context(closing(Simulations()))
         watch = spec.begin(own, agent.channels, listener, plan)
         ends.callback(watch.close)
         meter, channels = _Meter(setup, agent), tuple(sorted(agent.channels))
         agent.reset(watch.goal)
-        end = play(watch, agent, (meter.stepped,), meter.thought_s)
-        return WatchRecord(
+        for watcher in watchers:
+            watcher.departed(watch)
+        end = play(watch, agent, (meter.stepped, *(watcher.acted for watcher in watchers)), meter.thought_s)
+        record = WatchRecord(
             row=judged_row(planned, end, channels, result_of(watch), **meter.totals()),
             timeline=_timeline(watch),
             steps=tuple(_steps(watch)),
         )
+        for watcher in watchers:
+            watcher.arrived(watch, record)
+        return record
 
 
 class _Meter:

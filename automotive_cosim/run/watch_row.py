@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.drives.harm import Harm
 from automotive_cosim.drives.judge import JudgedAct, JudgedEvent
 from automotive_cosim.drives.score import Score
@@ -35,6 +36,8 @@ class WatchRow(JobRow):
     """How the agent saw the screen."""
     feedback: FeedbackDetail = FeedbackDetail.VERBOSE
     """What it was told of its last action."""
+    screen: ScreenSize = ScreenSize.STANDARD
+    """Size of the car's screen."""
     repeat: int = 0
     end: End = End.ERROR
     agent_error: str | None = None

@@ -16,6 +16,7 @@ from typing import Annotated, Any
 from annotated_types import Ge, Gt, Le, MinLen
 
 from automotive_cosim.agents import MODELLED, AgentSettings, make_agent
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import Json
 from automotive_cosim.drives.elsewhere import elsewhere
 from automotive_cosim.drives.families import FAMILIES
@@ -32,7 +33,7 @@ from automotive_cosim.run.executor import Executor, Runner
 from automotive_cosim.run.meter import Budget, MeterHandle
 from automotive_cosim.run.nursery import Nursery
 from automotive_cosim.run.outside import check_agent
-from automotive_cosim.run.plan import NO_MODEL, Limits, digest
+from automotive_cosim.run.plan import HUMAN, NO_MODEL, Limits, digest
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.store import opened, write_trace
 from automotive_cosim.run.watch import WatchRecord, WatchSetup, planned_row, run_watch
@@ -74,6 +75,10 @@ class WatchPlan:
         "quiet",
     )
     """What an agent is told of its last action."""
+    screen: Annotated[tuple[Annotated[str, OneOf(tuple(ScreenSize), "size of the screen")], ...], MinLen(1)] = (
+        "1280x720",
+    )
+    """Size of the car's screen."""
     wall_s: Annotated[float, Gt(0)] = DRIVE_LIMITS.wall_s
     """Wall seconds of one drive; exceeding them is an infrastructure error."""
 
@@ -91,8 +96,8 @@ class WatchPlan:
         for scenario in self.scenarios:
             elsewhere(FAMILIES[families_named(self.drives)[0]].draw(0), scenario)
         for agent, model, see in {(job.setup.agent, job.model, job.setup.see) for job in self.jobs()}:
-            if agent == "human":
-                raise UserError("agent 'human' needs a person, and a drive nobody can watch at a terminal")
+            if agent == HUMAN:
+                raise UserError("agent 'human' needs a person; use `automotive-cosim serve --play`")
             if ":" in agent:
                 check_agent(agent)
             else:
@@ -107,7 +112,7 @@ class WatchPlan:
         limits = replace(DRIVE_LIMITS, wall_s=self.wall_s)
         found = {
             job.id: job
-            for family, scenario, agent, model, seed, geo, latency_s, repeat, see, feedback in product(
+            for family, scenario, agent, model, seed, geo, latency_s, repeat, (see, feedback, screen) in product(
                 families_named(self.drives),
                 self.scenarios or ("",),
                 self.agents,
@@ -116,8 +121,7 @@ class WatchPlan:
                 self.geo,
                 self.latency,
                 range(self.repeats),
-                self.see,
-                self.feedback,
+                product(self.see, self.feedback, self.screen),
             )
             for job in [
                 WatchJob(
@@ -125,13 +129,14 @@ class WatchPlan:
                         family,
                         seed,
                         agent,
-                        model if agent in MODELLED else NO_MODEL,
+                        model if agent in MODELLED or agent == HUMAN else NO_MODEL,
                         GeoInput(geo),
                         Clock(self.clock),
                         latency_s,
                         repeat,
                         See(see),
                         FeedbackDetail(feedback),
+                        ScreenSize(screen),
                         scenario,
                     ),
                     limits,
@@ -184,6 +189,7 @@ class WatchJob:
             *([f"latency{setup.latency_s:g}"] if setup.latency_s else []),
             *([f"see_{setup.see}"] if setup.see is not See.BOTH else []),
             *([str(setup.feedback)] if setup.feedback is not FeedbackDetail.QUIET else []),
+            *([str(setup.screen)] if setup.screen is not ScreenSize.STANDARD else []),
         )  # fmt: skip
         words = "-".join(re.sub(r"[^A-Za-z0-9_.]+", "_", Path(word).name) for word in exactly)
         return f"{words[:150]}-{digest(exactly)[:8]}"
@@ -281,7 +287,7 @@ def run_watch_job(
     except Exception as error:
         # A fault in this package must not end the evaluation; it is counted and listed.
         return failed_watch(job, type(error).__name__, f"{type(error).__name__}: {error}")
-    _keep(record, folder, job.id)
+    keep_watch(record, folder, job.id)
     return record.row
 
 
@@ -290,7 +296,12 @@ def failed_watch(job: WatchJob, kind: str, why: str) -> WatchRow:
     return replace(planned_row(job.id, job.setup), error=why, error_kind=kind)
 
 
-def _keep(record: WatchRecord, folder: Path, name: str) -> None:
+def keep_watch(record: WatchRecord, folder: Path, name: str) -> None:
+    """Writes the steps and the timeline of a drive into an evaluation's folder.
+
+    Raises:
+        OSError: they cannot be written.
+    """
     (folder / TIMELINES).mkdir(exist_ok=True)  # on a node of a cluster, each job has a folder of its own
     (folder / TIMELINES / f"{name}.json").write_text(json.dumps(record.timeline), "utf-8")
     write_trace(folder, name, record.steps)

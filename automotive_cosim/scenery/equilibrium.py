@@ -9,7 +9,7 @@ zero. Every trip departs when it entered the network in the first step.
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
@@ -53,6 +53,31 @@ class AssignmentStep:
     """Trips that get another route for the next step."""
 
 
+@dataclass(frozen=True, slots=True)
+class Assigned:
+    """A scenario's drivers on the routes of one step."""
+
+    scenario: Scenario
+    """How SUMO runs."""
+    configuration: Configuration
+    """The network, and a demand that ``trips`` replace."""
+    types: str
+    """The vehicle types of the demand, as SUMO's XML."""
+    trips: tuple[DrivenTrip, ...]
+
+    def written(self, path: Path) -> Configuration:
+        """The configuration with the trips as its demand, which are written to a file."""
+        path.write_text(self.demand, encoding="utf-8")
+        options = self.configuration.options | {"route-files": str(path)}
+        return replace(self.configuration, options=options)
+
+    @property
+    def demand(self) -> str:
+        """The trips as SUMO's demand, in the order of their departures."""
+        lines = (variant.vehicle(trip.id, trip.type_id, trip.departed_s, trip.edges) for trip in self.trips)
+        return variant.demand(self.types, lines)
+
+
 def equilibrate(
     folder: Path, target: Path, options: Options, tell: Callable[[AssignmentStep], None], *, force: bool = False
 ) -> tuple[AssignmentStep, ...]:
@@ -77,67 +102,64 @@ def equilibrate(
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-equilibrium-") as scratch:
         given = run_options(configuration, Setup(scenario, options.seed), Path(scratch))
         types = vehicle_types(given, ["route-files"])  # those of additional files stay where they are
-        steps, best = _search(configuration, scenario, types, options, tell, Path(scratch))
+        steps, best = _search(scenario, configuration, types, options, tell, Path(scratch))
     kept = min(steps, key=lambda step: step.gap.relative)
     record: Json = {
         "options": asdict(options),
         "kept": kept.number,
         "steps": [asdict(step) | {"relative_gap": step.gap.relative} for step in steps],
     }
-    variant.write_variant(target, scenario, configuration, (ROUTES, _demand(best, types)), (RECORD, record))
+    variant.write_variant(target, scenario, configuration, (ROUTES, best.demand), (RECORD, record))
     return steps
 
 
 def _search(
-    configuration: Configuration,
     scenario: Scenario,
+    configuration: Configuration,
     types: str,
     options: Options,
     tell: Callable[[AssignmentStep], None],
     scratch: Path,
-) -> tuple[tuple[AssignmentStep, ...], tuple[DrivenTrip, ...]]:
-    """All steps, and the trips of the best one."""
+) -> tuple[tuple[AssignmentStep, ...], Assigned]:
+    """All steps, and the routes of the best one."""
     rng = np.random.default_rng(options.seed)
     fixed = variant.with_fixed_routes(scenario)
     last_s = configuration.begin_s + scenario.sumo.warm_up_s + options.observe_s
     driven = drive(configuration, scenario, options.observe_s, options.seed)
     trips = tuple(trip for trip in driven.trips if trip.departed_s < last_s)
+    now = Assigned(fixed, configuration, types, trips)
     steps: list[AssignmentStep] = []
-    best = trips, driven.gap.relative
+    best = now, driven.gap.relative
     for number in range(options.steps + 1):
         if number:
-            path = scratch / ROUTES
-            path.write_text(_demand(trips, types), encoding="utf-8")
-            own = replace(configuration, options=configuration.options | {"route-files": str(path)})
-            driven = drive(own, fixed, options.observe_s, options.seed)
+            driven = drive(now.written(scratch / ROUTES), fixed, options.observe_s, options.seed)
         if not driven.gap.trips:
             raise ScenarioError(f"no trip departs within {options.observe_s:g} s after the warm-up and arrives")
         if driven.gap.relative < best[1]:
-            best = trips, driven.gap.relative
-        is_last = number == options.steps or driven.gap.relative <= options.gap or _is_stuck(steps, driven.gap)
-        routes = {} if is_last else _changes(driven, 1 / (number + 2), rng)
+            best = now, driven.gap.relative
+        gaps = [*(step.gap.relative for step in steps), driven.gap.relative]
+        is_last = number == options.steps or driven.gap.relative <= options.gap or is_stuck(gaps)
+        routes = {} if is_last else changes(driven, 1 / (number + 2), rng)
         steps.append(AssignmentStep(number, driven.gap, len(routes)))
         tell(steps[-1])
         if is_last:
             break
-        trips = tuple(replace(trip, edges=routes.get(trip.id, trip.edges)) for trip in trips)
+        now = rerouted(now, routes)
     return tuple(steps), best[0]
 
 
-def _is_stuck(steps: list[AssignmentStep], gap: Gap) -> bool:
-    """Whether the gap has not become smaller for some steps."""
-    gaps = [*(step.gap.relative for step in steps), gap.relative]
-    return len(gaps) > PATIENCE and min(gaps[-PATIENCE:]) >= min(gaps[:-PATIENCE])
+def is_stuck(figures: Sequence[float]) -> bool:
+    """Whether a figure has not become smaller for some steps."""
+    return len(figures) > PATIENCE and min(figures[-PATIENCE:]) >= min(figures[:-PATIENCE])
 
 
-def _changes(driven: Driven, share: float, rng: np.random.Generator) -> Mapping[str, tuple[str, ...]]:
+def changes(driven: Driven, share: float, rng: np.random.Generator) -> Mapping[str, tuple[str, ...]]:
     """New routes for a share of the trips that lost time."""
     lost = [name for name, excess_s in driven.excess_s.items() if excess_s >= NOTICED_S and name in driven.best]
     return {name: driven.best[name] for name in lost if rng.random() < share}
 
 
-def _demand(trips: tuple[DrivenTrip, ...], types: str) -> str:
-    """The trips as SUMO's demand, in the order of their departures."""
-    return variant.demand(
-        types, (variant.vehicle(trip.id, trip.type_id, trip.departed_s, trip.edges) for trip in trips)
-    )
+def rerouted(assigned: Assigned, routes: Mapping[str, tuple[str, ...]]) -> Assigned:
+    """The same trips, some with new routes."""
+    trips = tuple(replace(trip, edges=routes.get(trip.id, trip.edges)) for trip in assigned.trips)
+    return replace(assigned, trips=trips)

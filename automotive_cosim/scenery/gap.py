@@ -11,11 +11,14 @@ from __future__ import annotations
 import tempfile
 import xml.etree.ElementTree as ET
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
+
+import numpy as np
+import numpy.typing as npt
 
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats import files
@@ -105,12 +108,44 @@ class EdgeTimes:
         """The time of an edge that is entered in an interval."""
         return self._means_s.get((edge, interval), self._free_s[edge])
 
+    def table(self, edges: Mapping[str, int]) -> tuple[int, npt.NDArray[np.float64]]:
+        """The first interval of all, and the times of some edges in it and the following ones.
+
+        Args:
+            edges: edge -> row of an array, (edges, intervals + 1), whose last column is the free time.
+        """
+        intervals = [interval for _, interval in self._means_s] or [0]
+        first, count = min(intervals), max(intervals) + 1 - min(intervals)
+        free_s = np.array([self._free_s[edge] for edge in edges])
+        table = np.repeat(free_s[:, None], count + 1, axis=1)
+        for (edge, interval), mean_s in self._means_s.items():
+            if edge in edges:
+                table[edges[edge], interval - first] = mean_s
+        return first, table
+
     def of(self, edges: Sequence[str], from_s: float) -> float:
         """The time of a route whose first edge is left at an instant, to its end."""
         now_s = from_s
         for edge in edges[1:]:
             now_s += self.at(edge, int(now_s // INTERVAL_S))
         return now_s - from_s
+
+    @property
+    def least_s(self) -> dict[str, float]:
+        """Of each edge that was driven, the time of the interval in which it was least."""
+        found: dict[str, float] = {}
+        for (edge, _), mean_s in self._means_s.items():
+            found[edge] = min(mean_s, found.get(edge, mean_s))
+        return found
+
+    def raised(self, calm_s: Mapping[str, float], factor: float) -> EdgeTimes:
+        """Times that count what exceeds that of a calm road again, times a factor."""
+        raised = EdgeTimes(self._free_s, ())
+        raised._means_s = {
+            key: mean_s + factor * max(0.0, mean_s - calm_s.get(key[0], mean_s))
+            for key, mean_s in self._means_s.items()
+        }
+        return raised
 
     def write(self, path: Path) -> None:
         """Writes them as SUMO's edge data, every edge that was driven in every interval."""
@@ -129,7 +164,10 @@ class EdgeTimes:
 
 @dataclass(frozen=True, slots=True)
 class Driven:
-    """A run of SUMO without the ego, its trips, and what would have been better for each."""
+    """A run of SUMO without the ego, its trips, and what would have been better for each.
+
+    Better is what costs less: the driver's own time, unless the run was asked for another cost.
+    """
 
     trips: tuple[DrivenTrip, ...]
     """All trips, in the order of their departures."""
@@ -157,7 +195,13 @@ def measure(scenario: Scenario, *, observe_s: float = 3600.0, seed: int = 0) -> 
     return drive(configuration, scenario, observe_s, seed).gap
 
 
-def drive(configuration: Configuration, scenario: Scenario, observe_s: float, seed: int) -> Driven:
+def drive(
+    configuration: Configuration,
+    scenario: Scenario,
+    observe_s: float,
+    seed: int,
+    cost: Callable[[EdgeTimes], EdgeTimes] = lambda times: times,
+) -> Driven:
     """Drives a demand once, with what would have been better; raises like ``measure``.
 
     Args:
@@ -165,21 +209,20 @@ def drive(configuration: Configuration, scenario: Scenario, observe_s: float, se
         scenario: how SUMO runs.
         observe_s: how long after the warm-up departures count.
         seed: SUMO's seed.
+        cost: what edges cost a driver, from their times.
     """
-    sumo = replace(scenario.sumo, step_length_s=1.0)
-    first_s = configuration.begin_s + sumo.warm_up_s
+    first_s = configuration.begin_s + scenario.sumo.warm_up_s
     last_s = first_s + observe_s
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-gap-") as folder:
         scratch = Path(folder)
-        options = run_options(configuration, Setup(replace(scenario, sumo=sumo), seed), scratch)
-        teleports = _run(configuration, options, last_s + TAIL_S, scratch)
-        trips = tuple(sorted(read_trips(scratch / "routes.xml"), key=lambda trip: trip.departed_s))
+        ran = run(configuration, scenario, observe_s, seed, scratch)
+        trips = ran.trips
         network = read_network(configuration.net)
         free_s = {name: edge.length_m / max(0.1, edge.speed_mps) for name, edge in network.edges.items()}
-        times = EdgeTimes(free_s, trips)
+        times = cost(EdgeTimes(free_s, trips))
         counted = [trip for trip in trips if first_s <= trip.departed_s < last_s]
         arrived = [trip for trip in counted if trip.has_arrived and len(trip.edges) > 1]
-        found = quickest(arrived, times, configuration.net, vehicle_types(options), scratch)
+        found = quickest(arrived, times, configuration.net, ran.types, scratch)
     own_s: dict[str, float] = {}
     best_s: dict[str, float] = {}
     for trip in arrived:
@@ -193,7 +236,7 @@ def drive(configuration: Configuration, scenario: Scenario, observe_s: float, se
         own_s=sum(own_s.values()),
         best_s=sum(best_s.values()),
         better=sum(each >= NOTICED_S for each in excess_s.values()) / max(1, len(excess_s)),
-        teleports=teleports,
+        teleports=ran.teleports,
     )
     return Driven(trips, gap, excess_s, found)
 
@@ -224,8 +267,30 @@ def read_trips(path: Path) -> Iterable[DrivenTrip]:
             element.clear()
 
 
-def _run(configuration: Configuration, options: Mapping[str, str], end_s: float, scratch: Path) -> int:
-    """Runs SUMO; returns the number of teleports."""
+@dataclass(frozen=True, slots=True)
+class Ran:
+    """What SUMO wrote of a run."""
+
+    trips: tuple[DrivenTrip, ...]
+    """All trips, in the order of their departures."""
+    teleports: int
+    types: str
+    """The vehicle types, as SUMO's XML."""
+
+
+def run(configuration: Configuration, scenario: Scenario, observe_s: float, seed: int, scratch: Path) -> Ran:
+    """Runs SUMO on a demand until ``TAIL_S`` after the time observed; raises like ``measure``.
+
+    Args:
+        configuration: the network and the demand.
+        scenario: how SUMO runs.
+        observe_s: how long after the warm-up departures count.
+        seed: SUMO's seed.
+        scratch: a folder for intermediate files.
+    """
+    sumo = replace(scenario.sumo, step_length_s=1.0)
+    options = run_options(configuration, Setup(replace(scenario, sumo=sumo), seed), scratch)
+    end_s = configuration.begin_s + sumo.warm_up_s + observe_s + TAIL_S
     whole = dict(options) | {
         "end": f"{end_s:g}",
         "summary-output": "stdout",
@@ -238,7 +303,8 @@ def _run(configuration: Configuration, options: Mapping[str, str], end_s: float,
     with closing(summary(configuration.path.name, command_line(whole)[1:], scratch)) as steps:
         for step in steps:
             teleports = int(step.get("teleports", 0))
-    return teleports
+    trips = tuple(sorted(read_trips(scratch / "routes.xml"), key=lambda trip: trip.departed_s))
+    return Ran(trips, teleports, vehicle_types(options))
 
 
 def quickest(

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from automotive_cosim import scenarios
 from automotive_cosim.contracts import Json
+from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.geo.place import shipped
 from automotive_cosim.serve.shelf import NotHereError
 from automotive_cosim.tasking.catalogue import described
@@ -35,6 +36,16 @@ def task(name: str) -> Json:
         **described(found),
         "values": {each: choices_in_words(choices) for each, choices in found.parameters.items()},
         "halves": halves,
+    }
+
+
+def drives() -> Json:
+    """The families of drives, a line for each."""
+    return {
+        "drives": [
+            {"id": family.id, "season": family.season, "scenario": family.scenario, "about": family.about}
+            for family in FAMILIES.values()
+        ]
     }
 
 

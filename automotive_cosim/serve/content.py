@@ -9,27 +9,33 @@ from typing import Any
 
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import KMH_PER_MPS, Element, Json
+from automotive_cosim.drives.judge import EventOutcome
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import parse_json, read_json
 from automotive_cosim.report.page import PARTS, element
+from automotive_cosim.run.drive_recorder import SHOWN as DRIVE_STEPS
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.road import FORMAT, read_road
 from automotive_cosim.run.road import NAME as ROAD
 from automotive_cosim.run.road_recorder import is_being_written
 from automotive_cosim.run.store import read_manifest, read_rows, read_trace
+from automotive_cosim.run.watch_row import WatchRow
 from automotive_cosim.run.words import action_in_words
+from automotive_cosim.serve.decisions import decision_map, decisions
 from automotive_cosim.serve.shelf import NotHereError, Shelf, ShelfEntry
 
 HEAD = (
     *("task", "half", "scenario", "agent", "model", "seed", "success", "steps", "sim_seconds", "end", "error"),
-    *("goal", "geo", "see", "feedback", "language", "tokens_in", "tokens_out", "model_seconds"),
+    *("goal", "geo", "see", "feedback", "screen", "language", "tokens_in", "tokens_out", "model_seconds"),
 )
 SHOWN = (
-    *("id", "task", "half", "scenario", "agent", "model", "geo", "see", "feedback", "language", "seed", "repeat"),
+    *("id", "task", "half", "scenario", "agent", "model", "geo", "see", "feedback", "screen"),
+    *("language", "seed", "repeat"),
     *("dimension", "module"),
     *("success", "error", "error_kind", "end", "steps", "sim_seconds", "held_out", "goal_s"),
 )
 """Fields of a row that the table of results shows."""
+CREDITED = frozenset(outcome.value for outcome in EventOutcome if outcome.is_credited)
 OWN_ROAD = ("limit_kmh", "speed_kmh", "road")
 
 
@@ -51,6 +57,9 @@ class Content:
             UserError: it is not here, or cannot be read.
         """
         entry = self.shelf.entry(name)
+        drive = self._drive_in(entry, episode)
+        if drive is not None:
+            return self._drive(entry, drive, episode)
         result = self._result(entry, episode)
         head = _head(result) if result else self._unfinished(entry, episode)
         return {
@@ -75,6 +84,14 @@ class Content:
             UserError: it is not here, or cannot be read.
         """
         entry = self.shelf.entry(name)
+        drive = self._drive_in(entry, episode)
+        if drive is not None:
+            path = self.shelf.file(entry, *drive, DRIVE_STEPS)
+            lines = _json_lines(path, *_stamp(path))[skip:]
+            return {
+                "steps": [{**line, "has_picture": True} for line in lines],
+                "running": self._is_running(entry, episode),
+            }
         lines = self._lines(entry, episode)
         steps = _steps(entry, self.shelf, episode, lines)
         return {"steps": steps[skip:], "running": self._is_running(entry, episode)}
@@ -103,11 +120,15 @@ class Content:
         if not entry.is_evaluation:
             raise NotHereError(f"record {name!r} is not an evaluation")
         manifest = read_manifest(entry.folder)
-        if "agents" not in manifest["plan"]:
+        kind = _kind(manifest["plan"])
+        if kind == "drives":
+            return self._drives(entry, manifest)
+        if kind != "evaluation":
             raise NotHereError(f"{entry.folder.name} has no episodes of agents")
         rows = read_rows(entry.folder, EpisodeRow)
         return {
             "id": entry.id,
+            "kind": kind,
             "name": entry.folder.name,
             "plan": manifest["plan"],
             "planned": manifest.get("episodes"),
@@ -121,16 +142,54 @@ class Content:
             ],
         }
 
+    def reference(self, task: str) -> Json:
+        """The reference solution of each half of a task, where it has been recorded with pictures.
+
+        Raises:
+            UserError: a record cannot be read.
+        """
+        found: dict[str, Json] = {}
+        for entry in self.shelf.entries():
+            for half, episode in _safely(entry, lambda each: self._solved(each, task)).get("solved", ()):
+                if half not in found:
+                    steps = self.steps(entry.id, episode, 0)["steps"]
+                    told = [{name: each[name] for name in ("number", "words", "has_picture")} for each in steps]
+                    found[half] = {"run": entry.id, "episode": episode, "steps": told}
+        return {"halves": found}
+
+    def decisions(self, name: str) -> Json:
+        """Every decision of a study of rerouting.
+
+        Raises:
+            UserError: it is not here, or cannot be read.
+        """
+        return decisions(self._study(name))
+
+    def decision_map(self, name: str, decision: str) -> Json:
+        """The ways of a decision on one road.
+
+        Raises:
+            UserError: it is not here, or cannot be read.
+        """
+        return decision_map(self._study(name), decision)
+
     # --- inside -----------------------------------------------------------------------------------------------
 
     def _line(self, entry: ShelfEntry) -> Json:
         shared = {"id": entry.id, "name": entry.folder.name, "folder": str(entry.folder)}
         if entry.is_evaluation:
             manifest = read_manifest(entry.folder)
-            kind = "evaluation" if "agents" in manifest["plan"] else "other"
+            kind = _kind(manifest["plan"])
             done = (entry.folder / "episodes.jsonl").read_bytes().count(b"\n")
             started = manifest["starts"][-1]["started"]
             return {**shared, "kind": kind, "done": done, "planned": manifest.get("episodes"), "started": started}
+        if entry.is_drive:
+            drive = self._drive(entry, (), None)
+            return {
+                **shared,
+                "kind": "drive",
+                **{name: drive[name] for name in (*HEAD, "running", "value", "started")},
+            }
         path = entry.folder / "episode.json"
         head = _head_of(self.shelf.file(entry, path.name), *_stamp(path)) if path.is_file() else None
         return {
@@ -150,6 +209,97 @@ class Content:
             if episode is not None:
                 self._road(entry, episode)
             return None
+
+    def _solved(self, entry: ShelfEntry, task: str) -> Json:
+        """Half and id of each episode of a record in which the oracle solves a task and pictures were kept."""
+        solved: list[tuple[str, str | None]] = []
+        if entry.is_evaluation:
+            plan = read_manifest(entry.folder)["plan"]
+            is_told = _kind(plan) == "evaluation" and "oracle" in plan["agents"]
+            for row in read_rows(entry.folder, EpisodeRow).values() if is_told else ():
+                is_solved = (row.task, row.agent, row.success) == (task, "oracle", True)
+                if is_solved and _has_picture(self.shelf, entry, row.id, 0):
+                    solved.append((row.half, row.id))
+        elif not entry.is_drive and (entry.folder / "episode.json").is_file():
+            path = entry.folder / "episode.json"
+            head = _head_of(self.shelf.file(entry, path.name), *_stamp(path))
+            if (head["task"], head["agent"], head["success"]) == (task, "oracle", True):
+                solved.append((head["half"], None))
+        return {"solved": solved}
+
+    def _study(self, name: str) -> Path:
+        entry = self.shelf.entry(name)
+        if not entry.is_evaluation or _kind(read_manifest(entry.folder)["plan"]) != "study":
+            raise NotHereError(f"record {name!r} is not a study")
+        return entry.folder
+
+    def _drives(self, entry: ShelfEntry, manifest: Json) -> Json:
+        """The plan and the rows of an evaluation of drives."""
+        rows = read_rows(entry.folder, WatchRow)
+        names = ("id", "family", "scenario", "season", "agent", "model", "geo", "see", "feedback", "seed", "repeat",
+                 "value", "error", "error_kind", "end", "steps")  # fmt: skip
+        return {
+            "id": entry.id,
+            "kind": "drives",
+            "name": entry.folder.name,
+            "plan": manifest["plan"],
+            "planned": manifest.get("episodes"),
+            "rows": [
+                {name: getattr(row, name) for name in names}
+                | {
+                    "met": row.score and row.score.met,
+                    "events": row.score and row.score.events,
+                    "nuisances": row.score and row.score.nuisances,
+                    "has_road": self._drive_in(entry, row.id) is not None,
+                }
+                for row in rows.values()
+            ],
+        }
+
+    def _drive_in(self, entry: ShelfEntry, episode: str | None) -> tuple[str, ...] | None:
+        """Where in a record the drive is; None if this is none."""
+        if entry.is_drive:
+            return ()
+        parts = () if episode is None else ("pictures", episode)
+        try:
+            self.shelf.file(entry, *parts, DRIVE_STEPS)
+        except NotHereError:
+            return None
+        return parts
+
+    def _drive(self, entry: ShelfEntry, parts: tuple[str, ...], episode: str | None) -> Json:
+        """A drive, with its events and acts once it is over."""
+        head = self._unfinished(entry, episode)
+        try:
+            row = _object(self.shelf.file(entry, *parts, "row.json"))
+        except NotHereError:
+            row = {}
+        events, acts = row.get("events", ()), row.get("acts", ())
+        head |= {name: row[name] for name in HEAD if row.get(name) is not None}
+        head["task"] = row.get("family", head["task"])
+        met = [event for event in events if not event["bait"]]
+        return {
+            **head,
+            "id": entry.id,
+            "episode": episode,
+            "name": entry.folder.name,
+            "kind": "drive",
+            "running": self._is_running(entry, episode),
+            "started": None,
+            "parts": {},
+            "success": None,
+            "value": row.get("value"),
+            "score": row.get("score"),
+            "verdict": None,
+            "spans": [_span(event) for event in events],
+            "acts": [{"at_s": act["time_s"], "text": act["words"], "worth": act["worth"]} for act in acts],
+            "timeline": _drive_timeline(events, acts),
+            "met": sum(event["outcome"] in CREDITED for event in met),
+            "path": (),
+            "violations": (),
+            "manifest": None,
+            "trace_sha256": row.get("trace_sha256"),
+        }
 
     def _trace(self, entry: ShelfEntry, episode: str) -> list[Json]:
         self.shelf.file(entry, "traces", f"{episode}.jsonl.gz")
@@ -181,6 +331,30 @@ class Content:
             "task": begun.get("task") or episode or entry.folder.name,
             "end": "running" if self._is_running(entry, episode) else "stopped before its end",
         }
+
+
+def _kind(plan: Json) -> str:
+    """What a folder with rows is, by its plan."""
+    marks = {"study": "study", "drives": "drives", "agents": "evaluation"}
+    return next((kind for mark, kind in marks.items() if mark in plan), "other")
+
+
+def _span(event: Json) -> Json:
+    """An event of a drive from when it can be known to its deadline, or to its end."""
+    told = {name: event[name] for name in ("kind", "words", "bait", "outcome", "obliged_s", "deadline_s")}
+    return {**told, "from_s": event["observable_s"], "to_s": event["deadline_s"] or event["ends_s"]}
+
+
+def _drive_timeline(events: Sequence[Json], acts: Sequence[Json]) -> list[Json]:
+    """Every instant that the page lists, in order."""
+    told = []
+    for event in events:
+        what = f"{'look-alike' if event['bait'] else 'event'} {event['kind']}: {event['words']}"
+        told.append((event["observable_s"], "event", f"{what} [{event['outcome']}]"))
+        if event["deadline_s"] is not None and not event["bait"]:
+            told.append((event["deadline_s"], "deadline", f"deadline of {event['kind']}"))
+    told += [(act["time_s"], "alert", f"{act['words']} [{act['worth']}]") for act in acts]
+    return [{"at_s": at_s, "kind": kind, "text": text} for at_s, kind, text in sorted(told)]
 
 
 def _stamp(path: Path) -> tuple[int, int]:

@@ -26,7 +26,7 @@ MOST_PEOPLE = 100
 
 
 @dataclass(frozen=True, slots=True)
-class StudyPlan:
+class PeoplePlan:
     """The content of a study's TOML file."""
 
     people: Annotated[tuple[str, ...], MinLen(1)]
@@ -62,13 +62,13 @@ class StudyPlan:
         return plan
 
 
-def read_study(path: Path) -> StudyPlan:
+def read_study(path: Path) -> PeoplePlan:
     """A study's plan from its file.
 
     Raises:
         UserError: it cannot be read, or does not fit.
     """
-    return read_toml(path).read(StudyPlan)
+    return read_toml(path).read(PeoplePlan)
 
 
 def deal(

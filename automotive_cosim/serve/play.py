@@ -9,9 +9,10 @@ slower than real time, the clock slips. Who leaves an episode that counts has no
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
-from contextlib import nullcontext, suppress
+from collections.abc import Callable, Sequence
+from contextlib import closing, nullcontext, suppress
 from dataclasses import dataclass, fields, replace
+from datetime import datetime
 from enum import StrEnum
 from io import BytesIO
 from pathlib import Path
@@ -22,25 +23,40 @@ from PIL import Image
 
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.contracts import ActionType, Json, Observation
+from automotive_cosim.contracts import ActionType, Element, Json, Observation
 from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.drives.families import family_named
+from automotive_cosim.drives.watch import Watch
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.film import Film
 from automotive_cosim.report.page import write_page
 from automotive_cosim.run.collect import Pictures
+from automotive_cosim.run.drive_recorder import DriveRecorder
 from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, Shot, Watcher, run_episode
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.plan import HUMAN, NO_MODEL, EpisodeJob
 from automotive_cosim.run.record import Recorder, default_folder
 from automotive_cosim.run.road_recorder import RoadRecorder
+from automotive_cosim.run.watch import WatchRecord, WatchSetup, WatchWatcher, run_watch
+from automotive_cosim.run.watches import WatchJob
 from automotive_cosim.run.worker import run_with
 from automotive_cosim.serve.person import SPEEDS, Person, PersonLeftError, Preview
-from automotive_cosim.serve.played import FOLDER, MOST_S, MOST_STEPS, PlayedRows, check_code_name
+from automotive_cosim.serve.played import (
+    DRIVES,
+    FOLDER,
+    MOST_S,
+    MOST_STEPS,
+    PlayedDrives,
+    PlayedEpisodes,
+    check_code_name,
+)
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
 
 QUALITY = 88
+PICTURES = "pictures"
+"""Folder of an evaluation with what a page shows of each of its jobs."""
 
 
 class PlayState(StrEnum):
@@ -86,7 +102,7 @@ class PlayScene:
     """Simulated seconds per second."""
 
 
-class Game(Watcher):
+class Game(Watcher, WatchWatcher):
     """One person's episodes, one at a time. Any method may be called from any thread."""
 
     def __init__(self, folder: Path, scenario: str | None = None, simulations: Simulations | None = None) -> None:
@@ -100,7 +116,8 @@ class Game(Watcher):
         """
         self._scenario = scenario
         self._folder = folder
-        self._rows = PlayedRows(folder / FOLDER, scenario)
+        self._rows = PlayedEpisodes(folder / FOLDER, scenario)
+        self._drives = PlayedDrives(folder / DRIVES)
         self._own = Simulations() if simulations is None else None
         self._simulations = simulations or self._own
         self._news = threading.Condition()
@@ -108,7 +125,7 @@ class Game(Watcher):
         self._thread: threading.Thread | None = None
         self._person = Person()
         self._preview = Preview()
-        self._shown = Shown()
+        self._shown = ShownScreen()
         self._hand = threading.Lock()
         """Held while an act or a step changes what is shown, so that none overtakes another."""
         self._cockpit: Cockpit | None = None
@@ -141,6 +158,33 @@ class Game(Watcher):
         )  # fmt: skip
         folder = self._folder / default_folder(setup).name
         self._begin(Person(setup.model), lambda: self._practise(setup, folder))
+
+    def drive(self, family: str, seed: int, name: str, *, practice: bool) -> None:
+        """Begins a drive.
+
+        Args:
+            family: of the drive.
+            seed: of the drive.
+            name: code name of the person.
+            practice: it may be paused and slowed; no other drive of this name counts it.
+
+        Raises:
+            UserError: an episode is running, there is no such family, or the name is no code name.
+        """
+        family_named(family)
+        if name or not practice:
+            check_code_name(name)
+        if practice:
+            setup = WatchSetup(family, seed, HUMAN, name or NO_MODEL)
+            stamp = datetime.now().strftime("%Y%m%d-%H%M%S")
+            folder = self._folder / f"{stamp}-{family}-{HUMAN}-seed{seed}"
+            person = Person(setup.model)
+            self._begin(person, lambda: self._watch(WatchJob(setup), folder, person, None))
+            return
+        job = self._drives.drive(family, seed, name)
+        counting = Person(name, counts=True)
+        folder = self._drives.folder / PICTURES / job.id
+        self._begin(counting, lambda: self._watch(job, folder, counting, self._drives.keep))
 
     def begin(self, job: EpisodeJob, folder: Path, keep: Callable[[EpisodeRow], None]) -> None:
         """Begins an episode that counts.
@@ -207,6 +251,7 @@ class Game(Watcher):
         if self._own is not None:
             self._own.close()
         self._rows.close()
+        self._drives.close()
 
     def scene(self, seen: int = -1, wait_s: float = 0.0) -> PlayScene:
         """The newest scene.
@@ -241,16 +286,31 @@ class Game(Watcher):
         self._person.listen(self._show_told)
 
     def stepped(self, shot: Shot) -> None:
-        """Shows the screen after a second, unless an act that waits has changed what the person sees."""
+        """Shows the screen after a second."""
         action = shot.step.action
         has_declared = action is not None and action.action_type is ActionType.STATUS
+        self._follow(shot.screenshot, is_over=has_declared)
+
+    def departed(self, watch: Watch) -> None:
+        """Shows the screen, and starts the clock of a drive."""
+        self._cockpit = watch.world.cockpit
+        self._preview.follow(self._cockpit)
+        self._show(watch.observation, watch.screenshot())
+        self._person.listen(self._show_told)
+
+    def acted(self, watch: Watch, seen: Sequence[Element]) -> None:
+        """Shows the screen after a second of a drive."""
+        self._follow(watch.screenshot(), is_over=watch.end is not None)
+
+    def _follow(self, screenshot: npt.NDArray[np.uint8], *, is_over: bool) -> None:
+        """Shows the true screen, unless an act that waits has changed what the person sees."""
         with self._hand:
             if not self._person.has_acts:
                 assert self._cockpit is not None
                 self._preview.follow(self._cockpit)
-                self._shown.show(shot.screenshot)
+                self._shown.show(screenshot)
                 self._tell(screen=self._shown.jpeg, look=self._shown.look)
-            if has_declared:
+            if is_over:
                 self._tell(state=PlayState.ENDING)
 
     def _check_stays(self) -> None:
@@ -297,6 +357,19 @@ class Game(Watcher):
             write_page(folder)
         self._tell(state=PlayState.OVER, folder=folder)
 
+    def _watch(
+        self, job: WatchJob, folder: Path, person: Person, keep: Callable[[WatchRecord], None] | None
+    ) -> None:
+        """Plays a drive and records it; ``keep`` takes what counts."""
+        recorder = DriveRecorder(folder, job.setup, person)
+        with suppress(PersonLeftError), closing(recorder):
+            record = run_watch(job.id, job.setup, person, simulations=self._simulations, watchers=(self, recorder))
+            if keep is not None:
+                keep(record)
+                self._tell(state=PlayState.OVER, folder=self._drives.folder, episode=job.id)
+                return
+        self._tell(state=PlayState.OVER, folder=folder)
+
     def _count(self, job: EpisodeJob, folder: Path, keep: Callable[[EpisodeRow], None]) -> None:
         """Plays an episode and keeps its row."""
         assert self._simulations is not None
@@ -330,7 +403,7 @@ def _told(seen: Observation) -> Json:
         "elements": [
             {
                 "text": ": ".join(part for part in (element.text, element.content_description) if part)
-                or element.resource_id.rpartition(".")[2],
+                or element.class_name,
                 "box": [box.x_min, box.y_min, box.x_max, box.y_max],
                 "editable": element.is_editable,
                 "checked": element.is_checked,
@@ -358,7 +431,7 @@ def _readings(seen: Observation) -> Json:
     }
 
 
-class Shown:
+class ShownScreen:
     """The screen that the page shows, as a JPEG with a number that changes with it."""
 
     def __init__(self) -> None:

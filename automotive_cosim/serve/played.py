@@ -7,19 +7,27 @@ first try is never replaced.
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterable, Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
+from itertools import count
 from pathlib import Path
+from typing import Generic
 
+from automotive_cosim.contracts import Json
 from automotive_cosim.episode.specification import Clock
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.plan import ALL_SUITES, HUMAN, EpisodeJob, Limits, Plan
+from automotive_cosim.run.row import R
 from automotive_cosim.run.store import Store, opened, read_rows, replan
+from automotive_cosim.run.watch import WatchRecord, WatchSetup
+from automotive_cosim.run.watch_row import WatchRow
+from automotive_cosim.run.watches import TIMELINES, WatchJob, WatchPlan, keep_watch
 
-FOLDER = "people"
-"""Folder of the played episodes, in the first of the folders shown."""
+FOLDER, DRIVES = "people", "people-drives"
+"""Folders of the played episodes and drives, in the first of the folders shown."""
 MOST_S, MOST_STEPS = 120.0, 1000
 """Simulated seconds, and acts, after which a played episode ends."""
 LONGEST_NAME = 40
@@ -59,8 +67,57 @@ def check_code_name(name: str) -> None:
         )
 
 
-class PlayedRows:
+class PlayedRows(ABC, Generic[R]):
     """An evaluation that grows with whatever is played. Any method may be called from any thread."""
+
+    kind: type[R]
+    parts: tuple[str, ...] = ("traces", "pictures")
+
+    def __init__(self, folder: Path) -> None:
+        """Nothing is written before the first job.
+
+        Args:
+            folder: the evaluation's.
+        """
+        self.folder = folder
+        self._lock = threading.Lock()
+        self._ends = ExitStack()
+        self._store: Store[R] | None = None
+
+    @abstractmethod
+    def plan_of(self, rows: Sequence[R]) -> Json:
+        """The smallest plan that has these rows, which are all of it that was meant to be run."""
+
+    def close(self) -> None:
+        """Lets another process write."""
+        with self._lock:
+            self._ends.close()
+            self._store = None
+
+    def _append(self, row: R) -> None:
+        with self._lock:
+            store = self._opened()
+            store.append(row)
+            replan(self.folder, self.plan_of(list(store.rows.values())), len(store.rows))
+
+    def _first(self, ids: Callable[[int], str]) -> int:
+        """The first repeat that nobody has played: its id has no row."""
+        with self._lock:
+            rows = self._opened().rows
+            return next(repeat for repeat in count() if ids(repeat) not in rows)
+
+    def _opened(self) -> Store[R]:
+        if self._store is None:
+            rows = list(read_rows(self.folder, self.kind).values())
+            begun = opened(self.folder, self.plan_of(rows), self.kind, self.parts, planned=len(rows), grows=True)
+            self._store = self._ends.enter_context(begun)
+        return self._store
+
+
+class PlayedEpisodes(PlayedRows[EpisodeRow]):
+    """Episodes of tasks."""
+
+    kind = EpisodeRow
 
     def __init__(self, folder: Path, scenario: str | None = None) -> None:
         """Nothing is written before the first job.
@@ -69,11 +126,8 @@ class PlayedRows:
             folder: the evaluation's.
             scenario: instead of the tasks' own.
         """
-        self.folder = folder
+        super().__init__(folder)
         self._scenario = scenario
-        self._lock = threading.Lock()
-        self._ends = ExitStack()
-        self._store: Store[EpisodeRow] | None = None
 
     def job(self, task: str, half: str, seed: int, name: str) -> EpisodeJob:
         """The next episode of a person.
@@ -85,12 +139,7 @@ class PlayedRows:
         found = next((job for job in jobs if job.setup.half == half), None)
         if found is None:
             raise UserError(f"task {task!r} has no half {half!r} that runs in {self._scenario or 'any scenario'}")
-        with self._lock:
-            rows = self._opened().rows
-            repeat = 0
-            while replace(found, repeat=repeat).id in rows:
-                repeat += 1
-            return replace(found, repeat=repeat)
+        return replace(found, repeat=self._first(lambda repeat: replace(found, repeat=repeat).id))
 
     def keep(self, row: EpisodeRow) -> None:
         """Adds a row.
@@ -98,33 +147,53 @@ class PlayedRows:
         Raises:
             UserError: it cannot be written.
         """
-        with self._lock:
-            store = self._opened()
-            store.append(row)
-            replan(self.folder, self._plan_of(store.rows.values()).as_json(), len(store.rows))
+        self._append(row)
 
-    def close(self) -> None:
-        """Lets another process write."""
-        with self._lock:
-            self._ends.close()
-            self._store = None
-
-    def _opened(self) -> Store[EpisodeRow]:
-        if self._store is None:
-            rows = read_rows(self.folder, EpisodeRow)
-            plan = self._plan_of(rows.values()).as_json()
-            self._store = self._ends.enter_context(
-                opened(self.folder, plan, EpisodeRow, planned=len(rows), grows=True)
-            )
-        return self._store
-
-    def _plan_of(self, rows: Iterable[EpisodeRow]) -> Plan:
-        """The smallest plan that has these rows, which are all of it that was meant to be run."""
-        played = list(rows)
+    def plan_of(self, rows: Sequence[EpisodeRow]) -> Json:
+        """See ``PlayedRows.plan_of``."""
         return people_plan(
-            sorted({row.task for row in played}),
-            sorted({row.model for row in played}),
-            sorted({row.seed for row in played}),
-            1 + max((row.repeat for row in played), default=0),
+            sorted({row.task for row in rows}),
+            sorted({row.model for row in rows}),
+            sorted({row.seed for row in rows}),
+            1 + max((row.repeat for row in rows), default=0),
             self._scenario,
-        )
+        ).as_json()
+
+
+class PlayedDrives(PlayedRows[WatchRow]):
+    """Drives."""
+
+    kind = WatchRow
+    parts = ("traces", TIMELINES, "pictures")
+
+    def drive(self, family: str, seed: int, name: str) -> WatchJob:
+        """The next drive of a person.
+
+        Raises:
+            UserError: another process writes here.
+        """
+
+        def at(repeat: int) -> WatchJob:
+            return WatchJob(WatchSetup(family, seed, HUMAN, name, clock=Clock.MODEL, repeat=repeat))
+
+        return at(self._first(lambda repeat: at(repeat).id))
+
+    def keep(self, record: WatchRecord) -> None:
+        """Adds a drive.
+
+        Raises:
+            UserError: it cannot be written.
+        """
+        keep_watch(record, self.folder, record.row.id)
+        self._append(record.row)
+
+    def plan_of(self, rows: Sequence[WatchRow]) -> Json:
+        """See ``PlayedRows.plan_of``."""
+        return WatchPlan(
+            drives=tuple(sorted({row.family for row in rows})),
+            agents=(HUMAN,),
+            models=tuple(sorted({row.model for row in rows})),
+            seeds=tuple(sorted({row.seed for row in rows})),
+            clock=str(Clock.MODEL),
+            repeats=1 + max((row.repeat for row in rows), default=0),
+        ).as_json()

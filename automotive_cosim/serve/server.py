@@ -33,7 +33,7 @@ from automotive_cosim.serve import catalogue
 from automotive_cosim.serve.content import Content
 from automotive_cosim.serve.play import Game
 from automotive_cosim.serve.shelf import NotHereError, Shelf
-from automotive_cosim.serve.study import Study
+from automotive_cosim.serve.study import PeopleStudy
 
 SECURITY = {
     "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; "
@@ -86,7 +86,7 @@ class Visitor(StrEnum):
 class Site:
     """The routes, and what is behind them."""
 
-    def __init__(self, folders: list[Path], game: Game | None = None, study: Study | None = None) -> None:
+    def __init__(self, folders: list[Path], game: Game | None = None, study: PeopleStudy | None = None) -> None:
         """Reads the static files.
 
         Args:
@@ -135,8 +135,15 @@ class Site:
                 ),
                 (rf"/api/runs/{run}{episode}/pictures/(?P<step>\d{{1,6}})", self._picture),
                 (rf"/api/evaluations/{run}", lambda path, _: _json(content.evaluation(path["run"]))),
+                (rf"/api/studies/{run}", lambda path, _: _json(content.decisions(path["run"]))),
+                (
+                    rf"/api/studies/{run}/(?P<decision>[\w.+-]+)",
+                    lambda path, _: _json(content.decision_map(path["run"], path["decision"])),
+                ),
                 (r"/api/tasks", lambda _, __: _json(catalogue.tasks())),
                 (r"/api/tasks/(?P<name>[\w-]+)", lambda path, _: _json(catalogue.task(path["name"]))),
+                (r"/api/tasks/(?P<name>[\w-]+)/reference", lambda path, _: _json(content.reference(path["name"]))),
+                (r"/api/drives", lambda _, __: _json(catalogue.drives())),
                 (r"/api/scenarios", lambda _, __: _json(catalogue.all_scenarios())),
                 (r"/api/scenarios/(?P<name>[\w-]+)/map", _map),
             )
@@ -151,7 +158,8 @@ class Site:
         if path == "/api/about":
             about = {"version": __version__, "plays": self._game is not None, "visitor": visitor}
             return _json(about | {"study": self._study and self._study.name})
-        for pattern, route in (*self._for_everybody, *(self._routes if visitor is Visitor.OWNER else ())):
+        routes: Routes = self._for_everybody + (self._routes if visitor is Visitor.OWNER else [])
+        for pattern, route in routes:
             found = pattern.fullmatch(path)
             if found:
                 try:
@@ -192,13 +200,7 @@ class Site:
             case "leave":
                 game.leave()
             case "start" if is_free:
-                given = {name: asked.get(name, "") for name in ("task", "half", "name")}
-                seed = asked.get("seed", 0)
-                if not all(isinstance(value, str) for value in given.values()) or type(seed) is not int:
-                    raise UserError("task, half and name are texts, and seed is a whole number")
-                if not 0 <= seed < 2**31:
-                    raise UserError(f"seed {seed} is not a whole number from 0 to {2**31 - 1}")
-                game.start(given["task"], given["half"], seed, given["name"], practice=bool(asked.get("practice")))
+                _start(game, asked)
             case "pace" if is_free:
                 speed = asked.get("speed", 1)
                 if not isinstance(speed, (int, float)):
@@ -229,7 +231,7 @@ class Site:
             self._study.close()
 
     @property
-    def _studied(self) -> Study:
+    def _studied(self) -> PeopleStudy:
         if self._study is None:
             raise NotHereError("there is no study here; start `automotive-cosim serve --study FILE`")
         return self._study
@@ -287,7 +289,7 @@ class WebServer(ThreadingHTTPServer):
         host: str = "127.0.0.1",
         port: int = 0,
         game: Game | None = None,
-        study: Study | None = None,
+        study: PeopleStudy | None = None,
     ) -> None:
         """Binds the address.
 
@@ -474,6 +476,20 @@ def _is_address(name: str) -> bool:
     except ValueError:
         return False
     return True
+
+
+def _start(game: Game, asked: Json) -> None:
+    """Begins what is asked for: a drive if one is named, else a task."""
+    given = {name: asked.get(name, "") for name in ("task", "half", "drive", "name")}
+    seed, practice = asked.get("seed", 0), bool(asked.get("practice"))
+    if not all(isinstance(value, str) for value in given.values()) or type(seed) is not int:
+        raise UserError("task, half, drive and name are texts, and seed is a whole number")
+    if not 0 <= seed < 2**31:
+        raise UserError(f"seed {seed} is not a whole number from 0 to {2**31 - 1}")
+    if given["drive"]:
+        game.drive(given["drive"], seed, given["name"], practice=practice)
+    else:
+        game.start(given["task"], given["half"], seed, given["name"], practice=practice)
 
 
 def _number(query: Mapping[str, str]) -> int:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from automotive_cosim.errors import UserError
+from automotive_cosim.run.drive_recorder import SHOWN
 
 DEPTH = 3
 """How deep records are sought below a folder given."""
@@ -27,11 +28,12 @@ class NotHereError(UserError):
 
 @dataclass(frozen=True, slots=True)
 class ShelfEntry:
-    """One recorded episode, or one evaluation."""
+    """One recorded episode, one recorded drive, or one evaluation."""
 
     id: str
     folder: Path
     is_evaluation: bool
+    is_drive: bool = False
 
 
 class Shelf:
@@ -107,13 +109,17 @@ class Shelf:
         Raises:
             NotHereError: there is none.
         """
-        folder = ("screenshots",) if episode is None else ("pictures", episode)
-        kind = "png" if episode is None else "jpg"
+        folder = () if episode is None else ("pictures", episode)
+        if episode is None or entry.folder.joinpath(*folder, SHOWN).is_file():  # a record of its own
+            folder = (*folder, "screenshots")
+        kind = "png" if episode is None and not entry.is_drive else "jpg"
         return self.file(entry, *folder, f"step_{step:03d}.{kind}"), PICTURES[kind]
 
 
 def _seek(folder: Path, depth: int) -> Iterator[ShelfEntry]:
-    if (folder / "steps.jsonl").is_file():
+    if (folder / SHOWN).is_file():
+        yield ShelfEntry(_id(folder), folder, is_evaluation=False, is_drive=True)
+    elif (folder / "steps.jsonl").is_file():
         yield ShelfEntry(_id(folder), folder, is_evaluation=False)
     elif (folder / "manifest.json").is_file() and (folder / "episodes.jsonl").is_file():
         yield ShelfEntry(_id(folder), folder, is_evaluation=True)

@@ -30,7 +30,7 @@ from automotive_cosim.formats.files import parse_json
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.plan import EpisodeJob
 from automotive_cosim.run.store import opened
-from automotive_cosim.serve.dealing import StudyPlan, deal
+from automotive_cosim.serve.dealing import PeoplePlan, deal
 from automotive_cosim.serve.play import Game
 from automotive_cosim.traffic.fork import Simulations
 
@@ -55,10 +55,10 @@ class StudySeat:
     heard_s: float
 
 
-class Study:
+class PeopleStudy:
     """A study under way. Any method may be called from any thread."""
 
-    def __init__(self, plan: StudyPlan, folder: Path) -> None:
+    def __init__(self, plan: PeoplePlan, folder: Path) -> None:
         """Begins it, or goes on with it.
 
         Args:

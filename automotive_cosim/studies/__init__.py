@@ -2,6 +2,7 @@
 
 plan       what a study runs: scenario, departures, seeds, shares, news, policies
 drive      one drive with its decision points, and the branches forked there
+futures    drives what follows from a decision, several futures at the same time
 looks      drives on to the next decision
 whole      whole drives under a policy
 together   many cars take the other way at once
@@ -17,5 +18,7 @@ everyone   how an effect is spread over everyone
 suite      the same study on several networks
 demand     how far the demand is from an equilibrium
 data       every future as a row, as files
+tracks     where the ego was in every future
+decisions  every decision on a page
 tables, effects, context, charts, page    the report
 """

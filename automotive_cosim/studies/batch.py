@@ -18,6 +18,7 @@ from automotive_cosim.studies.plan import DriveJob, StudyPlan
 from automotive_cosim.studies.policies import PolicyRule
 from automotive_cosim.studies.results import choices
 from automotive_cosim.studies.rows import DriveRow
+from automotive_cosim.studies.tracks import TRACKS
 from automotive_cosim.studies.traffic import PULSE_S
 from automotive_cosim.traffic.accounts import Pulse
 from automotive_cosim.traffic.fork import Forked
@@ -83,7 +84,7 @@ def drives() -> Iterator[Runner[DriveJob, DriveRow]]:
     """Makes the runner of the drives in a worker."""
     warm = _Warm()
     try:
-        yield lambda job, folder: warm.run(job)  # only the row of a drive is kept
+        yield warm.run
     finally:
         warm.close()
 
@@ -102,10 +103,10 @@ class _Warm:
         self._now_s = 0.0
         self._pulses: list[Pulse] = []
 
-    def run(self, job: DriveJob) -> DriveRow:
-        """Runs a drive; an error becomes a row too."""
+    def run(self, job: DriveJob, folder: Path) -> DriveRow:
+        """Runs a drive; an error becomes a row too. Besides the row, only tracks are kept, if they are wanted."""
         try:
-            return run_drive(job, *self._at(job))
+            return run_drive(job, *self._at(job), folder / TRACKS if job.plan.trajectories else None)
         except CosimError as error:
             self.close()  # whatever the error was, the next drive begins with fresh traffic
             return failed(job, type(error).__name__, str(error))
@@ -126,7 +127,7 @@ class _Warm:
             self.close()
             scene = job.plan.scene(job.share)
             self._simulation = Forked(scene, job.seed, allow_unprojected=True)
-            self._simulation.watch(consumptions=job.plan.emissions)
+            self._simulation.watch(consumptions=job.plan.emissions, tracks=job.plan.trajectories)
             if job.plan.placebo_every or job.plan.draws.stop:
                 self._simulation.fresh()  # here, so that it does not depend on which departures this worker drives
             self._key, self._now_s, self._pulses = job.simulation, 0.0, []

@@ -93,7 +93,7 @@ def futures(study: Study) -> Iterator[FutureRow]:
     for point in all_decisions(study.rows):
         decision = point.decision
         assert point.drive.stay is not None, "it has a decision"
-        by_branch = _choosers(study.plan.policies, decision)
+        by_branch = choosers(study.plan.policies, decision)
         kept = Branch(gains=NOTHING, totals=point.drive.stay, others=NOBODY)
         driven: list[tuple[int, int | None, Branch, tuple[Branch, ...]]] = [(0, None, kept, decision.branches)]
         driven += [
@@ -217,7 +217,7 @@ def _future(
     )
 
 
-def _choosers(policies: Sequence[str], decision: Decision) -> dict[int | None, str]:
+def choosers(policies: Sequence[str], decision: Decision) -> dict[int | None, str]:
     """The policies that choose each branch."""
     found: dict[int | None, list[str]] = {}
     for text in policies:

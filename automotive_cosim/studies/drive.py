@@ -8,27 +8,30 @@ once more, with random numbers of its own from the decision on.
 
 from __future__ import annotations
 
+import os
+from collections import deque
 from collections.abc import Sequence
 from contextlib import ExitStack, closing
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
 from automotive_cosim.contracts import DrivingState, Reroute, RouteOption
 from automotive_cosim.errors import NoRoomError
 from automotive_cosim.geo.forecast import drawn_weather
-from automotive_cosim.studies.compare import Future
 from automotive_cosim.studies.driver import decided
+from automotive_cosim.studies.futures import Futures, close_all, ended
 from automotive_cosim.studies.looks import drive_on
-from automotive_cosim.studies.plan import AHEAD, DriveJob
-from automotive_cosim.studies.points import Diverted, Drawn, Point, Shut, compared, shows_signs
+from automotive_cosim.studies.plan import DriveJob
+from automotive_cosim.studies.points import Diverted, Point, Shut, compared
 from automotive_cosim.studies.policies import PolicyRule, parse_policy
 from automotive_cosim.studies.rows import Decision, DriveRow, News
+from automotive_cosim.studies.tracks import write_tracks
 from automotive_cosim.studies.whole import whole_drives
 from automotive_cosim.traffic.accounts import Pulse
 from automotive_cosim.traffic.base import EgoPlan
-from automotive_cosim.traffic.chance import SEED_RANGE, Fresh
-from automotive_cosim.traffic.divert import Edges, section
+from automotive_cosim.traffic.divert import section
 from automotive_cosim.traffic.fork import Forked, RemoteTraffic
 
 SAME_PLACE = "start is goal"
@@ -36,6 +39,9 @@ NO_ROOM = "no room to enter"
 NO_CONGESTION = "no congestion met"
 NO_ALTERNATIVE = "no alternative"
 """Reasons to exclude a drive from the averages."""
+
+AT_ONCE = os.cpu_count() or 1
+"""Decisions whose branches are driven while the drive goes on; each takes some 50 MB per branch."""
 
 
 def planned(job: DriveJob) -> DriveRow:
@@ -50,13 +56,14 @@ def planned(job: DriveJob) -> DriveRow:
     )
 
 
-def run_drive(job: DriveJob, simulation: Forked, history: Sequence[Pulse]) -> DriveRow:
+def run_drive(job: DriveJob, simulation: Forked, history: Sequence[Pulse], tracks: Path | None = None) -> DriveRow:
     """Runs a drive, branches at every decision point, and compares the futures.
 
     Args:
         job: the drive to run.
         simulation: its traffic at the ego's departure, watched.
         history: measurements of the traffic so far, ``traffic.PULSE_S`` apart.
+        tracks: folder for the ego's tracks in a simulation that keeps them; None leaves them out.
 
     Raises:
         TrafficError: the simulation failed.
@@ -75,16 +82,20 @@ def run_drive(job: DriveJob, simulation: Forked, history: Sequence[Pulse]) -> Dr
         if job.plan.whole_drives:
             fresh = simulation.fresh() if job.plan.draws.stop else None
             row = replace(row, fresh=fresh, whole=whole_drives(job, traffic, fresh, history))
-        drive = _Drive(job, traffic, simulation)
-        drive.go()
-        if not drive.points:
-            excluded, why = drive.why_not()
-            return replace(row, looks=drive.looks, excluded=excluded, why=why)
-        groups = [point.group for point in drive.points]
-        settled = traffic.settle(groups, job.plan.arrived, job.plan.limit_s)
-        stay = Future(traffic.state, settled)
+        with closing(_Drive(job, traffic, simulation)) as drive:
+            drive.go()
+            if not drive.points:
+                excluded, why = drive.why_not()
+                return replace(row, looks=drive.looks, excluded=excluded, why=why)
+            traffic.begin_settling([point.group for point in drive.points], job.plan.arrived, job.plan.limit_s)
+            drive.wait()
+            stay = ended(traffic)
+    if tracks is not None:
+        write_tracks(tracks, job.id, stay, drive.points)
     decisions = tuple(compared(point, stay, history) for point in drive.points)
-    return replace(row, looks=drive.looks, fresh=drive.fresh or row.fresh, stay=stay.totals(), decisions=decisions)
+    return replace(
+        row, looks=drive.looks, fresh=drive.futures.fresh or row.fresh, stay=stay.totals(), decisions=decisions
+    )
 
 
 def depart(job: DriveJob, simulation: Forked) -> RemoteTraffic:
@@ -113,13 +124,13 @@ class _Drive:
     def __init__(self, job: DriveJob, traffic: RemoteTraffic, simulation: Forked) -> None:
         self.job = job
         self.traffic = traffic
-        self.fresh: Fresh | None = None
-        """How futures got fresh random numbers, once one did."""
-        self._simulation = simulation
+        self.futures = Futures(job, traffic, simulation)
         self.points: list[Point] = []
         self.looks = 0
         """Number of instants with congestion ahead but no alternative route."""
         self._draws = np.random.default_rng([*job.entropy, 1])
+        self._running: deque[tuple[Point, Sequence[RemoteTraffic | None]]] = deque()
+        """Decisions whose branches are still being driven; None stands for the drive itself."""
         self._rules = {parse_policy(text).rule for text in job.plan.policies}
         self._most_delay_s = 0.0
 
@@ -127,6 +138,19 @@ class _Drive:
         """Drives and decides until the drive or its decisions are over."""
         plan = self.job.plan
         self._most_delay_s = drive_on(self.traffic, plan, self._decide, plan.per_drive)
+
+    def wait(self, but: int = 0) -> None:
+        """Waits for the branches of all decisions, or of all but so many."""
+        while len(self._running) > but:
+            point, branches = self._running[0]
+            point.branches = [None if branch is None else ended(branch) for branch in branches]
+            close_all(branches)
+            self._running.popleft()
+
+    def close(self) -> None:
+        """Ends the branches that are still being driven."""
+        while self._running:
+            close_all(self._running.popleft()[1])
 
     def why_not(self) -> tuple[str, str]:
         """The reason why there was no decision at all, with its figures."""
@@ -137,7 +161,7 @@ class _Drive:
 
     def _decide(self, now: DrivingState) -> bool:
         """Runs the branches of a decision; false if there is no decision here."""
-        plan, traffic = self.job.plan, self.traffic
+        plan, traffic, futures = self.job.plan, self.traffic, self.futures
         news = {age_s: traffic.alternatives(age_s) for age_s in plan.ages_s}
         own = traffic.own_choice() if PolicyRule.SUMO in self._rules else now.ahead.route_edges
         ways = _ways(now, news, own)
@@ -149,35 +173,44 @@ class _Drive:
         agents: dict[str, int] = {}
         turned: list[str] = []
         with ExitStack() as stack:
-            begun: list[RemoteTraffic] = []
+            begun: list[RemoteTraffic | None] = []
+            taken = [now.ahead.route_edges]
             for edges in ways:
                 branch = traffic.branch()
                 stack.callback(branch.close)
                 if branch.request(Reroute(edges=edges)).accepted:  # else it is too late to take it
                     numbers[edges] = len(begun)
                     begun.append(branch)
+                    taken.append(edges)
+                else:
+                    branch.close()
             for agent in plan.agents:
                 branch = traffic.branch()
                 stack.callback(branch.close)
                 decided(agent, self.job, branch)
                 agents[agent] = len(begun)
-                begun.append(branch)
+                begun.append(branch if branch.is_steered else None)
+                if not branch.is_steered:
+                    branch.close()
                 edges = branch.state.ahead.route_edges
+                taken.append(edges)
                 if now.ahead.route_edges[-len(edges) :] != edges:
                     turned.append(agent)
             if not begun:
                 self.looks += 1
                 return False
-            replicates = self._replicates(begun, group)
+            replicates = futures.replicates(begun, group)
             offered = next((number for edges, number in numbers.items() if edges == _offered(news)), None)
             diverted: list[Diverted] = []
             shut: list[Shut] = []
-            if offered is not None and not self.points:
+            if offered is not None and (other := begun[offered]) is not None and not self.points:
                 ways_apart = section(now.ahead.route_edges, _offered(news))
                 seeds = [0, *(each.seed for each in replicates[: plan.draws.start])]
-                diverted = self._diverted(begun[offered], ways_apart, seeds, group)
-                shut = self._shut(begun, offered, ways_apart[0], seeds, group)
-            branches = [self._left(branch, group) for branch in begun]
+                diverted = futures.diverted(other, ways_apart, seeds, group)
+                shut = futures.shut(other, offered, ways_apart[0], seeds, group)
+            for other in begun:
+                futures.begin(other, group)
+            stack.pop_all()  # they are driven while the drive goes on
         decision = Decision(
             at_s=now.time_s,
             edge=now.road.edge_id,
@@ -186,15 +219,19 @@ class _Drive:
             relative_speed=round(now.ahead.relative_speed, 3),
             complies=bool(self._draws.random() < plan.compliance),
             news=tuple(self._told(age_s, options, numbers) for age_s, options in news.items()),
+            ways=tuple(taken),
             own=numbers.get(own),
             agents=agents,
             agents_rerouted=tuple(turned),
-            planned_draws=1 + plan.draws.start,
+            planned_draws=1 + plan.draws.start if replicates else 1,
         )
-        point = Point(decision, group, pulse, branches, replicates=replicates, together=diverted, shut=shut)
-        if not self.points and self._has_placebo() and not replicates:
-            point.placebo = self._renewed(traffic, self._seed(1), group)
+        point = Point(decision, group, pulse, replicates=replicates, together=diverted, shut=shut)
+        self._running.append((point, begun))
+        self.wait(but=AT_ONCE)
+        if not self.points and self._has_placebo() and not plan.draws.stop:
+            (point.placebo,) = futures.renewed([traffic], futures.seed(1), group)
         self.points.append(point)
+        futures.decisions += 1
         return True
 
     def _told(self, age_s: float, options: Sequence[RouteOption], numbers: dict[tuple[str, ...], int]) -> News:
@@ -207,67 +244,6 @@ class _Drive:
             offered_s=None if offered is None else round(offered.eta_s, 1),
             branch=None if offered is None else numbers.get(offered.edges),
         )
-
-    def _replicates(self, begun: Sequence[RemoteTraffic], group: Sequence[str]) -> list[Drawn]:
-        """Further draws of keeping the route and of every branch, which are as after their choice."""
-        drawn: list[Drawn] = []
-        fewest, most = self.job.plan.draws.start, self.job.plan.draws.stop
-        while len(drawn) < fewest or (len(drawn) < most and not shows_signs(drawn)):
-            seed = self._seed(len(drawn) + 1)
-            stay, *branches = (self._renewed(traffic, seed, group) for traffic in (self.traffic, *begun))
-            drawn.append(Drawn(seed, stay, branches))
-        return drawn
-
-    def _diverted(
-        self, begun: RemoteTraffic, ways: tuple[Edges, Edges], seeds: Sequence[int], group: Sequence[str]
-    ) -> list[Diverted]:
-        """The futures in which others take the way that the ego has begun, in the scored draws."""
-        found: list[Diverted] = []
-        old, new = ways
-        for share in self.job.plan.together if old else ():
-            for draw, seed in enumerate(seeds):
-                with closing(begun.branch()) as copy:
-                    took, could = copy.divert(old, new, share, self._seed(0))
-                    if draw:
-                        copy.renew(self._simulation.fresh(), seed)
-                    found.append(Diverted(share, draw, self._left(copy, group), took, could))
-        return found
-
-    def _shut(
-        self, begun: Sequence[RemoteTraffic], offered: int, own: Edges, seeds: Sequence[int], group: Sequence[str]
-    ) -> list[Shut]:
-        """The futures of the two ways with a road closed now, in the scored draws."""
-        edge = self.job.plan.close
-        if edge == AHEAD:  # in the middle of the part of its route that the other way does not have
-            edge = own[len(own) // 2] if len(own) > 2 else ""
-        found: list[Shut] = []
-        for draw, seed in enumerate(seeds if edge else ()):
-            futures = []
-            for traffic in (self.traffic, begun[offered]):
-                with closing(traffic.branch()) as copy:
-                    copy.shut(edge)
-                    if draw:
-                        copy.renew(self._simulation.fresh(), seed)
-                    futures.append(self._left(copy, group))
-            found.append(Shut(edge, draw, offered, *futures))
-        return found
-
-    def _renewed(self, traffic: RemoteTraffic, seed: int, group: Sequence[str]) -> Future:
-        """The future of a copy with fresh random numbers."""
-        self.fresh = self._simulation.fresh()
-        with closing(traffic.branch()) as copy:
-            copy.renew(self.fresh, seed)
-            return self._left(copy, group)
-
-    def _seed(self, draw: int) -> int:
-        """The seed of a draw of the decision at hand."""
-        entropy = (*self.job.entropy, 4, len(self.points), draw)
-        return int(np.random.default_rng(entropy).integers(SEED_RANGE))
-
-    def _left(self, branch: RemoteTraffic, group: Sequence[str]) -> Future:
-        """Drives it to its end."""
-        settled = branch.settle([group], self.job.plan.arrived, self.job.plan.limit_s)
-        return Future(branch.state, settled)
 
     def _has_placebo(self) -> bool:
         """Drawn randomly, so that it does not depend on the results of other drives."""

@@ -1,4 +1,4 @@
-"""``report.html``: a study on one self-contained page, and its tables, plots and data as files."""
+"""``report.html``: a study on one self-contained page, and its decisions, tables, plots and data as files."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from automotive_cosim.run.store import cannot_write
 from automotive_cosim.studies.charts import charts
 from automotive_cosim.studies.context import context
 from automotive_cosim.studies.data import write_data
+from automotive_cosim.studies.decisions import write_decisions
 from automotive_cosim.studies.demand import demand_table, read_demand
 from automotive_cosim.studies.effects import effects
 from automotive_cosim.studies.intervals import LEAST_SEEDS, PUBLISHED_SEEDS
@@ -23,7 +24,7 @@ from automotive_cosim.traffic.chance import Fresh
 
 
 def write_study(folder: Path) -> Path:
-    """Writes ``report.html``, the data, ``tables/`` and ``plots/`` into a study's folder; returns the page.
+    """Writes all of a study's pages, data, ``tables/`` and ``plots/`` into its folder; returns ``report.html``.
 
     Raises:
         UserError: the folder is not a study's, has no decision that counts, or cannot be written.
@@ -46,6 +47,7 @@ def write_study(folder: Path) -> Path:
         for name, (_, wide, _) in plots.items():
             write_whole(folder / "plots" / f"{name}.svg", wide.replace("currentColor", INK))
         write_data(study)
+        write_decisions(study)
         page = folder / "report.html"
         text = render(
             "studies/study.html",

@@ -100,6 +100,8 @@ class StudyPlan:
     """Whether to measure what every vehicle emits and consumes."""
     ego_class: str = ""
     """SUMO's emission class of the ego; empty takes SUMO's for passenger cars."""
+    trajectories: bool = False
+    """Whether to keep where the ego was in every future."""
     agent_steps: Annotated[int, Ge(1), Le(100)] = 12
     """Maximum number of an agent's actions per decision."""
 

@@ -30,7 +30,8 @@ class Point:
     group: tuple[str, ...]
     """The other vehicles that were there."""
     pulse: Pulse
-    branches: list[Future]
+    branches: list[Future | None] = field(default_factory=list)
+    """The future of each branch; None if nothing in it differs from the drive itself."""
     placebo: Future | None = None
     replicates: list[Drawn] = field(default_factory=list)
     together: list[Diverted] = field(default_factory=list)
@@ -82,7 +83,8 @@ def compared(point: Point, stay: Future, history: Sequence[Pulse]) -> Decision:
         stay: the drive itself, in which the ego keeps its route.
         history: measurements of the traffic up to the ego's departure.
     """
-    drawn = [Drawn(0, stay, point.branches), *point.replicates]
+    branches = [stay if branch is None else branch for branch in point.branches]
+    drawn = [Drawn(0, stay, branches), *point.replicates]
     scored = drawn[: point.decision.planned_draws or len(drawn)]
     pairs = [(each.stay, branch) for each in drawn for branch in each.branches]
     pairs += [(stay, point.placebo)] if point.placebo else []
@@ -92,7 +94,7 @@ def compared(point: Point, stay: Future, history: Sequence[Pulse]) -> Decision:
         point.decision,
         excluded=excluded,
         why=why,
-        branches=tuple(branched(stay, branch, point.group) for branch in point.branches),
+        branches=tuple(branched(stay, branch, point.group) for branch in branches),
         placebo=None if point.placebo is None else branched(stay, point.placebo, point.group),
         replicates=tuple(
             Replicate(
@@ -104,7 +106,7 @@ def compared(point: Point, stay: Future, history: Sequence[Pulse]) -> Decision:
         ),
         spreads=tuple(
             spread([(each.stay, each.branches[number]) for each in scored], point.group, point.decision.at_s)
-            for number in range(len(point.branches))
+            for number in range(len(branches))
         ),
         traffic=point.pulse,
         together=tuple(_together(each, drawn[each.draw].stay, point, pulses) for each in point.together),

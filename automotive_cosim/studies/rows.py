@@ -222,6 +222,8 @@ class Decision:
     complies: bool
     """Whether the driver follows the advice."""
     news: tuple[News, ...]
+    ways: tuple[tuple[str, ...], ...] = ()
+    """Edges from here to the destination: of the present route, then of each branch; empty in older rows."""
     own: int | None
     """Branch that SUMO's rerouting device takes; None if it keeps the route."""
     agents: Mapping[str, int]

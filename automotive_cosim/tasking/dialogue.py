@@ -17,7 +17,7 @@ from typing import Any
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.tasking.triggers import TriggerCondition
 
-NEUTRAL = "I don't know. Do as you think best."
+NEUTRAL = "You know as much as I do. Do as you think best."
 """The answer to a question that the task has no topic for."""
 ROUNDING_S = 1e-9
 """Tolerance of sums of simulated seconds."""

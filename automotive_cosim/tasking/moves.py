@@ -16,10 +16,10 @@ class Open:
 
 @dataclass(frozen=True, slots=True)
 class Tap:
-    """Taps an element, scrolling to it if necessary: the one with this resource id, the first clickable one with
+    """Taps an element, scrolling to it if necessary: the one of this widget's key, the first clickable one with
     this text, or the one with both."""
 
-    resource_id: str = ""
+    key: str = ""
     times: int = 1
     text: str = ""
     """Its text, the first line of it, or its description."""
@@ -29,9 +29,9 @@ class Tap:
 class TapUntil:
     """Taps an element until another one has this text, as one presses plus until the number is right."""
 
-    resource_id: str
+    key: str
     shown: str
-    """Resource id of the element that shows the value."""
+    """Key of the widget that shows the value."""
     text: str
     at_most: int = 40
 
@@ -40,7 +40,7 @@ class TapUntil:
 class Slide:
     """Taps a slider at the position of a value."""
 
-    resource_id: str
+    key: str
     value: float
     low: float = 0.0
     high: float = 100.0
@@ -50,7 +50,7 @@ class Slide:
 class TypeText:
     """Types into a text field."""
 
-    resource_id: str
+    key: str
     text: str
     enter: bool = False
     """Whether to press enter afterwards."""

@@ -27,6 +27,9 @@ from automotive_cosim.tasking.parameters import Choices, names
 from automotive_cosim.tasking.speech import Speech
 from automotive_cosim.tasking.triggers import Trigger
 
+NEEDS_PICTURE = "picture"
+"""The tag of tasks in which something needed is in the picture alone: the list of elements does not tell it."""
+
 
 class Module(StrEnum):
     """The eight modules of the cockpit (paper, figure of task distributions)."""
@@ -283,6 +286,11 @@ class Task:
         """Number of actions of the reference solution, declaration included; scrolling may add some."""
         taps = (move.times if isinstance(move, Tap) else 1 for move in self.first.moves)
         return 1 + sum(times if isinstance(times, int) else 1 for times in taps)  # a parameter counts once
+
+    @property
+    def needs_picture(self) -> bool:
+        """Whether something needed is in the picture alone."""
+        return NEEDS_PICTURE in self.tags
 
     @property
     def is_safety(self) -> bool:

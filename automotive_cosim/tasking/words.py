@@ -61,14 +61,14 @@ def _move(move: object) -> str:
     match move:
         case Open(name):
             return f"open {name}"
-        case Tap(resource_id, times, text):
-            return f"tap {resource_id or repr(text)}" + (f" x{times}" if times != 1 else "")
-        case TapUntil(resource_id, shown, text):
-            return f"tap {resource_id} until {shown} reads {text!r}"
-        case Slide(resource_id, value):
-            return f"slide {resource_id} to {value}"
-        case TypeText(resource_id, text):
-            return f"type {text!r} into {resource_id}"
+        case Tap(key, times, text):
+            return f"tap {key or repr(text)}" + (f" x{times}" if times != 1 else "")
+        case TapUntil(key, shown, text):
+            return f"tap {key} until {shown} reads {text!r}"
+        case Slide(key, value):
+            return f"slide {key} to {value}"
+        case TypeText(key, text):
+            return f"type {text!r} into {key}"
         case Warn(kind):
             return f"alert {kind}"
         case Consult(text):

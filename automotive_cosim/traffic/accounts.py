@@ -60,6 +60,10 @@ class Consumption:
     """Sound energy at the vehicle by Harmonoise, as seconds of ``LOUD_DB``: levels do not add up, energies do."""
 
 
+TrackPoint = tuple[float, float, float, float, str]
+"""Time in s, x and y in m, speed in m/s, and the edge, of one step of the ego."""
+
+
 @dataclass(frozen=True, slots=True)
 class Settled:
     """How a future ended."""
@@ -74,3 +78,5 @@ class Settled:
     pulse: Pulse
     consumptions: dict[str, Consumption] = field(default_factory=dict)
     """Of each awaited vehicle and the ego, if the ledger keeps them."""
+    track: tuple[TrackPoint, ...] = ()
+    """Where the ego was after every step since its departure, if the ledger keeps it."""

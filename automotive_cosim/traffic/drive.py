@@ -51,23 +51,29 @@ class EgoDrive:
         """The newest state."""
         return self._now.state
 
+    @property
+    def has_ended(self) -> bool:
+        """Whether the ego has arrived or is no longer on the road."""
+        return self._now.end is not None
+
     def advance(self, duration_s: float, beat: Callable[[], None] | None = None) -> Advance:
         """See ``Traffic.advance``; ``beat`` is called after every step."""
-        road, driver = self._road, self._driver
         passed: list[Instant] = []
         events: list[Event] = []
-        for _ in range(round(duration_s / road.step_s)):
+        for _ in range(round(duration_s / self._road.step_s)):
             if self._now.end is not None:
                 break
-            self._now, happened = road.step(hazard_lights=driver.hazard_lights)
-            now = self._now
-            passed.append(now)
-            events += happened
-            if now.end is None:
-                events += driver.tick(now)
+            events += self.step()
+            passed.append(self._now)
             if beat is not None:
                 beat()
         return Advance(tuple(instant.state for instant in passed), tuple(events))
+
+    def step(self) -> tuple[Event, ...]:
+        """One step of a drive that has not ended; what happened in it."""
+        driver = self._driver
+        self._now, events = self._road.step(hazard_lights=driver.hazard_lights)
+        return events if self.has_ended else events + driver.tick(self._now)
 
     def request(self, request: RoadRequest) -> Answer:
         """See ``Traffic.request``."""

@@ -234,11 +234,13 @@ class Driver:
                 return self._hear(request, state, "the driver hears it")
             case SlowDown(speed_kmh):
                 why_not = _too_slow(speed_kmh, state)
-                return Answer(False, why_not) if why_not else self._hear(request, state, "the driver is asked to")
+                if why_not:
+                    return Answer(False, why_not)
+                return self._hear(request, state, "the driver is asked to slow down")
             case PullOver():
                 if state.road.in_tunnel:
                     return Answer(False, "stopping in a tunnel is dangerous; ask again after it")
-                return self._hear(request, state, "the driver is asked to")
+                return self._hear(request, state, "the driver is asked to pull over")
             case Cruise(speed_kmh):
                 return self._cruise(speed_kmh, state)
             case Hazards(on):

@@ -20,6 +20,7 @@ from typing import Any
 from automotive_cosim.contracts import (
     Answer,
     DrivingState,
+    Reroute,
     RoadNetwork,
     RoadRequest,
     RoadShapes,
@@ -36,6 +37,7 @@ from automotive_cosim.traffic.drive import Call
 from automotive_cosim.traffic.options import Setup
 from automotive_cosim.traffic.profiles import profile
 from automotive_cosim.traffic.remote import TIMEOUT_S, RemoteProcess
+from automotive_cosim.traffic.steering import KEEPS_ROUTE
 from automotive_cosim.traffic.wire import Packed, pack_state, unpack_advance, unpack_snapshot, unpack_state
 
 CAN_FORK = sys.platform == "linux"
@@ -92,18 +94,19 @@ class Forked:
             raise TrafficError("the simulation is closed")
         return self._source.departed(plan)
 
-    def watch(self, *, consumptions: bool = False) -> None:
+    def watch(self, *, consumptions: bool = False, tracks: bool = False) -> None:
         """Makes this traffic and every drive that departs from it keep a ledger, which studies read.
 
         Args:
             consumptions: also of what every vehicle emits and consumes.
+            tracks: also of where the ego is.
 
         Raises:
             SetupError: the platform cannot fork.
         """
         if self._source.by_replay:
             raise SetupError("studies branch a running simulation, which requires fork: use Linux")
-        self._source.warm_call("watch", consumptions)
+        self._source.warm_call("watch", consumptions, tracks)
 
     def run_on(self, duration_s: float) -> Pulse:
         """Lets the watched traffic run, so that later drives depart later; returns its state.
@@ -146,6 +149,9 @@ class RemoteTraffic:
         self._calls = list(calls)
         self._state = unpack_state(state)
         self._started_s: float | None = None
+        self.is_steered = False
+        """Whether a request since this copy was made has changed anything in the simulation."""
+        self._is_settling = False
 
     @property
     def network(self) -> RoadNetwork:
@@ -182,6 +188,8 @@ class RemoteTraffic:
     def request(self, request: RoadRequest) -> Answer:
         """See ``Traffic.request``."""
         answer: Answer = self._process.call("request", request)
+        kept = not answer.accepted or answer.reason == KEEPS_ROUTE
+        self.is_steered = self.is_steered or not (isinstance(request, Reroute) and kept)
         self._remember(request)
         return answer
 
@@ -228,8 +236,10 @@ class RemoteTraffic:
         """
         self._process.call("shut", edge)
 
-    def settle(self, groups: Sequence[Sequence[str]], share: float, limit_s: float) -> Settled:
-        """Runs a watched simulation until the ego's drive has ended and a share of each group has arrived.
+    def begin_settling(self, groups: Sequence[Sequence[str]], share: float, limit_s: float) -> None:
+        """Lets a watched simulation run until the ego's drive has ended and a share of each group has arrived.
+
+        From then on it reads nothing but the drive, so its state knows of no other vehicles, signals or delays.
 
         Args:
             groups: ids of vehicles, from ``others``.
@@ -237,12 +247,31 @@ class RemoteTraffic:
             limit_s: limit of simulated seconds.
 
         Raises:
+            TrafficError: it died.
+        """
+        self._process.send("settle", groups, share, limit_s)
+        self._is_settling = True
+
+    def settled(self) -> Settled:
+        """Waits for the end of what ``begin_settling`` began.
+
+        Raises:
             TrafficError: SUMO stopped at an error, died or hung.
         """
-        state, settled = self._process.call("settle", groups, share, limit_s)
+        state, settled = self._process.receive()
+        self._is_settling = False
         self._state = unpack_state(state)
         outcome: Settled = settled
         return outcome
+
+    def bare_steps(self, count: int) -> None:
+        """Steps of SUMO without reading anything, for benchmarks; the state stays what it was."""
+        self._process.call("bare_steps", count)
+
+    def settle(self, groups: Sequence[Sequence[str]], share: float, limit_s: float) -> Settled:
+        """Both of these, one after the other."""
+        self.begin_settling(groups, share, limit_s)
+        return self.settled()
 
     def branch(self) -> RemoteTraffic:
         """An exact copy that is independent from this instant, even if this one is closed."""
@@ -251,7 +280,9 @@ class RemoteTraffic:
         return self._source.branched(self._process, self._plan, self._state)
 
     def close(self) -> None:
-        """See ``Traffic.close``."""
+        """See ``Traffic.close``; what it is settling is not waited for."""
+        if self._is_settling:
+            self._process.kill()
         self._process.close()
 
     def _remember(self, call: Call) -> None:

@@ -8,7 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 
-from automotive_cosim.traffic.accounts import HALTED_MPS, LOUD_DB, STUCK_S, Account, Consumption, Pulse, Settled
+from automotive_cosim.traffic.accounts import (
+    HALTED_MPS,
+    LOUD_DB,
+    STUCK_S,
+    Account,
+    Consumption,
+    Pulse,
+    Settled,
+    TrackPoint,
+)
 from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.sumo import EGO, LibSumo
 from automotive_cosim.traffic.world import World
@@ -17,19 +26,21 @@ from automotive_cosim.traffic.world import World
 class Ledger:
     """Records each step; a fork has its own copy."""
 
-    def __init__(self, sumo: LibSumo, step_s: float, *, consumptions: bool = False) -> None:
+    def __init__(self, sumo: LibSumo, step_s: float, *, consumptions: bool = False, tracks: bool = False) -> None:
         """Opens the ledger.
 
         Args:
             sumo: the running simulation.
             step_s: its step length.
             consumptions: also what every vehicle emits and consumes, which costs about a third of SUMO's own step.
+            tracks: also where the ego is.
         """
         self._sumo = sumo
         self._step_s = step_s
         self._consumed: dict[str, list[float]] | None = {} if consumptions else None
         """CO2, NOx and fuel in mg, energy in Wh and noise in seconds of ``LOUD_DB`` of each vehicle so far."""
         self._classes: dict[str, str] = {}
+        self._track: list[TrackPoint] | None = [] if tracks else None
         self._departed = self._teleported = 0
         self.arrivals_s: dict[str, float] = {}
         """Time at which each vehicle left the road."""
@@ -41,8 +52,9 @@ class Ledger:
     def note(self) -> None:
         """Records the step that has just been made."""
         sumo, now_s = self._sumo, self._sumo.time()
-        departed, self.arrived = sumo.departed(), sumo.arrived()
-        teleporting = sumo.teleporting()
+        departed = sumo.departed() if sumo.departed_count() else ()
+        self.arrived = sumo.arrived() if sumo.arrived_count() else ()
+        teleporting = sumo.teleporting() if sumo.teleporting_count() else ()
         self._departed += len(departed)
         self._teleported += len(teleporting)
         self.arrivals_s.update(dict.fromkeys(self.arrived, now_s))
@@ -92,6 +104,16 @@ class Ledger:
             before.energy_wh + vehicle.getElectricityConsumption(EGO) * step_s,
         )
         self._ego_is_halted = halted
+        if self._track is not None:
+            sumo = self._sumo
+            x_m, y_m = sumo.position(EGO)
+            point = sumo.time(), round(x_m, 2), round(y_m, 2), round(sumo.speed(EGO), 2), sumo.edge_of(EGO)
+            self._track.append(point)
+
+    @property
+    def track(self) -> tuple[TrackPoint, ...]:
+        """Where the ego was after every step; empty if that is not recorded."""
+        return tuple(self._track or ())
 
     def account(self) -> Account:
         """Figures of the ego's drive, up to now or to its end."""
@@ -145,25 +167,25 @@ def settle(
     most = [(1 - share) * len(group) + 1e-9 for group in groups]
 
     def is_complete() -> bool:
-        return drive.state.end is not None and all(
-            len(each) <= limit for each, limit in zip(left, most, strict=True)
-        )
+        return drive.has_ended and all(len(each) <= limit for each, limit in zip(left, most, strict=True))
 
+    world.look_away()
     for _ in range(round(limit_s / world.step_s)):
         if is_complete():
             break
-        if drive.state.end is None:
-            drive.advance(world.step_s, after_step)
-        else:
+        if drive.has_ended:
             world.step()
-            after_step()
-        for each in left:
+        else:
+            drive.step()
+        after_step()
+        for each in left if ledger.arrived else ():
             each.difference_update(ledger.arrived)
     everybody = {vehicle for group in groups for vehicle in group}
     arrivals_s = {vehicle: at_s for vehicle, at_s in ledger.arrivals_s.items() if vehicle in everybody}
     pulse = ledger.pulse()
     consumptions = ledger.consumptions([EGO, *everybody])
-    return Settled(pulse.time_s, is_complete(), arrivals_s, ledger.account(), pulse, consumptions)
+    account = ledger.account()
+    return Settled(pulse.time_s, is_complete(), arrivals_s, account, pulse, consumptions, ledger.track)
 
 
 def own_choice(sumo: LibSumo) -> tuple[str, ...]:

@@ -42,6 +42,9 @@ if sys.platform != "win32":
 BEAT_S = 1.0
 """Wall time between two signs of life during a long call."""
 
+SETTLING_BEAT_S = 5.0
+"""The same while a future is settled: nobody may read for minutes, and a full socket would hold it up."""
+
 DESCRIPTORS = Path("/proc/self/fd")
 
 
@@ -61,6 +64,7 @@ class Server:
         self._drive: EgoDrive | None = None
         self._ledger: Ledger | None = None
         self._last_beat_s = 0.0
+        self._beat_s = BEAT_S
 
     def run(self) -> None:
         """Serves until the connection closes."""
@@ -156,10 +160,10 @@ class Server:
 
     # --- calls of studies ---------------------------------------------------------------------------------
 
-    def do_watch(self, consumptions: bool) -> None:
+    def do_watch(self, consumptions: bool, tracks: bool) -> None:
         """Records every step from now on in a ledger, which forks copy."""
         assert self._world is not None
-        self._ledger = Ledger(load_library(), self._world.step_s, consumptions=consumptions)
+        self._ledger = Ledger(load_library(), self._world.step_s, consumptions=consumptions, tracks=tracks)
 
     def do_run_on(self, duration_s: float) -> Pulse:
         """Lets the traffic run without an ego."""
@@ -180,6 +184,7 @@ class Server:
         assert self._world is not None
         assert self._drive is not None
         assert self._ledger is not None
+        self._beat_s = SETTLING_BEAT_S
         outcome = settle(self._world, self._drive, self._ledger, groups, share, limit_s, self._after_step)
         return pack_state(self._drive.state), outcome
 
@@ -199,6 +204,13 @@ class Server:
         """Closes a road in this copy."""
         assert self._world is not None
         self._world.shut(edge)
+
+    def do_bare_steps(self, count: int) -> None:
+        """Steps of SUMO only."""
+        assert self._world is not None
+        for _ in range(count):
+            self._world.bare_step()
+            self._beat()
 
     def do_prove_fresh(self, seed: int) -> Trial:
         """What a seed makes of this traffic; this process cannot be used for anything else afterwards."""
@@ -220,7 +232,7 @@ class Server:
 
     def _beat(self) -> None:
         now_s = time.monotonic()
-        if now_s - self._last_beat_s >= BEAT_S:
+        if now_s - self._last_beat_s >= self._beat_s:
             self._last_beat_s = now_s
             self._set_alarm()
             self._channel.send(("beat", None))

@@ -157,7 +157,7 @@ class RemoteProcess:
                 f"the simulation (process {self.pid}) hung: no sign of life for {limit_s:g} s; it was ended"
             )
         except BaseException:
-            self._kill()
+            self.kill()
             self._broken = "the simulation was interrupted"
             raise
         if outcome == "error":
@@ -177,15 +177,16 @@ class RemoteProcess:
             except ClosedError:
                 pass
             except TimeoutError:
-                self._kill()
+                self.kill()
         self._end()
 
     def _give_up(self, why: str) -> NoReturn:
-        self._kill()
+        self.kill()
         self._broken = why
         raise TrafficError(why) from None
 
-    def _kill(self) -> None:
+    def kill(self) -> None:
+        """Ends the process at once."""
         if self._popen is not None:
             self._popen.kill()
         elif self.pid and sys.platform != "win32":

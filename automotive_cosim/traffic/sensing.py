@@ -64,6 +64,8 @@ class Sensor:
         """Along the route, from its start."""
         self._edge: Edge = network.edges[sumo.edge_of(ego_id)]
         self._min_gap_m = sumo.min_gap(ego_id)
+        self.looks_around = True
+        """Whether to look for signals, other vehicles and the traffic ahead; without it, only the drive is read."""
         self._look_steps = max(1, round(LOOK_S / step_s))
         self._steps = 0
         self._lanes: dict[str, Lane] = {}
@@ -72,12 +74,15 @@ class Sensor:
         self._oncoming_id = ""
         self._follower_id = ""
         self._follower_min_gap_m = 0.0
+        self.route: Route
         self.refresh()
 
     def refresh(self) -> None:
         """Updates the route, or congestion and incidents."""
-        self.route = Route(self._sumo.route(self._ego), self._network, self._congestion, self._incidents())
         self._lanes.clear()
+        edges = self._sumo.route(self._ego)
+        if self.looks_around or tuple(edges) != self.route.edge_ids:
+            self.route = Route(edges, self._network, self._congestion, self._incidents())
         self._steps = 0
 
     def read(self, *, hazard_lights: bool, vehicle_count: int) -> Seen:
@@ -102,10 +107,17 @@ class Sensor:
             lane = self._lanes[lane_id] = self._read_lane(lane_id)
         is_looking = self._steps % self._look_steps == 0
         self._steps += 1
-        if is_looking or (self._light and self._light[2] <= self.position_m):
-            self._look_for_light()
-        if is_looking:
-            self._oncoming_id = self._look_for_oncoming(index)
+        light = leader = follower = oncoming = emergency = None
+        if self.looks_around:
+            if is_looking or (self._light and self._light[2] <= self.position_m):
+                self._look_for_light()
+            if is_looking:
+                self._oncoming_id = self._look_for_oncoming(index)
+            light, leader, follower = self._next_light(), self._leader(speed_mps), self._follower(speed_mps)
+            if self._oncoming_id:
+                oncoming = self._oncoming(index, x_m, y_m, heading_deg, speed_mps)
+            if self._emergency:
+                emergency = self._emergency_behind(x_m, y_m, heading_deg, speed_mps)
         return Seen(
             sumo.time(),
             speed_mps,
@@ -123,11 +135,11 @@ class Sensor:
             self.route,
             index,
             self.position_m,
-            self._next_light(),
-            self._leader(speed_mps),
-            self._follower(speed_mps),
-            self._oncoming(index, x_m, y_m, heading_deg, speed_mps) if self._oncoming_id else None,
-            self._emergency_behind(x_m, y_m, heading_deg, speed_mps) if self._emergency else None,
+            light,
+            leader,
+            follower,
+            oncoming,
+            emergency,
             hazard_lights,
             vehicle_count,
             self._lon_lat,

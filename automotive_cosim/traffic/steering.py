@@ -41,6 +41,9 @@ STREET_CANDIDATES = 8
 WALK_M = 400.0
 """Acceptable walk from the car: five minutes at 1.35 m/s."""
 
+KEEPS_ROUTE = "this is the quickest route"
+"""Answer to a request for the quickest route which changes nothing, not even in SUMO."""
+
 
 class SumoPedals:
     """Implements ``ego.Pedals``."""
@@ -162,7 +165,7 @@ class SumoPedals:
             raise RefusedError("inside a junction the route is fixed; ask again after it")
         edges = self._given(request.edges) if request.edges else self._found(request.destination, state)
         if request == Reroute() and edges == self._rest():
-            return "this is the quickest route"
+            return KEEPS_ROUTE
         try:
             self._sumo.set_route(self._ego, edges)
         except self._sumo.refusals as error:

@@ -86,6 +86,8 @@ class World:
         self.arrived: Sequence[str] = ()
         """Vehicles that left in the last step."""
         self._sample_steps = max(1, round(SAMPLE_PERIOD_S / self.step_s))
+        self._sensor: Sensor | None = None
+        self._is_watched = True
 
     def warm_up(self, progress: WarmUpProgress | None) -> None:
         """Lets the traffic run before the ego departs.
@@ -143,6 +145,7 @@ class World:
         sensor = Sensor(
             self._sumo, EGO, self.network, self.congestion, self._reported, self._emergency, self.step_s
         )
+        self._sensor = sensor
         self._situations.set_off(plan, sensor, self._sumo.time())
         self._has_incidents = self._has_incidents or bool(plan.incidents)
         if self._situations.take_changes():
@@ -162,6 +165,12 @@ class World:
         except self._sumo.refusals as error:
             raise TrafficError(f"SUMO stopped at {self._sumo.time():g} s: {error}") from error
         return self._notice(sampling=True)
+
+    def look_away(self) -> None:
+        """From here on nobody asks what is around the ego or how dense the traffic is: only the drive counts."""
+        self._is_watched = False
+        if self._sensor is not None:
+            self._sensor.looks_around = False
 
     def bare_step(self) -> None:
         """One step of SUMO only."""
@@ -203,7 +212,7 @@ class World:
             self._emergency.difference_update(arrived, sumo.teleporting())
         self._steps += 1
         is_due = sampling and self._steps % self._sample_steps == 0
-        if is_due:
+        if is_due and self._is_watched:
             self.congestion.sample()
         if self._has_incidents and self._steps % self._second_steps == 0:
             self.happened = self._situations.tick(now_s)
@@ -297,7 +306,9 @@ class EgoRoad:
                 end = EgoEnd.REMOVED
             else:
                 self.now = now
-                return now, events + self._conflicts.look(now) if self._steps % self._look_steps == 0 else events
+                if self._sensor.looks_around and self._steps % self._look_steps == 0:
+                    events += self._conflicts.look(now)
+                return now, events
         self.now = KnownInstant(replace(self.now.state, time_s=self._sumo.time(), end=end))
         return self.now, events
 

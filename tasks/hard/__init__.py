@@ -3,15 +3,29 @@
 from automotive_cosim.tasks.hard import (
     aboard,
     carried,
+    decided,
     dialogue,
     errands,
     interrupted,
     over_time,
+    pictured,
     prepared,
     several,
     side_effects,
 )
 
-_MODULES = (carried, prepared, interrupted, side_effects, over_time, several, dialogue, errands, aboard)
+_MODULES = (
+    carried,
+    prepared,
+    interrupted,
+    side_effects,
+    over_time,
+    several,
+    dialogue,
+    errands,
+    aboard,
+    pictured,
+    decided,
+)
 TASKS = tuple(task for module in _MODULES for task in module.TASKS)
 """All of them."""

@@ -357,7 +357,7 @@ PSI_FOR_THE_GARAGE = hard(
         "Malik, at the garage, wants the psi of the low tyre. Send him the figure; I still want to see bar"
         " afterwards.",
         "Which tyre is it, and how many psi? Malik needs the number by message. Units on my screen as they are.",
-        "Write Malik the low tyre's value in pounds per square inch. Keep bar for me in the end.",
+        "Write Malik the low tyre's value in pounds per square inch, but leave me with bar in the end.",
     ),
     done(
         with_papers(replace(PARKED, signals={TYRE.REAR_RIGHT.path: param("psi", SOFT)}), contacts=knowing(MALIK)),

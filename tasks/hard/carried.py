@@ -161,7 +161,8 @@ TRAILER_LIMIT = hard(
         "Theo wrote how fast his trailer may go. Set the limiter to the highest step that isn't above it, and on.",
         "I've hitched Theo's trailer: limiter on, as close to what he allows as it goes without exceeding it.",
         "Read what top speed Theo gives for his trailer and have the limiter keep me just below that.",
-        "The trailer is Theo's and so is the speed for it, look in his message. Limiter to that, rounded down.",
+        "That trailer belongs to Theo, and he texted how fast it may go. Limiter on at that speed,"
+        " rounded down to a step.",
     ),
     done(
         with_letter(
@@ -241,8 +242,8 @@ CHARGE_FOR_THE_LAKE = hard(
         " up to fives; done one hour ahead of the ferry in the calendar.",
         "We're off to the lake and home again, distance in the memos: I want 15 percent in hand at the end. Limit"
         " to the five above. It has to be full an hour earlier than the ferry.",
-        "Work out the charge for the lake, both directions, plus a reserve of 15 percent, rounded up to the next"
-        " five. Ready time: ferry minus an hour.",
+        "Work out what the lake trip takes both ways, add 15 percent in reserve, round up to a"
+        " multiple of five and make that the charge limit. It has to be done an hour before the ferry.",
     ),
     done(
         _lake(param("km", {km: f"The lake is {km} km away" for km in LAKE})),
@@ -401,7 +402,7 @@ FITTING_MOVED = hard(
         "Wanda has another time for the fitting. Put my calendar right and tell her yes.",
         "Change the appointment with Wanda to what she proposes in her message, then answer Yes.",
         "Wanda's asking to move something; correct the entry that she means and confirm with a yes.",
-        "Read Wanda's text, shift that date of ours accordingly in the diary, reply that it's fine: Yes.",
+        "Read Wanda's text, move our appointment in the diary accordingly and reply that it's fine: Yes.",
     ),
     done(
         with_letter(PARKED, WANDA, "About the dress:", "can we make it {time} today?", agenda=FITTINGS),
@@ -541,8 +542,8 @@ MIRRORS_FROM_MEMO = hard(
         "I wrote down my mirror positions, first across, then height. Restore those after the car wash's"
         " doing, then"
         " in with the two of them.",
-        "Mirrors are off! Look up what I noted, pan before tilt, mine and the other, adjust them to that and fold"
-        " them.",
+        "My mirrors are off! Look up what I noted, pan before tilt, for mine and the other one,"
+        " adjust them to that and fold them.",
     ),
     done(
         with_papers(replace(PARKED, signals=MOVED_MIRRORS), memos=(param("pan", MIRROR_MEMO), "Dentist on Friday")),

@@ -57,13 +57,13 @@ AIR_BACK = (
 )
 LIGHT = (
     Open("vehicle"),
-    Tap("vehicle.tab.mirrors"),
+    Tap("vehicle.tab.interior"),
     Slide("light.ambient", param("percent")),
     Tap("light.passenger_reading"),
 )
 LIGHT_BACK = (
     Open("vehicle"),
-    Tap("vehicle.tab.mirrors"),
+    Tap("vehicle.tab.interior"),
     Slide("light.ambient", 30.0),
     Tap("light.passenger_reading"),
 )
@@ -99,8 +99,8 @@ A_PART_BACK = hard(
         " 40.",
         "Cooler, 19 for all with the fan on {percent}. Then light: {percent} along the doors plus the passenger's"
         " lamp. And the stereo down to 40.",
-        "I'd like 19 with {percent} of fan, after that {percent} of glow and the lamp on the passenger's side, in"
-        " the end 40 on the sound.",
+        "I'd like 19 with the fan at {percent}, after that {percent} of mood lighting and the lamp on"
+        " the passenger's side, and finally 40 on the sound.",
     ),
     speaking(
         done(
@@ -162,8 +162,8 @@ WHOSE_LANGUAGE = hard(
         "Tune the sound to my ears: {percent} for voice and phone, plus {bass} bass, plus 3 treble, 20 right.",
         "Set what I hear: directions at {percent}, calls too, bass {bass} up, treble 3 up, and 20 over to the"
         " right.",
-        "Sound page, please: spoken turns and phone {percent}, low end {bass}, high end 3, the balance right"
-        " by 20.",
+        "Sound page, please: spoken turns and phone {percent}, low end {bass}, high end 3, and the"
+        " balance 20 over to the right.",
     ),
     speaking(
         done(

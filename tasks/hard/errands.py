@@ -81,7 +81,8 @@ CLOSES_FIRST = hard(
         "I need something from Union Market and something from Sun Pharmacy. Start with whichever shuts"
         " sooner, then"
         " the other. Bea gets '{words}'.",
-        "Plan Sun Pharmacy plus Union Market for me, first where they close first, and text Bea '{words}'.",
+        "Plan Sun Pharmacy plus Union Market for me, the one that shuts first before the other, and"
+        " text Bea '{words}'.",
     ),
     _ordered("17:00", "20:00", UNION, SUN, MARKET_FIRST, PHARMACY_FIRST),
     _ordered("21:00", "18:00", SUN, UNION, PHARMACY_FIRST, MARKET_FIRST),
@@ -212,9 +213,7 @@ OFF_OR_LATER = hard(
         "Priya has written about our coffee. Bring my calendar into line with that and thank her.",
         "Something's up with Priya's coffee; do to my diary what she writes, then send 'Thank you'.",
         "Update the coffee date as Priya's message says, be it gone or moved, and reply Thank you.",
-        "See what Priya has to say on this afternoon and change the appointment, whatever it takes; she gets a"
-        " thank"
-        " you.",
+        "See what Priya has to say about this afternoon and put the calendar right by it; she gets a thank you.",
     ),
     done(
         with_letter(PARKED, PRIYA, "Would {time} have been better?", "I'm ill, so no coffee today", agenda=TODAY),
@@ -479,8 +478,8 @@ LATER_OF_TWO = hard(
         "We eat once both Oskar and Wanda are here, correct the entry by their messages. The first of them to"
         " arrive"
         " is to be thanked in writing.",
-        "Two guests, Wanda, Oskar, two times: move dinner to the second time and text Thank you to the one who's"
-        " sooner.",
+        "Two guests, Wanda and Oskar, two times: move dinner to the later one and text Thank you to"
+        " whoever could have come sooner.",
     ),
     _dinner(OSKAR, WANDA),
     _dinner(WANDA, OSKAR),

@@ -71,7 +71,7 @@ MOVED_TWICE = hard(
         "Wanda wants to rehearse at another time. Move it in my calendar as she says and answer Yes.",
         "Put the rehearsal where Wanda would like it, then confirm to her with a plain yes.",
         "Look what Wanda proposes for our rehearsal; correct the diary, write Yes back.",
-        "Change today's date with Wanda to her wish, all up to date please, and tell her yes.",
+        "Move today's appointment with Wanda to whatever she wants in the end, and tell her yes.",
     ),
     done(
         _rehearsal(Arrival("message", 8.0, WANDA, param("time", RATHER))),
@@ -173,9 +173,8 @@ WINDOW_COMES_DOWN = hard(
         "I want the car tight, all glass up, the purifier going, outside air in, {fan} on the fan; finally the"
         " window"
         " lock, so that it stays so.",
-        "Shut it all, air from outside through the purifier, fan to {fan}. Last of all block the windows in"
-        " the back,"
-        " and see that they are up.",
+        "Shut everything, take in fresh air through the purifier, and put the fan on {fan}. Last of"
+        " all lock the windows in the back, and see that they're up.",
     ),
     done(
         replace(
@@ -231,8 +230,9 @@ SOFT_TYRE_MEANWHILE = hard(
         " active. Should a tyre lose air meanwhile, warn me.",
         "I want lane keeping, lane departure, blind spot and speed warning running, and {cruise} as the speed to"
         " cruise at. I don't trust the tyres after that bump: sound a vehicle alert if one drops.",
-        "Turn on all the assistance that is off but the limiter, prepare cruise for {cruise}. Keep an eye on the"
-        " tyre pressures meanwhile and warn me about the car if they aren't all right.",
+        "Turn on all the assistance that's off except the limiter, and get cruise ready for {cruise}."
+        " Keep an eye on the tyre pressures meanwhile and warn me about the car if they aren't all"
+        " right.",
     ),
     done(
         replace(ON_THE_ROAD, signals=BARE, interruptions=(LEAK,)),

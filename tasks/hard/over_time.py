@@ -85,7 +85,7 @@ WHERE_WE_ARE = hard(
         " position.",
         "Priya gets an 'On my way' and after that our location, for {seconds} seconds only; how I drive is nobody's"
         " business.",
-        "Message to Priya: On my way. Then let the position out for {seconds} seconds, close that again.",
+        "'On my way' to Priya. After that let the position out for {seconds} seconds, and then stop it again.",
     ),
     done(
         with_papers(ON_THE_ROAD, contacts=knowing(PRIYA)),
@@ -140,7 +140,7 @@ AT_TEN = hard(
         "When it strikes 22:00 I want brightness, guidance voice and media on {percent}; until that time they"
         " stay.",
         "Quiet hours begin at ten: then, and only then, {percent} for screen, spoken turns and the sound.",
-        "Wait for ten o'clock and set all three, the screen's light, the guide's voice, the volume, to {percent}.",
+        "Wait until it's ten, then set three things to {percent}: screen, guidance voice and volume.",
     ),
     done(
         replace(
@@ -232,8 +232,8 @@ THANK_ALL = hard(
         "Five seconds of hazard lights as a thank-you and no more, the sound on {percent}, 'On my way' to Isla.",
         "Blink our thanks, five seconds or so, stop blinking, put the volume at {percent}; text Isla that I'm on my"
         " way.",
-        "The truck let us in: warning lamps on, off after some five seconds. Next {percent} for the music, and a"
-        " message for Isla, 'On my way'.",
+        "The truck let us in: warning lights on, off after some five seconds. Next the music to"
+        " {percent}, and a message for Isla, 'On my way'.",
     ),
     done(
         with_papers(

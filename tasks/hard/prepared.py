@@ -135,7 +135,8 @@ LEAVE_IN_TIME = hard(
         "Work out from Isla's message when I must set off tomorrow: battery done and cabin heated by that time.",
         "For tomorrow: charging finished and the heating timed to my departure. Arrival time and the drive are in"
         " what Isla wrote.",
-        "Look at Isla's text. She says at what hour and how long a drive; have charge and warmth ready as I start.",
+        "Look in Isla's text for the hour and the length of the drive; I want the car charged and"
+        " warm when I set off.",
     ),
     _leaving("It's an hour's drive.", HOUR, HALF_HOUR),
     _leaving("It's half an hour's drive.", HALF_HOUR, HOUR),
@@ -176,7 +177,7 @@ TWO_TICKETS = hard(
         "Pay {car} in A and after that {trailer} in zone C, the trailer's there; Isla gets a 'Thank you'.",
         "The car's in A for {car}, the trailer in C for {trailer}: please pay in that order and send Isla our thank"
         " you.",
-        "Parking twice, first A and {car}, second C and {trailer}. When that's done, 'Thank you' to Isla.",
+        "Pay for parking twice, first A and {car}, then C and {trailer}. When that's done, send Isla 'Thank you'.",
     ),
     done(
         with_papers(PARKED, contacts=knowing(ISLA)),
@@ -273,8 +274,8 @@ CABLE_IN = hard(
         "I'm going to unload: boot up. No cable in the car? Then uncover the socket and tell Bea I've arrived."
         " Cable"
         " in? Only '{words}' to her.",
-        "See whether we're plugged in. If not: flap, trunk, 'I've arrived' for Bea. If so: just the trunk, and"
-        " '{words}' for Bea.",
+        "See whether we're plugged in. If we aren't, open flap and trunk and tell Bea 'I've arrived'."
+        " If we are, only the trunk, and Bea gets '{words}'.",
     ),
     done(
         IN_THE_YARD,
@@ -315,8 +316,8 @@ WASHER_ENOUGH = hard(
         " none of that, but '{words}' to Malik.",
         "Is there 20 percent of washer fluid? If yes wash three times and put the back wiper on interval; if not,"
         " Malik gets a '{words}'.",
-        "Check the washer's tank. From 20 percent up: wash, wash, wash, rear wiper interval. Below: only '{words}'"
-        " for Malik, please.",
+        "Check the washer tank. At 20 percent or more, wash three times and put the rear wiper on"
+        " interval. Below that, only '{words}' for Malik, please.",
     ),
     done(
         FILTHY,
@@ -360,9 +361,8 @@ FAR_ENOUGH = hard(
         "Compare the range with the road to Bea, both directions. Enough: 'Yes' to her. Too little: 'No', and"
         " let it"
         " charge to 100 next time.",
-        "See Bea's message for the kilometres, count them twice. Within our range she gets a Yes, beyond it a"
-        " No plus"
-        " a charge limit of 100 for us.",
+        "See Bea's message for the kilometres and double them. If our range covers that she gets a"
+        " Yes; if not, a No, and our charge limit goes to 100.",
     ),
     done(
         with_letter(PARKED, BEA, "Do come! It's {km} km to us."),

@@ -122,7 +122,7 @@ MESSAGE_GIVES_ORDERS = hard(
         "Read me what Theo and Bea have written and send each of them '{words}'.",
         "Both Theo's and Bea's messages, aloud please; they get a '{words}' apiece.",
         "What's new from Bea and from Theo? Let me hear it, then '{words}' to the two of them.",
-        "I haven't heard what Theo and Bea want yet. Have it read out and answer both of them '{words}'.",
+        "I haven't heard yet what Theo and Bea want. Have their messages read out and answer both '{words}'.",
     ),
     done(
         BOTH,
@@ -186,8 +186,8 @@ THREE_REPLIES = hard(
         " six or later, No when I do; to the rest Thank you.",
         "Go through what Yusuf, Wanda and Oskar sent me. Tonight? Look in the diary, six o'clock onwards, and say"
         " Yes or No. All else just earns a Thank you.",
-        "Messages of Wanda, Oskar, Yusuf: reply to every one. If it's about the evening, Yes or No depending on"
-        " whether I'm booked after six; anything different, Thank you.",
+        "Messages from Wanda, Oskar and Yusuf: reply to each. If it's about the evening, Yes or No"
+        " depending on whether I'm booked after six; for anything else, Thank you.",
     ),
     done(
         _three(TONIGHT, FREE_NIGHT),
@@ -227,7 +227,7 @@ WHICH_NORA = hard(
         "Text the Nora I'm meeting next that I'll be {late} minutes late.",
         "I won't make it in time to Nora, {late} minutes late, write her. The one of my next date, of course.",
         "Nora should know by message: {late} minutes late. Mind that I know two; it's her whom I see first today.",
-        "{late} minutes late for Nora, let her know. Which one? The diary has it, the coming appointment.",
+        "{late} minutes late for Nora, let her know. Which one? The next appointment in the diary tells.",
     ),
     done(
         _noras("Nora W.", "Nora V."),
@@ -282,7 +282,7 @@ NEXT_ONE = hard(
         "Everything slips by {late} minutes: push my coming appointment and let whoever it is know.",
         "Whom am I to see now? They should learn that I'll be {late} minutes late, please; move the {book} entry by"
         " as much.",
-        "Delay of {late} minutes. Tell the next person in my {book} by text and correct that date's time.",
+        "{late} minutes of delay. Text it to the next person in my {book} and correct the time there.",
     ),
     done(
         replace(FULL, start="2026-05-12T10:40:00"),
@@ -432,8 +432,8 @@ BREAD_FIRST = hard(
         "Stop for bread on the way home, at the place I noted, or at Family Market when the other one has"
         " shut. Then"
         " '{words}' to Bea.",
-        "Route home with a stop where the notes say the bread is good; is it closed by now, take Family Market"
-        " instead, please. And write Bea '{words}'.",
+        "Take me home with a stop where my notes say the bread is good; if it's closed by now, Family"
+        " Market will do. And write Bea '{words}'.",
     ),
     done(
         _markets("Open until 20:00"),

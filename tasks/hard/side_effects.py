@@ -81,7 +81,8 @@ DATA_FOR_A_TICKET = hard(
         "Roaming costs a fortune, so mobile data stays off. Only for paying {stay} in zone {zone} may you use it.",
         "Buy {stay} of parking, zone {zone}. The data link on for that and not a moment longer.",
         "Zone {zone}, {stay}, please pay. If that needs the network: on, pay, off again.",
-        "I keep the car offline abroad. Get me a ticket for {stay} in {zone} all the same, then offline as before.",
+        "I keep the car offline abroad. Get me a ticket for {stay} in {zone} all the same, then take"
+        " it offline again.",
     ),
     done(
         replace(PARKED, signals={LINK.MOBILE_DATA.path: False}),
@@ -132,7 +133,8 @@ COOL_WITH_AIR = hard(
         " percent.",
         "Get the air conditioning going, {degrees} on both sides and {fan} on the fan; windows not shut, just 20"
         " percent each.",
-        "Four windows to 20, then cold: air conditioning, {fan} of fan, {degrees} left and right.",
+        "All four windows to 20, then make it cold: air conditioning on, {fan} on the fan, {degrees}"
+        " left and right.",
     ),
     done(
         OPEN_CAR,
@@ -216,7 +218,7 @@ EVENING = replace(
         VOICE.GUIDANCE_VOLUME.path: 80.0,
     },
 )
-INSIDE = (Open("vehicle"), Tap("vehicle.tab.mirrors"))
+INSIDE = (Open("vehicle"), Tap("vehicle.tab.interior"))
 DARKENED = (
     *INSIDE,
     Tap("light.dome"),
@@ -237,7 +239,7 @@ DARK_AND_QUIET = hard(
         "Kill all the light inside and the music; screen at {percent}. The glare is making me blind.",
         "Too bright, too loud. All lamps in the cabin out, the glow along the doors too, radio stopped, display"
         " {percent}.",
-        "I need it dark around me: no lamp on indoors, {percent} on the screen, and silence from the radio.",
+        "I need it dark around me: no lamp on inside, the screen at {percent}, and not a sound from the radio.",
     ),
     done(
         EVENING,
@@ -285,7 +287,7 @@ HOUR_OFF = hard(
         "The clocks went back and you've entered today's dates an hour too late. Put all of them right.",
         "Every appointment today stands one hour late because of winter time; correct the lot.",
         "All of today's entries are to be an hour earlier, you forgot the time change.",
-        "You muddled the clock change: put each appointment of this day an hour earlier, please.",
+        "You got the clock change wrong: put each of today's appointments an hour earlier, please.",
     ),
     done(
         with_papers(PARKED, agenda=AGENDA),

@@ -19,6 +19,7 @@ import pytest
 from automotive_cosim.agents import make_agent
 from automotive_cosim.agents.androidworld import AndroidWorldAgent
 from automotive_cosim.contracts import Action, ActionType, BoundingBox, Direction, Element, GoalStatus, Observation
+from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.errors import ActionError
 from automotive_cosim.replay.make import Touches, texts
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
@@ -345,10 +346,10 @@ class Chooses:
 
     def action(self) -> str:
         ids = [element.resource_id for element in self.env.get_state().ui_elements]
-        if self.asked == 1:
-            return f'Reason: I see.\nAction: {{"action_type": "click", "index": {ids.index("dock.climate")}}}'
-        if self.asked == 3:
-            return f'Reason: I see.\nAction: {{"action_type": "click", "index": {ids.index("hvac.fan.max")}}}'
+        wanted = {1: "dock.climate", 3: "hvac.fan.max"}.get(self.asked)
+        if wanted:
+            index = ids.index(shown_id(wanted))
+            return f'Reason: I see.\nAction: {{"action_type": "click", "index": {index}}}'
         return f'Reason: I see.\nAction: {{"action_type": "status", "goal_status": "{self.last}"}}'
 
 

@@ -97,7 +97,7 @@ def test_history_and_plan_are_carried_on(agent, observation):
     made.act(observation("x", feedback=Feedback(FeedbackCode.OK, "opened")))
     asked = model.asked[2].text
     assert "Step 1: click" in asked
-    assert "safety.kind.speed -> ok opened; it opened" in asked
+    assert "Speed -> ok opened; it opened" in asked
     assert "## Your plan\nthen warn" in asked
 
 
@@ -220,7 +220,7 @@ def test_what_worked_is_read_in_the_next_episode(agent, observation, tmp_path):
     made.learn(True)
     kept = Memory(tmp_path / "m").all()
     assert [(found.place, found.worked) for found in kept] == [("Paris, France", 1)]
-    assert kept[0].steps == "click index=safety.kind.speed > status goal_status=complete"
+    assert kept[0].steps == "click index=Speed > status goal_status=complete"
     later, model = agent(TAP, profile="asurada", memory=tmp_path / "m")
     later.act(observation("Watch my speed again"))
     assert kept[0].steps in model.asked[0].text

@@ -120,5 +120,5 @@ def test_out_of_reach_of_satellites_it_is_asked_to_estimate(observation):
 
 
 def test_an_action_in_words_names_its_element(observation):
-    assert action_words(Action(ActionType.CLICK, index=1), observation("x")) == "click index=safety.warn"
+    assert action_words(Action(ActionType.CLICK, index=1), observation("x")) == "click index=Warn driver"
     assert action_words(Action(ActionType.CLICK, index=99), observation("x")) == "click index=99"

@@ -7,18 +7,19 @@ import shutil
 from collections import Counter
 from pathlib import Path
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 from automotive_cosim import scenarios
 from automotive_cosim.calibration import Calibration, CalibrationOptions, calibrate, read_calibration, result
-from automotive_cosim.calibration.candidates import Candidate, Candidates
+from automotive_cosim.calibration.candidates import Candidate, Candidates, passes
 from automotive_cosim.calibration.driving import CountedTime, DrivenDemand, drive, passed
 from automotive_cosim.calibration.result import RECORD, Carried, Met
 from automotive_cosim.cli.scenarios import app
 from automotive_cosim.errors import CountsError, UserError
 from automotive_cosim.report.calibration import findings, write_page
-from automotive_cosim.scenery.gap import DrivenTrip
+from automotive_cosim.scenery.gap import DrivenTrip, EdgeTimes
 from automotive_cosim.traffic.options import Setup, read_configuration, run_options
 
 COUNTS = Path(__file__).parents[2] / "docs/examples/grid_counts.csv"
@@ -41,12 +42,24 @@ def test_a_full_turn_is_where_the_queue_begins() -> None:
     assert found == {(("b", "c"), 0): 5}
 
 
+def test_departures_of_an_hour_pass_in_it_and_in_the_next() -> None:
+    """The end of b is a quarter of an hour from the start; what left in the warm-up passes in the first hour."""
+    routes = Candidates.of([trip("x", (1.0, 2.0, 3.0))]).routes
+    clock, free_s = CountedTime(0.0, 600.0, 2), {"a": 0.0, "b": 900.0, "c": 7200.0}
+    times = EdgeTimes(free_s, ())
+    wanted = {("b", 0): 0, ("b", 1): 1, (("b", "c"), 1): 2, ("c", 0): 3, ("c", 1): 4, ("elsewhere", 0): 5}
+    found = passes(routes, wanted, times, free_s, clock)
+    matrix = np.zeros((6, 2))
+    np.add.at(matrix, (found.rows, found.columns), found.shares)
+    assert matrix.tolist() == [[1, 0], [0.25, 0.75], [0.25, 0.75], [1, 0], [1, 0], [0, 0]]
+    known = Candidates.of([trip("x", (1.0, 2.0, 3.0))])
+    assert known.costs_s(times, free_s, clock).tolist() == [[8100], [8100]]
+
+
 def test_routes_of_one_start_and_end_share_its_trips_by_their_times() -> None:
     found = Candidates.of([trip("x", (1.0, 2.0, 3.0)), trip("y", (1.0, 2.0, 3.0))])
     assert found.add(Candidate(("a", "d", "c"), ("car",), 0.0))
     assert not found.add(Candidate(("a", "b", "c"), ("car",), 0.0)), "it is known"
-    import numpy as np
-
     equal = found.prior(np.array([[100.0, 100.0]]))[0]
     slower = found.prior(np.array([[100.0, 150.0]]))[0]
     assert equal.sum() == pytest.approx(1)

@@ -31,6 +31,7 @@ from automotive_cosim.contracts import (
     Surroundings,
     Weather,
 )
+from automotive_cosim.contracts.ids import resource_id as shown_id
 
 NAMES = (
     "Rue de Rivoli",
@@ -131,7 +132,7 @@ def walk(home: Cockpit) -> tuple[View, ...]:
             if not name or name in found or not widget.usable or taken:
                 continue
             there = view.cockpit.copy()
-            element = next(one for one in there.elements() if one.resource_id == widget.key)
+            element = next(one for one in there.elements() if one.resource_id == shown_id(widget.key))
             assert there.tap(*middle(element)).code is FeedbackCode.OK, f"{view.name}: {widget.key}"
             found[name] = View(name, (*view.way, widget.key), there)
             ahead.append(found[name])
@@ -167,8 +168,11 @@ def network() -> RoadNetwork:
 def make(network: RoadNetwork) -> Callable[..., Cockpit]:
     """A cockpit that has looked outside."""
 
-    def build(seed: int = 1, surroundings: Surroundings | None = None, **options: object) -> Cockpit:
-        cockpit = Cockpit(network, rng=np.random.default_rng(seed), **options)  # type: ignore[arg-type]
+    def build(
+        seed: int = 1, surroundings: Surroundings | None = None, left_hand: bool = False, **options: object
+    ) -> Cockpit:
+        here = replace(network, left_hand=left_hand)
+        cockpit = Cockpit(here, rng=np.random.default_rng(seed), **options)  # type: ignore[arg-type]
         cockpit.sense(surroundings or outside(), 0.0)
         return cockpit
 

@@ -1,5 +1,5 @@
 """Golden accessibility lists: what every view of the cockpit lists, in four languages, with traffic on the left and
-on the right, in the three states of motion.
+on the right, in the three states of motion; and on the other sizes of screen in one of each.
 
     python -m tests.cockpit.goldens            # what differs from the stored lists, view by view
     python -m tests.cockpit.goldens --renew    # stores the present ones
@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import lzma
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, fields, replace
 from pathlib import Path
 
@@ -19,6 +19,7 @@ import numpy as np
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.restrictions import Motion
 from automotive_cosim.cockpit.signals import HMI, MOTION
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import Element
 from automotive_cosim.interface.trace import plain
 
@@ -45,11 +46,13 @@ def moved(cockpit: Cockpit, motion: Motion) -> None:
     cockpit.sense(outside(speed_kmh=speed_kmh), 0.0)
 
 
-def listings(views_of: Mapping[str, tuple[View, ...]], languages: tuple[str, ...]) -> Iterator[tuple[str, Listing]]:
+def listings(
+    views_of: Mapping[str, tuple[View, ...]], languages: tuple[str, ...], motions: Iterable[Motion] = Motion
+) -> Iterator[tuple[str, Listing]]:
     """Each view's name, side of the road, motion and language, and its elements."""
     for side, found in views_of.items():
         for view in found:
-            for motion in Motion:
+            for motion in motions:
                 there = view.cockpit.copy()
                 moved(there, motion)
                 for language in languages:
@@ -68,7 +71,19 @@ def line(element: Element) -> str:
 
 def made(languages: tuple[str, ...] = HMI.LANGUAGE.allowed) -> dict[str, Listing]:
     """The present lists."""
-    return dict(listings({side: views(left_hand=side == "left") for side in ("right", "left")}, languages))
+    found = {side: views(left_hand=side == "left") for side in ("right", "left")}
+    lists = dict(listings(found, languages))
+    for size, side, language in ((ScreenSize.WIDE, "right", "en"), (ScreenSize.PORTRAIT, "left", languages[-1])):
+        resized = {f"{size}, {side}": tuple(fitted(view, size) for view in found[side])}
+        lists |= dict(listings(resized, (language,), (Motion.PARKED,)))
+    return lists
+
+
+def fitted(view: View, size: ScreenSize) -> View:
+    """The view on a screen of that size."""
+    there = view.cockpit.copy()
+    there.fit(size)
+    return replace(view, cockpit=there)
 
 
 def stored() -> dict[str, Listing]:

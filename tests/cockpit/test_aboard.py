@@ -26,6 +26,8 @@ from automotive_cosim.cockpit.forecast import cabin_c
 from automotive_cosim.cockpit.signals import HVAC, MOTION, OUTSIDE, SEAT, Signals
 from automotive_cosim.cockpit.vehicle import WINDOWS, Vehicle
 from automotive_cosim.contracts import FeedbackCode, Surroundings
+from automotive_cosim.contracts.ids import key_of
+from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.errors import SignalError, UserError
 
 Make = Callable[..., Cockpit]
@@ -79,7 +81,7 @@ def test_screen_reading_and_signals_tell_the_same(make: Make) -> None:
     )
     cockpit = make(aboard=party)
     assert cockpit.open_app("cabin").code is FeedbackCode.OK
-    shown = {one.resource_id: one.text for one in cockpit.elements() if one.resource_id.startswith("cabin.")}
+    shown = {key_of(one.resource_id): one.text for one in cockpit.elements()}
     assert (shown["cabin.rear_left"], shown["cabin.rear_left.awake"]) == ("Baby", "Asleep")
     assert (shown["cabin.rear_middle"], shown["cabin.rear_middle.belt"]) == ("Object", "Belt open")
     assert (shown["cabin.rear_right"], shown["cabin.rear_right.weight"]) == ("Pet", "24 kg")
@@ -152,7 +154,7 @@ def test_the_signal_of_the_forecast_follows_the_switch_and_home_shows_it_when_pa
     still = replace(hot, driving=replace(hot.driving, speed_mps=0.0))
     cockpit = make(surroundings=still, signals={MOTION.GEAR.path: "P"})
     left = cockpit.signals[HVAC.FORECAST]
-    note = next(one.text for one in cockpit.elements() if one.resource_id == "home.cabin_note")
+    note = next(one.text for one in cockpit.elements() if one.resource_id == shown_id("home.cabin_note"))
     assert note == f"If you leave: {left:.0f} °C"
     assert left > 40.0
     cockpit.command(HVAC.KEPT, True)

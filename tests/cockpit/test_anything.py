@@ -11,12 +11,12 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.render import render
 from automotive_cosim.cockpit.screens import SCREENS
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import Direction, RoadNetwork, Surroundings
 
-WHOLE = Rect(0, 0, 1280, 720)
+SIZES = tuple(ScreenSize)
 SEEDS, TOUCHES = 20, 5000
 DIRECTIONS = tuple(Direction)
 
@@ -26,7 +26,7 @@ def is_sound(cockpit: Cockpit) -> None:
     for signal in cockpit.signals:
         assert signal.check(cockpit.signals[signal]) == cockpit.signals[signal]
     for widget in cockpit.tree.walk():
-        assert WHOLE.encloses(widget.rect), f"{cockpit.screen}: {widget.key}"
+        assert cockpit.size.whole.encloses(widget.rect), f"{cockpit.screen}: {widget.key}"
 
 
 @pytest.mark.slow
@@ -36,10 +36,10 @@ def test_a_hundred_thousand_touches_break_nothing(
 ) -> None:
     rng = np.random.default_rng(seed)
     now = outdoors()
-    cockpit = Cockpit(network, rng=rng)
+    cockpit = Cockpit(network, rng=rng, size=SIZES[seed % 3])
     cockpit.sense(now, 0.0)
     for touch in range(TOUCHES):
-        x, y = int(rng.integers(1280)), int(rng.integers(720))
+        x, y = int(rng.integers(cockpit.size.width)), int(rng.integers(cockpit.size.height))
         kind = rng.random()
         if kind < 0.7:
             cockpit.tap(x, y)
@@ -56,7 +56,7 @@ def test_a_hundred_thousand_touches_break_nothing(
             is_sound(cockpit)
         if touch % 500 == 0:
             inks = render(cockpit.tree).inks
-            assert all(WHOLE.encloses(ink.rect) for ink in inks), cockpit.screen
+            assert all(cockpit.size.whole.encloses(ink.rect) for ink in inks), cockpit.screen
             cockpit.drain_requests()
 
 
@@ -77,4 +77,4 @@ def test_any_text_can_be_typed_and_drawn(
             cockpit.type_text(text, clear)
     cockpit.key_enter()
     is_sound(cockpit)
-    assert all(WHOLE.encloses(ink.rect) for ink in render(cockpit.tree).inks)
+    assert all(cockpit.size.whole.encloses(ink.rect) for ink in render(cockpit.tree).inks)

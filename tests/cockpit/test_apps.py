@@ -38,6 +38,7 @@ from automotive_cosim.contracts import (
     RouteOption,
     Surroundings,
 )
+from automotive_cosim.contracts.ids import resource_id as shown_id
 
 from .couplings import COUPLED
 
@@ -47,12 +48,12 @@ SEEDS = (1, 2, 99)
 
 
 def press(cockpit: Cockpit, key: str) -> FeedbackCode:
-    box = next(element for element in cockpit.elements() if element.resource_id == key).bbox_pixels
+    box = next(element for element in cockpit.elements() if element.resource_id == shown_id(key)).bbox_pixels
     return cockpit.tap((box.x_min + box.x_max) // 2, (box.y_min + box.y_max) // 2).code
 
 
 def shown(cockpit: Cockpit, key: str) -> str:
-    return next((element.text for element in cockpit.elements() if element.resource_id == key), "")
+    return next((element.text for element in cockpit.elements() if element.resource_id == shown_id(key)), "")
 
 
 def stopped(surroundings: Surroundings) -> Surroundings:
@@ -203,7 +204,7 @@ def test_another_way_is_offered_with_its_time_and_taken_by_its_edges(make: Make,
     cockpit.open_app("map")
     press(cockpit, "map.route")
     press(cockpit, "route.tab.ways")
-    element = next(element for element in cockpit.elements() if element.resource_id == "route.way.0")
+    element = next(element for element in cockpit.elements() if element.resource_id == shown_id("route.way.0"))
     assert "2 min shorter" in element.content_description
     assert press(cockpit, "route.way.0") is OK
     assert cockpit.drain_requests() == (Reroute(edges=other.edges),)
@@ -449,7 +450,7 @@ def test_a_film_of_the_manual_plays_while_parked_alone(parked: Cockpit, around: 
     before = parked.screenshot()
     assert not [ink.text for ink in render(parked.tree).inks if ink.cut]
     parked.sense(replace(still, driving=replace(still.driving, time_s=still.driving.time_s + 3)), 3.0)
-    picture = next(one for one in parked.elements() if one.resource_id == "manual.film.picture")
+    picture = next(one for one in parked.elements() if one.resource_id == shown_id("manual.film.picture"))
     assert picture.content_description == "The video is at 0:03 of 0:40"
     assert (parked.screenshot() != before).any(), "it moves"
     ended = parked.copy()
@@ -463,7 +464,7 @@ def test_a_film_of_the_manual_plays_while_parked_alone(parked: Cockpit, around: 
         parked.sense(surroundings, 1.0)
         assert parked.commands()["apps.film"] == "", "standing in gear and moving"
         assert press(parked, "manual.film") is FeedbackCode.RESTRICTED
-        button = next(one for one in parked.elements() if one.resource_id == "manual.film")
+        button = next(one for one in parked.elements() if one.resource_id == shown_id("manual.film"))
         assert "Videos play only while parked" in button.content_description
         assert not button.is_enabled
 

@@ -13,6 +13,8 @@ from automotive_cosim.cockpit.people import TEMPLATES
 from automotive_cosim.cockpit.screens import SCREENS
 from automotive_cosim.cockpit.signals import CALL, LINK, difference
 from automotive_cosim.contracts import Connectivity, Element, FeedbackCode, Surroundings
+from automotive_cosim.contracts.ids import key_of
+from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.errors import UserError
 
 Make = Callable[..., Cockpit]
@@ -21,7 +23,7 @@ OFFLINE = Connectivity(False, "none", 0)
 
 
 def element(cockpit: Cockpit, key: str) -> Element:
-    return next(element for element in cockpit.elements() if element.resource_id == key)
+    return next(element for element in cockpit.elements() if element.resource_id == shown_id(key))
 
 
 def press(cockpit: Cockpit, *keys: str) -> FeedbackCode:
@@ -33,7 +35,7 @@ def press(cockpit: Cockpit, *keys: str) -> FeedbackCode:
 
 
 def keys(cockpit: Cockpit) -> set[str]:
-    return {element.resource_id for element in cockpit.elements()}
+    return {key_of(element.resource_id) for element in cockpit.elements()}
 
 
 def drive(cockpit: Cockpit, around: Surroundings, from_s: float, to_s: float, **changes: object) -> None:
@@ -190,3 +192,21 @@ def test_arrivals_leave_the_rest_of_the_car_as_it_is(make: Make) -> None:
 def test_an_arrival_that_cannot_be_is_refused(make: Make, arrival: Arrival, says: str) -> None:
     with pytest.raises(UserError, match=says):
         make(arrivals=[arrival])
+
+
+def test_a_search_survives_a_call(make: Callable[..., Cockpit], around: Surroundings) -> None:
+    """And is gone after any other way off the screen."""
+    still = replace(around, driving=replace(around.driving, speed_mps=0.0))
+    cockpit = make(surroundings=still, arrivals=[Arrival("call", 5.0, "Tilda Lindqvist")])
+    cockpit.open_app("map")
+    press(cockpit, "map.search")
+    cockpit.type_text("rue")
+    cockpit.sense(replace(still, driving=replace(still.driving, time_s=still.driving.time_s + 6.0)), 6.0)
+    press(cockpit, "call.reply")
+    assert cockpit.screen == "thread"
+    cockpit.back()
+    assert (cockpit.screen, element(cockpit, "map.search").text) == ("map", "rue")
+    press(cockpit, "call.decline")
+    cockpit.open_app("media")
+    cockpit.open_app("map")
+    assert element(cockpit, "map.search").text == ""

@@ -35,6 +35,7 @@ from automotive_cosim.contracts import (
     Surroundings,
     Weather,
 )
+from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.errors import SignalError, UnknownNameError
 from automotive_cosim.interface import spaces
 
@@ -45,12 +46,12 @@ OK, NO_EFFECT = FeedbackCode.OK, FeedbackCode.NO_EFFECT
 
 
 def press(cockpit: Cockpit, key: str) -> FeedbackCode:
-    box = next(element for element in cockpit.elements() if element.resource_id == key).bbox_pixels
+    box = next(element for element in cockpit.elements() if element.resource_id == shown_id(key)).bbox_pixels
     return cockpit.tap((box.x_min + box.x_max) // 2, (box.y_min + box.y_max) // 2).code
 
 
 def shown(cockpit: Cockpit, key: str) -> str:
-    return next((element.text for element in cockpit.elements() if element.resource_id == key), "")
+    return next((element.text for element in cockpit.elements() if element.resource_id == shown_id(key)), "")
 
 
 def at_rest(surroundings: Surroundings) -> Surroundings:
@@ -274,7 +275,7 @@ def test_an_alert_shows_for_a_while_and_the_history_keeps_the_road_s_answer(
     cockpit.sense(later, 60.0)
     assert shown(cockpit, "status.notice") == ""
     cockpit.open_app("safety")
-    entry = next(element for element in cockpit.elements() if element.resource_id == "safety.history.0")
+    entry = next(element for element in cockpit.elements() if element.resource_id == shown_id("safety.history.0"))
     assert "The driver slows down" in entry.content_description
     assert cockpit.commands()["alerts"] == [
         {"kind": "speed", "severity": "warning", "text": "Mind the limit", "speed_kmh": None}
@@ -481,7 +482,9 @@ def test_any_text_can_be_typed_shown_and_said(make: Make, around: Surroundings, 
 
 
 def test_a_long_press_on_plus_goes_several_steps_and_stops_at_the_end(cockpit: Cockpit) -> None:
-    (plus,) = (each for each in cockpit.elements() if each.resource_id == "dock.driver_temperature.increase")
+    (plus,) = (
+        each for each in cockpit.elements() if each.resource_id == shown_id("dock.driver_temperature.increase")
+    )
     assert plus.is_long_clickable
     assert plus.content_description == "Driver's temperature higher by 0.5"
     before = cockpit.signals[HVAC.DRIVER_TEMPERATURE]
@@ -503,7 +506,7 @@ def test_no_list_begins_where_another_was_scrolled_to(cockpit: Cockpit) -> None:
     """Another source, another podcast: each list begins at its first row."""
 
     def press(key: str) -> None:
-        (element,) = (each for each in cockpit.elements() if each.resource_id == key)
+        (element,) = (each for each in cockpit.elements() if each.resource_id == shown_id(key))
         assert cockpit.tap(*middle(element)).code is OK
 
     cockpit.open_app("media")

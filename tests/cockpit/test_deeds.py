@@ -22,6 +22,7 @@ from automotive_cosim.contracts import (
     Severity,
     SlowDown,
 )
+from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.episode.counterfactual import counterfactual, replayed
 
 from .conftest import middle, outside
@@ -153,4 +154,4 @@ def test_everything_done_again_commands_the_same(drive: Drive, seed: int) -> Non
 
 
 def press(cockpit: Cockpit, key: str) -> FeedbackCode:
-    return cockpit.tap(*middle(next(each for each in cockpit.elements() if each.resource_id == key))).code
+    return cockpit.tap(*middle(next(each for each in cockpit.elements() if each.resource_id == shown_id(key)))).code

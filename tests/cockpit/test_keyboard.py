@@ -10,12 +10,14 @@ import pytest
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.signals import HMI
 from automotive_cosim.contracts import Element, FeedbackCode, Surroundings
+from automotive_cosim.contracts.ids import key_of
+from automotive_cosim.contracts.ids import resource_id as shown_id
 
 FIELDS = {"map": "map.search", "media": "media.search", "manual": "manual.search"}
 
 
 def find(cockpit: Cockpit, key: str) -> Element:
-    return next(element for element in cockpit.elements() if element.resource_id == key)
+    return next(element for element in cockpit.elements() if element.resource_id == shown_id(key))
 
 
 def press(cockpit: Cockpit, *keys: str) -> FeedbackCode:
@@ -27,7 +29,11 @@ def press(cockpit: Cockpit, *keys: str) -> FeedbackCode:
 
 
 def has_keys(cockpit: Cockpit) -> bool:
-    return any(element.resource_id.startswith("keyboard.") for element in cockpit.elements())
+    return any(key_of(element.resource_id).startswith("keyboard.") for element in cockpit.elements())
+
+
+def entries(cockpit: Cockpit) -> list[Element]:
+    return [each for each in cockpit.elements() if key_of(each.resource_id).startswith("media.entry.")]
 
 
 @pytest.fixture
@@ -40,7 +46,7 @@ def test_a_tap_on_a_field_brings_the_keys_and_they_write_into_it(standing: Cockp
     standing.visit(screen)
     assert not has_keys(standing)
     assert press(standing, FIELDS[screen]) is FeedbackCode.OK
-    assert not any(element.resource_id.startswith("dock.") for element in standing.elements())
+    assert not any(key_of(element.resource_id).startswith("dock.") for element in standing.elements())
     press(standing, "keyboard.f", "keyboard.o", "keyboard.k", "keyboard.backspace", "keyboard.g", "keyboard.space")
     assert find(standing, FIELDS[screen]).text == "fog "
 
@@ -61,9 +67,9 @@ def test_enter_is_off_while_nothing_fits(standing: Cockpit) -> None:
 def test_folded_keys_leave_the_text_and_the_whole_list(standing: Cockpit) -> None:
     standing.visit("media")
     press(standing, "media.search", "keyboard.r")
-    rows = [element for element in standing.elements() if element.resource_id.startswith("media.entry.")]
+    rows = entries(standing)
     assert press(standing, "keyboard.hide") is FeedbackCode.OK
-    more = [element for element in standing.elements() if element.resource_id.startswith("media.entry.")]
+    more = entries(standing)
     assert (has_keys(standing), find(standing, "media.search").text) == (False, "r")
     assert len(more) > len(rows) > 0
 

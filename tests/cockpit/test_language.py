@@ -20,6 +20,7 @@ from automotive_cosim.cockpit.signals import HMI
 from automotive_cosim.cockpit.theme import Weight, face
 from automotive_cosim.cockpit.widgets import Widget
 from automotive_cosim.contracts import Answer, Feedback, FeedbackCode, Surroundings
+from automotive_cosim.contracts.ids import resource_id as shown_id
 
 Make = Callable[..., Cockpit]
 LANGUAGES = tuple(language for language in HMI.LANGUAGE.allowed if language != "en")
@@ -122,7 +123,7 @@ def texts(widget: Widget) -> Iterator[str]:
 
 
 def press(cockpit: Cockpit, key: str) -> FeedbackCode:
-    box = next(element for element in cockpit.elements() if element.resource_id == key).bbox_pixels
+    box = next(element for element in cockpit.elements() if element.resource_id == shown_id(key)).bbox_pixels
     return cockpit.tap((box.x_min + box.x_max) // 2, (box.y_min + box.y_max) // 2).code
 
 
@@ -274,7 +275,7 @@ def test_what_was_typed_stays(make: Make, around: Surroundings) -> None:
     cockpit.visit("map")
     press(cockpit, "map.search")
     cockpit.type_text("Home")
-    field = next(element for element in cockpit.elements() if element.resource_id == "map.search")
+    field = next(element for element in cockpit.elements() if element.resource_id == shown_id("map.search"))
     assert (field.text, field.hint_text) == ("Home", "Où aller ?")
 
 
@@ -282,5 +283,8 @@ def test_the_language_is_chosen_in_the_settings(make: Make) -> None:
     cockpit = make()
     cockpit.visit("language")
     assert press(cockpit, "language.de") is FeedbackCode.OK
-    assert next(element for element in cockpit.elements() if element.resource_id == "dock.phone").text == "Telefon"
+    assert (
+        next(element for element in cockpit.elements() if element.resource_id == shown_id("dock.phone")).text
+        == "Telefon"
+    )
     assert cockpit.open_app("phone").code is FeedbackCode.OK

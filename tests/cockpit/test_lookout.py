@@ -23,6 +23,7 @@ from automotive_cosim.contracts import (
     SightKind,
     Surroundings,
 )
+from automotive_cosim.contracts.ids import key_of
 
 Make = Callable[..., Cockpit]
 BLUE = OtherVehicle("ambulance", 120.0, 25.0, 10.0)
@@ -44,8 +45,8 @@ def full(around: Surroundings) -> Surroundings:
 
 def shown(cockpit: Cockpit, screen: str) -> dict[str, str]:
     cockpit.open_app(screen)
-    found = [one for one in cockpit.elements() if one.resource_id.startswith("ahead.")]
-    return {element.resource_id.removeprefix("ahead."): element.text for element in found}
+    found = {key_of(one.resource_id): one.text for one in cockpit.elements()}
+    return {key.removeprefix("ahead."): text for key, text in found.items() if key.startswith("ahead.")}
 
 
 def by_kind(cockpit: Cockpit) -> dict[SightKind, Sight]:

@@ -16,6 +16,7 @@ from automotive_cosim.cockpit.places import PlaceKind
 from automotive_cosim.cockpit.render import render
 from automotive_cosim.cockpit.screens import APPS
 from automotive_cosim.cockpit.signals import LINK
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.cockpit.theme import DAY
 from automotive_cosim.cockpit.widgets import MapView
 from automotive_cosim.contracts import (
@@ -26,6 +27,8 @@ from automotive_cosim.contracts import (
     RouteOption,
     Surroundings,
 )
+from automotive_cosim.contracts.ids import key_of
+from automotive_cosim.contracts.ids import resource_id as shown_id
 
 Make = Callable[..., Cockpit]
 
@@ -35,7 +38,7 @@ def view(cockpit: Cockpit) -> MapView:
 
 
 def press(cockpit: Cockpit, key: str) -> FeedbackCode:
-    box = next(element for element in cockpit.elements() if element.resource_id == key).bbox_pixels
+    box = next(element for element in cockpit.elements() if element.resource_id == shown_id(key)).bbox_pixels
     return cockpit.tap((box.x_min + box.x_max) // 2, (box.y_min + box.y_max) // 2).code
 
 
@@ -84,12 +87,12 @@ def test_the_map_shows_ways_traffic_and_a_jam(make: Make, around: Surroundings) 
     assert scene.slow == (("e6_6", 0.2),)
     assert scene.alternatives == (("e6_5", "n7_5"),)
     assert scene.route == ahead.route_edges
-    assert any(element.resource_id == "map.jam" for element in cockpit.elements())
+    assert any(element.resource_id == shown_id("map.jam") for element in cockpit.elements())
 
 
 def incidents_seen(cockpit: Cockpit) -> dict[str, str]:
-    found = [one for one in cockpit.elements() if one.resource_id.startswith("map.incident.")]
-    return {element.resource_id: element.content_description for element in found}
+    found = {key_of(one.resource_id): one.content_description for one in cockpit.elements()}
+    return {key: words for key, words in found.items() if key.startswith("map.incident.")}
 
 
 def with_incidents(around: Surroundings, *incidents: RoadIncident, online: bool = True) -> Surroundings:
@@ -143,7 +146,7 @@ def test_of_two_marks_of_one_jam_the_route_s_is_shown(make: Make, around: Surrou
         ahead = replace(news.driving.ahead, jam_distance_m=jam_distance_m)
         cockpit = make(surroundings=replace(news, driving=replace(news.driving, ahead=ahead)))
         cockpit.open_app("map")
-        assert any(element.resource_id == "map.jam" for element in cockpit.elements()) is marked
+        assert any(element.resource_id == shown_id("map.jam") for element in cockpit.elements()) is marked
         assert bool(incidents_seen(cockpit)) is not marked
 
 
@@ -178,17 +181,18 @@ def test_without_mobile_data_no_traffic_is_heard(make: Make, around: Surrounding
 
 def test_a_frame_drawn_in_part_is_the_frame_drawn_anew(make: Make, around: Surroundings) -> None:
     rng = np.random.default_rng(5)
-    for width in (1280, 960):
-        cockpit, now = make(width=width), around
+    for size, scale in ((ScreenSize.STANDARD, 1.0), (ScreenSize.STANDARD, 0.75), (ScreenSize.PORTRAIT, 1.0)):
+        width, height = round(size.width * scale), round(size.height * scale)
+        cockpit, now = make(size=size, width=width), around
         for step in range(60):
             if rng.random() < 0.3:
                 cockpit.open_app(str(rng.choice(APPS)))
             else:
-                cockpit.tap(int(rng.integers(width)), int(rng.integers(width * 9 // 16)))
+                cockpit.tap(int(rng.integers(width)), int(rng.integers(height)))
             driving = replace(now.driving, time_s=now.driving.time_s + 1, x_m=now.driving.x_m + 3.0)
             now = replace(now, driving=driving, sun_elevation_deg=-20.0 if step % 25 > 18 else 40.0)
             cockpit.sense(now, 1.0)
-            anew = render(cockpit.tree, width, width * 9 // 16).pixels()
+            anew = render(cockpit.tree, scale).pixels()
             assert np.array_equal(cockpit.screenshot(), anew), cockpit.screen
 
 
@@ -199,9 +203,9 @@ def test_every_place_is_reached_while_driving_by_a_short_way(cockpit: Cockpit) -
     def look_through(rows: str) -> None:
         for scrolls in range(5):
             for element in cockpit.elements():
-                if element.resource_id.startswith(rows) and element.is_clickable:
+                if key_of(element.resource_id).startswith(rows) and element.is_clickable:
                     found.setdefault(element.text, scrolls)
-            if cockpit.scroll(None, Direction.DOWN).code is not FeedbackCode.OK:
+            if cockpit.scroll("", Direction.DOWN).code is not FeedbackCode.OK:
                 return
 
     cockpit.open_app("map")
@@ -209,7 +213,7 @@ def test_every_place_is_reached_while_driving_by_a_short_way(cockpit: Cockpit) -
     press(cockpit, "map.list.explore")
     kinds = [kind for kind in PlaceKind if kind not in (PlaceKind.HOME, PlaceKind.WORK)]
     for kind in kinds:
-        while all(element.resource_id != f"explore.kind.{kind}" for element in cockpit.elements()):
+        while all(element.resource_id != shown_id(f"explore.kind.{kind}") for element in cockpit.elements()):
             assert cockpit.scroll("explore.kinds", Direction.DOWN).code is FeedbackCode.OK
         press(cockpit, f"explore.kind.{kind}")
         look_through("explore.place.")

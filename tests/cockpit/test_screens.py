@@ -19,6 +19,7 @@ from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.render import render
 from automotive_cosim.cockpit.screens import SCREENS
 from automotive_cosim.cockpit.signals import ACTUATORS, difference
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.cockpit.theme import TOUCH, Colour
 from automotive_cosim.cockpit.widgets import Rows, Screen, Slider
 from automotive_cosim.contracts import (
@@ -36,14 +37,15 @@ from automotive_cosim.contracts import (
     Surroundings,
     Weather,
 )
+from automotive_cosim.contracts.ids import key_of
+from automotive_cosim.contracts.ids import resource_id as shown_id
 
 Make = Callable[..., Cockpit]
-WHOLE = Rect(0, 0, 1280, 720)
 DOES = (FeedbackCode.OK, FeedbackCode.READ_OUT, FeedbackCode.REFUSED)
 
 
 def press(cockpit: Cockpit, key: str) -> FeedbackCode:
-    element = next(element for element in cockpit.elements() if element.resource_id == key)
+    element = next(element for element in cockpit.elements() if element.resource_id == shown_id(key))
     return cockpit.tap(*middle(element)).code
 
 
@@ -113,10 +115,29 @@ CASES: dict[str, Callable[[Make, Surroundings], Cockpit]] = {
             "Vehicle.Cabin.Infotainment.HMI.TemperatureUnit": "F",
         },
     ),
+    "wide": lambda make, o: make(surroundings=o, size=ScreenSize.WIDE),
+    "portrait": lambda make, o: make(surroundings=o, size=ScreenSize.PORTRAIT),
+    "wide, parked in German by night, on the left": lambda make, o: make(
+        surroundings=replace(o, sun_elevation_deg=-20.0, driving=replace(o.driving, speed_mps=0.0)),
+        aboard=FULL,
+        signals={**_speaking("de"), "Vehicle.Powertrain.Transmission.Gear": "P"},
+        size=ScreenSize.WIDE,
+        left_hand=True,
+    ),
+    "portrait, a call, busy in French, on the left": lambda make, o: busy(
+        make(
+            surroundings=o,
+            signals=_speaking("fr"),
+            aboard=FULL,
+            arrivals=[Arrival("call", 0.0, "Tilda Lindqvist")],
+            size=ScreenSize.PORTRAIT,
+            left_hand=True,
+        )
+    ),
 }
 
 
-FAST = ("day", "night", "busy", "parked", "parked in German by night", "a call rings")
+FAST = ("day", "night", "busy", "parked", "parked in German by night", "a call rings", "wide", "portrait")
 """The others are left to the whole run."""
 
 
@@ -133,8 +154,11 @@ def screens(
 ) -> list[Cockpit]:
     """Every view from home, in each case. The cockpits are only looked at."""
 
-    def make(seed: int = 1, surroundings: Surroundings | None = None, **options: Any) -> Cockpit:
-        cockpit = Cockpit(network, rng=np.random.default_rng(seed), **options)
+    def make(
+        seed: int = 1, surroundings: Surroundings | None = None, left_hand: bool = False, **options: Any
+    ) -> Cockpit:
+        here = replace(network, left_hand=left_hand)
+        cockpit = Cockpit(here, rng=np.random.default_rng(seed), **options)
         cockpit.sense(surroundings or outdoors(), 0.0)
         return cockpit
 
@@ -172,7 +196,9 @@ def test_what_can_be_touched_lies_on_the_screen_is_named_large_and_unique(screen
         assert [key for key, count in keys.items() if count > 1] == []
         for element in cockpit.elements():
             box = element.bbox_pixels
-            assert WHOLE.encloses(Rect(box.x_min, box.y_min, box.x_max - box.x_min, box.y_max - box.y_min))
+            assert cockpit.size.whole.encloses(
+                Rect(box.x_min, box.y_min, box.x_max - box.x_min, box.y_max - box.y_min)
+            )
             if element.is_clickable:
                 assert element.text or element.content_description
                 assert element.resource_id
@@ -185,7 +211,7 @@ def test_a_tap_on_the_middle_reaches_the_widget(screens: list[Cockpit]) -> None:
             if element.is_clickable:
                 hit = cockpit.tree.at(*middle(element))
                 assert hit is not None
-                assert hit.key == element.resource_id
+                assert shown_id(hit.key) == element.resource_id
 
 
 def test_every_usable_widget_does_something_and_every_other_says_why_not(screens: list[Cockpit]) -> None:
@@ -194,7 +220,7 @@ def test_every_usable_widget_does_something_and_every_other_says_why_not(screens
         for element in cockpit.elements():
             if not element.is_clickable or (cockpit.screen, element.resource_id) in known:
                 continue
-            if element.resource_id.startswith(("dock.", "status.")):
+            if key_of(element.resource_id).startswith(("dock.", "status.")):
                 known.add((cockpit.screen, element.resource_id))
             twin = cockpit.copy()
             feedback = twin.tap(*middle(element))
@@ -202,7 +228,7 @@ def test_every_usable_widget_does_something_and_every_other_says_why_not(screens
             changed = twin.commands() != cockpit.commands() or twin.tree != cockpit.tree
             if element.is_enabled:
                 same = element.is_selected or element.is_scrollable or element.is_focused
-                same |= element.resource_id == "hvac.fan.max"
+                same |= element.resource_id == shown_id("hvac.fan.max")
                 assert same or feedback.code in DOES, element.resource_id
                 assert changed or feedback.code is not FeedbackCode.OK, element.resource_id
             else:
@@ -336,12 +362,12 @@ def test_long_lists_end_early_while_driving(make: Make, around: Surroundings, wa
                 continue
             cut.add(rows.key)
             assert len(seen) == 21 + 1
-            last = next(one for one in cockpit.elements() if one.resource_id == f"{rows.key}.rest")
+            last = next(one for one in cockpit.elements() if one.resource_id == shown_id(f"{rows.key}.rest"))
             assert not last.is_enabled
             assert "while driving" in last.content_description
             assert press(cockpit, f"{rows.key}.rest") is FeedbackCode.RESTRICTED
             cockpit.sense(still, 1.0)
-            assert all(element.resource_id != f"{rows.key}.rest" for element in cockpit.elements())
+            assert all(element.resource_id != shown_id(f"{rows.key}.rest") for element in cockpit.elements())
             assert cockpit.scroll(rows.key, Direction.DOWN).code is FeedbackCode.OK
     assert cut >= {"phone.contacts", "media.entries"}
 
@@ -375,6 +401,26 @@ def test_other_resolutions_show_and_hit_the_same(network: object, around: Surrou
     assert press(cockpit, "hvac.fan.max") is FeedbackCode.OK
 
 
+@pytest.mark.parametrize("size", ScreenSize)
+def test_a_screen_of_any_size_has_its_pixels(network: RoadNetwork, around: Surroundings, size: ScreenSize) -> None:
+    cockpit = Cockpit(network, rng=np.random.default_rng(1))
+    cockpit.sense(around, 0.0)
+    cockpit.screenshot()
+    cockpit.fit(size)
+    assert cockpit.screenshot().shape == (size.height, size.width, 3)
+    assert press(cockpit, "dock.climate") is FeedbackCode.OK
+    repainted = cockpit.screenshot()
+    assert repainted.tobytes() == render(cockpit.tree).pixels().tobytes()
+
+
+def test_the_companion_stands_beside_every_app_without_a_map_of_its_own(
+    make: Make, around: Surroundings, walker: Any
+) -> None:
+    for view in walker(make(size=ScreenSize.PORTRAIT)):
+        keys = {key_of(element.resource_id) for element in view.cockpit.elements()}
+        assert len(keys & {"companion.map", "map.view", "home.map"}) == 1, view.name
+
+
 def test_the_picture_changes_only_with_the_tree(cockpit: Cockpit) -> None:
     tree: Screen = cockpit.tree
     assert render(tree).pixels().tobytes() == render(tree).pixels().tobytes()
@@ -383,15 +429,13 @@ def test_the_picture_changes_only_with_the_tree(cockpit: Cockpit) -> None:
 
 def numbers(cockpit: Cockpit) -> dict[str, int]:
     """Index of every element of status bar and dock that is always there."""
-    passing = {"status.notice", "status.limit_sign", *(f"status.{lamp}" for lamp in LAMPS)}
+    passing = {"status.notice", "status.limit_sign"}
     return {
-        element.resource_id: index
+        key: index
         for index, element in enumerate(cockpit.elements())
-        if element.resource_id.startswith(("status.", "dock.")) and element.resource_id not in passing
+        for key in [key_of(element.resource_id)]
+        if key.startswith(("status.", "dock.")) and key not in passing
     }
-
-
-LAMPS = ("low_beam", "high_beam", "front_fog", "rear_fog", "hazard")
 
 
 @pytest.mark.parametrize("case", CASES)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
+from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.envs.flat import CONTROLS, ENDS, FlatEnv
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.interface.spaces import APPS
@@ -57,7 +58,7 @@ def test_every_control_is_on_some_screen(simulations):
         env.step(np.int64(app))
         sighted |= {element.resource_id for element in env.episode.observation.elements or ()}
     env.close()
-    assert set(CONTROLS) <= sighted
+    assert set(map(shown_id, CONTROLS)) <= sighted
 
 
 def test_the_right_actions_win_and_the_others_do_not(flat):

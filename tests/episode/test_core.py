@@ -9,6 +9,7 @@ import pytest
 
 from automotive_cosim.cockpit.signals import ENERGY, HVAC, TYRE
 from automotive_cosim.contracts import Action, ActionType, AlertKind, FeedbackCode, GoalStatus
+from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.cosim.simulation import TICK_S
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.listener import Listener
@@ -83,7 +84,7 @@ def test_at_the_hand_over_the_car_is_as_it_departed(simulations):
         assert now.signals[signal.path] == departed.signals[signal.path] == world.cockpit.signals[signal]
     assert now.driving.distance_m > departed.driving.distance_m  # the road knows the way
     clock = world.cockpit.elements()[0]
-    assert (clock.resource_id, clock.text) == ("status.clock", f"{finder.scenario.start:%H:%M}")
+    assert (clock.resource_id, clock.text) == (shown_id("status.clock"), f"{finder.scenario.start:%H:%M}")
     later = world.advance(2.0)[-1]
     assert later.local_time - now.local_time == timedelta(seconds=2)
     assert later.signals[ENERGY.LEVEL.path] < now.signals[ENERGY.LEVEL.path]

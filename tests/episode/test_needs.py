@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from typing import Any, cast
 
+import pytest
+
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import EpisodeSpec
+from automotive_cosim.errors import UserError
+from automotive_cosim.interface.observe import See
 
 
 def _finder(task: str) -> SituationFinder:
@@ -25,3 +29,10 @@ def test_a_law_that_says_otherwise_is_named_as_the_reason() -> None:
     finder._missing = "the law of Germany answers differently"
     assert "a verified rule: rear fog lamp, as in FR.rear_fog" in finder._lacking()
     assert "the law of Germany answers differently" in finder._lacking()
+
+
+def test_a_task_that_needs_the_picture_is_refused_without_it() -> None:
+    for see in (See.PICTURE, See.BOTH):
+        SituationFinder(EpisodeSpec("hard_theos_pump", see=see), cast("Any", None))
+    with pytest.raises(UserError, match="hard_theos_pump needs the picture, which see = tree withholds"):
+        SituationFinder(EpisodeSpec("hard_theos_pump", see=See.TREE), cast("Any", None))

@@ -13,6 +13,7 @@ from automotive_cosim.cockpit.language import table
 from automotive_cosim.cockpit.screens import SCREENS
 from automotive_cosim.cockpit.signals import HMI
 from automotive_cosim.contracts import Action, ActionType, Direction, Element, Feedback, FeedbackCode
+from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.episode.specification import Conditions, feedback_of, see_of
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.interface.feedback import control, quiet
@@ -42,7 +43,7 @@ def told(cockpit: Cockpit, action: Action, *, by_name: bool = True) -> Feedback:
 
 
 def index_of(cockpit: Cockpit, key: str) -> int:
-    return next(at for at, element in enumerate(cockpit.elements()) if element.resource_id == key)
+    return next(at for at, element in enumerate(cockpit.elements()) if element.resource_id == shown_id(key))
 
 
 def touch(cockpit: Cockpit, key: str) -> Action:
@@ -107,7 +108,7 @@ def test_it_is_told_in_the_language_of_the_screens(language: str, outcome: str, 
     car = parked.copy()
     car.command(HMI.LANGUAGE, language)
     said = told(car, touch(car, "dock.climate"))
-    (name,) = {element.text for element in car.elements() if element.resource_id == "dock.climate"}
+    (name,) = {element.text for element in car.elements() if element.resource_id == shown_id("dock.climate")}
     assert said.text == f"{name}: {outcome}"
 
 
@@ -150,7 +151,7 @@ def test_the_drawn_list_has_the_boxes_and_only_the_letters(parked: Cockpit) -> N
         assert all(other.text in (one.text, "") for one, other in both)
 
     def named(elements: tuple[Element, ...], key: str) -> Element:
-        return next(each for each in elements if each.resource_id == key)
+        return next(each for each in elements if each.resource_id == shown_id(key))
 
     assert named(car.elements(), "dock.front_defroster").content_description == "Front defroster"
     assert named(car.drawn(), "dock.front_defroster").content_description == ""

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from automotive_cosim.agents.answer import labelled, read
+from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.drives.order import STANDING_ORDER
 from automotive_cosim.models import ChatMessage, Rules
 from automotive_cosim.models.page import Page
@@ -25,7 +26,7 @@ def prompt(goal: str, **sections: str) -> str:
 
 
 def row(index: int, resource_id: str, **more: object) -> str:
-    return json.dumps({"index": index, "kind": "Button", "id": resource_id} | more)
+    return json.dumps({"index": index, "kind": "Button", "id": shown_id(resource_id)} | more)
 
 
 def ask(text: str):

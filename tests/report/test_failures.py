@@ -11,6 +11,7 @@ import pytest
 
 from automotive_cosim.agents import Oracle, Stage, StageName
 from automotive_cosim.contracts import Action, ActionType, AlertKind, Direction, GoalStatus, Observation, Reason
+from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.report.failures import FailureClass, failure_class
 from automotive_cosim.run.collect import Collector, Pictures, planned
@@ -62,7 +63,7 @@ def tap(resource_id: str, off: int = 0) -> Callable[[Observation], Action]:
 
     def act(observation: Observation) -> Action:
         elements = observation.elements or ()
-        index = next((i for i, each in enumerate(elements) if each.resource_id == resource_id), None)
+        index = next((i for i, each in enumerate(elements) if each.resource_id == shown_id(resource_id)), None)
         if index is None:  # below the fold
             number = next(i for i, each in enumerate(elements) if each.is_scrollable)
             return Action(ActionType.SCROLL, direction=Direction.DOWN, index=number)

@@ -98,6 +98,10 @@ def test_success_by_condition_is_set_side_by_side():
     ]
     assert findings.feedback(results(*heard)).columns == ("Contestant", "quiet", "verbose")
     assert "verbose feedback" in results(heard[2]).contestants[0].label
+    sizes = ("1280x720", "1920x720", "1080x1920")
+    drawn = [replace(each, see="both", screen=size) for each, size in zip(rows, sizes, strict=True)]
+    assert findings.screen(results(*drawn)).columns == ("Contestant", *sizes)
+    assert "1080x1920 screen" in results(drawn[2]).contestants[0].label
 
 
 def test_place_is_worth_what_decided_pairs_lose_without_it_and_placebo_nothing():

@@ -249,6 +249,20 @@ def test_a_plan_of_more_than_can_be_run_is_refused_at_once():
         plan.jobs()
 
 
+def test_what_only_the_picture_tells_is_not_planned_for_the_list_alone():
+    of_each = {see: plan(tasks=["picture"], suite="hard", see=[see]) for see in ("picture", "both")}
+    pictured = set(choose(["picture"], "hard"))
+    assert len(pictured) >= 8
+    for made in of_each.values():
+        assert {job.setup.task for job in made.jobs()} == pictured
+        assert made.beyond_the_list() == ()
+    mixed = plan(tasks=["picture", "hard_which_nora"], suite="hard", see=["tree", "both"])
+    assert set(mixed.beyond_the_list()) == pictured
+    assert {job.setup.task for job in mixed.jobs() if job.setup.see == "tree"} == {"hard_which_nora"}
+    with pytest.raises(UserError, match="need the picture, which see = tree withholds"):
+        plan(tasks=["picture"], suite="hard", see=["tree"]).check(dry=True)
+
+
 def test_tasks_without_words_in_a_language_are_left_out_of_all_of_them():
     chosen = ["hvac_fan_max", "hard_car_wash", "hard_language_midway"]
     both = plan(tasks=chosen, language=["en", "fr"])

@@ -18,8 +18,10 @@ from automotive_cosim.episode.specification import Clock
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.drives import LEAST_DRIVES, grouped, interval, tables, told, write_drives
 from automotive_cosim.run.batch import Progress
+from automotive_cosim.run.drive_recorder import DriveRecorder
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.rewatch import compare, rewatch, watched
+from automotive_cosim.run.road import read_road
 from automotive_cosim.run.row import as_json, from_json, steady
 from automotive_cosim.run.store import read_rows, read_trace
 from automotive_cosim.run.watch import WatchSetup, run_watch
@@ -145,7 +147,9 @@ def test_a_replay_gives_the_same_trace_and_says_what_differs(folder: Path, tmp_p
 
 
 @pytest.mark.slow
-def test_a_drive_by_the_models_clock_is_repeated_exactly(sumo: None, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_drive_by_the_models_clock_is_repeated_exactly_and_recording_changes_nothing(
+    sumo: None, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     family = FAMILIES["grid_june"]
     shorter = replace(family.draw(1), duration_s=110.0)
     drawn = SimpleNamespace(id=family.id, scenario=family.scenario, season=family.season, draw=lambda seed: shorter)
@@ -159,8 +163,12 @@ def test_a_drive_by_the_models_clock_is_repeated_exactly(sumo: None, monkeypatch
             return 0.4 + 1.7 * (len(self._told) % 4)
 
     setup = WatchSetup("grid_june", 1, "slow", clock=Clock.MODEL, latency_s=0.5)
-    with closing(Simulations()) as simulations:
-        first = run_watch("slow", setup, Slow(), simulations=simulations)
+    agent = Slow()
+    with (
+        closing(Simulations()) as simulations,
+        closing(DriveRecorder(tmp_path / "drive", setup, agent)) as recorder,
+    ):
+        first = run_watch("slow", setup, agent, simulations=simulations, watchers=(recorder,))
         again = watched(first.row, first.steps, simulations)
     assert len({step["thought_s"] for step in first.steps}) > 2
     assert not [step for step in compare(first.steps, again.steps) if step.differs]
@@ -170,6 +178,13 @@ def test_a_drive_by_the_models_clock_is_repeated_exactly(sumo: None, monkeypatch
         first.row.acts,
         first.row.score,
     )
+    lines = list(read_road(tmp_path / "drive" / "road.jsonl.gz"))
+    road = [line for line in lines if "at_s" in line]
+    assert lines[-1]["baseline"]
+    assert [round(line["at_s"], 1) for line in road] == first.timeline["time_s"][1:]
+    assert [line["speed_kmh"] for line in road] == first.timeline["speed_kmh"][1:]
+    shown = (tmp_path / "drive" / "shown.jsonl").read_text(encoding="utf-8").splitlines()
+    assert [json.loads(line)["number"] for line in shown] == list(range(len(first.steps)))
 
 
 @pytest.mark.sumo

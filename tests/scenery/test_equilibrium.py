@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
 
 from automotive_cosim import scenarios
 from automotive_cosim.errors import UserError
-from automotive_cosim.scenery.equilibrium import RECORD, AssignmentStep, Options, _is_stuck, equilibrate
+from automotive_cosim.scenery import optimum
+from automotive_cosim.scenery.equilibrium import RECORD, AssignmentStep, Options, equilibrate, is_stuck
 from automotive_cosim.scenery.gap import DrivenTrip, EdgeTimes, Gap, measure
 from automotive_cosim.scenery.variant import settings
 from automotive_cosim.traffic import sumo_programs
@@ -43,15 +45,9 @@ def test_the_gap_is_what_was_lost_as_a_share_of_the_best() -> None:
 
 
 def test_it_ends_once_the_gap_no_longer_falls() -> None:
-    def step(relative: float) -> AssignmentStep:
-        return AssignmentStep(0, gap(relative), 0)
-
-    def gap(relative: float) -> Gap:
-        return Gap(1, 0, 1 + relative, 1.0, 0.0, 0)
-
-    assert not _is_stuck([step(0.3), step(0.2)], gap(0.25))
-    assert not _is_stuck([step(0.3), *[step(0.4)] * 4], gap(0.29))
-    assert _is_stuck([step(0.3), *[step(0.4)] * 4], gap(0.31))
+    assert not is_stuck([0.3, 0.2, 0.25])
+    assert not is_stuck([0.3, *[0.4] * 4, 0.29])
+    assert is_stuck([0.3, *[0.4] * 4, 0.31])
 
 
 def test_the_settings_keep_the_routes() -> None:
@@ -61,7 +57,14 @@ def test_the_settings_keep_the_routes() -> None:
     assert "0.6" not in text
 
 
-NODES = {"west": (0, 0), "fork": (300, 0), "side": (800, 300), "join": (1300, 0), "east": (1600, 0)}
+NODES = {
+    "west": (0, 0),
+    "fork": (300, 0),
+    "gate": (1100, 0),
+    "side": (800, 300),
+    "join": (1300, 0),
+    "east": (1600, 0),
+}
 EDGES = {
     "access": ("west", "fork", 300.0, 3),
     "main": ("fork", "join", 1000.0, 1),
@@ -97,12 +100,18 @@ to_edge = "exit"
 @pytest.fixture
 def jammed(sumo: None, tmp_path: Path) -> Path:
     """Two ways of about the same length, and everybody on the shorter one, at more than a lane can carry."""
+    return two_ways(tmp_path, EDGES, "access main exit", 1.2)
+
+
+def two_ways(tmp_path: Path, drawn: Mapping[str, tuple[str, str, float, int]], route: str, period_s: float) -> Path:
+    """A scenario in which everybody is on one way; the edge ``neck``, if there is one, is slow."""
     folder = tmp_path / "two"
     folder.mkdir()
     nodes = "".join(f'<node id="{name}" x="{x}" y="{y}" type="priority"/>' for name, (x, y) in NODES.items())
     edges = "".join(
-        f'<edge id="{name}" from="{begin}" to="{end}" numLanes="{lanes}" speed="13" length="{length_m}"/>'
-        for name, (begin, end, length_m, lanes) in EDGES.items()
+        f'<edge id="{name}" from="{begin}" to="{end}" numLanes="{lanes}" speed="{5 if name == "neck" else 13}" '
+        f'length="{length_m}"/>'
+        for name, (begin, end, length_m, lanes) in drawn.items()
     )
     (tmp_path / "n.nod.xml").write_text(f"<nodes>{nodes}</nodes>")
     (tmp_path / "n.edg.xml").write_text(f"<edges>{edges}</edges>")
@@ -110,8 +119,8 @@ def jammed(sumo: None, tmp_path: Path) -> Path:
     built, printed = sumo_programs.run("netconvert", [*files, "--no-turnarounds"])
     assert built, printed
     (folder / "two.rou.xml").write_text(
-        '<routes><vType id="car"/><flow id="f" type="car" begin="0" end="900" period="1.2" departLane="best" '
-        'departSpeed="max"><route edges="access main exit"/></flow></routes>'
+        f'<routes><vType id="car"/><flow id="f" type="car" begin="0" end="900" period="{period_s:g}" '
+        f'departLane="best" departSpeed="max"><route edges="{route}"/></flow></routes>'
     )
     (folder / "two.sumocfg").write_text(
         '<configuration><input><net-file value="two.net.xml"/><route-files value="two.rou.xml"/></input>'
@@ -139,6 +148,48 @@ def test_drivers_find_the_other_way(jammed: Path, tmp_path: Path) -> None:
     assert again.relative == pytest.approx(best), "the folder is the step that was kept"
     with pytest.raises(UserError, match="exists"):
         equilibrate(jammed, target, Options(), told.append)
+
+
+def test_others_lose_by_what_a_road_takes_longer_than_when_it_is_calm() -> None:
+    times = EdgeTimes(FREE_S, [trip("x", (10.0, 40.0, 45.0)), trip("y", (310.0, 410.0, 415.0))])
+    assert times.least_s == {"b": 30.0, "d": 5.0}
+    marginal = times.raised({"b": 25.0}, 4.0)
+    assert marginal.at("b", 0) == pytest.approx(30 + 4 * 5)
+    assert marginal.at("b", 1) == pytest.approx(100 + 4 * 75)
+    assert marginal.at("d", 0) == pytest.approx(5.0), "nothing is known of a calm road"
+    assert marginal.at("c", 0) == FREE_S["c"]
+    assert times.at("b", 1) == pytest.approx(100.0)
+
+
+@pytest.mark.slow
+@pytest.mark.long
+def test_routes_that_take_less_in_all_than_those_that_drivers_find(sumo: None, tmp_path: Path) -> None:
+    """The neck of the main way carries less than comes, and the other way takes 83 s longer: drivers queue until
+    that takes as long, though fewer of them on the main way would cost less in all."""
+    longer = EDGES | {
+        "main": ("fork", "gate", 1000.0, 1),
+        "neck": ("gate", "join", 200.0, 1),
+        "out": ("fork", "side", 1300.0, 1),
+        "back": ("side", "join", 1300.0, 1),
+    }
+    folder = two_ways(tmp_path, longer, "access main neck exit", 2.0)
+    found, target = tmp_path / "found", tmp_path / "optimum"
+    options = Options(steps=6, gap=0.01, observe_s=900.0)
+    equilibrate(folder, found, options, lambda step: None)
+    told: list[optimum.OptimumStep] = []
+    compared = optimum.compare(found, target, options, 3, told.append, force=False)
+    assert tuple(told) == compared.steps
+    low, high = compared.interval
+    assert low < compared.price_of_anarchy < high
+    assert 1.03 < compared.price_of_anarchy < 1.2
+    assert compared.kept > 0
+    assert compared.steps[compared.kept].total.total_s < 0.96 * compared.steps[0].total.total_s
+    assert len(compared.equilibrium) == len(compared.optimum) == 3
+    ways = [(path / "equilibrium.rou.xml").read_text().count("access main neck exit") for path in (found, target)]
+    assert ways[1] < ways[0], "fewer take the short way"
+    assert json.loads((target / optimum.RECORD).read_text())["price_of_anarchy"] == compared.price_of_anarchy
+    with pytest.raises(UserError, match="exists"):
+        optimum.compare(found, target, options, 2, told.append, force=False)
 
 
 def test_demand_that_would_be_lost_is_refused(jammed: Path, tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ import http.client
 import json
 import threading
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +19,9 @@ from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.row import as_json
 from automotive_cosim.serve.play import Game
 from automotive_cosim.serve.server import WebServer
-from automotive_cosim.serve.study import Study
+from automotive_cosim.serve.study import PeopleStudy
+from automotive_cosim.studies.plan import StudyPlan
+from automotive_cosim.studies.rows import NOTHING, Branch, Decision, DriveRow, News, OthersTotals
 from automotive_cosim.tasking.task import Dimension, Module
 
 HOSTILE = "<img src=x onerror=\"document.title='broken in'\">"
@@ -104,7 +106,41 @@ def write_record(folder: Path, steps: int = 4, *, finished: bool = True, **chang
     return folder
 
 
-def write_evaluation(folder: Path) -> Path:
+def write_drive(folder: Path) -> Path:
+    """A record of ``drive``: one event that was met, one that was missed, and a look-alike."""
+    (folder / "screenshots").mkdir(parents=True)
+    shown = [
+        {
+            **{
+                "number": number,
+                "picture": min(number, 1),
+                "at_s": 2.0 * number,
+                "local_time": "",
+                "words": "waits",
+            },
+            **{"action": None, "target": None, "feedback": {"code": "ok", "text": ""}, "thought": "", "stages": []},
+            **{"context": "", "speed_kmh": 72.0},
+        }
+        for number in range(4)
+    ]
+    (folder / "shown.jsonl").write_text("".join(json.dumps(line) + "\n" for line in shown), encoding="utf-8")
+    for number in range(2):
+        Image.new("RGB", (320, 180), (90, 40 * number, 160)).save(folder / "screenshots" / f"step_{number:03d}.jpg")
+    baseline = {"baseline": [[float(s), 15.0 * s, 0.0, 90.0, 15.0] for s in range(8)]}
+    (folder / "road.jsonl.gz").write_bytes(packed([*road(range(8)), baseline]))
+    events = [
+        {"kind": kind, "words": kind, "bait": bait, "weight": 1.0, "outcome": outcome, "observable_s": 1.0,
+         "obliged_s": 2.0, "deadline_s": None if bait else 5.0, "ends_s": 6.0}
+        for kind, bait, outcome in (("limit", False, "hit"), ("rain", False, "missed"), ("dusk", True, "avoided"))
+    ]  # fmt: skip
+    acts = [{"time_s": 3.0, "words": "warns of speed", "worth": "right"}]
+    row = {"family": "grid_june", "scenario": "grid", "agent": "rule-perfect", "model": "none", "seed": 0,
+           "value": 50.0, "events": events, "acts": acts, "end": "watch_over"}  # fmt: skip
+    (folder / "row.json").write_text(json.dumps(row), encoding="utf-8")
+    return folder
+
+
+def write_evaluation(folder: Path, won: tuple[bool, bool] = (True, False)) -> Path:
     (folder / "traces").mkdir(parents=True)
     (folder / "pictures" / "one").mkdir(parents=True)
     plan = {
@@ -118,15 +154,47 @@ def write_evaluation(folder: Path) -> Path:
         EpisodeRow(
             id=name, task="road_speed_80_in_50", half="first", pair="", dimension=Dimension.DRIVING_ALIGNMENT,
             module=Module.ROAD, scenario="grid", agent="oracle", model="none", geo=GeoInput("full"),
-            seed=0, repeat=0, success=won, steps=3, sim_seconds=6.0, parts=PartsHeld(won, True, True, True, True),
+            seed=seed, repeat=0, success=ok, steps=3, sim_seconds=6.0, parts=PartsHeld(ok, True, True, True, True),
         )
-        for name, won in (("one", True), ("two", False))
+        for seed, (name, ok) in enumerate(zip(("one", "two"), won, strict=True))
     ]  # fmt: skip
     text = "".join(json.dumps(as_json(row)) + "\n" for row in rows)
     (folder / "episodes.jsonl").write_text(text, encoding="utf-8")
     trace = [*map(step, range(4)), {"result": result()}]
     (folder / "traces" / "one.jsonl.gz").write_bytes(packed(trace))
     Image.new("RGB", (320, 180)).save(folder / "pictures" / "one" / "step_000.jpg")
+    return folder
+
+
+def write_study(folder: Path) -> Path:
+    """A study of rerouting in the small scenario: a decision with another way, and one of an older version."""
+    plan = StudyPlan(scenario="grid", seeds=(0,), policies=("never", "always"))
+    job = plan.jobs()[0]
+    manifest = {"format": 1, "plan": plan.as_json(), "starts": [{"started": "2026-11-22T18:00:00"}]}
+    branch = Branch(
+        gains=replace(NOTHING, time_s=30.0),
+        totals=NOTHING,
+        others=OthersTotals(count=3, gain_s=-4.0, changed=1, unfinished_stay=0, unfinished=0),
+    )
+    old = Decision(
+        at_s=900.0, edge="cwc0", delay_s=70.0, eta_s=100.0, relative_speed=0.5, complies=True,
+        news=(News(age_s=0.0, stay_s=100.0, delay_s=70.0, offered_s=80.0, branch=0),), own=None, agents={},
+        agents_rerouted=(), branches=(branch,),
+    )  # fmt: skip
+    new = replace(old, at_s=950.0, ways=(("cwc0", "c0c1", "c1c2"), ("cwc0", "c0n0", "n0n1")))
+    row = DriveRow(
+        id=job.id, scenario="grid", share=job.share, seed=0, departure_s=0.0, trip=job.trip.name, stay=NOTHING,
+        decisions=(old, new),
+    )  # fmt: skip
+    folder.mkdir(parents=True)
+    (folder / "manifest.json").write_text(json.dumps(manifest), encoding="utf-8")
+    (folder / "episodes.jsonl").write_text(json.dumps(as_json(row)) + "\n", encoding="utf-8")
+    track = ["id,draw,branch,is_placebo,time_s,x_m,y_m,speed_mps,edge"]
+    for branch_, seconds in (("", 40), ("0", 10)):
+        track += [f"{job.id}-1,0,{branch_},False,{950 + s},{100.0 + s},{200.0},1,a" for s in range(seconds + 1)]
+    (folder / "trajectories").mkdir()
+    text = gzip.compress("\n".join([*track, ""]).encode())
+    (folder / "trajectories" / f"{job.id}.csv.gz").write_bytes(text)
     return folder
 
 
@@ -168,7 +236,7 @@ def serving() -> Iterator[Callable[..., Browser]]:
     servers: list[tuple[WebServer, threading.Thread]] = []
 
     def start(
-        *folders: Path, host: str = "127.0.0.1", game: Game | None = None, study: Study | None = None
+        *folders: Path, host: str = "127.0.0.1", game: Game | None = None, study: PeopleStudy | None = None
     ) -> Browser:
         server = WebServer(list(folders), host, game=game, study=study)
         thread = threading.Thread(target=server.serve_forever, args=(0.01,))

@@ -8,17 +8,23 @@ import os
 import re
 import shutil
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from automotive_cosim.agents.oracle import Oracle
+from automotive_cosim.contracts import Action, ActionType
+from automotive_cosim.episode.episode import Episode
+from automotive_cosim.run.episode import Shot
 from automotive_cosim.run.road_recorder import mark_as_written
-from automotive_cosim.serve.dealing import StudyPlan
+from automotive_cosim.serve.dealing import PeoplePlan
 from automotive_cosim.serve.play import Game
-from automotive_cosim.serve.study import Study
+from automotive_cosim.serve.study import PeopleStudy
+from automotive_cosim.tasking.task import Module
 
-from .conftest import HOSTILE, Browser, result, road, step, write_evaluation, write_record
+from .conftest import HOSTILE, Browser, result, road, step, write_drive, write_evaluation, write_record, write_study
 
 playwright = pytest.importorskip("playwright.sync_api", reason="pip install 'automotive-cosim[browser]'")
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
@@ -166,30 +172,150 @@ def test_results_are_filtered_down_to_a_step(serving: Serving, opened: Callable[
     expect(page.get_by_role("heading", name="Step 1: taps “Warn driver”")).to_be_visible()
 
 
+PLAYED = {
+    Module.MAPS: "maps_voice_off",
+    Module.HVAC: "hvac_fan_max",
+    Module.ROAD: "road_heavy_foot",
+    Module.PHENOMENON: "phenomenon_wiper_pace",
+    Module.MEDIA: "media_forever",
+    Module.APPS: "apps_reset_trip",
+    Module.SYSTEM: "system_brightness",
+    Module.COMMS: "comms_leave_me_alone",
+}
+"""A task of each module, which runs in the small scenario."""
+
+
+class Overseen(Game):
+    """Knows the episode, so that a test can tell what would be right."""
+
+    episode: Episode
+
+    def handed_over(self, episode: Episode, shot: Shot) -> None:
+        self.episode = episode
+        super().handed_over(episode, shot)
+
+    @property
+    def acts(self) -> int:
+        """Acts so far, without the seconds that went by."""
+        actions = (step.action for step in self.episode.steps[1:])
+        return sum(action is not None and action.action_type is not ActionType.WAIT for action in actions)
+
+
+@pytest.fixture
+def hasty(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A played second takes a fifth of one."""
+    monkeypatch.setattr("automotive_cosim.serve.person.TICK_S", 0.2)
+
+
+def perform(page: Any, action: Action, game: Overseen) -> int:
+    """An action by hand; returns how many acts it takes."""
+    if action.action_type is ActionType.OPEN_APP:  # by the dock, or by a tile
+        ids = {each.resource_id: each for each in game.episode.elements}
+        app, dock = f"apps.{action.app_name}", f"dock.{action.app_name}"
+        taps = [dock] if dock in ids else ["dock.apps", app]
+        for name in taps:
+            while name not in (ids := {each.resource_id: each for each in game.episode.elements}):
+                page.wait_for_timeout(20)
+            box = ids[name].bbox_pixels
+            x, y = (box.x_min + box.x_max) // 2, (box.y_min + box.y_max) // 2
+            perform(page, Action(ActionType.CLICK, x=x, y=y), game)
+        return len(taps)
+    frame = page.locator(".frame").bounding_box()
+
+    def at(x: float, y: float) -> tuple[float, float]:
+        return frame["x"] + x / 1280 * frame["width"], frame["y"] + y / 720 * frame["height"]
+
+    match action.action_type:
+        case ActionType.CLICK:
+            page.mouse.click(*at(action.x or 0, action.y or 0))
+        case ActionType.INPUT_TEXT:
+            page.mouse.click(*at(action.x or 0, action.y or 0))
+            page.get_by_label("Type into").fill(action.text)
+            page.get_by_role("button", name="Type it").click()
+        case ActionType.SWIPE:
+            across, down = {"left": (-1, 0), "right": (1, 0), "up": (0, -1), "down": (0, 1)}[str(action.direction)]
+            far, (x, y) = action.distance_px or 300, (action.x or 0, action.y or 0)
+            page.mouse.move(*at(x, y))
+            page.mouse.down()
+            page.mouse.move(*at(x + across * far, y + down * far), steps=3)
+            page.mouse.up()
+        case ActionType.SCROLL:
+            page.mouse.move(*at(640, 400))
+            page.mouse.wheel(0, 100 if action.direction == "down" else -100)
+        case ActionType.STATUS:
+            page.get_by_label("Reason for declining").select_option(str(action.reason or "none"))
+            names = {"complete": "Done", "not_needed": "Not needed", "infeasible": "Cannot or must not"}
+            page.get_by_role("button", name=names[str(action.goal_status)]).click()
+        case _:
+            raise AssertionError(f"no hand for {action}")
+    return 1
+
+
 @pytest.mark.sumo
-def test_a_person_plays_by_keyboard_and_mouse(serving: Serving, opened: Callable[..., Any], tmp_path: Path) -> None:
+@pytest.mark.usefixtures("hasty")
+def test_the_reference_solution_of_a_task_of_each_module_succeeds_by_hand(
+    serving: Serving, opened: Callable[..., Any], tmp_path: Path
+) -> None:
+    assert set(PLAYED) == set(Module)
+    game = Overseen(tmp_path, scenario="grid")
+    page = opened(serving(tmp_path, game=game))
+    for task in PLAYED.values():
+        page.get_by_role("link", name="Play").click()
+        page.get_by_label("Task or drive").select_option(task)
+        page.get_by_label("Your code name").fill("blue heron")
+        page.get_by_label("Seed").fill("0")
+        page.get_by_role("button", name="Begin").click()
+        expect(page.locator(".said")).to_be_visible(timeout=60_000)
+        episode, oracle = game.episode, Oracle()
+        oracle.brief(episode.instance, drawn=episode.world.cockpit.drawn)
+        page.locator(".frame").scroll_into_view_if_needed()
+        while game.scene().state == "acting":
+            action, before = oracle.act(replace(episode.observation, elements=None)), game.acts
+            hands = perform(page, action, game)
+            while game.acts < before + hands:
+                page.wait_for_timeout(20)
+            if action.action_type is ActionType.STATUS:
+                break
+        page.get_by_role("link", name="See the verdict").click(timeout=60_000)
+        expect(page.locator(".pill")).to_have_text("Success")
+        expect(page.locator(".head")).to_contain_text("human · blue heron")
+
+
+@pytest.mark.sumo
+@pytest.mark.usefixtures("hasty")
+def test_a_person_practises_by_keyboard_alone(serving: Serving, opened: Callable[..., Any], tmp_path: Path) -> None:
     page = opened(serving(tmp_path, game=Game(tmp_path, scenario="grid")), "#/play?task=hvac_fan_max")
-    page.get_by_label("Your code name").fill("blue heron")
-    page.get_by_role("button", name="Begin").click()
+    page.get_by_role("checkbox").focus()
+    page.keyboard.press("Space")
+    page.get_by_role("button", name="Begin").focus()
+    page.keyboard.press("Enter")
     expect(page.locator(".said")).to_be_visible(timeout=60_000)
+    page.get_by_role("button", name="Pause").focus()
+    page.keyboard.press("Enter")
+    expect(page.locator(".playing [role=status]")).to_contain_text("the clock stands")
+    page.get_by_role("button", name="Go on").focus()
+    page.keyboard.press("Enter")
     page.get_by_role("button", name="Climate", exact=True).first.focus()
     page.keyboard.press("Enter")
     fan = page.get_by_role("button", name="Max: Fan at full speed")
     expect(fan).to_have_count(1)
-    box = fan.bounding_box()
-    page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    fan.focus()
+    page.keyboard.press("Enter")
     expect(page.locator(".playing [role=status]")).to_contain_text("Max: done")
-    page.get_by_role("button", name="Done").click()
+    page.keyboard.press("Escape")
+    expect(fan).to_have_count(0)
+    page.get_by_role("button", name="Done").focus()
+    page.keyboard.press("Enter")
     page.get_by_role("link", name="See the verdict").click(timeout=60_000)
     expect(page.locator(".pill")).to_have_text("Success")
-    expect(page.locator(".head")).to_contain_text("human · blue heron")
 
 
 @pytest.mark.sumo
+@pytest.mark.usefixtures("hasty")
 def test_two_people_take_part_in_a_study_at_once_and_a_new_server_goes_on(
     serving: Serving, opened: Callable[..., Any], tmp_path: Path
 ) -> None:
-    plan = StudyPlan(("heron", "fox"), ("hvac_fan_max", "hvac_fan_percent"), scenario="grid")
+    plan = PeoplePlan(("heron", "fox"), ("hvac_fan_max", "hvac_fan_percent"), scenario="grid")
     folder = tmp_path / "mine"
 
     def sit_down(browser: Browser, name: str) -> Any:
@@ -204,7 +330,7 @@ def test_two_people_take_part_in_a_study_at_once_and_a_new_server_goes_on(
             box.get_by_label("mostly").check()
         page.get_by_role("button", name="Go on").click()
 
-    first = Study(plan, folder)
+    first = PeopleStudy(plan, folder)
     browser = serving(tmp_path, study=first)
     pages = [sit_down(browser, name) for name in plan.people]
     for page in pages:
@@ -222,7 +348,7 @@ def test_two_people_take_part_in_a_study_at_once_and_a_new_server_goes_on(
     expect(pages[0].locator(".said")).to_be_visible(timeout=60_000)
     first.close()  # as the server ends, in the middle of an episode
 
-    second = Study(plan, folder)
+    second = PeopleStudy(plan, folder)
     browser = serving(tmp_path, study=second)
     pages = [sit_down(browser, name) for name in plan.people]
     answer(pages[1])
@@ -244,17 +370,106 @@ def test_two_people_take_part_in_a_study_at_once_and_a_new_server_goes_on(
     expect(owner.get_by_text("fox: 1 of 2")).to_be_visible()
 
 
+def test_a_drive_is_replayed_with_its_events_on_the_slider(
+    serving: Serving, opened: Callable[..., Any], tmp_path: Path
+) -> None:
+    write_drive(tmp_path / "drive")
+    page = opened(serving(tmp_path))
+    expect(page.locator(".pill")).to_have_text("Score 50")
+    page.get_by_role("link", name="grid_june").click()
+    expect(page.locator(".pill")).to_have_text("Score 50 · 1 of 2 events met")
+    expect(page.locator(".marks .span")).to_have_count(3)
+    page.get_by_role("button", name="event limit").click()
+    expect(page.locator(".clock")).to_have_text("+1 s")
+    page.get_by_role("button", name="deadline of limit").click()
+    expect(page.locator(".clock")).to_have_text("+5 s")
+    expect(page.locator(".ghost")).to_be_visible()
+    expect(page.locator(".screen")).to_have_attribute("src", re.compile(r"/pictures/1$"))
+    expect(page.get_by_role("heading", name="Step 2")).to_be_visible()
+
+
+def test_the_ways_of_a_decision_are_on_one_road(
+    serving: Serving, opened: Callable[..., Any], tmp_path: Path
+) -> None:
+    write_study(tmp_path / "reroute")
+    page = opened(serving(tmp_path))
+    page.get_by_role("link", name="reroute").click()
+    expect(page.locator("tbody tr")).to_have_count(2)
+    page.get_by_label("Which decisions").select_option("worse")
+    expect(page.locator("tbody tr")).to_have_count(0)
+    page.get_by_label("Which decisions").select_option("better")
+    page.locator("tbody a").nth(1).click()
+    expect(page.get_by_role("heading", level=1)).to_have_text("avenue at 950 s")
+    expect(page.locator(".way")).to_have_count(2)
+    assert page.locator(".street").count() > 20
+    page.get_by_label("Seconds since the decision").fill("12")
+    expect(page.get_by_role("status")).to_have_text("+12 s · way 1: there after 10 s")
+    expect(page.locator(".car")).to_have_count(2)
+    expect(page.locator("tbody tr").nth(1)).to_contain_text("way 1+30 s")
+    expect(page.locator("tbody tr").nth(1)).to_contain_text("−4 s1always")
+    page.go_back()
+    page.locator("tbody a").first.click()
+    expect(page.get_by_text("older than the record of the ways")).to_be_visible()
+
+
+def test_a_task_shows_its_reference_solution_as_pictures(
+    serving: Serving, opened: Callable[..., Any], tmp_path: Path
+) -> None:
+    write_record(tmp_path / "run")
+    write_record(tmp_path / "lost", success=False, half="second")
+    page = opened(serving(tmp_path), "#/tasks/road_speed_80_in_50")
+    expect(page.locator(".film li")).to_have_count(4)
+    expect(page.locator(".film li").nth(1)).to_contain_text("1  taps “Warn driver”")
+    assert page.locator(".film img").first.evaluate("image => image.decode().then(() => image.naturalWidth)") == 320
+    expect(page.get_by_text("--half second --agent oracle")).to_be_visible()
+    page.get_by_role("link", name="See it on the road").click()
+    expect(page.locator(".pill")).to_have_text("Success")
+
+
+def test_two_evaluations_are_compared_down_to_a_step(
+    serving: Serving, opened: Callable[..., Any], tmp_path: Path
+) -> None:
+    write_evaluation(tmp_path / "mine")
+    write_evaluation(tmp_path / "yours", won=(False, True))
+    page = opened(serving(tmp_path))
+    page.get_by_role("link", name="mine").click()
+    page.get_by_label("Compare with").select_option(label="yours")
+    expect(page.get_by_role("heading", level=1)).to_have_text("mine and yours")
+    expect(page.get_by_role("status")).to_contain_text("only the first 1, only the second 1")
+    page.get_by_label("Which instances").select_option("worse")
+    expect(page.locator("tbody tr")).to_have_count(1)
+    expect(page).to_have_url(re.compile("show=worse"))
+    page.get_by_role("link", name="step by step").click()
+    expect(page.locator(".pill")).to_have_text(["Success", "Success"])
+    page.get_by_role("button", name="Step ›").click()
+    page.get_by_role("button", name="Step ›").click()
+    expect(page.locator(".clock")).to_have_text("+4 s")
+    expect(page.locator(".steps [aria-current]")).to_have_count(2)
+    page.reload()
+    expect(page.locator(".clock")).to_have_text("+4 s")
+
+
 def test_every_page_fits_in_light_and_dark(serving: Serving, opened: Callable[..., Any], tmp_path: Path) -> None:
     write_record(tmp_path / "run", goal="x" * 300)
     write_evaluation(tmp_path / "mine")
-    study = Study(StudyPlan(("heron",), ("hvac_fan_max",)), tmp_path / "study")
+    write_drive(tmp_path / "drive")
+    write_study(tmp_path / "reroute")
+    study = PeopleStudy(PeoplePlan(("heron",), ("hvac_fan_max",)), tmp_path / "study")
     browser = serving(tmp_path, game=Game(tmp_path), study=study)
     records = [each for each in browser("/api/runs").json["records"] if each["name"] != "study"]
-    run, mine = (next(each["id"] for each in records if each["kind"] == kind) for kind in ("run", "evaluation"))
+    run, mine, drive, reroute = (
+        next(each["id"] for each in records if each["kind"] == kind)
+        for kind in ("run", "evaluation", "drive", "study")
+    )
     pages = (
         "#/",
         f"#/run/{run}",
+        f"#/run/{drive}",
         f"#/results/{mine}",
+        f"#/compare/{mine}/{mine}",
+        f"#/beside/{mine}/one/{mine}/one",
+        f"#/decisions/{reroute}",
+        f"#/decision/{reroute}/share0.6-seed0-at0-avenue-1",
         "#/tasks",
         "#/tasks/road_horn_abroad",
         "#/scenarios",

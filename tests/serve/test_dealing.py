@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from automotive_cosim.errors import UserError
-from automotive_cosim.serve.dealing import StudyPlan, deal, read_study, williams
+from automotive_cosim.serve.dealing import PeoplePlan, deal, read_study, williams
 from automotive_cosim.tasks import CATALOGUE
 
 PAIRS = [task.id for task in CATALOGUE.values() if task.second][:4]
@@ -18,7 +18,7 @@ SINGLES = [task.id for task in CATALOGUE.values() if not task.second][:4]
 
 def dealt(people: int, tasks: list[str], order_seed: int = 0):  # type: ignore[no-untyped-def]
     names = tuple(f"person {number}" for number in range(people))
-    plan = StudyPlan(names, tuple(tasks), order_seed=order_seed)
+    plan = PeoplePlan(names, tuple(tasks), order_seed=order_seed)
     jobs = plan.plan.jobs()
     return jobs, deal(jobs, names, order_seed)
 

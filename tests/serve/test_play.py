@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -14,10 +16,15 @@ import pytest
 from automotive_cosim.cockpit.actions import perform
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCode, Observation
+from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.errors import AgentError, UserError
+from automotive_cosim.report.drives import write_drives
 from automotive_cosim.report.evaluation import write_report
 from automotive_cosim.report.results import read_results
+from automotive_cosim.run.rerun import rerun
 from automotive_cosim.run.road import read_record
+from automotive_cosim.run.store import read_rows
+from automotive_cosim.run.watch_row import WatchRow
 from automotive_cosim.serve.person import WAITING, Person, Preview
 from automotive_cosim.serve.play import Game
 
@@ -195,6 +202,8 @@ def test_a_person_is_judged_as_an_agent_and_can_leave(serving: Serving, tmp_path
     write_report(tmp_path / "people")
     assert "blue heron" in (tmp_path / "people" / "report.html").read_text(encoding="utf-8")
     assert read_record(tmp_path / "people" / "pictures" / rows[0].id / "road.jsonl.gz").seconds
+    again = rerun(tmp_path / "people", rows[0].id)
+    assert not [step for step in again if step.differs], "neither looking nor showing an act at once changed it"
 
     assert post(browser, "/api/play/start", {"task": "hvac_fan_max", "practice": True}).status == 200
     until("acting")
@@ -209,3 +218,34 @@ def test_a_person_is_judged_as_an_agent_and_can_leave(serving: Serving, tmp_path
     assert len(read_results(tmp_path / "people").rows) == 2, "practice gives no row"
     (folder,) = (path for path in tmp_path.iterdir() if path.name != "people")
     assert {path.name for path in folder.iterdir()} >= {"episode.json", "episode.webp", "summary.html"}
+
+
+@pytest.mark.slow
+@pytest.mark.sumo
+def test_a_drive_is_played_and_its_row_is_kept(
+    serving: Serving, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    family = FAMILIES["grid_june"]
+    shorter = replace(family.draw(1), duration_s=110.0)
+    drawn = SimpleNamespace(id=family.id, scenario=family.scenario, season=family.season, draw=lambda seed: shorter)
+    monkeypatch.setitem(FAMILIES, family.id, drawn)  # type: ignore[call-overload]
+    monkeypatch.setattr("automotive_cosim.serve.person.TICK_S", 0.02)
+    browser = serving(tmp_path, game=Game(tmp_path))
+    assert post(browser, "/api/play/start", {"drive": "no_such", "name": "heron"}).status == 422
+    assert post(browser, "/api/play/start", {"drive": "grid_june", "name": "heron", "seed": 1}).status == 200
+    scene = browser("/api/play").json
+    while scene["state"] not in ("over", "failed"):
+        scene = browser(f"/api/play?seen={scene['version']}").json
+    assert scene["error"] == ""
+    (row,) = read_rows(tmp_path / "people-drives", WatchRow).values()
+    assert (row.agent, row.model, row.end) == ("human", "heron", "watch_over")
+    assert row.score is not None
+    results = browser(f"/api/evaluations/{scene['record']}").json
+    assert (results["kind"], results["rows"][0]["has_road"]) == ("drives", True)
+    run = browser(f"/api/runs/{scene['record']}/episodes/{row.id}").json
+    assert (run["kind"], run["task"], run["value"]) == ("drive", "grid_june", row.value)
+    steps = browser(f"/api/runs/{scene['record']}/episodes/{row.id}/steps").json["steps"]
+    assert len(steps) == row.steps + 1
+    picture = f"/api/runs/{scene['record']}/episodes/{row.id}/pictures/{steps[-1]['picture']}"
+    assert browser(picture).headers["Content-Type"] == "image/jpeg"
+    write_drives(tmp_path / "people-drives")

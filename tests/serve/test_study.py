@@ -18,12 +18,12 @@ from automotive_cosim.run.collect import failed, planned
 from automotive_cosim.run.episode_row import PartsHeld
 from automotive_cosim.run.plan import EpisodeJob
 from automotive_cosim.serve import play
-from automotive_cosim.serve.dealing import StudyPlan
-from automotive_cosim.serve.study import LOG, QUESTIONS, Study
+from automotive_cosim.serve.dealing import PeoplePlan
+from automotive_cosim.serve.study import LOG, QUESTIONS, PeopleStudy
 
 from .conftest import Browser
 
-PLAN = StudyPlan(("heron", "fox"), ("road_speed_80_in_50", "hvac_fan_max"))
+PLAN = PeoplePlan(("heron", "fox"), ("road_speed_80_in_50", "hvac_fan_max"))
 ANSWERS = dict.fromkeys(QUESTIONS, 4)
 
 
@@ -41,7 +41,7 @@ def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(play.Game, "begin", begin)
 
 
-def finish(study: Study, seat: str) -> list[str]:
+def finish(study: PeopleStudy, seat: str) -> list[str]:
     phases = []
     while (phase := study.turn(seat)["phase"]) != "over":
         phases.append(phase)
@@ -54,7 +54,7 @@ def finish(study: Study, seat: str) -> list[str]:
 
 def test_a_study_is_resumed_and_becomes_results_and_an_export(tmp_path: Path) -> None:
     folder = tmp_path / "mine"
-    study = Study(PLAN, folder)
+    study = PeopleStudy(PLAN, folder)
     heron = study.join("heron")
     assert "verdicts" not in study.turn(heron)
     study.begin(heron)
@@ -65,7 +65,7 @@ def test_a_study_is_resumed_and_becomes_results_and_an_export(tmp_path: Path) ->
     with (folder / LOG).open("ab") as log:
         log.write(b'{"at": "2026-')  # a kill in the middle of a line
 
-    study = Study(PLAN, folder)
+    study = PeopleStudy(PLAN, folder)
     with pytest.raises(UserError, match="sit down again"):
         study.turn(heron)
     heron, fox = study.join("heron", heron), study.join("fox")
@@ -90,11 +90,11 @@ def test_a_study_is_resumed_and_becomes_results_and_an_export(tmp_path: Path) ->
     assert [each.model for each in results.contestants] == ["fox", "heron"]
     study.close()
     with pytest.raises(UserError, match="other plan"):
-        Study(replace(PLAN, people=("heron", "fox", "owl")), folder)
+        PeopleStudy(replace(PLAN, people=("heron", "fox", "owl")), folder)
 
 
 def test_a_code_name_is_for_one_window(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    study = Study(PLAN, tmp_path / "mine")
+    study = PeopleStudy(PLAN, tmp_path / "mine")
     with pytest.raises(UserError, match="nobody in this study"):
         study.join("owl")
     seat = study.join("heron")
@@ -112,7 +112,7 @@ def test_a_code_name_is_for_one_window(tmp_path: Path, monkeypatch: pytest.Monke
 
 @pytest.mark.parametrize("wrong", [0, 6, 2.5, "3", True, None])
 def test_an_answer_is_a_number_of_the_scale(tmp_path: Path, wrong: object) -> None:
-    study = Study(PLAN, tmp_path / "mine")
+    study = PeopleStudy(PLAN, tmp_path / "mine")
     seat = study.join("heron")
     with pytest.raises(UserError, match="nothing is asked"):
         study.answer(seat, ANSWERS)
@@ -125,7 +125,7 @@ def test_an_answer_is_a_number_of_the_scale(tmp_path: Path, wrong: object) -> No
 
 def test_who_takes_part_sees_the_study_alone(serving: Callable[..., Browser], tmp_path: Path) -> None:
     (tmp_path / "shown").mkdir()
-    browser = serving(tmp_path / "shown", study=Study(PLAN, tmp_path / "shown" / "mine"))
+    browser = serving(tmp_path / "shown", study=PeopleStudy(PLAN, tmp_path / "shown" / "mine"))
     person = browser.server.people_token
     origin = {"Origin": f"http://127.0.0.1:{browser.server.server_port}"}
 

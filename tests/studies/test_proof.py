@@ -144,20 +144,29 @@ def test_branches_without_a_choice_stay_the_same_to_the_last(tmp_path: Path) -> 
         asked = traffic.branch()
         asked.alternatives(60.0)
         asked.own_choice()
+        watched = traffic.branch()
         futures = [traffic, asked, traffic.branch()]
-        outcomes = [future.settle([group], 0.95, 3600.0) for future in futures]
         for future in futures:
+            future.begin_settling([group], 0.95, 3600.0)
+        outcomes = [future.settled() for future in futures]
+        watched.advance(3600.0)
+        seen, told = watched.state, watched.settle([group], 0.95, 3600.0)
+        for future in (*futures, watched):
             future.close()
+    last = futures[0].state
     assert outcomes[0].is_complete
-    assert futures[0].state.end is EgoEnd.ARRIVED
+    assert last.end is seen.end is EgoEnd.ARRIVED
     assert outcomes[0] == outcomes[1] == outcomes[2]
-    assert futures[0].state == futures[1].state == futures[2].state
+    assert last == futures[1].state == futures[2].state
+    assert told == outcomes[0], "whether anybody reads what the ego sees"
+    assert (seen.time_s, seen.distance_m) == (last.time_s, last.distance_m)
+    assert seen.ahead.route_left_m == last.ahead.route_left_m
     for name in ("tripinfo.xml", "fcd.xml"):
         written = [rows(path) for path in sorted(tmp_path.glob(f"drive-*/{name}"))]
         longest = max(map(len, written))
         whole = [each for each in written if len(each) == longest]
-        assert len(whole) == 3, "the copies that were only asked have ended early"
-        assert whole[0] == whole[1] == whole[2]
+        assert len(whole) == 4, "the copies that were only asked have ended early"
+        assert all(each == whole[0] for each in whole)
 
 
 def rows(path: Path) -> list[bytes]:

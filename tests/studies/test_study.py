@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import csv
+import gzip
 import hashlib
 import json
+import re
+import runpy
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,6 +22,7 @@ from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.row import steady as steady_part
 from automotive_cosim.run.store import read_rows
 from automotive_cosim.studies.batch import run_study
+from automotive_cosim.studies.data import futures
 from automotive_cosim.studies.demand import read_demand
 from automotive_cosim.studies.drive import NO_ROOM
 from automotive_cosim.studies.page import write_study
@@ -26,6 +30,7 @@ from automotive_cosim.studies.plan import StudyPlan
 from automotive_cosim.studies.points import NOT_CLEARED
 from automotive_cosim.studies.results import load_study, read_study
 from automotive_cosim.studies.rows import NOTHING, DriveRow
+from automotive_cosim.studies.tracks import TRACKS
 from automotive_cosim.traffic.chance import Fresh
 
 from .conftest import EDGES, MORE_TRIPS, Draw
@@ -361,6 +366,7 @@ def test_seeds_are_added_only_until_enough_is_known(two_ways: Draw, tmp_path: Pa
 
 AGENTS = """
 from automotive_cosim.contracts import Action, ActionType, GoalStatus
+from automotive_cosim.contracts.ids import resource_id
 
 class Base:
     name, model, channels = "mine", "none", ("elements",)
@@ -382,7 +388,7 @@ class Taps(Base):
         if not self.left:
             return Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE)
         ids = [element.resource_id for element in observation.elements]
-        return Action(ActionType.CLICK, index=ids.index(self.left.pop(0)))
+        return Action(ActionType.CLICK, index=ids.index(resource_id(self.left.pop(0))))
 """
 
 
@@ -392,14 +398,25 @@ def test_an_agent_gains_what_its_taps_do_and_one_that_does_nothing_changes_nothi
     (tmp_path / "mine.py").write_text(AGENTS)
     monkeypatch.chdir(tmp_path)
     policies = ("never", "always", "agent:mine:Idle", "agent:mine:Taps")
-    plan = StudyPlan(str(two_ways()), (0.0,), seeds=(0,), per_drive=1, policies=policies, agent_steps=6)
+    plan = StudyPlan(
+        str(two_ways()),
+        (0.0,),
+        seeds=(0,),
+        per_drive=1,
+        policies=policies,
+        agent_steps=6,
+        replicates=2,
+        trajectories=True,
+    )
     run_study(plan, tmp_path / "agent")
     study = read_study(tmp_path / "agent")
     (point,) = study.decisions
     decision = point.decision
-    idle = decision.branches[decision.agents["mine:Idle"]]
-    assert idle.gains == NOTHING
-    assert idle.others.changed == 0
+    (again,) = decision.replicates
+    for draw in (decision, again):
+        idle = draw.branches[decision.agents["mine:Idle"]]
+        assert idle.gains == NOTHING
+        assert idle.others.changed == 0
     taps = decision.branches[decision.agents["mine:Taps"]]
     always = decision.branches[decision.news[0].branch]
     assert taps.totals == always.totals, "the way is the same, wherever on the first road it was chosen"
@@ -407,6 +424,43 @@ def test_an_agent_gains_what_its_taps_do_and_one_that_does_nothing_changes_nothi
     turned = {each.policy: each.rerouted for each in study.choices}
     assert turned["agent:mine:Taps"]
     assert not turned["agent:mine:Idle"]
+    last_s = {}
+    with gzip.open(tmp_path / "agent" / TRACKS / f"{point.drive.id}.csv.gz", "rt") as file:
+        for row in csv.DictReader(file):
+            last_s[row["id"], int(row["draw"]), row["branch"]] = float(row["time_s"])
+    driven = list(futures(study))
+    assert len(last_s) == len(driven) == 2 * (1 + len(decision.branches))
+    for each in driven:
+        if each.branch is not None:
+            kept_s, own_s = (last_s[each.id, each.draw, branch] for branch in ("", str(each.branch)))
+            assert kept_s - own_s == pytest.approx(each.gain.time_s), "the tracks end when the drives do"
+
+
+ANSWERS = {
+    "chance": r"1 branches, each driven 2 to 2 times\n.*within a decision: \d",
+    "gain": r"always +\+31\.\d s ± nan, 1 decisions of 1 seeds",
+    "policy": r"always +1\.0 +31\.",
+    "ways": r"branch 0: .*out, back.*\nkept route: .*main",
+    "who_pays": r"the ego gains: 2 futures, mean \+31",
+}
+
+
+def test_every_question_has_a_script_that_answers_it(
+    small: StudyPlan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scripts = sorted((Path(__file__).parents[2] / "docs/examples/studies").glob("*.py"))
+    assert [path.stem for path in scripts] == sorted(ANSWERS)
+    plan = replace(small, replicates=2, whole_drives=True, trajectories=True, policies=("never", "always"))
+    run_study(plan, tmp_path / "study")
+    write_study(tmp_path / "study")
+    for path in scripts:
+        monkeypatch.setattr("sys.argv", [str(path), str(tmp_path / "study")])
+        capsys.readouterr()
+        runpy.run_path(str(path))
+        assert re.search(ANSWERS[path.stem], capsys.readouterr().out), path.stem
+    page = (tmp_path / "study/decisions.html").read_text(encoding="utf-8")
+    for word in ("The news expected", "kept route", "branch 0", "always", "+31", "<polyline"):
+        assert word in page
 
 
 @pytest.mark.parametrize("name", ["t3a", "asurada"])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from automotive_cosim.cockpit.people import Thread
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasking.moves import Do, Tap, TapUntil
 from automotive_cosim.tasking.task import Suite, Task
@@ -14,7 +15,7 @@ ONE_BY_ONE = pytest.mark.parametrize("task", HARD, ids=lambda task: task.id)
 
 
 def test_the_suite_is_large_enough_and_named_apart():
-    assert len(HARD) >= 30
+    assert len(HARD) >= 80
     assert all(task.id.startswith("hard_") for task in HARD)
     assert not any(task.id.startswith("hard_") for task in CATALOGUE.of(Suite.STANDARD))
 
@@ -59,6 +60,19 @@ def test_a_person_has_the_time(task: Task):
         )
         acts = sum(taps) - sum(isinstance(move, Do) for move in half.moves)
         assert 1.5 * acts + waits <= half.deadline.seconds <= waits + 12 * acts
+
+
+@ONE_BY_ONE
+def test_a_task_needs_the_picture_if_it_has_a_photo(task: Task):
+    sent = [thread for name in task.halves for thread in task.half(name).start.belongings.threads]
+    assert task.needs_picture is any(thread.photo for thread in sent if isinstance(thread, Thread))
+
+
+def test_some_tasks_need_the_picture_and_come_in_pairs():
+    pictured = [task for task in HARD if task.needs_picture]
+    assert len(pictured) >= 8
+    assert all(task.second for task in pictured)
+    assert not any(task.needs_picture for task in CATALOGUE.of(Suite.STANDARD))
 
 
 def test_goals_differ_from_each_other_and_from_the_standard_suite():

@@ -15,6 +15,7 @@ from automotive_cosim.cockpit import actions
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.language import Language
 from automotive_cosim.cockpit.signals import ACTUATORS, HMI, difference, named
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import ActionType, Answer, Feedback, FeedbackCode, Observation, RoadNetwork
 from automotive_cosim.episode.counterfactual import counterfactual
 from automotive_cosim.episode.situation import PARKED
@@ -27,6 +28,13 @@ from automotive_cosim.tasks import CATALOGUE
 from ..cockpit.conftest import outside, town
 
 HALVES = [(task, name) for task in CATALOGUE.values() for name in task.halves]
+OTHER_SIZES = (ScreenSize.WIDE, ScreenSize.PORTRAIT)
+SAMPLED = [
+    pytest.param(task, "first", size, id=f"{task.id}-{size}")
+    for module in sorted({task.module for task in CATALOGUE.values()})
+    for task, size in zip([task for task in CATALOGUE.values() if task.module == module], OTHER_SIZES, strict=False)
+]
+"""Two tasks of every module, one on each of the other screens."""
 SPOKEN = [
     pytest.param(task, half, language, id=f"{task.id}-{half}-{language}")
     for number, (task, half) in enumerate((task, half) for task, half in HALVES if task.spoken)
@@ -100,8 +108,16 @@ def _taken_over(
     return instance, cockpit
 
 
-def _solved(instance: Instance, cockpit: Cockpit, way: tuple[Move, ...], *, by_pixels: bool = False) -> Solved:
+def _solved(
+    instance: Instance,
+    cockpit: Cockpit,
+    way: tuple[Move, ...],
+    *,
+    by_pixels: bool = False,
+    size: ScreenSize = ScreenSize.STANDARD,
+) -> Solved:
     start, car = instance.half.start, cockpit.copy()
+    car.fit(size)
     oracle, feedback = Oracle(), Feedback(FeedbackCode.NONE, "")
     oracle.reset(instance.goal)
     oracle.brief(instance, way, drawn=car.drawn)
@@ -164,6 +180,16 @@ def test_the_picture_alone_is_enough(played):
     """By points alone, with no text but what is drawn, the reference solution comes to the same."""
     instance, cockpit, listed = played
     pictured = _solved(instance, cockpit, instance.half.moves, by_pixels=True)
+    assert instance.half.goal.holds(pictured.moments[0], pictured.moments[-1], pictured.moments)
+    assert pictured.cockpit.commands() == listed.cockpit.commands()
+
+
+@pytest.mark.parametrize(("task", "half", "size"), SAMPLED)
+def test_any_screen_is_enough(task, half, size, network):
+    """By points alone on another screen, a reference solution comes to the same as by the list on the usual one."""
+    instance, cockpit = _taken_over(task, half, network)
+    listed = _solved(instance, cockpit, instance.half.moves)
+    pictured = _solved(instance, cockpit, instance.half.moves, by_pixels=True, size=size)
     assert instance.half.goal.holds(pictured.moments[0], pictured.moments[-1], pictured.moments)
     assert pictured.cockpit.commands() == listed.cockpit.commands()
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.language import translated
 from automotive_cosim.cockpit.screens import apps, body, settings, tools
 from automotive_cosim.cockpit.screens.cabin import cabin
 from automotive_cosim.cockpit.screens.climate import climate, comfort
+from automotive_cosim.cockpit.screens.companion import companion
 from automotive_cosim.cockpit.screens.diary import appointment
 from automotive_cosim.cockpit.screens.figure import figure
 from automotive_cosim.cockpit.screens.frame import APPS, DOCK, PART_OF, callouts, dock, status_bar
@@ -17,6 +17,7 @@ from automotive_cosim.cockpit.screens.keyboard import focused, keyboard, uncover
 from automotive_cosim.cockpit.screens.map import map_screen
 from automotive_cosim.cockpit.screens.media import media, playlist
 from automotive_cosim.cockpit.screens.outside import outside
+from automotive_cosim.cockpit.screens.parts import room
 from automotive_cosim.cockpit.screens.person import contact, thread
 from automotive_cosim.cockpit.screens.phone import phone
 from automotive_cosim.cockpit.screens.safety import emergency, safety
@@ -25,7 +26,6 @@ from automotive_cosim.cockpit.screens.vehicle import assistance, vehicle
 from automotive_cosim.cockpit.screens.way import explore, place, route
 from automotive_cosim.cockpit.signals import HMI
 from automotive_cosim.cockpit.state import State
-from automotive_cosim.cockpit.theme import SCREEN_HEIGHT, SCREEN_WIDTH
 from automotive_cosim.cockpit.widgets import Screen, Widget
 
 SCREENS: dict[str, Callable[[State], tuple[Widget, ...]]] = {
@@ -45,6 +45,7 @@ SCREENS: dict[str, Callable[[State], tuple[Widget, ...]]] = {
     "doors": body.doors,
     "seats": body.seats,
     "mirrors": body.mirrors,
+    "interior": body.interior,
     "outside": outside,
     "media": media,
     "playlist": playlist,
@@ -77,13 +78,17 @@ def picture(state: State) -> Screen:
     """The widget tree of the whole display: what is always there first, so that it keeps its place in the list."""
     language = state.signals[HMI.LANGUAGE]
     bar, lower = tuple(translated(widget, language) for widget in status_bar(state)), dock(state)
+    beside = state.size.beside(room(state.screen))
     upper: tuple[Widget, ...] = (*callouts(state), *SCREENS[state.screen](state))
+    if beside is not None:
+        upper = (*upper, *companion(beside, state))
     field = focused(upper) if state.is_typing else None
     above: tuple[Widget, ...] = ()
     if field is not None:
-        upper, lower, above = tuple(uncovered(upper)), (), (keyboard(field, state),)
+        upper, lower, above = tuple(uncovered(upper, state.size.keyboard)), (), (keyboard(field, state),)
     return Screen(
-        rect=Rect(0, 0, SCREEN_WIDTH, SCREEN_HEIGHT),
+        rect=state.size.whole,
+        dock=state.size.dock,
         night=state.signals[HMI.DAY_NIGHT] == "NIGHT",
         children=(*bar, *lower, *(translated(widget, language) for widget in upper), *above),
     )

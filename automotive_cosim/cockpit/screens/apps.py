@@ -8,10 +8,10 @@ from automotive_cosim.cockpit.messages import Put, Show
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.screens.frame import DOCK
 from automotive_cosim.cockpit.screens.notices import wanting
-from automotive_cosim.cockpit.screens.parts import CONTENT, note, rows, title
+from automotive_cosim.cockpit.screens.parts import content, note, rows, title
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
-from automotive_cosim.cockpit.widgets import Button, Card, Choice, Row, Widget
+from automotive_cosim.cockpit.widgets import Button, Card, Row, Widget
 
 
 def apps(state: State) -> tuple[Widget, ...]:
@@ -25,17 +25,17 @@ def apps(state: State) -> tuple[Widget, ...]:
     ]
     return (
         rows(
-            CONTENT,
+            content(state),
             "apps.all",
             "Apps",
             state,
             len(offered),
-            lambda index, cell: Choice(
+            lambda index, cell: Button(
                 rect=cell,
                 key=f"apps.{offered[index][0]}",
                 text=offered[index][1],
                 icon=offered[index][2],
-                look="boxed",
+                icon_size=44,
                 stacked=True,
                 style=Type.STRONG,
                 on_tap=Show(offered[index][0]),
@@ -49,7 +49,8 @@ def apps(state: State) -> tuple[Widget, ...]:
 
 def store(state: State) -> tuple[Widget, ...]:
     """Apps that can be installed and removed while parked."""
-    inner = CONTENT.inset(28, 20)
+    area = content(state)
+    inner = area.inset(28, 20)
     locked = state.locked(Restriction.NO_SETUP)
     names = tuple(TOOLS)
 
@@ -75,7 +76,7 @@ def store(state: State) -> tuple[Widget, ...]:
 
     return (
         Card(
-            rect=CONTENT,
+            rect=area,
             children=(
                 title(inner.top(40), Icon.STORE, "Store"),
                 rows(inner.below(56), "store.apps", "Apps", state, len(names), line, height=68, gap=8),
@@ -86,7 +87,8 @@ def store(state: State) -> tuple[Widget, ...]:
 
 def notifications(state: State) -> tuple[Widget, ...]:
     """What requires attention now, and below it earlier notices, the newest first."""
-    inner = CONTENT.inset(28, 20)
+    area = content(state)
+    inner = area.inset(28, 20)
     lines = [
         *((text, "", icon, Show(screen, item)) for text, icon, screen, item in wanting(state)),
         *(
@@ -96,7 +98,7 @@ def notifications(state: State) -> tuple[Widget, ...]:
     ]
     return (
         Card(
-            rect=CONTENT,
+            rect=area,
             children=(
                 title(inner.top(56).left(600), Icon.BELL, "Notifications"),
                 Button(

@@ -1,7 +1,8 @@
-"""Sub-screens of Vehicle: driving, doors and windows, seats, mirrors and interior light."""
+"""Sub-screens of Vehicle: driving, doors and windows, seats, mirrors, interior lights."""
 
 from __future__ import annotations
 
+from automotive_cosim.cockpit.camera import scene
 from automotive_cosim.cockpit.desk import REMEMBERED
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, column
@@ -19,11 +20,11 @@ from automotive_cosim.cockpit.screens.parts import (
     switch,
 )
 from automotive_cosim.cockpit.screens.vehicle import car_card, right_side, tabs
-from automotive_cosim.cockpit.signals import BODY, CABIN, DRIVE, MIRROR, SEAT, TYRE, Signal
+from automotive_cosim.cockpit.signals import BODY, CABIN, DRIVE, HMI, MIRROR, SEAT, TYRE, Signal
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
 from automotive_cosim.cockpit.vehicle import LOCKS, WINDOWS
-from automotive_cosim.cockpit.widgets import Button, Card, Choice, Label, Tile, Widget
+from automotive_cosim.cockpit.widgets import Button, CameraView, Card, Choice, Label, Tile, Widget
 
 MODES = {
     "NORMAL": ("normal", "Normal"),
@@ -46,8 +47,8 @@ def _page(state: State, *cards: Widget) -> tuple[Widget, ...]:
     return car_card(state), tabs(state), *cards
 
 
-def _area() -> Rect:
-    return right_side().below(64 + GAP)
+def _area(state: State) -> Rect:
+    return right_side(state).below(64 + GAP)
 
 
 # --- driving ----------------------------------------------------------------------------------------------
@@ -56,7 +57,7 @@ def _area() -> Rect:
 def driving(state: State) -> tuple[Widget, ...]:
     """Drive mode, brakes and tyres."""
     signals = state.signals
-    area = _area()
+    area = _area(state)
     mode, lower = area.top(132), area.below(132 + GAP)
     left, right = lower.columns(2, GAP)
     inner, hold = mode.inset(20, 14), left.inset(20, 16)
@@ -153,7 +154,7 @@ def _tyres(rect: Rect, state: State) -> Widget:
 def doors(state: State) -> tuple[Widget, ...]:
     """Locks, windows and the roof."""
     signals = state.signals
-    upper, _, lower = column(_area(), 176, GAP, REST)
+    upper, _, lower = column(_area(state), 176, GAP, REST)
     head, _, tiles = column(upper.inset(20, 14), 28, 4, REST)
     locked = all(signals[lock] for lock in LOCKS)
     cells = [cell for line in tiles.rows(2, 8) for cell in line.columns(4, 8)]
@@ -222,7 +223,7 @@ def _windows(rect: Rect, state: State) -> tuple[Widget, ...]:
         Button(
             rect=buttons[0],
             key="window.close_all",
-            text="Close all",
+            text="Close all windows",
             icon=Icon.WINDOW,
             on_tap=SetAll(tuple((window, 0.0) for window in WINDOWS), "all windows are closed"),
             disabled="All windows are closed" if closed else "",
@@ -260,7 +261,7 @@ _SEATS: dict[str, tuple[tuple[str, str, Signal[float], str], ...]] = {
 def seats(state: State) -> tuple[Widget, ...]:
     """Positions of the front seats, massage, and the driver's memory."""
     signals = state.signals
-    area = _area()
+    area = _area(state)
     who = state.picked["seats"]
     left, right = area.left(540), area.right_part(area.width - 540 - GAP)
     inner = left.inset(20, 16)
@@ -348,10 +349,20 @@ def _memory(rect: Rect, state: State) -> Widget:
 
 
 def mirrors(state: State) -> tuple[Widget, ...]:
-    """Outside mirrors, and the light in the cabin."""
-    area = _area()
-    upper, lower = area.top(252), area.below(252 + GAP)
+    """Outside mirrors, and what the cameras see behind."""
+    upper, _, lower = column(_area(state), 252, GAP, REST)
     left, right = upper.columns(2, GAP)
+    night = state.signals[HMI.DAY_NIGHT] == "NIGHT"
+    driving = None if state.outside is None else state.outside.driving
+    cameras = tuple(
+        CameraView(
+            rect=rect,
+            key=f"camera.{name.lower()}",
+            description=f"{name} camera",
+            scene=scene(driving, night=night, beside=name == "Door", left_hand=state.roads.network.left_hand),
+        )
+        for rect, name in zip(lower.columns(2, GAP), ("Rear", "Door"), strict=True)
+    )
     return _page(
         state,
         _mirror(
@@ -370,7 +381,7 @@ def mirrors(state: State) -> tuple[Widget, ...]:
             (MIRROR.PASSENGER_FOLDED, MIRROR.PASSENGER_HEATING),
             state,
         ),
-        _inside(lower, state),
+        *cameras,
     )
 
 
@@ -418,17 +429,23 @@ def _mirror(
     return Card(rect=rect, children=tuple(children))
 
 
+# --- interior lights -----------------------------------------------------------------------------------------
+
+
+def interior(state: State) -> tuple[Widget, ...]:
+    """The lights in the cabin."""
+    return _page(state, _inside(_area(state).top(376), state))
+
+
 def _inside(rect: Rect, state: State) -> Widget:
     signals = state.signals
-    inner = rect.inset(20, 12)
-    upper, lower = inner.below(32).rows(2, 10)
-    tiles = upper.columns(3, 10)
-    glow = lower.left(270)
+    head, _, lamps, _, glow, _, name, _, hues = column(rect.inset(20, 16), 28, 8, 104, 16, 84, 12, 28, 4, 60)
+    tiles = lamps.columns(3, 10)
     colour = signals[CABIN.AMBIENT_COLOUR]
     return Card(
         rect=rect,
         children=(
-            heading(inner.top(28), "Interior lights"),
+            heading(head, "Interior lights"),
             switch(tiles[0], "light.dome", "Dome light", Icon.DOME_LIGHT, CABIN.DOME_LIGHT, signals),
             switch(
                 tiles[1],
@@ -447,8 +464,9 @@ def _inside(rect: Rect, state: State) -> Widget:
                 signals,
             ),
             slider(glow, "light.ambient", "Ambient light", Icon.PALETTE, CABIN.AMBIENT_LIGHT, signals),
+            heading(name, "Colour"),
             choices(
-                lower.right_part(lower.width - 290),
+                hues,
                 "light.colour",
                 [
                     (key, text, None, colour == value, Set(CABIN.AMBIENT_COLOUR, value))

@@ -5,7 +5,8 @@ from __future__ import annotations
 from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat, seated
 from automotive_cosim.cockpit.forecast import MINUTES, cabin_c
 from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.screens.parts import CONTENT, heading, slider, switch, temperature
+from automotive_cosim.cockpit.layout import REST, column, panes, row
+from automotive_cosim.cockpit.screens.parts import content, heading, slider, switch, temperature
 from automotive_cosim.cockpit.signals import HMI, HVAC, SEAT
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
@@ -34,27 +35,28 @@ AHEAD_MIN = (10, int(MINUTES), 30)
 
 def cabin(state: State) -> tuple[Widget, ...]:
     """The seats from above on the left, the forecast and the switches on the right."""
-    right = CONTENT.right_part(CONTENT.width - PLAN_WIDTH - GAP)
-    upper, lower = right.top(308), right.below(308 + GAP)
-    return _plan(CONTENT.left(PLAN_WIDTH), state), _forecast(upper, state), _for_them(lower, state)
+    plan, right = panes(content(state), PLAN_WIDTH, REST)
+    forecast, _, switches = column(right, 308, GAP, REST)
+    return _plan(plan, state), _forecast(forecast, state), _for_them(switches, state)
 
 
 def _plan(rect: Rect, state: State) -> Widget:
     """The front seats above, the rear bench below, as seen by who sits in them."""
-    inner = rect.inset(20, 16)
-    front, rear = inner.below(36).rows(2, 12)
+    head, _, seats = column(rect.inset(20, 16), 30, 6, REST)
+    front, rear = seats.rows(2, 12)
     cells = (*front.columns(2, 12), *rear.columns(3, 12))
     aboard = {one.seat: one for one in seated(state.signals)}
     tiles = (_seat(cell, seat, aboard.get(seat)) for cell, seat in zip(cells, SEATS, strict=True))
-    return Card(rect=rect, children=(heading(inner.top(30), "Who is aboard"), *tiles))
+    return Card(rect=rect, children=(heading(head, "Who is aboard"), *tiles))
 
 
 def _seat(rect: Rect, seat: Seat, one: Occupant | None) -> Widget:
-    inner = rect.inset(18, 14)
+    head, _, what, _, facts = column(rect.inset(18, 14), 30, 4, 44, 10, REST)
+    title, picture = row(head, REST, 48)
     key = f"cabin.{seat}"
-    name = heading(inner.top(30).left(inner.width - 48), SEATS[seat])
+    name = heading(title, SEATS[seat])
     if one is None:
-        empty = Label(rect=inner.below(34).top(40), key=key, text="Empty", description=SEATS[seat], tone="muted")
+        empty = Label(rect=what.top(40), key=key, text="Empty", description=SEATS[seat], tone="muted")
         return Card(rect=rect, look="raised", children=(name, empty))
     kind, icon = KINDS[one.kind]
     told = [(f"{key}.weight", f"{one.weight_kg:g} kg")]
@@ -66,11 +68,11 @@ def _seat(rect: Rect, seat: Seat, one: Occupant | None) -> Widget:
         look="raised",
         children=(
             name,
-            Glyph(rect=inner.top(40).right_part(40), icon=icon, size=38, tone="accent"),
-            Label(rect=inner.below(34).top(44), key=key, text=kind, description=SEATS[seat], style=Type.TITLE),
+            Glyph(rect=picture.top(40).right_part(40), icon=icon, size=38, tone="accent"),
+            Label(rect=what, key=key, text=kind, description=SEATS[seat], style=Type.TITLE),
             *(
-                Label(rect=inner.below(88 + at * LINE).top(LINE), key=line, text=text, style=Type.LABEL)
-                for at, (line, text) in enumerate(told)
+                Label(rect=line, key=fact, text=text, style=Type.LABEL)
+                for line, (fact, text) in zip(column(facts, *(len(told) * [LINE])), told, strict=True)
             ),
         ),
     )
@@ -78,10 +80,10 @@ def _seat(rect: Rect, seat: Seat, one: Occupant | None) -> Widget:
 
 def _forecast(rect: Rect, state: State) -> Widget:
     """How warm the air will be once the driver has left, with the climate control off and on."""
-    inner = rect.inset(20, 16)
-    lines = inner.below(40).top(160).rows(4, 0)
+    head, _, table, _, keep = column(rect.inset(20, 16), 30, 10, 160, REST, 60)
+    lines = table.rows(4, 0)
     children: list[Widget] = [
-        heading(inner.top(30), "Cabin once you have left"),
+        heading(head, "Cabin once you have left"),
         *(
             Label(rect=cell, text=text, style=Type.LABEL, tone="muted", align="right")
             for cell, text in zip(_columns(lines[0])[1:], ("Climate off", "Climate on"), strict=True)
@@ -101,16 +103,14 @@ def _forecast(rect: Rect, state: State) -> Widget:
                     align="right",
                 )
             )
-    kept = switch(
-        inner.bottom_part(60), "cabin.keep_climate", "Keep climate on", Icon.CLIMATE, HVAC.KEPT, state.signals
-    )
+    kept = switch(keep, "cabin.keep_climate", "Keep climate on", Icon.CLIMATE, HVAC.KEPT, state.signals)
     return Card(rect=rect, children=(*children, kept))
 
 
 def _columns(line: Rect) -> tuple[Rect, Rect, Rect]:
     """Name, climate off, climate on."""
-    name = line.left(130)
-    off, on = line.right_part(line.width - 130).columns(2, 12)
+    name, values = row(line, 130, REST)
+    off, on = values.columns(2, 12)
     return name, off, on
 
 

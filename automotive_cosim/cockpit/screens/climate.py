@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.layout import REST, column, row
+from automotive_cosim.cockpit.layout import REST, column, panes, row
 from automotive_cosim.cockpit.messages import Put, Set, Show
 from automotive_cosim.cockpit.screens.parts import (
-    CONTENT,
     choices,
+    content,
     fact,
     grouped,
     heading,
@@ -33,7 +33,7 @@ WHEEL_LEVELS = ((0.0, "Off"), (100.0, "On"))
 
 def climate(state: State) -> tuple[Widget, ...]:
     """The climate screen."""
-    driver, _, middle, _, passenger = row(CONTENT, 264, GAP, REST, GAP, 264)
+    driver, middle, passenger = _three(content(state))
     if state.roads.network.left_hand:
         driver, passenger = passenger, driver
     air, _, switches, _, glass = column(middle, 240, GAP, 188, GAP, REST)
@@ -44,6 +44,16 @@ def climate(state: State) -> tuple[Widget, ...]:
         *_switches(switches, state),
         _glass(glass, state),
     )
+
+
+def _three(rect: Rect) -> tuple[Rect, Rect, Rect]:
+    """The seats on either side of what both share; where it is taller than wide, over it."""
+    if rect.height > rect.width:
+        seats, middle = panes(rect, REST, REST)
+        driver, passenger = seats.columns(2, GAP)
+        return driver, middle, passenger
+    driver, middle, passenger = panes(rect, 264, REST, 264)
+    return driver, middle, passenger
 
 
 def _zone(rect: Rect, who: str, name: str, warmth: Signal[float], seat: Signal[float], state: State) -> Widget:
@@ -219,7 +229,7 @@ def glass_words(fog: float, film: float) -> str:
 
 def comfort(state: State) -> tuple[Widget, ...]:
     """Rear seats and the climate schedule."""
-    left, right = CONTENT.columns(2, GAP)
+    left, right = panes(content(state), REST, REST)
     return _rear(left, state), _schedule(right, state)
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from automotive_cosim.cockpit.desk import Appointment
 from automotive_cosim.cockpit.layout import REST, column
 from automotive_cosim.cockpit.messages import Back, Put, Show
-from automotive_cosim.cockpit.screens.parts import CONTENT, note, title
+from automotive_cosim.cockpit.screens.parts import content, note, title
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Card, Label, Widget
@@ -18,12 +18,13 @@ MOVES_MIN = (
     ("later", "+15 min", 15),
     ("hour_later", "+1 h", 60),
 )
-"""Resource id, text and minutes of the buttons that move an appointment."""
+"""Key, text and minutes of the buttons that move an appointment."""
 
 
 def appointment(state: State) -> tuple[Widget, ...]:
     """The entry that was tapped."""
-    inner = CONTENT.inset(28, 20)
+    area = content(state)
+    inner = area.inset(28, 20)
     head, _, where, _, times, _, acts = column(inner, 40, 40, 56, 64, 72, REST, 72)
     agenda = state.desk.agenda
     at = int(state.picked.get("appointment", "0"))
@@ -44,7 +45,7 @@ def appointment(state: State) -> tuple[Widget, ...]:
     back, there, remove = acts.columns(3, 16)
     return (
         Card(
-            rect=CONTENT,
+            rect=area,
             children=(
                 title(head, Icon.CALENDAR, f"{entry.at} {entry.title}", "appointment.title"),
                 Label(

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from automotive_cosim.cockpit.layout import REST, column, row
 from automotive_cosim.cockpit.messages import Back, Put, SendReply
 from automotive_cosim.cockpit.people import FigureDraft
-from automotive_cosim.cockpit.screens.handset import RIGHT, handset
+from automotive_cosim.cockpit.screens.handset import handset, handset_and_page
 from automotive_cosim.cockpit.screens.parts import choices, heading
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
@@ -61,8 +61,9 @@ def figure(state: State) -> tuple[Widget, ...]:
         value = round(min(sentence.most, max(0.0, draft.value + by)), 1)
         return put(replace(draft, value=value))
 
+    _, page = handset_and_page(state)
     bar, _, say, _, sentences, _, card, _, sizes_row, _, send = column(
-        RIGHT, 64, GAP, 28, 8, 56, 16, 64, 12, 72, 16, 72
+        page, 64, GAP, 28, 8, 56, 16, 64, 12, 72, 16, 72
     )
     back, _, name = row(bar, 64, 16, REST)
     steps = sizes_row.columns(4, 12)

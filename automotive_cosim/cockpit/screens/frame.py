@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from functools import lru_cache
+from dataclasses import dataclass, replace
+from functools import cache, lru_cache
 from typing import Any
 
 from automotive_cosim.cockpit.desk import TOOLS
@@ -11,20 +11,25 @@ from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.language import translated
 from automotive_cosim.cockpit.layout import REST, row
 from automotive_cosim.cockpit.messages import Back, DeclineCall, Put, Show, TakeCall
-from automotive_cosim.cockpit.screens.notices import wanting
+from automotive_cosim.cockpit.screens.notices import lit, wanting
 from automotive_cosim.cockpit.screens.parts import speed, speed_unit, stepper, switch, temperature
-from automotive_cosim.cockpit.signals import ADAS, ENERGY, HMI, HVAC, LIGHTS, LINK, MOTION, OUTSIDE, Signal, Signals
+from automotive_cosim.cockpit.signals import ADAS, ENERGY, HMI, HVAC, LINK, MOTION, OUTSIDE, Signal, Signals
+from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.cockpit.state import Notice, State
-from automotive_cosim.cockpit.theme import (
-    DOCK_HEIGHT,
-    MARGIN,
-    SCREEN_HEIGHT,
-    SCREEN_WIDTH,
-    STATUS_HEIGHT,
-    Icon,
-    Type,
+from automotive_cosim.cockpit.telltales import Telltale
+from automotive_cosim.cockpit.theme import MARGIN, Icon, Type
+from automotive_cosim.cockpit.widgets import (
+    Button,
+    Choice,
+    Glyph,
+    Label,
+    LimitSign,
+    Look,
+    Pill,
+    Telltales,
+    Tile,
+    Widget,
 )
-from automotive_cosim.cockpit.widgets import Button, Choice, Glyph, Label, LimitSign, Look, Pill, Tile, Widget
 
 DOCK: dict[str, tuple[str, Icon]] = {
     "home": ("Home", Icon.HOME),
@@ -47,6 +52,7 @@ PART_OF = {
     "doors": "vehicle",
     "seats": "vehicle",
     "mirrors": "vehicle",
+    "interior": "vehicle",
     "emergency": "safety",
     "comfort": "climate",
     "explore": "map",
@@ -74,25 +80,70 @@ DOCKED: tuple[Signal[Any], ...] = (
     HMI.LANGUAGE,
 )
 """Everything that the dock depends on, besides the present screen."""
-NOTICE = Rect(372, 6, 472, 52)
-"""Box of the notices in the status bar."""
+NOTICE_WIDTH = 640
+"""At most; notices in a wider bar leave the rest free."""
+LAMP, FEW = 31, 5
+"""Width of a tell-tale, and how many the smallest status bar has room for."""
+BEFORE, AFTER = 212, 424
+"""Widths of what is always in the status bar, left and right of what comes and goes."""
 _SIGNAL = (Icon.SIGNAL_0, Icon.SIGNAL_1, Icon.SIGNAL_2, Icon.SIGNAL_3, Icon.SIGNAL_3)
 
 
+@dataclass(frozen=True, slots=True)
+class _Bar:
+    """The boxes of the status bar."""
+
+    clock: Rect
+    air: Rect
+    bell: Rect
+    lamps: Rect
+    notice: Rect
+    links: tuple[Rect, Rect, Rect, Rect]
+    """Mobile network, satellites, the battery and its charge."""
+    motion: tuple[Rect, Rect, Rect]
+    """Gear, speed and its unit."""
+    sign: Rect
+
+
+@cache
+def _bar(size: ScreenSize) -> _Bar:
+    """From the left what time brings, from the right what the drive does; between them, or in a second line, what
+    comes and goes."""
+    lines = size.status.rows(size.bars, 0)
+    left, between, right = row(lines[0], BEFORE, REST, AFTER)
+    room = lines[1].inset(MARGIN, 0) if size.bars > 1 else between
+    many = FEW if size is ScreenSize.STANDARD else len(Telltale)
+    _, lamps, _, notice, _ = row(room, 4, many * LAMP, 1, REST, 12)
+    _, clock, _, air, _, bell = row(left, MARGIN - 4, 76, 2, 68, -2, 48)
+    mobile, _, fix, _, cell, _, charge, _, gear, _, pace, _, unit, _, sign, _ = row(
+        right, 28, 8, 28, 8, 28, -2, 56, 10, 36, 6, 76, 8, 52, 8, 50, MARGIN
+    )
+    return _Bar(
+        clock,
+        air,
+        bell.middle(48, 48),
+        lamps.middle(lamps.width, 28),
+        notice.left(min(notice.width, NOTICE_WIDTH)).inset(0, 6),
+        (mobile.middle(28, 28), fix.middle(28, 28), cell.middle(28, 28), charge),
+        (gear.middle(36, 36), pace, unit.moved(0, 6)),
+        sign.middle(50, 50),
+    )
+
+
 def status_bar(state: State) -> tuple[Widget, ...]:
-    """What is there on every screen: clock, weather, bell, links, battery, gear and speed."""
+    """What is there on every screen: clock, weather, bell, tell-tales, links, battery, gear and speed."""
     signals = state.signals
-    bar = Rect(0, 0, SCREEN_WIDTH, STATUS_HEIGHT)
+    bar = _bar(state.size)
     return (
         Label(
-            rect=Rect(MARGIN - 4, 0, 76, bar.height),
+            rect=bar.clock,
             key="status.clock",
             text=state.clock,
             description="Local time",
             style=Type.TITLE,
         ),
         Label(
-            rect=Rect(98, 0, 68, bar.height),
+            rect=bar.air,
             key="status.outside_temperature",
             text=temperature(signals, signals[OUTSIDE.TEMPERATURE], 0),
             description="Outside temperature",
@@ -100,7 +151,7 @@ def status_bar(state: State) -> tuple[Widget, ...]:
             tone="muted",
         ),
         Button(
-            rect=Rect(164, 8, 48, 48),
+            rect=bar.bell,
             key="status.notifications",
             description=f"Notifications: {len(wanting(state)) + len(state.notices)}",
             icon=Icon.BELL_OFF if state.phone.do_not_disturb else Icon.BELL,
@@ -108,19 +159,21 @@ def status_bar(state: State) -> tuple[Widget, ...]:
             look=Look.PLAIN,
             on_tap=Back() if state.screen == "notifications" else Show("notifications"),
         ),
-        *_links(state),
-        *_motion(state),
+        Telltales(rect=bar.lamps, key="status.telltales", description="Telltales", lit=lit(state)),
+        *_links(bar.links, state),
+        *_motion(bar.motion, state),
     )
 
 
 def callouts(state: State) -> tuple[Widget, ...]:
-    """What comes and goes in the status bar: tell-tales, a caller or a notice, and the limit sign of the camera."""
+    """What comes and goes in the status bar: a caller or a notice, and the limit sign of the camera."""
     told: tuple[Widget, ...] = ()
+    bar = _bar(state.size)
     if state.phone.ringing is not None:
-        told = _incoming(NOTICE, state.phone.ringing.who, state)
+        told = _incoming(bar.notice, state.phone.ringing.who, state)
     elif state.notice is not None:
-        told = (_pill(NOTICE, state.notice, state),)
-    return (*_lamps(state), *told, *_limit_sign(state))
+        told = (_pill(bar.notice, state.notice, state),)
+    return (*told, *_limit_sign(bar.sign, state))
 
 
 def _pill(rect: Rect, notice: Notice, state: State) -> Pill:
@@ -180,31 +233,8 @@ def _incoming(rect: Rect, who: str, state: State) -> tuple[Widget, ...]:
     )
 
 
-def _lamps(state: State) -> list[Widget]:
-    """Tell-tales of the lamps that are lit."""
-    signals = state.signals
-    lit = (
-        ("low_beam", "Low beam is on", Icon.LOW_BEAM, signals[LIGHTS.LOW_BEAM] and not signals[LIGHTS.HIGH_BEAM]),
-        ("high_beam", "High beam is on", Icon.HIGH_BEAM, signals[LIGHTS.HIGH_BEAM]),
-        ("front_fog", "Front fog lamps are on", Icon.FRONT_FOG, signals[LIGHTS.FRONT_FOG]),
-        ("rear_fog", "Rear fog lamp is on", Icon.REAR_FOG, signals[LIGHTS.REAR_FOG]),
-        ("hazard", "Hazard lights are on", Icon.HAZARD, signals[LIGHTS.HAZARD]),
-    )
-    shown = [lamp for lamp in lit if lamp[3]]
-    return [
-        Glyph(
-            rect=Rect(216 + 31 * place, 18, 28, 28),
-            key=f"status.{key}",
-            description=words,
-            icon=icon,
-            size=26,
-            tone="accent" if key == "high_beam" else "good",
-        )
-        for place, (key, words, icon, _) in enumerate(shown)
-    ]
-
-
-def _links(state: State) -> tuple[Widget, ...]:
+def _links(boxes: tuple[Rect, Rect, Rect, Rect], state: State) -> tuple[Widget, ...]:
+    mobile, satellites, battery, charge = boxes
     outside = state.outside
     online = state.signals[LINK.ONLINE] and outside is not None
     bars = outside.connectivity.signal_bars if outside is not None else 0
@@ -213,7 +243,7 @@ def _links(state: State) -> tuple[Widget, ...]:
     level = state.signals[ENERGY.LEVEL]
     return (
         Glyph(
-            rect=Rect(856, 18, 28, 28),
+            rect=mobile,
             key="status.connectivity",
             description=words,
             icon=_SIGNAL[bars] if online else Icon.SIGNAL_OFF,
@@ -221,16 +251,16 @@ def _links(state: State) -> tuple[Widget, ...]:
             tone="text" if online else "muted",
         ),
         Glyph(
-            rect=Rect(892, 18, 28, 28),
+            rect=satellites,
             key="status.gps",
             description="GPS fix" if fix else "No GPS fix",
             icon=Icon.GPS if fix else Icon.GPS_OFF,
             size=24,
             tone="text" if fix else "muted",
         ),
-        Glyph(rect=Rect(928, 18, 28, 28), icon=Icon.BATTERY, size=24, tone="muted"),
+        Glyph(rect=battery, icon=Icon.BATTERY, size=24, tone="muted"),
         Label(
-            rect=Rect(954, 0, 56, STATUS_HEIGHT),
+            rect=charge,
             key="status.battery",
             text=f"{level:.0f} %",
             description="Battery",
@@ -239,11 +269,12 @@ def _links(state: State) -> tuple[Widget, ...]:
     )
 
 
-def _motion(state: State) -> tuple[Widget, ...]:
+def _motion(boxes: tuple[Rect, Rect, Rect], state: State) -> tuple[Widget, ...]:
     signals = state.signals
+    gear, pace, unit = boxes
     return (
         Label(
-            rect=Rect(1020, 14, 36, 36),
+            rect=gear,
             key="status.gear",
             text=signals[MOTION.GEAR],
             description="Gear",
@@ -252,7 +283,7 @@ def _motion(state: State) -> tuple[Widget, ...]:
             plate=True,
         ),
         Label(
-            rect=Rect(1062, 0, 76, STATUS_HEIGHT),
+            rect=pace,
             key="status.speed",
             text=speed(signals, signals[MOTION.SPEED]),
             description=f"Speed in {speed_unit(signals)}",
@@ -260,7 +291,7 @@ def _motion(state: State) -> tuple[Widget, ...]:
             align="right",
         ),
         Label(
-            rect=Rect(1146, 6, 52, STATUS_HEIGHT),
+            rect=unit,
             key="status.speed_unit",
             text=speed_unit(signals),
             style=Type.CAPTION,
@@ -269,16 +300,12 @@ def _motion(state: State) -> tuple[Widget, ...]:
     )
 
 
-def _limit_sign(state: State) -> tuple[Widget, ...]:
+def _limit_sign(rect: Rect, state: State) -> tuple[Widget, ...]:
     limit = state.signals[ADAS.LIMIT_SIGN]
     if not state.sign_camera or limit is None:
         return ()
     shown = speed(state.signals, limit)
-    return (
-        LimitSign(
-            rect=Rect(1206, 7, 50, 50), key="status.limit_sign", text=shown, description=f"Limit sign {shown}"
-        ),
-    )
+    return (LimitSign(rect=rect, key="status.limit_sign", text=shown, description=f"Limit sign {shown}"),)
 
 
 def dock(state: State) -> tuple[Widget, ...]:
@@ -288,16 +315,19 @@ def dock(state: State) -> tuple[Widget, ...]:
     """
     here = PART_OF.get(state.screen, state.screen)
     values = tuple(state.signals[signal] for signal in DOCKED)
-    return _dock(here, values, state.roads.network.left_hand)
+    return _dock(state.size, here, values, state.roads.network.left_hand)
 
 
 @lru_cache(maxsize=256)
-def _dock(here: str, values: tuple[Any, ...], left_hand: bool) -> tuple[Widget, ...]:
+def _dock(size: ScreenSize, here: str, values: tuple[Any, ...], left_hand: bool) -> tuple[Widget, ...]:
     signals = Signals({signal.path: value for signal, value in zip(DOCKED, values, strict=True)})
-    bar = Rect(0, SCREEN_HEIGHT - DOCK_HEIGHT, SCREEN_WIDTH, DOCK_HEIGHT)
+    first, *second = size.dock.rows(size.bars, 0)
+    wide, large = (240, 96) if second else (184, 58)
     _, left, _, front, _, middle, _, rear, _, right, _ = row(
-        bar, MARGIN, 184, 10, 58, 8, REST, 8, 58, 10, 184, MARGIN
+        second[0] if second else first, MARGIN, wide, 10, large, 8, REST, 8, large, 10, wide, MARGIN
     )
+    if second:
+        middle = first.inset(MARGIN, 0)
     cells = middle.inset(0, 8).columns(len(DOCK), 4)
     apps = tuple(
         Choice(

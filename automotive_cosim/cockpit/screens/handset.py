@@ -5,26 +5,34 @@ from __future__ import annotations
 from dataclasses import replace
 
 from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.layout import REST, column, row
+from automotive_cosim.cockpit.layout import REST, column, panes
 from automotive_cosim.cockpit.messages import DeclineCall, HangUp, Put, Show, TakeCall
 from automotive_cosim.cockpit.people import OnCall
 from automotive_cosim.cockpit.screens.media import minutes
-from automotive_cosim.cockpit.screens.parts import CONTENT
+from automotive_cosim.cockpit.screens.parts import content
 from automotive_cosim.cockpit.signals import LINK
 from automotive_cosim.cockpit.state import State
-from automotive_cosim.cockpit.theme import GAP, Icon, Type
+from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Card, Glyph, Label, Look, Tile, Widget
 
-LEFT, _, RIGHT = row(CONTENT, 320, GAP, REST)
-"""The card, and the space beside it."""
+
+def handset_and_page(state: State) -> tuple[Rect, Rect]:
+    """Boxes of the card and of what is beside it."""
+    card, page = panes(content(state), 320, REST)
+    return card, page
 
 
 def handset(state: State) -> Widget:
     """The present call, or the phone's state, and permanent buttons."""
-    call, quiet, _, emergency = column(LEFT.inset(20), REST, 68, 12, 68)
+    rect, _ = handset_and_page(state)
+    if rect.width > rect.height:
+        call, acts = column(rect.inset(20), REST, 68)
+        quiet, emergency = acts.columns(2, 12)
+    else:
+        call, quiet, _, emergency = column(rect.inset(20), REST, 68, 12, 68)
     calls = state.phone
     return Card(
-        rect=LEFT,
+        rect=rect,
         children=(
             *_call(call, state),
             Tile(

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from automotive_cosim.cockpit.drawing import text_width
 from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.layout import REST, column, row
+from automotive_cosim.cockpit.layout import REST, column, panes, row
 from automotive_cosim.cockpit.map import camera_of
 from automotive_cosim.cockpit.mapscene import ego
 from automotive_cosim.cockpit.messages import Set, Show, Skip
 from automotive_cosim.cockpit.screens import lookout
-from automotive_cosim.cockpit.screens.map import map_view, next_turn, street
-from automotive_cosim.cockpit.screens.notices import NOTICED
+from automotive_cosim.cockpit.screens.map import map_view, next_turn, sign_view, street
+from automotive_cosim.cockpit.screens.notices import NOTICED, lit
 from automotive_cosim.cockpit.screens.outside import PHENOMENA
 from automotive_cosim.cockpit.screens.parts import (
-    CONTENT,
+    content,
     distance,
     heading,
     speed,
@@ -23,26 +23,37 @@ from automotive_cosim.cockpit.screens.parts import (
 from automotive_cosim.cockpit.signals import ENERGY, GLASS, HVAC, MEDIA, MOTION
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
-from automotive_cosim.cockpit.widgets import Bar, Button, Card, Glyph, Label, Look, Widget
+from automotive_cosim.cockpit.widgets import Bar, Button, Card, Cover, Glyph, Label, Look, Telltales, Widget
 
 METRES_PER_PIXEL = 1.6
 """Scale of the small map."""
+CARDS_WIDTH, CARDS_HEIGHT = 656, 544
+LAMPS_WIDTH = 3 * 31 - 3
 
 
 def home(state: State) -> tuple[Widget, ...]:
     """The home screen."""
-    left, _, right = row(CONTENT, 560, GAP, REST)
+    left, right = _two(content(state))
     drive, _, first, _, second, _, media = column(right, 136, GAP, 114, GAP, 114, REST, 132)
     cells = (*first.columns(2, GAP), *second.columns(2, GAP))
     return (
         _map_card(left, state),
-        _drive_card(drive, state),
+        drive_card(drive, state),
         _climate_card(cells[0], state),
         _outside_card(cells[1], state),
         _safety_card(cells[2], state),
         _phone_card(cells[3], state),
-        _media_card(media, state),
+        media_card(media, state),
     )
+
+
+def _two(rect: Rect) -> tuple[Rect, Rect]:
+    """The map, and the cards beside it; where it is taller than wide, below."""
+    if rect.height > rect.width:
+        above, _, below = column(rect, REST, GAP, CARDS_HEIGHT)
+        return above, below
+    left, right = panes(rect, REST, CARDS_WIDTH)
+    return left, right
 
 
 def _map_card(rect: Rect, state: State) -> Widget:
@@ -51,7 +62,8 @@ def _map_card(rect: Rect, state: State) -> Widget:
     name, _, then, _ = column(words, 34, 2, 24, REST)
     camera = camera_of(state.roads, ego(state), METRES_PER_PIXEL)
     noticed = lookout.plate(plate.x, rect.inset(20).y, plate.width, state)
-    over = (plate, *(card.rect for card in noticed))
+    sign = sign_view(plate.moved(0, -76).top(64).right_part(64), "home.sign", state)
+    over = (plate, *(card.rect for card in (*noticed, *sign)))
     view = map_view(rect, "home.map", state, camera, over, Show("map"))
     ahead = None if state.outside is None else state.outside.driving.ahead
     way = "" if ahead is None else distance(state.signals, ahead.route_left_m)
@@ -62,6 +74,7 @@ def _map_card(rect: Rect, state: State) -> Widget:
         children=(
             view,
             *noticed,
+            *sign,
             Card(
                 rect=plate,
                 look="plate",
@@ -108,14 +121,15 @@ def _map_card(rect: Rect, state: State) -> Widget:
     )
 
 
-def _drive_card(rect: Rect, state: State) -> Widget:
+def drive_card(rect: Rect, state: State) -> Widget:
+    """Speed, range and battery."""
     signals = state.signals
     level = signals[ENERGY.LEVEL]
     inner = rect.inset(24, 14)
     head, _, reach, _, bar, _ = column(inner.right_part(220), 28, 2, 40, 14, 12, REST)
     far, charge = row(reach, 130, 90)
     shown = speed(signals, signals[MOTION.SPEED])
-    figure, _, unit = row(inner, round(text_width(shown, Type.HUGE)) + 4, 12, 60)
+    figure, _, unit, _, lamps = row(inner, round(text_width(shown, Type.HUGE)) + 4, 12, 60, 8, REST)
     return Card(
         rect=rect,
         children=(
@@ -132,6 +146,12 @@ def _drive_card(rect: Rect, state: State) -> Widget:
                 text=speed_unit(signals),
                 tone="muted",
                 style=Type.LABEL,
+            ),
+            Telltales(
+                rect=lamps.left(LAMPS_WIDTH).middle(LAMPS_WIDTH, LAMPS_WIDTH),
+                key="home.telltales",
+                description="Telltales",
+                lit=lit(state),
             ),
             heading(head, "Range"),
             Label(
@@ -280,7 +300,8 @@ def _phone_line(state: State) -> tuple[Icon, str, str]:
     return Icon.PHONE, new, "Do not disturb" if phone.do_not_disturb else state.desk.device
 
 
-def _media_card(rect: Rect, state: State) -> Widget:
+def media_card(rect: Rect, state: State) -> Widget:
+    """What plays now."""
     signals = state.signals
     playing = signals[MEDIA.ACTION] == "PLAY"
     inner = rect.inset(16, 16)
@@ -293,10 +314,11 @@ def _media_card(rect: Rect, state: State) -> Widget:
         description="Media",
         on_tap=Show("media"),
         children=(
-            Card(
+            Cover(
                 rect=art,
-                look="raised",
-                children=(Glyph(rect=art.middle(48, 48), icon=Icon.NOTE, size=48, tone="accent"),),
+                key="home.media.cover",
+                description="Cover",
+                name=f"{signals[MEDIA.TRACK]}, {signals[MEDIA.ARTIST]}",
             ),
             Label(
                 rect=name,

@@ -9,7 +9,6 @@ from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.language import translated
 from automotive_cosim.cockpit.layout import REST, row
 from automotive_cosim.cockpit.messages import BACKSPACE, Enter, Focus, Key
-from automotive_cosim.cockpit.screens.parts import KEYBOARD
 from automotive_cosim.cockpit.signals import HMI
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import MARGIN, Icon, Type
@@ -37,23 +36,23 @@ def keyboard(field: Field, state: State) -> Card:
     language = state.signals[HMI.LANGUAGE]
     letters = list(LETTERS.get(language, LETTERS["en"]))
     letters[-1] += ACCENTS.get(language, "'-")
-    lines = KEYBOARD.inset(MARGIN, 8).rows(5, GAP)
+    lines = state.size.keyboard.inset(MARGIN, 8).rows(5, GAP)
     keys = [
         Button(rect=cell, key=f"keyboard.{letter}", text=letter, style=Type.BODY, on_tap=Key(field.key, letter))
         for line, row in zip(lines, (DIGITS, *letters), strict=False)
         for cell, letter in zip(_centred(line, len(row)), row, strict=True)
     ]
-    card = Card(rect=KEYBOARD, children=(*keys, *_lowest(lines[-1], field)))
+    card = Card(rect=state.size.keyboard, children=(*keys, *_lowest(lines[-1], field)))
     return translated(card, language)
 
 
-def uncovered(widgets: Iterable[Widget]) -> Iterator[Widget]:
-    """The widgets without those that the keyboard covers; groups stay below it."""
+def uncovered(widgets: Iterable[Widget], keyboard: Rect) -> Iterator[Widget]:
+    """The widgets without those that the keyboard covers; groups stay below it unless they react to a tap."""
     for widget in widgets:
-        if not widget.rect.overlaps(KEYBOARD):
+        if not widget.rect.overlaps(keyboard):
             yield widget
-        elif isinstance(widget, Card | Rows | MapView):
-            yield replace(widget, children=tuple(uncovered(widget.children)))
+        elif isinstance(widget, MapView | Rows) or (isinstance(widget, Card) and not widget.listens):
+            yield replace(widget, children=tuple(uncovered(widget.children, keyboard)))
 
 
 def _centred(line: Rect, count: int) -> tuple[Rect, ...]:

@@ -188,7 +188,7 @@ def _near(signals: Signals, metres: float) -> str:
 
 
 def plate(x: int, y: int, width: int, state: State) -> tuple[Widget, ...]:
-    """The sights over a map, one line each, with the resource ids ``ahead.<kind>``; nothing if there are none."""
+    """The sights over a map, one line each, with the keys ``ahead.<kind>``; nothing if there are none."""
     shown = sights(state)
     if not shown:
         return ()

@@ -6,14 +6,14 @@ from collections.abc import Mapping
 from datetime import timedelta
 
 from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.layout import REST, column, row
+from automotive_cosim.cockpit.layout import REST, column, panes, row
 from automotive_cosim.cockpit.map import ZOOMS_M_PER_PX, Camera
 from automotive_cosim.cockpit.mapscene import box_of, ego, goal, incidents, jam, map_camera, scene
 from automotive_cosim.cockpit.messages import Follow, Guide, Message, Pick, Set, Show, Zoom
 from automotive_cosim.cockpit.navigation import Turn, turns
 from automotive_cosim.cockpit.restrictions import ENTRIES_LIMIT
 from automotive_cosim.cockpit.screens import lookout
-from automotive_cosim.cockpit.screens.parts import CONTENT, choices, distance, heading, rows, search
+from automotive_cosim.cockpit.screens.parts import choices, content, distance, heading, rows, search, speed
 from automotive_cosim.cockpit.signals import VOICE
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
@@ -26,6 +26,7 @@ from automotive_cosim.cockpit.widgets import (
     Look,
     MapView,
     Row,
+    SignView,
     Widget,
 )
 from automotive_cosim.contracts import IncidentKind, Road, RoadHere
@@ -39,19 +40,32 @@ INCIDENTS: Mapping[IncidentKind, tuple[str, Icon]] = {
 }
 """Incidents of live traffic, the most serious first: of overlapping marks, the first is shown."""
 _CLASSES = {"motorway": "Motorway", "trunk": "Expressway", "service": "Service road", "residential": "Side street"}
-PANEL = CONTENT.left(372)
-"""The panel next to the map."""
+PANEL_WIDTH, PANEL_HEIGHT = 372, 544
 RESULTS = ENTRIES_LIMIT
 
 
 def map_screen(state: State) -> tuple[Widget, ...]:
     """Search, favourites and recent destinations next to the map."""
-    return *_panel(PANEL, state), sight(state)
+    return *_panel(panel(state), state), sight(state)
+
+
+def panel(state: State) -> Rect:
+    """The box next to the map; where it is taller than wide, below."""
+    return _parts(content(state))[0]
+
+
+def _parts(rect: Rect) -> tuple[Rect, Rect]:
+    """The panel and the map."""
+    if rect.height > rect.width:
+        above, _, below = column(rect, REST, GAP, PANEL_HEIGHT)
+        return below, above
+    left, right = panes(rect, PANEL_WIDTH, REST)
+    return left, right
 
 
 def sight(state: State) -> Widget:
     """The map, with the next turn, the road and the buttons over it."""
-    rect = CONTENT.right_part(CONTENT.width - PANEL.width - GAP)
+    rect = _parts(content(state))[1]
     left, _, keys = row(rect.inset(20), 560, REST, 64)
     turn, _, lowest = column(left, 72, REST, 56)
     plate = lowest.left(420)
@@ -59,7 +73,17 @@ def sight(state: State) -> Widget:
     ahead = next_turn(state)
     closer_in = Zoom(-1) if state.zoom else None
     noticed = lookout.plate(rect.x + 20, turn.bottom + 12 if ahead else turn.y, 440, state)
-    over = (plate, voice, closer, further, north, *((turn,) if ahead else ()), *(card.rect for card in noticed))
+    sign = sign_view(Rect(plate.right + 12, plate.bottom - 64, 64, 64), "map.sign", state)
+    over = (
+        *(each.rect for each in sign),
+        plate,
+        voice,
+        closer,
+        further,
+        north,
+        *((turn,) if ahead else ()),
+        *(card.rect for card in noticed),
+    )
     silent = state.signals[VOICE.GUIDANCE] == "MUTED"
     return Card(
         rect=rect,
@@ -68,7 +92,8 @@ def sight(state: State) -> Widget:
             map_view(rect, "map.view", state, map_camera(state), over, None, closer_in, pans=True),
             *((_turn_plate(turn, ahead, state),) if ahead else ()),
             *noticed,
-            _street_plate(plate, state),
+            *sign,
+            street_plate(plate, state),
             _orientation(north, state),
             Button(
                 rect=voice,
@@ -98,6 +123,15 @@ def sight(state: State) -> Widget:
             ),
         ),
     )
+
+
+def sign_view(rect: Rect, key: str, state: State) -> tuple[SignView, ...]:
+    """The last road sign over a map; none without the camera."""
+    if not state.sign_camera:
+        return ()
+    sign = state.last_sign
+    figure = "" if sign is None or sign.limit_kmh is None else speed(state.signals, sign.limit_kmh)
+    return (SignView(rect=rect, key=key, description="Last sign", sign=sign, figure=figure),)
 
 
 def _orientation(rect: Rect, state: State) -> Button:
@@ -160,7 +194,7 @@ def _marks(rect: Rect, state: State, camera: Camera, avoid: tuple[Rect, ...]) ->
     """
     known: list[tuple[str, str, Icon, tuple[float, float] | None]] = [
         ("jam", "A jam begins here", Icon.JAM, jam(state)),
-        ("goal", "The route ends here", Icon.GOAL, goal(state)),
+        ("end", "The route ends here", Icon.GOAL, goal(state)),
     ]
     told = enumerate(incidents(state, besides_jam=known[0][3] is not None))
     for at, (kind, road, place) in sorted(told, key=lambda one: list(INCIDENTS).index(one[1][0])):
@@ -177,7 +211,7 @@ def _marks(rect: Rect, state: State, camera: Camera, avoid: tuple[Rect, ...]) ->
             box = box.moved(car.right - box.x, 0)
         taken = (*avoid, *(mark.rect for mark in found))
         if rect.inset(4).encloses(box) and not any(box.overlaps(other) for other in taken):
-            found.append(Badge(rect=box, key=f"map.{name}", description=words, icon=icon, warns=name != "goal"))
+            found.append(Badge(rect=box, key=f"map.{name}", description=words, icon=icon, warns=name != "end"))
     return tuple(found)
 
 
@@ -234,7 +268,8 @@ def _turn_plate(rect: Rect, ahead: tuple[Turn, float], state: State) -> Widget:
     )
 
 
-def _street_plate(rect: Rect, state: State) -> Widget:
+def street_plate(rect: Rect, state: State) -> Widget:
+    """The present road, over a map."""
     picture, _, words, _ = row(rect, 44, 12, REST, 20)
     tunnel = state.outside is not None and state.outside.driving.road.in_tunnel
     return Card(

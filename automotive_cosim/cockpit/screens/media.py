@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.layout import REST, column, row
+from automotive_cosim.cockpit.layout import REST, column, panes, row
 from automotive_cosim.cockpit.media import Entry
 from automotive_cosim.cockpit.messages import Message, Pick, Play, Put, Set, Show, Skip
-from automotive_cosim.cockpit.screens.parts import CONTENT, choices, rows, search, slider
+from automotive_cosim.cockpit.screens.parts import choices, content, rows, search, slider
 from automotive_cosim.cockpit.signals import LINK, MEDIA
 from automotive_cosim.cockpit.state import State
-from automotive_cosim.cockpit.theme import GAP, Icon, Type
-from automotive_cosim.cockpit.widgets import Bar, Button, Card, Glyph, Label, Look, Row, Tile, Widget
+from automotive_cosim.cockpit.theme import Icon, Type
+from automotive_cosim.cockpit.widgets import Bar, Button, Card, Cover, Label, Look, Row, Tile, Widget
 
 SOURCES = (
     ("bluetooth", "Phone", Icon.BLUETOOTH),
@@ -19,7 +19,6 @@ SOURCES = (
     ("usb", "USB", Icon.USB),
     ("internet", "Podcasts", Icon.PODCAST),
 )
-LEFT, RIGHT = CONTENT.left(480), CONTENT.right_part(CONTENT.width - 480 - GAP)
 FOUND = 21
 
 
@@ -28,11 +27,12 @@ def media(state: State) -> tuple[Widget, ...]:
     source = state.signals[MEDIA.SOURCE]
     typed = bool(state.typed.get("media.search")) or state.focus == "media.search"
     found = state.library.named(state.typed.get("media.search", ""))[:FOUND] if typed else ()
-    sources, _, bar, _, body = column(RIGHT, 64, 12, 56, 12, REST)
+    now, page = panes(content(state), 480, REST)
+    sources, _, bar, _, body = column(page, 64, 12, 56, 12, REST)
     is_filtered = not typed and source != "INTERNET"
     words, _, filters = row(bar, REST, 12, 3 * 150 - 12) if is_filtered else (bar, bar, bar)
     return (
-        _now(LEFT, state),
+        _now(now, state),
         choices(
             sources,
             "media.source",
@@ -192,11 +192,12 @@ def playlist(state: State) -> tuple[Widget, ...]:
     tracks = tuple(state.library.by_uri[uri] for uri in state.listening.tracks(name))
     playing = state.library.by_uri[state.signals[MEDIA.PLAYED]]
     inside = playing in tracks
-    bar, _, body = column(RIGHT, 64, 12, REST)
+    now, page = panes(content(state), 480, REST)
+    bar, _, body = column(page, 64, 12, REST)
     back, _, title, _, start, _, change = row(bar, 64, 16, 230, REST, 200, 12, 200)
     fits = playing.length_s is not None and not playing.uri.startswith("podcast")
     return (
-        _now(LEFT, state),
+        _now(now, state),
         Button(rect=back, key="playlist.back", description="All music", icon=Icon.BACK, on_tap=Show("media")),
         Label(rect=title, key="playlist.name", text=name, style=Type.TITLE),
         Button(
@@ -249,11 +250,7 @@ def _now(rect: Rect, state: State) -> Widget:
     return Card(
         rect=rect,
         children=(
-            Card(
-                rect=art,
-                look="raised",
-                children=(Glyph(rect=art.middle(72, 72), icon=_art(entry), size=72, tone="accent"),),
-            ),
+            Cover(rect=art, key="media.cover", description="Cover", name=f"{entry.title}, {entry.by}"),
             Label(
                 rect=title,
                 key="media.title",
@@ -345,12 +342,6 @@ def _now(rect: Rect, state: State) -> Widget:
 def _sign(rect: Rect, key: str, name: str, icon: Icon, on: bool, message: Message) -> Tile:
     """A switch that is an icon alone."""
     return Tile(rect=rect, key=key, description=name, icon=icon, checked=on, on_tap=message)
-
-
-def _art(entry: Entry) -> Icon:
-    if entry.length_s is None:
-        return Icon.RADIO
-    return Icon.PODCAST if entry.uri.startswith("podcast") else Icon.NOTE
 
 
 def _progress(rect: Rect, state: State, length_s: float | None) -> tuple[Widget, ...]:

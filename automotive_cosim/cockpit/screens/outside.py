@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.layout import REST, column, row
+from automotive_cosim.cockpit.layout import REST, column, panes, row
 from automotive_cosim.cockpit.messages import Message, Pick, Set, WarnDriver, Wash
 from automotive_cosim.cockpit.screens.climate import glass_words
-from automotive_cosim.cockpit.screens.parts import CONTENT, distance, heading, speed, speed_unit, temperature
+from automotive_cosim.cockpit.screens.notices import ICE_C
+from automotive_cosim.cockpit.screens.parts import content, distance, heading, speed, speed_unit, temperature
 from automotive_cosim.cockpit.signals import (
     ADAS,
     BODY,
@@ -26,15 +27,12 @@ from automotive_cosim.cockpit.signals import (
 )
 from automotive_cosim.cockpit.sky import air_grade, is_dusty
 from automotive_cosim.cockpit.state import State
-from automotive_cosim.cockpit.theme import GAP, Icon, Type
+from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Bar, Button, Card, Glyph, Label, Look, Row, Tile, Widget
 from automotive_cosim.contracts import Alert, AlertKind
 
-LEFT, _, RIGHT = row(CONTENT, 400, GAP, REST)
 FOG_M, MIST_M = 1000.0, 5000.0
 """Fog and mist by the WMO's definitions."""
-ICE_C = 3.0
-"""Temperature below which cars warn of ice: the road can be colder than the air."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -239,7 +237,8 @@ PHENOMENA: dict[str, Phenomenon] = {
 def outside(state: State) -> tuple[Widget, ...]:
     """The outside screen."""
     chosen = state.picked["outside"]
-    lines = LEFT.rows(len(PHENOMENA), 8)
+    left, right = panes(content(state), 400, REST)
+    lines = left.rows(len(PHENOMENA), 8)
     return (
         *(
             Row(
@@ -254,20 +253,20 @@ def outside(state: State) -> tuple[Widget, ...]:
             )
             for line, (name, known) in zip(lines, PHENOMENA.items(), strict=True)
         ),
-        _detail(PHENOMENA[chosen], state),
+        _detail(right, PHENOMENA[chosen], state),
     )
 
 
-def _detail(known: Phenomenon, state: State) -> Widget:
+def _detail(rect: Rect, known: Phenomenon, state: State) -> Widget:
     reading = known.read(state)
     head, _, bar, _, about, _, name, _, acts, _, remedies = column(
-        RIGHT.inset(32, 28), 96, 28, 12, 16, 56, 24, 28, 12, 104, REST, 72
+        rect.inset(32, 28), 96, 28, 12, 16, 56, 24, 28, 12, 104, REST, 72
     )
     picture, _, words = row(head, 96, 32, REST)
     word, _, value = column(words, 52, REST, 36)
     warn, wash = remedies.columns(2, 12)
     return Card(
-        rect=RIGHT,
+        rect=rect,
         children=(
             Glyph(
                 rect=picture,

@@ -11,16 +11,9 @@ from automotive_cosim.cockpit.layout import REST, row
 from automotive_cosim.cockpit.messages import Focus, Message, Put, Set, Show
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.signals import HMI, Signal, Signals
+from automotive_cosim.cockpit.size import Room
 from automotive_cosim.cockpit.state import State
-from automotive_cosim.cockpit.theme import (
-    DOCK_HEIGHT,
-    MARGIN,
-    SCREEN_HEIGHT,
-    SCREEN_WIDTH,
-    STATUS_HEIGHT,
-    Icon,
-    Type,
-)
+from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import (
     Button,
     Card,
@@ -35,18 +28,25 @@ from automotive_cosim.cockpit.widgets import (
     Widget,
 )
 
-CONTENT = Rect(
-    MARGIN,
-    STATUS_HEIGHT + 8,
-    SCREEN_WIDTH - 2 * MARGIN,
-    SCREEN_HEIGHT - STATUS_HEIGHT - DOCK_HEIGHT - 16,
-)
-"""The area of a screen."""
-KEYBOARD = Rect(0, 416, SCREEN_WIDTH, SCREEN_HEIGHT - 416)
-"""The area of the on-screen keyboard."""
+ROOMS = {
+    **dict.fromkeys(("home", "map", "explore", "place", "route"), Room.WHOLE),
+    **dict.fromkeys(("apps", "store", "notifications", "emergency"), Room.ONE),
+    **dict.fromkeys(("trip", "trip_b", "calendar", "appointment"), Room.ONE),
+}
+"""What the screens need; the others have two panes."""
 HELD_STEPS = 5
 """Steps of a stepper for one long press."""
 MILE_KM, PSI_KPA = 1.609344, 6.894757
+
+
+def room(screen: str) -> Room:
+    """What a screen needs."""
+    return ROOMS.get(screen, Room.TWO)
+
+
+def content(state: State) -> Rect:
+    """The area of the present screen."""
+    return state.size.content(room(state.screen))
 
 
 def temperature(signals: Signals, celsius: float, digits: int = 1) -> str:
@@ -290,19 +290,19 @@ def fact(rect: Rect, key: str, name: str, value: str) -> tuple[Widget, ...]:
 
 def menu(rect: Rect, key: str, pages: Sequence[tuple[str, str, Icon]], state: State) -> Card:
     """The pages of an app, one above the other; each (screen, text, icon)."""
-    inner = rect.inset(12)
+    lines = rect.inset(12).top(64 * len(pages) - 8).rows(len(pages), 8)
     return Card(
         rect=rect,
         children=tuple(
             Row(
-                rect=Rect(inner.x, inner.y + at * 64, inner.width, 56),
+                rect=line,
                 key=f"{key}.{screen}",
                 text=text,
                 icon=icon,
                 selected=state.screen == screen,
                 on_tap=Show(screen),
             )
-            for at, (screen, text, icon) in enumerate(pages)
+            for line, (screen, text, icon) in zip(lines, pages, strict=True)
         ),
     )
 
@@ -323,7 +323,7 @@ def rows(
 
     Args:
         rect: where it is; the rightmost 16 pixels are left to the scroll bar.
-        key: its resource id, under which the state remembers how far it is scrolled.
+        key: its own, under which the state remembers how far it is scrolled.
         name: what it lists.
         state: of the cockpit.
         total: number of entries.
@@ -333,7 +333,7 @@ def rows(
         gap: between rows and columns.
     """
     if state.is_typing:  # above the keyboard, but for a row at least
-        rect = rect.top(min(rect.height, max(height, KEYBOARD.y - gap - rect.y)))
+        rect = rect.top(min(rect.height, max(height, state.size.keyboard.y - gap - rect.y)))
     limit = state.entries_limit
     if limit is not None and total > limit:
         total = limit + 1

@@ -6,11 +6,16 @@ from automotive_cosim.cockpit.layout import REST, column, row
 from automotive_cosim.cockpit.messages import Back, Dial, Put, Read, SendReply, Show
 from automotive_cosim.cockpit.people import TEMPLATES
 from automotive_cosim.cockpit.restrictions import Restriction
-from automotive_cosim.cockpit.screens.handset import RIGHT, handset
+from automotive_cosim.cockpit.screens.handset import handset, handset_and_page
 from automotive_cosim.cockpit.screens.parts import heading, note, rows
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
-from automotive_cosim.cockpit.widgets import Button, Glyph, Label, Look, Row, Widget
+from automotive_cosim.cockpit.widgets import Button, Glyph, Label, Look, Picture, Row, Widget
+
+PHOTO = "thread.photo"
+"""Id of the photo that came with a message."""
+PHOTO_WIDE, PHOTO_HIGH = 460, 288
+"""As wide for its height as photos are; above it, one line of the thread has room."""
 
 
 def contact(state: State) -> tuple[Widget, ...]:
@@ -18,7 +23,8 @@ def contact(state: State) -> tuple[Widget, ...]:
     who = state.picked.get("contact") or state.directory.contacts[0].name
     number = state.directory.number(who)
     favourite = who in state.phone.favourites
-    head, _, acts = column(RIGHT, 264, GAP, 108)
+    _, page = handset_and_page(state)
+    head, _, acts = column(page, 264, GAP, 108)
     _, picture, _, name, _, line = column(head, 24, 120, 8, 48, 6, 36)
     buttons = acts.columns(3, GAP)
     return (
@@ -84,8 +90,11 @@ def thread(state: State) -> tuple[Widget, ...]:
     sent = [(sent.text, "You") for sent in state.phone.sent if sent.to == who]
     said = [(text, who) for text in known.lines] if known else []
     lines = [*(said if opened and not hidden else []), *sent]
-    left, _, right = row(RIGHT, 500, GAP, REST)
+    photo = known.photo if known and opened and not hidden else None
+    _, page = handset_and_page(state)
+    left, _, right = row(page, 500, GAP, REST)
     bar, _, talk, _, read = column(left, 64, 12, REST, 12, 64)
+    talk, _, seen = column(talk, REST, 12, PHOTO_HIGH) if photo else (talk, talk, talk)
     back, _, name, _, figure = row(bar, 64, 16, REST, 12, 172)
     return (
         handset(state),
@@ -124,6 +133,11 @@ def thread(state: State) -> tuple[Widget, ...]:
                     hidden if hidden and said else "Not opened yet" if said else "No messages yet",
                 ),
             )
+        ),
+        *(
+            (Picture(rect=seen.middle(PHOTO_WIDE, PHOTO_HIGH), key=PHOTO, description="Photo", photo=photo),)
+            if photo
+            else ()
         ),
         Button(
             rect=read,

@@ -7,11 +7,11 @@ from automotive_cosim.cockpit.layout import REST, column, row
 from automotive_cosim.cockpit.messages import BACKSPACE, Dial, Key, Pick, Show
 from automotive_cosim.cockpit.people import PastCall
 from automotive_cosim.cockpit.restrictions import Restriction
-from automotive_cosim.cockpit.screens.handset import RIGHT, handset
+from automotive_cosim.cockpit.screens.handset import handset, handset_and_page
 from automotive_cosim.cockpit.screens.parts import choices, note, rows, search
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
-from automotive_cosim.cockpit.widgets import Button, Card, Choice, Label, Look, Row, Widget
+from automotive_cosim.cockpit.widgets import Button, Card, Label, Look, Row, Widget
 
 WAYS = {"in": Icon.CALL_IN, "out": Icon.CALL_OUT, "missed": Icon.CALL_MISSED}
 TABS = (
@@ -34,14 +34,15 @@ def phone(state: State) -> tuple[Widget, ...]:
         "messages": _messages,
         "keypad": _keypad,
     }
+    _, page = handset_and_page(state)
     return (
         handset(state),
         choices(
-            RIGHT.top(64),
+            page.top(64),
             "phone.tab",
             [(name, text, icon, shown == name, Pick("phone", name)) for name, text, icon in TABS],
         ),
-        *pages[shown](RIGHT.below(64 + GAP), state),
+        *pages[shown](page.below(64 + GAP), state),
     )
 
 
@@ -56,12 +57,12 @@ def _favourites(rect: Rect, state: State) -> tuple[Widget, ...]:
             "Favourites",
             state,
             len(names),
-            lambda index, cell: Choice(
+            lambda index, cell: Button(
                 rect=cell,
                 key=f"phone.favourite.{index}",
                 text=names[index],
                 icon=Icon.ACCOUNT,
-                look="boxed",
+                icon_size=44,
                 stacked=True,
                 on_tap=Show("contact", names[index]),
             ),

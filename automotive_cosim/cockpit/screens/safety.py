@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.layout import REST, column, row
+from automotive_cosim.cockpit.layout import REST, column, panes, row
 from automotive_cosim.cockpit.messages import (
     AskPullOver,
     AskSlowDown,
@@ -15,7 +15,7 @@ from automotive_cosim.cockpit.messages import (
     Show,
     WarnDriver,
 )
-from automotive_cosim.cockpit.screens.parts import CONTENT, choices, heading, rows, speed, speed_unit, switch
+from automotive_cosim.cockpit.screens.parts import choices, content, heading, rows, speed, speed_unit, switch
 from automotive_cosim.cockpit.signals import ADAS, LIGHTS, MOTION
 from automotive_cosim.cockpit.state import AlertDraft, State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
@@ -52,8 +52,18 @@ SLOWEST_KMH, FASTEST_KMH, STEP_KMH = 10.0, 180.0, 10.0
 
 def safety(state: State) -> tuple[Widget, ...]:
     """The safety centre."""
-    left, _, middle, _, right = row(CONTENT, 556, GAP, 344, GAP, REST)
+    left, middle, right = _three(content(state))
     return _kinds(left, state), _draft(middle, state), *_help(right, state)
+
+
+def _three(rect: Rect) -> tuple[Rect, Rect, Rect]:
+    """The kinds, the alert and the help; where it is taller than wide, the kinds over the others."""
+    if rect.height > rect.width:
+        left, lower = panes(rect, REST, REST)
+        middle, right = lower.columns(2, GAP)
+        return left, middle, right
+    left, middle, right = panes(rect, 556, 344, REST)
+    return left, middle, right
 
 
 def _put(draft: AlertDraft) -> Put:
@@ -251,7 +261,7 @@ def _history(rect: Rect, state: State) -> Widget:
 
 def emergency(state: State) -> tuple[Widget, ...]:
     """Asks for confirmation before it calls."""
-    card = CONTENT.middle(640, 400)
+    card = content(state).middle(640, 400)
     picture, _, question, _, about, _, answers = column(card.inset(40, 36), 72, 16, 48, 6, 72, REST, 88)
     cancel, call = answers.columns(2, GAP)
     made = "emergency" in state.calls

@@ -6,12 +6,12 @@ from dataclasses import replace
 
 from automotive_cosim.cockpit.desk import DEVICES, NETWORKS
 from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.layout import REST, column
+from automotive_cosim.cockpit.layout import REST, column, panes, row
 from automotive_cosim.cockpit.messages import Drive, Put, Set, SetAll
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.screens.parts import (
-    CONTENT,
     choices,
+    content,
     fact,
     heading,
     menu,
@@ -34,11 +34,15 @@ PAGES = (
 )
 LANGUAGES = {"en": "English", "fr": "Français", "de": "Deutsch", "ja": "日本語"}
 PADDING = 28, 24
-MENU, PAGE = CONTENT.left(264), CONTENT.right_part(CONTENT.width - 264 - GAP)
 
 
 def _page(state: State, *cards: Widget) -> tuple[Widget, ...]:
-    return menu(MENU, "settings.page", PAGES, state), *cards
+    return menu(row(content(state), 264, REST)[0], "settings.page", PAGES, state), *cards
+
+
+def _paper(state: State) -> Rect:
+    """The area of a page, beside the menu."""
+    return row(content(state), 264, GAP, REST)[-1]
 
 
 # --- display, units -----------------------------------------------------------------------------------------
@@ -46,7 +50,7 @@ def _page(state: State, *cards: Widget) -> tuple[Widget, ...]:
 
 def settings(state: State) -> tuple[Widget, ...]:
     """The display, and its units."""
-    left, right = PAGE.columns(2, GAP)
+    left, right = panes(_paper(state), REST, REST)
     return _page(state, _display(left, state), _units(right, state))
 
 
@@ -133,7 +137,7 @@ def _units(rect: Rect, state: State) -> Widget:
 def sound(state: State) -> tuple[Widget, ...]:
     """Volumes and the equaliser."""
     signals = state.signals
-    left, right = PAGE.columns(2, GAP)
+    left, right = panes(_paper(state), REST, REST)
     volume, _, levels, _, mute = column(left.inset(*PADDING), 40, 20, 288, REST, 64)
     equaliser, _, tones, _, neutral = column(right.inset(*PADDING), 40, 12, 376, REST, 56)
     volumes = (
@@ -198,7 +202,7 @@ def sound(state: State) -> tuple[Widget, ...]:
 def connections(state: State) -> tuple[Widget, ...]:
     """Networks and phones. They are paired while parked."""
     signals = state.signals
-    left, right = PAGE.columns(2, GAP)
+    left, right = panes(_paper(state), REST, REST)
     head, _, links, _, networks = column(left.inset(*PADDING), 40, 16, 192, 20, 228)
     bluetooth, _, power, _, name, _, devices, _, about = column(
         right.inset(*PADDING), 40, 16, 60, 16, 28, 8, 188, REST, 64
@@ -282,7 +286,7 @@ def connections(state: State) -> tuple[Widget, ...]:
 def language(state: State) -> tuple[Widget, ...]:
     """The language, and the format of times."""
     signals = state.signals
-    left, right = PAGE.columns(2, GAP)
+    left, right = panes(_paper(state), REST, REST)
     head, _, words = column(left.inset(*PADDING), 40, 20, 272)
     when, _, name, _, forms, _, facts, _, about = column(
         right.inset(*PADDING), 40, 16, 28, 8, 68, 20, 132, REST, 64
@@ -345,7 +349,8 @@ def language(state: State) -> tuple[Widget, ...]:
 def privacy(state: State) -> tuple[Widget, ...]:
     """Data sharing and the microphone."""
     signals = state.signals
-    head, _, body = column(PAGE.inset(*PADDING), 40, 24, 330)
+    paper = _paper(state)
+    head, _, body = column(paper.inset(*PADDING), 40, 24, 330)
     options = (
         (
             "privacy.position",
@@ -376,19 +381,20 @@ def privacy(state: State) -> tuple[Widget, ...]:
             switch(share, key, name, icon, signal, signals),
             Label(rect=words.inset(16, 0), text=about, style=Type.CAPTION, tone="muted"),
         ]
-    return _page(state, Card(rect=PAGE, children=tuple(children)))
+    return _page(state, Card(rect=paper, children=tuple(children)))
 
 
 def profiles(state: State) -> tuple[Widget, ...]:
     """Driver profiles with seat, mirrors, temperature and brightness. They change only while parked."""
-    head, _, body, _, about = column(PAGE.inset(*PADDING), 40, 24, 252, 20, 64)
+    paper = _paper(state)
+    head, _, body, _, about = column(paper.inset(*PADDING), 40, 24, 252, 20, 64)
     desk = state.desk
     locked = state.locked(Restriction.NO_SETUP)
     lines = body.rows(len(desk.profiles), 12)
     return _page(
         state,
         Card(
-            rect=PAGE,
+            rect=paper,
             children=(
                 title(head, Icon.PROFILE, "Profiles"),
                 *(

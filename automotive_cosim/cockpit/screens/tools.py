@@ -7,15 +7,15 @@ from dataclasses import replace
 from automotive_cosim.cockpit.desk import FILM_S, MANUAL, ZONES
 from automotive_cosim.cockpit.errands import odometer, price
 from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.layout import REST, column, row
+from automotive_cosim.cockpit.layout import REST, column, panes, row
 from automotive_cosim.cockpit.messages import Message, Pay, Pick, Put, Record, ResetTrip, Show
 from automotive_cosim.cockpit.places import PlaceKind
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.screens.map import destination
 from automotive_cosim.cockpit.screens.media import minutes
 from automotive_cosim.cockpit.screens.parts import (
-    CONTENT,
     choices,
+    content,
     distance,
     heading,
     note,
@@ -31,7 +31,7 @@ from automotive_cosim.cockpit.screens.parts import (
 from automotive_cosim.cockpit.screens.way import nearest
 from automotive_cosim.cockpit.signals import ENERGY, HMI
 from automotive_cosim.cockpit.state import State
-from automotive_cosim.cockpit.theme import GAP, Icon, Type
+from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.vehicle import BATTERY_KWH
 from automotive_cosim.cockpit.widgets import Bar, Button, Card, Glyph, Label, Look, Row, Tile, Widget
 
@@ -42,7 +42,7 @@ STAYS = (30, 60, 120, 240)
 def charging(state: State) -> tuple[Widget, ...]:
     """The battery, its charge limit and schedule, and stations nearby."""
     signals = state.signals
-    left, right = CONTENT.columns(2, GAP)
+    left, right = panes(content(state), REST, REST)
     head, _, upper, _, bar, _, limit, _, flap, _, ready, _, time = column(
         left.inset(28, 20), 40, 8, 44, 8, 12, 14, 84, 16, 60, 12, 60, 16, 72
     )
@@ -132,7 +132,7 @@ def charging(state: State) -> tuple[Widget, ...]:
 
 def parking(state: State) -> tuple[Widget, ...]:
     """Pays for a parking space."""
-    left, _, right = row(CONTENT, 700, GAP, REST)
+    left, right = panes(content(state), 700, REST)
     head, _, zone_name, _, zones, _, stay_name, _, stays, _, total, _, pay = column(
         left.inset(28, 20), 40, 24, 28, 8, 72, 24, 28, 8, 72, 24, 56, REST, 88
     )
@@ -265,7 +265,7 @@ def manual(state: State) -> tuple[Widget, ...]:
     ]
     chosen = int(state.picked["manual"])
     name, icon, text = MANUAL[chosen]
-    left, _, right = row(CONTENT, 420, GAP, REST)
+    left, right = panes(content(state), 420, REST)
     head, _, words, _, film = column(right.inset(32, 28), 72, 20, 160, REST, 208)
     picture, _, topic = row(head, 72, 24, REST)
     first: Message | None = Show("manual", str(found[0][0])) if found else None
@@ -314,7 +314,7 @@ def manual(state: State) -> tuple[Widget, ...]:
 
 def memo(state: State) -> tuple[Widget, ...]:
     """Records spoken notes."""
-    left, right = CONTENT.columns(2, GAP)
+    left, right = panes(content(state), REST, REST)
     head, _, picture, _, time, _, record = column(left.inset(28, 20), 40, 50, 128, 22, 52, REST, 88)
     desk = state.desk
     since = desk.recording_since_s
@@ -371,8 +371,8 @@ def memo(state: State) -> tuple[Widget, ...]:
 
 def trip(state: State) -> tuple[Widget, ...]:
     """Distance, time and consumption since the last reset."""
-    signals = state.signals
-    head, _, body, _, acts = column(CONTENT.inset(32, 24), 40, 20, 312, REST, 72)
+    signals, area = state.signals, content(state)
+    head, _, body, _, acts = column(area.inset(32, 24), 40, 20, 312, REST, 72)
     reset, _, other = row(acts, 320, REST, 320)
     metres, seconds, level = odometer(state)
     from_m, from_s, from_level = state.desk.trip_from
@@ -415,12 +415,13 @@ def trip(state: State) -> tuple[Widget, ...]:
             on_tap=Show("trip_b"),
         )
     )
-    return (Card(rect=CONTENT, children=tuple(children)),)
+    return (Card(rect=area, children=tuple(children)),)
 
 
 def calendar(state: State) -> tuple[Widget, ...]:
     """The day's appointments; each leads to its place."""
-    inner = CONTENT.inset(28, 20)
+    area = content(state)
+    inner = area.inset(28, 20)
     agenda = state.desk.agenda
     date = "Today" if state.outside is None else f"{state.outside.local_time:%Y-%m-%d}"
 
@@ -439,7 +440,7 @@ def calendar(state: State) -> tuple[Widget, ...]:
 
     return (
         Card(
-            rect=CONTENT,
+            rect=area,
             children=(
                 title(inner.top(40), Icon.CALENDAR, date, "calendar.date"),
                 rows(inner.below(56), "calendar.entries", "Appointments", state, len(agenda), line, height=76)

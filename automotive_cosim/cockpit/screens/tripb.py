@@ -6,7 +6,7 @@ from automotive_cosim.cockpit.errands import odometer
 from automotive_cosim.cockpit.layout import REST, column
 from automotive_cosim.cockpit.messages import Back, ResetTrip
 from automotive_cosim.cockpit.screens.media import minutes
-from automotive_cosim.cockpit.screens.parts import CONTENT, distance, fact, title
+from automotive_cosim.cockpit.screens.parts import content, distance, fact, title
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.cockpit.vehicle import BATTERY_KWH
@@ -15,7 +15,8 @@ from automotive_cosim.cockpit.widgets import Button, Card, Widget
 
 def trip_b(state: State) -> tuple[Widget, ...]:
     """Distance, time and energy of trip B; the mean is left to the reader."""
-    head, _, body, _, buttons = column(CONTENT.inset(32, 24), 40, 20, 3 * 64, REST, 72)
+    area = content(state)
+    head, _, body, _, buttons = column(area.inset(32, 24), 40, 20, 3 * 64, REST, 72)
     driven_m, took_s, used_kwh = state.desk.trip_b.at(odometer(state), BATTERY_KWH)
     facts = (
         ("trip_b.distance", "Distance", distance(state.signals, driven_m)),
@@ -25,7 +26,7 @@ def trip_b(state: State) -> tuple[Widget, ...]:
     lines = body.left(640).rows(3, 8)
     return (
         Card(
-            rect=CONTENT,
+            rect=area,
             children=(
                 title(head, Icon.TRIP, "Trip B"),
                 *(

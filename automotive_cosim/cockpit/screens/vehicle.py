@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.layout import REST, column, row
+from automotive_cosim.cockpit.layout import REST, column, panes, row
 from automotive_cosim.cockpit.messages import Set, Show, Wash
 from automotive_cosim.cockpit.screens.parts import (
-    CONTENT,
     choices,
+    content,
     heading,
     levels,
     speed,
@@ -34,7 +34,7 @@ WIPING = {
 def vehicle(state: State) -> tuple[Widget, ...]:
     """Lamps and wipers."""
     signals = state.signals
-    _, lights, _, wipers = column(right_side(), 64 + GAP, 272, GAP, REST)
+    _, lights, _, wipers = column(right_side(state), 64 + GAP, 272, GAP, REST)
     head, _, turned, _, lit = column(lights.inset(20, 16), 28, 8, 72, REST, 116)
     switches = (
         ("off", "Off", Icon.LIGHTS_OFF, "OFF"),
@@ -77,7 +77,7 @@ def vehicle(state: State) -> tuple[Widget, ...]:
 def assistance(state: State) -> tuple[Widget, ...]:
     """Driver assistance, cruise control and limiter."""
     signals = state.signals
-    _, helpers, _, keeping = column(right_side(), 64 + GAP, 236, GAP, REST)
+    _, helpers, _, keeping = column(right_side(state), 64 + GAP, 236, GAP, REST)
     head, _, switches = column(helpers.inset(20, 14), 28, 4, REST)
     known = (
         ("collision_warning", "Collision warning", Icon.COLLISION, ADAS.FORWARD_COLLISION_WARNING),
@@ -108,15 +108,15 @@ def assistance(state: State) -> tuple[Widget, ...]:
     )
 
 
-def right_side() -> Rect:
+def right_side(state: State) -> Rect:
     """The controls next to the car."""
-    return row(CONTENT, CAR_WIDTH, GAP, REST)[-1]
+    return panes(content(state), CAR_WIDTH, REST)[-1]
 
 
 def tabs(state: State) -> Widget:
     """The parts of the car."""
     return choices(
-        right_side().top(64),
+        right_side(state).top(64),
         "vehicle.tab",
         [
             (name, text, icon, state.screen == screen, Show(screen))
@@ -127,6 +127,7 @@ def tabs(state: State) -> Widget:
                 ("doors", "Doors", Icon.DOOR, "doors"),
                 ("seats", "Seats", Icon.SEAT, "seats"),
                 ("mirrors", "Mirrors", Icon.MIRROR, "mirrors"),
+                ("interior", "Inside", Icon.DOME_LIGHT, "interior"),
             )
         ],
     )
@@ -149,12 +150,12 @@ def car_card(state: State) -> Widget:
         )
         if on
     ]
-    rect = CONTENT.left(CAR_WIDTH)
+    rect = panes(content(state), CAR_WIDTH, REST)[0]
     return Card(
         rect=rect,
         children=(
             CarView(
-                rect=rect.inset(20),
+                rect=rect.middle(CAR_WIDTH - 40, rect.height - 40),
                 key="vehicle.car",
                 description="The car, lit: " + (", ".join(lit) or "nothing"),
                 position=signals[LIGHTS.POSITION],

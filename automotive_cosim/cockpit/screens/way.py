@@ -9,12 +9,12 @@ from automotive_cosim.cockpit.layout import REST, column, row
 from automotive_cosim.cockpit.messages import Back, Guide, Pick, Put, Set, Show, Take
 from automotive_cosim.cockpit.navigation import AVOIDABLE
 from automotive_cosim.cockpit.places import SORTS, Destination, PlaceKind
-from automotive_cosim.cockpit.screens.map import PANEL, arrival, away, destination, sight, turns_ahead
+from automotive_cosim.cockpit.screens.map import arrival, away, destination, panel, sight, turns_ahead
 from automotive_cosim.cockpit.screens.parts import choices, distance, heading, note, rows
 from automotive_cosim.cockpit.signals import VOICE
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
-from automotive_cosim.cockpit.widgets import Button, Card, Choice, Glyph, Label, Look, Row, Tile, Widget
+from automotive_cosim.cockpit.widgets import Button, Card, Glyph, Label, Look, Row, Tile, Widget
 
 _EVERYDAY = tuple(kind for kind in PlaceKind if kind not in (PlaceKind.HOME, PlaceKind.WORK))
 
@@ -28,7 +28,7 @@ def explore(state: State) -> tuple[Widget, ...]:
     found = nearest(state, state.atlas.of(kind))
     return (
         *_head(state, SORTS[kind].title, SORTS[kind].icon, "explore"),
-        _places(state, found) if found else note(PANEL.below(72), "explore.empty", "None known nearby"),
+        _places(state, found) if found else note(panel(state).below(72), "explore.empty", "None known nearby"),
         sight(state),
     )
 
@@ -53,7 +53,7 @@ def along(state: State, places: Sequence[Destination]) -> tuple[Destination, ...
 
 
 def _head(state: State, text: str, icon: Icon, key: str) -> tuple[Widget, ...]:
-    back, _, picture, _, words = row(PANEL.top(56), 56, 16, 32, 8, REST)
+    back, _, picture, _, words = row(panel(state).top(56), 56, 16, 32, 8, REST)
     return (
         Button(rect=back, key=f"{key}.back", description="Back", icon=Icon.BACK, on_tap=Back()),
         Glyph(rect=picture.middle(32, 32), icon=icon, size=28, tone="accent"),
@@ -63,17 +63,17 @@ def _head(state: State, text: str, icon: Icon, key: str) -> tuple[Widget, ...]:
 
 def _kinds(state: State) -> Widget:
     return rows(
-        PANEL.below(72),
+        panel(state).below(72),
         "explore.kinds",
         "Place types",
         state,
         len(_EVERYDAY),
-        lambda index, cell: Choice(
+        lambda index, cell: Button(
             rect=cell,
             key=f"explore.kind.{_EVERYDAY[index]}",
             text=SORTS[_EVERYDAY[index]].title,
             icon=SORTS[_EVERYDAY[index]].icon,
-            look="boxed",
+            icon_size=30,
             stacked=True,
             on_tap=Show("explore", _EVERYDAY[index]),
         ),
@@ -85,7 +85,7 @@ def _kinds(state: State) -> Widget:
 
 def _places(state: State, found: tuple[Destination, ...]) -> Widget:
     return rows(
-        PANEL.below(72),
+        panel(state).below(72),
         "explore.places",
         "Places",
         state,
@@ -99,7 +99,7 @@ def place(state: State) -> tuple[Widget, ...]:
     """One destination, before departure."""
     name = state.picked.get("place") or next(iter(state.navigation.favourites), "")
     known = state.atlas.find(name)
-    _, card, _, buttons = column(PANEL, 72, 200, GAP, REST)
+    _, card, _, buttons = column(panel(state), 72, 200, GAP, REST)
     inner = card.inset(20, 16)
     facts = (
         (known.street if known else "Street in this area", "place.street", Type.STRONG, "text"),
@@ -168,7 +168,7 @@ def route(state: State) -> tuple[Widget, ...]:
     """The route ahead: its turns, alternatives, and what to avoid."""
     shown = state.picked["route"]
     goal = state.navigation.destination or "Route"
-    _, summary, _, tabs, _, body = column(PANEL, 64, 72, 12, 56, 12, REST)
+    _, summary, _, tabs, _, body = column(panel(state), 64, 72, 12, 56, 12, REST)
     pages = {"turns": _turn_list, "ways": _ways, "options": _options}
     return (
         *_head(state, goal, Icon.TURNS, "route"),

@@ -4,6 +4,8 @@ import { ask, h } from "./dom.js";
 import { runsPage, resultsPage } from "./runs.js";
 import { replayPage } from "./replay.js";
 import { playPage } from "./play.js";
+import { besidePage, comparePage } from "./compare.js";
+import { decisionPage, decisionsPage } from "./decisions.js";
 import { studyPage } from "./study.js";
 import { scenariosPage, taskPage, tasksPage } from "./browse.js";
 
@@ -16,6 +18,10 @@ const PAGES = [
   [/^\/scenarios$/, scenariosPage],
   [/^\/play$/, playPage],
   [/^\/study$/, studyPage],
+  [/^\/decisions\/([0-9a-f]{12})$/, decisionsPage],
+  [/^\/decision\/([0-9a-f]{12})\/([^/]+)$/, decisionPage],
+  [/^\/compare\/([0-9a-f]{12})\/([0-9a-f]{12})$/, comparePage],
+  [/^\/beside\/([0-9a-f]{12})\/([^/]+)\/([0-9a-f]{12})\/([^/]+)$/, besidePage],
 ];
 
 let leave = null;

@@ -32,6 +32,7 @@ export async function tasksPage(query) {
 
 export async function taskPage(query, id) {
   const task = await ask(`/api/tasks/${id}`);
+  const { halves: solved } = await ask(`/api/tasks/${id}/reference`);
   const values = Object.entries(task.values).map(([name, said]) => h("li", {}, h("code", {}, `{${name}}`), ` ${said}`));
   return {
     title: task.id,
@@ -47,9 +48,19 @@ export async function taskPage(query, id) {
       h("div", { class: "halves" }, task.halves.map((half) => h("section", { class: "card" },
         h("h2", {}, task.halves.length > 1 ? `The ${half.name} half` : "The situation"),
         h("dl", {}, half.words.map(([label, said]) => [h("dt", {}, label), h("dd", {}, said)])),
+        reference(solved[half.name], id, half.name),
         half.laws.map((law) => h("blockquote", {}, h("p", {}, law.text), h("footer", { class: "muted" }, `${law.law}, as of ${law.as_of} (${law.status})`)))))),
     ].filter(Boolean),
   };
+}
+
+// The reference solution as pictures, if a record here has them.
+function reference(found, id, half) {
+  if (!found) return h("p", { class: "muted" }, "To see the reference solution as pictures: ", h("code", {}, `automotive-cosim run --task ${id} --half ${half} --agent oracle`));
+  const base = `/api/runs/${found.run}${found.episode ? `/episodes/${encodeURIComponent(found.episode)}` : ""}`;
+  return h("details", { open: true }, h("summary", {}, "The reference solution"), h("ol", { class: "film" }, found.steps.filter((each) => each.has_picture).map((each) => h("li", {},
+    h("img", { src: `${base}/pictures/${each.number}`, alt: `The screen after: ${each.words}`, loading: "lazy" }), h("span", {}, each.number ? `${each.number}  ${each.words}` : "what the agent takes over")))),
+  h("p", {}, h("a", { href: `#/run/${found.run}${found.episode ? `/${encodeURIComponent(found.episode)}` : ""}` }, "See it on the road")));
 }
 
 export async function scenariosPage() {

@@ -8,14 +8,16 @@ export async function playPage(query) {
   if (!plays) {
     return { title: "Play", content: [h("h1", {}, "Play"), h("p", { class: "card" }, "Start `automotive-cosim serve --play` to work the cockpit yourself.")] };
   }
-  const { tasks } = await ask("/api/tasks");
+  const [{ tasks }, { drives }] = await Promise.all([ask("/api/tasks"), ask("/api/drives")]);
   const main = h("div");
   const note = h("p", { class: "warning", hidden: true, role: "alert" });
   const status = h("p", { class: "muted", role: "status" });
   const say = (error) => { note.textContent = error?.message ?? ""; note.hidden = !error; };
   const cockpit = cockpitPanel({ say });
 
-  const task = h("select", {}, h("option", { value: "" }, "Deal me one"), tasks.map(({ id }) => h("option", { value: id, selected: id === query.get("task") }, id)));
+  const task = h("select", {}, h("option", { value: "" }, "Deal me one"),
+    h("optgroup", { label: "Tasks, two minutes at most" }, tasks.map(({ id }) => h("option", { value: id, selected: id === query.get("task") }, id))),
+    h("optgroup", { label: "Drives, ten to thirty minutes" }, drives.map(({ id }) => h("option", { value: `drive ${id}` }, id))));
   const name = h("input", { type: "text", maxlength: 40 });
   const seed = h("input", { type: "number", min: 0, max: 2147483647, value: Math.floor(Math.random() * 1000) });
   const practice = h("input", { type: "checkbox" });
@@ -23,8 +25,9 @@ export async function playPage(query) {
   const form = h("form", { class: "card filters", onsubmit: async (event) => {
     event.preventDefault();
     const chosen = task.value || tasks[Math.floor(Math.random() * tasks.length)].id;
-    try { await send("/api/play/start", { task: chosen, half: "", seed: Number(seed.value), name: name.value, practice: practice.checked }); say(null); } catch (error) { say(error); }
-  } }, h("label", {}, "Task", task), h("label", {}, "Your code name", name), h("label", {}, "Seed", seed), begin,
+    const [what, id] = chosen.startsWith("drive ") ? ["drive", chosen.slice(6)] : ["task", chosen];
+    try { await send("/api/play/start", { [what]: id, half: "", seed: Number(seed.value), name: name.value, practice: practice.checked }); say(null); } catch (error) { say(error); }
+  } }, h("label", {}, "Task or drive", task), h("label", {}, "Your code name", name), h("label", {}, "Seed", seed), begin,
   h("label", { class: "check" }, practice, "Practice: the clock can be stopped or slowed, and no row is kept"));
 
   const rules = rulesCard();

@@ -5,6 +5,7 @@ import { RoadRecord, RoadView, signals } from "./road.js";
 import { speedPlot } from "./plot.js";
 
 const POLL_MS = 1000;
+const WEATHER = [[0, "clear"], [3, "cloudy"], [48, "fog"], [57, "drizzle"], [67, "rain"], [77, "snow"], [82, "showers"], [86, "snow showers"], [99, "thunderstorm"]]; // up to each WMO code
 const SPEEDS = [0.25, 0.5, 1, 2, 4, 8];
 
 export async function replayPage(query, id, episode) {
@@ -20,9 +21,13 @@ export async function replayPage(query, id, episode) {
   };
   let running = await poll();
 
-  const screen = h("img", { class: "screen", alt: "" });
+  const screen = h("img", { class: "screen", alt: "", onload: () => {
+    const ratio = screen.naturalWidth / screen.naturalHeight;
+    Object.assign(box.style, { aspectRatio: `${ratio}`, maxWidth: ratio < 1 ? `${80 * ratio}vh` : "" });
+  } });
   const target = h("div", { class: "target", hidden: true });
   const noScreen = h("p", { class: "muted empty" }, "No picture of this screen was kept.");
+  const box = h("div", { class: "frame" }, screen, target, noScreen);
   const canvas = h("canvas", { tabindex: 0, role: "img", "aria-label": "The road from above" });
   const about = h("p", { class: "about" });
   const slider = h("input", { type: "range", min: 0, max: 0, step: 0.1, value: 0, "aria-label": "Time in the drive" });
@@ -60,7 +65,7 @@ export async function replayPage(query, id, episode) {
     const told = [run.half && `${run.half} half`, run.scenario, run.agent, run.model !== "none" && run.model, run.seed !== null && `seed ${run.seed}`];
     heading.replaceChildren(
       h("div", {}, h("h1", {}, run.task), run.goal && h("p", { class: "said" }, `“${run.goal}”`), h("p", { class: "muted" }, told.filter(Boolean).join(" · "))),
-      outcome({ ...run, running }));
+      run.kind === "drive" && !running ? h("span", { class: "pill" }, run.value === null ? plain(run.end) || "No judgement" : `Score ${Math.round(run.value)} · ${run.met} of ${run.spans.filter((each) => !each.bait && each.outcome !== "void").length} events met`) : outcome({ ...run, running }));
     live.hidden = !running;
     const parts = Object.entries(run.verdict?.parts ?? {});
     verdict.replaceChildren(...(parts.length ? [h("h2", {}, "Verdict"), h("ol", { class: "card parts" },
@@ -77,10 +82,16 @@ export async function replayPage(query, id, episode) {
       h("span", { class: "time" }, seconds(event.at_s)), h("span", {}, event.text)))));
     [slider.min, slider.max] = [begin(), end()];
     const span = end() - begin() || 1;
-    marks.replaceChildren(...told.filter(({ kind }) => kind !== "departure").map((event) => {
+    marks.replaceChildren(...told.filter(({ kind }) => !["departure", "event", "deadline"].includes(kind)).map((event) => {
       const mark = h("i", { class: `k-${event.kind}` });
       mark.style.left = `${100 * (event.at_s - begin()) / span}%`;
       return mark;
+    }));
+    marks.append(...(run.spans ?? []).filter((each) => each.outcome !== "void").map((each) => {
+      const bar = h("i", { class: `span ${each.bait ? "bait" : ["hit", "prepared", "prevented"].includes(each.outcome) ? "good" : "bad"}`, title: `${each.kind}: ${each.words} [${plain(each.outcome)}]` });
+      bar.style.left = `${100 * (each.from_s - begin()) / span}%`;
+      bar.style.width = `max(3px, ${100 * (each.to_s - each.from_s) / span}%)`;
+      return bar;
     }));
     const path = run.path.length ? run.path : road.seconds;
     plot.replaceChildren(speedPlot(path, jump));
@@ -90,7 +101,7 @@ export async function replayPage(query, id, episode) {
 
   function show() {
     slider.value = at;
-    slider.setAttribute("aria-valuetext", `${seconds(at)} from the hand-over`);
+    slider.setAttribute("aria-valuetext", `${seconds(at)} from the ${run.kind === "drive" ? "departure" : "hand-over"}`);
     clock.textContent = seconds(at);
     view.draw(at);
     const second = road.second(at);
@@ -98,7 +109,7 @@ export async function replayPage(query, id, episode) {
       const others = second.seen.size - ([...second.seen.keys()].some((number) => road.vehicles.get(number)?.id === "ego") ? 1 : 0);
       const limit = second.limit_kmh === null ? "no limit known" : `limit ${speedInWords(second.limit_kmh, second.speed_unit).split(" ")[0]}`;
       about.replaceChildren(h("b", { class: second.limit_kmh !== null && second.speed_kmh > second.limit_kmh + 1 ? "over" : "" }, speedInWords(second.speed_kmh, second.speed_unit)),
-        ` ${limit} · ${second.road || "a road without a name"}${second.local_time ? ` · ${second.local_time.slice(11, 16)}` : ""} · `,
+        ` ${limit} · ${second.road || "a road without a name"}${second.local_time ? ` · ${second.local_time.slice(11, 16)}` : ""}${sky(second)} · `,
         road.alone ? "other vehicles were not recorded" : `${counted(others, "other vehicle")} in sight`,
         view.ghost ? h("span", { class: "ghost" }, "Dashed: the same drive with nobody at the cockpit") : "");
       canvas.setAttribute("aria-label", `The road from above. ${about.textContent}`);
@@ -107,6 +118,11 @@ export async function replayPage(query, id, episode) {
     showVehicle();
     const index = step();
     if (index !== shownStep) showStep(index);
+  }
+
+  function sky({ weather_code: code, sun_deg: sun }) {
+    if (code === null || code === undefined) return "";
+    return `, ${WEATHER.find(([most]) => code <= most)?.[1] ?? "weather unknown"}${sun !== null && sun <= -0.833 ? ", dark" : ""}`;
   }
 
   function showVehicle() {
@@ -123,7 +139,7 @@ export async function replayPage(query, id, episode) {
     for (const button of list.querySelectorAll("button")) {
       if (Number(button.dataset.step) === index) {
         button.setAttribute("aria-current", "step");
-        list.scrollTop = button.offsetTop - list.offsetTop - list.clientHeight / 2;
+        list.scrollTop = button.offsetTop - list.clientHeight / 2;
       } else button.removeAttribute("aria-current");
     }
     const now = steps[index];
@@ -132,21 +148,23 @@ export async function replayPage(query, id, episode) {
     noScreen.hidden = Boolean(pictured);
     noScreen.textContent = index < 0 ? "Before the hand-over: nobody acts yet." : "No picture of this screen was kept.";
     if (pictured) {
-      screen.src = `${base}/pictures/${pictured.number}`;
+      screen.src = `${base}/pictures/${pictured.picture ?? pictured.number}`;
       screen.alt = `The cockpit's screen after step ${pictured.number}: ${pictured.words}`;
     }
     const next = steps[index + 1];
     target.hidden = !(pictured && next?.target);
     if (!target.hidden) {
       const [left, top, right, bottom] = next.target;
-      Object.assign(target.style, { left: `${left / 12.8}%`, top: `${top / 7.2}%`, width: `${(right - left) / 12.8}%`, height: `${(bottom - top) / 7.2}%` });
+      const [wide, high] = (run.screen ?? "1280x720").split("x").map(Number);
+      const share = (part, whole) => `${100 * part / whole}%`;
+      Object.assign(target.style, { left: share(left, wide), top: share(top, high), width: share(right - left, wide), height: share(bottom - top, high) });
     }
     detail.replaceChildren(...(now ? told(now) : [h("h3", {}, "The drive up to the hand-over"), h("p", { class: "muted" }, "Nobody acts yet.")]));
   }
 
   function told(now) {
     return [
-      h("h3", {}, now.number ? `Step ${now.number}: ${now.words}` : "Hand-over"),
+      h("h3", {}, now.number ? `Step ${now.number}: ${now.words}` : run.kind === "drive" ? "Departure" : "Hand-over"),
       now.thought && h("p", { class: "thought" }, now.thought),
       now.feedback.text && h("p", { class: "muted" }, `${plain(now.feedback.code)}: ${now.feedback.text}`),
       now.action && h("p", {}, h("code", {}, JSON.stringify(now.action))),
@@ -244,7 +262,7 @@ export async function replayPage(query, id, episode) {
     title: run.task,
     content: [heading, note,
       h("div", { class: "stage" },
-        h("figure", { class: "cockpit card" }, h("div", { class: "frame" }, screen, target, noScreen)),
+        h("figure", { class: "cockpit card" }, box),
         h("figure", { class: "card map" }, canvas,
           h("div", { class: "tools" }, button("+", () => view.zoom(1.4), "Closer (+)"), button("−", () => view.zoom(1 / 1.4), "Further away (−)"), ego, turn, button("All roads", () => view.whole(), "All recorded roads (0)")),
           h("figcaption", {}, about, vehicle))),

@@ -17,15 +17,18 @@ export async function runsPage() {
   return { title: "Runs", content: [h("h1", {}, "Runs"), note, list], leave: () => clearInterval(timer) };
 }
 
+const WHOLE = { evaluation: ["results", "Evaluation", "episode"], drives: ["results", "Evaluation of drives", "drive"], study: ["decisions", "Study", "drive"] };
+
 function line(record) {
   if (record.kind === "unreadable") {
     return h("li", { class: "card" }, h("div", {}, h("b", {}, record.name), h("p", { class: "muted" }, record.error)),
       h("span", { class: "pill bad" }, "Unreadable"));
   }
-  if (record.kind === "evaluation") {
-    const done = record.planned ? `${record.done} of ${record.planned} episodes` : counted(record.done, "episode");
+  if (WHOLE[record.kind]) {
+    const [page, label, unit] = WHOLE[record.kind];
+    const done = record.planned ? `${record.done} of ${counted(record.planned, unit)}` : counted(record.done, unit);
     return h("li", { class: "card" },
-      h("div", {}, h("a", { href: `#/results/${record.id}` }, record.name), h("p", { class: "muted" }, `Evaluation · ${done} · ${when(record.started)}`)),
+      h("div", {}, h("a", { href: `#/${page}/${record.id}` }, record.name), h("p", { class: "muted" }, `${label} · ${done} · ${when(record.started)}`)),
       h("span", { class: "pill quiet" }, "Results"));
   }
   const about = [record.half && `${record.half} half`, record.scenario, record.agent, record.model !== "none" && record.model, record.seed !== null && `seed ${record.seed}`, when(record.started)];
@@ -33,7 +36,7 @@ function line(record) {
     h("div", {}, h("a", { href: `#/run/${record.id}` }, record.task),
       record.goal && h("p", {}, `“${record.goal}”`),
       h("p", { class: "muted" }, about.filter(Boolean).join(" · "))),
-    outcome(record));
+    record.kind === "drive" && !record.running && record.value !== null ? h("span", { class: "pill" }, `Score ${Math.round(record.value)}`) : outcome(record));
 }
 
 const when = (text) => (text ? text.slice(0, 16).replace("T", " ") : "");
@@ -43,6 +46,7 @@ const MOST = 400;
 
 export async function resultsPage(query, id) {
   let results = await ask(`/api/evaluations/${id}`);
+  if (results.kind === "drives") return drivesPage(id, results);
   const heading = h("p", { class: "muted" });
   const now = h("p");
   const table = h("tbody");
@@ -87,13 +91,29 @@ export async function resultsPage(query, id) {
     fill();
   };
   const timer = setInterval(() => again().catch(() => {}), EVERY_MS);
+  const { records } = await ask("/api/runs");
+  const others = records.filter((record) => record.kind === "evaluation");
+  const beside = h("select", { "aria-label": "Compare with", onchange: () => { if (beside.value) location.hash = `#/compare/${id}/${beside.value}`; } },
+    h("option", { value: "" }, "Compare with …"), others.map((record) => h("option", { value: record.id }, record.id === id ? "itself: two of its agents" : record.name)));
   const head = ["Task", "Half", "Scenario", "Agent", "Seed", "Steps", "Outcome", "Not held"].map((name) => h("th", { scope: "col" }, name));
   return {
     title: results.name,
-    content: [h("h1", {}, results.name), heading, now, h("div", { class: "filters" }, search, choices), count,
+    content: [h("h1", {}, results.name), heading, now, h("div", { class: "filters" }, search, choices, beside), count,
       h("div", { class: "card scroll", tabindex: 0, role: "region", "aria-label": "Episodes" }, h("table", {}, h("thead", {}, h("tr", {}, head)), table))],
     leave: () => clearInterval(timer),
     ready: fill,
+  };
+}
+
+function drivesPage(id, results) {
+  const head = ["Drive", "Seed", "Agent", "Score", "Events met", "Nuisances", "Steps", ""].map((name) => h("th", { scope: "col" }, name));
+  const figure = (value) => (value === null ? "" : String(Math.round(value)));
+  return {
+    title: results.name,
+    content: [h("h1", {}, results.name), h("p", { class: "muted" }, results.planned ? `${results.rows.length} of ${counted(results.planned, "drive")} are done` : counted(results.rows.length, "drive")),
+      h("div", { class: "card scroll", tabindex: 0, role: "region", "aria-label": "Drives" }, h("table", {}, h("thead", {}, h("tr", {}, head)), h("tbody", {}, results.rows.map((row) => h("tr", {},
+        h("td", {}, row.has_road ? h("a", { href: `#/run/${id}/${encodeURIComponent(row.id)}` }, row.family) : row.family), h("td", {}, `${row.seed}${row.repeat ? ` · ${row.repeat + 1}` : ""}`), h("td", {}, [row.agent, row.model !== "none" && row.model].filter(Boolean).join(", ")),
+        h("td", {}, figure(row.value)), h("td", {}, row.events === null ? "" : `${row.met} of ${row.events}`), h("td", {}, figure(row.nuisances)), h("td", {}, String(row.steps)), h("td", { class: "muted" }, row.error ? `${row.error_kind}: ${row.error}` : plain(row.end)))))))],
   };
 }
 

@@ -1,0 +1,140 @@
+"""Writes the folder of one drive.
+
+    row.json        the row, with events and acts
+    timeline.json   speed, limit and the do-nothing drive's speed, once a second
+    steps.jsonl     each action with hashes of what followed, for a replay
+    shown.jsonl     one line per step as a page shows it, written step by step
+    screenshots/    step_000.jpg, ...: the cockpit after each step that changed it
+    road.jsonl.gz   the road with every vehicle, second by second (format: ``run.road``)
+
+Row, timeline and steps are written when the drive is over.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import IO
+
+import numpy as np
+import numpy.typing as npt
+from PIL import Image
+
+from automotive_cosim.agents import Agent, Thinker
+from automotive_cosim.cockpit.actions import to_json
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.contracts import KMH_PER_MPS, Element, Json, RoadSnapshot
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.drives.families import family_named
+from automotive_cosim.drives.watch import Watch
+from automotive_cosim.interface.trace import plain
+from automotive_cosim.run.collect import PICTURE_QUALITY
+from automotive_cosim.run.record import write_whole
+from automotive_cosim.run.road import NAME
+from automotive_cosim.run.road_recorder import RoadWriter
+from automotive_cosim.run.row import as_json
+from automotive_cosim.run.watch import WatchRecord, WatchSetup, WatchWatcher
+from automotive_cosim.run.words import action_in_words
+
+SHOWN = "shown.jsonl"
+
+
+class DriveRecorder(WatchWatcher):
+    """Records a drive while it runs."""
+
+    looks = True
+
+    def __init__(self, folder: Path, setup: WatchSetup, agent: Agent) -> None:
+        """Nothing is written before the departure.
+
+        Args:
+            folder: the drive's, which may not exist yet.
+            setup: what is run.
+            agent: whose reasons are written down, if it gives any.
+        """
+        self.folder = folder
+        self._setup = setup
+        self._agent = agent
+        self._road: RoadWriter | None = None
+        self._lines: IO[str] | None = None
+        self._looked: dict[float, RoadSnapshot] = {}
+        self._pictured: tuple[int, npt.NDArray[np.uint8]] | None = None
+        """The last picture, and the number of its step."""
+
+    def departed(self, watch: Watch) -> None:
+        """Creates the folder and begins its files."""
+        setup = self._setup
+        (self.folder / "screenshots").mkdir(parents=True, exist_ok=True)
+        about: Json = {
+            "task": setup.family,
+            "scenario": setup.scenario or family_named(setup.family).scenario,
+            "agent": setup.agent,
+            "model": setup.model,
+            "seed": setup.seed,
+            "goal": watch.goal,
+        }
+        self._road = RoadWriter(self.folder / NAME, watch, about, watch.moments[0].time_s)
+        self._lines = (self.folder / SHOWN).open("w", encoding="utf-8", newline="\n")
+        self.acted(watch, ())
+
+    def looked(self, snapshot: RoadSnapshot) -> None:
+        """Keeps it until its second is reported."""
+        self._looked[snapshot.time_s] = snapshot
+
+    def moved(self, moment: Moment, cockpit: Cockpit) -> None:
+        """Writes a second of the road."""
+        snapshot = self._looked.pop(moment.time_s)
+        if self._road is not None:
+            self._road.second(moment, snapshot)
+
+    def acted(self, watch: Watch, seen: Sequence[Element]) -> None:
+        """Writes a step."""
+        assert self._lines is not None
+        step = watch.steps[-1]
+        picture = watch.screenshot()
+        if self._pictured is None or picture is not self._pictured[1]:
+            path = self.folder / "screenshots" / f"step_{step.number:03d}.jpg"
+            Image.fromarray(picture).save(path, quality=PICTURE_QUALITY, subsampling=0)
+            self._pictured = step.number, picture
+        stages = self._agent.stages if isinstance(self._agent, Thinker) and step.number else ()
+        line = {
+            "number": step.number,
+            "picture": self._pictured[0],
+            "at_s": round(step.moment.time_s - watch.moments[0].time_s, 2),
+            "local_time": step.moment.local_time.isoformat(timespec="seconds"),
+            "words": action_in_words(step.action, seen) if step.number else "departure",
+            "action": None if step.action is None else to_json(step.action),
+            "target": _target(step.action.index if step.action else None, seen),
+            "feedback": plain(step.feedback),
+            "thought": "",
+            "stages": [stage.as_json() for stage in stages],
+            "context": watch.observation.context or "",
+            "speed_kmh": round(step.moment.driving.speed_mps * KMH_PER_MPS, 1),
+        }
+        self._lines.write(json.dumps(line, ensure_ascii=False) + "\n")
+        self._lines.flush()
+
+    def arrived(self, watch: Watch, record: WatchRecord) -> None:
+        """Adds the do-nothing drive, and writes the row."""
+        if self._road is not None:
+            self._road.baseline(watch.baseline_moments)
+        steps = "".join(json.dumps(step) + "\n" for step in record.steps)
+        write_whole(self.folder / "timeline.json", json.dumps(record.timeline) + "\n")
+        write_whole(self.folder / "steps.jsonl", steps)
+        write_whole(self.folder / "row.json", json.dumps(as_json(record.row), indent=1) + "\n")
+
+    def close(self) -> None:
+        """Completes the files, also of a drive that broke off; may be called again."""
+        if self._road is not None:
+            self._road.close()
+        if self._lines is not None:
+            self._lines.close()
+
+
+def _target(index: int | None, seen: Sequence[Element]) -> list[int] | None:
+    """The box of the element that an action points at: left, top, right, bottom."""
+    if index is None or not 0 <= index < len(seen):
+        return None
+    box = seen[index].bbox_pixels
+    return [box.x_min, box.y_min, box.x_max, box.y_max]

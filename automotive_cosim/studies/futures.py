@@ -1,0 +1,109 @@
+"""Drives the futures of a drive's decisions to their ends, those of one draw at the same time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from contextlib import ExitStack, closing
+
+import numpy as np
+
+from automotive_cosim.studies.compare import Future
+from automotive_cosim.studies.plan import AHEAD, DriveJob
+from automotive_cosim.studies.points import Diverted, Drawn, Shut, shows_signs
+from automotive_cosim.traffic.chance import SEED_RANGE, Fresh
+from automotive_cosim.traffic.divert import Edges
+from automotive_cosim.traffic.fork import Forked, RemoteTraffic
+
+
+class Futures:
+    """What can follow from a drive at the decision at hand; nothing here changes the drive itself."""
+
+    def __init__(self, job: DriveJob, traffic: RemoteTraffic, simulation: Forked) -> None:
+        self._job = job
+        self._traffic = traffic
+        self._simulation = simulation
+        self.decisions = 0
+        """How many decisions came before."""
+        self.fresh: Fresh | None = None
+        """How futures got fresh random numbers, once one did."""
+
+    def replicates(self, begun: Sequence[RemoteTraffic | None], group: Sequence[str]) -> list[Drawn]:
+        """Further draws of keeping the route and of every branch, which are as after their choice; none if nobody
+        left the route, since all futures of a draw are then the same."""
+        drawn: list[Drawn] = []
+        fewest, most = self._job.plan.draws.start, self._job.plan.draws.stop
+        if not any(begun):
+            return drawn
+        while len(drawn) < fewest or (len(drawn) < most and not shows_signs(drawn)):
+            seed = self.seed(len(drawn) + 1)
+            stay, *others = self.renewed([self._traffic, *filter(None, begun)], seed, group)
+            driven = iter(others)
+            drawn.append(Drawn(seed, stay, [stay if branch is None else next(driven) for branch in begun]))
+        return drawn
+
+    def diverted(
+        self, begun: RemoteTraffic, ways: tuple[Edges, Edges], seeds: Sequence[int], group: Sequence[str]
+    ) -> list[Diverted]:
+        """The futures in which others take the way that the ego has begun, in the scored draws."""
+        found: list[Diverted] = []
+        old, new = ways
+        for share in self._job.plan.together if old else ():
+            for draw, seed in enumerate(seeds):
+                with closing(begun.branch()) as copy:
+                    took, could = copy.divert(old, new, share, self.seed(0))
+                    if draw:
+                        copy.renew(self._simulation.fresh(), seed)
+                    self.begin(copy, group)
+                    found.append(Diverted(share, draw, ended(copy), took, could))
+        return found
+
+    def shut(
+        self, begun: RemoteTraffic, offered: int, own: Edges, seeds: Sequence[int], group: Sequence[str]
+    ) -> list[Shut]:
+        """The futures of the two ways with a road closed now, in the scored draws."""
+        edge = self._job.plan.close
+        if edge == AHEAD:  # in the middle of the part of its route that the other way does not have
+            edge = own[len(own) // 2] if len(own) > 2 else ""
+        found: list[Shut] = []
+        for draw, seed in enumerate(seeds if edge else ()):
+            with ExitStack() as stack:
+                copies = [stack.enter_context(closing(way.branch())) for way in (self._traffic, begun)]
+                for copy in copies:
+                    copy.shut(edge)
+                    if draw:
+                        copy.renew(self._simulation.fresh(), seed)
+                    self.begin(copy, group)
+                found.append(Shut(edge, draw, offered, *map(ended, copies)))
+        return found
+
+    def renewed(self, drives: Sequence[RemoteTraffic], seed: int, group: Sequence[str]) -> list[Future]:
+        """The futures of copies with fresh random numbers, driven at the same time."""
+        self.fresh = self._simulation.fresh()
+        with ExitStack() as stack:
+            copies = [stack.enter_context(closing(each.branch())) for each in drives]
+            for copy in copies:
+                copy.renew(self.fresh, seed)
+                self.begin(copy, group)
+            return [ended(copy) for copy in copies]
+
+    def seed(self, draw: int) -> int:
+        """The seed of a draw of the decision at hand."""
+        entropy = (*self._job.entropy, 4, self.decisions, draw)
+        return int(np.random.default_rng(entropy).integers(SEED_RANGE))
+
+    def begin(self, branch: RemoteTraffic | None, group: Sequence[str]) -> None:
+        """Begins to drive it to its end."""
+        if branch is not None:
+            branch.begin_settling([group], self._job.plan.arrived, self._job.plan.limit_s)
+
+
+def ended(traffic: RemoteTraffic) -> Future:
+    """The future of a drive that has begun to settle."""
+    settled = traffic.settled()
+    return Future(traffic.state, settled)
+
+
+def close_all(branches: Iterable[RemoteTraffic | None]) -> None:
+    """Ends them, whatever they are doing."""
+    for branch in filter(None, branches):
+        branch.close()
