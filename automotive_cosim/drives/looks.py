@@ -95,19 +95,20 @@ def _holds(text: str, known: Gathered) -> bool:
 
 
 def _limit_ahead(known: Gathered) -> Iterator[Concern]:
+    """A lower limit ahead; it is watched however slow the car is, since it may speed up before the sign."""
     away_m, words = known.away_m("limit ahead"), known.words("limit ahead")
     found = re.match(r"(\d+) km/h", words)
-    if away_m is None or found is None or known.speed_kmh < 20 or away_m < 0:
+    if away_m is None or found is None or away_m < 0:
         return
     limit_kmh = float(found[1])
     here = [each for each in (known.limit_kmh, _reduced_kmh(known)) if each is not None]
     if here and limit_kmh > min(here) - 9:
         return
     right_kmh = limit_kmh + margin_kmh(limit_kmh)
-    if known.speed_kmh > right_kmh + 1:
-        right_mps = right_kmh / 3.6
-        coasting_m = (known.mps**2 - right_mps**2) / 2 + known.mps * (1.1 + LOOK_S)
-        yield Concern(f"falls {limit_kmh:.0f}", AlertKind.SPEED, away_m <= coasting_m, is_there=True)
+    right_mps = right_kmh / 3.6
+    coasting_m = (known.mps**2 - right_mps**2) / 2 + known.mps * (1.1 + LOOK_S)
+    too_fast = known.speed_kmh >= 20 and known.speed_kmh > right_kmh + 1
+    yield Concern(f"falls {limit_kmh:.0f}", AlertKind.SPEED, too_fast and away_m <= coasting_m, is_there=True)
 
 
 # --- lamps -----------------------------------------------------------------------------------------------------

@@ -12,6 +12,7 @@ from automotive_cosim.cockpit.actions import check
 from automotive_cosim.contracts import Action, ActionType, AlertKind
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.events import KINDS, WatchAct
+from automotive_cosim.drives.looks import LOOK_S
 from automotive_cosim.drives.reading import Reader
 from automotive_cosim.drives.wakes import Alarm
 from automotive_cosim.drives.watchers import RulePerfect
@@ -90,3 +91,11 @@ def test_it_waits_as_long_as_the_rule() -> None:
     alerts = [at for at, act in enumerate(watched(drive, speed_kmh=90.0)) if act.kind is AlertKind.SPEED]
     assert alerts == [3]
     assert not [act for act in watched(drive[:3], speed_kmh=90.0) if act.kind is AlertKind.SPEED]
+
+
+def test_it_keeps_looking_at_a_sign_ahead_that_a_slow_car_may_yet_meet_too_fast() -> None:
+    watcher, ahead = RulePerfect(), ["limit ahead: 30 km/h in 150 m"]
+    slow = watcher.act(seen(moment(0.0, kmh=20.0), ahead, speed_kmh=20.0))
+    assert (slow.action_type, slow.seconds) == (ActionType.WAIT, LOOK_S)
+    fast = watcher.act(seen(moment(2.0, kmh=60.0), speed_kmh=60.0))
+    assert (fast.action_type, fast.kind) == (ActionType.SHOW_ALERT, AlertKind.SPEED)
