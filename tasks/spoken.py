@@ -19,7 +19,7 @@ from functools import lru_cache
 from importlib.resources import files
 from typing import Any
 
-from automotive_cosim.cockpit.language import Language, Table
+from automotive_cosim.cockpit.language import Language, Lexicon
 from automotive_cosim.tasking.speech import Speech
 from automotive_cosim.tasking.task import Task
 
@@ -52,7 +52,7 @@ def _speech(language: Language, own: Mapping[str, Any]) -> Speech:
     return Speech(
         language,
         tuple(own["says"]),
-        Table.of(shared["lines"] | own.get("lines", {})),
+        Lexicon.of(shared["lines"] | own.get("lines", {})),
         shared["words"] | own.get("words", {}),
         {word: tuple(others) for word, others in own.get("asked", {}).items()},
     )

@@ -48,7 +48,7 @@ _WORD = re.compile(r"[^\W\d_]{2}")
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class Lexicon:
     """Texts in one language, by the English ones."""
 
     words: Mapping[str, str]
@@ -58,7 +58,7 @@ class Table:
     """Texts of single widgets by their key, where an English word has several meanings."""
 
     @classmethod
-    def of(cls, texts: Mapping[str, str], keys: Mapping[str, str] = MappingProxyType({})) -> Table:
+    def of(cls, texts: Mapping[str, str], keys: Mapping[str, str] = MappingProxyType({})) -> Lexicon:
         """Sorts whole texts from templates."""
         forms = sorted((text for text in texts if "{}" in text), key=_fixed, reverse=True)
         return cls(
@@ -81,13 +81,13 @@ class Table:
 
 
 @lru_cache
-def table(language: str, answers: bool = False) -> Table:
+def table(language: str, answers: bool = False) -> Lexicon:
     """The table of a language other than English; with or without what only answers say."""
     given: dict[str, dict[str, str]] = tomllib.loads(
         files("automotive_cosim.cockpit").joinpath("languages", f"{language}.toml").read_text("utf-8")
     )
     texts = given["words"] | (given["answers"] if answers else {})
-    return Table.of(texts, given["keys"])
+    return Lexicon.of(texts, given["keys"])
 
 
 @lru_cache(maxsize=16384)

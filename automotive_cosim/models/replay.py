@@ -62,7 +62,7 @@ class Replay:
         if path.exists() or len(path.parts) > 1:
             return cls.read(path)
         if name not in shipped():
-            raise UnknownNameError("recording", name, shipped())
+            raise UnknownNameError("folder or recording", name, shipped())
         return cls.shipped(name, api)
 
     @classmethod

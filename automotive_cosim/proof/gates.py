@@ -46,7 +46,7 @@ from automotive_cosim.geo.breaches import EQUAL_UP_TO_KMH, binding_limit, violat
 from automotive_cosim.geo.rules import Status
 from automotive_cosim.proof import mutations
 from automotive_cosim.proof.ground import Ground, Played, Script, finish
-from automotive_cosim.proof.knowledge import Drawn, unknown
+from automotive_cosim.proof.knowledge import DrawnValues, unknown
 from automotive_cosim.proof.place import mistagged
 from automotive_cosim.proof.sight import undeclared
 from automotive_cosim.proof.world import implausible
@@ -206,7 +206,7 @@ def knowable(ground: Ground, right: Played) -> Wrong:
         name: cockpit.content[drawn.kind] if isinstance(drawn, FromCockpit) else drawn
         for name, drawn in ground.task.parameters.items()
     }
-    drawn = Drawn(instance.parameters, choices)
+    drawn = DrawnValues(instance.parameters, choices)
     half = ground.task.half(ground.half_name)
     yield from unknown(half, next(said), drawn, right.steps, ground.move_of_action)
 

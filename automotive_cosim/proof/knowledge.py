@@ -35,7 +35,7 @@ FIGURES = {word: str(figure) for figure, word in enumerate(WORDS.split())}
 
 
 @dataclass(frozen=True, slots=True)
-class Drawn:
+class DrawnValues:
     """The parameters of an instance."""
 
     parameters: Mapping[str, Parameter]
@@ -71,7 +71,7 @@ class _Pictured:
     value: Any
 
 
-class Seen:
+class Evidence:
     """What has been observed so far."""
 
     def __init__(self) -> None:
@@ -157,7 +157,7 @@ def _as_words(level: float) -> Iterator[str]:
 
 
 def unknown(
-    half: Half, template: str, drawn: Drawn, steps: Sequence[Step], moves: Sequence[int | None]
+    half: Half, template: str, drawn: DrawnValues, steps: Sequence[Step], moves: Sequence[int | None]
 ) -> Iterator[str]:
     """The acts of a reference solution that depend on what nothing has told.
 
@@ -170,7 +170,7 @@ def unknown(
             belongs to none.
     """
     tellings = tuple(_open_in((half.start, half.says, [topic.reply for topic in half.topics], template)))
-    seen, guessed = Seen(), set[tuple[int, str]]()
+    seen, guessed = Evidence(), set[tuple[int, str]]()
     seen.add(template.format_map(drawn.parameters))
     for step, number in zip(steps, moves, strict=False):
         seen.look(step)
@@ -191,18 +191,18 @@ def unknown(
             yield f"move {number} types {bind(move, drawn.parameters).text!r}, which nothing has told"
 
 
-def _unheard(question: str, topics: Sequence[Topic], seen: Seen) -> Iterator[str]:
+def _unheard(question: str, topics: Sequence[Topic], seen: Evidence) -> Iterator[str]:
     topic = topic_of(question, topics)
     for choice in () if topic is None else topic.choices:
         if not any(map(seen.names, choice)):
             yield f"the question {question!r} names {choice[0]!r}, which nothing has told"
 
 
-def _has_words(seen: Seen, text: str) -> bool:
+def _has_words(seen: Evidence, text: str) -> bool:
     return all(seen.names(word) for word in re.findall(r"\w+", text))
 
 
-def _left(name: str, tellings: Sequence[Any], drawn: Drawn, seen: Seen) -> list[Parameter]:
+def _left(name: str, tellings: Sequence[Any], drawn: DrawnValues, seen: Evidence) -> list[Parameter]:
     """The other values that nothing seen has ruled out."""
     left = dict(drawn.others(name))
     for telling in tellings:
@@ -235,20 +235,20 @@ def _leaves(value: Any) -> Iterator[Any]:
         yield value
 
 
-def _differs(move: Move, name: str, value: Parameter, drawn: Drawn) -> bool:
+def _differs(move: Move, name: str, value: Parameter, drawn: DrawnValues) -> bool:
     return bool(bind(move, {**drawn.parameters, name: value}) != bind(move, drawn.parameters))
 
 
 def _needed(value: Any, parameters: Mapping[str, Parameter]) -> list[str]:
     """The names of the parameters that a value is filled from, those that only their meanings name included."""
 
-    class Asked(dict[str, Parameter]):
+    class _Noting(dict[str, Parameter]):
         def __getitem__(self, name: str) -> Parameter:
             asked[name] = None
             return super().__getitem__(name)
 
     asked: dict[str, None] = {}
-    bind(value, Asked(parameters))
+    bind(value, _Noting(parameters))
     return list(asked)
 
 

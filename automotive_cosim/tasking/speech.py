@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from automotive_cosim.cockpit.language import Language, Table, table
+from automotive_cosim.cockpit.language import Language, Lexicon, table
 from automotive_cosim.tasking.dialogue import Topic
 from automotive_cosim.tasking.parameters import Parameter
 
@@ -21,7 +21,7 @@ class Speech:
     language: Language
     templates: tuple[str, ...]
     """The phrasings, in the order of ``Task.templates``, with the same ``{name}``."""
-    lines: Table
+    lines: Lexicon
     """What is said besides the wish: remarks, answers, and the questions of the reference solutions."""
     words: Mapping[str, str] = field(default_factory=dict)
     """Words for values of parameters, where neither the screens show another one nor it stays as it is."""

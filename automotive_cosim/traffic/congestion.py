@@ -50,10 +50,10 @@ MOTORWAY_CLASSES = frozenset({"motorway", "trunk"})
 """Road classes with exits."""
 
 
-Seen: TypeAlias = tuple[int, float]
+Tally: TypeAlias = tuple[int, float]
 """Number of vehicles in all samples, and the sum of their speeds in m/s."""
 
-NOTHING: Seen = (0, 0.0)
+NOTHING: Tally = (0, 0.0)
 
 
 class Flow(Protocol):
@@ -86,13 +86,13 @@ class Congestion:
         self._flow: dict[str, float] = {}
         self._keep = math.exp(-SAMPLE_PERIOD_S / MEMORY_S)
         self._slow: tuple[tuple[str, float], ...] = ()
-        self._samples: deque[dict[str, Seen]] = deque(maxlen=round((WINDOW_S + OLDEST_NEWS_S) / SAMPLE_PERIOD_S))
+        self._samples: deque[dict[str, Tally]] = deque(maxlen=round((WINDOW_S + OLDEST_NEWS_S) / SAMPLE_PERIOD_S))
 
     def sample(self) -> None:
         """Takes the present speeds into account; called every ``SAMPLE_PERIOD_S``."""
         keep, vehicles, flow, edges = self._keep, self._vehicles, self._flow, self._edges
-        lanes: dict[str, Seen] = {}
-        seen: dict[str, Seen] = {}
+        lanes: dict[str, Tally] = {}
+        seen: dict[str, Tally] = {}
         for lane_id, speed_mps in self._driving():
             edge_id = lane_id.rpartition("_")[0]
             if edge_id in edges:
@@ -112,13 +112,13 @@ class Congestion:
         self._samples.append(lanes)
         self._slow = tuple(sorted(slow, key=lambda row: self._order[row[0]]))
 
-    def window(self, age_s: float = 0.0) -> dict[str, Seen]:
+    def window(self, age_s: float = 0.0) -> dict[str, Tally]:
         """What was seen in ``WINDOW_S`` on each lane with any traffic.
 
         Args:
             age_s: how long ago that time ended, at most ``OLDEST_NEWS_S``.
         """
-        sums: dict[str, Seen] = {}
+        sums: dict[str, Tally] = {}
         newest, count = round(age_s / SAMPLE_PERIOD_S), round(WINDOW_S / SAMPLE_PERIOD_S)
         for lanes in islice(reversed(self._samples), newest, newest + count):
             for lane_id, (vehicles, total_mps) in lanes.items():

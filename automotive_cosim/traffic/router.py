@@ -16,7 +16,7 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 from automotive_cosim.contracts import RouteOption
-from automotive_cosim.traffic.congestion import NOTHING, SEEN_AT_LEAST, Congestion, Seen
+from automotive_cosim.traffic.congestion import NOTHING, SEEN_AT_LEAST, Congestion, Tally
 from automotive_cosim.traffic.network import Crossing, Network
 from automotive_cosim.traffic.sumo import LibSumo
 
@@ -47,7 +47,7 @@ SLOWEST_MPS = 0.5
 class _Traffic(NamedTuple):
     """The traffic of the last minutes."""
 
-    lanes: Mapping[str, Seen]
+    lanes: Mapping[str, Tally]
     edges_s: Mapping[str, float]
     """Travel times of the edges with enough vehicles."""
 
@@ -123,14 +123,14 @@ class Router:
 
     def _traffic(self, age_s: float) -> _Traffic:
         lanes = self._congestion.window(age_s)
-        edges: dict[str, Seen] = {}
+        edges: dict[str, Tally] = {}
         for lane_id, seen in lanes.items():
             edge_id = lane_id.rpartition("_")[0]
             edges[edge_id] = _sum((edges.get(edge_id, NOTHING), seen))
         seen_s = {edge_id: self._seen_s(edge_id, seen) for edge_id, seen in edges.items()}
         return _Traffic(lanes, {edge_id: time_s for edge_id, time_s in seen_s.items() if time_s is not None})
 
-    def _seen_s(self, edge_id: str, seen: Seen) -> float | None:
+    def _seen_s(self, edge_id: str, seen: Tally) -> float | None:
         """Travel time of an edge by what was seen on it; None if that was too little."""
         count, total_mps = seen
         if count < SEEN_AT_LEAST:
@@ -187,7 +187,7 @@ class Router:
         return self._sumo.find_route(start, goal, self._type, NEVER_S)
 
 
-def _sum(seen: Iterable[Seen]) -> Seen:
+def _sum(seen: Iterable[Tally]) -> Tally:
     rows = tuple(seen)
     return sum(count for count, _ in rows), sum(total_mps for _, total_mps in rows)
 

@@ -503,6 +503,8 @@ ONE_LAMP = pictured(
         "Which network works shows in what Isla sent. One green lamp among red ones means get in there,"
         " without mobile"
         " data; a lone red one means no change and a 'No' for her.",
+        "Photo from Isla, of her router: join the network whose lamp is the only green one, and no mobile data then."
+        " Should a red one be the odd one out, send her a No and touch nothing.",
     ),
     done(
         sent(ISLA, Photo(Shows.LAMPS, param("network")), LAMPS),

@@ -10,7 +10,7 @@ from automotive_cosim.cockpit.desk import TripMeter
 from automotive_cosim.cockpit.people import Thread
 from automotive_cosim.cockpit.signals import ADAS, BODY
 from automotive_cosim.contracts import BoundingBox, Element
-from automotive_cosim.proof.knowledge import Drawn, normal, unknown
+from automotive_cosim.proof.knowledge import DrawnValues, normal, unknown
 from automotive_cosim.tasking.checks import NothingDone
 from automotive_cosim.tasking.dialogue import Says, Topic
 from automotive_cosim.tasking.moves import Consult, Open, Tap, TypeText
@@ -42,7 +42,7 @@ def shown(*texts: str, said: tuple[str, ...] = (), selected: str = "") -> Simple
 
 
 def guesses(half: Half, steps, choices=ZONES, template: str = "Pay here.", moves=None, **drawn) -> list[str]:
-    known = Drawn({name: values[0] for name, values in choices.items()} | drawn, choices)
+    known = DrawnValues({name: values[0] for name, values in choices.items()} | drawn, choices)
     return list(unknown(half, template, known, steps, moves or [*range(len(half.moves)), None]))
 
 
