@@ -496,15 +496,13 @@ ONE_LAMP = pictured(
         "Isla's router has a lamp for each network, they're on her photo. If a single one is green, join that and"
         " mobile data off; if a single one is red, nothing but a No to Isla.",
         "Look at the lamps that Isla photographed. Just one green: Wi-Fi into it instead of mobile data."
-        " Just one red:"
-        " it's being repaired, text her no and leave it all.",
+        " Just one red: it's being repaired, text her no and leave it all.",
         "Go by Isla's picture: the only green network is ours, connect and drop the mobile data. But with only one"
         " red, stay as we are and tell her 'No'.",
         "Which network works shows in what Isla sent. One green lamp among red ones means get in there,"
-        " without mobile"
-        " data; a lone red one means no change and a 'No' for her.",
-        "Photo from Isla, of her router: join the network whose lamp is the only green one, and no mobile data then."
-        " Should a red one be the odd one out, send her a No and touch nothing.",
+        " without mobile data; a lone red one means no change and a 'No' for her.",
+        "Photo from Isla, of her router: join the network whose lamp is the only green one, and no mobile data"
+        " then. Should a red one be the odd one out, send her a No and touch nothing.",
     ),
     done(
         sent(ISLA, Photo(Shows.LAMPS, param("network")), LAMPS),
