@@ -41,6 +41,7 @@ from automotive_cosim.tasks import (
     system,
     system_aboard,
     system_asking,
+    system_doors_aboard,
 )
 
 __all__ = ["CATALOGUE"]
@@ -76,6 +77,7 @@ for _module in (
     media_aboard,
     phenomenon_aboard,
     road_aboard,
+    system_doors_aboard,
     system_aboard,
     hard,
 ):
