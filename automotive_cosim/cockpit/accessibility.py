@@ -112,6 +112,9 @@ def _description(widget: Widget) -> str:
     parts: tuple[str, ...]
     if isinstance(widget, Row):
         parts = (widget.description, widget.detail, widget.trail, widget.disabled, widget.locked)
+    elif isinstance(widget, Slider):
+        reach = f"{widget.signal.low:g}–{widget.signal.high:g}"
+        parts = (widget.description, reach, widget.disabled, widget.locked)
     elif isinstance(widget, MapView):
         scale = f"{widget.scene.camera.metres_per_pixel:g} metres per pixel"
         parts = (widget.description, scale, widget.disabled, widget.locked)
