@@ -113,7 +113,7 @@ def _description(widget: Widget) -> str:
     if isinstance(widget, Row):
         parts = (widget.description, widget.detail, widget.trail, widget.disabled, widget.locked)
     elif isinstance(widget, Slider):
-        reach = f"{widget.signal.low:g}–{widget.signal.high:g}"
+        reach = f"{widget.signal.low:g} … {widget.signal.high:g}"
         parts = (widget.description, reach, widget.disabled, widget.locked)
     elif isinstance(widget, MapView):
         scale = f"{widget.scene.camera.metres_per_pixel:g} metres per pixel"
