@@ -107,9 +107,9 @@ EXPLICIT = (
         Module.COMMS,
         (
             "Mute the music, call volume to {percent}, and ring {contact}.",
-            "Get {contact} on the line; media silent, calls at {percent}.",
-            "I want to hear {contact} well: {percent} for calls, no songs, then phone.",
-            "Songs off, speech {percent}, call {contact} please.",
+            "Get {contact} on the line; media muted, calls at {percent}.",
+            "I want to hear {contact} well: {percent} for calls, the songs muted, then phone.",
+            "Mute the songs, calls at {percent}, and call {contact}, please.",
         ),
         AllOf(
             (

@@ -86,6 +86,7 @@ TASKS = (
         Open("climate"),
         TO_DEGREES,
         deadline=COMFORT,
+        may_write=frozenset({HVAC.SYNC.path}),
         parameters={"degrees": WARM_DEGREES},
         scenarios=METRIC,
     ),

@@ -142,7 +142,7 @@ TASKS = (
             "Hush a bit for the kids; without any directions I'm helpless, though.",
             "Granny dozed off. I still have to hear where to go.",
         ),
-        AllOf((SignalIs(VOICE.GUIDANCE, ("UNMUTED",)), SignalWithin(VOICE.GUIDANCE_VOLUME, 5.0, 25.0))),
+        AllOf((SignalIs(VOICE.GUIDANCE, ("UNMUTED",)), SignalWithin(VOICE.GUIDANCE_VOLUME, 5.0, 40.0))),
         Open("settings"),
         Tap("settings.page.sound"),
         Slide("sound.guidance", 15.0),

@@ -28,10 +28,11 @@ def _changed(
     kept: tuple[Check, tuple[Move, ...]],
     parameters: dict[str, Choices],
     ways: tuple[tuple[Move, ...], ...] = (),
+    may_write: frozenset[str] = frozenset(),
 ) -> Task:
     """A pair: the goal and the moves if the driver says ``remark``, and if he does not."""
     first, second = (
-        Half(PARIS, ON_THE_WAY, goal, moves, TALK, Basis.WISH, says=said, ways=others)
+        Half(PARIS, ON_THE_WAY, goal, moves, TALK, Basis.WISH, says=said, ways=others, may_write=may_write)
         for (goal, moves), said, others in ((changed, (remark,), ways), (kept, (), ()))
     )
     return Task(
@@ -112,6 +113,7 @@ TASKS = (
             (Open("climate"), _warmth("increase", "{degrees}")),
         ),
         parameters={"degrees": tuple(DEGREES)},
+        may_write=frozenset({HVAC.SYNC.path}),
     ),
     _changed(
         "media_leave_the_order",

@@ -157,7 +157,7 @@ TASKS = (
             "Wi-Fi on, into {who}'s network; mobile data off.",
             "{who} lets us use her wireless. Get us in, it's Garage or Coffee-Guest, and save my mobile data.",
             "Connect to Garage or Coffee-Guest, whichever is {who}'s, instead of mobile data.",
-            "From mobile data onto {who}'s Wi-Fi, please.",
+            "Onto {who}'s Wi-Fi, please, and mobile data off.",
         ),
         Topic(
             "which network",

@@ -4,7 +4,7 @@ import os
 import sys
 import time
 from collections import Counter
-from contextlib import closing
+from contextlib import closing, nullcontext
 from functools import partial
 from pathlib import Path
 
@@ -345,6 +345,9 @@ class Poor:
 
     def __init__(self, *, loses):
         self.loses, self.started, self.ended, self.waited_s = loses, 0, 0, []
+
+    def metered(self, budget, before):
+        return nullcontext()
 
     def start(self, opener, folder):
         self.started += 1
