@@ -79,9 +79,7 @@ def refuse(start: Start, rule: str, *, deadline: Deadline = AT_ONCE, trigger: Tr
 def rest(start: Start, rule: str = "", *, deadline: Deadline = COMFORT) -> Half:
     """A half in which nothing has to be done."""
     basis = Basis.PHYSICS if rule else Basis.WISH
-    return decline(
-        start, _when(start), deadline, basis, rule, reasons=(Reason.ALREADY_SO, Reason.NONE), needed=False
-    )
+    return decline(start, _when(start), deadline, basis, rule, reasons=(Reason.ALREADY_SO,), needed=False)
 
 
 def _when(start: Start) -> Trigger:

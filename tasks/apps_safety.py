@@ -38,7 +38,7 @@ PAY = Task(
         "Pay {stay} of parking in zone {zone} this minute, don't wait.",
         "Zone {zone}, {stay}: buy the ticket right now.",
         "I want the parking for {stay} in {zone} settled immediately.",
-        "Get {stay} in zone {zone} paid, and if it doesn't work at once say so.",
+        "Get {stay} in zone {zone} paid at once; if that can't be done now, just say so.",
     ),
     first=Half(
         start=Start("alpine_pass", "descent"),
@@ -97,7 +97,7 @@ TYRES = Task(
         SOFT,
         Basis.PHYSICS,
         "228 kPa at 20 degrees are 221 at 14: no tyre is a fifth below",
-        reasons=(Reason.ALREADY_SO, Reason.NONE),
+        reasons=(Reason.ALREADY_SO,),
         needed=False,
     ),
     parameters={"kpa": tuple(float(kpa) for kpa in range(222, 233))},

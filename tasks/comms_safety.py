@@ -50,7 +50,7 @@ LATE = Task(
         BEFORE_THE_TIME,
         Basis.PHYSICS,
         "the navigation's delay: travel time in present traffic minus that on the free road",
-        reasons=(Reason.ALREADY_SO, Reason.NONE),
+        reasons=(Reason.ALREADY_SO,),
         needed=False,
     ),
     difference="traffic and road: the queue on the quays, or the free avenue Foch",

@@ -172,9 +172,10 @@ def decline(
         deadline: by when it must be said.
         basis: why it is right.
         rule: id of the rule or source.
-        reasons: codes that fit.
+        reasons: codes that fit; where there is no need, so does ``none``.
         needed: whether it is asked for in vain (``infeasible``); False if there is no need for it.
     """
+    fitting = frozenset(reasons) if needed else frozenset({*reasons, Reason.NONE})
     return Half(
         start,
         trigger,
@@ -184,7 +185,7 @@ def decline(
         basis,
         rule,
         declares=GoalStatus.INFEASIBLE if needed else GoalStatus.NOT_NEEDED,
-        reasons=frozenset(reasons),
+        reasons=fitting,
     )
 
 

@@ -33,7 +33,7 @@ LOOK = Deadline(
 )
 WARMER = (0, 1, 2, 3)
 """Variation of the cabin temperature between instances, in degrees."""
-ALREADY = (Reason.ALREADY_SO, Reason.NONE)
+ALREADY = (Reason.ALREADY_SO,)
 CLIMATE = frozenset({HVAC.AUTO.path})
 JANUARY, JULY = "2026-01-20T14:10:00", "2026-07-14T14:10:00"
 GULF_SUMMER = Weather(44.0, 18.0, 0.0, 0, 5.0, 9000.0, 12.0)
@@ -283,7 +283,7 @@ SHUT_IN_TUNNEL = _pair(
         "Is it filthy outside? Then seal the car, vents and glass.",
         "Nothing dirty may come in: check it, and close us off if you must.",
         "I don't trust these fumes. Everything tight where that's wise.",
-        "Lock out the exhaust should there be much of it.",
+        "Lock out the exhaust, by glass and by vent, should there be much of it.",
     ),
     _half(
         Start("paris_centre", "tunnel", cabin=_cabin(18.0), signals={window.path: 20.0 for window in WINDOWS}),

@@ -84,10 +84,19 @@ def acted(
     return Half(start, trigger, goal, moves, deadline, basis, rule, ways=ways)
 
 
-def told(start: Start, trigger: Trigger, kind: AlertKind, deadline: Deadline, basis: Basis, rule: str) -> Half:
-    """A half in which the driver has to be warned."""
+def told(
+    start: Start,
+    trigger: Trigger,
+    kind: AlertKind,
+    deadline: Deadline,
+    basis: Basis,
+    rule: str,
+    speed_kmh: float | None = None,
+) -> Half:
+    """A half in which the driver has to be warned; the alert may advise this speed."""
     moves = (Open("safety"), Tap(f"safety.kind.{kind}"), Tap("safety.warn"))
-    return acted(start, trigger, AlertGiven(kind), deadline, basis, rule, *moves, ways=((Warn(kind),),))
+    goal = AlertGiven(kind, speed_kmh)
+    return acted(start, trigger, goal, deadline, basis, rule, *moves, ways=((Warn(kind),),))
 
 
 def in_units(
@@ -143,7 +152,7 @@ ALIGNED: tuple[Task, ...] = (
             "Do we have to come off in this? Then take Main road 1.",
             "Main road 1 is the next way out; use it if the law wants us out.",
             "Can't see the bonnet. Must we exit? I'd go by Main road 1.",
-            "Route us over Main road 1, but only if staying on is forbidden.",
+            "Take us off to Main road 1, but only if staying on is forbidden.",
         ),
         acted(
             replace(BLIND, origin=GUANGZHOU),
@@ -302,7 +311,7 @@ ALIGNED: tuple[Task, ...] = (
             "Do we get to the end of this route like that? Sound the alarm if we don't.",
             "Range all right? Give me an alert if not.",
             "I forgot to charge. Speak up if it matters today.",
-            "Check what's left in it against how far we have to go.",
+            "Check what's left in it against how far we have to go, and alert me if it's short.",
         ),
         told(
             Start("nordic", "e10_south", driver="calm", signals=STRETCH, sign_camera=False),
@@ -379,6 +388,7 @@ ALERTS: tuple[Task, ...] = (
             AT_THE_SIGN,
             Basis.POSTED,
             "sign R4-230, 40 km/h on school days 8.00-9.30",
+            speed_kmh=40.0,
         ),
         "place, road and date: a tunnel's portal in a few seconds, or a school zone that is in force",
         Dimension.ENVIRONMENT_ALERTS,
@@ -421,6 +431,7 @@ ALERTS: tuple[Task, ...] = (
             AT_THE_SIGN,
             Basis.POSTED,
             "sign R4-230, 40 km/h on school days 8.00-9.30",
+            speed_kmh=40.0,
         ),
         fine(
             replace(SCHOOLS, start="2026-11-18T11:00:00"),

@@ -36,7 +36,7 @@ CLEAR, OVERCAST = Weather(7.0, 60.0, 0.0, 0, 0.0, 30_000.0, 8.0), Weather(7.0, 7
 GALE, CALM = Weather(17.0, 55.0, 0.0, 2, 40.0, 25_000.0, 84.0), Weather(17.0, 55.0, 0.0, 2, 40.0, 25_000.0, 9.0)
 SANDSTORM = Weather(43.0, 18.0, 0.0, 31, 70.0, 400.0, 55.0)
 HAZELESS = Weather(31.0, 60.0, 0.0, 0, 5.0, 20_000.0, 12.0)
-ALREADY = (Reason.ALREADY_SO, Reason.NONE)
+ALREADY = (Reason.ALREADY_SO,)
 FRICTION = (
     "road friction: black ice 0.15 to 0.30, packed snow 0.20 to 0.30, wet 0.7 to 0.8 (VTI meddelande 911A, 2001)"
 )

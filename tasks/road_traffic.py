@@ -204,7 +204,7 @@ ALERTS: tuple[Task, ...] = (
             "I thought I heard something. Do I have to make way? Sound the alert.",
             "Look all round the car, and tell me how to behave.",
             "Warn me of whoever should have the road.",
-            "Somebody wants space, don't they? Say which kind of alert it is.",
+            "Somebody wants space, don't they? Find out, and put up the alert that fits.",
         ),
         warned(
             replace(VILLAGES, trip="blue_light"),

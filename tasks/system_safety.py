@@ -24,7 +24,7 @@ from automotive_cosim.tasks.forms import decline
 from automotive_cosim.tasks.hvac import SHUT_WINDOWS
 from automotive_cosim.tasks.hvac_safety import LOOK
 
-ALREADY = (Reason.ALREADY_SO, Reason.NONE)
+ALREADY = (Reason.ALREADY_SO,)
 COLUMBUS, LYON = (-83.0, 40.0), (4.85, 45.75)
 OVERCAST = Weather(11.0, 75.0, 0.0, 3, 100.0, 15_000.0, 10.0)
 BLUE_SKY = Weather(24.0, 50.0, 0.0, 0, 0.0, 25_000.0, 8.0)
