@@ -258,3 +258,21 @@ def test_pages_count_the_tasks_as_they_are():
     }
     for page, words in told.items():
         assert words in (TOP / page).read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        (
+            "--agents t3a,asurada,always-alert --tasks safety --seeds 0-4",
+            "says {} episodes from 65 warm simulations",
+        ),
+        ("--agents t3a,asurada --scenarios grid,paris_centre", "has {} episodes: all"),
+    ],
+)
+def test_pages_count_the_episodes_as_they_are(cli, line, words):
+    planned = re.search(r"episodes +([\d,]+) from", cli("eval", *line.split(), "--workers", "2", "--dry-run").out)
+    assert planned is not None
+    text = (TOP / "docs/evaluation.md").read_text(encoding="utf-8")
+    assert f"automotive-cosim eval {line}" in text
+    assert words.format(planned[1]) in text
