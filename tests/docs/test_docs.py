@@ -265,7 +265,7 @@ def test_pages_count_the_tasks_as_they_are():
     [
         (
             "--agents t3a,asurada,always-alert --tasks safety --seeds 0-4",
-            "says {} episodes from 65 warm simulations",
+            "says {} episodes from 65 warm",
         ),
         ("--agents t3a,asurada --scenarios grid,paris_centre", "has {} episodes: all"),
     ],
