@@ -230,9 +230,8 @@ SOFT_TYRE_MEANWHILE = hard(
         " active. Should a tyre lose air meanwhile, warn me.",
         "I want lane keeping, lane departure, blind spot and speed warning running, and {cruise} as the speed to"
         " cruise at. I don't trust the tyres after that bump: sound a vehicle alert if one drops.",
-        "Turn on all the assistance that's off except the limiter, and get cruise ready for {cruise}."
-        " Keep an eye on the tyre pressures meanwhile and warn me about the car if they aren't all"
-        " right.",
+        "Turn on all the assistance that's off, but neither limiter nor cruise; cruise is only to be set to"
+        " {cruise}. Keep an eye on the tyre pressures meanwhile and warn me about the car if they aren't right.",
     ),
     done(
         replace(ON_THE_ROAD, signals=BARE, interruptions=(LEAK,)),
