@@ -14,7 +14,7 @@ from automotive_cosim.tasking.moves import Consult, Hear, Open, Slide, Tap, TapU
 from automotive_cosim.tasking.parameters import param
 from automotive_cosim.tasking.records import AppDataAt, EnteredAll, SaysFigure
 from automotive_cosim.tasking.task import Half, Module, Start
-from automotive_cosim.tasking.triggers import SignalHas
+from automotive_cosim.tasking.triggers import All, SignalHas
 from automotive_cosim.tasks.hard.forms import (
     A_RED_LIGHT,
     BEA,
@@ -87,8 +87,9 @@ AS_IT_WAS = AllOf(
     )
 )
 DARK_AGAIN = AllOf((SignalIs(CABIN.AMBIENT_LIGHT, (30.0,)), SignalIs(CABIN.PASSENGER_READING_LIGHT, (False,))))
-NOT_THE_AIR = Says("No, leave the temperature and the fan as they were. The rest is fine, go on.", step=11)
-NOT_THE_LIGHT = Says("No, leave the lights as they were. The rest is fine, go on.", step=11)
+BOTH_DONE = All((SignalHas(CABIN.PASSENGER_READING_LIGHT, True), SignalHas(HVAC.FAN_SPEED, param("percent"))))
+NOT_THE_AIR = Says("No, leave the temperature and the fan as they were. The rest is fine, go on.", when=BOTH_DONE)
+NOT_THE_LIGHT = Says("No, leave the lights as they were. The rest is fine, go on.", when=BOTH_DONE)
 A_PART_BACK = hard(
     "hard_a_part_taken_back",
     Module.SYSTEM,
