@@ -333,8 +333,8 @@ DEVICE_FROM_OSKAR = hard(
         " linked as it is and write 'No'.",
         "Connect the gadget from Oskar's text and confirm with a yes. If that very one isn't in the list, no"
         " substitute, just tell him no.",
-        "What Oskar has prepared should play here by Bluetooth; he gets a yes when it's done, or a no when the car"
-        " doesn't have it on offer.",
+        "What Oskar has prepared should be paired here by Bluetooth; he gets a yes when it's done, or a no when the"
+        " car doesn't have it on offer.",
     ),
     done(
         with_papers(PARKED, contacts=knowing(OSKAR), threads=(wrote(OSKAR, READY),)),
