@@ -60,10 +60,12 @@ EXTRAS = {
     "inspect": Extra("inspect_ai", "inspect eval automotive_cosim/cockpit"),
     "llm": Extra("openai", "--model openai/NAME"),
     "mcp": Extra("mcp", "mcp"),
+    "openenv": Extra("openenv", "doors.openenv"),
     "parquet": Extra("pyarrow", "studies as Parquet"),
     "ray": Extra("ray", "eval and study on a cluster"),
     "report": Extra("matplotlib", "report"),
     "rl": Extra("stable_baselines3", "training in Flat-v0"),
+    "verifiers": Extra("verifiers", "doors.verifiers"),
 }
 
 

@@ -72,7 +72,7 @@ def test_what_is_kept_can_be_shown(cli, tmp_path):
         cli("run", "--json", *GRID, "--memory", "kept.sqlite")
     kept = json.loads(cli("memory", "show", "kept.sqlite", "--json").out)
     assert [(entry["worked"], entry["failed"]) for entry in kept] == [(2, 0)]
-    assert "hvac.fan.max" in kept[0]["steps"]
+    assert "click index=Max" in kept[0]["steps"]
     text = cli("memory", "show", "kept.sqlite").out
     assert kept[0]["goal"] in text
     assert "2 of 2" in text

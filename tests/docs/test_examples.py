@@ -48,7 +48,7 @@ def test_the_script_evaluates_an_agents_repository_and_fails_if_it_gets_worse(ev
     assert len(cases) == 6
     assert "as good" in (tmp_path / "first/compare.md").read_text(encoding="utf-8")
     agent = tmp_path / "checkout/my_agent.py"
-    agent.write_text(agent.read_text(encoding="utf-8").replace("hvac.fan.max", "hvac.fan.none"), encoding="utf-8")
+    agent.write_text(agent.read_text(encoding="utf-8").replace('"Max"', '"None such"'), encoding="utf-8")
     worse = evaluate("checkout", "checkout/plan.toml", "second", "first/after")
     assert worse.returncode == 1, worse.stderr
     assert ElementTree.parse(tmp_path / "second/compare.xml").findall(".//failure")
