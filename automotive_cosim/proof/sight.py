@@ -98,6 +98,8 @@ _ELEMENTS: Mapping[str, frozenset[Facet]] = {
         "home.turn": {Facet.VIEW},
         "home.route": {Facet.VIEW},
         "home.speed": {Facet.SPEED},
+        "home.telltales": {Facet.SPEED},  # they stand beside its figures
+        "home.sign": {Facet.SIGN},
         "status.speed": {Facet.SPEED},
         "status.gear": {Facet.GEAR},
         "status.clock": {Facet.CLOCK},
