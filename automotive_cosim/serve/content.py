@@ -198,8 +198,9 @@ class Content:
             done = (entry.folder / "episodes.jsonl").read_bytes().count(b"\n")
             started = manifest["starts"][-1]["started"]
             running = is_being_written(entry.folder / "lock")
-            shared |= {"kind": kind, "done": done, "planned": manifest.get("episodes"), "running": running}
-            return {**shared, "started": started}
+            planned = manifest.get("episodes")
+            told = {"kind": kind, "done": done, "planned": planned, "running": running, "started": started}
+            return {**shared, **told}
         if entry.is_drive:
             drive = self._drive(entry, (), None)
             return {
