@@ -14,6 +14,7 @@ from automotive_cosim.run.road_recorder import is_being_written
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.scenery.opening import network_of
 from automotive_cosim.serve.shelf import NotHereError
+from automotive_cosim.studies.decisions import told
 from automotive_cosim.studies.live import LIVE
 from automotive_cosim.studies.results import Study, all_decisions, choices_at, read_study
 from automotive_cosim.studies.rows import Branch, DecisionPoint
@@ -116,6 +117,7 @@ def _decision(study: Study, point: DecisionPoint) -> Json:
         "why": decision.why,
         "has_ways": bool(decision.ways),
         "agents": dict(decision.agents),
+        "told": list(told(decision)),
         "futures": [_future(branch, number, decision.gains(number).time_s)
                     for number, branch in enumerate(decision.branches)],
         "choices": [{"policy": each.policy, "age_s": each.age_s, "branch": each.branch} for each in chosen],

@@ -58,12 +58,13 @@ class StudySeat:
 class PeopleStudy:
     """A study under way. Any method may be called from any thread."""
 
-    def __init__(self, plan: PeoplePlan, folder: Path) -> None:
+    def __init__(self, plan: PeoplePlan, folder: Path, simulations: Simulations | None = None) -> None:
         """Begins it, or goes on with it.
 
         Args:
             plan: what is dealt.
             folder: of the study, new or begun with the same plan.
+            simulations: warm simulations to use, which the caller closes; by default its own.
 
         Raises:
             UserError: the plan does not fit, or the folder belongs to something else or is in use.
@@ -77,7 +78,8 @@ class PeopleStudy:
         self._store = self._ends.enter_context(opened(folder, whole.as_json(), EpisodeRow, planned=len(jobs)))
         self._log = folder / LOG
         self._events = _read(self._log)
-        self._simulations = Simulations()
+        self._own = Simulations() if simulations is None else None
+        self._simulations = simulations or self._own
         self._seats: dict[str, StudySeat] = {}
         self._lock = threading.RLock()
 
@@ -208,7 +210,8 @@ class PeopleStudy:
         """Ends the episodes under way, which will be begun again."""
         for seat in list(self._seats.values()):
             seat.game.close()
-        self._simulations.close()
+        if self._own is not None:
+            self._own.close()
         self._ends.close()
 
     # --- inside -----------------------------------------------------------------------------------------------

@@ -26,19 +26,17 @@ def half_in_words(half: Half) -> Iterable[tuple[str, str]]:
     if start.origin:
         yield "at", f"{start.origin[0]:g}, {start.origin[1]:g} (longitude, latitude)"
     if start.start:
-        yield "when", start.start
+        yield "when", start.start[:16].replace("T", " ")
     after = f", {half.trigger.after_s:g} s after departure or later" if half.trigger.after_s else ""
     yield "trigger", f"{half.trigger.condition}, for {half.trigger.for_s:g} s{after}"
     yield "goal", f"{half.goal}, then declare {half.declares}"
     if half.may_write:
         yield "allowed", f"{', '.join(sorted(half.may_write))} may be commanded besides"
     for coming in start.interruptions:
-        what = (
-            f"{coming.kind} from {coming.who}" if isinstance(coming, Arrival) else f"{coming.path} {coming.value}"
-        )
-        yield "meanwhile", f"{what}, {coming.at_s:g} s after the hand-over"
-    for number, way in enumerate((half.moves, *half.ways)):
-        yield "solution", f"{'or ' if number else ''}{', '.join(map(_move, way)) or 'declare at once'}"
+        yield "meanwhile", f"{_coming(coming)}, {coming.at_s:g} s after the hand-over"
+    ways = dict.fromkeys(", ".join(map(_move, way)) or "declare at once" for way in (half.moves, *half.ways))
+    for number, way in enumerate(ways):
+        yield "solution", f"{'or ' if number else ''}{way}"
     for topic in half.topics:
         yield "driver", f"asked about {topic.name}, says {topic.reply!r}"
     for says in half.says:

@@ -24,6 +24,7 @@ from automotive_cosim.serve.dealing import PeoplePlan
 from automotive_cosim.serve.play import Game
 from automotive_cosim.serve.study import PeopleStudy
 from automotive_cosim.tasking.task import Module
+from automotive_cosim.traffic.fork import Simulations
 
 from .conftest import (
     HOSTILE,
@@ -275,13 +276,12 @@ def perform(page: Any, action: Action, game: Overseen) -> int:
     return 1
 
 
-@pytest.mark.sumo
 @pytest.mark.usefixtures("hasty")
 def test_the_reference_solution_of_a_task_of_each_module_succeeds_by_hand(
-    serving: Serving, opened: Callable[..., Any], tmp_path: Path
+    serving: Serving, opened: Callable[..., Any], tmp_path: Path, simulations: Simulations
 ) -> None:
     assert set(PLAYED) == set(Module)
-    game = Overseen(tmp_path, scenario="grid")
+    game = Overseen(tmp_path, "grid", simulations)
     page = opened(serving(tmp_path, game=game))
     for task in PLAYED.values():
         page.get_by_role("link", name="Play").click()
@@ -304,10 +304,11 @@ def test_the_reference_solution_of_a_task_of_each_module_succeeds_by_hand(
         expect(page.locator(".head")).to_contain_text("human · blue heron")
 
 
-@pytest.mark.sumo
 @pytest.mark.usefixtures("hasty")
-def test_a_person_practises_by_keyboard_alone(serving: Serving, opened: Callable[..., Any], tmp_path: Path) -> None:
-    page = opened(serving(tmp_path, game=Game(tmp_path, scenario="grid")), "#/play?task=hvac_fan_max")
+def test_a_person_practises_by_keyboard_alone(
+    serving: Serving, opened: Callable[..., Any], tmp_path: Path, simulations: Simulations
+) -> None:
+    page = opened(serving(tmp_path, game=Game(tmp_path, "grid", simulations)), "#/play?task=hvac_fan_max")
     page.get_by_role("checkbox").focus()
     page.keyboard.press("Space")
     page.get_by_role("button", name="Begin").focus()
@@ -318,6 +319,10 @@ def test_a_person_practises_by_keyboard_alone(serving: Serving, opened: Callable
     expect(page.locator(".playing [role=status]")).to_contain_text("the clock stands")
     page.get_by_role("button", name="Go on").focus()
     page.keyboard.press("Enter")
+    page.context.set_offline(True)
+    expect(page.get_by_role("alert")).to_contain_text("does not answer")
+    page.context.set_offline(False)
+    expect(page.get_by_role("alert")).to_be_hidden()
     page.get_by_role("button", name="Climate", exact=True).first.focus()
     page.keyboard.press("Enter")
     fan = page.get_by_role("button", name="Max: Fan at full speed")
@@ -333,10 +338,9 @@ def test_a_person_practises_by_keyboard_alone(serving: Serving, opened: Callable
     expect(page.locator(".pill")).to_have_text("Success")
 
 
-@pytest.mark.sumo
 @pytest.mark.usefixtures("hasty")
 def test_two_people_take_part_in_a_study_at_once_and_a_new_server_goes_on(
-    serving: Serving, opened: Callable[..., Any], tmp_path: Path
+    serving: Serving, opened: Callable[..., Any], tmp_path: Path, simulations: Simulations
 ) -> None:
     plan = PeoplePlan(("heron", "fox"), ("hvac_fan_max", "hvac_fan_percent"), scenario="grid")
     folder = tmp_path / "mine"
@@ -353,7 +357,7 @@ def test_two_people_take_part_in_a_study_at_once_and_a_new_server_goes_on(
             box.get_by_label("mostly").check()
         page.get_by_role("button", name="Go on").click()
 
-    first = PeopleStudy(plan, folder)
+    first = PeopleStudy(plan, folder, simulations)
     browser = serving(tmp_path, study=first)
     pages = [sit_down(browser, name) for name in plan.people]
     for page in pages:
@@ -371,7 +375,7 @@ def test_two_people_take_part_in_a_study_at_once_and_a_new_server_goes_on(
     expect(pages[0].locator(".said")).to_be_visible(timeout=60_000)
     first.close()  # as the server ends, in the middle of an episode
 
-    second = PeopleStudy(plan, folder)
+    second = PeopleStudy(plan, folder, simulations)
     browser = serving(tmp_path, study=second)
     pages = [sit_down(browser, name) for name in plan.people]
     answer(pages[1])
@@ -423,6 +427,7 @@ def test_the_ways_of_a_decision_are_on_one_road(
     page.get_by_label("Which decisions").select_option("better")
     page.locator("tbody a").nth(1).click()
     expect(page.get_by_role("heading", level=1)).to_have_text("avenue at 950 s")
+    expect(page.get_by_text("The news expected 100 s on the route")).to_be_visible()
     expect(page.locator(".way")).to_have_count(2)
     assert page.locator(".street").count() > 20
     page.get_by_label("Seconds since the decision").fill("12")

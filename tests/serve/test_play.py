@@ -27,6 +27,7 @@ from automotive_cosim.run.store import read_rows
 from automotive_cosim.run.watch_row import WatchRow
 from automotive_cosim.serve.person import WAITING, Person, Preview
 from automotive_cosim.serve.play import Game
+from automotive_cosim.traffic.fork import Simulations
 
 from ..cockpit.conftest import town
 from .conftest import Browser, Reply
@@ -152,9 +153,11 @@ def test_leaving_what_counts_is_the_persons_failure() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.sumo
-def test_a_person_is_judged_as_an_agent_and_can_leave(serving: Serving, tmp_path: Path) -> None:
-    browser = serving(tmp_path, game=Game(tmp_path, scenario="grid"))
+def test_a_person_is_judged_as_an_agent_and_can_leave(
+    serving: Serving, tmp_path: Path, simulations: Simulations, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("automotive_cosim.serve.person.TICK_S", 0.2)
+    browser = serving(tmp_path, game=Game(tmp_path, "grid", simulations))
 
     def until(*states: str, when: Callable[[Any], bool] = lambda scene: True) -> Any:
         scene = browser("/api/play").json
@@ -221,16 +224,15 @@ def test_a_person_is_judged_as_an_agent_and_can_leave(serving: Serving, tmp_path
 
 
 @pytest.mark.slow
-@pytest.mark.sumo
 def test_a_drive_is_played_and_its_row_is_kept(
-    serving: Serving, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    serving: Serving, tmp_path: Path, simulations: Simulations, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     family = FAMILIES["grid_june"]
     shorter = replace(family.draw(1), duration_s=110.0)
     drawn = SimpleNamespace(id=family.id, scenario=family.scenario, season=family.season, draw=lambda seed: shorter)
     monkeypatch.setitem(FAMILIES, family.id, drawn)  # type: ignore[call-overload]
     monkeypatch.setattr("automotive_cosim.serve.person.TICK_S", 0.02)
-    browser = serving(tmp_path, game=Game(tmp_path))
+    browser = serving(tmp_path, game=Game(tmp_path, simulations=simulations))
     assert post(browser, "/api/play/start", {"drive": "no_such", "name": "heron"}).status == 422
     assert post(browser, "/api/play/start", {"drive": "grid_june", "name": "heron", "seed": 1}).status == 200
     scene = browser("/api/play").json

@@ -33,7 +33,8 @@ export async function tasksPage(query) {
 export async function taskPage(query, id) {
   const task = await ask(`/api/tasks/${id}`);
   const { halves: solved } = await ask(`/api/tasks/${id}/reference`);
-  const values = Object.entries(task.values).map(([name, said]) => h("li", {}, h("code", {}, `{${name}}`), ` ${said}`));
+  const said = task.goal_templates.join(" ");
+  const values = Object.entries(task.values).filter(([name]) => said.includes(`{${name}}`)).map(([name, said]) => h("li", {}, h("code", {}, `{${name}}`), ` ${said}`));
   return {
     title: task.id,
     content: [

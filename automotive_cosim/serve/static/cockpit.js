@@ -166,14 +166,17 @@ export function cockpitPanel({ base = "/api/play", query = {}, say, leaveLabel =
 
 // Hears of every change of a person's scene until it is told to stop.
 export function listen({ base = "/api/play", query = {}, say, changed }) {
-  let [gone, timer, version] = [false, 0, -1];
+  let [gone, timer, version, lost] = [false, 0, -1, false];
   (async () => {
     while (!gone) {
       try {
         const scene = await ask(`${base}?${new URLSearchParams({ ...query, ...(version < 0 ? {} : { seen: version }) })}`);
         if (gone) return;
+        if (lost) say(null);
+        lost = false;
         if (scene.version !== version) { version = scene.version; changed(scene); }
       } catch (error) {
+        lost = true;
         say(new Error(`${error.message} Trying again.`));
         await new Promise((done) => { timer = setTimeout(done, 1000); });
       }

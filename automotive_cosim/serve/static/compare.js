@@ -63,7 +63,7 @@ export async function comparePage(query, first, second) {
   const heads = head.slice(4, 6);
   return {
     title: `${runs[0].name} and ${runs[1].name}`,
-    content: [h("h1", {}, first === second ? `Agents of ${runs[0].name}` : `${runs[0].name} and ${runs[1].name}`), h("div", { class: "filters" }, sides, which, module, search), count,
+    content: [h("h1", {}, first === second ? `${runs[0].name}: two agents` : `${runs[0].name} and ${runs[1].name}`), h("div", { class: "filters" }, sides, which, module, search), count,
       h("div", { class: "card scroll", tabindex: 0, role: "region", "aria-label": "Instances" }, h("table", {}, h("thead", {}, h("tr", {}, head)), body))],
     ready: fill,
   };

@@ -61,8 +61,9 @@ export async function decisionPage(query, id, name) {
     title: `${found.trip} at ${Math.round(found.at_s)} s`,
     content: [h("h1", {}, `${found.trip} at ${Math.round(found.at_s)} s`),
       h("p", { class: "muted" }, h("a", { href: `#/decisions/${id}` }, study.name), ` · seed ${found.seed} · ${Math.round(found.delay_s)} s of delay ahead, ${Math.round(found.eta_s)} s to the destination · ${counted(found.draws, "draw")}${found.complies ? "" : " · the driver would not comply"}`),
+      found.told.length > 0 && h("p", {}, found.told.join(" ")),
       found.excluded && h("p", { class: "warning" }, `Excluded: ${found.excluded}. ${found.why}`),
-      map ? h("figure", { class: "card ways" }, picture, moving?.element, h("figcaption", {}, map.ways.map((_, index) => h("span", {}, h("i", { class: `key way-${index}` }), WAYS[index])))) : h("p", { class: "card" }, "This study is older than the record of the ways."),
+      map ? h("figure", { class: "card ways" }, picture, moving?.element, h("figcaption", {}, h("span", {}, h("i", { class: "key here" }), "decides here"), map.ways.map((_, index) => h("span", {}, h("i", { class: `key way-${index}` }), WAYS[index])))) : h("p", { class: "card" }, "This study is older than the record of the ways."),
       h("div", { class: "card scroll", tabindex: 0, role: "region", "aria-label": "Futures" }, h("table", {},
         h("thead", {}, h("tr", {}, ["Future", "Saves", "Stops saved", "Distance saved", "CO₂ saved", "All others save", "Others who notice", "Chosen by"].map((each) => h("th", { scope: "col" }, each)))),
         h("tbody", {}, rows.map((each) => h("tr", {}, h("td", {}, wayOf(each.number)), h("td", {}, signed(each.gain_s, "s")), h("td", {}, signed(each.stops, "")), h("td", {}, signed(each.distance_m, "m")), h("td", {}, signed(each.co2_g, "g")), h("td", {}, signed(each.others_s, "s")), h("td", {}, String(each.changed)), h("td", {}, chosen(each.number))))))),
@@ -75,7 +76,8 @@ export async function decisionPage(query, id, name) {
 function cursor(picture, { box: [left, , , top], tracks }) {
   const end = Math.max(...tracks.map((track) => track.at(-1)?.[0] ?? 0));
   const size = picture.viewBox.baseVal.width / 90;
-  const cars = tracks.map((_, index) => svg("circle", { r: size, class: `car way-${index}` }));
+  // where cars are together, each shows around the next
+  const cars = tracks.map((_, index) => svg("circle", { r: size * Math.max(0.6, 1.4 - 0.35 * index), class: `car way-${index}` }));
   picture.append(...cars);
   const slider = h("input", { type: "range", min: 0, max: end, step: 1, value: 0, "aria-label": "Seconds since the decision" });
   const told = h("p", { class: "muted", role: "status" });

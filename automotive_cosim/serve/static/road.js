@@ -302,7 +302,7 @@ export class RoadView {
     this.ghost = record.ghost(at, ego);
     if (this.ghost) this.shadow(context, { ...this.ghost, length: ego?.length ?? 4.5, width: ego?.width ?? 1.8 });
     if (ego) this.vehicle(context, ego, colours);
-    if (camera.scale > 1 && width > 3 * INSET.side * ratio) this.inset(context, colours, ratio);
+    if (camera.scale > 1 && width > 2.6 * INSET.side * ratio) this.inset(context, colours, ratio);
   }
 
   sees(x, y) {
