@@ -39,7 +39,7 @@ RECORDS = {
     " --pictures all --workers 1",
     "drive": "drive grid_june",
 }
-STUDY = "study reroute --seeds 0 --departures 0,300 --trips peripherique,centre --trajectories --workers 1"
+STUDY = "study reroute --seeds 0 --departures 0 --trips centre,tunnel --trajectories --workers 1"
 
 
 def main() -> None:
@@ -175,8 +175,8 @@ def live(kept: Keep, open_: Opened, server: WebServer, records: Path) -> None:
     while not (records / "study" / "live" / "watched").exists():
         threading.Event().wait(0.5)
     page = open_(f"#/live/{record(open_, 'study')}")
-    page.get_by_role("button", name="decision 1:").first.wait_for()
-    page.wait_for_timeout(4000)
+    page.get_by_role("button", name="saves").first.wait_for()
+    page.get_by_role("button", name="decision 1:").click()
     kept(page)
     page.context.close()
     running.wait()
@@ -190,7 +190,7 @@ def decision(kept: Keep, open_: Opened, server: WebServer, records: Path) -> Non
     page = open_(f"#/decisions/{record(open_, 'study')}?show=better")
     page.locator("tbody a").first.click()
     slider = page.get_by_label("Seconds since the decision")
-    slider.fill("120")
+    slider.fill("420")
     kept(page)
 
 
@@ -202,7 +202,7 @@ def play(kept: Keep, open_: Opened, server: WebServer, records: Path) -> None:
     page.get_by_role("button", name="Climate", exact=True).first.focus()
     page.keyboard.press("Enter")
     page.get_by_role("button", name="Max: Fan at full speed").wait_for(state="attached")
-    page.locator("h1").first.focus()
+    page.evaluate("document.activeElement.blur()")
     page.wait_for_timeout(1500)
     kept(page)
     page.get_by_role("button", name="Leave").click()

@@ -462,8 +462,8 @@ def test_a_running_study_is_watched_drive_after_drive(
             mark_as_written(lock)
             with (write_live_drive(study, "second") / "road.jsonl.gz").open("ab") as second:
                 mark_as_written(second)
-                expect(page.get_by_text("second; the next drive follows")).to_be_visible()
-    expect(page.get_by_text("The study is over")).to_be_visible()
+                expect(page.get_by_text("This is drive second.")).to_be_visible()
+    expect(page.get_by_text("The study does not run.")).to_be_visible()
     page.get_by_role("link", name="See its decisions").click()
     expect(page.locator("tbody tr")).to_have_count(2)
 

@@ -8,7 +8,8 @@ const SPEED = 16; // a study drives many times faster than anybody could watch
 
 export async function livePage(query, id) {
   const status = h("p", { class: "muted", role: "status" });
-  const place = h("div", {}, h("h1", {}, "A running study"));
+  const { name } = await ask(`/api/studies/${id}/live`);
+  const place = h("div", {}, h("h1", {}, `${name}, live`));
   let drive = null;
   let shown = null;
   let gone = false;
@@ -20,8 +21,8 @@ export async function livePage(query, id) {
       const next = drives.find((each) => each !== drive);
       if (next && (!shown || shown.isOver())) await show(next);
       if (gone) return;
-      if (!running) status.replaceChildren("The study is over. ", h("a", { href: `#/decisions/${id}` }, "See its decisions"));
-      else status.textContent = shown?.isOver() ?? true ? "Waiting for the next drive: traffic warms up, or futures are driven to their ends." : `${drive}; the next drive follows at its end.`;
+      if (!running) status.replaceChildren("The study does not run. ", h("a", { href: `#/decisions/${id}` }, "See its decisions"));
+      else status.textContent = shown?.isOver() ?? true ? "Waiting for the next drive: traffic warms up, or futures are driven to their ends." : `This is drive ${drive}. The next one follows at its end.`;
     } catch (error) {
       status.textContent = `${error.message} Trying again.`;
     }
@@ -37,10 +38,9 @@ export async function livePage(query, id) {
     page.ready();
   }
 
-  const { name } = await ask(`/api/studies/${id}/live`);
   return {
     title: `${name}, live`,
-    content: [h("p", { class: "muted" }, h("a", { href: `#/decisions/${id}` }, name), " · watched live"), status, place],
+    content: [status, place],
     ready: again,
     leave: () => { gone = true; clearTimeout(timer); shown?.leave(); },
   };
