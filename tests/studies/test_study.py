@@ -479,7 +479,7 @@ def test_an_agent_gains_what_its_taps_do_and_one_that_does_nothing_changes_nothi
 ANSWERS = {
     "chance": r"1 branches, each driven 2 to 2 times\n.*within a decision: \d",
     "gain": r"always +\+31\.\d s ± nan, 1 decisions of 1 seeds",
-    "policy": r"always +1\.0 +31\.",
+    "policy": r"always +1\.0 +1\.0 +31\.",
     "ways": r"branch 0: .*out, back.*\nkept route: .*main",
     "who_pays": r"the ego gains: 2 futures, mean \+31",
 }
