@@ -137,7 +137,7 @@ def told(values_ms: Sequence[float]) -> str:
 def served(folder: Path) -> Iterator[str]:
     """The address of a server in a process of its own."""
     words = [sys.executable, "-c", "from automotive_cosim_main import main; main()", "serve", str(folder), "--play"]
-    with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as process:
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as process:
         assert process.stdout is not None
         try:
             yield next(line.split()[-1] for line in process.stdout if "http://" in line)

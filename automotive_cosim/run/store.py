@@ -16,6 +16,7 @@ import os
 import platform
 import subprocess
 import sys
+import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from datetime import datetime
@@ -34,6 +35,8 @@ from automotive_cosim.run.versions import installed
 FORMAT = 1
 """Format of the folder; any other is refused."""
 ALSO_STAMPED = ("openai", "pyproj", "shapely")
+LOOK_S = 0.05
+"""Longer than a page takes to see whether a folder is locked."""
 
 
 class Store(Generic[R]):
@@ -321,7 +324,11 @@ def _locked(folder: Path) -> Iterator[None]:
             else:
                 import fcntl
 
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                try:
+                    fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                except BlockingIOError:  # perhaps a page looks at this instant whether it is locked
+                    time.sleep(LOOK_S)
+                    fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as error:
             raise UserError(
                 f"another evaluation is writing to {folder}; wait for it, or give --out another folder"

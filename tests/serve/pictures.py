@@ -12,13 +12,16 @@ from __future__ import annotations
 import argparse
 import io
 import json
+import os
 import shutil
 import subprocess
 import sys
 import tempfile
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +36,8 @@ from automotive_cosim.serve.study import PeopleStudy
 IMAGES = Path(__file__).parents[2] / "docs" / "images"
 QUALITY = 72
 PATIENCE_MS = 240_000
+SETTLED_MS = 700
+"""After which pictures within a page are there."""
 TASK = "road_speed_80_in_50"
 RECORDS = {
     "agents": f"eval --agents oracle,asurada --tasks {TASK},hvac_cold_hands,hvac_fan_max,media_forever --seeds 0"
@@ -40,10 +45,11 @@ RECORDS = {
     "drive": "drive grid_june",
 }
 STUDY = "study reroute --seeds 0 --departures 0 --trips centre,tunnel --trajectories --workers 1"
+START = "from automotive_cosim_main import main; main()"
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(prog="python -m tests.serve.pictures", description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(prog="python -m tests.serve.pictures", description="A picture of each page.")
     parser.add_argument("--records", type=Path, default=Path("runs/pictures"), help="folder of what is shown")
     parser.add_argument("--to", type=Path, default=IMAGES, help="folder of the pictures")
     parser.add_argument("--size", default="1280x900", help="of the browser's window")
@@ -51,64 +57,90 @@ def main() -> None:
     parser.add_argument("--touch", action="store_true", help="as on a tablet")
     parser.add_argument("--only", default="", help="names, separated by commas")
     asked = parser.parse_args()
-    asked.to.mkdir(parents=True, exist_ok=True)
-    asked.records.mkdir(parents=True, exist_ok=True)
+    for folder in (asked.to, asked.records):
+        folder.mkdir(parents=True, exist_ok=True)
     for name, words in RECORDS.items():
         if not (asked.records / name).exists():
-            command(*words.split(), "--out", asked.records / name).wait()
+            begin(*words.split(), "--out", asked.records / name).wait()
     wide, high = map(int, asked.size.split("x"))
-    options = {
-        "viewport": {"width": wide, "height": high},
-        "color_scheme": "dark" if asked.dark else "light",
-        "has_touch": asked.touch,
-    }
-    wanted = set(filter(None, asked.only.split(",")))
-    with pages(asked.records, options) as (open_, server):
-        for name, take in PICTURES.items():
-            if not wanted or name in wanted:
-                print(name, flush=True)
-                take(lambda page, name=name: keep(page, asked.to / f"{name}.webp"), open_, server, asked.records)
+    colours = "dark" if asked.dark else "light"
+    window = {"viewport": {"width": wide, "height": high}, "color_scheme": colours, "has_touch": asked.touch}
+    wanted = asked.only.split(",") if asked.only else list(PICTURES)
+    with opened(asked.records, window) as studio:
+        for name in wanted:
+            page = PICTURES[name](studio)
+            if page is not None:
+                page.wait_for_timeout(SETTLED_MS)
+                image = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
+                image.save(asked.to / f"{name}.webp", quality=QUALITY, method=6)
+                page.context.close()
+            print(name, flush=True)
 
 
-def command(*words: object) -> subprocess.Popen[bytes]:
+def begin(*words: object) -> subprocess.Popen[bytes]:
     """Starts ``automotive-cosim``."""
     return subprocess.Popen([sys.executable, "-c", START, *map(str, words)])
 
 
-START = "from automotive_cosim_main import main; main()"
+@dataclass
+class Studio:
+    """A server that shows records, and a browser."""
 
+    server: WebServer
+    browser: Any
+    window: dict[str, Any]
+    records: Path
+    running: subprocess.Popen[bytes] | None = None
+    """The study, while it runs."""
 
-def keep(page: Any, path: Path) -> None:
-    """What the window shows, once its pictures are there."""
-    page.wait_for_timeout(700)
-    Image.open(io.BytesIO(page.screenshot())).convert("RGB").save(path, quality=QUALITY, method=6)
+    def open(self, page: str, address: str = "") -> Any:
+        """A page in a window of its own."""
+        tab = self.browser.new_context(**self.window).new_page()
+        tab.set_default_timeout(PATIENCE_MS)
+        tab.goto(address or self.server.address)
+        tab.goto(f"http://127.0.0.1:{self.server.server_port}/{page}")
+        tab.get_by_role("heading", level=1).wait_for()
+        return tab
 
+    def record(self, name: str) -> str:
+        """The id of a record."""
+        tab = self.open("#/")
+        records = tab.evaluate("fetch('/api/runs').then((answer) => answer.json())")["records"]
+        tab.context.close()
+        return str(next(each["id"] for each in records if each["name"] == name))
 
-Opened = Callable[..., Any]
-Keep = Callable[[Any], None]
+    def study(self) -> str:
+        """The id of the study, once it is over."""
+        if not (self.records / "study").exists():
+            self.running = begin(*STUDY.split(), "--out", self.records / "study")
+        if self.running is not None:
+            self.running.wait()
+        return self.record("study")
+
+    def episode(self, agent: str) -> str:
+        """Where an agent's episode is among the runs."""
+        text = (self.records / "agents" / "episodes.jsonl").read_text(encoding="utf-8")
+        rows = map(json.loads, text.splitlines())
+        wanted = agent, TASK, "first"
+        name = next(row["id"] for row in rows if (row["agent"], row["task"], row["half"]) == wanted)
+        return f"{self.record('agents')}/{name}"
 
 
 @contextmanager
-def pages(records: Path, options: dict[str, Any]) -> Iterator[tuple[Opened, WebServer]]:
-    """A server, and what opens a page of it."""
+def opened(records: Path, window: dict[str, Any]) -> Iterator[Studio]:
+    """A studio, in which people can play."""
     played = Path(tempfile.mkdtemp())
     people = PeoplePlan(("heron", "fox", "owl", "otter"), ("hvac_fan_max", "hvac_fan_percent"), scenario="grid")
-    study = PeopleStudy(people, played / "summer")
-    server = WebServer([records, played], game=Game(played, scenario="grid"), study=study)
+    game, study = Game(played, scenario="grid"), PeopleStudy(people, played / "summer")
+    server = WebServer([records, played], game=game, study=study)
     threading.Thread(target=server.serve_forever, args=(0.05,), daemon=True).start()
+    is_root = hasattr(os, "geteuid") and os.geteuid() == 0
     try:
         with sync_playwright() as driver:
-            browser = driver.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
-
-            def open_(page: str, address: str = "") -> Any:
-                tab = browser.new_context(**options).new_page()
-                tab.set_default_timeout(PATIENCE_MS)
-                tab.goto(address or server.address)
-                tab.goto(f"http://127.0.0.1:{server.server_port}/{page}")
-                tab.get_by_role("heading", level=1).wait_for()
-                return tab
-
-            yield open_, server
+            browser = driver.chromium.launch(
+                executable_path=shutil.which("chromium"), args=["--no-sandbox"] if is_root else []
+            )
+            yield Studio(server, browser, window, records)
             browser.close()
     finally:
         server.shutdown()
@@ -116,86 +148,28 @@ def pages(records: Path, options: dict[str, Any]) -> Iterator[tuple[Opened, WebS
         shutil.rmtree(played, ignore_errors=True)
 
 
-def record(open_: Opened, name: str) -> str:
-    """The id of a record."""
-    tab = open_("#/")
-    records = tab.evaluate("fetch('/api/runs').then((answer) => answer.json())")["records"]
-    tab.context.close()
-    return str(next(each["id"] for each in records if each["name"] == name))
-
-
-def episode(records: Path, agent: str, task: str = TASK, half: str = "first") -> str:
-    """The id of an episode of the evaluation."""
-    rows = map(json.loads, (records / "agents" / "episodes.jsonl").read_text(encoding="utf-8").splitlines())
-    return next(row["id"] for row in rows if (row["agent"], row["task"], row["half"]) == (agent, task, half))
-
-
-# --- the pictures ---------------------------------------------------------------------------------------------
-
-
-def replay(kept: Keep, open_: Opened, server: WebServer, records: Path) -> None:
-    kept(open_(f"#/run/{record(open_, 'agents')}/{episode(records, 'oracle')}?at=2"))
-
-
-def beside(kept: Keep, open_: Opened, server: WebServer, records: Path) -> None:
-    run = record(open_, "agents")
-    kept(open_(f"#/beside/{run}/{episode(records, 'oracle')}/{run}/{episode(records, 'asurada')}?at=3"))
-
-
-def drive(kept: Keep, open_: Opened, server: WebServer, records: Path) -> None:
-    kept(open_(f"#/run/{record(open_, 'drive')}?at=200"))
-
-
-def task(kept: Keep, open_: Opened, server: WebServer, records: Path) -> None:
-    kept(open_(f"#/tasks/{TASK}"))
-
-
-def results(kept: Keep, open_: Opened, server: WebServer, records: Path) -> None:
-    kept(open_(f"#/results/{record(open_, 'agents')}"))
-
-
-def compare(kept: Keep, open_: Opened, server: WebServer, records: Path) -> None:
-    run = record(open_, "agents")
-    kept(open_(f"#/compare/{run}/{run}"))
-
-
-def scenarios(kept: Keep, open_: Opened, server: WebServer, records: Path) -> None:
-    kept(open_("#/scenarios"))
-
-
-def runs(kept: Keep, open_: Opened, server: WebServer, records: Path) -> None:
-    kept(open_("#/"))
-
-
-def live(kept: Keep, open_: Opened, server: WebServer, records: Path) -> None:
+def live(studio: Studio) -> Any:
     """A study while it runs; begun here, unless it is there already."""
-    if (records / "study").exists():
-        return
-    running = command(*STUDY.split(), "--out", records / "study")
-    while not (records / "study" / "live" / "watched").exists():
-        threading.Event().wait(0.5)
-    page = open_(f"#/live/{record(open_, 'study')}")
+    if (studio.records / "study").exists():
+        return None
+    studio.running = begin(*STUDY.split(), "--out", studio.records / "study")
+    while not (studio.records / "study" / "live" / "watched").exists():
+        time.sleep(0.5)
+    page = studio.open(f"#/live/{studio.record('study')}")
     page.get_by_role("button", name="saves").first.wait_for()
     page.get_by_role("button", name="decision 1:").click()
-    kept(page)
-    page.context.close()
-    running.wait()
+    return page
 
 
-def decisions(kept: Keep, open_: Opened, server: WebServer, records: Path) -> None:
-    kept(open_(f"#/decisions/{record(open_, 'study')}"))
-
-
-def decision(kept: Keep, open_: Opened, server: WebServer, records: Path) -> None:
-    page = open_(f"#/decisions/{record(open_, 'study')}?show=better")
+def decision(studio: Studio) -> Any:
+    page = studio.open(f"#/decisions/{studio.study()}?show=better")
     page.locator("tbody a").first.click()
-    slider = page.get_by_label("Seconds since the decision")
-    slider.fill("420")
-    kept(page)
+    page.get_by_label("Seconds since the decision").fill("420")
+    return page
 
 
-def play(kept: Keep, open_: Opened, server: WebServer, records: Path) -> None:
-    page = open_("#/play?task=hvac_fan_max")
+def play(studio: Studio) -> Any:
+    page = studio.open("#/play?task=hvac_fan_max")
     page.get_by_role("checkbox").check()
     page.get_by_role("button", name="Begin").click()
     page.locator(".said").wait_for()
@@ -204,41 +178,40 @@ def play(kept: Keep, open_: Opened, server: WebServer, records: Path) -> None:
     page.get_by_role("button", name="Max: Fan at full speed").wait_for(state="attached")
     page.evaluate("document.activeElement.blur()")
     page.wait_for_timeout(1500)
-    kept(page)
-    page.get_by_role("button", name="Leave").click()
-    page.get_by_text("The episode is over").wait_for()
+    return page
 
 
-def people(kept: Keep, open_: Opened, server: WebServer, records: Path) -> None:
-    page = open_("#/study", server.people_address)
+def people(studio: Studio) -> Any:
+    page = studio.open("#/study", studio.server.people_address)
     page.get_by_label("Your code name").select_option("heron")
     page.get_by_role("button", name="Take part").click()
     page.get_by_role("button", name="Begin the next episode").click()
-    page.locator(".said").wait_for()
     page.get_by_role("button", name="Not needed").click()
     page.get_by_text("About what you just did").wait_for()
     for box in page.locator("fieldset").all()[:2]:
         box.get_by_label("mostly").check()
-    kept(page)
+    return page
 
 
-PICTURES = {
-    each.__name__: each
-    for each in (
-        runs,
-        replay,
-        beside,
-        drive,
-        task,
-        results,
-        compare,
-        scenarios,
-        live,
-        decisions,
-        decision,
-        play,
-        people,
-    )
+def compare(studio: Studio) -> Any:
+    run = studio.record("agents")
+    return studio.open(f"#/compare/{run}/{run}")
+
+
+PICTURES: dict[str, Callable[[Studio], Any]] = {
+    "runs": lambda studio: studio.open("#/"),
+    "replay": lambda studio: studio.open(f"#/run/{studio.episode('oracle')}?at=2"),
+    "beside": lambda studio: studio.open(f"#/beside/{studio.episode('oracle')}/{studio.episode('asurada')}?at=3"),
+    "drive": lambda studio: studio.open(f"#/run/{studio.record('drive')}?at=200"),
+    "results": lambda studio: studio.open(f"#/results/{studio.record('agents')}"),
+    "compare": compare,
+    "task": lambda studio: studio.open(f"#/tasks/{TASK}"),
+    "scenarios": lambda studio: studio.open("#/scenarios"),
+    "live": live,
+    "decisions": lambda studio: studio.open(f"#/decisions/{studio.study()}"),
+    "decision": decision,
+    "play": play,
+    "people": people,
 }
 
 if __name__ == "__main__":

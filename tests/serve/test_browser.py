@@ -18,7 +18,7 @@ import pytest
 from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.contracts import Action, ActionType, BoundingBox
 from automotive_cosim.episode.episode import Episode
-from automotive_cosim.run.episode import Shot
+from automotive_cosim.run.episode import Shot, Watcher
 from automotive_cosim.run.road_recorder import is_being_written, mark_as_written
 from automotive_cosim.serve.dealing import PeoplePlan
 from automotive_cosim.serve.play import Game
@@ -306,8 +306,13 @@ def test_the_reference_solution_of_a_task_of_each_module_succeeds_by_hand(
 
 @pytest.mark.usefixtures("hasty")
 def test_a_person_practises_by_keyboard_alone(
-    serving: Serving, opened: Callable[..., Any], tmp_path: Path, simulations: Simulations
+    serving: Serving,
+    opened: Callable[..., Any],
+    tmp_path: Path,
+    simulations: Simulations,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    monkeypatch.setattr("automotive_cosim.serve.play.Film", lambda folder: Watcher())  # it takes seconds
     page = opened(serving(tmp_path, game=Game(tmp_path, "grid", simulations)), "#/play?task=hvac_fan_max")
     page.get_by_role("checkbox").focus()
     page.keyboard.press("Space")
