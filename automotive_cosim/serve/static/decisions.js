@@ -104,13 +104,13 @@ function cursor(picture, { box: [left, , , top], tracks }) {
   return { element: h("div", { class: "transport" }, run, h("div", { class: "time-line" }, slider), told), stop };
 }
 
-// The roads around, each way in its own colour, and a dot where the drive is when it decides.
+// The roads around, each way in its own colour and thinner than the one before, so that both show where they are the same, and a dot where the drive is when it decides.
 function drawn({ box: [left, bottom, right, top], roads, ways }) {
   const points = (flat) => Array.from({ length: flat.length / 2 }, (_, index) => `${flat[2 * index] - left},${top - flat[2 * index + 1]}`).join(" ");
   const size = Math.max(right - left, top - bottom);
   const root = svg("svg", { viewBox: `0 0 ${right - left} ${top - bottom}`, role: "img", "aria-label": `The present route and ${ways.length - 1} other ways from the same place`, preserveAspectRatio: "xMidYMid meet" });
   root.append(...roads.map((road) => svg("polyline", { points: points(road), class: "street", "stroke-width": size / 400 })));
-  root.append(...ways.map((way, index) => svg("polyline", { points: points(way), class: `way way-${index}`, "stroke-width": size / (index ? 150 : 80) })));
+  root.append(...ways.map((way, index) => svg("polyline", { points: points(way), class: `way way-${index}`, "stroke-width": size / (80 * 1.5 ** Math.min(index, 3)) })));
   if (ways[0].length) root.append(svg("circle", { cx: ways[0][0] - left, cy: top - ways[0][1], r: size / 70, class: "here" }));
   return root;
 }

@@ -77,7 +77,7 @@ export async function replayPage(query, id, episode) {
 
   function lists() {
     list.replaceChildren(...steps.map((each, index) => h("li", {}, h("button", { type: "button", onclick: () => jump(each.at_s), "data-step": index },
-      h("span", { class: "time" }, seconds(each.at_s)), h("span", {}, `${each.number ? `${each.number}  ` : ""}${each.words}`)))));
+      h("span", { class: "time" }, seconds(each.at_s)), h("span", {}, `${each.number && !run.of_study ? `${each.number}  ` : ""}${each.words}`)))));
     const told = run.timeline.length ? run.timeline : road.seconds.flatMap((second) => second.events.map((text) => ({ at_s: second.at_s, kind: "road", text })));
     events.replaceChildren(...told.map((event) => h("li", {}, h("button", { type: "button", class: `k-${event.kind}`, onclick: () => jump(event.at_s) },
       h("span", { class: "time" }, seconds(event.at_s)), h("span", {}, event.text)))));
