@@ -52,14 +52,14 @@ export function cockpitPanel({ base = "/api/play", query = {}, say, leaveLabel =
   const practice = h("div", { class: "card transport", hidden: true }, h("span", { class: "pill" }, "practice"), pause, speed, h("span", { class: "muted" }, "No row is kept of it."));
 
   const element = h("div", { class: "playing" },
-    words, practice, h("div", { class: "card stage-one" }, frame), typed,
+    words, h("div", { class: "card stage-one" }, frame), typed,
     h("div", { class: "card transport" },
       button("Back", () => act({ action_type: "navigate_back" })), button("Home", () => act({ action_type: "navigate_home" })), button("Enter", () => act({ action_type: "keyboard_enter" })),
       h("form", { class: "filters say", onsubmit: (event) => { event.preventDefault(); speak("answer"); } }, answer, h("button", { type: "submit" }, "Say"), button("Ask", () => speak("ask_driver")), button("Look up", () => speak("query")))),
     h("div", { class: "card transport" },
       button("Done", () => declare("complete"), "main"), button("Not needed", () => declare("not_needed")), button("Cannot or must not", () => declare("infeasible")), reason,
       button(leaveLabel, async () => { try { await send(address("/leave"), {}); } catch (error) { say(error); } })),
-    told, h("details", { class: "card", open: true }, h("summary", {}, "What is known of the place"), context),
+    practice, told, h("details", { class: "card", open: true }, h("summary", {}, "What is known of the place"), context),
     h("details", { class: "card" }, h("summary", {}, "Readings of the car and its receivers"), readings));
 
   // The screen as an act will leave it comes with the answer to the act; the road follows within its second.
