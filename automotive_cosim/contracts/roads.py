@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import StrEnum
 
 from automotive_cosim.contracts.driving import LimitSource
 
@@ -25,6 +26,23 @@ class Road:
     """Whether it runs beside a school."""
 
 
+class GroundKind(StrEnum):
+    """What covers the ground beside the roads, in the order in which it is drawn."""
+
+    GREEN = "green"
+    WATER = "water"
+    BUILDING = "building"
+
+
+@dataclass(frozen=True, slots=True)
+class Ground:
+    """An area beside the roads, which pictures show and nothing else reads."""
+
+    kind: GroundKind
+    outline_m: tuple[tuple[float, float], ...]
+    """At least three corners, network coordinates (x, y)."""
+
+
 @dataclass(frozen=True, slots=True)
 class RoadNetwork:
     """The drivable network of a scenario."""
@@ -37,3 +55,5 @@ class RoadNetwork:
     offset_m: tuple[float, float]
     """``netOffset``: added to projected coordinates."""
     left_hand: bool
+    ground: tuple[Ground, ...] = ()
+    """Water, green and buildings around the roads."""
