@@ -58,7 +58,7 @@ from automotive_cosim.contracts.requests import (
     Severity,
     SlowDown,
 )
-from automotive_cosim.contracts.roads import Ground, GroundKind, Road, RoadNetwork
+from automotive_cosim.contracts.roads import Ground, GroundKind, Road, RoadNetwork, in_drawing_order
 from automotive_cosim.contracts.sight import Sight, SightKind
 from automotive_cosim.contracts.snapshot import LaneShape, RoadShapes, RoadSnapshot, SeenVehicle, SumoSignal
 
@@ -117,5 +117,6 @@ __all__ = [
     "TrafficLight",
     "VehicleState",
     "Weather",
+    "in_drawing_order",
     "lon_lat",
 ]

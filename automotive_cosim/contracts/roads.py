@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -41,6 +42,12 @@ class Ground:
     kind: GroundKind
     outline_m: tuple[tuple[float, float], ...]
     """At least three corners, network coordinates (x, y)."""
+
+
+def in_drawing_order(areas: Iterable[Ground]) -> tuple[Ground, ...]:
+    """Green first, buildings last; what is of one kind in the order in which it came."""
+    order = list(GroundKind)
+    return tuple(sorted(areas, key=lambda area: order.index(area.kind)))
 
 
 @dataclass(frozen=True, slots=True)

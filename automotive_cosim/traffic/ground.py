@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import shapely
 
-from automotive_cosim.contracts import Ground, GroundKind, RoadNetwork
+from automotive_cosim.contracts import Ground, GroundKind, RoadNetwork, in_drawing_order
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats.words import shown
 from automotive_cosim.formats.xml import scan
@@ -80,8 +80,7 @@ def read_ground(configuration: Configuration, roads: RoadNetwork) -> tuple[Groun
                 found.append(area)
 
         scan(file, start, error=ScenarioError, what="a SUMO file")
-    order = list(GroundKind)
-    return tuple(sorted(_largest(found), key=lambda area: order.index(area.kind)))
+    return in_drawing_order(_largest(found))
 
 
 def kind_of(polygon_type: str) -> GroundKind | None:
