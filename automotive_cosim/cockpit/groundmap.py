@@ -29,7 +29,7 @@ class GroundMap:
         lows = np.array([shape.min(axis=0) for shape in shapes]).reshape(-1, 2)
         highs = np.array([shape.max(axis=0) for shape in shapes]).reshape(-1, 2)
         self._sizes_m = (highs - lows).max(axis=1, initial=0.0)
-        self._tree = STRtree(shapely.box(*lows.T, *highs.T))
+        self._tree = STRtree(shapely.box(lows[:, 0], lows[:, 1], highs[:, 0], highs[:, 1]))
 
     def paint(
         self,

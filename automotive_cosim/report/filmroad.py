@@ -1,4 +1,4 @@
-"""The road from above, heading up: ground, lanes, traffic lights and every vehicle, with a trail of the drive so far."""
+"""The road from above, heading up: ground, lanes, traffic lights and vehicles, with a trail of the drive so far."""
 
 from __future__ import annotations
 
