@@ -1,7 +1,7 @@
-"""Reads an OSM extract of any format and reduces it to the roads that cars use.
+"""Reads an OSM extract of any format and reduces it to the roads that cars use, and the ground around them.
 
 libosmium reads every format and detects truncated files; the output for netconvert is always plain OSM XML. Other
-ways (paths, buildings, railways) are removed, because each path that meets a road would split it in two.
+ways (paths, railways) are removed, because each path that meets a road would split it in two.
 """
 
 from __future__ import annotations
@@ -13,9 +13,14 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from shapely import Polygon
+
+from automotive_cosim.contracts import GroundKind
 from automotive_cosim.errors import ImportMapError, SetupError
 from automotive_cosim.formats.xml import scan
+from automotive_cosim.osm import ground
 from automotive_cosim.osm.area import Area
+from automotive_cosim.osm.ground import MappedArea
 from automotive_cosim.osm.overpass_json import OverpassJson, is_json
 from automotive_cosim.traffic.sumo_programs import INSTALL
 
@@ -84,6 +89,8 @@ class Extract:
     restrictions: tuple[TurnRestriction, ...]
     cameras: tuple[Position, ...] = ()
     """Positions of speed cameras, on a road or beside it."""
+    ground: tuple[MappedArea, ...] = ()
+    """Water, green and buildings, wherever in the extract."""
 
     def crop(self, area: Area) -> Extract:
         """The part within an area; of a road that leaves and comes back, the longest stretch.
@@ -108,6 +115,7 @@ class Extract:
             {ref: node for ref, node in nodes.items() if ref in used},
             turns,
             tuple(camera for camera in self.cameras if area.holds(*camera)),
+            self.ground,
         )
 
     @property
@@ -133,18 +141,20 @@ def read(source: Path) -> Extract:
         ImportMapError: the file is missing, empty, truncated, not OSM data, or without roads.
         SetupError: the osmium package is not installed.
     """
-    ways, restrictions, nodes, cameras = _read_json(source) if is_json(_head(source)) else _read_osm(source)
+    ways, restrictions, nodes, cameras, areas = (_read_json if is_json(_head(source)) else _read_osm)(source)
     complete = tuple(piece for way in ways for piece in _known_pieces(way, nodes))
     if not complete:
         raise ImportMapError(
             f"{source} has no roads for cars ({len(ways)} ways tagged as such, with {len(nodes)} of their nodes);"
             " give an extract that keeps highway=* ways and their nodes"
         )
-    return Extract(complete, nodes, restrictions, cameras)
+    return Extract(complete, nodes, restrictions, cameras, ground.in_order(areas))
 
 
-_Read = tuple[list[OsmWay], tuple[TurnRestriction, ...], dict[int, Node], tuple[Position, ...]]
-"""Ways open to cars, turn restrictions, the nodes of those ways, and speed cameras."""
+_Read = tuple[
+    list[OsmWay], tuple[TurnRestriction, ...], dict[int, Node], tuple[Position, ...], tuple[MappedArea, ...]
+]
+"""Ways open to cars, turn restrictions, the nodes of those ways, speed cameras, and the ground."""
 
 
 def _read_osm(source: Path) -> _Read:
@@ -156,7 +166,7 @@ def _read_osm(source: Path) -> _Read:
     try:
         ways, restrictions = _read_ways(file)
         nodes = _read_nodes(file, {ref for way in ways for ref in way.nodes})
-        return ways, restrictions, nodes, _read_cameras(file)
+        return ways, restrictions, nodes, _read_cameras(file), tuple(_read_ground(file))
     except (RuntimeError, ValueError, ArithmeticError, MemoryError, osmium.InvalidLocationError) as error:
         raise ImportMapError(_explain(source, str(error))) from error
 
@@ -166,14 +176,29 @@ def _read_json(source: Path) -> _Read:
     ways = [OsmWay(way_id, tags, nodes) for way_id, tags, nodes in read.ways() if _is_road(tags)]
     turns = tuple(TurnRestriction(*relation) for relation in read.relations() if "restriction" in relation[1])
     wanted = {ref for way in ways for ref in way.nodes}
+    outlines = [(kind, refs) for _, tags, refs in read.ways() if (kind := _ground_of(tags, refs)) is not None]
+    corners = {ref for _, refs in outlines for ref in refs}
+    places: dict[int, Position] = {}
     nodes: dict[int, Node] = {}
     cameras: list[Position] = []
     for node_id, tags, place in read.nodes():
+        if node_id in corners:
+            places[node_id] = Position(*place)
         if node_id in wanted:
             nodes[node_id] = Node(Position(*place), tags)
         if tags.get("highway") == "speed_camera":
             cameras.append(Position(*place))
-    return ways, turns, dict(sorted(nodes.items())), tuple(cameras)
+    areas = (
+        MappedArea(kind, Polygon([places[ref] for ref in refs]))
+        for kind, refs in outlines
+        if places.keys() >= set(refs)
+    )
+    return ways, turns, dict(sorted(nodes.items())), tuple(cameras), tuple(areas)
+
+
+def _ground_of(tags: Mapping[str, str], refs: tuple[int, ...]) -> GroundKind | None:
+    """What a way is the outline of; None if it is none."""
+    return ground.kind_of(tags) if len(refs) > 3 and refs[0] == refs[-1] else None
 
 
 def _osmium() -> Any:
@@ -277,6 +302,22 @@ def _read_cameras(file: Any) -> tuple[Position, ...]:
     tagged = osmium.filter.TagFilter(("highway", "speed_camera"))
     found = osmium.FileProcessor(file, osmium.osm.NODE).with_filter(tagged)
     return tuple(Position(node.location.lon, node.location.lat) for node in found if node.location.valid())
+
+
+def _read_ground(file: Any) -> Iterator[MappedArea]:
+    """Areas of closed ways and of complete multipolygons; those that the extract cuts are left out."""
+    osmium = _osmium()
+    tagged = osmium.filter.KeyFilter(*ground.KEYS)
+    areas = osmium.FileProcessor(file).with_areas(tagged).with_filter(tagged)
+    for area in areas.with_filter(osmium.filter.EntityFilter(osmium.osm.AREA)):
+        kind = ground.kind_of({tag.k: tag.v for tag in area.tags})
+        for outer in area.outer_rings() if kind is not None else ():
+            holes = [_ring(inner) for inner in area.inner_rings(outer)]
+            yield MappedArea(kind, Polygon(_ring(outer), holes))
+
+
+def _ring(nodes: Any) -> list[tuple[float, float]]:
+    return [(node.lon, node.lat) for node in nodes]
 
 
 def _known_pieces(way: OsmWay, nodes: Mapping[int, Node]) -> Iterator[OsmWay]:

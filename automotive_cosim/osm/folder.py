@@ -73,13 +73,15 @@ def _put_in_place(building: Path, out: Path, replaced: Path) -> None:
         raise
 
 
-def write_config(target: Path, net: str, routes: str, sumo: Sumo, begin_s: float = 0.0) -> None:
+def write_config(
+    target: Path, net: str, routes: str, sumo: Sumo, *, ground: str = "", begin_s: float = 0.0
+) -> None:
     """Writes the ``.sumocfg``, which runs in sumo-gui as the scenario runs here.
 
     Other vehicles reroute, and push through a junction blocked for 20 s, because random traffic otherwise locks up.
     """
     sections: dict[str, dict[str, object]] = {
-        "input": {"net-file": net, "route-files": routes},
+        "input": {"net-file": net, "route-files": routes} | ({"additional-files": ground} if ground else {}),
         "time": {"begin": begin_s, "step-length": sumo.step_length_s},
         "processing": {
             "default.action-step-length": sumo.action_step_length_s,
