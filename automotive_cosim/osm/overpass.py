@@ -75,7 +75,7 @@ class _BusyError(Exception):
 
 
 def query(area: Area, limits: DownloadLimits) -> str:
-    """What to ask for, in Overpass QL: the roads within an area, with turn restrictions and speed cameras; water and
+    """What to ask for, in Overpass QL: the roads of an area, with turn restrictions and speed cameras; water and
     green; in an area of at most ``BUILDINGS_KM2``, buildings too."""
     box = f"{area.south_deg:.7f},{area.west_deg:.7f},{area.north_deg:.7f},{area.east_deg:.7f}"
     values: dict[str, list[str]] = {}
