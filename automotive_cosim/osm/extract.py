@@ -13,8 +13,6 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from shapely import Polygon
-
 from automotive_cosim.contracts import GroundKind
 from automotive_cosim.errors import ImportMapError, SetupError
 from automotive_cosim.formats.xml import scan
@@ -189,9 +187,7 @@ def _read_json(source: Path) -> _Read:
         if tags.get("highway") == "speed_camera":
             cameras.append(Position(*place))
     areas = (
-        MappedArea(kind, Polygon([places[ref] for ref in refs]))
-        for kind, refs in outlines
-        if places.keys() >= set(refs)
+        MappedArea.of(kind, [places[ref] for ref in refs]) for kind, refs in outlines if places.keys() >= set(refs)
     )
     return ways, turns, dict(sorted(nodes.items())), tuple(cameras), tuple(areas)
 
@@ -311,9 +307,10 @@ def _read_ground(file: Any) -> Iterator[MappedArea]:
     areas = osmium.FileProcessor(file).with_areas(tagged).with_filter(tagged)
     for area in areas.with_filter(osmium.filter.EntityFilter(osmium.osm.AREA)):
         kind = ground.kind_of({tag.k: tag.v for tag in area.tags})
-        for outer in area.outer_rings() if kind is not None else ():
-            holes = [_ring(inner) for inner in area.inner_rings(outer)]
-            yield MappedArea(kind, Polygon(_ring(outer), holes))
+        if kind is None:
+            continue
+        for outer in area.outer_rings():
+            yield MappedArea.of(kind, _ring(outer), map(_ring, area.inner_rings(outer)))
 
 
 def _ring(nodes: Any) -> list[tuple[float, float]]:

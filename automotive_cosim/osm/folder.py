@@ -81,7 +81,7 @@ def write_config(
     Other vehicles reroute, and push through a junction blocked for 20 s, because random traffic otherwise locks up.
     """
     sections: dict[str, dict[str, object]] = {
-        "input": {"net-file": net, "route-files": routes} | ({"additional-files": ground} if ground else {}),
+        "input": {"net-file": net, "route-files": routes},
         "time": {"begin": begin_s, "step-length": sumo.step_length_s},
         "processing": {
             "default.action-step-length": sumo.action_step_length_s,
@@ -98,6 +98,8 @@ def write_config(
             "device.rerouting.adaptation-steps": 18,
         },
     }
+    if ground:
+        sections["input"]["additional-files"] = ground
     lines = ["<configuration>"]
     for section, options in sections.items():
         lines.append(f"    <{section}>")

@@ -41,6 +41,10 @@ MARGIN_M = 300.0
 """So far beyond the network, areas are kept."""
 
 
+Ring = Sequence[tuple[float, float]]
+"""Longitude and latitude of corners, the first again at the end."""
+
+
 @dataclass(frozen=True, slots=True)
 class Coarseness:
     """How the areas of a kind are made simpler, and how many are kept."""
@@ -74,11 +78,17 @@ class MappedArea:
     shape: Polygon
     """Longitude and latitude."""
 
+    @classmethod
+    def of(cls, kind: GroundKind, outer: Ring, holes: Iterable[Ring] = ()) -> MappedArea:
+        """From its rings, wherever and which way round they begin."""
+        shape = Polygon(outer, list(holes)).normalize()
+        assert isinstance(shape, Polygon)
+        return cls(kind, shape)
+
 
 def in_order(areas: Iterable[MappedArea]) -> tuple[MappedArea, ...]:
-    """The same areas in the same order, however a file has them."""
-    same = (MappedArea(area.kind, area.shape.normalize()) for area in areas)
-    return tuple(sorted(same, key=lambda area: (area.kind, area.shape.wkb)))
+    """Always in the same order, however a file has them."""
+    return tuple(sorted(areas, key=lambda area: (area.kind, area.shape.wkb)))
 
 
 def kind_of(tags: Mapping[str, str]) -> GroundKind | None:

@@ -9,9 +9,12 @@ from pathlib import Path
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
+from automotive_cosim.run.road import NAME as ROAD
+from automotive_cosim.run.road_recorder import is_being_written
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.scenery.opening import network_of
 from automotive_cosim.serve.shelf import NotHereError
+from automotive_cosim.studies.live import LIVE
 from automotive_cosim.studies.results import Study, all_decisions, choices_at, read_study
 from automotive_cosim.studies.rows import Branch, DecisionPoint
 from automotive_cosim.studies.tracks import TRACKS
@@ -35,7 +38,19 @@ def decisions(folder: Path) -> Json:
         "scenario": study.plan.scenario,
         "planned": len(study.plan.jobs()),
         "done": len(study.rows),
+        "running": is_being_written(folder / "lock"),
         "decisions": [_decision(study, point) for point in all_decisions(study.rows)],
+    }
+
+
+def drives_under_way(folder: Path) -> Json:
+    """The drives of a running study that can be watched now, the newest first."""
+    found = [path.parent for path in (folder / LIVE).glob(f"*/{ROAD}") if is_being_written(path)]
+    found.sort(key=lambda each: each.stat().st_mtime, reverse=True)
+    return {
+        "name": folder.name,
+        "running": is_being_written(folder / "lock"),
+        "drives": [each.name for each in found],
     }
 
 
@@ -92,11 +107,12 @@ def _tracks(folder: Path, point: DecisionPoint, count: int) -> list[list[list[fl
 
 def _decision(study: Study, point: DecisionPoint) -> Json:
     drive, decision = point.drive, point.decision
-    chosen = choices_at(point, study.plan.policies) if not decision.excluded else ()
+    chosen = choices_at(point, study.plan.policies, study.plan.compliance[0]) if not decision.excluded else ()
     return {
         "id": point.id,
         **{name: getattr(drive, name) for name in ("trip", "seed", "share", "departure_s")},
-        **{name: getattr(decision, name) for name in ("at_s", "edge", "delay_s", "eta_s", "complies", "draws")},
+        **{name: getattr(decision, name) for name in ("at_s", "edge", "delay_s", "eta_s", "draws")},
+        "complies": decision.complies(study.plan.compliance[0]),
         "excluded": decision.excluded,
         "why": decision.why,
         "has_ways": bool(decision.ways),

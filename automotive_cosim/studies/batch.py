@@ -14,6 +14,7 @@ from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.store import opened
 from automotive_cosim.studies.drive import planned, run_drive
 from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
+from automotive_cosim.studies.live import LIVE, WATCHED
 from automotive_cosim.studies.plan import DriveJob, StudyPlan
 from automotive_cosim.studies.policies import PolicyRule
 from automotive_cosim.studies.results import choices
@@ -50,7 +51,8 @@ def run_study(
     """
     plan.check()
     first, *more = _stages(plan)
-    with opened(folder, plan.as_json(), DriveRow, parts=()) as store:
+    with opened(folder, plan.as_json(), DriveRow, parts=(LIVE,)) as store:
+        (folder / LIVE / WATCHED).touch()
 
         def run(seeds: tuple[int, ...]) -> Progress[DriveRow]:
             jobs = [job for job in plan.jobs() if job.seed in seeds]
@@ -72,7 +74,8 @@ def _stages(plan: StudyPlan) -> list[tuple[int, ...]]:
 
 def _is_narrow(plan: StudyPlan, rows: Sequence[DriveRow]) -> bool:
     """Whether the mean gain of ``always`` is known precisely enough."""
-    found = [each for each in choices(rows, (PolicyRule.ALWAYS,)) if each.age_s == plan.ages_s[0]]
+    always = choices(rows, (PolicyRule.ALWAYS,), plan.compliance[0])
+    found = [each for each in always if each.age_s == plan.ages_s[0]]
     mean = seed_mean((each.seed, each.gain.time_s) for each in found)
     if plan.half_width_s is None or mean is None or mean.interval is None:
         return False
@@ -104,9 +107,9 @@ class _Warm:
         self._pulses: list[Pulse] = []
 
     def run(self, job: DriveJob, folder: Path) -> DriveRow:
-        """Runs a drive; an error becomes a row too. Besides the row, only tracks are kept, if they are wanted."""
+        """Runs a drive; an error becomes a row too. Kept besides are tracks, if wanted, and what is watched."""
         try:
-            return run_drive(job, *self._at(job), folder / TRACKS if job.plan.trajectories else None)
+            return run_drive(job, *self._at(job), folder / TRACKS if job.plan.trajectories else None, folder)
         except CosimError as error:
             self.close()  # whatever the error was, the next drive begins with fresh traffic
             return failed(job, type(error).__name__, str(error))

@@ -72,11 +72,9 @@ def test_the_ground_is_told_once_as_it_comes_into_sight_and_read_in_its_drawing_
     near, far = (Ground(GroundKind.WATER, ((x_m, 0.0), (x_m + 50.0, 0.0), (x_m, 50.0))) for x_m in (100.0, 1500.0))
     around = Ground(GroundKind.GREEN, ((-9000.0, 9000.0), (9000.0, 9000.0), (0.0, -9000.0)))
     shapes = RoadShapes((LaneShape("a_0", "road", 3.2, ((0.0, 0.0), (9.0, 0.0))),), (), (near, far, around))
-    session = SimpleNamespace(
-        world=SimpleNamespace(traffic=SimpleNamespace(shapes=lambda: shapes)),
-        network=RoadNetwork((), (0.0, 0.0, 1.0, 1.0), None, (0.0, 0.0), False),
-    )
-    writer = RoadWriter(tmp_path / NAME, session, {}, 0.0)
+    network = RoadNetwork((), (0.0, 0.0, 1.0, 1.0), None, (0.0, 0.0), False)
+    traffic = SimpleNamespace(shapes=lambda: shapes, network=network)
+    writer = RoadWriter(tmp_path / NAME, traffic, {}, 0.0)
     for x_m in (0.0, 10.0, 800.0, 1600.0):
         writer._seek(x_m, 0.0)
     writer.close()

@@ -8,6 +8,8 @@ import hashlib
 import json
 import re
 import runpy
+import shutil
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,18 +20,25 @@ from automotive_cosim.cli.results import report
 from automotive_cosim.cli.study import app
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
+from automotive_cosim.run.batch import Progress
+from automotive_cosim.run.drive_recorder import SHOWN
 from automotive_cosim.run.processes import Processes
+from automotive_cosim.run.road import NAME as ROAD
+from automotive_cosim.run.road import read_record
+from automotive_cosim.run.road_recorder import mark_as_written
 from automotive_cosim.run.row import steady as steady_part
 from automotive_cosim.run.store import read_rows
 from automotive_cosim.studies.batch import run_study
 from automotive_cosim.studies.data import futures
 from automotive_cosim.studies.demand import read_demand
 from automotive_cosim.studies.drive import NO_ROOM
+from automotive_cosim.studies.live import LIVE, WATCHED, LiveDrive
 from automotive_cosim.studies.page import write_study
 from automotive_cosim.studies.plan import StudyPlan
 from automotive_cosim.studies.points import NOT_CLEARED
 from automotive_cosim.studies.results import load_study, read_study
 from automotive_cosim.studies.rows import NOTHING, DriveRow
+from automotive_cosim.studies.tables import policies as policy_table
 from automotive_cosim.studies.tracks import TRACKS
 from automotive_cosim.traffic.chance import Fresh
 
@@ -103,6 +112,43 @@ def test_replicates_are_rows_that_come_out_equal_wherever_they_ran(two_ways: Dra
     assert "cross-fitted" in write_study(tmp_path / "one").read_text(encoding="utf-8")
 
 
+def test_watching_shows_every_drive_and_changes_nothing(plan: StudyPlan, folder: Path, tmp_path: Path) -> None:
+    watched = tmp_path / "watched"
+    with ExitStack() as stack:
+
+        def watch(progress: Progress[DriveRow]) -> None:
+            mark_as_written(stack.enter_context((watched / LIVE / WATCHED).open("rb")))
+
+        run_study(replace(plan, seeds=(0,)), watched, tell=watch)
+    assert steady(watched)
+    assert steady(watched).items() <= steady(folder).items()
+    assert not list((folder / LIVE).glob("*/")), "nobody watched that one"
+    decided = [row for row in read_rows(watched, DriveRow).values() if row.decisions]
+    assert decided
+    for row in decided:
+        seconds = read_record(watched / LIVE / row.id / ROAD).seconds
+        assert [second.at_s for second in seconds] == list(range(1, len(seconds) + 1))
+        assert all("ego" in {each.vehicle_id for each in second.vehicles} for second in seconds)
+        shown = [json.loads(line) for line in (watched / LIVE / row.id / SHOWN).read_text().splitlines()]
+        assert [line["number"] for line in shown] == list(range(len(shown)))
+        assert shown == sorted(shown, key=lambda line: line["at_s"])
+        assert "always" in shown[1]["stages"][0]["text"]
+        gain_s = row.decisions[0].gains(0).time_s
+        assert any(f"decision 1, way 1: saves {gain_s:+.0f} s" in line["words"] for line in shown)
+
+
+def test_a_full_disk_ends_the_watching_and_not_the_study(
+    plan: StudyPlan, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(LiveDrive, "_is_watched", lambda live: live._folder is not None)
+    monkeypatch.setattr(LiveDrive, "_begin", full)
+    run_study(replace(plan, seeds=(0,)), tmp_path / "full")
+    assert steady(tmp_path / "full").items() <= steady(folder).items()
+
+
 def test_what_is_done_is_not_run_again(plan: StudyPlan, folder: Path, tmp_path: Path) -> None:
     """Also after a kill that cut the last line short: what is missing is driven, and comes out equal."""
     again = tmp_path / "again"
@@ -114,7 +160,7 @@ def test_what_is_done_is_not_run_again(plan: StudyPlan, folder: Path, tmp_path: 
     assert steady(again) == steady(folder)
     assert run_study(plan, again).ran == 0
     with pytest.raises(UserError, match="begun with other plan"):
-        run_study(replace(plan, compliance=0.5), again)
+        run_study(replace(plan, compliance=(0.5,)), again)
 
 
 def test_what_has_nothing_to_decide_is_counted_and_kept_out(folder: Path) -> None:
@@ -219,6 +265,32 @@ EMPTY_HERE = {"gain_error_s", "won", "lost", "chose_best", "draw_seed"}
 """Columns that a study of single draws leaves empty."""
 
 
+def test_compliance_is_swept_at_the_same_decisions(folder: Path, tmp_path: Path) -> None:
+    """Who follows at one probability does so at every greater one; the data hold all, the tables the first."""
+    swept = tmp_path / "swept"
+    shutil.copytree(folder, swept)
+    manifest = json.loads((swept / "manifest.json").read_text())
+    levels = (1.0, 0.5, 0.0)
+    manifest["plan"]["compliance"] = levels
+    (swept / "manifest.json").write_text(json.dumps(manifest))
+    write_study(swept)
+    frame = load_study(swept)
+    frame = frame[(frame.policy == "always") & (frame.age_s == 0.0)]
+    full, half, none = (frame[frame.compliance == level].set_index("id") for level in levels)
+    assert full.complies.all()
+    assert full.rerouted.all()
+    assert not none.complies.any()
+    assert (none.gain_time_s == 0).all()
+    assert 0 < half.complies.sum() < len(half)
+    assert (half.gain_time_s == full.gain_time_s.where(half.complies, 0.0)).all()
+    rows = list(csv.DictReader((swept / "tables" / "by_compliance.csv").read_text().splitlines()))
+    assert [row["Compliance"] for row in rows] == ["100%", "50%", "0%"]
+    assert float(rows[0]["always"]) == pytest.approx(full.gain_time_s.mean(), abs=0.05)
+    assert float(rows[2]["always"]) == 0
+    assert (swept / "plots" / "compliance.svg").exists()
+    assert policy_table(read_study(swept)) == policy_table(read_study(folder)), "other tables are of the first"
+
+
 def test_gridlocked_traffic_is_kept_apart(two_ways: Draw, tmp_path: Path) -> None:
     plan = StudyPlan(
         str(two_ways(JAMMED)), (600.0,), seeds=(0,), per_drive=1, least_delay_s=0.0, placebo_every=0, limit_s=300.0
@@ -250,6 +322,7 @@ def test_a_whole_drive_gains_what_its_one_rerouting_does(two_ways: Draw, tmp_pat
         seeds=(0,),
         per_drive=1,
         policies=policies,
+        compliance=(1.0, 0.0),
         whole_drives=True,
         placebo_every=0,
         replicates=2,
@@ -258,7 +331,7 @@ def test_a_whole_drive_gains_what_its_one_rerouting_does(two_ways: Draw, tmp_pat
     study = read_study(tmp_path / "whole")
     row = {row.trip: row for row in study.rows}["across"]
     (decision,) = row.decisions
-    always = [each for each in row.whole if each.policy == "always"]
+    always = [each for each in row.whole if (each.policy, each.compliance) == ("always", 1.0)]
     assert [each.draw for each in always] == [0, 1]
     for each in always:
         assert each.reroutings == 1
@@ -267,12 +340,13 @@ def test_a_whole_drive_gains_what_its_one_rerouting_does(two_ways: Draw, tmp_pat
         ("delay:3000", 0)
     }
     assert {each.policy for each in row.whole} == {"always", "delay:3000", "sumo"}
+    assert {each.reroutings for each in row.whole if each.compliance == 0} == {0}, "nobody follows"
     free = {row.trip: row for row in study.rows}["free"]
     assert free.excluded == "no congestion met"
     assert {each.branch.gains for each in free.whole} == {NOTHING}
     write_study(tmp_path / "whole")
     text = (tmp_path / "whole" / "tables" / "whole.csv").read_text()
-    assert "always,3,0" in text, "the drives without a decision count; the one that has nowhere to go does not"
+    assert "always,100%,3,0" in text, "the drives without a decision count; the one that has nowhere to go does not"
 
 
 @pytest.mark.slow
@@ -449,7 +523,7 @@ def test_an_agent_gains_what_its_taps_do_and_one_that_does_nothing_changes_nothi
 ANSWERS = {
     "chance": r"1 branches, each driven 2 to 2 times\n.*within a decision: \d",
     "gain": r"always +\+31\.\d s ± nan, 1 decisions of 1 seeds",
-    "policy": r"always +1\.0 +31\.",
+    "policy": r"always +1\.0 +1\.0 +31\.",
     "ways": r"branch 0: .*out, back.*\nkept route: .*main",
     "who_pays": r"the ego gains: 2 futures, mean \+31",
 }
