@@ -7,7 +7,7 @@ ways (paths, railways) are removed, because each path that meets a road would sp
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -20,6 +20,7 @@ from automotive_cosim.osm import ground
 from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.ground import MappedArea
 from automotive_cosim.osm.overpass_json import OverpassJson, is_json
+from automotive_cosim.osm.shores import cut_water
 from automotive_cosim.traffic.sumo_programs import INSTALL
 
 LINKED = ("motorway", "trunk", "primary", "secondary", "tertiary")
@@ -164,7 +165,9 @@ def _read_osm(source: Path) -> _Read:
     try:
         ways, restrictions = _read_ways(file)
         nodes = _read_nodes(file, {ref for way in ways for ref in way.nodes})
-        return ways, restrictions, nodes, _read_cameras(file), tuple(_read_ground(file))
+        lines = [[nodes[ref].position for ref in way.nodes if ref in nodes] for way in ways]
+        areas = tuple(_read_ground(file, [line for line in lines if len(line) > 1]))
+        return ways, restrictions, nodes, _read_cameras(file), areas
     except (RuntimeError, ValueError, ArithmeticError, MemoryError, osmium.InvalidLocationError) as error:
         raise ImportMapError(_explain(source, str(error))) from error
 
@@ -300,20 +303,49 @@ def _read_cameras(file: Any) -> tuple[Position, ...]:
     return tuple(Position(node.location.lon, node.location.lat) for node in found if node.location.valid())
 
 
-def _read_ground(file: Any) -> Iterator[MappedArea]:
-    """Areas of closed ways and of complete multipolygons; those that the extract cuts are left out."""
+def _read_ground(file: Any, roads: list[list[Position]]) -> Iterator[MappedArea]:
+    """Areas of closed ways and of multipolygons; of those that the extract cuts, only water (``shores``)."""
     osmium = _osmium()
+    cut: set[int] = set()
     tagged = osmium.filter.KeyFilter(*ground.KEYS)
     areas = osmium.FileProcessor(file).with_areas(tagged).with_filter(tagged)
     for area in areas.with_filter(osmium.filter.EntityFilter(osmium.osm.AREA)):
         kind = ground.kind_of({tag.k: tag.v for tag in area.tags})
         if kind is None:
             continue
+        if kind is GroundKind.WATER and area.num_rings()[0] == 0:
+            cut.add(area.orig_id())
         for outer in area.outer_rings():
-            yield MappedArea.of(kind, _ring(outer), map(_ring, area.inner_rings(outer)))
+            yield MappedArea.of(kind, _line(outer), map(_line, area.inner_rings(outer)))
+    for shores in _read_shores(file, cut):
+        for shape in cut_water(shores, roads):
+            yield MappedArea(GroundKind.WATER, shape)
 
 
-def _ring(nodes: Any) -> list[tuple[float, float]]:
+def _read_shores(file: Any, cut: set[int]) -> Iterator[list[list[tuple[float, float]]]]:
+    """The known pieces of the shores of each of those multipolygons, and of the sea."""
+    osmium = _osmium()
+    waters = [
+        {member.ref for member in relation.members if member.type == "w"}
+        for relation in osmium.FileProcessor(file, osmium.osm.RELATION)
+        if relation.id in cut
+    ]
+    coast = osmium.FileProcessor(file, osmium.osm.WAY).with_filter(
+        osmium.filter.TagFilter(("natural", "coastline"))
+    )
+    waters.append({way.id for way in coast})
+    if not any(waters):
+        return
+    lines: dict[int, list[tuple[float, float]]] = {}
+    wanted, only_ways = set().union(*waters), osmium.filter.EntityFilter(osmium.osm.WAY)
+    for way in osmium.FileProcessor(file, osmium.osm.NODE | osmium.osm.WAY).with_locations().with_filter(only_ways):
+        if way.id in wanted:
+            lines[way.id] = _line(node for node in way.nodes if node.location.valid())
+    for water in waters:
+        yield [lines[way] for way in sorted(water) if way in lines]
+
+
+def _line(nodes: Iterable[Any]) -> list[tuple[float, float]]:
     return [(node.lon, node.lat) for node in nodes]
 
 

@@ -122,7 +122,7 @@ def draw(areas: Sequence[MappedArea], network: RoadNetwork) -> Drawn:
     proj, offset_m = Proj(network.projection), np.array(network.offset_m)
 
     def to_metres(lon_lat: np.ndarray) -> np.ndarray:
-        return np.stack(proj(lon_lat[:, 0], lon_lat[:, 1]), axis=1) + offset_m
+        return np.asarray(np.stack(proj(lon_lat[:, 0], lon_lat[:, 1]), axis=1) + offset_m)
 
     x_min, y_min, x_max, y_max = network.bounds_m
     bounds_m = (x_min - MARGIN_M, y_min - MARGIN_M, x_max + MARGIN_M, y_max + MARGIN_M)

@@ -162,8 +162,9 @@ def map_view(
 ) -> MapView:
     """The moving map in a box, with the street names and marks that fit next to what is over it."""
     marks = _marks(rect, state, camera, avoid)
-    names = state.roads.names_in_sight(rect, camera, (*avoid, *(mark.rect for mark in marks)))
-    chargers = _chargers(rect, state, camera, (*avoid, *(each.rect for each in (*marks, *names))))
+    taken = (*avoid, *(mark.rect for mark in marks))
+    names = state.roads.names_in_sight(rect, camera, taken)
+    chargers = _chargers(rect, state, camera, (*taken, *(name.rect for name in names)))
     return MapView(
         rect=rect,
         key=key,
