@@ -1,7 +1,7 @@
 """Rivers, lakes and the sea where an extract cuts them: their shores cross it and no outline closes.
 
-The shores part the extract's box into faces, which are water and land in turn. Which are the water tells the traffic:
-roads are on land, but for bridges.
+The shores part the extract's box into faces, which are water and land in turn. The roads tell which is which: they
+are on land, but for bridges.
 """
 
 from __future__ import annotations
