@@ -11,7 +11,7 @@ from shapely import STRtree
 
 from automotive_cosim.cockpit.map import View
 from automotive_cosim.cockpit.theme import Colour
-from automotive_cosim.contracts import Ground, GroundKind
+from automotive_cosim.contracts import GroundArea, GroundKind
 
 LEAST_PX = 3.0
 """Areas that are smaller both ways are left out."""
@@ -20,7 +20,7 @@ LEAST_PX = 3.0
 class GroundMap:
     """The areas around the roads, indexed for drawing."""
 
-    def __init__(self, areas: Sequence[Ground]) -> None:
+    def __init__(self, areas: Sequence[GroundArea]) -> None:
         """Indexes them by their boxes: 20 ms for ten thousand."""
         shapes = [np.asarray(area.outline_m, dtype=np.float64) for area in areas]
         self._kinds = [area.kind for area in areas]

@@ -58,7 +58,7 @@ from automotive_cosim.contracts.requests import (
     Severity,
     SlowDown,
 )
-from automotive_cosim.contracts.roads import Ground, GroundKind, Road, RoadNetwork, in_drawing_order
+from automotive_cosim.contracts.roads import GroundArea, GroundKind, Road, RoadNetwork, in_drawing_order
 from automotive_cosim.contracts.sight import Sight, SightKind
 from automotive_cosim.contracts.snapshot import LaneShape, RoadShapes, RoadSnapshot, SeenVehicle, SumoSignal
 
@@ -84,7 +84,7 @@ __all__ = [
     "FeedbackCode",
     "GoalStatus",
     "GpsFix",
-    "Ground",
+    "GroundArea",
     "GroundKind",
     "Hazards",
     "IncidentKind",

@@ -36,7 +36,7 @@ class GroundKind(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Ground:
+class GroundArea:
     """An area beside the roads, which pictures show and nothing else reads."""
 
     kind: GroundKind
@@ -44,7 +44,7 @@ class Ground:
     """At least three corners, network coordinates (x, y)."""
 
 
-def in_drawing_order(areas: Iterable[Ground]) -> tuple[Ground, ...]:
+def in_drawing_order(areas: Iterable[GroundArea]) -> tuple[GroundArea, ...]:
     """Green first, buildings last; what is of one kind in the order in which it came."""
     order = list(GroundKind)
     return tuple(sorted(areas, key=lambda area: order.index(area.kind)))
@@ -62,5 +62,5 @@ class RoadNetwork:
     offset_m: tuple[float, float]
     """``netOffset``: added to projected coordinates."""
     left_hand: bool
-    ground: tuple[Ground, ...] = ()
+    ground: tuple[GroundArea, ...] = ()
     """Water, green and buildings around the roads."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import IntFlag
 
-from automotive_cosim.contracts.roads import Ground
+from automotive_cosim.contracts.roads import GroundArea
 
 
 class SumoSignal(IntFlag):
@@ -40,7 +40,7 @@ class RoadShapes:
     lanes: tuple[LaneShape, ...]
     junctions: tuple[tuple[tuple[float, float], ...], ...]
     """Outlines, network coordinates."""
-    ground: tuple[Ground, ...] = ()
+    ground: tuple[GroundArea, ...] = ()
     """Water, green and buildings around the roads."""
 
 

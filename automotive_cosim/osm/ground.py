@@ -16,7 +16,7 @@ import shapely
 from pyproj import Proj
 from shapely import Polygon
 
-from automotive_cosim.contracts import Ground, GroundKind, RoadNetwork
+from automotive_cosim.contracts import GroundArea, GroundKind, RoadNetwork
 
 TAGS: Mapping[GroundKind, Mapping[str, frozenset[str]]] = {
     GroundKind.WATER: {
@@ -103,10 +103,10 @@ def kind_of(tags: Mapping[str, str]) -> GroundKind | None:
 
 
 @dataclass(frozen=True, slots=True)
-class Drawn:
+class DrawnGround:
     """The ground of a network."""
 
-    areas: tuple[Ground, ...]
+    areas: tuple[GroundArea, ...]
     too_many: int = 0
     """Areas beyond the largest that are kept."""
 
@@ -115,10 +115,10 @@ class Drawn:
         return sum(area.kind is kind for area in self.areas)
 
 
-def draw(areas: Sequence[MappedArea], network: RoadNetwork) -> Drawn:
+def draw(areas: Sequence[MappedArea], network: RoadNetwork) -> DrawnGround:
     """The ground around a network, in its metres; nothing if it has no projection."""
     if network.projection is None or not areas:
-        return Drawn(())
+        return DrawnGround(())
     proj, offset_m = Proj(network.projection), np.array(network.offset_m)
 
     def to_metres(lon_lat: np.ndarray) -> np.ndarray:
@@ -126,7 +126,7 @@ def draw(areas: Sequence[MappedArea], network: RoadNetwork) -> Drawn:
 
     x_min, y_min, x_max, y_max = network.bounds_m
     bounds_m = (x_min - MARGIN_M, y_min - MARGIN_M, x_max + MARGIN_M, y_max + MARGIN_M)
-    found: list[Ground] = []
+    found: list[GroundArea] = []
     too_many = 0
     for kind in GroundKind:
         shapes = np.array([area.shape for area in areas if area.kind is kind], dtype=object)
@@ -134,11 +134,11 @@ def draw(areas: Sequence[MappedArea], network: RoadNetwork) -> Drawn:
         too_many += max(0, len(merged) - COARSE[kind].most)
         for shape in merged[: COARSE[kind].most]:
             outline = np.round(shapely.get_coordinates(shape.exterior)[:-1], 1).tolist()
-            found.append(Ground(kind, tuple((x_m, y_m) for x_m, y_m in outline)))
-    return Drawn(tuple(found), too_many)
+            found.append(GroundArea(kind, tuple((x_m, y_m) for x_m, y_m in outline)))
+    return DrawnGround(tuple(found), too_many)
 
 
-def write(areas: Iterable[Ground], target: Path) -> None:
+def write(areas: Iterable[GroundArea], target: Path) -> None:
     """Writes them as an additional file of SUMO's, gzipped; the same areas give the same bytes."""
     rows = (
         f'    <poly id="{area.kind}{number}" type="{area.kind}" color="{COLOURS[area.kind]}" fill="true"'
@@ -148,7 +148,7 @@ def write(areas: Iterable[Ground], target: Path) -> None:
     target.write_bytes(gzip.compress(f"<additional>\n{''.join(rows)}</additional>\n".encode(), mtime=0))
 
 
-def _shape(area: Ground) -> str:
+def _shape(area: GroundArea) -> str:
     return " ".join(f"{x_m:.1f},{y_m:.1f}" for x_m, y_m in area.outline_m)
 
 

@@ -15,7 +15,7 @@ from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.country import LEFT_HAND
 from automotive_cosim.osm.extract import Extract
 from automotive_cosim.osm.folder import ATTRIBUTION
-from automotive_cosim.osm.ground import Drawn
+from automotive_cosim.osm.ground import DrawnGround
 from automotive_cosim.osm.limits import NO_UNIT, doubts
 from automotive_cosim.osm.network import Built
 from automotive_cosim.osm.roads import MappedRoad, way_of
@@ -88,7 +88,7 @@ def make_report(
     extract: Extract,
     roads: Mapping[int, MappedRoad],
     built: Built,
-    around: Drawn,
+    around: DrawnGround,
     stability: Stability,
     *,
     country: str,
@@ -192,7 +192,7 @@ def _guesses(extract: Extract, built: Built, country: str, assumed_km: float) ->
     yield "date, weather and ego trips: to be changed in scenario.toml"
 
 
-def _of_ground(around: Drawn) -> Iterator[str]:
+def _of_ground(around: DrawnGround) -> Iterator[str]:
     if around.areas:
         yield "water, green and buildings: coarse, merged where they touch, without the small ones"
     if around.too_many:

@@ -20,11 +20,11 @@ MARGINS = (0.0, 0.01, 0.03, 0.06)
 
 RIM_DEG = 1e-9
 
-Line = Sequence[tuple[float, float]]
+Shore = Sequence[tuple[float, float]]
 """Longitude and latitude."""
 
 
-def cut_water(shores: Iterable[Line], roads: Sequence[Line]) -> list[Polygon]:
+def cut_water(shores: Iterable[Shore], roads: Sequence[Shore]) -> list[Polygon]:
     """The water between shores that leave the map; nothing where they do not tell.
 
     Args:

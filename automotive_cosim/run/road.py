@@ -32,7 +32,7 @@ from functools import cached_property
 from pathlib import Path
 
 from automotive_cosim.contracts import (
-    Ground,
+    GroundArea,
     GroundKind,
     Json,
     LaneShape,
@@ -99,7 +99,7 @@ def read_record(path: Path) -> RoadRecord:
 def _record(path: Path) -> RoadRecord:
     lanes: list[LaneShape] = []
     junctions: list[GroundLine] = []
-    ground: list[Ground] = []
+    ground: list[GroundArea] = []
     names: dict[int, tuple[str, str, float, float]] = {}
     lights: dict[str, str] = {}
     seconds: list[Second] = []
@@ -107,7 +107,7 @@ def _record(path: Path) -> RoadRecord:
         for kind, width_m, line, links in entry.get("lanes", ()):
             lanes.append(LaneShape("", kind, width_m, _points(line), tuple((light, at) for light, at in links)))
         junctions += map(_points, entry.get("junctions", ()))
-        ground += (Ground(GroundKind(kind), _points(outline)) for kind, outline in entry.get("ground", ()))
+        ground += (GroundArea(GroundKind(kind), _points(outline)) for kind, outline in entry.get("ground", ()))
         names |= {number: (name, *rest) for number, name, *rest in entry.get("vehicles", ())}
         if "at_s" in entry:
             lights = lights | entry["lights"]

@@ -20,7 +20,7 @@ from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import (
     KMH_PER_MPS,
     DrivingState,
-    Ground,
+    GroundArea,
     Json,
     LaneShape,
     RoadShapes,
@@ -334,7 +334,7 @@ def _lane(lane: LaneShape) -> list[object]:
     return [lane.kind, round(lane.width_m, 2), _flat(lane.line_m), [list(link) for link in lane.links]]
 
 
-def _area(area: Ground) -> list[object]:
+def _area(area: GroundArea) -> list[object]:
     return [area.kind, _flat(area.outline_m)]
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import shapely
 
-from automotive_cosim.contracts import Ground, GroundKind, RoadNetwork, in_drawing_order
+from automotive_cosim.contracts import GroundArea, GroundKind, RoadNetwork, in_drawing_order
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats.words import shown
 from automotive_cosim.formats.xml import scan
@@ -51,7 +51,7 @@ def read_mapped(configuration: Configuration) -> Network:
     return replace(network, map=replace(network.map, ground=ground)) if ground else network
 
 
-def read_ground(configuration: Configuration, roads: RoadNetwork) -> tuple[Ground, ...]:
+def read_ground(configuration: Configuration, roads: RoadNetwork) -> tuple[GroundArea, ...]:
     """The areas in the additional files of a configuration, in the order in which they are drawn.
 
     Args:
@@ -62,7 +62,7 @@ def read_ground(configuration: Configuration, roads: RoadNetwork) -> tuple[Groun
     Raises:
         ScenarioError: a file is no XML, or a polygon has no valid shape.
     """
-    found: list[Ground] = []
+    found: list[GroundArea] = []
     reference = None if roads.projection is None else GeoReference(roads)
     for name in filter(None, configuration.options.get("additional-files", "").split(",")):
         file = Path(name)
@@ -89,7 +89,7 @@ def kind_of(polygon_type: str) -> GroundKind | None:
     return next((KINDS[word] for word in reversed(words) if word in KINDS), None)
 
 
-def _area(attributes: dict[str, str], reference: GeoReference | None) -> Ground | None:
+def _area(attributes: dict[str, str], reference: GeoReference | None) -> GroundArea | None:
     """The polygon as an area; None if it is none that is drawn.
 
     Raises:
@@ -103,7 +103,7 @@ def _area(attributes: dict[str, str], reference: GeoReference | None) -> Ground 
         return None
     if is_geographic and reference is not None:
         shape = tuple(_metres(lon_deg, lat_deg, reference) for lon_deg, lat_deg in shape)
-    return Ground(kind, shape[:-1] if shape[0] == shape[-1] else shape)
+    return GroundArea(kind, shape[:-1] if shape[0] == shape[-1] else shape)
 
 
 def _shape(text: str) -> Shape:
@@ -130,7 +130,7 @@ def _metres(lon_deg: float, lat_deg: float, reference: GeoReference) -> tuple[fl
     return quantity(str(round(x_m, 1))), quantity(str(round(y_m, 1)))
 
 
-def _largest(areas: list[Ground]) -> list[Ground]:
+def _largest(areas: list[GroundArea]) -> list[GroundArea]:
     if len(areas) <= AREAS_LIMIT:
         return areas
     sizes = shapely.area([shapely.Polygon(area.outline_m) for area in areas])

@@ -13,7 +13,7 @@ from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.map import EGO_DOWN, Camera, RoadMap
 from automotive_cosim.cockpit.mapdraw import MapScene
 from automotive_cosim.cockpit.theme import DAY, NIGHT, Colour, Palette
-from automotive_cosim.contracts import Ground, GroundKind, LimitSource, Road, RoadNetwork
+from automotive_cosim.contracts import GroundArea, GroundKind, LimitSource, Road, RoadNetwork
 
 SIZE = 400
 EGO = (SIZE // 2, round(SIZE * EGO_DOWN))
@@ -23,12 +23,12 @@ def road(edge_id: str, *points: tuple[float, float], name: str = "", kind: str =
     return Road(edge_id, name, kind, 1, 100.0, 13.9, LimitSource.POSTED, False, points)
 
 
-def network(*roads: Road, ground: tuple[Ground, ...] = ()) -> RoadNetwork:
+def network(*roads: Road, ground: tuple[GroundArea, ...] = ()) -> RoadNetwork:
     return RoadNetwork(roads, (-500, -500, 500, 500), None, (0, 0), False, ground)
 
 
-def square(kind: GroundKind, x: float, y: float, side: float) -> Ground:
-    return Ground(kind, ((x, y), (x + side, y), (x + side, y + side), (x, y + side)))
+def square(kind: GroundKind, x: float, y: float, side: float) -> GroundArea:
+    return GroundArea(kind, ((x, y), (x + side, y), (x + side, y + side), (x, y + side)))
 
 
 def draw(

@@ -8,7 +8,7 @@ import pytest
 from automotive_cosim.cockpit.drawing import Canvas
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.map import RoadMap
-from automotive_cosim.contracts import Ground, GroundKind, LaneShape, RoadNetwork, RoadShapes, SeenVehicle
+from automotive_cosim.contracts import GroundArea, GroundKind, LaneShape, RoadNetwork, RoadShapes, SeenVehicle
 from automotive_cosim.report import filmroad
 from automotive_cosim.report.filmroad import DAILY, LIGHTS, METRES_PER_PIXEL, NIGHTLY, RoadPainter
 from automotive_cosim.run.road import EMPTY, RoadRecord, Second
@@ -33,7 +33,7 @@ def record(*vehicles: SeenVehicle, state: str = "Gr", sun_deg: float = 30.0, inc
 
 
 def with_ground(given: RoadRecord) -> RoadRecord:
-    water = Ground(GroundKind.WATER, ((-30.0, 0.0), (30.0, 0.0), (30.0, 40.0), (-30.0, 40.0)))
+    water = GroundArea(GroundKind.WATER, ((-30.0, 0.0), (30.0, 0.0), (30.0, 40.0), (-30.0, 40.0)))
     return replace(given, shapes=replace(given.shapes, ground=(water,)))
 
 

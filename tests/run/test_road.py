@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import pytest
 
 from automotive_cosim.agents import make_agent
-from automotive_cosim.contracts import Ground, GroundKind, LaneShape, RoadNetwork, RoadShapes, RoadSnapshot
+from automotive_cosim.contracts import GroundArea, GroundKind, LaneShape, RoadNetwork, RoadShapes, RoadSnapshot
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
 from automotive_cosim.run.road import NAME, read_record, read_road
@@ -69,8 +69,10 @@ def test_a_line_that_is_not_json_is_refused(tmp_path):
 
 
 def test_the_ground_is_told_once_as_it_comes_into_sight_and_read_in_its_drawing_order(tmp_path):
-    near, far = (Ground(GroundKind.WATER, ((x_m, 0.0), (x_m + 50.0, 0.0), (x_m, 50.0))) for x_m in (100.0, 1500.0))
-    around = Ground(GroundKind.GREEN, ((-9000.0, 9000.0), (9000.0, 9000.0), (0.0, -9000.0)))
+    near, far = (
+        GroundArea(GroundKind.WATER, ((x_m, 0.0), (x_m + 50.0, 0.0), (x_m, 50.0))) for x_m in (100.0, 1500.0)
+    )
+    around = GroundArea(GroundKind.GREEN, ((-9000.0, 9000.0), (9000.0, 9000.0), (0.0, -9000.0)))
     shapes = RoadShapes((LaneShape("a_0", "road", 3.2, ((0.0, 0.0), (9.0, 0.0))),), (), (near, far, around))
     network = RoadNetwork((), (0.0, 0.0, 1.0, 1.0), None, (0.0, 0.0), False)
     traffic = SimpleNamespace(shapes=lambda: shapes, network=network)

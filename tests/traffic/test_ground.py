@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from automotive_cosim import scenarios
-from automotive_cosim.contracts import Ground, GroundKind
+from automotive_cosim.contracts import GroundArea, GroundKind
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.scenery.opening import network_of
 from automotive_cosim.traffic import ground
@@ -19,12 +19,12 @@ from automotive_cosim.traffic.options import Configuration
 NET = scenarios.load("grid").folder / "grid.net.xml"
 SHAPE = 'shape="0,0 10,0 10,10"'
 
-Read = Callable[..., tuple[Ground, ...]]
+Read = Callable[..., tuple[GroundArea, ...]]
 
 
 @pytest.fixture
 def read(tmp_path: Path) -> Read:
-    def read(*polygons: str, net: Path = NET) -> tuple[Ground, ...]:
+    def read(*polygons: str, net: Path = NET) -> tuple[GroundArea, ...]:
         rows = "\n".join(f'<poly id="p{at}" {words}/>' for at, words in enumerate(polygons))
         file = tmp_path / "some.poly.xml"
         file.write_text(f"<additional>\n{rows}\n</additional>", encoding="utf-8")
