@@ -457,6 +457,7 @@ def _print_report(report: ImportReport, folder: Path, took_s: float) -> None:
         ("built-up", f"or not: known for {report.built_up_known_share:.0%} of the length"),
         ("schools", f"{report.school_zone_km:.1f} km; limits by the clock on {report.timed_limit_km:.1f} km"),
         ("bus lanes", f"{report.bus_lane_km:.1f} km, speed cameras {report.speed_cameras}"),
+        ("ground", ", ".join(f"{count:,} of {kind}" for kind, count in report.ground.items())),
         ("traffic", f"{report.vehicles_per_hour:.0f} vehicles per hour, about {flow.vehicles_mean:.0f} at a time"),
         ("scale", f"{report.scale:g} of the requested density"),
         ("halted", f"{flow.halted_share_mean:.1%} on average, {flow.halted_share_max:.1%} in the worst minute"),

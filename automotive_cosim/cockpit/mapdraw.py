@@ -1,4 +1,4 @@
-"""The moving map as a picture: land, roads, how the traffic flows on them, the route, its alternatives, the car.
+"""The moving map as a picture: ground, roads, how the traffic flows on them, the route, its alternatives, the car.
 
 Roads are drawn on sheets a little larger than the picture that are kept: as long as the car drives straight on, a
 new picture is cut out of the last sheet. Which sheet and where follows from the camera alone, so that a picture
@@ -14,8 +14,10 @@ from functools import lru_cache
 
 from PIL import Image, ImageDraw
 
+from automotive_cosim.cockpit.groundmap import GroundMap
 from automotive_cosim.cockpit.map import AVENUES, MOTORWAYS, Camera, RoadMap, Stroke, View
 from automotive_cosim.cockpit.theme import DAY, NIGHT, Colour, Palette
+from automotive_cosim.contracts import GroundKind
 
 _FINE = 2
 """Oversampling."""
@@ -26,6 +28,8 @@ DENSE_BELOW, JAM_BELOW = 0.6, 0.25
 LEAST_WIDTH = (3.0, 4.0, 5.0, 7.0, 8.0)
 """Width in logical pixels, by rank."""
 LANE_M = 3.2
+BUILDINGS_M_PER_PX = 1.2
+"""From further away, buildings are left out: they would be specks."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,6 +117,10 @@ def _sheet(
     palette = NIGHT if night else DAY
     picture = Image.new("RGB", (wide, high), palette.land)
     pen = _Pen(ImageDraw.Draw(picture), per_metre, _FINE * scale)
+    colours = {GroundKind.GREEN: palette.green, GroundKind.WATER: palette.water}
+    if metres_per_pixel < BUILDINGS_M_PER_PX:
+        colours[GroundKind.BUILDING] = palette.building
+    _ground(roads).paint(pen.brush, view, (wide, high), colours, _FINE)
     found = roads.in_sight(view, wide, high)
     for stroke in found:
         pen.stroke(stroke, pen.width(stroke) + 2 * _FINE, palette.casing)
@@ -129,6 +137,11 @@ def _sheet(
             colour = palette.jam if relative_speed < JAM_BELOW else palette.dense
             pen.stroke(stroke, max(4.0 * pen.unit, 0.4 * pen.width(stroke)), colour)
     return picture.reduce(_FINE)
+
+
+@lru_cache(maxsize=4)
+def _ground(roads: RoadMap) -> GroundMap:
+    return GroundMap(roads.network.ground)
 
 
 def _among(edges: Iterable[str], seen: set[str]) -> tuple[str, ...]:

@@ -421,9 +421,11 @@ def _map(canvas: Canvas, view: MapView, palette: Palette) -> None:
 
 def _badge(canvas: Canvas, badge: Badge, palette: Palette) -> None:
     ground, ink = (palette.warning, palette.on_warning) if badge.warns else (palette.plate, palette.text)
+    if badge.charges:
+        ground, ink = palette.good, palette.plate
     canvas.disc(badge.rect, palette.casing)
     canvas.disc(badge.rect.inset(2), ground)
-    canvas.icon(badge.rect.centre, badge.icon, 26, ink)
+    canvas.icon(badge.rect.centre, badge.icon, round(0.65 * badge.rect.width), ink)
 
 
 def _car_view(canvas: Canvas, view: CarView, palette: Palette) -> None:

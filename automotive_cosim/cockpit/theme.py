@@ -51,6 +51,9 @@ class Palette:
     critical: Colour
     on_critical: Colour
     land: Colour
+    water: Colour
+    green: Colour
+    building: Colour
     street: Colour
     casing: Colour
     avenue: Colour
@@ -88,6 +91,9 @@ NIGHT = Palette(
     critical=_hex("D22F36"),
     on_critical=_hex("FFFFFF"),
     land=_hex("10151C"),
+    water=_hex("0E2B47"),
+    green=_hex("15301F"),
+    building=_hex("1E2530"),
     street=_hex("39465A"),
     casing=_hex("0B0F15"),
     avenue=_hex("52627A"),
@@ -118,6 +124,9 @@ DAY = Palette(
     critical=_hex("C6262E"),
     on_critical=_hex("FFFFFF"),
     land=_hex("E9EDF1"),
+    water=_hex("A5D0EC"),
+    green=_hex("C9E4C5"),
+    building=_hex("DADFE6"),
     street=_hex("FFFFFF"),
     casing=_hex("C3CBD6"),
     avenue=_hex("FFE9B0"),

@@ -319,6 +319,8 @@ class Badge(Widget):
     icon: Icon
     warns: bool = False
     """Whether it has the colour of warnings."""
+    charges: bool = False
+    """Whether it is a charging stop, which only the picture shows."""
 
     class_name: ClassVar[str] = "ImageView"
 

@@ -58,7 +58,7 @@ from automotive_cosim.contracts.requests import (
     Severity,
     SlowDown,
 )
-from automotive_cosim.contracts.roads import Road, RoadNetwork
+from automotive_cosim.contracts.roads import GroundArea, GroundKind, Road, RoadNetwork, in_drawing_order
 from automotive_cosim.contracts.sight import Sight, SightKind
 from automotive_cosim.contracts.snapshot import LaneShape, RoadShapes, RoadSnapshot, SeenVehicle, SumoSignal
 
@@ -84,6 +84,8 @@ __all__ = [
     "FeedbackCode",
     "GoalStatus",
     "GpsFix",
+    "GroundArea",
+    "GroundKind",
     "Hazards",
     "IncidentKind",
     "Json",
@@ -115,5 +117,6 @@ __all__ = [
     "TrafficLight",
     "VehicleState",
     "Weather",
+    "in_drawing_order",
     "lon_lat",
 ]

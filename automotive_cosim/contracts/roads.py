@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from enum import StrEnum
 
 from automotive_cosim.contracts.driving import LimitSource
 
@@ -25,6 +27,29 @@ class Road:
     """Whether it runs beside a school."""
 
 
+class GroundKind(StrEnum):
+    """What covers the ground beside the roads, in the order in which it is drawn."""
+
+    GREEN = "green"
+    WATER = "water"
+    BUILDING = "building"
+
+
+@dataclass(frozen=True, slots=True)
+class GroundArea:
+    """An area beside the roads, which pictures show and nothing else reads."""
+
+    kind: GroundKind
+    outline_m: tuple[tuple[float, float], ...]
+    """At least three corners, network coordinates (x, y)."""
+
+
+def in_drawing_order(areas: Iterable[GroundArea]) -> tuple[GroundArea, ...]:
+    """Green first, buildings last; what is of one kind in the order in which it came."""
+    order = list(GroundKind)
+    return tuple(sorted(areas, key=lambda area: order.index(area.kind)))
+
+
 @dataclass(frozen=True, slots=True)
 class RoadNetwork:
     """The drivable network of a scenario."""
@@ -37,3 +62,5 @@ class RoadNetwork:
     offset_m: tuple[float, float]
     """``netOffset``: added to projected coordinates."""
     left_hand: bool
+    ground: tuple[GroundArea, ...] = ()
+    """Water, green and buildings around the roads."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import IntFlag
 
+from automotive_cosim.contracts.roads import GroundArea
+
 
 class SumoSignal(IntFlag):
     """SUMO's bits for what a vehicle shows; others are ignored."""
@@ -38,6 +40,8 @@ class RoadShapes:
     lanes: tuple[LaneShape, ...]
     junctions: tuple[tuple[tuple[float, float], ...], ...]
     """Outlines, network coordinates."""
+    ground: tuple[GroundArea, ...] = ()
+    """Water, green and buildings around the roads."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,7 @@
     towns       town or country by the density of the streets, where the tags do not tell
     assumed     the limit that the law of the place sets, where none is stated (country: the most common one)
     roads       all of it for each road: what netconvert is told, and what its edges keep
+    ground      water, green and buildings, for pictures (shores: water that the extract cuts)
     network     netconvert, and its result
     repair      opens the lanes in which cars would be trapped
     agreement   compares every edge with its road

@@ -1,22 +1,26 @@
-"""Reads an OSM extract of any format and reduces it to the roads that cars use.
+"""Reads an OSM extract of any format and reduces it to the roads that cars use, and the ground around them.
 
 libosmium reads every format and detects truncated files; the output for netconvert is always plain OSM XML. Other
-ways (paths, buildings, railways) are removed, because each path that meets a road would split it in two.
+ways (paths, railways) are removed, because each path that meets a road would split it in two.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from automotive_cosim.contracts import GroundKind
 from automotive_cosim.errors import ImportMapError, SetupError
 from automotive_cosim.formats.xml import scan
+from automotive_cosim.osm import ground
 from automotive_cosim.osm.area import Area
+from automotive_cosim.osm.ground import MappedArea
 from automotive_cosim.osm.overpass_json import OverpassJson, is_json
+from automotive_cosim.osm.shores import cut_water
 from automotive_cosim.traffic.sumo_programs import INSTALL
 
 LINKED = ("motorway", "trunk", "primary", "secondary", "tertiary")
@@ -84,6 +88,8 @@ class Extract:
     restrictions: tuple[TurnRestriction, ...]
     cameras: tuple[Position, ...] = ()
     """Positions of speed cameras, on a road or beside it."""
+    ground: tuple[MappedArea, ...] = ()
+    """Water, green and buildings, wherever in the extract."""
 
     def crop(self, area: Area) -> Extract:
         """The part within an area; of a road that leaves and comes back, the longest stretch.
@@ -108,6 +114,7 @@ class Extract:
             {ref: node for ref, node in nodes.items() if ref in used},
             turns,
             tuple(camera for camera in self.cameras if area.holds(*camera)),
+            self.ground,
         )
 
     @property
@@ -133,18 +140,20 @@ def read(source: Path) -> Extract:
         ImportMapError: the file is missing, empty, truncated, not OSM data, or without roads.
         SetupError: the osmium package is not installed.
     """
-    ways, restrictions, nodes, cameras = _read_json(source) if is_json(_head(source)) else _read_osm(source)
+    ways, restrictions, nodes, cameras, areas = (_read_json if is_json(_head(source)) else _read_osm)(source)
     complete = tuple(piece for way in ways for piece in _known_pieces(way, nodes))
     if not complete:
         raise ImportMapError(
             f"{source} has no roads for cars ({len(ways)} ways tagged as such, with {len(nodes)} of their nodes);"
             " give an extract that keeps highway=* ways and their nodes"
         )
-    return Extract(complete, nodes, restrictions, cameras)
+    return Extract(complete, nodes, restrictions, cameras, ground.in_order(areas))
 
 
-_Read = tuple[list[OsmWay], tuple[TurnRestriction, ...], dict[int, Node], tuple[Position, ...]]
-"""Ways open to cars, turn restrictions, the nodes of those ways, and speed cameras."""
+_Read = tuple[
+    list[OsmWay], tuple[TurnRestriction, ...], dict[int, Node], tuple[Position, ...], tuple[MappedArea, ...]
+]
+"""Ways open to cars, turn restrictions, the nodes of those ways, speed cameras, and the ground."""
 
 
 def _read_osm(source: Path) -> _Read:
@@ -156,7 +165,9 @@ def _read_osm(source: Path) -> _Read:
     try:
         ways, restrictions = _read_ways(file)
         nodes = _read_nodes(file, {ref for way in ways for ref in way.nodes})
-        return ways, restrictions, nodes, _read_cameras(file)
+        lines = [[nodes[ref].position for ref in way.nodes if ref in nodes] for way in ways]
+        areas = tuple(_read_ground(file, [line for line in lines if len(line) > 1]))
+        return ways, restrictions, nodes, _read_cameras(file), areas
     except (RuntimeError, ValueError, ArithmeticError, MemoryError, osmium.InvalidLocationError) as error:
         raise ImportMapError(_explain(source, str(error))) from error
 
@@ -166,14 +177,27 @@ def _read_json(source: Path) -> _Read:
     ways = [OsmWay(way_id, tags, nodes) for way_id, tags, nodes in read.ways() if _is_road(tags)]
     turns = tuple(TurnRestriction(*relation) for relation in read.relations() if "restriction" in relation[1])
     wanted = {ref for way in ways for ref in way.nodes}
+    outlines = [(kind, refs) for _, tags, refs in read.ways() if (kind := _ground_of(tags, refs)) is not None]
+    corners = {ref for _, refs in outlines for ref in refs}
+    places: dict[int, Position] = {}
     nodes: dict[int, Node] = {}
     cameras: list[Position] = []
     for node_id, tags, place in read.nodes():
+        if node_id in corners:
+            places[node_id] = Position(*place)
         if node_id in wanted:
             nodes[node_id] = Node(Position(*place), tags)
         if tags.get("highway") == "speed_camera":
             cameras.append(Position(*place))
-    return ways, turns, dict(sorted(nodes.items())), tuple(cameras)
+    areas = (
+        MappedArea.of(kind, [places[ref] for ref in refs]) for kind, refs in outlines if places.keys() >= set(refs)
+    )
+    return ways, turns, dict(sorted(nodes.items())), tuple(cameras), tuple(areas)
+
+
+def _ground_of(tags: Mapping[str, str], refs: tuple[int, ...]) -> GroundKind | None:
+    """What a way is the outline of; None if it is none."""
+    return ground.kind_of(tags) if len(refs) > 3 and refs[0] == refs[-1] else None
 
 
 def _osmium() -> Any:
@@ -277,6 +301,52 @@ def _read_cameras(file: Any) -> tuple[Position, ...]:
     tagged = osmium.filter.TagFilter(("highway", "speed_camera"))
     found = osmium.FileProcessor(file, osmium.osm.NODE).with_filter(tagged)
     return tuple(Position(node.location.lon, node.location.lat) for node in found if node.location.valid())
+
+
+def _read_ground(file: Any, roads: list[list[Position]]) -> Iterator[MappedArea]:
+    """Areas of closed ways and of multipolygons; of those that the extract cuts, only water (``shores``)."""
+    osmium = _osmium()
+    cut: set[int] = set()
+    tagged = osmium.filter.KeyFilter(*ground.KEYS)
+    areas = osmium.FileProcessor(file).with_areas(tagged).with_filter(tagged)
+    for area in areas.with_filter(osmium.filter.EntityFilter(osmium.osm.AREA)):
+        kind = ground.kind_of({tag.k: tag.v for tag in area.tags})
+        if kind is None:
+            continue
+        if kind is GroundKind.WATER and area.num_rings()[0] == 0:
+            cut.add(area.orig_id())
+        for outer in area.outer_rings():
+            yield MappedArea.of(kind, _line(outer), map(_line, area.inner_rings(outer)))
+    for shores in _read_shores(file, cut):
+        for shape in cut_water(shores, roads):
+            yield MappedArea(GroundKind.WATER, shape)
+
+
+def _read_shores(file: Any, cut: set[int]) -> Iterator[list[list[tuple[float, float]]]]:
+    """The known pieces of the shores of each of those multipolygons, and of the sea."""
+    osmium = _osmium()
+    waters = [
+        {member.ref for member in relation.members if member.type == "w"}
+        for relation in osmium.FileProcessor(file, osmium.osm.RELATION)
+        if relation.id in cut
+    ]
+    coast = osmium.FileProcessor(file, osmium.osm.WAY).with_filter(
+        osmium.filter.TagFilter(("natural", "coastline"))
+    )
+    waters.append({way.id for way in coast})
+    if not any(waters):
+        return
+    lines: dict[int, list[tuple[float, float]]] = {}
+    wanted, only_ways = set().union(*waters), osmium.filter.EntityFilter(osmium.osm.WAY)
+    for way in osmium.FileProcessor(file, osmium.osm.NODE | osmium.osm.WAY).with_locations().with_filter(only_ways):
+        if way.id in wanted:
+            lines[way.id] = _line(node for node in way.nodes if node.location.valid())
+    for water in waters:
+        yield [lines[way] for way in sorted(water) if way in lines]
+
+
+def _line(nodes: Iterable[Any]) -> list[tuple[float, float]]:
+    return [(node.lon, node.lat) for node in nodes]
 
 
 def _known_pieces(way: OsmWay, nodes: Mapping[int, Node]) -> Iterator[OsmWay]:

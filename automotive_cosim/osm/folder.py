@@ -73,7 +73,9 @@ def _put_in_place(building: Path, out: Path, replaced: Path) -> None:
         raise
 
 
-def write_config(target: Path, net: str, routes: str, sumo: Sumo, begin_s: float = 0.0) -> None:
+def write_config(
+    target: Path, net: str, routes: str, sumo: Sumo, *, ground: str = "", begin_s: float = 0.0
+) -> None:
     """Writes the ``.sumocfg``, which runs in sumo-gui as the scenario runs here.
 
     Other vehicles reroute, and push through a junction blocked for 20 s, because random traffic otherwise locks up.
@@ -96,6 +98,8 @@ def write_config(target: Path, net: str, routes: str, sumo: Sumo, begin_s: float
             "device.rerouting.adaptation-steps": 18,
         },
     }
+    if ground:
+        sections["input"]["additional-files"] = ground
     lines = ["<configuration>"]
     for section, options in sections.items():
         lines.append(f"    <{section}>")

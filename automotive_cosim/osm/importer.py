@@ -14,7 +14,7 @@ import numpy as np
 from automotive_cosim.contracts import Tell
 from automotive_cosim.errors import ImportMapError
 from automotive_cosim.geo.place import Place, shipped
-from automotive_cosim.osm import demand, extract, folder, network, trips
+from automotive_cosim.osm import demand, extract, folder, ground, network, trips
 from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.country import country_codes
 from automotive_cosim.osm.demand import Journey
@@ -115,6 +115,9 @@ def import_map(
         roads = describe(mapped, atlas, options.country)
         net = building / f"{options.name}.net.xml.gz"
         built = network.convert(mapped, roads, net, options.country, building.parent)
+        around = ground.draw(mapped.ground, built.network.map)
+        if around.areas:
+            ground.write(around.areas, building / _ground(options))
         tell("drawing trips", None)
         rng = np.random.default_rng(options.seed)
         drawn = demand.draw(
@@ -131,6 +134,7 @@ def import_map(
             mapped,
             roads,
             built,
+            around,
             flow,
             country=options.country,
             area=options.area,
@@ -162,6 +166,11 @@ def _check(options: ImportOptions) -> None:
         raise ImportMapError(f"seed {options.seed} is below zero; give a whole number from 0")
 
 
+def _ground(options: ImportOptions) -> str:
+    """Name of the file with water, green and buildings."""
+    return f"{options.name}.poly.xml.gz"
+
+
 def _title(options: ImportOptions) -> str:
     return options.name.replace("_", " ").replace("-", " ").capitalize()
 
@@ -169,7 +178,13 @@ def _title(options: ImportOptions) -> str:
 def _write(building: Path, options: ImportOptions, place: Place, ways: Sequence[Trip], *, scale: float) -> Scenario:
     """Writes the scenario's own files and reads them back."""
     sumo = Sumo(config=f"{options.name}.sumocfg", scale=scale)
-    folder.write_config(building / sumo.config, f"{options.name}.net.xml.gz", f"{options.name}.trips.xml.gz", sumo)
+    folder.write_config(
+        building / sumo.config,
+        f"{options.name}.net.xml.gz",
+        f"{options.name}.trips.xml.gz",
+        sumo,
+        ground=_ground(options) if (building / _ground(options)).exists() else "",
+    )
     folder.write_scenario(
         building / "scenario.toml",
         name=options.name,

@@ -1,4 +1,4 @@
-"""Fetches the roads of an area from an Overpass endpoint that the user names.
+"""Fetches the roads of an area, and the ground around them, from an Overpass endpoint that the user names.
 
     download("https://.../api/interpreter", Area.parse("2.28,48.86,2.31,48.88"), Path("etoile.osm"))
 
@@ -26,9 +26,13 @@ from typing import IO
 from automotive_cosim.contracts import Tell
 from automotive_cosim.errors import ImportMapError
 from automotive_cosim.osm.area import Area
+from automotive_cosim.osm.ground import TAGS
 
 LARGEST_KM2 = 2500.0
 """A large city. Larger areas are available as PBF extracts."""
+
+BUILDINGS_KM2 = 50.0
+"""A town. In a larger area, buildings would be most of the answer."""
 
 BUSY = (429, 502, 503, 504)
 """Status codes after which a retry makes sense."""
@@ -71,12 +75,21 @@ class _BusyError(Exception):
 
 
 def query(area: Area, limits: DownloadLimits) -> str:
-    """The roads within an area, with turn restrictions and speed cameras, in Overpass QL."""
+    """What to ask for, in Overpass QL: the roads of an area, with turn restrictions and speed cameras; water and
+    green; in an area of at most ``BUILDINGS_KM2``, buildings too."""
     box = f"{area.south_deg:.7f},{area.west_deg:.7f},{area.north_deg:.7f},{area.east_deg:.7f}"
+    values: dict[str, list[str]] = {}
+    for keys in TAGS.values():
+        for key, words in keys.items():
+            values.setdefault(key, []).extend(sorted(words))
+    ground = "".join(f'wr[{key}~"^({"|".join(words)})$"]({box});' for key, words in values.items())
+    if area.size_km2 <= BUILDINGS_KM2:
+        ground += f"wr[building]({box});"
     return (
         f"[out:xml][timeout:{limits.timeout_s:.0f}][maxsize:{limits.size_mb * 1e6:.0f}];"
         f"way[highway]({box})->.roads;"
-        f"(.roads;node(w.roads);rel(bw.roads)[restriction];node[highway=speed_camera]({box}););"
+        f"({ground})->.ground;"
+        f"(.roads;node(w.roads);rel(bw.roads)[restriction];node[highway=speed_camera]({box});.ground;.ground >;);"
         "out body qt;"
     )
 

@@ -8,13 +8,14 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from automotive_cosim.contracts import LimitSource
+from automotive_cosim.contracts import GroundKind, LimitSource
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.osm.agreement import differences
 from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.country import LEFT_HAND
 from automotive_cosim.osm.extract import Extract
 from automotive_cosim.osm.folder import ATTRIBUTION
+from automotive_cosim.osm.ground import DrawnGround
 from automotive_cosim.osm.limits import NO_UNIT, doubts
 from automotive_cosim.osm.network import Built
 from automotive_cosim.osm.roads import MappedRoad, way_of
@@ -51,6 +52,8 @@ class ImportReport:
     """Length of road where the map states that there is no limit."""
     signals: int
     roundabouts: int
+    ground: Mapping[str, int]
+    """Areas of water, green and buildings around the roads, by kind."""
     tunnels: int
     """Edges in tunnels."""
     tunnel_km: float
@@ -85,6 +88,7 @@ def make_report(
     extract: Extract,
     roads: Mapping[int, MappedRoad],
     built: Built,
+    around: DrawnGround,
     stability: Stability,
     *,
     country: str,
@@ -119,6 +123,7 @@ def make_report(
         derestricted_km=round(free_m / 1000, 3),
         signals=built.signals,
         roundabouts=built.roundabouts,
+        ground={kind.value: around.count(kind) for kind in GroundKind},
         tunnels=len(tunnels),
         tunnel_km=round(sum(edge.length_m for edge in tunnels) / 1000, 3),
         lit_known_share=_share(length_m, (edge for edge in edges if edge.lit is not None)),
@@ -134,6 +139,7 @@ def make_report(
         stability=stability,
         guessed=(
             *_guesses(extract, built, country, (length_m - posted_m) / 1000),
+            *_of_ground(around),
             *_of_traffic(stability, stuck, quick=quick),
         ),
         differences=tuple(map(str, differences(edges, roads))),
@@ -184,6 +190,13 @@ def _guesses(extract: Extract, built: Built, country: str, assumed_km: float) ->
         yield f"lanes for buses or taxis that part the lanes for cars, opened to cars: {_ways_in_words(ways)}"
     yield "lanes and right of way that the map does not state: by road class"
     yield "date, weather and ego trips: to be changed in scenario.toml"
+
+
+def _of_ground(around: DrawnGround) -> Iterator[str]:
+    if around.areas:
+        yield "water, green and buildings: coarse, merged where they touch, without the small ones"
+    if around.too_many:
+        yield f"{counted(around.too_many, 'area')} of them left out: there are more than pictures need"
 
 
 def _of_traffic(stability: Stability, stuck: Sequence[Stuck], *, quick: bool) -> Iterator[str]:

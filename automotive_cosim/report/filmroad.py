@@ -1,9 +1,9 @@
-"""The road from above, heading up: lanes, traffic lights and every vehicle, with a trail of the drive so far."""
+"""The road from above, heading up: ground, lanes, traffic lights and vehicles, with a trail of the drive so far."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -13,9 +13,10 @@ from shapely import LineString, Polygon, STRtree
 
 from automotive_cosim.cockpit.drawing import Canvas
 from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.groundmap import GroundMap
 from automotive_cosim.cockpit.map import EGO_DOWN, Camera, RoadMap, View
 from automotive_cosim.cockpit.theme import NIGHT, Colour, Type
-from automotive_cosim.contracts import SeenVehicle, SumoSignal
+from automotive_cosim.contracts import GroundKind, SeenVehicle, SumoSignal
 from automotive_cosim.geo.sun import SUNSET_DEG
 from automotive_cosim.run.road import RoadRecord, Second
 from automotive_cosim.run.timeline import Sample
@@ -49,6 +50,7 @@ class Colours:
     heavy: Colour
     edge: Colour
     """Around a vehicle."""
+    ground: Mapping[GroundKind, Colour]
 
 
 NIGHTLY = Colours(
@@ -60,6 +62,7 @@ NIGHTLY = Colours(
     (176, 188, 203),
     (214, 189, 128),
     (10, 13, 18),
+    {GroundKind.GREEN: (19, 36, 28), GroundKind.WATER: (17, 42, 66), GroundKind.BUILDING: (28, 34, 43)},
 )
 DAILY = Colours(
     (214, 221, 214),
@@ -70,6 +73,7 @@ DAILY = Colours(
     (44, 54, 68),
     (122, 82, 26),
     (240, 243, 246),
+    {GroundKind.GREEN: (184, 212, 176), GroundKind.WATER: (158, 198, 226), GroundKind.BUILDING: (196, 202, 200)},
 )
 LIGHTS: dict[str, Colour] = {"G": (46, 204, 113), "g": (46, 204, 113), "y": (255, 180, 46), "r": (229, 72, 77)}
 BRAKE: Colour = (255, 40, 48)
@@ -88,6 +92,7 @@ class RoadPainter:
         shapes = record.shapes
         self._lanes = STRtree([LineString(lane.line_m) for lane in shapes.lanes])
         self._junctions = STRtree([Polygon(outline) for outline in shapes.junctions])
+        self._grounds = GroundMap(shapes.ground)
 
     def draw(self, canvas: Canvas, area: Rect, past: Sequence[Sample], avoid: tuple[Rect, ...]) -> None:
         """Draws the road around the last sample.
@@ -106,6 +111,7 @@ class RoadPainter:
         picture = Image.new("RGB", (width, height), (NIGHTLY if dark else DAILY).land)
         view = View(camera, canvas.scale * FINE / METRES_PER_PIXEL, width / 2, height * EGO_DOWN)
         pen = _Pen(ImageDraw.Draw(picture), view, NIGHTLY if dark else DAILY, FINE * canvas.scale)
+        self._grounds.paint(pen.brush, view, (width, height), pen.colours.ground, FINE)
         self._ground(pen, view.sight(width, height), second)
         pen.trail(past)
         if second is not None:
@@ -138,6 +144,7 @@ class RoadPainter:
         camera = Camera(here.x_m, here.y_m, here.heading_deg, WIDE_M / WIDE_PX, 0.5)
         view = View(camera, size[0] / WIDE_M, size[0] / 2, size[1] / 2)
         pen = _Pen(ImageDraw.Draw(picture), view, colours, FINE * scale)
+        self._grounds.paint(pen.brush, view, size, colours.ground, FINE)
         for lane in self._record.shapes.lanes:
             pen.band(lane.line_m, 9.0, colours.road)
         for vehicle in sorted(second.vehicles, key=lambda vehicle: vehicle.vehicle_id == EGO):

@@ -6,6 +6,7 @@ line says ``format`` and what is run; every other line has one of these keys:
 
     lanes      [[kind, width, [x, y, x, y, …], [[light, place], …]], …]   as they come into sight, each once
     junctions  [[x, y, x, y, …], …]                                       outlines, with the lanes
+    ground     [[kind, [x, y, x, y, …]], …]                               outlines of green, water and buildings
     vehicles   [[number, id, class, length, width], …]                    before a vehicle is first seen
     at_s       one second of the drive:
                seen       [[number, x, y, heading, speed in m/s, signals], …]; x and y of the front bumper; the car
@@ -30,7 +31,15 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from automotive_cosim.contracts import Json, LaneShape, RoadShapes, SeenVehicle
+from automotive_cosim.contracts import (
+    GroundArea,
+    GroundKind,
+    Json,
+    LaneShape,
+    RoadShapes,
+    SeenVehicle,
+    in_drawing_order,
+)
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import MOST_UNPACKED_BYTES, parse_json
 
@@ -90,6 +99,7 @@ def read_record(path: Path) -> RoadRecord:
 def _record(path: Path) -> RoadRecord:
     lanes: list[LaneShape] = []
     junctions: list[GroundLine] = []
+    ground: list[GroundArea] = []
     names: dict[int, tuple[str, str, float, float]] = {}
     lights: dict[str, str] = {}
     seconds: list[Second] = []
@@ -97,13 +107,15 @@ def _record(path: Path) -> RoadRecord:
         for kind, width_m, line, links in entry.get("lanes", ()):
             lanes.append(LaneShape("", kind, width_m, _points(line), tuple((light, at) for light, at in links)))
         junctions += map(_points, entry.get("junctions", ()))
+        ground += (GroundArea(GroundKind(kind), _points(outline)) for kind, outline in entry.get("ground", ()))
         names |= {number: (name, *rest) for number, name, *rest in entry.get("vehicles", ())}
         if "at_s" in entry:
             lights = lights | entry["lights"]
             seen = tuple(SeenVehicle(*names[number], *rest) for number, *rest in entry["seen"])
             incidents = tuple((kind, x_m, y_m) for kind, x_m, y_m in entry["incidents"])
             seconds.append(Second(entry["at_s"], seen, lights, entry["sun_deg"], incidents))
-    return RoadRecord(RoadShapes(tuple(lanes), tuple(junctions)), tuple(seconds))
+    shapes = RoadShapes(tuple(lanes), tuple(junctions), in_drawing_order(ground))
+    return RoadRecord(shapes, tuple(seconds))
 
 
 def read_road(path: Path) -> Iterator[Json]:

@@ -14,10 +14,18 @@ from itertools import pairwise
 from pathlib import Path
 from typing import IO
 
-from shapely import LineString, Point, Polygon, STRtree
+from shapely import LineString, MultiPoint, Point, Polygon, STRtree
 
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, Json, LaneShape, RoadShapes, RoadSnapshot
+from automotive_cosim.contracts import (
+    KMH_PER_MPS,
+    DrivingState,
+    GroundArea,
+    Json,
+    LaneShape,
+    RoadShapes,
+    RoadSnapshot,
+)
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.geo.breaches import limit_at
@@ -151,6 +159,7 @@ class RoadWriter:
         self._roads = {road.edge_id: road.shape_m for road in traffic.network.roads}
         self._lanes: set[int] = set()
         self._junctions: set[int] = set()
+        self._ground: set[int] = set()
         self._sought_at: tuple[float, float] | None = None
         self._in_sight: set[str] = set()
         """Lights at the end of the lanes so far."""
@@ -238,23 +247,26 @@ class RoadWriter:
         self._raw.close()
 
     def _seek(self, x_m: float, y_m: float) -> None:
-        """Tells the lanes and junctions that have come into sight."""
+        """Tells the lanes, junctions and ground that have come into sight."""
         if self._sought_at is not None and math.dist(self._sought_at, (x_m, y_m)) < AHEAD_M:
             return
         self._sought_at = x_m, y_m
-        lanes, junctions = self._index.near(x_m, y_m, LOOK_RADIUS_M + AHEAD_M)
+        lanes, junctions, ground = self._index.near(x_m, y_m, LOOK_RADIUS_M + AHEAD_M)
         new = [number for number in lanes if number not in self._lanes]
         outlines = [number for number in junctions if number not in self._junctions]
+        areas = [number for number in ground if number not in self._ground]
         self._lanes.update(new)
         self._junctions.update(outlines)
+        self._ground.update(areas)
         shapes = self._index.shapes
         for number in new:
             self._in_sight.update(light for light, _ in shapes.lanes[number].links)
-        if new or outlines:
+        if new or outlines or areas:
             self._line(
                 {
                     "lanes": [_lane(shapes.lanes[number]) for number in new],
                     "junctions": [_flat(shapes.junctions[number]) for number in outlines],
+                    "ground": [_area(shapes.ground[number]) for number in areas],
                 }
             )
 
@@ -263,22 +275,24 @@ class RoadWriter:
 
 
 class ShapeIndex:
-    """The lanes and junctions of a network by place."""
+    """The lanes and junctions of a network, and the ground around them, by place."""
 
     def __init__(self, shapes: RoadShapes) -> None:
         """Indexes them: 10 ms for three thousand lanes."""
         self.shapes = shapes
         self._lanes = STRtree([LineString(lane.line_m) for lane in shapes.lanes])
         self._junctions = STRtree([Polygon(outline) for outline in shapes.junctions])
+        self._ground = STRtree([MultiPoint(area.outline_m).envelope for area in shapes.ground])
 
-    def near(self, x_m: float, y_m: float, radius_m: float) -> tuple[list[int], list[int]]:
-        """The numbers of the lanes and of the junctions within that distance, in order."""
+    def near(self, x_m: float, y_m: float, radius_m: float) -> tuple[list[int], list[int], list[int]]:
+        """The numbers of the lanes, of the junctions and of the areas (by their boxes) within that distance, in
+        order."""
         here = Point(x_m, y_m)
-        lanes, junctions = (
+        lanes, junctions, ground = (
             sorted(tree.query(here, predicate="dwithin", distance=radius_m).tolist())
-            for tree in (self._lanes, self._junctions)
+            for tree in (self._lanes, self._junctions, self._ground)
         )
-        return lanes, junctions
+        return lanes, junctions, ground
 
 
 def is_being_written(path: Path) -> bool:
@@ -318,6 +332,10 @@ def along(line: Sequence[tuple[float, float]], position_m: float) -> tuple[float
 
 def _lane(lane: LaneShape) -> list[object]:
     return [lane.kind, round(lane.width_m, 2), _flat(lane.line_m), [list(link) for link in lane.links]]
+
+
+def _area(area: GroundArea) -> list[object]:
+    return [area.kind, _flat(area.outline_m)]
 
 
 def _flat(points: Sequence[tuple[float, float]]) -> list[float]:

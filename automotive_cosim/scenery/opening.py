@@ -11,7 +11,8 @@ from automotive_cosim.scenarios import Ego, Scenario
 from automotive_cosim.scenery.foreign import foreign_scenario
 from automotive_cosim.scenery.relocation import relocated
 from automotive_cosim.scenery.routes import chosen_trips
-from automotive_cosim.traffic.network import Network, read_network, root_of
+from automotive_cosim.traffic.ground import read_mapped
+from automotive_cosim.traffic.network import Network, root_of
 from automotive_cosim.traffic.options import read_configuration
 
 CONFIGURATIONS = ("configuration", "sumoConfiguration")
@@ -58,7 +59,7 @@ def network_of(scenario: Scenario) -> Network:
     Raises:
         ScenarioError: it cannot be read.
     """
-    network = read_network(read_configuration(scenario.config).net)
+    network = read_mapped(read_configuration(scenario.config))
     return network if scenario.origin is None else network.at(scenario.origin)
 
 

@@ -1,4 +1,4 @@
-"""Draws a scenario, north up: roads by class, tunnels, names, limits and the ego's trips."""
+"""Draws a scenario, north up: water and green, roads by class, tunnels, names, limits and the ego's trips."""
 
 from __future__ import annotations
 
@@ -11,8 +11,10 @@ import numpy as np
 from PIL import Image, ImageDraw
 from shapely import LineString, Polygon, box
 
-from automotive_cosim.cockpit.map import AVENUES, MOTORWAYS, QUIET
+from automotive_cosim.cockpit.groundmap import GroundMap
+from automotive_cosim.cockpit.map import AVENUES, MOTORWAYS, QUIET, Camera, View
 from automotive_cosim.cockpit.theme import DAY, Colour, Weight, face, font
+from automotive_cosim.contracts import GroundKind
 from automotive_cosim.errors import ScenarioError, UserError
 from automotive_cosim.geo.place import Atlas
 from automotive_cosim.scenarios import Scenario
@@ -81,6 +83,11 @@ class Viewport:
         top_m = (y_min + y_max) / 2 + height / 2 / scale
         return cls(float(left_m), float(top_m), float(scale), width, height)
 
+    def view(self, fine: int) -> View:
+        """The same for a picture with that many times the pixels."""
+        camera = Camera(self.left_m, self.top_m, 0.0, 1 / self.pixels_per_m)
+        return View(camera, self.pixels_per_m * fine, 0.0, 0.0)
+
     def pixels(self, shape_m: Sequence[tuple[float, float]]) -> Points:
         """Points in pixels of the map, (n, 2)."""
         points = np.asarray(shape_m, dtype=np.float64)
@@ -101,7 +108,7 @@ def _drawn(scenario: Scenario) -> tuple[Image.Image, tuple[str, ...]]:
     network = network_of(scenario)
     edges = tuple(network.edges.values())
     frame = Viewport.around(edges)
-    roads = _roads(frame, edges)
+    roads = _roads(frame, edges, GroundMap(network.map.ground))
     _trips(roads, frame, network, scenario)
     picture = roads.reduce(FINE)
     labels = Labels(picture, frame.pixels)
@@ -134,9 +141,11 @@ def save_picture(scenario: Scenario, path: Path) -> tuple[str, ...]:
     return unwritten
 
 
-def _roads(frame: Viewport, edges: Sequence[Edge]) -> Image.Image:
+def _roads(frame: Viewport, edges: Sequence[Edge], ground: GroundMap) -> Image.Image:
     picture = Image.new("RGB", (frame.width * FINE, frame.height * FINE), DAY.land)
     brush = ImageDraw.Draw(picture)
+    colours = {GroundKind.GREEN: DAY.green, GroundKind.WATER: DAY.water, GroundKind.BUILDING: DAY.building}
+    ground.paint(brush, frame.view(FINE), picture.size, colours, FINE)
     order = sorted(edges, key=lambda edge: (not edge.in_tunnel, rank(edge.road_class)))
     lines = [(edge, frame.pixels(edge.shape_m) * FINE) for edge in order]
     for edge, line in lines:

@@ -19,9 +19,9 @@ from automotive_cosim.traffic.conflicts import LOOK_S, Conflicts
 from automotive_cosim.traffic.congestion import MEMORY_S, SAMPLE_PERIOD_S, WINDOW_S, Congestion
 from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.ego import FOR_GOOD_S, Driver
+from automotive_cosim.traffic.ground import read_mapped
 from automotive_cosim.traffic.instant import Instant, KnownInstant
 from automotive_cosim.traffic.lookout import Lookout, read_shapes
-from automotive_cosim.traffic.network import read_network
 from automotive_cosim.traffic.options import Setup, command_line, read_configuration, run_options
 from automotive_cosim.traffic.profiles import DriverProfile, profile
 from automotive_cosim.traffic.road_weather import G_MPS2, Forecast, Surface
@@ -52,7 +52,7 @@ class World:
         """
         scenario = setup.scenario
         configuration = read_configuration(scenario.config)
-        self.network = read_network(configuration.net)
+        self.network = read_mapped(configuration)
         if scenario.origin is not None:
             self.network = self.network.at(scenario.origin)
         if self.network.unplaced and scenario.has_place and not setup.allow_unprojected:
@@ -322,7 +322,7 @@ class EgoRoad:
 
     def shapes(self) -> RoadShapes:
         """See ``drive.Stepper``."""
-        return read_shapes(self._sumo)
+        return replace(read_shapes(self._sumo), ground=self._world.network.map.ground)
 
     def _go_on(self, round_: Round) -> bool:
         """Sets the next destination near the present one; true if it did."""

@@ -13,7 +13,7 @@ from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.map import EGO_DOWN, Camera, RoadMap
 from automotive_cosim.cockpit.mapdraw import MapScene
 from automotive_cosim.cockpit.theme import DAY, NIGHT, Colour, Palette
-from automotive_cosim.contracts import LimitSource, Road, RoadNetwork
+from automotive_cosim.contracts import GroundArea, GroundKind, LimitSource, Road, RoadNetwork
 
 SIZE = 400
 EGO = (SIZE // 2, round(SIZE * EGO_DOWN))
@@ -23,8 +23,12 @@ def road(edge_id: str, *points: tuple[float, float], name: str = "", kind: str =
     return Road(edge_id, name, kind, 1, 100.0, 13.9, LimitSource.POSTED, False, points)
 
 
-def network(*roads: Road) -> RoadNetwork:
-    return RoadNetwork(roads, (-500, -500, 500, 500), None, (0, 0), False)
+def network(*roads: Road, ground: tuple[GroundArea, ...] = ()) -> RoadNetwork:
+    return RoadNetwork(roads, (-500, -500, 500, 500), None, (0, 0), False, ground)
+
+
+def square(kind: GroundKind, x: float, y: float, side: float) -> GroundArea:
+    return GroundArea(kind, ((x, y), (x + side, y), (x + side, y + side), (x, y + side)))
 
 
 def draw(
@@ -144,3 +148,38 @@ def test_the_car_is_turned_on_a_map_with_north_up() -> None:
     picture = np.asarray(mapdraw.draw(RoadMap(network()), scene, SIZE, SIZE, 1.0, False))
     assert is_at(picture, SIZE // 2 + 10, SIZE // 2, DAY.accent)
     assert is_at(picture, SIZE // 2 - 18, SIZE // 2, DAY.land)
+
+
+def test_the_ground_lies_under_the_roads() -> None:
+    kinds = (GroundKind.GREEN, GroundKind.WATER, GroundKind.BUILDING)
+    ground = tuple(square(kind, -90.0 + 60 * at, 30.0, 50.0) for at, kind in enumerate(kinds))
+    roads = RoadMap(network(road("w", (-95, 60), (95, 60)), ground=ground))
+    for palette in (DAY, NIGHT):
+        picture = draw(roads, palette=palette)
+        colours = (palette.green, palette.water, palette.building)
+        for at, colour in enumerate(colours):
+            x, y = EGO[0] - 130 + 120 * at, EGO[1] - 80
+            assert is_at(picture, x, y, colour)
+            assert is_at(picture, x, EGO[1] - 120, palette.street)
+            assert not is_at(picture, x, EGO[1] - 40, colour)
+
+
+def test_from_further_away_there_are_no_buildings_and_no_specks() -> None:
+    ground = (square(GroundKind.BUILDING, 50, 100, 200), square(GroundKind.WATER, -250, 100, 200))
+    roads = RoadMap(network(ground=(*ground, square(GroundKind.GREEN, -50, 200, 8))))
+    scene = MapScene(Camera(0.0, 0.0, 0.0, 2.8))
+    colours = set(mapdraw.draw(roads, scene, SIZE, SIZE, 1.0, False).get_flattened_data())
+    assert DAY.water in colours
+    assert colours.isdisjoint({DAY.building, DAY.green})
+
+
+@pytest.mark.parametrize("palette", [DAY, NIGHT])
+def test_what_is_on_the_map_can_be_told_apart(palette: Palette) -> None:
+    def away(one: Colour, other: Colour) -> float:
+        return float(np.linalg.norm(np.subtract(one, other)))
+
+    ways = (palette.street, palette.avenue, palette.motorway, palette.route, palette.dense, palette.jam)
+    for ground in (palette.green, palette.water, palette.building, palette.land):
+        assert min(away(ground, way) for way in ways) > 25
+    assert away(palette.water, palette.route) > 90
+    assert min(away(palette.land, one) for one in (palette.green, palette.water)) > 20

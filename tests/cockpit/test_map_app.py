@@ -12,15 +12,16 @@ import pytest
 
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.map import Camera, View
+from automotive_cosim.cockpit.map import ZOOMS_M_PER_PX, Camera, View
 from automotive_cosim.cockpit.places import PlaceKind
 from automotive_cosim.cockpit.render import render
 from automotive_cosim.cockpit.screens import APPS
 from automotive_cosim.cockpit.signals import LINK
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.cockpit.theme import DAY
-from automotive_cosim.cockpit.widgets import MapView
+from automotive_cosim.cockpit.widgets import Badge, MapView
 from automotive_cosim.contracts import (
+    BoundingBox,
     Direction,
     FeedbackCode,
     IncidentKind,
@@ -89,6 +90,33 @@ def test_the_map_shows_ways_traffic_and_a_jam(make: Make, around: Surroundings) 
     assert scene.alternatives == (("e6_5", "n7_5"),)
     assert scene.route == ahead.route_edges
     assert any(element.resource_id == shown_id("map.jam") for element in cockpit.elements())
+
+
+def test_charging_stops_are_on_the_map_beside_names_and_marks_and_in_no_list(cockpit: Cockpit) -> None:
+    found = 0
+    for app in ("map", "home"):
+        cockpit.open_app(app)
+        for zoom in range(len(ZOOMS_M_PER_PX)):
+            cockpit._state.zoom, cockpit._tree = zoom, None
+            shown = view(cockpit)
+            stops = [child for child in shown.children if isinstance(child, Badge) and child.charges]
+            others = [child.rect for child in shown.children if child not in stops]
+            for at, stop in enumerate(stops):
+                assert shown.rect.encloses(stop.rect)
+                assert not any(stop.rect.overlaps(other) for other in others)
+                assert not any(stop.rect.overlaps(other.rect) for other in stops[at + 1 :])
+            boxes = {element.bbox_pixels for element in cockpit.elements()}
+            assert boxes.isdisjoint(BoundingBox(*stop.rect.edges(1.0)) for stop in stops)
+            found += len(stops)
+    assert found > 5
+
+
+def test_a_charging_stop_is_green(cockpit: Cockpit) -> None:
+    cockpit.open_app("map")
+    cockpit._state.zoom, cockpit._tree = len(ZOOMS_M_PER_PX) - 1, None
+    stop = next(child.rect for child in view(cockpit).children if isinstance(child, Badge) and child.charges)
+    picture = cockpit.screenshot()
+    assert tuple(picture[stop.centre[1], stop.x + 4].tolist()) == DAY.good
 
 
 def incidents_seen(cockpit: Cockpit) -> dict[str, str]:

@@ -33,6 +33,12 @@ class Map:
         """A road along named nodes; ``__`` in a key stands for ``:``."""
         self.ways.append((nodes.split(), {key.replace("__", ":"): value for key, value in tags.items()}))
 
+    def area(self, name: str, x: float, y: float, side: float, **tags: str) -> None:
+        """A square, by its lower left corner."""
+        corners = ((x, y), (x + side, y), (x + side, y + side), (x, y + side))
+        self.nodes |= {f"{name}{number}": corner for number, corner in enumerate(corners)}
+        self.way(" ".join(f"{name}{number}" for number in (0, 1, 2, 3, 0)), **tags)
+
     def xml(self) -> str:
         numbers = {name: index for index, name in enumerate(self.nodes, start=1)}
         lines = ['<?xml version="1.0" encoding="UTF-8"?>', '<osm version="0.6">']
@@ -88,6 +94,15 @@ def village(origin: tuple[float, float] = ORIGIN) -> Map:
     made.way("d5 d2", highway="motorway_link", oneway="no")
     made.way("n00 n11", highway="footway")
     made.way("n11 n22", highway="residential", access="private", name="Cour privée")
+    made.area("pond", 20.0, 20.0, 60.0, natural="water")
+    made.area("cistern", 20.0, 180.0, 60.0, natural="water", location="underground")
+    made.area("green", 180.0, 20.0, 100.0, leisure="park")
+    made.area("house", 340.0, 20.0, 12.0, building="yes")
+    made.area("neighbour", 352.0, 20.0, 12.0, building="house")
+    made.area("pavilion", 220.0, 60.0, 20.0, building="pavilion")
+    made.area("shed", 340.0, 60.0, 3.0, building="shed")
+    made.area("far", 90_000.0, 20.0, 900.0, landuse="forest")
+    made.way("n00 n10 n11", natural="water")
     return made
 
 

@@ -10,14 +10,16 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from shapely import Polygon
 
-from automotive_cosim.contracts import LimitSource
+from automotive_cosim.contracts import GroundKind, LimitSource
 from automotive_cosim.errors import ImportMapError, SetupError
 from automotive_cosim.geo.place import shipped
 from automotive_cosim.osm import ImportOptions, ImportReport, demand, extract, import_map
 from automotive_cosim.osm.agreement import differences
 from automotive_cosim.osm.roads import describe
 from automotive_cosim.scenarios import load
+from automotive_cosim.scenery.opening import network_of
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.network import Edge, read_network
 from automotive_cosim.traffic.stability import HALTED_SHARE_LIMIT, measure
@@ -68,6 +70,18 @@ def test_the_folder_is_a_scenario(imported: Imported) -> None:
     assert scenario.ego.trips
     assert all({trip.from_edge, trip.to_edge} <= set(edges) for trip in scenario.ego.trips)
     assert len({trip.name for trip in scenario.ego.trips}) == len(scenario.ego.trips)
+
+
+def test_water_green_and_buildings_are_kept_and_sumo_reads_them(imported: Imported) -> None:
+    folder, report = imported
+    assert report.ground == {"green": 1, "water": 1, "building": 2}
+    assert any(line.startswith("water, green and buildings") for line in report.guessed)
+    ground = network_of(load(folder)).map.ground
+    assert [area.kind for area in ground] == [*GroundKind, GroundKind.BUILDING]
+    sizes_m2 = [Polygon(area.outline_m).area for area in ground]
+    assert sizes_m2 == pytest.approx([100.0**2, 60.0**2, 20.0**2, 12.0 * 24.0], rel=0.03)
+    done, printed = sumo_programs.run("sumo", ["-c", load(folder).config, "--end", "1", "--no-step-log"])
+    assert done, printed
 
 
 def test_roads_keep_their_names_classes_and_limits(imported: Imported) -> None:

@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 from automotive_cosim.cli.scenarios import app
 from automotive_cosim.errors import ImportMapError
 from automotive_cosim.osm import Area, extract
-from automotive_cosim.osm.overpass import FIRST_PAUSE_S, LONGEST_PAUSE_S, DownloadLimits, download
+from automotive_cosim.osm.overpass import FIRST_PAUSE_S, LONGEST_PAUSE_S, DownloadLimits, download, query
 
 AREA = Area(1.58, 48.29, 1.64, 48.32)
 NOTE = "The data included in this document is from www.openstreetmap.org. The data is made available under ODbL."
@@ -179,3 +179,13 @@ def test_the_command(server: Server, whole: str, tmp_path: Path) -> None:
     assert "2026-11-20" in done.stdout
     assert out.is_file()
     assert CliRunner().invoke(app, arguments, env={"AUTOMOTIVE_COSIM_OVERPASS": ""}).exit_code == 2
+
+
+def test_a_query_asks_for_the_ground_and_for_buildings_of_a_town_only() -> None:
+    town, county = (query(Area(2.0, 48.0, 2.0 + side, 48.0 + side), DownloadLimits()) for side in (0.05, 0.4))
+    for asked in (town, county):
+        assert asked.count("(") == asked.count(")")
+        assert 'wr[natural~"^(' in asked
+        assert ".ground >;" in asked
+    assert "wr[building](" in town
+    assert "building" not in county

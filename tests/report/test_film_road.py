@@ -1,12 +1,14 @@
 """The film's road shows what was recorded, where it was."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from automotive_cosim.cockpit.drawing import Canvas
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.map import RoadMap
-from automotive_cosim.contracts import LaneShape, RoadNetwork, RoadShapes, SeenVehicle
+from automotive_cosim.contracts import GroundArea, GroundKind, LaneShape, RoadNetwork, RoadShapes, SeenVehicle
 from automotive_cosim.report import filmroad
 from automotive_cosim.report.filmroad import DAILY, LIGHTS, METRES_PER_PIXEL, NIGHTLY, RoadPainter
 from automotive_cosim.run.road import EMPTY, RoadRecord, Second
@@ -28,6 +30,11 @@ def record(*vehicles: SeenVehicle, state: str = "Gr", sun_deg: float = 30.0, inc
     return RoadRecord(
         RoadShapes((LANE,), ()), (Second(0.0, (ego, *vehicles), {"light": state}, sun_deg, incidents),)
     )
+
+
+def with_ground(given: RoadRecord) -> RoadRecord:
+    water = GroundArea(GroundKind.WATER, ((-30.0, 0.0), (30.0, 0.0), (30.0, 40.0), (-30.0, 40.0)))
+    return replace(given, shapes=replace(given.shapes, ground=(water,)))
 
 
 def pixel(picture: np.ndarray, x_m: float, y_m: float) -> tuple[int, ...]:
@@ -62,6 +69,14 @@ def test_a_stop_line_has_the_colour_of_its_light():
 def test_night_is_dark_and_a_bus_is_not_a_car():
     assert pixel(drawn(record(sun_deg=-20.0)), 20.0, 20.0) == NIGHTLY.land
     assert pixel(drawn(record(car(kind="bus"))), 0.0, 27.5) == DAILY.heavy
+
+
+def test_the_ground_lies_under_the_lanes():
+    for sun_deg, colours in ((30.0, DAILY), (-20.0, NIGHTLY)):
+        picture = drawn(with_ground(record(sun_deg=sun_deg)))
+        assert pixel(picture, 20.0, 20.0) == colours.ground[GroundKind.WATER]
+        assert pixel(picture, 0.0, 20.0) == colours.road
+        assert pixel(picture, 20.0, -10.0) == colours.land
 
 
 def test_incidents_show():

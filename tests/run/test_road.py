@@ -9,11 +9,11 @@ from types import SimpleNamespace
 import pytest
 
 from automotive_cosim.agents import make_agent
-from automotive_cosim.contracts import RoadSnapshot
+from automotive_cosim.contracts import GroundArea, GroundKind, LaneShape, RoadNetwork, RoadShapes, RoadSnapshot
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
 from automotive_cosim.run.road import NAME, read_record, read_road
-from automotive_cosim.run.road_recorder import RoadRecorder, along
+from automotive_cosim.run.road_recorder import RoadRecorder, RoadWriter, along
 
 
 @pytest.mark.sumo
@@ -66,6 +66,23 @@ def test_a_line_that_is_not_json_is_refused(tmp_path):
     path.write_bytes(gzip.compress(json.dumps({"format": 1}).encode() + b"\n{\n"))
     with pytest.raises(UserError, match="cannot read"):
         list(read_road(path))
+
+
+def test_the_ground_is_told_once_as_it_comes_into_sight_and_read_in_its_drawing_order(tmp_path):
+    near, far = (
+        GroundArea(GroundKind.WATER, ((x_m, 0.0), (x_m + 50.0, 0.0), (x_m, 50.0))) for x_m in (100.0, 1500.0)
+    )
+    around = GroundArea(GroundKind.GREEN, ((-9000.0, 9000.0), (9000.0, 9000.0), (0.0, -9000.0)))
+    shapes = RoadShapes((LaneShape("a_0", "road", 3.2, ((0.0, 0.0), (9.0, 0.0))),), (), (near, far, around))
+    network = RoadNetwork((), (0.0, 0.0, 1.0, 1.0), None, (0.0, 0.0), False)
+    traffic = SimpleNamespace(shapes=lambda: shapes, network=network)
+    writer = RoadWriter(tmp_path / NAME, traffic, {}, 0.0)
+    for x_m in (0.0, 10.0, 800.0, 1600.0):
+        writer._seek(x_m, 0.0)
+    writer.close()
+    told = [entry["ground"] for entry in read_road(tmp_path / NAME) if "ground" in entry]
+    assert [[kind for kind, _ in areas] for areas in told] == [["water", "green"], ["water"]]
+    assert read_record(tmp_path / NAME).shapes.ground == (around, near, far)
 
 
 def test_of_several_departures_only_the_last_is_kept(tmp_path):

@@ -72,11 +72,14 @@ def result(**changes: Any) -> dict[str, Any]:
     return made | changes
 
 
+GROUND = [["water", [-500, 10, 500, 10, 500, 60, -500, 60]], ["green", [-500, -90, 500, -90, 500, -10, -500, -10]]]
+
+
 def road(seconds: range = range(-2, 8)) -> list[dict[str, Any]]:
     lane = ["road", 3.2, [-500.0, 0.0, 500.0, 0.0], [["light", 0]]]
     head: list[dict[str, Any]] = [
         {"format": 1, "radius_m": 800.0, "left_hand": False, "has_place": True},
-        {"lanes": [lane], "junctions": [[500, -5, 510, -5, 510, 5]]},
+        {"lanes": [lane], "junctions": [[500, -5, 510, -5, 510, 5]], "ground": GROUND},
         {"vehicles": [[0, "ego", "passenger", 4.5, 1.8], [1, HOSTILE, "bus", 12.0, 2.5]]},
     ]
     return head + [

@@ -7,14 +7,17 @@ from itertools import pairwise
 from typing import Any
 
 import pytest
-from shapely import LineString, Point, STRtree
+from shapely import LineString, Point, Polygon, STRtree, union_all
 
 from automotive_cosim import scenarios
+from automotive_cosim.contracts import GroundKind
 from automotive_cosim.errors import ScenarioError, UnknownNameError
 from automotive_cosim.geo.place import Atlas
+from automotive_cosim.scenery.opening import network_of
 from automotive_cosim.sumo_scenarios import build
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.network import NO_LIMIT_FROM_MPS
+from tests.laws import over
 
 Net = Callable[[str], Any]
 SHIPPED = scenarios.shipped()
@@ -54,6 +57,31 @@ def test_it_lies_in_its_country_and_time_zone(name: str, net: Net) -> None:
     start = net(name).getEdge(scenario.ego.trips[0].from_edge).getShape()[0]
     place = Atlas().place(*net(name).convertXY2LonLat(*start))
     assert (place.country, place.time_zone) == (scenario.country, str(scenario.start.tzinfo))
+
+
+BRIDGE_M = 350.0
+"""No street is over water for longer: Pont de Bir-Hakeim is, with its island, 237 m long, Waterloo Bridge 370 m."""
+
+
+@over(SHIPPED)
+def test_bridges_cross_the_water_and_no_street_runs_in_it(name: str) -> None:
+    network = network_of(scenarios.load(name))
+    water = [Polygon(area.outline_m) for area in network.map.ground if area.kind is GroundKind.WATER]
+    assert all(area.is_valid for area in water)
+    lake = union_all(water)
+    for edge in network.edges.values():
+        line = LineString(edge.shape_m)
+        assert line.intersection(lake).length <= BRIDGE_M, f"{edge.edge_id} runs in the water"
+        ends = Point(edge.shape_m[0]), Point(edge.shape_m[-1])
+        assert not any(lake.contains(end) for end in ends), f"{edge.edge_id} ends in the water"
+
+
+def test_the_rivers_have_bridges() -> None:
+    for name, bridge in (("paris_centre", "Pont Royal"), ("london", "Waterloo Bridge")):
+        network = network_of(scenarios.load(name))
+        water = union_all([Polygon(area.outline_m) for area in network.map.ground if area.kind is GroundKind.WATER])
+        over_it = {edge.name for edge in network.edges.values() if LineString(edge.shape_m).crosses(water)}
+        assert bridge in over_it, name
 
 
 @pytest.mark.parametrize("name", SHIPPED)

@@ -11,6 +11,7 @@ from automotive_cosim.cockpit.map import ZOOMS_M_PER_PX, Camera
 from automotive_cosim.cockpit.mapscene import box_of, ego, goal, incidents, jam, map_camera, scene
 from automotive_cosim.cockpit.messages import Follow, Guide, Message, Pick, Set, Show, Zoom
 from automotive_cosim.cockpit.navigation import Turn, turns
+from automotive_cosim.cockpit.places import PlaceKind
 from automotive_cosim.cockpit.restrictions import ENTRIES_LIMIT
 from automotive_cosim.cockpit.screens import lookout
 from automotive_cosim.cockpit.screens.parts import choices, content, distance, heading, rows, search, speed
@@ -42,6 +43,8 @@ INCIDENTS: Mapping[IncidentKind, tuple[str, Icon]] = {
 _CLASSES = {"motorway": "Motorway", "trunk": "Expressway", "service": "Service road", "residential": "Side street"}
 PANEL_WIDTH, PANEL_HEIGHT = 372, 544
 RESULTS = ENTRIES_LIMIT
+CHARGER = 28
+"""Side of the mark of a charging stop."""
 
 
 def map_screen(state: State) -> tuple[Widget, ...]:
@@ -159,7 +162,9 @@ def map_view(
 ) -> MapView:
     """The moving map in a box, with the street names and marks that fit next to what is over it."""
     marks = _marks(rect, state, camera, avoid)
-    names = state.roads.names_in_sight(rect, camera, (*avoid, *(mark.rect for mark in marks)))
+    taken = (*avoid, *(mark.rect for mark in marks))
+    names = state.roads.names_in_sight(rect, camera, taken)
+    chargers = _chargers(rect, state, camera, (*taken, *(name.rect for name in names)))
     return MapView(
         rect=rect,
         key=key,
@@ -174,6 +179,7 @@ def map_view(
                 Label(rect=name.rect, text=name.text, style=Type.SMALL, align="centre", plate=True)
                 for name in names
             ),
+            *chargers,
             *marks,
         ),
     )
@@ -185,6 +191,19 @@ def _sight(state: State) -> str:
     if state.heard is None or state.heard is state.outside:
         return around
     return f"{around}, traffic as of {state.clock_at(state.heard.local_time)}"
+
+
+def _chargers(rect: Rect, state: State, camera: Camera, avoid: tuple[Rect, ...]) -> tuple[Badge, ...]:
+    """Small marks of the charging stops in sight that cover nothing else."""
+    here = ego(state)
+    taken = [*avoid] if here is None else [*avoid, box_of(camera, rect, here[:2], 48)]
+    room, found = rect.inset(4), list[Badge]()
+    for stop in state.atlas.of(PlaceKind.CHARGING):
+        box = box_of(camera, rect, (stop.x_m, stop.y_m), CHARGER)
+        if room.encloses(box) and not any(box.overlaps(other) for other in taken):
+            taken.append(box)
+            found.append(Badge(rect=box, icon=Icon.CHARGING, charges=True))
+    return tuple(found)
 
 
 def _marks(rect: Rect, state: State, camera: Camera, avoid: tuple[Rect, ...]) -> tuple[Widget, ...]:

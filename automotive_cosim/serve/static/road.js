@@ -1,4 +1,4 @@
-// The road on a canvas: lanes, junctions, lights and every vehicle, between the recorded seconds too.
+// The road on a canvas: the ground around it, lanes, junctions, lights and every vehicle, between the recorded seconds too.
 
 const TELEPORT_M = 50;
 const GAP_M = 0.25;
@@ -7,8 +7,9 @@ const TILE_M = 300;
 const INSET = { side: 150, metres: 1100, margin: 12 };
 const SIGNAL = { right: 1, left: 2, hazard: 4, brake: 8, blue: 2048 };
 const HEAVY = new Set(["bus", "coach", "truck", "trailer", "delivery", "tram", "rail", "rail_urban"]);
-const DAY = { land: "#d6ddd6", line: "#f0f3f6", road: "#808994", bus: "#947676", path: "#b0b6b4", car: "#2c3644", heavy: "#7a521a", edge: "#f0f3f6" };
-const NIGHT = { land: "#10151c", line: "#586373", road: "#2b333f", bus: "#3e3236", path: "#202830", car: "#b0bccb", heavy: "#d6bd80", edge: "#0a0d12" };
+const DAY = { land: "#d6ddd6", line: "#f0f3f6", road: "#808994", bus: "#947676", path: "#b0b6b4", car: "#2c3644", heavy: "#7a521a", edge: "#f0f3f6", green: "#b8d4b0", water: "#9ec6e2", building: "#c4cac8" };
+const NIGHT = { land: "#10151c", line: "#586373", road: "#2b333f", bus: "#3e3236", path: "#202830", car: "#b0bccb", heavy: "#d6bd80", edge: "#0a0d12", green: "#13241c", water: "#112a42", building: "#1c222b" };
+const GROUND = ["green", "water", "building"]; // in the order in which they are drawn
 const LIGHTS = { G: "#2ecc71", g: "#2ecc71", y: "#ffb42e", Y: "#ffb42e", r: "#e5484d", u: "#e5484d" };
 
 // What was recorded, second by second.
@@ -22,6 +23,7 @@ export class RoadRecord {
     this.baseline = [];
     this.bands = new Map();
     this.areas = new Path2D();
+    this.ground = Object.fromEntries(GROUND.map((kind) => [kind, []]));
     this.stops = [];
     this.bounds = [Infinity, Infinity, -Infinity, -Infinity];
   }
@@ -37,6 +39,7 @@ export class RoadRecord {
         for (let i = 2; i < outline.length; i += 2) this.areas.lineTo(outline[i], outline[i + 1]);
         this.areas.closePath();
       }
+      for (const [kind, outline] of line.ground ?? []) this.ground[kind]?.push(area(outline));
       for (const [number, id, kind, length, width] of line.vehicles ?? []) this.vehicles.set(number, { id, kind, length, width });
       if ("at_s" in line) {
         const before = this.seconds.at(-1);
@@ -110,6 +113,20 @@ export class RoadRecord {
     return found;
   }
 }
+
+// An outline as a path with its box.
+function area(outline) {
+  const path = new Path2D();
+  const bounds = [Infinity, Infinity, -Infinity, -Infinity];
+  for (let i = 0; i < outline.length; i += 2) {
+    const [x, y] = [outline[i], outline[i + 1]];
+    path.lineTo(x, y);
+    [bounds[0], bounds[1], bounds[2], bounds[3]] = [Math.min(bounds[0], x), Math.min(bounds[1], y), Math.max(bounds[2], x), Math.max(bounds[3], y)];
+  }
+  return { path, bounds };
+}
+
+const overlap = (a, b) => a[0] < b[2] && a[2] > b[0] && a[1] < b[3] && a[3] > b[1];
 
 const state = ([x, y, heading, speed, signals]) => ({ x, y, heading, speed, signals });
 
@@ -361,6 +378,7 @@ export class RoadView {
     const context = bitmap.getContext("2d");
     const fine = bitmap.width / metres;
     context.setTransform(fine, 0, 0, -fine, bitmap.width / 2 - x * fine, bitmap.height / 2 + y * fine);
+    this.land(context, colours, [x - metres / 2, y - metres / 2, x + metres / 2, y + metres / 2]);
     context.strokeStyle = colours.road;
     context.lineWidth = 9;
     for (const { path } of this.record.bands.values()) context.stroke(path);
@@ -368,9 +386,17 @@ export class RoadView {
     return this.map;
   }
 
+  // Green, water and buildings within a box.
+  land(context, colours, box) {
+    for (const kind of GROUND) {
+      context.fillStyle = colours[kind];
+      for (const { path, bounds } of this.record.ground[kind]) if (overlap(bounds, box)) context.fill(path);
+    }
+  }
+
   ground(context, colours, second) {
-    const [left, bottom, right, top] = this.sight;
-    const bands = [...this.record.bands.values()].filter(({ bounds }) => bounds[0] < right && bounds[2] > left && bounds[1] < top && bounds[3] > bottom);
+    this.land(context, colours, this.sight);
+    const bands = [...this.record.bands.values()].filter(({ bounds }) => overlap(bounds, this.sight));
     context.strokeStyle = colours.line;
     if (this.pixel < 1) {
       for (const { width, path } of bands) {

@@ -1,0 +1,137 @@
+"""Water, green and buildings around the roads: the polygons of a scenario's additional files.
+
+They are SUMO's own ``<poly>``, as polyconvert, netedit or ``scenarios import`` write them, and sumo-gui shows them
+too. Their ``type`` says what they are (``KINDS``), also in OpenStreetMap's words (``natural.water``). A line
+(neither filled nor closed) is no area, and other types are not drawn.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import shapely
+
+from automotive_cosim.contracts import GroundArea, GroundKind, RoadNetwork, in_drawing_order
+from automotive_cosim.errors import ScenarioError
+from automotive_cosim.formats.words import shown
+from automotive_cosim.formats.xml import scan
+from automotive_cosim.traffic.georeference import GeoReference
+from automotive_cosim.traffic.network import Network, Shape, quantity, read_network
+from automotive_cosim.traffic.options import Configuration
+
+KINDS = {
+    **dict.fromkeys(
+        ("water", "waterway", "riverbank", "river", "lake", "sea", "bay", "strait", "harbour"), GroundKind.WATER
+    ),
+    **dict.fromkeys(
+        ("green", "park", "forest", "wood", "grass", "meadow", "garden", "leisure", "tourism", "sport"),
+        GroundKind.GREEN,
+    ),
+    "building": GroundKind.BUILDING,
+}
+"""What polygons of a type are, as polyconvert's type map names them (``leisure.park`` is ``tourism`` there)."""
+
+AREAS_LIMIT = 20_000
+"""Of more areas the largest are shown."""
+
+TRUE, FALSE = frozenset(("1", "true", "on", "yes", "x", "t")), frozenset(("0", "false", "off", "no", "-", "f", ""))
+"""How SUMO's files say so."""
+
+
+def read_mapped(configuration: Configuration) -> Network:
+    """The network of a configuration with what is around its roads.
+
+    Raises:
+        ScenarioError: a file is missing or invalid; a polygon with its line.
+    """
+    network = read_network(configuration.net)
+    ground = read_ground(configuration, network.map)
+    return replace(network, map=replace(network.map, ground=ground)) if ground else network
+
+
+def read_ground(configuration: Configuration, roads: RoadNetwork) -> tuple[GroundArea, ...]:
+    """The areas in the additional files of a configuration, in the order in which they are drawn.
+
+    Args:
+        configuration: names the files.
+        roads: the network as in its file, for polygons in longitude and latitude; without a projection those are
+            left out.
+
+    Raises:
+        ScenarioError: a file is no XML, or a polygon has no valid shape.
+    """
+    found: list[GroundArea] = []
+    reference = None if roads.projection is None else GeoReference(roads)
+    for name in filter(None, configuration.options.get("additional-files", "").split(",")):
+        file = Path(name)
+
+        def start(element: str, attributes: dict[str, str], line: int, file: Path = file) -> None:
+            if element != "poly":
+                return
+            try:
+                area = _area(attributes, reference)
+            except ValueError as error:
+                raise ScenarioError(
+                    f"{file} line {line}: polygon {shown(attributes.get('id'))}: {error}"
+                ) from error
+            if area is not None:
+                found.append(area)
+
+        scan(file, start, error=ScenarioError, what="a SUMO file")
+    return in_drawing_order(_largest(found))
+
+
+def kind_of(polygon_type: str) -> GroundKind | None:
+    """What a polygon of that type is; None if it is not drawn."""
+    words = polygon_type.lower().split(".")
+    return next((KINDS[word] for word in reversed(words) if word in KINDS), None)
+
+
+def _area(attributes: dict[str, str], reference: GeoReference | None) -> GroundArea | None:
+    """The polygon as an area; None if it is none that is drawn.
+
+    Raises:
+        ValueError: its shape is invalid.
+    """
+    shape = _shape(attributes.get("shape", ""))
+    is_geographic, is_filled = _flag(attributes, "geo"), _flag(attributes, "fill")
+    kind = kind_of(attributes.get("type", ""))
+    is_area = len(set(shape)) > 2 and (is_filled or shape[0] == shape[-1])
+    if kind is None or not is_area or (is_geographic and reference is None):
+        return None
+    if is_geographic and reference is not None:
+        shape = tuple(_metres(lon_deg, lat_deg, reference) for lon_deg, lat_deg in shape)
+    return GroundArea(kind, shape[:-1] if shape[0] == shape[-1] else shape)
+
+
+def _shape(text: str) -> Shape:
+    points = [point.split(",") for point in text.split()]
+    try:
+        if points and all(len(point) in (2, 3) for point in points):
+            return tuple((quantity(point[0]), quantity(point[1])) for point in points)
+    except ValueError as error:
+        raise ValueError(f"in its shape, {error}") from error
+    raise ValueError(f'its shape is {shown(text)}; write it as "x,y x,y x,y"')
+
+
+def _flag(attributes: dict[str, str], name: str) -> bool:
+    value = attributes.get(name, "").lower()
+    if value not in TRUE | FALSE:
+        raise ValueError(f"its {name} is {shown(value)}; write true or false")
+    return value in TRUE
+
+
+def _metres(lon_deg: float, lat_deg: float, reference: GeoReference) -> tuple[float, float]:
+    if abs(lon_deg) > 180 or abs(lat_deg) > 90:
+        raise ValueError(f"the point {lon_deg:g},{lat_deg:g} is not a longitude and a latitude")
+    x_m, y_m = reference.x_y(lon_deg, lat_deg)
+    return quantity(str(round(x_m, 1))), quantity(str(round(y_m, 1)))
+
+
+def _largest(areas: list[GroundArea]) -> list[GroundArea]:
+    if len(areas) <= AREAS_LIMIT:
+        return areas
+    sizes = shapely.area([shapely.Polygon(area.outline_m) for area in areas])
+    return [areas[index] for index in np.sort(np.argsort(-sizes, kind="stable")[:AREAS_LIMIT]).tolist()]
