@@ -73,7 +73,7 @@ def main() -> None:
     parser.add_argument("--spread", type=float, default=0.6)
     parser.add_argument("--level", type=float, default=1.0)
     parser.add_argument("--share", type=float, default=0.25)
-    parser.add_argument("--rounds", type=int, default=8)
+    parser.add_argument("--rounds", type=int, default=10)
     given = parser.parse_args()
     scenario = scenarios.load(given.scenario)
     print("seed  sites  set         unfitted                          calibrated")

@@ -59,7 +59,7 @@ class CalibrationOptions:
     """When the ego departs; None is the first hour."""
     hold_out: float = 0.3
     """Share of the sites that the fit does not see."""
-    rounds: int = 8
+    rounds: int = 10
     """Most rounds of fit and simulation."""
     seed: int = 0
     """Seed of what is held out, of the routes and of SUMO."""

@@ -55,7 +55,7 @@ def calibrate_scenario(
     ] = 0.3,
     rounds: Annotated[
         int, typer.Option(parser=whole_number(1, 50), metavar="N", help="Maximum rounds of fit and simulation.")
-    ] = 8,
+    ] = 10,
     seed: Annotated[
         int, typer.Option(parser=whole_number(0, 2**31 - 2), metavar="N", help="Seed of everything random.")
     ] = 0,

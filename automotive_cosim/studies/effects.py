@@ -87,7 +87,7 @@ def rerouted(study: Study) -> list[tuple[tuple[str, str, str], list[SpreadOf]]]:
         spreads = [
             (each, decisions[each.id].spreads[each.branch])
             for each in chosen
-            if each.branch is not None and decisions[each.id].spreads
+            if each.rerouted and each.branch is not None and decisions[each.id].spreads
         ]
         if spreads:
             found.append(((f"{share:.0%}", policy, f"{age_s:g}" if goes_by_news(policy) else NONE), spreads))

@@ -147,6 +147,7 @@ def _choice(point: DecisionPoint, policy: Policy, news: News, compliance: float)
     branch, _ = Counter(numbers).most_common(1)[0]
     driven = [decision.drawn(draw, number) for draw, number in enumerate(numbers)]
     others = [NOBODY if each is None else each.others for each in driven]
+    hits = [_is_same(decision, *each) for each in zip(numbers, ideal, strict=False)]
     signs = [_sign(decision, draw, number) for draw, number in enumerate(numbers)] if decision.draws > 1 else []
     assert drive.stay is not None, "it has a decision"
     return PolicyChoice(
@@ -181,7 +182,7 @@ def _choice(point: DecisionPoint, policy: Policy, news: News, compliance: float)
         gain_error_s=standard_error([decision.gain(draw, branch).time_s for draw in range(decision.draws)]),
         won=signs.count(1) / len(signs) if signs else None,
         lost=signs.count(-1) / len(signs) if signs else None,
-        chose_best=_mean(one == other for one, other in zip(numbers, ideal, strict=False)) if signs else None,
+        chose_best=_mean(hits) if signs else None,
     )
 
 
@@ -190,6 +191,12 @@ def _sign(decision: Decision, draw: int, number: int | None) -> int:
     elsewhere_s = fmean(decision.gain(other, number).time_s for other in range(decision.draws) if other != draw)
     here_s = decision.gain(draw, number).time_s
     return int(here_s > 0 and elsewhere_s > 0) - int(here_s < 0 and elsewhere_s < 0)
+
+
+def _is_same(decision: Decision, one: int | None, other: int | None) -> bool:
+    """Whether two choices come to the same future, as an agent's that leaves the route as it is."""
+    draws = range(decision.draws)
+    return one == other or all(decision.gain(draw, one) == decision.gain(draw, other) for draw in draws)
 
 
 def standard_error(values: Sequence[float]) -> float | None:

@@ -133,6 +133,14 @@ def test_every_figure_is_the_mean_over_the_draws() -> None:
     assert outcomes([each, each, each], Noise(0, 0.0, 0.0)) == pytest.approx((2, 1, 0))
 
 
+def test_an_agent_that_keeps_the_route_chooses_what_never_does() -> None:
+    """Its branch has a number of its own, but is the kept route; where that is the best, both have chosen it."""
+    row = drawn((-30.0, 0.0), (-20.0, 0.0), (-10.0, 0.0), agents={"idle": 1})
+    never, agent, always = choices([drive(row)], ("never", "agent:idle", "always"))
+    assert (never.chose_best, agent.chose_best, always.chose_best) == (1, 1, 0)
+    assert not agent.rerouted
+
+
 def test_draws_that_were_added_for_the_sign_are_in_no_mean() -> None:
     """Added until the mean shows its sign, they would move it away from zero; they choose and tell the sign."""
     more = drawn((10.0,), (-4.0,), (90.0,), (90.0,), planned_draws=2)
