@@ -275,7 +275,7 @@ def _holder(
         Tile(
             rect=tile,
             key=key,
-            text=f"{name} active",
+            text=name,
             icon=icon,
             checked=on,
             on_tap=Set(active, not on),
