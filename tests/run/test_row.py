@@ -40,7 +40,7 @@ EPISODE = replace(
 NEWS = News(age_s=0.0, stay_s=100.0, delay_s=40.0, offered_s=None, branch=None)
 BRANCH = Branch(gains=NOTHING, totals=NOTHING, others=NOBODY)
 DECISION = Decision(
-    at_s=900.0, edge="e", delay_s=40.0, eta_s=100.0, relative_speed=0.5, complies=True, news=(NEWS,), own=0,
+    at_s=900.0, edge="e", delay_s=40.0, eta_s=100.0, relative_speed=0.5, complies_above=0.3, news=(NEWS,), own=0,
     agents={"asurada": 0}, agents_rerouted=("asurada",), branches=(BRANCH,), placebo=BRANCH,
 )  # fmt: skip
 ROWS = (
