@@ -107,7 +107,11 @@ def notifications(state: State) -> tuple[Widget, ...]:
                     text="Clear all",
                     icon=Icon.DELETE,
                     on_tap=Put("notices", (), "The notifications are cleared"),
-                    disabled="" if state.notices else "There is nothing to clear",
+                    disabled=""
+                    if state.notices
+                    else "These go when they are dealt with"
+                    if lines
+                    else "There is nothing to clear",
                 ),
                 rows(
                     inner.below(72),

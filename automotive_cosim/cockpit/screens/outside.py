@@ -31,8 +31,10 @@ from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Bar, Button, Card, Glyph, Label, Look, Row, Tile, Widget
 from automotive_cosim.contracts import Alert, AlertKind
 
-FOG_M, MIST_M = 1000.0, 5000.0
-"""Fog and mist by the WMO's definitions."""
+DENSE_FOG_M, FOG_M, MIST_M = 200.0, 1000.0, 5000.0
+"""Dense fog, fog and mist, the latter two by the WMO's definitions."""
+DRIZZLE_MM = 0.1
+"""Rain or snow per hour from which it is that, not fog, which takes the sight."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,14 +77,17 @@ def _switch(key: str, text: str, icon: Icon, signal: Signal[bool]) -> Act:
 
 def _rain(state: State) -> Reading:
     rate = 0.0 if state.outside is None else state.outside.weather.precipitation
-    word = "No rain" if rate < 0.1 else "Light" if rate < 2.5 else "Moderate" if rate < 10 else "Heavy"
+    word = "No rain" if rate < DRIZZLE_MM else "Light" if rate < 2.5 else "Moderate" if rate < 10 else "Heavy"
     return Reading(word, f"{rate:.1f} mm/h", state.signals[BODY.RAIN_INTENSITY] / 100)
 
 
 def _fog(state: State) -> Reading:
     sight = state.signals[OUTSIDE.VISIBILITY]
-    word = "Clear" if sight >= MIST_M else "Mist" if sight >= FOG_M else "Fog" if sight >= 200 else "Dense fog"
-    return Reading(word, f"Visibility {distance(state.signals, sight)}", 1 - min(1.0, sight / MIST_M))
+    weather = None if state.outside is None else state.outside.weather
+    is_fog = weather is None or not (is_dusty(weather) or weather.precipitation >= DRIZZLE_MM)
+    words = ("Clear", "Mist", "Fog", "Dense fog") if is_fog else ("Good", "Moderate", "Poor", "Very poor")
+    word = words[sum(sight < bound_m for bound_m in (MIST_M, FOG_M, DENSE_FOG_M))]
+    return Reading(word, distance(state.signals, sight), 1 - min(1.0, sight / MIST_M))
 
 
 def _ice(state: State) -> Reading:
@@ -155,7 +160,7 @@ PHENOMENA: dict[str, Phenomenon] = {
         AlertKind.WEATHER,
     ),
     "fog": Phenomenon(
-        "Fog",
+        "Visibility",
         Icon.REAR_FOG,
         "Visibility as the forward camera estimates it. Whether fog lamps may be lit depends on local law.",
         _fog,
