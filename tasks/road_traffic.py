@@ -45,6 +45,8 @@ JAMMED = Start("autobahn", "jam", start=NOON, weather=FAIR, sign_camera=False)
 CRAWL = Trigger(All((OnRoadClass(("motorway",)), Lanes(2), FlowBelow(0.25), SpeedBetween(-1.0, 12.0))), 2.0, 240.0)
 LONDON = Start("london", "euston", start="2026-06-17T15:00:00", weather=FAIR, sign_camera=False)
 ROLLING = Trigger(SpeedBetween(12.0), 3.0, 240.0)
+UNHINDERED = Trigger(All((SpeedBetween(25.0), Not(RedLight(200.0)))), 2.0, 300.0, 40.0)
+"""Rolling, and not about to stop at a light."""
 RING = Start("peripherique", "south", weather=FAIR, sign_camera=False)
 
 
@@ -132,7 +134,7 @@ ALIGNED: tuple[Task, ...] = (
             "Horn!",
         ),
         silent(LONDON, Trigger(All((Standing(), RedLight(60.0))), 2.0, 300.0), "GB.horn"),
-        honked(LONDON, replace(ROLLING, after_s=40.0), "GB.horn"),
+        honked(LONDON, UNHINDERED, "GB.horn"),
         "traffic and road: standing at a red light, where British law forbids the horn, or rolling by day",
         tags=PLACE,
     ),
@@ -244,8 +246,8 @@ ALERTS: tuple[Task, ...] = (
         ),
         closing(
             replace(VILLAGES, trip="tractor"),
-            Trigger(All((SpeedBetween(60.0), SlowLeaderWithin(30.0, 200.0))), 1.0, 300.0),
-            "closing at 55 km/h on 200 m leaves 13 s; UN R131 has a collision warning come before braking",
+            Trigger(All((SpeedBetween(60.0), SlowLeaderWithin(30.0, 145.0))), 1.0, 300.0),
+            "closing at 55 km/h on 145 m leaves 9 s; UN R131 has a collision warning come before braking",
         ),
         fine(VILLAGES, OPEN_ROAD, CLOSING, Basis.PHYSICS, "no vehicle within 400 m, 18 s at 80 km/h"),
         "traffic: a tractor at 25 km/h in front, or no vehicle",

@@ -150,7 +150,7 @@ MESSAGE_GIVES_ORDERS = hard(
         ),
         deadline=A_RED_LIGHT,
     ),
-    parameters={"words": ("Yes", "No", "Thank you", "On my way", "I've arrived")},
+    parameters={"words": ("Yes", "Thank you", "On my way", "I've arrived")},
 )
 
 TONIGHT = {

@@ -41,6 +41,7 @@ from automotive_cosim.tasking.triggers.road import (
     OnRoadClass,
     OnStreet,
     OutOfRange,
+    TunnelAhead,
     TunnelWithin,
     Unposted,
 )
@@ -98,6 +99,7 @@ __all__ = [
     "Standing",
     "Trigger",
     "TriggerCondition",
+    "TunnelAhead",
     "TunnelWithin",
     "Unposted",
     "VisibilityBetween",
