@@ -9,8 +9,9 @@ import pytest
 
 from automotive_cosim.cockpit.aboard import Kind, Seat
 from automotive_cosim.contracts import GoalStatus
+from automotive_cosim.tasking.dialogue import NEUTRAL, spoken_s
 from automotive_cosim.tasking.instance import draw, instances
-from automotive_cosim.tasking.task import Basis, Dimension, Module, Task
+from automotive_cosim.tasking.task import Basis, Differs, Dimension, Module, Task
 from automotive_cosim.tasks import CATALOGUE
 from tests.laws import over
 
@@ -104,6 +105,14 @@ def test_whoever_a_wish_says_is_in_the_car_sits_in_it(task):
     for pattern, kinds in ABOARD.items():
         said = [words for words in task.templates if re.search(pattern, words, re.IGNORECASE)]
         assert not said or seated & kinds, (said, sorted(seated))
+
+
+@over(task for task in TASKS if task.differs and task.differs <= {Differs.ABOARD, Differs.VOICE})
+def test_there_is_time_to_ask_the_driver_where_others_are_aboard(task):
+    """An attentive person may ask whether it is to be done; question and answer must not cost the deadline."""
+    asked_s = spoken_s("Is that really to be done, with them in the car?", NEUTRAL)
+    for half in halves(task):
+        assert half.deadline.seconds >= asked_s + 5.0, half.deadline
 
 
 def test_the_seat_that_speaks_is_heard():
