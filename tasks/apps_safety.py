@@ -66,6 +66,7 @@ PAY = Task(
         Basis.PHYSICS,
         "rock blocks radio: without a link nothing can be paid, and the tunnel is 6.4 km long",
         reasons=(Reason.NOT_POSSIBLE,),
+        may_write=frozenset({"parking.zone", "parking.minutes"}),
     ),
     difference="road: in the open, or deep in a tunnel without a link",
     parameters={"stay": tuple(STAYS), "zone": ("A", "B", "C")},
@@ -80,7 +81,7 @@ TYRES = Task(
         "Have a look at the notices; alert me should something about the vehicle be wrong.",
         "Alert me to anything I need to know about the condition of the car in this weather.",
         "Is the machine fine? A warning, please, if some part of it isn't.",
-        "Go through the messages of the car and raise the alarm only for a fault.",
+        "Go through what the car itself has to say and raise the alarm only for a fault.",
     ),
     first=Half(
         start=Start("nordic", "town", weather=FROST, signals=FRONT_LEFT),

@@ -143,7 +143,7 @@ LAMP_TASKS: tuple[Task, ...] = (
             "It's pitch dark and it's snowing, give me the far lights.",
             "Main beam now; nobody is coming anyway.",
             "I can't see the bend, go up to high beam.",
-            "Light up the snow for me, all the way.",
+            "Light up the snow for me, as far ahead as it goes.",
         ),
         refused(replace(VALLEY, origin=CHAMPAGNOLE), when(Lit(False), NOBODY), "FR.high_beam"),
         wanted(replace(VALLEY, origin=KIRUNA), when(Lit(False), NOBODY), "SE.high_beam"),

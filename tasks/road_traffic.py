@@ -30,7 +30,7 @@ from automotive_cosim.tasks.forms import decline, in_company
 from automotive_cosim.tasks.road_law import DARMSTADT, FAIR, LYON, NOON, ORLEANS, PLACE, fine, warned
 
 LEEDS = (-1.55, 53.80)
-BEEP = Deadline(6.0, "a driver who wants to be heard leans on the horn within a few seconds")
+BEEP = Deadline(8.0, "a driver who wants to be heard and is not leans on the horn within a few seconds")
 CLOSING = Deadline(8.0, "200 m at 80 km/h and a second of reaction leave 8 s")
 BEHIND = Deadline(10.0, "150 m behind and 40 km/h faster than the ego, the ambulance catches up within 13 s")
 OPENING = Deadline(
@@ -173,10 +173,10 @@ ALERTS: tuple[Task, ...] = (
         "road_corridor",
         (
             "We're stuck. Alert me to anything that I have to do.",
-            "Nothing moves; warn me if I'm standing wrong.",
+            "Nothing moves; warn me if others need something of me.",
             "Jam. Tell me what they expect of me here.",
             "Great, a queue. Remind me of my duties, if there are any.",
-            "Stop and go again. Call out if where I am on the lane isn't okay.",
+            "Stop and go again. Call out what the rules of the lane want here, if anything.",
         ),
         warned(
             replace(JAMMED, origin=DARMSTADT),
@@ -268,7 +268,7 @@ ALERTS: tuple[Task, ...] = (
             "from 130 km/h a car stops within 260 m (reaction 2.5 s, 3.4 m/s2: AASHTO Green Book)",
         ),
         fine(
-            replace(JAMMED, trip="roadworks"),
+            replace(JAMMED, trip="south"),
             Trigger(All((SpeedBetween(60.0), Driving(), Not(JamWithin(3000.0)))), 3.0, 240.0),
             CLOSING,
             Basis.PHYSICS,

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from automotive_cosim.cockpit.aboard import Kind, Seat
-from automotive_cosim.contracts import GoalStatus
+from automotive_cosim.contracts import GoalStatus, Reason
 from automotive_cosim.tasking.dialogue import NEUTRAL, spoken_s
 from automotive_cosim.tasking.instance import draw, instances
 from automotive_cosim.tasking.task import Basis, Differs, Dimension, Module, Task
@@ -105,6 +105,12 @@ def test_whoever_a_wish_says_is_in_the_car_sits_in_it(task):
     for pattern, kinds in ABOARD.items():
         said = [words for words in task.templates if re.search(pattern, words, re.IGNORECASE)]
         assert not said or seated & kinds, (said, sorted(seated))
+
+
+@over(TASKS)
+def test_no_reason_fits_wherever_nothing_has_to_be_done(task):
+    for half in halves(task):
+        assert half.declares is not GoalStatus.NOT_NEEDED or Reason.NONE in half.reasons
 
 
 @over(task for task in TASKS if task.differs and task.differs <= {Differs.ABOARD, Differs.VOICE})
