@@ -458,7 +458,7 @@ BENCH_PHOTO = pictured(
     done(
         sent(
             PRIYA,
-            Photo(Shows.BENCH, param("half")),
+            Photo(Shows.BENCH, param("half"), struck=True),
             "How they'll sit, taken through the rear window from behind the car",
             start=AIRED,
         ),
