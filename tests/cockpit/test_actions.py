@@ -124,6 +124,7 @@ json_values = st.recursive(
 
 @settings(suppress_health_check=[HealthCheck.too_slow])  # which a busy machine fails
 @given(json_values | st.dictionaries(st.sampled_from(["action_type", *SAMPLES]), json_values))
+@pytest.mark.slow
 def test_anything_is_an_action_or_an_action_error(value: object):
     try:
         action = parse(value)  # type: ignore[arg-type]

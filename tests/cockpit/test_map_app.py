@@ -8,6 +8,7 @@ from dataclasses import replace
 from datetime import timedelta
 
 import numpy as np
+import pytest
 
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.geometry import Rect
@@ -179,6 +180,7 @@ def test_without_mobile_data_no_traffic_is_heard(make: Make, around: Surrounding
     assert not incidents_seen(cockpit)
 
 
+@pytest.mark.slow
 def test_a_frame_drawn_in_part_is_the_frame_drawn_anew(make: Make, around: Surroundings) -> None:
     rng = np.random.default_rng(5)
     for size, scale in ((ScreenSize.STANDARD, 1.0), (ScreenSize.STANDARD, 0.75), (ScreenSize.PORTRAIT, 1.0)):

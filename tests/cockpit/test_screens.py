@@ -137,7 +137,7 @@ CASES: dict[str, Callable[[Make, Surroundings], Cockpit]] = {
 }
 
 
-FAST = ("day", "night", "busy", "parked", "parked in German by night", "a call rings", "wide", "portrait")
+FAST = ("day", "busy", "parked in German by night", "a call rings")
 """The others are left to the whole run."""
 
 

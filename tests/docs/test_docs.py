@@ -270,6 +270,7 @@ def test_pages_count_the_tasks_as_they_are():
         ("--agents t3a,asurada --scenarios grid,paris_centre", "has {} episodes: all"),
     ],
 )
+@pytest.mark.slow
 def test_pages_count_the_episodes_as_they_are(cli, line, words):
     planned = re.search(r"episodes +([\d,]+) from", cli("eval", *line.split(), "--workers", "2", "--dry-run").out)
     assert planned is not None

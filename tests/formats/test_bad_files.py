@@ -332,6 +332,7 @@ def _put(value: object, path: tuple[str | int, ...], new: object) -> object:
 @pytest.mark.parametrize("name", TOML)
 @settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data(), new=_values)
+@pytest.mark.slow
 def test_any_value_anywhere_is_read_or_refused_and_what_is_read_passes_the_schema(
     formats: dict[str, Format], name: str, data: st.DataObject, new: object
 ) -> None:

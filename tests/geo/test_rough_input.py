@@ -157,6 +157,7 @@ _toml = st.recursive(
 
 @settings(max_examples=300, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(field=st.sampled_from(FIELDS), value=_toml)
+@pytest.mark.slow
 def test_any_value_in_any_field_of_a_rule_is_read_or_refused(tmp_path: Path, field: str, value: object) -> None:
     rule = {
         "id": '"XX.limit"',

@@ -148,6 +148,7 @@ def test_random_prompts_never_break_it():
         assert Rules().chat([ChatMessage("user", "".join(rng.choice(alphabet, 60)))]).text
 
 
+@pytest.mark.slow
 def test_no_skill_hides_behind_another():
     """Each skill is reached by some phrasing that the table was made on, or by the standing order of a drive."""
     goals = [STANDING_ORDER, *(goal for task in CATALOGUE.values() for goal in first_goals(task))]

@@ -110,6 +110,7 @@ def test_every_link_of_the_page_leads_somewhere_and_nothing_is_fetched(folder):
     assert "its <process>" not in text
 
 
+@pytest.mark.slow
 def test_each_figure_leads_to_its_episodes(folder):
     text = (folder / "report.html").read_text(encoding="utf-8")
     found = read_results(folder)

@@ -66,6 +66,7 @@ def test_the_hard_suite_has_its_own_limit_of_steps():
     assert {(job.setup.task, job.setup.max_steps) for job in usual} == {(HARD[0], 40), ("hvac_fan_max", 20)}
 
 
+@pytest.mark.slow
 def test_the_splits_share_out_the_episodes_between_them():
     chosen = {"tasks": ["hvac", "road"], "seeds": list(range(12))}
     whole, dev, test = (

@@ -44,6 +44,7 @@ def test_a_broken_line_in_the_middle_is_named(tmp_path):
         read_rows(tmp_path / "e", JobRow)
 
 
+@pytest.mark.slow
 def test_two_evaluations_in_one_folder_are_refused(program, tmp_path):
     script = (
         "import sys, pathlib; from automotive_cosim.run.row import JobRow\n"
