@@ -23,7 +23,7 @@ from automotive_cosim.tasking.triggers import (
     OncomingWithin,
     Trigger,
     TriggerCondition,
-    TunnelAhead,
+    TunnelOnRoute,
     TunnelWithin,
 )
 from automotive_cosim.tasks.forms import BY_THE_SWITCH, decline, in_company
@@ -255,7 +255,7 @@ LAMP_TASKS: tuple[Task, ...] = (
         ),
         fine(
             replace(UNDER_MILAN, trip="streets"),
-            when(Not(TunnelAhead()), after_s=10.0),
+            when(Not(TunnelOnRoute()), after_s=10.0),
             TO_PORTAL,
             Basis.LAW,
             "IT.tunnel_lamps",

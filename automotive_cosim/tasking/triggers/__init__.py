@@ -41,7 +41,7 @@ from automotive_cosim.tasking.triggers.road import (
     OnRoadClass,
     OnStreet,
     OutOfRange,
-    TunnelAhead,
+    TunnelOnRoute,
     TunnelWithin,
     Unposted,
 )
@@ -99,7 +99,7 @@ __all__ = [
     "Standing",
     "Trigger",
     "TriggerCondition",
-    "TunnelAhead",
+    "TunnelOnRoute",
     "TunnelWithin",
     "Unposted",
     "VisibilityBetween",

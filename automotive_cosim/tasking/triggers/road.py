@@ -151,7 +151,7 @@ class TunnelWithin:
 
 
 @dataclass(frozen=True, slots=True)
-class TunnelAhead:
+class TunnelOnRoute:
     """A tunnel lies on the rest of the route, however far."""
 
     def __call__(self, moment: Moment) -> bool:
