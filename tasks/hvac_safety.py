@@ -210,7 +210,7 @@ ADJUST_AIR = _pair(
             (Open("climate"), Tap("hvac.max_cooling")),
             (Open("climate"), Tap("hvac.auto")),
             (*COOL, Tap("hvac.driver_temperature.increase", times=8)),
-            (*COOL, Tap("hvac.recirculation"), Tap("hvac.driver_temperature.increase", times=24)),
+            (*COOL, Tap("hvac.recirculation"), Tap("hvac.driver_temperature.increase", times=6)),
         ),
         CLIMATE | {HVAC.RECIRCULATION.path},
     ),
