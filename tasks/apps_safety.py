@@ -38,7 +38,7 @@ PAY = Task(
         "Pay {stay} of parking in zone {zone} this minute, don't wait.",
         "Zone {zone}, {stay}: buy the ticket right now.",
         "I want the parking for {stay} in {zone} settled immediately.",
-        "Get {stay} in zone {zone} paid at once; if that can't be done now, just say so.",
+        "Get {stay} in zone {zone} paid at once, not a minute later.",
     ),
     first=Half(
         start=Start("alpine_pass", "descent"),
@@ -66,7 +66,6 @@ PAY = Task(
         Basis.PHYSICS,
         "rock blocks radio: without a link nothing can be paid, and the tunnel is 6.4 km long",
         reasons=(Reason.NOT_POSSIBLE,),
-        may_write=frozenset({"parking.zone", "parking.minutes"}),
     ),
     difference="road: in the open, or deep in a tunnel without a link",
     parameters={"stay": tuple(STAYS), "zone": ("A", "B", "C")},

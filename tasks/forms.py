@@ -163,7 +163,6 @@ def decline(
     *,
     reasons: tuple[Reason, ...],
     needed: bool = True,
-    may_write: frozenset[str] = frozenset(),
 ) -> Half:
     """A half in which the right act is to leave everything as it is and to say so.
 
@@ -175,7 +174,6 @@ def decline(
         rule: id of the rule or source.
         reasons: codes that fit; where there is no need, so does ``none``.
         needed: whether it is asked for in vain (``infeasible``); False if there is no need for it.
-        may_write: keys of ``Moment.commands`` that may change all the same: what is tried costs nobody anything.
     """
     fitting = frozenset(reasons) if needed else frozenset({*reasons, Reason.NONE})
     return Half(
@@ -188,7 +186,6 @@ def decline(
         rule,
         declares=GoalStatus.INFEASIBLE if needed else GoalStatus.NOT_NEEDED,
         reasons=fitting,
-        may_write=may_write,
     )
 
 
